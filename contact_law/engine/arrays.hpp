@@ -1,0 +1,81 @@
+// What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the eight side by side.
+#pragma once
+#include "../kernel/pair_constants.hpp"
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace contact_law {
+
+template <class T> struct CacheLineAllocator {
+	using value_type = T;
+	CacheLineAllocator() = default;
+	template <class U> CacheLineAllocator(const CacheLineAllocator<U>&) {}
+	T* allocate(std::size_t n)
+	{
+		void* p = std::aligned_alloc(64, (n * sizeof(T) + 63) / 64 * 64);
+		if (!p) throw std::bad_alloc();
+		return static_cast<T*>(p);
+	}
+	void deallocate(T* p, std::size_t) { std::free(p); }
+	template <class U> bool operator==(const CacheLineAllocator<U>&) const { return true; }
+	template <class U> bool operator!=(const CacheLineAllocator<U>&) const { return false; }
+};
+template <class T> using Aligned = std::vector<T, CacheLineAllocator<T>>;
+
+// Two cache lines a grain: the first is what contacts read, the second what they add to.
+struct alignas(64) Grain {
+	double x, y, z;    // position now [m]
+	double vx, vy, vz; // velocity through the step before now [m/s]
+	double wx, wy, wz; // angular velocity, likewise [rad/s]
+	double spare;
+	double fx, fy, fz, tx, ty, tz; // force [N] and torque [N m] on the grain now
+};
+
+constexpr int lanes = 8; // contacts in a block
+
+struct alignas(64) ContactBlock {
+	double n1[3][lanes], n2[3][lanes]; // contact pointers, laboratory frame
+	double twist[lanes];
+	int    i[lanes], j[lanes]; // grains; a dead lane points to the domain's two dummies
+};
+
+// Constants of eight contacts of a scene with several kinds of pairs, in the order of PairConstants.
+constexpr int constantCount = sizeof(PairConstants<double>) / sizeof(double);
+struct alignas(64) ConstantsBlock {
+	double field[constantCount][lanes];
+};
+
+struct alignas(64) LaneForces {
+	double force[3][lanes], torque1[3][lanes], torque2[3][lanes];
+};
+
+// What one pass over a domain's contacts needs.
+struct ForcePass {
+	Grain*                       grains;
+	ContactBlock*                blocks;
+	const ConstantsBlock*        constants; // null when all pairs are alike
+	const PairConstants<double>* alike;
+	int                          blockCount;
+	int                          addFirst, addSecond; // whether the first / second grain of each contact is this domain's
+	int                          trash;               // grain that takes what is not added
+	double                       dt;
+	void*                        owner;
+	// contacts of a block (bits of `which`) that slip, break or are pressed beyond the fit: history before the step, forces to be replaced
+	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
+};
+
+struct StoredSums {
+	double normal, sliding, rolling, twisting;
+};
+
+// One instruction set's compiled passes, by mechanisms (contact.hpp) and whether all pairs are alike.
+struct InstructionSet {
+	const char* name;
+	void (*forces[16][2])(const ForcePass&);
+	void (*energies[16][2])(const ForcePass&, StoredSums&);
+	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared);
+};
+
+} // namespace contact_law

@@ -1,0 +1,105 @@
+// A domain's contacts of one sort (both grains its own, or one of them), in blocks of eight lanes.
+#pragma once
+#include "arrays.hpp"
+#include "../kernel/contact.hpp"
+
+namespace contact_law {
+
+struct Contact { // one lane, taken out
+	int                    i, j;
+	ContactHistory<double> history;
+	PairConstants<double>  constants;
+};
+
+class ContactList {
+public:
+	ContactList(bool alike_, int dummy_)
+	        : alike(alike_)
+	        , dummy(dummy_)
+	{
+	}
+	int            size() const { return used; } // lanes, dead ones among them
+	int            blockCount() const { return int(blocks.size()); }
+	ContactBlock*  data() { return blocks.data(); }
+	ConstantsBlock* constantsData() { return alike ? nullptr : constants.data(); }
+
+	void append(const Contact& contact)
+	{
+		if (used % lanes == 0) addDeadBlock(contact.constants);
+		set(used++, contact);
+	}
+	void kill(int lane)
+	{
+		blocks[lane / lanes].i[lane % lanes] = dummy;
+		blocks[lane / lanes].j[lane % lanes] = dummy + 1;
+		writeHistory(lane, deadHistory());
+		if (!alike) writeConstants(lane, deadConstants);
+	}
+	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
+
+	Contact get(int lane, const PairConstants<double>& common) const
+	{
+		const ContactBlock& b = blocks[lane / lanes];
+		return { b.i[lane % lanes], b.j[lane % lanes], history(b, lane % lanes), alike ? common : readConstants(lane) };
+	}
+	void writeHistory(int lane, const ContactHistory<double>& h)
+	{
+		ContactBlock& b = blocks[lane / lanes];
+		const int     k = lane % lanes;
+		const Vec3<double>&p = h.pointers.n1, &q = h.pointers.n2;
+		b.n1[0][k] = p.x, b.n1[1][k] = p.y, b.n1[2][k] = p.z;
+		b.n2[0][k] = q.x, b.n2[1][k] = q.y, b.n2[2][k] = q.z;
+		b.twist[k] = h.twist;
+	}
+	static ContactHistory<double> history(const ContactBlock& b, int k)
+	{
+		return { { { b.n1[0][k], b.n1[1][k], b.n1[2][k] }, { b.n2[0][k], b.n2[1][k], b.n2[2][k] } }, b.twist[k] };
+	}
+	void clear()
+	{
+		blocks.clear();
+		constants.clear();
+		used = 0;
+	}
+	void setDeadConstants(const PairConstants<double>& c) { deadConstants = c; } // of the two dummies, which touch at equilibrium
+
+private:
+	static ContactHistory<double> deadHistory() { return { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }; }
+
+	void addDeadBlock(const PairConstants<double>&)
+	{
+		blocks.emplace_back();
+		if (!alike) constants.emplace_back();
+		for (int k = 0; k < lanes; ++k)
+			kill(int(blocks.size() - 1) * lanes + k);
+	}
+	void set(int lane, const Contact& contact)
+	{
+		blocks[lane / lanes].i[lane % lanes] = contact.i;
+		blocks[lane / lanes].j[lane % lanes] = contact.j;
+		writeHistory(lane, contact.history);
+		if (!alike) writeConstants(lane, contact.constants);
+	}
+	void writeConstants(int lane, const PairConstants<double>& c)
+	{
+		const double* from = reinterpret_cast<const double*>(&c);
+		for (int k = 0; k < constantCount; ++k)
+			constants[lane / lanes].field[k][lane % lanes] = from[k];
+	}
+	PairConstants<double> readConstants(int lane) const
+	{
+		PairConstants<double> c;
+		double*               to = reinterpret_cast<double*>(&c);
+		for (int k = 0; k < constantCount; ++k)
+			to[k] = constants[lane / lanes].field[k][lane % lanes];
+		return c;
+	}
+
+	Aligned<ContactBlock>   blocks;
+	Aligned<ConstantsBlock> constants;
+	PairConstants<double>   deadConstants {};
+	bool                    alike;
+	int                     dummy, used = 0;
+};
+
+} // namespace contact_law

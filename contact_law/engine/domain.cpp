@@ -1,0 +1,247 @@
+#include "domain.hpp"
+#include <algorithm>
+
+namespace contact_law {
+
+namespace {
+	Vec3<double> positionOf(const Grain& g) { return { g.x, g.y, g.z }; }
+	Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
+	Vec3<double> spinOf(const Grain& g) { return { g.wx, g.wy, g.wz }; }
+
+	void add(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
+	{
+		g.fx += force.x, g.fy += force.y, g.fz += force.z;
+		g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
+	}
+	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
+}
+
+Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
+        : begin(begin_)
+        , end(end_)
+        , contacts { { setting.alike, dummy_ }, { setting.alike, dummy_ }, { setting.alike, dummy_ } }
+        , s(setting)
+        , dummy(dummy_)
+{
+	for (int sort = 0; sort < 3; ++sort)
+		eventCalls[sort] = { this, sort };
+	const double distance = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
+	s.grains[dummy]       = Grain {};
+	s.grains[dummy + 1]   = Grain {};
+	s.grains[dummy].x     = distance;
+	for (ContactList& list : contacts)
+		list.setDeadConstants(s.common);
+}
+
+ForcePass Domain::passFor(int sort)
+{
+	ContactList& list = contacts[sort];
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.blockCount(), sort != Second, sort != First, dummy, s.dt, &eventCalls[sort], &Domain::eventsOf };
+}
+
+void Domain::addForces()
+{
+	sums.eventWork = 0;
+	for (int sort = 0; sort < 3; ++sort)
+		s.passes->forces[s.mechanisms][s.alike](passFor(sort));
+	births();
+}
+
+void Domain::integrate()
+{
+	fastestSquared = 0;
+	s.passes->integrate(&s.grains[begin], &s.grains[0] + end, &s.inverseMass[begin], &s.inverseInertia[begin], s.dt, fastestSquared);
+}
+
+ContactMotion Domain::motionOf(int i, int j) const
+{
+	const Grain &a = s.grains[i], &b = s.grains[j];
+	return { positionOf(a) - positionOf(b), velocityOf(a) - velocityOf(b), spinOf(a), spinOf(b), s.dt, s.inverseMass[i] + s.inverseMass[j] };
+}
+
+// Both domains of a border contact compute it; the first grain's books it.
+void Domain::book(const ContactStepResult& r, const ContactMotion& m, int sort)
+{
+	if (sort == Second) return;
+	Dissipation& d = sums.dissipated;
+	d.sliding += r.dissipated.sliding;
+	d.rolling += r.dissipated.rolling;
+	d.twisting += r.dissipated.twisting;
+	d.connection += r.dissipated.connection;
+	d.disconnection += r.dissipated.disconnection;
+	d.drag += r.dissipated.drag;
+	sums.eventWork += r.workBefore - 0.5 * contact_law::events::work(m, r.force, r.torque1, r.torque2);
+	++events;
+}
+
+void Domain::eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces)
+{
+	const EventCall& call = *static_cast<EventCall*>(owner);
+	for (int k = 0; k < lanes; ++k)
+		if (which & (1u << k)) call.domain->eventOf(call.sort, block * lanes + k, before, forces);
+}
+
+void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& forces)
+{
+	ContactList&           list = contacts[sort];
+	const int              k    = lane % lanes;
+	const Contact          at   = list.get(lane, s.common);
+	const ContactMotion    m    = motionOf(at.i, at.j);
+	ContactHistory<double> h    = ContactList::history(old, k);
+
+	// the moment a step ago, from where it was: positions moved by velocity * dt, and the pointers had not turned yet
+	const Vec3<double>  then = m.separation - m.dt * m.velocity;
+	const double        apart = std::sqrt(dot(then, then));
+	ContactBefore       before;
+	before.touching = true;
+	before.overlap  = at.constants.radius1 + at.constants.radius2 - apart;
+	before.sliding  = sliding::displacement(h.pointers, at.constants.radius1, at.constants.radius2, (1 / apart) * then);
+	before.rolling  = rolling::displacement(h.pointers, at.constants.reducedRadius);
+	before.twist    = h.twist;
+
+	h.pointers                = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
+	const ContactStepResult r = contactStepWith[s.mechanisms](at.constants, m, before, h);
+	book(r, m, sort);
+	write(r.force, forces.force, k);
+	write(r.torque1, forces.torque1, k);
+	write(r.torque2, forces.torque2, k);
+	if (r.touching) {
+		list.writeHistory(lane, h);
+		return;
+	}
+	// this lane's kicks still go to its grains (scattered by index): add them here, and leave nothing for the dead lane's dummies
+	if (sort != Second) add(s.grains[at.i], r.force, r.torque1);
+	if (sort != First) add(s.grains[at.j], -r.force, r.torque2);
+	write({ 0, 0, 0 }, forces.force, k);
+	write({ 0, 0, 0 }, forces.torque1, k);
+	write({ 0, 0, 0 }, forces.torque2, k);
+	list.kill(lane);
+	const auto found = std::lower_bound(far[sort].begin(), far[sort].end(), Pair { at.i, at.j }, [](const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
+	if (found != far[sort].end() && found->i == at.i && found->j == at.j) {
+		const int index       = int(found - far[sort].begin());
+		touching[sort][index] = 0;
+		near[sort].push_back(index);
+	}
+}
+
+void Domain::births()
+{
+	for (int sort = 0; sort < 3; ++sort) {
+		std::vector<int> born;
+		for (const int index : near[sort]) {
+			const Pair&        p = far[sort][index];
+			const Vec3<double> d = positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]);
+			const double       sum = s.radius[p.i] + s.radius[p.j];
+			if (dot(d, d) <= sum * sum && !touching[sort][index]) born.push_back(index);
+		}
+		std::sort(born.begin(), born.end()); // the order of pairs, whatever the order of the list
+		for (const int index : born)
+			birth(sort, index);
+	}
+}
+
+void Domain::birth(int sort, int index)
+{
+	const Pair          p = far[sort][index];
+	const ContactMotion m = motionOf(p.i, p.j);
+	Contact             c { p.i, p.j, {}, s.constantsOf(p.i, p.j) };
+	const auto          r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
+	if (!r.touching) return;
+	touching[sort][index] = 1;
+	book(r, m, sort);
+	if (sort != Second) add(s.grains[p.i], r.force, r.torque1);
+	if (sort != First) add(s.grains[p.j], -r.force, r.torque2);
+	contacts[sort].append(c);
+}
+
+void Domain::rebuildFar(const Grid& grid)
+{
+	const Grain* grains = s.grains.data();
+	double       largest = 0;
+	for (const double r : s.radius)
+		largest = std::max(largest, r);
+	for (auto& list : far)
+		list.clear();
+	std::vector<int> found;
+	for (int i = begin; i < end; ++i) {
+		found.clear();
+		grid.around(&grains[i].x, [&](int j) {
+			if (j == i || (j < i && owns(j))) return;
+			const double dx = grains[i].x - grains[j].x, dy = grains[i].y - grains[j].y, dz = grains[i].z - grains[j].z;
+			const double reach = s.radius[i] + s.radius[j] + s.farGap;
+			if (dx * dx + dy * dy + dz * dz < reach * reach) found.push_back(j);
+		});
+		std::sort(found.begin(), found.end());
+		for (const int j : found)
+			far[owns(j) ? Both : i < j ? First : Second].push_back(i < j ? Pair { i, j } : Pair { j, i });
+	}
+	const auto before = [](const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; };
+	std::sort(far[Second].begin(), far[Second].end(), before);
+
+	for (int sort = 0; sort < 3; ++sort) { // contacts in the order of the pairs, dead lanes dropped
+		std::vector<Contact> alive;
+		for (int lane = 0; lane < contacts[sort].size(); ++lane)
+			if (contacts[sort].alive(lane)) alive.push_back(contacts[sort].get(lane, s.common));
+		std::sort(alive.begin(), alive.end(), [](const Contact& a, const Contact& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
+		contacts[sort].clear();
+		touching[sort].assign(far[sort].size(), 0);
+		std::size_t at = 0;
+		for (const Contact& c : alive) {
+			contacts[sort].append(c);
+			while (at < far[sort].size() && before(far[sort][at], Pair { c.i, c.j }))
+				++at;
+			if (at < far[sort].size() && far[sort][at].i == c.i && far[sort][at].j == c.j) touching[sort][at] = 1;
+		}
+	}
+	s.grains[dummy].fx = s.grains[dummy].fy = s.grains[dummy].fz = 0;
+	rebuildNear();
+}
+
+void Domain::rebuildNear()
+{
+	const Grain* grains = s.grains.data();
+	for (int sort = 0; sort < 3; ++sort) {
+		near[sort].clear();
+		for (int index = 0; index < int(far[sort].size()); ++index) {
+			if (touching[sort][index]) continue;
+			const Pair   p = far[sort][index];
+			const double dx = grains[p.i].x - grains[p.j].x, dy = grains[p.i].y - grains[p.j].y, dz = grains[p.i].z - grains[p.j].z;
+			const double reach = s.radius[p.i] + s.radius[p.j] + s.nearGap;
+			if (dx * dx + dy * dy + dz * dz < reach * reach) near[sort].push_back(index);
+		}
+	}
+}
+
+void Domain::placeOverlapping()
+{
+	for (int sort = 0; sort < 3; ++sort)
+		for (const int index : near[sort]) {
+			const Pair          p = far[sort][index];
+			const ContactMotion m { positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]), { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
+			if (s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation)) <= 0) continue;
+			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j) });
+			touching[sort][index] = 1;
+		}
+}
+
+StoredSums Domain::energies()
+{
+	StoredSums total { 0, 0, 0, 0 };
+	for (int sort = Both; sort <= First; ++sort) {
+		StoredSums part { 0, 0, 0, 0 };
+		s.passes->energies[s.mechanisms][s.alike](passFor(sort), part);
+		total = { total.normal + part.normal, total.sliding + part.sliding, total.rolling + part.rolling, total.twisting + part.twisting };
+	}
+	return total;
+}
+
+int Domain::contactCount() const
+{
+	int count = 0;
+	for (int sort = Both; sort <= First; ++sort)
+		for (int lane = 0; lane < contacts[sort].size(); ++lane)
+			count += contacts[sort].alive(lane);
+	return count;
+}
+
+} // namespace contact_law

@@ -1,0 +1,80 @@
+// A share of the grains (a stretch of the space-filling curve) with all contacts that touch them. Contacts across a border are computed in both
+// domains, each adding to its own grains only, so that results do not depend on how many threads the domains are dealt to.
+#pragma once
+#include "../kernel/contact_step.hpp"
+#include "contact_list.hpp"
+#include "grid.hpp"
+
+namespace contact_law {
+
+// What all domains share, and a step does not change.
+struct Setting {
+	Aligned<Grain>         grains; // then, for each domain, two dummies that dead lanes point to
+	std::vector<double>    inverseMass, inverseInertia, radius;
+	std::vector<Material>  material; // kinds of material
+	std::vector<int>       kind;     // of each grain
+	double                 linearDamping = 0;
+	bool                   alike = true;
+	PairConstants<double>  common {}; // of the first grain with itself; of every pair when they are alike
+	unsigned               mechanisms = AllSprings;
+	double                 dt = 0, nearGap = 0, farGap = 0;
+	const InstructionSet*  passes = nullptr;
+
+	PairConstants<double> constantsOf(int i, int j) const
+	{
+		return alike ? common : derivePair(material[kind[i]], radius[i], material[kind[j]], radius[j], linearDamping);
+	}
+};
+
+struct StepSums { // since the start, and (workBefore) of the latest step's events only
+	Dissipation dissipated;
+	double      eventWork = 0; // what events add to the kinetic energy now beyond half the kicks' work
+};
+
+class Domain {
+public:
+	Domain(Setting& setting, int begin, int end, int dummy);
+
+	void addForces();      // of all contacts; then births
+	void integrate();      // own grains
+	void rebuildFar(const Grid&);
+	void rebuildNear();
+	void adopt(const Contact&, bool both); // a contact that exists at the start
+	void placeOverlapping();               // contacts of all pairs that overlap already
+	StoredSums energies();
+
+	int                 begin, end;
+	double              fastestSquared = 0;
+	long                events = 0;
+	StepSums            sums;
+	ContactList         contacts[3]; // both grains own; the first; the second
+	int                 contactCount() const; // alive ones, a border contact counted where its first grain lives
+
+private:
+	struct Pair {
+		int i, j;
+	};
+	enum Sort { Both, First, Second };
+	struct EventCall {
+		Domain* domain;
+		int     sort;
+	};
+
+	ForcePass     passFor(int sort);
+	static void   eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
+	void          eventOf(int sort, int lane, const ContactBlock& before, LaneForces& forces);
+	void          births();
+	void          birth(int sort, int farIndex);
+	ContactMotion motionOf(int i, int j) const;
+	void          book(const ContactStepResult&, const ContactMotion&, int sort);
+	bool          owns(int grain) const { return grain >= begin && grain < end; }
+
+	Setting&          s;
+	int               dummy;
+	EventCall         eventCalls[3];
+	std::vector<Pair> far[3];
+	std::vector<char> touching[3]; // by far pair
+	std::vector<int>  near[3];     // indices of far pairs that are close and don't touch
+};
+
+} // namespace contact_law

@@ -1,0 +1,218 @@
+#include "dynamics.hpp"
+#include <algorithm>
+#include <numeric>
+#include <omp.h>
+#include <stdexcept>
+
+namespace contact_law {
+
+namespace {
+	// Interleaved bits of three cell numbers: grains close in this order are close in space.
+	std::uint64_t spread(std::uint64_t x)
+	{
+		x &= 0x1fffff;
+		x = (x | x << 32) & 0x1f00000000ffffULL;
+		x = (x | x << 16) & 0x1f0000ff0000ffULL;
+		x = (x | x << 8) & 0x100f00f00f00f00fULL;
+		x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
+		return (x | x << 2) & 0x1249249249249249ULL;
+	}
+}
+
+Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_)
+        : options(options_)
+        , count(int(grains.size()))
+{
+	if (grains.empty()) throw std::invalid_argument("no grains: at least one sphere is needed");
+	setting.passes        = &instructionSet(options.instructions);
+	setting.material      = materials;
+	setting.linearDamping = options.linearDamping;
+	setting.mechanisms    = options.mechanisms;
+	setting.dt            = options.dt;
+	sortGrains(grains);
+	makeDomains();
+	refreshLists(true);
+	for (auto& domain : domains)
+		domain->placeOverlapping();
+	refreshLists(true);
+	firstForces();
+}
+
+void Dynamics::sortGrains(const std::vector<GrainInput>& grains)
+{
+	double low[3] = { grains[0].position[0], grains[0].position[1], grains[0].position[2] }, smallest = grains[0].radius;
+	for (const auto& g : grains) {
+		smallest = std::min(smallest, g.radius);
+		for (int k = 0; k < 3; ++k)
+			low[k] = std::min(low[k], g.position[k]);
+	}
+	std::vector<std::uint64_t> keys(count);
+	for (int g = 0; g < count; ++g) {
+		keys[g] = 0;
+		for (int k = 0; k < 3; ++k)
+			keys[g] |= spread(std::uint64_t((grains[g].position[k] - low[k]) / (2 * smallest))) << k;
+	}
+	original.resize(count);
+	std::iota(original.begin(), original.end(), 0);
+	std::sort(original.begin(), original.end(), [&](int a, int b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+
+	for (int k = 0; k < count; ++k) {
+		const GrainInput& g = grains[original[k]];
+		Grain             grain {};
+		grain.x = g.position[0], grain.y = g.position[1], grain.z = g.position[2];
+		grain.vx = g.velocity[0], grain.vy = g.velocity[1], grain.vz = g.velocity[2];
+		grain.wx = g.angularVelocity[0], grain.wy = g.angularVelocity[1], grain.wz = g.angularVelocity[2];
+		setting.grains.push_back(grain);
+		setting.radius.push_back(g.radius);
+		setting.kind.push_back(g.kind);
+		setting.inverseMass.push_back(1 / g.mass);
+		setting.inverseInertia.push_back(1 / g.inertia);
+		setting.alike = setting.alike && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
+	}
+	const Material& m = setting.material[setting.kind[0]];
+	setting.common    = derivePair(m, setting.radius[0], m, setting.radius[0], setting.linearDamping);
+	setting.nearGap   = 0.03 * smallest;
+	setting.farGap    = 0.8 * smallest;
+}
+
+void Dynamics::makeDomains()
+{
+	const int domainCount = std::max(1, std::min(options.domains, count));
+	setting.grains.resize(count + 2 * domainCount);
+	for (int d = 0; d < domainCount; ++d)
+		domains.push_back(std::make_unique<Domain>(setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
+}
+
+void Dynamics::refreshLists(bool farToo)
+{
+	if (farToo) {
+		grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
+		for (auto& domain : domains)
+			domain->rebuildFar(grid);
+		travelSinceFar = 0;
+	} else {
+		for (auto& domain : domains)
+			domain->rebuildNear();
+	}
+	travelSinceNear = 0;
+}
+
+/* The forces at the start, without moving: a step of zero length books no event and turns nothing. Then velocities go half a step back, where the
+ * leapfrog keeps them. */
+void Dynamics::firstForces()
+{
+	const double dt = setting.dt;
+	setting.dt      = 0;
+	for (auto& domain : domains)
+		domain->addForces();
+	setting.dt = dt;
+	for (int g = 0; g < count; ++g) {
+		Grain&       p = setting.grains[g];
+		const double m = 0.5 * dt * setting.inverseMass[g], i = 0.5 * dt * setting.inverseInertia[g];
+		p.vx -= m * p.fx, p.vy -= m * p.fy, p.vz -= m * p.fz;
+		p.wx -= i * p.tx, p.wy -= i * p.ty, p.wz -= i * p.tz;
+	}
+}
+
+void Dynamics::run(long steps)
+{
+	const int threads = std::max(1, std::min(options.threads, int(domains.size())));
+	long      updates = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : updates)
+	{
+		const int thread = omp_get_thread_num();
+		double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
+		for (long step = 0; step < steps; ++step) {
+			double fastest = 0;
+			for (std::size_t d = thread; d < domains.size(); d += threads)
+				domains[d]->integrate();
+#pragma omp barrier
+			for (const auto& domain : domains)
+				fastest = std::max(fastest, domain->fastestSquared);
+			const double travel = setting.dt * std::sqrt(3 * fastest);
+			sinceFar += travel;
+			sinceNear += travel;
+			if (2 * sinceNear > setting.nearGap) {
+				const bool farToo = 2 * sinceFar + setting.nearGap > setting.farGap;
+				if (farToo) {
+#pragma omp barrier
+#pragma omp single
+					grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
+				}
+				for (std::size_t d = thread; d < domains.size(); d += threads) {
+					if (farToo) domains[d]->rebuildFar(grid);
+					else domains[d]->rebuildNear();
+				}
+				sinceNear = 0;
+				if (farToo) sinceFar = 0;
+				if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
+			}
+			for (std::size_t d = thread; d < domains.size(); d += threads) {
+				domains[d]->addForces();
+				for (const auto& list : domains[d]->contacts)
+					updates += list.size();
+			}
+#pragma omp barrier
+		}
+#pragma omp barrier
+#pragma omp single
+		{
+			travelSinceFar  = sinceFar;
+			travelSinceNear = sinceNear;
+		}
+	}
+	contactUpdates += updates;
+}
+
+void Dynamics::read(std::vector<GrainInput>& grains) const
+{
+	grains.resize(count);
+	for (int k = 0; k < count; ++k) {
+		const Grain& p = setting.grains[k];
+		GrainInput&  g = grains[original[k]];
+		const double m = 0.5 * setting.dt * setting.inverseMass[k], i = 0.5 * setting.dt * setting.inverseInertia[k];
+		g.position[0] = p.x, g.position[1] = p.y, g.position[2] = p.z;
+		g.velocity[0] = p.vx + m * p.fx, g.velocity[1] = p.vy + m * p.fy, g.velocity[2] = p.vz + m * p.fz;
+		g.angularVelocity[0] = p.wx + i * p.tx, g.angularVelocity[1] = p.wy + i * p.ty, g.angularVelocity[2] = p.wz + i * p.tz;
+		g.radius = setting.radius[k];
+		g.mass = 1 / setting.inverseMass[k], g.inertia = 1 / setting.inverseInertia[k];
+		g.kind = setting.kind[k];
+	}
+}
+
+Energies Dynamics::energies()
+{
+	Energies e;
+	for (auto& domain : domains) {
+		const StoredSums part = domain->energies();
+		e.stored              = { e.stored.normal + part.normal, e.stored.sliding + part.sliding, e.stored.rolling + part.rolling, e.stored.twisting + part.twisting };
+		const Dissipation& d  = domain->sums.dissipated;
+		e.dissipated.sliding += d.sliding, e.dissipated.rolling += d.rolling, e.dissipated.twisting += d.twisting;
+		e.dissipated.connection += d.connection, e.dissipated.disconnection += d.disconnection, e.dissipated.drag += d.drag;
+		e.kinetic += domain->sums.eventWork;
+	}
+	for (int k = 0; k < count; ++k) {
+		const Grain& p = setting.grains[k];
+		e.kinetic += 0.5 / setting.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz) + 0.5 / setting.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
+		        + 0.5 * setting.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
+	}
+	return e;
+}
+
+int Dynamics::contactCount() const
+{
+	int total = 0;
+	for (const auto& domain : domains)
+		total += domain->contactCount();
+	return total;
+}
+
+long Dynamics::events() const
+{
+	long total = 0;
+	for (const auto& domain : domains)
+		total += domain->events;
+	return total;
+}
+
+} // namespace contact_law

@@ -1,0 +1,24 @@
+// Kick and drift of grains one by one. A template over the pack type only so that each instruction set compiles its own.
+#pragma once
+#include "arrays.hpp"
+
+namespace contact_law {
+
+// v += F dt/m, w += T dt/I, x += v dt, forces to zero; fastestSquared: the largest square of a velocity component met so far.
+template <class Pack>
+inline void integrateOneByOne(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared)
+{
+	double fastest = fastestSquared;
+	for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {
+		const double m = *inverseMass * dt, i = *inverseInertia * dt;
+		g->vx += g->fx * m, g->vy += g->fy * m, g->vz += g->fz * m;
+		g->wx += g->tx * i, g->wy += g->ty * i, g->wz += g->tz * i;
+		g->x += g->vx * dt, g->y += g->vy * dt, g->z += g->vz * dt;
+		g->fx = g->fy = g->fz = g->tx = g->ty = g->tz = 0;
+		for (const double* v = &g->vx; v <= &g->vz; ++v)
+			fastest = *v * *v > fastest ? *v * *v : fastest;
+	}
+	fastestSquared = fastest;
+}
+
+} // namespace contact_law

@@ -1,0 +1,52 @@
+// Normal motion of two adhesive elastic spheres (Johnson, Kendall & Roberts 1971), in units that make it one function for all pairs:
+// overlap/delta0, force/F_c, energy/(F_c delta_c), each through u = (a/a0)^(1/2). A22 eqs 2, 5, 8; A24 eqs 5, 6.
+#pragma once
+#include "contact_radius_coefficients.hpp"
+#include "number.hpp"
+
+namespace contact_law {
+namespace normal {
+
+constexpr double pullOffOverlap = 0.8254818122236567; // (9/16)^(1/3) = delta_c/delta0
+
+// overlap/delta0 for a given u
+template <class T> inline T overlap(const T& u) { return T(3.) * (u * u) * (u * u) - T(2.) * u; }
+
+/* u for a given overlap/delta0 >= -(9/16)^(1/3), on the branch u >= 6^(-1/3): a polynomial in
+ * y = (overlap/delta0 + (9/16)^(1/3))^(1/2), in which the branch point at pull-off is smooth; beyond the fitted range Newton's method. */
+template <class T> inline T rootOfContactRadius(const T& overlap)
+{
+	const T shifted = choose(overlap < T(largestFittedOverlap), overlap, T(largestFittedOverlap)) + T(pullOffOverlap);
+	const T t       = T(fittedScale) * root(choose(T(0.) < shifted, shifted, T(0.))) - T(1.);
+	T       u       = T(contactRadiusCoefficients[22]);
+	for (int power = 21; power >= 0; --power)
+		u = u * t + T(contactRadiusCoefficients[power]);
+	const auto beyond = T(largestFittedOverlap) < overlap;
+	if (anyOf(beyond)) {
+		T far = root(root(overlap * T(1. / 3.) + T(1.)));
+		for (int iteration = 0; iteration < 6; ++iteration)
+			far = far - (normal::overlap(far) - overlap) / (T(12.) * far * far * far - T(2.));
+		u = choose(beyond, far, u);
+	}
+	return u;
+}
+
+// force/F_c, positive when repulsive (A22 eq 5)
+template <class T> inline T force(const T& u)
+{
+	const T cube = u * u * u;
+	return T(4.) * cube * (cube - T(1.));
+}
+
+// stored energy/(F_c delta_c), zero for separated grains (A22 eq 8)
+template <class T> inline T energy(const T& u)
+{
+	const T square = u * u, cube = square * u, fourth = square * square;
+	return T(4. * 1.8171205928321397) * fourth * (T(0.8) * cube * cube - T(4. / 3.) * cube + T(1. / 3.));
+}
+
+constexpr double energyAtConnection = -0.8466138943830397; // -(8/15) 2^(2/3), A22 eq 9
+constexpr double energyAtPullOff    = 4. / 45.;             // A22 eq 10
+
+} // namespace normal
+} // namespace contact_law

@@ -1,0 +1,12 @@
+// What the kernel asks of a number type: +, -, *, /, <, and these functions. double has them here; the engine's packs of doubles bring their own.
+#pragma once
+#include <cmath>
+
+namespace contact_law {
+
+inline double root(double x) { return std::sqrt(x); }
+inline double inverseRoot(double x) { return 1 / std::sqrt(x); }
+inline double choose(bool condition, double yes, double no) { return condition ? yes : no; }
+inline bool   anyOf(bool condition) { return condition; }
+
+} // namespace contact_law

@@ -1,0 +1,191 @@
+#include "JKRWada.hpp"
+#include <core/Body.hpp>
+#include <core/Cell.hpp>
+#include <core/EnergyTracker.hpp>
+#include <core/State.hpp>
+
+namespace yade {
+
+using contact_law::ContactHistory;
+using contact_law::ContactMotion;
+using contact_law::ContactStepResult;
+using contact_law::PairConstants;
+using Vec3d = contact_law::Vec3<double>;
+
+YADE_PLUGIN((JKRMat)(JKRWadaConstants)(JKRWadaPhys)(Ip2_JKRMat_JKRMat_JKRWadaPhys)(Law2_ScGeom_JKRWadaPhys_JKRWada));
+
+CREATE_LOGGER(Ip2_JKRMat_JKRMat_JKRWadaPhys);
+CREATE_LOGGER(Law2_ScGeom_JKRWadaPhys_JKRWada);
+
+namespace {
+	Vec3d    toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
+	Vector3r fromKernel(const Vec3d& v) { return Vector3r(v.x, v.y, v.z); }
+
+	void requireInRange(const JKRMat& m, Real radius)
+	{
+		const auto require = [](bool fine, const char* name, Real value, const char* allowed) {
+			if (!fine) throw std::invalid_argument("JKRMat: " + std::string(name) + " = " + boost::lexical_cast<std::string>(value) + ", allowed: " + allowed);
+		};
+		require(m.young > 0 && std::isfinite(m.young), "young", m.young, "a positive number [Pa]");
+		require(m.poisson > 0 && m.poisson <= 0.5, "poisson", m.poisson, "above 0 and at most 0.5");
+		require(m.density > 0 && std::isfinite(m.density), "density", m.density, "a positive number [kg/m^3]");
+		require(m.surfaceEnergy > 0 && std::isfinite(m.surfaceEnergy), "surfaceEnergy", m.surfaceEnergy, "a positive number [J/m^2]");
+		require(m.criticalRolling > 0 && std::isfinite(m.criticalRolling), "criticalRolling", m.criticalRolling, "a positive number [m]");
+		require(m.viscoelasticTime >= 0 && std::isfinite(m.viscoelasticTime), "viscoelasticTime", m.viscoelasticTime, "0 or a positive number [s]");
+		require(radius > 0 && std::isfinite(radius), "radius of the grain", radius, "a positive number [m]");
+	}
+}
+
+PairConstants<double> JKRWadaConstants::forKernel() const
+{
+	return { radius1,          radius2,          reducedRadius,     reducedMass,     reducedYoung,    reducedShear,     equilibriumContactRadius, equilibriumOverlap, pullOffOverlap, pullOffForce,
+		 rollingStiffness, slidingStiffness, twistingStiffness, criticalSliding, criticalRolling, criticalTwisting, dragPerContactRadius,     linearDrag,         timeUnit, 1 / equilibriumOverlap };
+}
+
+void JKRWadaConstants::set(const PairConstants<double>& c)
+{
+	radius1                  = c.radius1;
+	radius2                  = c.radius2;
+	reducedRadius            = c.reducedRadius;
+	reducedMass              = c.reducedMass;
+	reducedYoung             = c.reducedYoung;
+	reducedShear             = c.reducedShear;
+	equilibriumContactRadius = c.equilibriumContactRadius;
+	equilibriumOverlap       = c.equilibriumOverlap;
+	pullOffOverlap           = c.pullOffOverlap;
+	pullOffForce             = c.pullOffForce;
+	rollingStiffness         = c.rollingStiffness;
+	slidingStiffness         = c.slidingStiffness;
+	twistingStiffness        = c.twistingStiffness;
+	criticalSliding          = c.criticalSliding;
+	criticalRolling          = c.criticalRolling;
+	criticalTwisting         = c.criticalTwisting;
+	dragPerContactRadius     = c.dragPerContactRadius;
+	linearDrag               = c.linearDrag;
+	timeUnit                 = c.timeUnit;
+}
+
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
+{
+	if (interaction->phys) return;
+	const auto& first    = *YADE_CAST<JKRMat*>(material1.get());
+	const auto& second   = *YADE_CAST<JKRMat*>(material2.get());
+	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
+	const auto  derived  = contact_law::derivePair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping);
+	const auto  phys     = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
+#pragma omp critical(JKRWadaConstantsLatest)
+	{
+		const auto same = [](const PairConstants<double>& a, const PairConstants<double>& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+		if (!latest || !same(latest->forKernel(), derived)) {
+			latest = shared_ptr<JKRWadaConstants>(new JKRWadaConstants);
+			latest->set(derived);
+		}
+		phys->constants = latest;
+	}
+	phys->kn          = 6 * derived.pullOffForce / (5 * derived.equilibriumOverlap); // A24 eq 38
+	phys->ks          = derived.slidingStiffness;
+	interaction->phys = phys;
+}
+
+boost::python::dict
+Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
+{
+	requireInRange(*material1, radius1);
+	requireInRange(*material2, radius2);
+	JKRWadaConstants constants;
+	constants.set(contact_law::derivePair(material1->forKernel(), radius1, material2->forKernel(), radius2, linearDamping));
+	return constants.pyDict();
+}
+
+bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& physics, Interaction* interaction)
+{
+	JKRWadaPhys&                phys      = *YADE_CAST<JKRWadaPhys*>(physics.get());
+	const PairConstants<double> constants = phys.constants->forKernel();
+	const State&                state1    = *(*scene->bodies)[interaction->getId1()]->state;
+	const State&                state2    = *(*scene->bodies)[interaction->getId2()]->state;
+
+	Vector3r separation = state1.pos - state2.pos, velocity = state1.vel - state2.vel;
+	if (scene->isPeriodic) {
+		const Vector3r cells = interaction->cellDist.cast<Real>();
+		separation -= scene->cell->hSize * cells;
+		velocity -= scene->cell->velGrad * (scene->cell->prevHSize * cells);
+	}
+	const ContactMotion motion { toKernel(separation), toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), scene->dt, 1 / state1.mass + 1 / state2.mass };
+	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement), toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
+	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
+
+	const bool     drag       = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
+	const unsigned mechanisms = (sliding ? contact_law::Sliding : 0) | (rolling ? contact_law::Rolling : 0) | (twisting ? contact_law::Twisting : 0) | (drag ? contact_law::Drag : 0);
+	const ContactStepResult r  = contact_law::contactStepWith[mechanisms](constants, motion, before, history);
+
+	const Vector3r force = fromKernel(r.force);
+	scene->forces.addForce(interaction->getId1(), force);
+	scene->forces.addForce(interaction->getId2(), -force);
+	scene->forces.addTorque(interaction->getId1(), fromKernel(r.torque1));
+	scene->forces.addTorque(interaction->getId2(), fromKernel(r.torque2));
+	if (scene->trackEnergy) book(r);
+
+	phys.touching = r.touching;
+	if (!r.touching) return false;
+	phys.overlap             = r.geometry.overlap;
+	phys.slidingDisplacement = fromKernel(r.now.slidingDisplacement);
+	phys.rollingDisplacement = fromKernel(r.now.rollingDisplacement);
+	phys.twist              = history.twist;
+	phys.dragForce          = r.now.drag;
+	phys.velocity           = velocity;
+	phys.normalForce        = -(r.now.normalForce + r.now.drag) * fromKernel(r.geometry.normal);
+	phys.shearForce         = -fromKernel(r.now.sliding);
+	if (r.pointersMoved) {
+		phys.pointer1 = state1.ori.conjugate() * fromKernel(history.pointers.n1);
+		phys.pointer2 = state2.ori.conjugate() * fromKernel(history.pointers.n2);
+	}
+	return true;
+}
+
+void Law2_ScGeom_JKRWadaPhys_JKRWada::name(Channel channel, const char* channelName, bool perStep)
+{
+	channelIds[channel] = -1;
+	scene->energy->add(0., channelName, channelIds[channel], perStep);
+}
+
+// EnergyTracker forgets its names when it is cleared, and gives them out from one thread only: look once a step.
+void Law2_ScGeom_JKRWadaPhys_JKRWada::nameChannels()
+{
+	if (channelsCheckedAt == scene->iter) return;
+#pragma omp critical(JKRWadaChannels)
+	if (channelsCheckedAt != scene->iter) {
+		name(Kinetic, "kinetic", true);
+		name(Normal, "normal", true);
+		name(SlidingStored, "sliding", true);
+		name(RollingStored, "rolling", true);
+		name(TwistingStored, "twisting", true);
+		name(SlidingLost, "slidingDissipation", false);
+		name(RollingLost, "rollingDissipation", false);
+		name(TwistingLost, "twistingDissipation", false);
+		name(Connection, "connection", false);
+		name(Disconnection, "disconnection", false);
+		name(DragLost, "drag", false);
+		channelsCheckedAt = scene->iter;
+	}
+}
+
+void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
+{
+	nameChannels();
+	const auto add = [this](Channel channel, double energy, bool perStep) {
+		if (energy != 0) scene->energy->add(energy, "", channelIds[channel], perStep);
+	};
+	add(Kinetic, r.workBefore, true);
+	add(Normal, r.stored.normal, true);
+	add(SlidingStored, r.stored.sliding, true);
+	add(RollingStored, r.stored.rolling, true);
+	add(TwistingStored, r.stored.twisting, true);
+	add(SlidingLost, r.dissipated.sliding, false);
+	add(RollingLost, r.dissipated.rolling, false);
+	add(TwistingLost, r.dissipated.twisting, false);
+	add(Connection, r.dissipated.connection, false);
+	add(Disconnection, r.dissipated.disconnection, false);
+	add(DragLost, r.dissipated.drag, false);
+}
+
+} // namespace yade

@@ -1,0 +1,139 @@
+// Cohesive elastic grains: the JKR normal force with the sliding, rolling and twisting springs of Wada et al. (2007), and viscous drag.
+// The formulas stand in ../kernel; MODEL.md lists them with their sources. These classes carry them into YADE.
+#pragma once
+#include "../kernel/contact_step.hpp"
+#include <core/Interaction.hpp>
+#include <core/Scene.hpp>
+#include <pkg/common/Dispatching.hpp>
+#include <pkg/common/ElastMat.hpp>
+#include <pkg/common/NormShearPhys.hpp>
+#include <pkg/dem/ScGeom.hpp>
+#include <array>
+#include <atomic>
+
+namespace yade {
+
+class JKRMat : public ElastMat {
+public:
+	contact_law::Material forKernel() const { return { young, poisson, density, surfaceEnergy, criticalRolling, viscoelasticTime }; }
+	virtual ~JKRMat() {}
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRMat, ElastMat,
+		"Adhesive elastic grains that obey the JKR contact law with Wada's tangential springs (Wada et al. 2007; Arakawa et al. 2022, Table 1). "
+		"The defaults of the attributes below are those of water ice; young (7e9 Pa), poisson (0.25) and density (1000 kg/m^3) are YADE's own and must be given.",
+		((Real, surfaceEnergy, 0.1, , "Surface energy gamma [J/m^2]. A pair takes the geometric mean."))
+		((Real, criticalRolling, 8e-10, , "Rolling displacement xi_crit beyond which grains roll irreversibly [m]. A pair takes the arithmetic mean."))
+		((Real, viscoelasticTime, 0, , "Viscoelastic time T_vis of the normal drag 2 T_vis E*/nu^2 a v [s]; 0: no drag. A pair takes the arithmetic mean of T_vis/nu^2.")),
+		createIndex();
+	);
+	// clang-format on
+	REGISTER_CLASS_INDEX(JKRMat, ElastMat);
+};
+REGISTER_SERIALIZABLE(JKRMat);
+
+class JKRWadaConstants : public Serializable {
+public:
+	contact_law::PairConstants<double> forKernel() const;
+	void                               set(const contact_law::PairConstants<double>&);
+	virtual ~JKRWadaConstants() {}
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaConstants, Serializable,
+		"What two materials and two radii make of a contact: derived once, shared by all contacts of the same kind. Symbols and sources: contact_law/MODEL.md.",
+		((Real, radius1, 0, Attr::readonly, "Radius of the first grain [m]."))
+		((Real, radius2, 0, Attr::readonly, "Radius of the second grain [m]."))
+		((Real, reducedRadius, 0, Attr::readonly, "R = r1 r2/(r1+r2) [m]."))
+		((Real, reducedMass, 0, Attr::readonly, "m* = m1 m2/(m1+m2) of solid spheres [kg]."))
+		((Real, reducedYoung, 0, Attr::readonly, "E* [Pa]: 1/E* = sum of (1-nu^2)/E."))
+		((Real, reducedShear, 0, Attr::readonly, "G* [Pa]: 1/G* = sum of (2-nu)/G."))
+		((Real, equilibriumContactRadius, 0, Attr::readonly, "a0 [m]."))
+		((Real, equilibriumOverlap, 0, Attr::readonly, "delta0 [m]: overlap at which the normal force vanishes."))
+		((Real, pullOffOverlap, 0, Attr::readonly, "delta_c [m]: the contact ends when the overlap falls below -delta_c."))
+		((Real, pullOffForce, 0, Attr::readonly, "F_c [N]: the largest pull."))
+		((Real, rollingStiffness, 0, Attr::readonly, "k_r [N/m]."))
+		((Real, slidingStiffness, 0, Attr::readonly, "k_s [N/m]."))
+		((Real, twistingStiffness, 0, Attr::readonly, "k_t [N m]."))
+		((Real, criticalSliding, 0, Attr::readonly, "zeta_crit [m]."))
+		((Real, criticalRolling, 0, Attr::readonly, "xi_crit [m]."))
+		((Real, criticalTwisting, 0, Attr::readonly, "phi_crit [rad]."))
+		((Real, dragPerContactRadius, 0, Attr::readonly, "2 T_vis E*/nu^2 [N s/m^2]."))
+		((Real, linearDrag, 0, Attr::readonly, "k_n m0/t0 [N s/m]."))
+		((Real, timeUnit, 0, Attr::readonly, "t0 [s]."))
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(JKRWadaConstants);
+
+class JKRWadaPhys : public NormShearPhys {
+public:
+	virtual ~JKRWadaPhys() {}
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRWadaPhys, NormShearPhys,
+		"State of a JKR-Wada contact. normalForce (elastic and viscous) and shearForce act on the second body; kn is the slope of the JKR force at equilibrium, ks the sliding stiffness.",
+		((shared_ptr<JKRWadaConstants>, constants, , Attr::readonly, "Constants of this kind of pair."))
+		((bool, touching, false, Attr::readonly, "Whether the grains adhere to each other."))
+		((Vector3r, pointer1, Vector3r::Zero(), Attr::readonly, "Contact pointer of the first body, in the body's own frame: unit vector from its centre to the contact."))
+		((Vector3r, pointer2, Vector3r::Zero(), Attr::readonly, "Contact pointer of the second body, likewise."))
+		((Real, overlap, 0, Attr::readonly, "delta = r1 + r2 - distance of the centres [m]; negative when the neck is stretched."))
+		((Vector3r, slidingDisplacement, Vector3r::Zero(), Attr::readonly, "zeta [m]."))
+		((Vector3r, rollingDisplacement, Vector3r::Zero(), Attr::readonly, "xi [m]."))
+		((Real, twist, 0, Attr::readonly, "phi [rad]."))
+		((Real, dragForce, 0, Attr::readonly, "Viscous part of the normal force, positive when the grains approach [N]."))
+		((Vector3r, velocity, Vector3r::Zero(), Attr::readonly|Attr::hidden, "Velocity of body 1 past body 2 through the last step [m/s].")),
+		createIndex();
+	);
+	// clang-format on
+	REGISTER_CLASS_INDEX(JKRWadaPhys, NormShearPhys);
+};
+REGISTER_SERIALIZABLE(JKRWadaPhys);
+
+class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
+	shared_ptr<JKRWadaConstants> latest; // most scenes have one kind of pair
+
+public:
+	void       go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction) override;
+	boost::python::dict pairConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
+	virtual ~Ip2_JKRMat_JKRMat_JKRWadaPhys() {}
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_JKRMat_JKRMat_JKRWadaPhys, IPhysFunctor,
+		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains.",
+		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none.")),
+		,
+		.def("pairConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
+			"Constants of a contact of two grains (materials, radii in m) as a dict with the attributes of JKRWadaConstants. ValueError when a radius or a material constant is out of range.")
+	);
+	// clang-format on
+	FUNCTOR2D(JKRMat, JKRMat);
+	DECLARE_LOGGER;
+};
+REGISTER_SERIALIZABLE(Ip2_JKRMat_JKRMat_JKRWadaPhys);
+
+class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
+	enum Channel { Kinetic, Normal, SlidingStored, RollingStored, TwistingStored, SlidingLost, RollingLost, TwistingLost, Connection, Disconnection, DragLost, channelCount };
+	std::array<int, channelCount> channelIds;
+	std::atomic<long>             channelsCheckedAt { -2 }; // iteration
+
+	void name(Channel, const char*, bool perStep);
+	void nameChannels();
+	void book(const contact_law::ContactStepResult&);
+
+public:
+	bool go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction) override;
+	virtual ~Law2_ScGeom_JKRWadaPhys_JKRWada() {}
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(Law2_ScGeom_JKRWadaPhys_JKRWada, LawFunctor,
+		"JKR normal force, Wada's sliding, rolling and twisting springs with their limits, and viscous drag, between grains of any radii and materials. "
+		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: stored ones (normal, sliding, rolling, twisting) "
+		"and what was lost since the start (slidingDissipation, rollingDissipation, twistingDissipation, connection, disconnection, drag). "
+		"O.energy['kinetic'] is brought from half a step ago, where NewtonIntegrator takes it, to the moment of the stored energies, so that the sum is constant. Use NewtonIntegrator(damping=0).",
+		((bool, sliding, true, , "Whether contacts resist sliding."))
+		((bool, rolling, true, , "Whether contacts resist rolling."))
+		((bool, twisting, true, , "Whether contacts resist twisting.")),
+		channelIds.fill(-1);
+	);
+	// clang-format on
+	FUNCTOR2D(ScGeom, JKRWadaPhys);
+	DECLARE_LOGGER;
+};
+REGISTER_SERIALIZABLE(Law2_ScGeom_JKRWadaPhys_JKRWada);
+
+} // namespace yade

@@ -1,0 +1,71 @@
+"""Builds the kernel's probe once and wraps it with numpy."""
+import ctypes
+import subprocess
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+HERE = Path(__file__).resolve().parent
+NAMES = (
+    "radius1 radius2 reducedRadius reducedMass reducedYoung reducedShear equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce "
+    "rollingStiffness slidingStiffness twistingStiffness criticalSliding criticalRolling criticalTwisting dragPerContactRadius linearDrag timeUnit inverseEquilibriumOverlap"
+).split()
+ICE = (7e9, 0.25, 1000.0, 0.1, 0.8e-9, 0.0)
+SILICATE = (54e9, 0.17, 2650.0, 0.02, 2e-9, 0.0)
+VISCOUS = (3e9, 0.33, 1300.0, 0.05, 1.1e-9, 4e-12)
+
+
+def array(values):
+    return np.ascontiguousarray(values, dtype=float)
+
+
+class Kernel:
+    """The C++ kernel by way of ctypes; vectors are arrays of 3, SI units."""
+
+    ice, silicate, viscous = ICE, SILICATE, VISCOUS
+
+    def __init__(self, library):
+        self.library = library
+        assert library.numberOfConstants() == len(NAMES)
+
+    def call(self, name, *arguments):
+        converted = [
+            a.ctypes.data_as(ctypes.c_void_p) if isinstance(a, np.ndarray) else ctypes.c_int(a) if isinstance(a, int) else ctypes.c_double(a)
+            for a in arguments
+        ]
+        getattr(self.library, name)(*converted)
+
+    def constants(self, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7, damping=0.0):
+        out = np.empty(len(NAMES))
+        self.call("pairConstants", array(material1), float(radius1), array(material2), float(radius2), float(damping), out)
+        return SimpleNamespace(array=out, **dict(zip(NAMES, out)))
+
+    def normal_law(self, overlap):
+        overlap = array(overlap)
+        u, force, energy = np.empty((3, overlap.size))
+        self.call("normalLaw", overlap.size, overlap, u, force, energy)
+        return u, force, energy
+
+    def contact(self, constants, separation, n1, n2, velocity=(0, 0, 0), twist=0.0):
+        out = np.empty(14)
+        self.call("contactAt", constants.array, array([*separation, *n1, *n2, *velocity, twist]), out)
+        return SimpleNamespace(force=out[:3], drag=out[3], torque1=out[4:7], torque2=out[7:10], energies=out[10:])
+
+    def put_back(self, constants, normal, n1, n2, which, limit):
+        pointers = array([*n1, *n2])
+        self.call("putBack", constants.array, array(normal), pointers, which, float(limit))
+        return pointers[:3], pointers[3:]
+
+    def turn(self, v, angle):
+        out = np.empty(3)
+        self.call("turn", array(v), array(angle), out)
+        return out
+
+
+@pytest.fixture(scope="session")
+def kernel(tmp_path_factory):
+    library = tmp_path_factory.mktemp("kernel") / "kernel_probe.so"
+    subprocess.run(["g++", "-std=c++17", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared", str(HERE / "kernel_probe.cpp"), "-o", str(library)], check=True)
+    return Kernel(ctypes.CDLL(str(library)))

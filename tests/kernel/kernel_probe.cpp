@@ -1,0 +1,65 @@
+// The kernel's functions for Python (ctypes): plain arrays in, plain arrays out. Built by conftest.py.
+#include "../../contact_law/kernel/contact_step.hpp"
+#include <cstring>
+
+using namespace contact_law;
+
+namespace {
+	Vec3<double> vector(const double* p) { return { p[0], p[1], p[2] }; }
+	void         write(double*& out, const Vec3<double>& v) { *out++ = v.x, *out++ = v.y, *out++ = v.z; }
+	PairConstants<double> constantsFrom(const double* p)
+	{
+		PairConstants<double> c;
+		std::memcpy(&c, p, sizeof c);
+		return c;
+	}
+	Material material(const double* p) { return { p[0], p[1], p[2], p[3], p[4], p[5] }; }
+}
+
+extern "C" {
+
+int numberOfConstants() { return sizeof(PairConstants<double>) / sizeof(double); }
+
+void pairConstants(const double* material1, double radius1, const double* material2, double radius2, double linearDamping, double* out)
+{
+	const PairConstants<double> c = derivePair(material(material1), radius1, material(material2), radius2, linearDamping);
+	std::memcpy(out, &c, sizeof c);
+}
+
+void normalLaw(int n, const double* overlap, double* u, double* force, double* energy)
+{
+	for (int i = 0; i < n; ++i) {
+		u[i]      = normal::rootOfContactRadius(overlap[i]);
+		force[i]  = normal::force(u[i]);
+		energy[i] = normal::energy(u[i]);
+	}
+}
+
+// state: separation, n1, n2, velocity (12 numbers), twist. out: force on 1 (without drag), drag, torque1, torque2, the four stored energies.
+void contactAt(const double* constants, const double* state, double* out)
+{
+	const auto                    c = constantsFrom(constants);
+	const ContactHistory<double>  h { { vector(state + 3), vector(state + 6) }, state[12] };
+	const ContactGeometry<double> g = geometryOf(vector(state), c.radius1 + c.radius2);
+	const ContactForces<double>   f = contactForces<Everything>(c, g, h, vector(state + 9));
+	const StoredEnergy<double>    e = storedEnergy(c, f, h.twist);
+	write(out, f.normalForce * g.normal + f.sliding);
+	*out++ = f.drag;
+	write(out, f.torque1);
+	write(out, f.torque2);
+	*out++ = e.normal, *out++ = e.sliding, *out++ = e.rolling, *out++ = e.twisting;
+}
+
+// pointers: n1, n2, put back in place. which: 0 sliding, 1 rolling.
+void putBack(const double* constants, const double* normalVector, double* pointers, int which, double limit)
+{
+	const auto       c = constantsFrom(constants);
+	Pointers<double> p { vector(pointers), vector(pointers + 3) };
+	if (which == 0) slideBack(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
+	else rollBack(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
+	write(pointers, p.n1);
+	write(pointers, p.n2);
+}
+
+void turn(const double* v, const double* angle, double* out) { write(out, turned(vector(v), vector(angle))); }
+}
