@@ -57,28 +57,11 @@ namespace events {
 		return { { turned(-normal, since * m.spin1), turned(normal, since * m.spin2) }, since * dot(m.spin1 - m.spin2, normal) };
 	}
 
-	// Put displacements beyond their limits back onto them, and book what the slips take. Returns whether the pointers moved.
+	/* Put displacements beyond their limits back onto them, and book what the slips take. Returns whether the pointers moved.
+	 * Putting one displacement back changes the other a little (second order in the pointers' angles): that too is work, and goes with the slip. */
 	template <unsigned mechanisms>
 	inline bool slip(const PairConstants<double>& c, const Vec3<double>& normal, const ContactBefore& before, ContactHistory<double>& h, Dissipation& lost)
 	{
-		const double r1 = c.radius1, r2 = c.radius2;
-		bool         moved = false;
-		if constexpr (bool(mechanisms & Sliding)) {
-			const Vec3<double> trial = sliding::displacement(h.pointers, r1, r2, normal);
-			if (dot(trial, trial) > c.criticalSliding * c.criticalSliding) {
-				slideBack(h.pointers, r1, r2, trial, c.criticalSliding);
-				lost.sliding += slipDissipation(c.slidingStiffness, before.sliding, trial, sliding::displacement(h.pointers, r1, r2, normal));
-				moved = true;
-			}
-		}
-		if constexpr (bool(mechanisms & Rolling)) {
-			const Vec3<double> trial = rolling::displacement(h.pointers, c.reducedRadius);
-			if (dot(trial, trial) > c.criticalRolling * c.criticalRolling) {
-				rollBack(h.pointers, r1, r2, trial, c.criticalRolling);
-				lost.rolling += slipDissipation(c.rollingStiffness, before.rolling, trial, rolling::displacement(h.pointers, c.reducedRadius));
-				moved = true;
-			}
-		}
 		if constexpr (bool(mechanisms & Twisting)) {
 			if (std::abs(h.twist) > c.criticalTwisting) {
 				const double trial = h.twist;
@@ -86,7 +69,25 @@ namespace events {
 				lost.twisting += c.twistingStiffness / 2 * (before.twist + h.twist) * (trial - h.twist);
 			}
 		}
-		return moved;
+		const double       r1 = c.radius1, r2 = c.radius2;
+		const Vec3<double> zeta = sliding::displacement(h.pointers, r1, r2, normal), xi = rolling::displacement(h.pointers, c.reducedRadius);
+		bool               slid = false, rolled = false;
+		if constexpr (bool(mechanisms & Sliding)) {
+			slid = dot(zeta, zeta) > c.criticalSliding * c.criticalSliding;
+			if (slid) slideBack(h.pointers, r1, r2, zeta, c.criticalSliding);
+		}
+		if constexpr (bool(mechanisms & Rolling)) {
+			rolled = dot(xi, xi) > c.criticalRolling * c.criticalRolling;
+			if (rolled) rollBack(h.pointers, r1, r2, rolling::displacement(h.pointers, c.reducedRadius), c.criticalRolling);
+		}
+		if (!slid && !rolled) return false;
+		double bySliding = 0, byRolling = 0;
+		if constexpr (bool(mechanisms & Sliding)) bySliding = slipDissipation(c.slidingStiffness, before.sliding, zeta, sliding::displacement(h.pointers, r1, r2, normal));
+		if constexpr (bool(mechanisms & Rolling)) byRolling = slipDissipation(c.rollingStiffness, before.rolling, xi, rolling::displacement(h.pointers, c.reducedRadius));
+		if (!rolled) lost.sliding += bySliding + byRolling;
+		else if (!slid) lost.rolling += bySliding + byRolling;
+		else lost.sliding += bySliding, lost.rolling += byRolling;
+		return true;
 	}
 
 	/* The contact broke inside the step: after the share g of it the overlap passed -delta_c. Its last kicks (before the step) covered half a step;
@@ -98,7 +99,9 @@ namespace events {
 		const double       opening = before.overlap - g.overlap, share = (before.overlap + c.pullOffOverlap) / opening;
 		const double       uBefore = normal::rootOfContactRadius(before.overlap / c.equilibriumOverlap), energyUnit = c.pullOffForce * c.pullOffOverlap;
 		const double       normalWork = energyUnit * (normal::energy(uBefore) - normal::energyAtPullOff);
-		const double       push = normalWork / opening - c.pullOffForce * normal::force(uBefore) / 2 + (share - 0.5) * before.drag;
+		// what the steps before missed of the force's last rise, see sumMinusIntegralAtPullOff
+		const double       missed = c.pullOffForce * normal::pullOffSlope * std::sqrt(opening * c.inverseEquilibriumOverlap) * normal::sumMinusIntegralAtPullOff(share);
+		const double       push = normalWork / opening - c.pullOffForce * normal::force(uBefore) / 2 + (share - 0.5) * before.drag - missed;
 		const double       rest = (1 - share) * m.dt;
 		const Vec3<double> separation = m.separation - rest * m.velocity;
 		if constexpr (bool(mechanisms & Twisting)) h.twist = before.twist + share * (h.twist - before.twist);

@@ -48,5 +48,20 @@ template <class T> inline T energy(const T& u)
 constexpr double energyAtConnection = -0.8466138943830397; // -(8/15) 2^(2/3), A22 eq 9
 constexpr double energyAtPullOff    = 4. / 45.;             // A22 eq 10
 
+/* Just before pull-off the force is F(-delta_c) + pullOffSlope F_c (x/delta0)^(1/2), x = overlap + delta_c. A sum over steps h that ends at x = share * h
+ * (trapezoidal rule) misses the integral of x^(1/2) by h^(3/2) times the value returned here, whatever the steps before
+ * (Euler-Maclaurin at a branch point; Hurwitz's zeta(-1/2, share) is summed over its first terms). */
+constexpr double pullOffSlope = -1.0376956216346809; // -8 u/18^(1/2) at u = 6^(-1/3)
+inline double    sumMinusIntegralAtPullOff(double share)
+{
+	constexpr int terms = 8;
+	double        zeta  = 0;
+	for (int k = 0; k < terms; ++k)
+		zeta += std::sqrt(share + k);
+	const double rest = share + terms, squareRoot = std::sqrt(rest);
+	zeta += squareRoot * (0.5 - 2. / 3. * rest) - 1 / (24 * squareRoot) + 1 / (1920 * squareRoot * rest * rest);
+	return zeta + std::sqrt(share) * (2. / 3. * share - 0.5);
+}
+
 } // namespace normal
 } // namespace contact_law
