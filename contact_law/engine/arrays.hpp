@@ -47,6 +47,16 @@ struct alignas(64) ConstantsBlock {
 	double field[constantCount][lanes];
 };
 
+// What drag needs of the step before: the ledger takes the mean of two forces.
+struct alignas(64) DragBlock {
+	double drag[lanes], overlap[lanes];
+};
+
+// Velocities of the step before the last, from which drag extrapolates to now; a quarter of it is padding.
+struct alignas(32) PreviousVelocity {
+	double x, y, z, spare;
+};
+
 struct alignas(64) LaneForces {
 	double force[3][lanes], torque1[3][lanes], torque2[3][lanes];
 };
@@ -57,10 +67,13 @@ struct ForcePass {
 	ContactBlock*                blocks;
 	const ConstantsBlock*        constants; // null when all pairs are alike
 	const PairConstants<double>* alike;
+	DragBlock*                   drags;    // null in scenes without drag
+	const PreviousVelocity*      previous; // likewise
 	int                          blockCount;
 	int                          addFirst, addSecond; // whether the first / second grain of each contact is this domain's
 	int                          trash;               // grain that takes what is not added
 	double                       dt;
+	double*                      dragWork; // what drag took in this step is added here
 	void*                        owner;
 	// contacts of a block (bits of `which`) that slip, break or are pressed beyond the fit: history before the step, forces to be replaced
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);

@@ -9,12 +9,14 @@ struct Contact { // one lane, taken out
 	int                    i, j;
 	ContactHistory<double> history;
 	PairConstants<double>  constants;
+	double                 drag = 0, overlap = 0; // a step ago; only in scenes with drag
 };
 
 class ContactList {
 public:
-	ContactList(bool alike_, int dummy_)
+	ContactList(bool alike_, bool drag_, int dummy_)
 	        : alike(alike_)
+	        , drag(drag_)
 	        , dummy(dummy_)
 	{
 	}
@@ -23,9 +25,11 @@ public:
 	ContactBlock*  data() { return blocks.data(); }
 	ConstantsBlock* constantsData() { return alike ? nullptr : constants.data(); }
 
+	DragBlock*      dragData() { return drag ? drags.data() : nullptr; }
+
 	void append(const Contact& contact)
 	{
-		if (used % lanes == 0) addDeadBlock(contact.constants);
+		if (used % lanes == 0) addDeadBlock();
 		set(used++, contact);
 	}
 	void kill(int lane)
@@ -34,13 +38,23 @@ public:
 		blocks[lane / lanes].j[lane % lanes] = dummy + 1;
 		writeHistory(lane, deadHistory());
 		if (!alike) writeConstants(lane, deadConstants);
+		if (drag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
 	}
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
 	Contact get(int lane, const PairConstants<double>& common) const
 	{
 		const ContactBlock& b = blocks[lane / lanes];
-		return { b.i[lane % lanes], b.j[lane % lanes], history(b, lane % lanes), alike ? common : readConstants(lane) };
+		const int           k = lane % lanes;
+		Contact             c { b.i[k], b.j[k], history(b, k), alike ? common : readConstants(lane) };
+		if (drag) c.drag = drags[lane / lanes].drag[k], c.overlap = drags[lane / lanes].overlap[k];
+		return c;
+	}
+	void writeDrag(int lane, double force, double overlap)
+	{
+		if (!drag) return;
+		drags[lane / lanes].drag[lane % lanes]    = force;
+		drags[lane / lanes].overlap[lane % lanes] = overlap;
 	}
 	void writeHistory(int lane, const ContactHistory<double>& h)
 	{
@@ -55,10 +69,16 @@ public:
 	{
 		return { { { b.n1[0][k], b.n1[1][k], b.n1[2][k] }, { b.n2[0][k], b.n2[1][k], b.n2[2][k] } }, b.twist[k] };
 	}
+	void appendDead()
+	{
+		if (used % lanes == 0) addDeadBlock();
+		++used;
+	}
 	void clear()
 	{
 		blocks.clear();
 		constants.clear();
+		drags.clear();
 		used = 0;
 	}
 	void setDeadConstants(const PairConstants<double>& c) { deadConstants = c; } // of the two dummies, which touch at equilibrium
@@ -66,10 +86,11 @@ public:
 private:
 	static ContactHistory<double> deadHistory() { return { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }; }
 
-	void addDeadBlock(const PairConstants<double>&)
+	void addDeadBlock()
 	{
 		blocks.emplace_back();
 		if (!alike) constants.emplace_back();
+		if (drag) drags.emplace_back();
 		for (int k = 0; k < lanes; ++k)
 			kill(int(blocks.size() - 1) * lanes + k);
 	}
@@ -79,6 +100,7 @@ private:
 		blocks[lane / lanes].j[lane % lanes] = contact.j;
 		writeHistory(lane, contact.history);
 		if (!alike) writeConstants(lane, contact.constants);
+		writeDrag(lane, contact.drag, contact.overlap);
 	}
 	void writeConstants(int lane, const PairConstants<double>& c)
 	{
@@ -97,8 +119,9 @@ private:
 
 	Aligned<ContactBlock>   blocks;
 	Aligned<ConstantsBlock> constants;
+	Aligned<DragBlock>      drags;
 	PairConstants<double>   deadConstants {};
-	bool                    alike;
+	bool                    alike, drag;
 	int                     dummy, used = 0;
 };
 

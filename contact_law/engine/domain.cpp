@@ -19,7 +19,7 @@ namespace {
 Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
         : begin(begin_)
         , end(end_)
-        , contacts { { setting.alike, dummy_ }, { setting.alike, dummy_ }, { setting.alike, dummy_ } }
+        , contacts { { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ } }
         , s(setting)
         , dummy(dummy_)
 {
@@ -36,7 +36,8 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
 ForcePass Domain::passFor(int sort)
 {
 	ContactList& list = contacts[sort];
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.blockCount(), sort != Second, sort != First, dummy, s.dt, &eventCalls[sort], &Domain::eventsOf };
+	double*      work = sort == Second ? &ignoredDragWork : &sums.dissipated.drag;
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), list.blockCount(), sort != Second, sort != First, dummy, s.dt, work, &eventCalls[sort], &Domain::eventsOf };
 }
 
 void Domain::addForces()
@@ -49,6 +50,9 @@ void Domain::addForces()
 
 void Domain::integrate()
 {
+	if (s.hasDrag())
+		for (int g = begin; g < end; ++g)
+			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
 	fastestSquared = 0;
 	s.passes->integrate(&s.grains[begin], &s.grains[0] + end, &s.inverseMass[begin], &s.inverseInertia[begin], s.dt, fastestSquared);
 }
@@ -98,6 +102,11 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	before.sliding  = sliding::displacement(h.pointers, at.constants.radius1, at.constants.radius2, (1 / apart) * then);
 	before.rolling  = rolling::displacement(h.pointers, at.constants.reducedRadius);
 	before.twist    = h.twist;
+	if (s.hasDrag()) {
+		const PreviousVelocity &a = s.previous[at.i], &b = s.previous[at.j];
+		before.velocity = { a.x - b.x, a.y - b.y, a.z - b.z };
+		before.drag     = at.drag;
+	}
 
 	h.pointers                = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 	const ContactStepResult r = contactStepWith[s.mechanisms](at.constants, m, before, h);
@@ -107,6 +116,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	write(r.torque2, forces.torque2, k);
 	if (r.touching) {
 		list.writeHistory(lane, h);
+		list.writeDrag(lane, r.now.drag, r.geometry.overlap);
 		return;
 	}
 	// this lane's kicks still go to its grains (scattered by index): add them here, and leave nothing for the dead lane's dummies
@@ -116,12 +126,10 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	write({ 0, 0, 0 }, forces.torque1, k);
 	write({ 0, 0, 0 }, forces.torque2, k);
 	list.kill(lane);
-	const auto found = std::lower_bound(far[sort].begin(), far[sort].end(), Pair { at.i, at.j }, [](const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
-	if (found != far[sort].end() && found->i == at.i && found->j == at.j) {
-		const int index       = int(found - far[sort].begin());
-		touching[sort][index] = 0;
-		near[sort].push_back(index);
-	}
+	const int pair = pairIndex(sort, at.i, at.j);
+	if (pair < 0) return;
+	touching[sort][pair] = 0;
+	near[sort].push_back(pair);
 }
 
 void Domain::births()
@@ -129,10 +137,7 @@ void Domain::births()
 	for (int sort = 0; sort < 3; ++sort) {
 		std::vector<int> born;
 		for (const int index : near[sort]) {
-			const Pair&        p = far[sort][index];
-			const Vec3<double> d = positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]);
-			const double       sum = s.radius[p.i] + s.radius[p.j];
-			if (dot(d, d) <= sum * sum && !touching[sort][index]) born.push_back(index);
+			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, 0)) born.push_back(index);
 		}
 		std::sort(born.begin(), born.end()); // the order of pairs, whatever the order of the list
 		for (const int index : born)
@@ -147,6 +152,8 @@ void Domain::birth(int sort, int index)
 	Contact             c { p.i, p.j, {}, s.constantsOf(p.i, p.j) };
 	const auto          r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
 	if (!r.touching) return;
+	c.drag                = r.now.drag;
+	c.overlap             = r.geometry.overlap;
 	touching[sort][index] = 1;
 	book(r, m, sort);
 	if (sort != Second) add(s.grains[p.i], r.force, r.torque1);
@@ -154,12 +161,9 @@ void Domain::birth(int sort, int index)
 	contacts[sort].append(c);
 }
 
-void Domain::rebuildFar(const Grid& grid)
+void Domain::findPairs(const Grid& grid)
 {
 	const Grain* grains = s.grains.data();
-	double       largest = 0;
-	for (const double r : s.radius)
-		largest = std::max(largest, r);
 	for (auto& list : far)
 		list.clear();
 	std::vector<int> found;
@@ -167,49 +171,61 @@ void Domain::rebuildFar(const Grid& grid)
 		found.clear();
 		grid.around(&grains[i].x, [&](int j) {
 			if (j == i || (j < i && owns(j))) return;
-			const double dx = grains[i].x - grains[j].x, dy = grains[i].y - grains[j].y, dz = grains[i].z - grains[j].z;
-			const double reach = s.radius[i] + s.radius[j] + s.farGap;
-			if (dx * dx + dy * dy + dz * dz < reach * reach) found.push_back(j);
+			if (closerThan(i, j, s.farGap)) found.push_back(j);
 		});
 		std::sort(found.begin(), found.end());
 		for (const int j : found)
 			far[owns(j) ? Both : i < j ? First : Second].push_back(i < j ? Pair { i, j } : Pair { j, i });
 	}
-	const auto before = [](const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; };
-	std::sort(far[Second].begin(), far[Second].end(), before);
-
-	for (int sort = 0; sort < 3; ++sort) { // contacts in the order of the pairs, dead lanes dropped
-		std::vector<Contact> alive;
-		for (int lane = 0; lane < contacts[sort].size(); ++lane)
-			if (contacts[sort].alive(lane)) alive.push_back(contacts[sort].get(lane, s.common));
-		std::sort(alive.begin(), alive.end(), [](const Contact& a, const Contact& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
-		contacts[sort].clear();
+	std::sort(far[Second].begin(), far[Second].end());
+	for (int sort = 0; sort < 3; ++sort) {
 		touching[sort].assign(far[sort].size(), 0);
-		std::size_t at = 0;
-		for (const Contact& c : alive) {
-			contacts[sort].append(c);
-			while (at < far[sort].size() && before(far[sort][at], Pair { c.i, c.j }))
-				++at;
-			if (at < far[sort].size() && far[sort][at].i == c.i && far[sort][at].j == c.j) touching[sort][at] = 1;
+		const ContactList& list = contacts[sort];
+		for (int lane = 0; lane < list.size(); ++lane) {
+			if (!list.alive(lane)) continue;
+			const Contact c    = list.get(lane, s.common);
+			const int     pair = pairIndex(sort, c.i, c.j);
+			if (pair >= 0) touching[sort][pair] = 1;
 		}
 	}
-	s.grains[dummy].fx = s.grains[dummy].fy = s.grains[dummy].fz = 0;
-	rebuildNear();
+	findNearPairs();
 }
 
-void Domain::rebuildNear()
+void Domain::sortContacts()
 {
-	const Grain* grains = s.grains.data();
+	for (ContactList& list : contacts) {
+		std::vector<Contact> alive;
+		for (int lane = 0; lane < list.size(); ++lane)
+			if (list.alive(lane)) alive.push_back(list.get(lane, s.common));
+		std::sort(alive.begin(), alive.end(), [](const Contact& a, const Contact& b) { return Pair { a.i, a.j } < Pair { b.i, b.j }; });
+		list.clear();
+		for (const Contact& c : alive)
+			list.append(c);
+	}
+	s.grains[dummy].fx = s.grains[dummy].fy = s.grains[dummy].fz = 0;
+}
+
+void Domain::findNearPairs()
+{
 	for (int sort = 0; sort < 3; ++sort) {
 		near[sort].clear();
-		for (int index = 0; index < int(far[sort].size()); ++index) {
-			if (touching[sort][index]) continue;
-			const Pair   p = far[sort][index];
-			const double dx = grains[p.i].x - grains[p.j].x, dy = grains[p.i].y - grains[p.j].y, dz = grains[p.i].z - grains[p.j].z;
-			const double reach = s.radius[p.i] + s.radius[p.j] + s.nearGap;
-			if (dx * dx + dy * dy + dz * dz < reach * reach) near[sort].push_back(index);
-		}
+		for (int index = 0; index < int(far[sort].size()); ++index)
+			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, s.nearGap)) near[sort].push_back(index);
 	}
+}
+
+bool Domain::closerThan(int i, int j, double gap) const
+{
+	const Vec3<double> d     = positionOf(s.grains[i]) - positionOf(s.grains[j]);
+	const double       reach = s.radius[i] + s.radius[j] + gap;
+	return dot(d, d) <= reach * reach;
+}
+
+int Domain::pairIndex(int sort, int i, int j) const
+{
+	const Pair pair { i, j };
+	const auto found = std::lower_bound(far[sort].begin(), far[sort].end(), pair);
+	return found != far[sort].end() && !(pair < *found) ? int(found - far[sort].begin()) : -1;
 }
 
 void Domain::placeOverlapping()
@@ -219,7 +235,7 @@ void Domain::placeOverlapping()
 			const Pair          p = far[sort][index];
 			const ContactMotion m { positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]), { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
 			if (s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation)) <= 0) continue;
-			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j) });
+			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j), 0, s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation)) });
 			touching[sort][index] = 1;
 		}
 }

@@ -9,6 +9,7 @@ namespace contact_law {
 
 // What all domains share, and a step does not change.
 struct Setting {
+	Aligned<PreviousVelocity> previous; // in scenes with drag
 	Aligned<Grain>         grains; // then, for each domain, two dummies that dead lanes point to
 	std::vector<double>    inverseMass, inverseInertia, radius;
 	std::vector<Material>  material; // kinds of material
@@ -20,6 +21,7 @@ struct Setting {
 	double                 dt = 0, nearGap = 0, farGap = 0;
 	const InstructionSet*  passes = nullptr;
 
+	bool                  hasDrag() const { return mechanisms & Drag; }
 	PairConstants<double> constantsOf(int i, int j) const
 	{
 		return alike ? common : derivePair(material[kind[i]], radius[i], material[kind[j]], radius[j], linearDamping);
@@ -37,10 +39,10 @@ public:
 
 	void addForces();      // of all contacts; then births
 	void integrate();      // own grains
-	void rebuildFar(const Grid&);
-	void rebuildNear();
-	void adopt(const Contact&, bool both); // a contact that exists at the start
-	void placeOverlapping();               // contacts of all pairs that overlap already
+	void findPairs(const Grid&); // neighbours, far and near
+	void findNearPairs();
+	void sortContacts();     // into the order of pairs, without dead lanes
+	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
 	StoredSums energies();
 
 	int                 begin, end;
@@ -52,7 +54,8 @@ public:
 
 private:
 	struct Pair {
-		int i, j;
+		int  i, j;
+		bool operator<(const Pair& other) const { return i != other.i ? i < other.i : j < other.j; }
 	};
 	enum Sort { Both, First, Second };
 	struct EventCall {
@@ -63,6 +66,8 @@ private:
 	ForcePass     passFor(int sort);
 	static void   eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	void          eventOf(int sort, int lane, const ContactBlock& before, LaneForces& forces);
+	bool          closerThan(int i, int j, double gap) const; // surfaces
+	int           pairIndex(int sort, int i, int j) const;    // among the far pairs, or -1
 	void          births();
 	void          birth(int sort, int farIndex);
 	ContactMotion motionOf(int i, int j) const;
@@ -71,6 +76,7 @@ private:
 
 	Setting&          s;
 	int               dummy;
+	double            ignoredDragWork = 0; // of border contacts that the other domain books
 	EventCall         eventCalls[3];
 	std::vector<Pair> far[3];
 	std::vector<char> touching[3]; // by far pair

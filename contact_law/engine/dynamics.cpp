@@ -34,7 +34,7 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	refreshLists(true);
 	for (auto& domain : domains)
 		domain->placeOverlapping();
-	refreshLists(true);
+	refreshLists(false);
 	firstForces();
 }
 
@@ -79,6 +79,7 @@ void Dynamics::makeDomains()
 {
 	const int domainCount = std::max(1, std::min(options.domains, count));
 	setting.grains.resize(count + 2 * domainCount);
+	if (setting.hasDrag()) setting.previous.assign(count + 2 * domainCount, PreviousVelocity {});
 	for (int d = 0; d < domainCount; ++d)
 		domains.push_back(std::make_unique<Domain>(setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
 }
@@ -88,11 +89,11 @@ void Dynamics::refreshLists(bool farToo)
 	if (farToo) {
 		grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
 		for (auto& domain : domains)
-			domain->rebuildFar(grid);
+			domain->findPairs(grid);
 		travelSinceFar = 0;
 	} else {
 		for (auto& domain : domains)
-			domain->rebuildNear();
+			domain->findNearPairs();
 	}
 	travelSinceNear = 0;
 }
@@ -103,6 +104,9 @@ void Dynamics::firstForces()
 {
 	const double dt = setting.dt;
 	setting.dt      = 0;
+	if (setting.hasDrag())
+		for (int g = 0; g < count; ++g)
+			setting.previous[g] = { setting.grains[g].vx, setting.grains[g].vy, setting.grains[g].vz, 0 };
 	for (auto& domain : domains)
 		domain->addForces();
 	setting.dt = dt;
@@ -140,8 +144,10 @@ void Dynamics::run(long steps)
 					grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
 				}
 				for (std::size_t d = thread; d < domains.size(); d += threads) {
-					if (farToo) domains[d]->rebuildFar(grid);
-					else domains[d]->rebuildNear();
+					if (farToo) {
+						domains[d]->sortContacts();
+						domains[d]->findPairs(grid);
+					} else domains[d]->findNearPairs();
 				}
 				sinceNear = 0;
 				if (farToo) sinceFar = 0;

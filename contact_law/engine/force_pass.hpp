@@ -58,11 +58,36 @@ template <class Pack> struct Passes {
 		}
 	}
 
+	// The next batch's grains on their way to the cache while this batch is computed; its blocks follow each other and come by themselves.
+	static void fetchAhead(const ForcePass& pass, int first)
+	{
+		const int last = first + batchSize < pass.blockCount ? first + batchSize : pass.blockCount;
+		for (int b = first; b < last; ++b)
+			for (int k = 0; k < lanes; ++k) {
+				const Grain& grain = pass.grains[pass.blocks[b].j[k]];
+				__builtin_prefetch(&grain.x);
+				__builtin_prefetch(&grain.wz);
+			}
+	}
+
+	// v1 - v2 now, extrapolated from the two steps before (MODEL.md, drag).
+	static Vec3<Pack> velocityNow(const PreviousVelocity* previous, const ContactBlock& block, const Vec3<Pack>& velocity, int at)
+	{
+		alignas(64) double before[3][lanes];
+		for (int k = at; k < at + width; ++k) {
+			const PreviousVelocity &a = previous[block.i[k]], &b = previous[block.j[k]];
+			before[0][k] = a.x - b.x, before[1][k] = a.y - b.y, before[2][k] = a.z - b.z;
+		}
+		return velocity + Pack(0.5) * (velocity - load(before, at));
+	}
+
 	/* Carries the history of `width` contacts to now, and evaluates them. Returns the lanes (bits) where an event needs care; for those the
 	 * history before the step is kept in `before`. */
 	template <unsigned mechanisms>
-	static unsigned evaluate(const PairConstants<Pack>& c, const BatchBuffer& in, ContactBlock& block, ContactBlock& before, LaneForces& out, const Pack& dt, int at)
+	static unsigned evaluate(const ForcePass& pass, const PairConstants<Pack>& c, const BatchBuffer& in, int index, ContactBlock& before, LaneForces& out, int at, Pack& dragWork)
 	{
+		ContactBlock&               block = pass.blocks[index];
+		const Pack                  dt(pass.dt);
 		const Vec3<Pack>            spin1 = load(in.spin1, at), spin2 = load(in.spin2, at);
 		const ContactGeometry<Pack> g = geometryOf(load(in.separation, at), c.radius1 + c.radius2);
 		ContactHistory<Pack>        h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
@@ -73,10 +98,19 @@ template <class Pack> struct Passes {
 			h.twist = h.twist + twisting::increment(g.normal, g.inverseDistance, load(in.velocity, at), spin1 - spin2, dt);
 			care    = care | (c.criticalTwisting < absolute(h.twist));
 		}
-		const ContactForces<Pack> f = contactForces<mechanisms>(c, g, h, Vec3<Pack> {});
+		Vec3<Pack> velocity {};
+		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, block, load(in.velocity, at), at);
+		const ContactForces<Pack> f = contactForces<mechanisms>(c, g, h, velocity);
 		if constexpr (bool(mechanisms & Sliding)) care = care | (c.criticalSliding * c.criticalSliding < dot(f.slidingDisplacement, f.slidingDisplacement));
 		if constexpr (bool(mechanisms & Rolling)) care = care | (c.criticalRolling * c.criticalRolling < dot(f.rollingDisplacement, f.rollingDisplacement));
-		store(f.normalForce * g.normal + f.sliding, out.force, at);
+		if constexpr (bool(mechanisms & Drag)) { // events keep the step before, which they need
+			DragBlock& d          = pass.drags[index];
+			const Pack dragBefore = Pack::load(d.drag + at), overlapBefore = Pack::load(d.overlap + at);
+			dragWork              = dragWork + choose(care, Pack(0.), Pack(0.5) * (dragBefore + f.drag) * (g.overlap - overlapBefore));
+			choose(care, dragBefore, f.drag).store(d.drag + at);
+			choose(care, overlapBefore, g.overlap).store(d.overlap + at);
+		}
+		store((f.normalForce + f.drag) * g.normal + f.sliding, out.force, at);
 		store(f.torque1, out.torque1, at);
 		store(f.torque2, out.torque2, at);
 		if (__builtin_expect(anyOf(care), 0)) keep(old, before, at);
@@ -90,11 +124,11 @@ template <class Pack> struct Passes {
 		h.twist.store(block.twist + at);
 	}
 
-	template <unsigned mechanisms, bool alike> static void forces(const ForcePass& pass)
+	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void forces(const ForcePass& pass)
 	{
 		BatchBuffer               buffers[batchSize];
 		const PairConstants<Pack> same = spread(*pass.alike);
-		const Pack                dt(pass.dt);
+		Pack                      dragWork(0.);
 		int                       trash[lanes];
 		for (int& t : trash)
 			t = pass.trash;
@@ -102,6 +136,7 @@ template <class Pack> struct Passes {
 		for (int first = 0; first < pass.blockCount; first += batchSize) {
 			const int count = pass.blockCount - first < batchSize ? pass.blockCount - first : batchSize;
 			ContactBlock* blocks = pass.blocks + first;
+			fetchAhead(pass, first + batchSize);
 			for (int b = 0; b < count; ++b)
 				for (int at = 0; at < lanes; at += width)
 					gatherPair(pass.grains, blocks[b], at, buffers[b]);
@@ -109,8 +144,8 @@ template <class Pack> struct Passes {
 				ContactBlock before;
 				unsigned     care = 0;
 				for (int at = 0; at < lanes; at += width) {
-					if constexpr (alike) care |= evaluate<mechanisms>(same, buffers[b], blocks[b], before, buffers[b].out, dt, at) << at;
-					else care |= evaluate<mechanisms>(load(pass.constants[first + b], at), buffers[b], blocks[b], before, buffers[b].out, dt, at) << at;
+					if constexpr (alike) care |= evaluate<mechanisms>(pass, same, buffers[b], first + b, before, buffers[b].out, at, dragWork) << at;
+					else care |= evaluate<mechanisms>(pass, load(pass.constants[first + b], at), buffers[b], first + b, before, buffers[b].out, at, dragWork) << at;
 				}
 				if (__builtin_expect(care != 0, 0)) pass.events(pass.owner, first + b, care, before, buffers[b].out);
 			}
@@ -125,9 +160,10 @@ template <class Pack> struct Passes {
 				}
 			}
 		}
+		if constexpr (bool(mechanisms & Drag)) *pass.dragWork += sumOf(dragWork);
 	}
 
-	template <unsigned mechanisms, bool alike> static void energies(const ForcePass& pass, StoredSums& sums)
+	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void energies(const ForcePass& pass, StoredSums& sums)
 	{
 		const PairConstants<Pack> same = spread(*pass.alike);
 		StoredEnergy<Pack>        total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
@@ -140,7 +176,7 @@ template <class Pack> struct Passes {
 				if constexpr (!alike) c = load(pass.constants[b], at);
 				const ContactGeometry<Pack> g = geometryOf(load(buffer.separation, at), c.radius1 + c.radius2);
 				const ContactHistory<Pack>  h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
-				const StoredEnergy<Pack>    e = storedEnergy(c, contactForces<mechanisms>(c, g, h, Vec3<Pack> {}), h.twist);
+				const StoredEnergy<Pack>    e = storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
 				alignas(64) double          counts[lanes];
 				for (int lane = 0; lane < width; ++lane)
 					counts[lane] = block.i[at + lane] != pass.trash; // a dead lane's dummies
@@ -175,7 +211,7 @@ private:
 		set.forces[mechanisms][1]   = &forces<mechanisms, true>;
 		set.energies[mechanisms][0] = &energies<mechanisms, false>;
 		set.energies[mechanisms][1] = &energies<mechanisms, true>;
-		if constexpr (mechanisms < AllSprings) fill<mechanisms + 1>(set);
+		if constexpr (mechanisms < Everything) fill<mechanisms + 1>(set);
 	}
 };
 

@@ -93,7 +93,7 @@ namespace events {
 	/* The contact broke inside the step: after the share g of it the overlap passed -delta_c. Its last kicks (before the step) covered half a step;
 	 * what is missing to the share g follows now. The normal impulse comes from the energy, which the branch point at pull-off leaves smooth. */
 	template <unsigned mechanisms>
-	inline ContactStepResult lost(const PairConstants<double>& c, const ContactMotion& m, const ContactGeometry<double>& g, const ContactBefore& before, ContactHistory<double> h)
+	inline ContactStepResult lost(const PairConstants<double>& c, const ContactMotion& m, const ContactGeometry<double>& g, const ContactBefore& before, const ContactHistory<double>& h)
 	{
 		ContactStepResult  r;
 		const double       opening = before.overlap - g.overlap, share = (before.overlap + c.pullOffOverlap) / opening;
@@ -102,31 +102,26 @@ namespace events {
 		// what the steps before missed of the force's last rise, see sumMinusIntegralAtPullOff
 		const double       missed = c.pullOffForce * normal::pullOffSlope * std::sqrt(opening * c.inverseEquilibriumOverlap) * normal::sumMinusIntegralAtPullOff(share);
 		const double       push = normalWork / opening - c.pullOffForce * normal::force(uBefore) / 2 + (share - 0.5) * before.drag - missed;
-		const double       rest = (1 - share) * m.dt;
-		const Vec3<double> separation = m.separation - rest * m.velocity;
-		if constexpr (bool(mechanisms & Twisting)) h.twist = before.twist + share * (h.twist - before.twist);
-		const ContactHistory<double>  then { { turned(h.pointers.n1, -rest * m.spin1), turned(h.pointers.n2, -rest * m.spin2) }, h.twist };
-		const ContactGeometry<double> pullOff = geometryOf(separation, c.radius1 + c.radius2);
-		const ContactForces<double>   f       = contactForces<mechanisms & AllSprings>(c, pullOff, then, m.velocity);
+		// at this instant, not at the break, so that forces and torques balance where the grains are
+		const ContactForces<double> f = contactForces<mechanisms & AllSprings>(c, g, h, m.velocity);
 
 		r.force      = push * g.normal + (share - 0.5) * f.sliding;
 		r.torque1    = (share - 0.5) * f.torque1;
 		r.torque2    = (share - 0.5) * f.torque2;
 		r.workBefore = work(m, r.force, r.torque1, r.torque2);
 
-		const auto released = [&](double k, const auto& atStart, const auto& atBreak, auto product) {
-			const auto travel = (1 / share) * (atBreak - atStart);
-			return k / 2 * product(atStart, atStart) + k / 2 * product(atStart, travel) + k * (share - 0.5) * product(atBreak, travel);
+		// stored a step ago, and the work of the springs' half kick then and of their rest now
+		const auto released = [&](double k, const auto& start, const auto& now, auto product) {
+			return k / 2 * product(start, now) + k * (share - 0.5) * product(now, now - start);
 		};
-		const auto inner   = [](const Vec3<double>& a, const Vec3<double>& b) { return dot(a, b); };
-		const auto product = [](double a, double b) { return a * b; };
-		const double impulse      = push * m.dt;
-		r.dissipated.disconnection = energyUnit * normal::energyAtPullOff - impulse * impulse * m.inverseMass / 2;
-		if (share > 0) {
-			if constexpr (bool(mechanisms & Sliding)) r.dissipated.disconnection += released(c.slidingStiffness, before.sliding, f.slidingDisplacement, inner);
-			if constexpr (bool(mechanisms & Rolling)) r.dissipated.disconnection += released(c.rollingStiffness, before.rolling, f.rollingDisplacement, inner);
-			if constexpr (bool(mechanisms & Twisting)) r.dissipated.disconnection += released(c.twistingStiffness, before.twist, then.twist, product);
-		}
+		const auto   inner    = [](const Vec3<double>& a, const Vec3<double>& b) { return dot(a, b); };
+		const auto   product  = [](double a, double b) { return a * b; };
+		const double impulse  = push * m.dt;
+		double&      lostHere = r.dissipated.disconnection;
+		lostHere             = energyUnit * normal::energyAtPullOff - impulse * impulse * m.inverseMass / 2;
+		if constexpr (bool(mechanisms & Sliding)) lostHere += released(c.slidingStiffness, before.sliding, f.slidingDisplacement, inner);
+		if constexpr (bool(mechanisms & Rolling)) lostHere += released(c.rollingStiffness, before.rolling, f.rollingDisplacement, inner);
+		if constexpr (bool(mechanisms & Twisting)) lostHere += released(c.twistingStiffness, before.twist, h.twist, product);
 		r.dissipated.drag = -share * before.drag * opening;
 		return r;
 	}

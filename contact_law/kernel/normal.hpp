@@ -12,15 +12,26 @@ constexpr double pullOffOverlap = 0.8254818122236567; // (9/16)^(1/3) = delta_c/
 // overlap/delta0 for a given u
 template <class T> inline T overlap(const T& u) { return T(3.) * (u * u) * (u * u) - T(2.) * u; }
 
+// c[0] + c[1] t + ... + c[22] t^22 as four polynomials in t^4 side by side: a quarter of the waiting of Horner's one chain.
+template <class T> inline T polynomial(const double (&c)[23], const T& t)
+{
+	const T square = t * t, fourth = square * square;
+	T       part[4] = { T(c[20]), T(c[21]), T(c[22]), T(c[19]) };
+	for (int first = 16; first >= 0; first -= 4) {
+		for (int k = 0; k < 3; ++k)
+			part[k] = part[k] * fourth + T(c[first + k]);
+		if (first > 0) part[3] = part[3] * fourth + T(c[first - 1]);
+	}
+	return part[0] + part[1] * t + (part[2] + part[3] * t) * square;
+}
+
 /* u for a given overlap/delta0 >= -(9/16)^(1/3), on the branch u >= 6^(-1/3): a polynomial in
  * y = (overlap/delta0 + (9/16)^(1/3))^(1/2), in which the branch point at pull-off is smooth; beyond the fitted range Newton's method. */
 template <class T> inline T rootOfContactRadius(const T& overlap)
 {
 	const T shifted = choose(overlap < T(largestFittedOverlap), overlap, T(largestFittedOverlap)) + T(pullOffOverlap);
 	const T t       = T(fittedScale) * root(choose(T(0.) < shifted, shifted, T(0.))) - T(1.);
-	T       u       = T(contactRadiusCoefficients[22]);
-	for (int power = 21; power >= 0; --power)
-		u = u * t + T(contactRadiusCoefficients[power]);
+	T       u       = polynomial(contactRadiusCoefficients, t);
 	const auto beyond = T(largestFittedOverlap) < overlap;
 	if (anyOf(beyond)) {
 		T far = root(root(overlap * T(1. / 3.) + T(1.)));

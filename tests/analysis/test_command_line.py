@@ -1,0 +1,133 @@
+"""python3 -m analysis as a user runs it."""
+import json
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+from analysis.channels import CHANNELS
+from conftest import TOP
+
+KEYS = {"run", "d_max", "t_max", "restitution", "outcome", "largest_fragment", "energy_closure", *CHANNELS}
+
+
+def analyse(*arguments):
+    return subprocess.run(
+        ["/usr/bin/python3", "-m", "analysis", *map(str, arguments)], cwd=TOP, capture_output=True, text=True
+    )
+
+
+def test_json_of_one_run_is_an_object(pair_folder):
+    path, velocity, collision = pair_folder
+    done = analyse("summary", "--json", path)
+    numbers = json.loads(done.stdout)
+    assert done.returncode == 0 and done.stderr == "" and KEYS <= set(numbers)
+    assert (
+        numbers["run"] == str(path) and numbers["outcome"] == "bouncing" and numbers["largest_fragment"] == 1
+    )
+    assert numbers["restitution"] == pytest.approx(collision.restitution, rel=1e-9)
+    assert numbers["d_max"] == pytest.approx(collision.largest_overlap - 2e-7, rel=1e-6)
+    assert 0.3 < numbers["t_max"] / collision.duration < 0.5
+    assert numbers["energy_closure"] < 1e-9
+    assert numbers["disconnection"] == pytest.approx(4 / 45 * 3.969e-17, rel=1e-4)
+
+
+def test_json_of_several_runs_is_a_list_in_their_order(pair_folder, cluster_folder):
+    done = analyse("summary", pair_folder[0], cluster_folder, "--json")
+    runs = json.loads(done.stdout)
+    assert [r["run"] for r in runs] == [str(pair_folder[0]), str(cluster_folder)]
+    assert runs[1]["outcome"] == "sticking" and runs[1]["growth_efficiency"] == 1.0
+
+
+def test_table_shows_units_and_every_channel(cluster_folder):
+    done = analyse("summary", cluster_folder)
+    assert done.returncode == 0
+    for text in (
+        "grain radii",
+        " ns",
+        "closure",
+        "of K(0)",
+        "rolling dissipation",
+        "bond breaking",
+        "sticking",
+        "(ended",
+    ):
+        assert text in done.stdout
+    assert max(map(len, done.stdout.splitlines())) <= 120
+
+
+def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folder, cluster_folder, tmp_path):
+    done = analyse("summary", pair_folder[0], tmp_path / "none", cluster_folder)
+    assert done.returncode == 2
+    assert done.stderr == f"analysis: {tmp_path / 'none'}: no such run folder\n"
+    assert f"run {pair_folder[0]}" in done.stdout and f"run {cluster_folder}" in done.stdout
+    listed = analyse("summary", "--json", pair_folder[0], tmp_path / "none")
+    assert listed.returncode == 2 and [r["run"] for r in json.loads(listed.stdout)] == [str(pair_folder[0])]
+
+
+def test_a_broken_run_alone_prints_nothing_else(tmp_path):
+    done = analyse("summary", "--json", tmp_path)
+    assert (
+        (done.returncode, done.stdout) == (2, "")
+        and done.stderr.count("\n") == 1
+        and "run.json" in done.stderr
+    )
+
+
+def test_an_unfinished_run_says_so(pair_folder, tmp_path):
+    path = shutil.copytree(pair_folder[0], tmp_path / "run")
+    (path / "ended").unlink()
+    done = analyse("summary", path)
+    assert done.returncode == 0 and "NOT ENDED" in done.stdout
+    assert json.loads(analyse("summary", "--json", path).stdout)["ended"] is False
+
+
+def test_aggregates_that_never_met_have_no_outcome(pair_folder, tmp_path):
+    path = shutil.copytree(pair_folder[0], tmp_path / "run")
+    with np.load(path / "history.npz") as archive:
+        arrays = {**archive, "contacts_between": np.zeros(archive["time"].size, int)}
+    np.savez(path / "history.npz", **arrays)
+    numbers = json.loads(analyse("summary", "--json", path).stdout)
+    assert numbers["outcome"] is None and numbers["restitution"] is None
+    assert "have not touched" in analyse("summary", path).stdout
+
+
+def test_a_run_at_rest_has_no_closure_and_no_restitution(pair_folder, tmp_path):
+    path = shutil.copytree(pair_folder[0], tmp_path / "run")
+    for file in (path / "history.npz", *(path / "states").iterdir()):
+        with np.load(file) as archive:
+            arrays = dict(archive)
+        for name in {"kinetic", "velocity"} & set(arrays):
+            arrays[name] = np.zeros_like(arrays[name])
+        np.savez(file, **arrays)
+    numbers = json.loads(analyse("summary", "--json", path).stdout)
+    assert numbers["energy_closure"] is None and numbers["restitution"] is None
+    assert "undefined" in analyse("summary", path).stdout
+    drawn = analyse("figures", path, "--out", tmp_path / "figures")
+    assert drawn.returncode == 2 and "no kinetic energy at the start" in drawn.stderr
+
+
+@pytest.mark.parametrize("arguments", [[], ["summary"], ["figures"], ["figures", "a", "b"], ["draw", "a"]])
+def test_wrong_use_exits_with_2(arguments):
+    done = analyse(*arguments)
+    assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_help_explains_the_json():
+    assert "list of objects for several" in " ".join(analyse("summary", "--help").stdout.split())
+    assert "summary" in analyse("--help").stdout and "figures" in analyse("--help").stdout
+
+
+def test_figures_are_written_where_asked(cluster_folder, tmp_path):
+    done = analyse("figures", cluster_folder, "--out", tmp_path / "new" / "place")
+    assert done.returncode == 0 and done.stderr == ""
+    names = [line.rsplit("/", 1)[1] for line in done.stdout.splitlines()]
+    assert names == ["motion.png", "energy.png", "grains.png", "forces.png"]
+    assert all((tmp_path / "new" / "place" / name).read_bytes().startswith(b"\x89PNG") for name in names)
+
+
+def test_a_place_that_cannot_be_written_is_one_line(cluster_folder, tmp_path):
+    (tmp_path / "taken").write_text("")
+    done = analyse("figures", cluster_folder, "--out", tmp_path / "taken")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "taken" in done.stderr

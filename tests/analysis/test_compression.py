@@ -1,0 +1,105 @@
+"""d, v and the largest compression (A24 eqs 10-13)."""
+import numpy as np
+import pytest
+
+from analysis.compression import compression_length, maximum_compression, mutual_velocity
+from analysis.run_folder import open_run
+
+
+def test_d_and_v_of_three_grains():
+    x, speed = np.array([-3.0, 1.0, 2.0]), np.array([4.0, -1.0, -2.0])
+    assert compression_length(x, 2.5) == pytest.approx(5.0 - (1.5 + 3.0))
+    assert mutual_velocity(x, speed) == pytest.approx(-(-1.5 - 4.0))
+
+
+def test_v_is_the_rate_of_d():
+    random = np.random.default_rng(1)
+    x, speed = random.normal(size=500), random.normal(size=500)
+    step = 0.5 * np.abs(x / speed).min()    # no grain crosses x = 0
+    rate = (compression_length(x + step * speed, 3.0) - compression_length(x - step * speed, 3.0)) / (
+        2 * step
+    )
+    assert mutual_velocity(x, speed) == pytest.approx(rate, abs=1e-10)
+
+
+def test_one_empty_side_is_refused():
+    for call in (
+        lambda: compression_length([1.0, 2.0], 1.0),
+        lambda: mutual_velocity([-1.0, 0.0], [0.0, 0.0]),
+    ):
+        with pytest.raises(ValueError, match="both sides"):
+            call()
+
+
+def test_maximum_of_a_parabola_between_samples():
+    time = np.linspace(0.0, 10.0, 8)
+    maximum = maximum_compression(time, 5.0 - (time - 4.1) ** 2, -2.0 * (time - 4.1))
+    assert (maximum.length, maximum.time) == pytest.approx((5.0, 4.1), rel=1e-12)
+    assert maximum.inside and maximum.length_error < 1e-12 and maximum.time_error < 1e-12
+
+
+def test_maximum_of_a_cosine_converges_with_the_fourth_power_of_the_interval():
+    errors = []
+    for samples in (20, 40):
+        time = np.linspace(0.0, 3.0, samples)
+        maximum = maximum_compression(time, np.cos(time - 1.234), -np.sin(time - 1.234))
+        errors.append(abs(maximum.length - 1.0))
+        assert errors[-1] <= maximum.length_error
+        assert abs(maximum.time - 1.234) <= maximum.time_error
+    assert errors[0] < 2e-5 and errors[1] < errors[0] / 8
+
+
+def test_noise_stays_within_the_stated_error():
+    random = np.random.default_rng(2)
+    time = np.linspace(0.0, 10.0, 101)
+    for _ in range(50):
+        noise = 1e-3 * random.normal(size=time.size)
+        maximum = maximum_compression(time, 5.0 - (time - 4.1) ** 2 + noise, -2.0 * (time - 4.1))
+        assert maximum.length == pytest.approx(5.0, abs=4e-3)
+        assert abs(maximum.time - 4.1) <= maximum.time_error * (1 + 1e-9) < 0.5
+        assert 0 < maximum.length_error < 1e-2
+
+
+def test_maximum_at_an_end_is_only_a_bound():
+    time = np.linspace(0.0, 1.0, 5)
+    rising = maximum_compression(time, time, np.ones(5))
+    falling = maximum_compression(time, -time, -np.ones(5))
+    assert not rising.inside and (rising.length, rising.time) == (1.0, 1.0)
+    assert not falling.inside and (falling.length, falling.time) == (0.0, 0.0)
+
+
+def test_samples_without_a_value_are_left_out():
+    time = np.linspace(0.0, 10.0, 51)
+    d, v = 5.0 - (time - 4.1) ** 2, -2.0 * (time - 4.1)
+    d[40:] = v[40:] = np.nan
+    assert maximum_compression(time, d, v).length == pytest.approx(5.0, rel=1e-12)
+    assert maximum_compression(time, np.full(51, np.nan), v) is None
+
+
+def test_unequal_lengths_are_refused():
+    with pytest.raises(ValueError, match="equally long"):
+        maximum_compression(np.arange(3.0), np.arange(4.0), np.arange(3.0))
+
+
+@pytest.mark.parametrize("folder", ["pair_folder", "cluster_folder"])
+def test_history_agrees_with_the_states(folder, request):
+    path = request.getfixturevalue(folder)
+    run = open_run(path[0] if isinstance(path, tuple) else path)
+    for state in run.states:
+        k = np.argmin(np.abs(run.history["time"] - state.time))
+        if run.history["time"][k] == pytest.approx(state.time, rel=1e-12):
+            x, speed = state.position[:, 0], state.velocity[:, 0]
+            assert compression_length(x, run.derived["aggregateRadius"]) == pytest.approx(
+                run.history["d"][k], abs=1e-15
+            )
+            assert mutual_velocity(x, speed) == pytest.approx(run.history["v"][k], rel=1e-9)
+
+
+def test_pair_is_compressed_as_theory_says(pair_folder):
+    path, _, collision = pair_folder
+    run = open_run(path)
+    maximum = maximum_compression(run.history["time"], run.history["d"], run.history["v"])
+    # d counts from R_agg = 0: two grains that just touch are at -2 r.
+    assert maximum.length + 2 * run.derived["grainRadius"] == pytest.approx(
+        collision.largest_overlap, rel=1e-6
+    )

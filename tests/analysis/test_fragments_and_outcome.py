@@ -1,0 +1,145 @@
+"""Fragments, outcomes and restitution, by hand and by brute force."""
+import numpy as np
+import pytest
+
+from analysis.collision_outcome import classify, collision_outcome, restitution
+from analysis.fragments import (belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes,
+                                growth_efficiency)
+from analysis.run_folder import State
+
+from written_runs import state_arrays
+
+
+def _labels_by_flooding(grains, pairs):
+    neighbours = {k: set() for k in range(grains)}
+    for i, j in pairs:
+        neighbours[i].add(j)
+        neighbours[j].add(i)
+    pieces, seen = [], set()
+    for first in range(grains):
+        if first in seen:
+            continue
+        piece, todo = set(), [first]
+        while todo:
+            grain = todo.pop()
+            if grain not in piece:
+                piece.add(grain)
+                todo += neighbours[grain]
+        seen |= piece
+        pieces.append(piece)
+    return pieces
+
+
+@pytest.mark.parametrize("contacts", [0, 20, 60, 200])
+def test_fragments_against_flooding(contacts):
+    random = np.random.default_rng(contacts)
+    pairs = random.integers(0, 100, size=(contacts, 2))
+    labels = fragment_labels(100, pairs)
+    pieces = {frozenset(np.flatnonzero(labels == k)) for k in range(labels.max() + 1)}
+    assert pieces == {frozenset(piece) for piece in _labels_by_flooding(100, pairs)}
+    assert list(fragment_sizes(labels)) == sorted((len(p) for p in pieces), reverse=True)
+
+
+def test_masses_of_fragments():
+    labels = fragment_labels(4, [[2, 3]])
+    assert list(labels) == [1, 2, 0, 0]
+    assert list(fragment_masses(labels, np.array([1.0, 2.0, 4.0, 8.0]))) == [12.0, 1.0, 2.0]
+
+
+def test_crumbs_of_a_packing_do_not_count():
+    # Aggregate 0: nine grains in a chain and a lone one; aggregate 1: two pieces of five.
+    chain = [[k, k + 1] for k in range(8)] + [[k, k + 1] for k in (*range(10, 14), *range(15, 19))]
+    counted = belongs_to_an_aggregate(np.repeat([0, 1], 10), chain, np.r_[np.ones(9), 0.5, np.ones(10)])
+    assert np.array_equal(np.flatnonzero(~counted), [9])
+
+
+@pytest.mark.parametrize(
+    "f1, f2, kind",
+    [
+        (1.0, 0.0, "sticking"),
+        (0.9, 0.1, "sticking"),
+        (0.89, 0.11, "fragmentation"),
+        (0.5, 0.5, "bouncing"),
+        (0.65, 0.25, "bouncing"),
+        (0.66, 0.24, "fragmentation"),
+        (0.45, 0.44, "fragmentation"),
+        (0.1, 0.1, "fragmentation"),
+    ],
+)
+def test_rule(f1, f2, kind):
+    assert classify(f1, f2) == kind
+
+
+def test_growth_efficiency_of_a22_equation_28():
+    assert growth_efficiency(43957, 50000, 50000) == pytest.approx(-0.12086)
+    assert growth_efficiency(30, 20, 10) == 1.0
+
+
+def test_restitution_is_projected():
+    assert restitution([-2.0, 0.0, 0.0], [0.5, 3.0, 0.0]) == pytest.approx(0.25)
+    assert restitution([-2.0, 0.0, 0.0], [-0.5, 3.0, 0.0]) == pytest.approx(-0.25)
+    assert restitution([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]) is None
+
+
+def _chain(first, grains):
+    return [[k, k + 1] for k in range(first, first + grains - 1)]
+
+
+def _state(velocity, pairs, half):
+    position = np.arange(2.0 * half)[:, None] * [1e-7, 0, 0]
+    return State(**state_arrays(0.0, position, velocity, np.repeat([0, 1], half), pairs))
+
+
+def _start(half=20):
+    velocity = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], half, axis=0)
+    return _state(velocity, _chain(0, half) + _chain(half, half), half)
+
+
+def test_sticking():
+    end = _state(np.zeros((40, 3)), _chain(0, 40), 20)
+    outcome = collision_outcome(_start(), end)
+    assert (outcome.kind, outcome.restitution, outcome.largest_fragment) == ("sticking", 0.0, 40)
+    assert outcome.growth_efficiency == 1.0 and outcome.fragments == 1
+
+
+@pytest.mark.parametrize("moved", [0, 3, -3])
+def test_bouncing_with_known_restitution_whichever_fragment_is_heavier(moved):
+    cut = 20 + moved
+    velocity = np.where(np.arange(40)[:, None] < cut, [[-0.3, 0.1, 0]], [[0.3, 0.1, 0]])
+    outcome = collision_outcome(_start(), _state(velocity, _chain(0, cut) + _chain(cut, 40 - cut), 20))
+    assert outcome.kind == "bouncing" and outcome.restitution == pytest.approx(0.3)
+    assert outcome.largest_fragment == max(cut, 40 - cut)
+    assert outcome.growth_efficiency == pytest.approx((max(cut, 40 - cut) - 20) / 20)
+
+
+def test_passing_through_each_other_has_negative_restitution():
+    velocity = np.repeat([[0.5, 0, 0], [-0.5, 0, 0]], 20, axis=0)
+    outcome = collision_outcome(_start(), _state(velocity, _chain(0, 20) + _chain(20, 20), 20))
+    assert outcome.restitution == pytest.approx(-0.5)
+
+
+def test_fragmentation():
+    outcome = collision_outcome(_start(), _state(np.zeros((40, 3)), _chain(0, 10) + _chain(20, 12), 20))
+    assert outcome.kind == "fragmentation" and outcome.mass_fractions == (0.3, 0.25)
+    assert outcome.restitution == 0.0 and outcome.largest_fragment == 12
+
+
+def test_a_grain_that_was_alone_does_not_spoil_sticking():
+    velocity = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], 20, axis=0)
+    # Grains 16 to 19, a fifth of aggregate 0, lie about singly from the start.
+    start = _state(velocity, _chain(0, 16) + _chain(20, 20), 20)
+    outcome = collision_outcome(
+        start, _state(np.zeros((40, 3)), _chain(0, 16) + _chain(20, 20) + [[15, 20]], 20)
+    )
+    assert outcome.kind == "sticking" and outcome.excluded_grains == 4 and outcome.mass_fractions[0] == 1.0
+
+
+def test_states_of_different_runs_are_refused():
+    with pytest.raises(ValueError, match="same grains"):
+        collision_outcome(_start(20), _start(10))
+
+
+def test_one_aggregate_alone_is_refused():
+    alone = State(**state_arrays(0.0, np.zeros((3, 3)), np.zeros((3, 3)), [0, 0, 0]))
+    with pytest.raises(ValueError, match="aggregate 1 has no grain"):
+        collision_outcome(alone, alone)

@@ -1,0 +1,55 @@
+"""The ledger's sum, closure and shares."""
+import numpy as np
+import pytest
+
+from analysis.channels import CHANNELS, DISSIPATED, LABELS, STORED
+from analysis.figures.style import CHANNEL_COLOURS
+from analysis.ledger import closure, closure_history, final_values, shares, total_energy
+from analysis.run_folder import open_run
+
+
+def _history(**changed):
+    history = {name: np.zeros(4) for name in CHANNELS}
+    history["kinetic"] = np.array([2.0, 1.0, 0.5, 0.0])
+    history["normal"] = np.array([-10.0, -10.0, -11.0, -12.0])
+    history["connection"] = np.array([0.0, 1.0, 2.5, 4.0])
+    return {**history, **changed}
+
+
+def test_channels_are_those_of_the_run_folder_in_order():
+    assert CHANNELS == STORED + DISSIPATED == (
+        "kinetic", "normal", "sliding", "rolling", "twisting", "slidingDissipation", "rollingDissipation",
+        "twistingDissipation", "connection", "disconnection", "drag", "bondBreaking")
+    assert set(LABELS) == set(CHANNEL_COLOURS) == set(CHANNELS)
+    assert len(set(CHANNEL_COLOURS.values())) == len(CHANNELS)
+
+
+def test_sum_and_closure():
+    assert list(total_energy(_history())) == [-8.0] * 4
+    assert closure(_history()) == 0.0
+    leaky = _history(drag=np.array([0.0, 0.0, -0.3, 0.1]))
+    assert closure_history(leaky) == pytest.approx([0.0, 0.0, -0.15, 0.05])
+    assert closure(leaky) == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize("channel", CHANNELS)
+def test_every_channel_counts(channel):
+    history = _history()
+    history[channel] = history[channel] + np.array([0.0, 0.0, 0.0, 0.5])
+    assert closure(history) == pytest.approx(0.25)
+    assert final_values(history)[channel] == history[channel][-1]
+
+
+def test_shares_add_up_to_one():
+    parts = shares(_history())
+    assert sum(parts.values()) == pytest.approx(np.ones(4))
+    assert parts["normal"] == pytest.approx([0.0, 0.0, -0.5, -1.0]) and parts["kinetic"][0] == 1.0
+
+
+def test_no_kinetic_energy_at_the_start_leaves_them_undefined():
+    at_rest = _history(kinetic=np.zeros(4))
+    assert closure(at_rest) is None and shares(at_rest) is None
+
+
+def test_ledger_of_an_integrated_pair_closes(pair_folder):
+    assert closure(open_run(pair_folder[0]).history) < 1e-9

@@ -1,0 +1,215 @@
+"""Reading run folders: whole, unfinished, damaged and foreign ones."""
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from analysis.run_folder import RunFolderError, open_run
+
+
+@pytest.fixture
+def folder(pair_folder, tmp_path):
+    return shutil.copytree(pair_folder[0], tmp_path / "run")
+
+
+def _change_record(folder, change):
+    record = json.loads((folder / "run.json").read_text())
+    change(record)
+    (folder / "run.json").write_text(json.dumps(record))
+
+
+def _change_arrays(file, **changed):
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    arrays.update(changed)
+    np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
+
+
+def test_a_whole_run(folder):
+    run = open_run(folder)
+    assert run.ended and len(run.states) == 3 and run.derived["grainRadius"] == 1e-7
+    assert run.start.time == 0.0 and run.last.time == run.history["time"][-1]
+    assert run.states.times == pytest.approx([state.time for state in run.states])
+    assert run.states.nearest(run.last.time * 0.99) == 2
+    assert (
+        run.last.position.shape == (2, 3)
+        and len(run.start.contact_pairs) == 1
+        and len(run.last.contact_pairs) == 0
+    )
+
+
+def test_nothing_read_can_be_changed(folder):
+    run = open_run(folder)
+    for change in (
+        lambda: run.history["d"].__setitem__(0, 1.0),
+        lambda: run.start.position.__setitem__(0, 1.0),
+        lambda: run.derived.__setitem__("grainRadius", 1.0),
+        lambda: setattr(run, "ended", False),
+    ):
+        with pytest.raises((ValueError, TypeError, AttributeError)):
+            change()
+
+
+def test_a_run_that_has_not_ended(folder):
+    (folder / "ended").unlink()
+    assert not open_run(folder).ended
+
+
+def test_files_that_are_not_states_are_passed_over(folder):
+    (folder / "states" / "000003.npz.tmp").write_bytes(b"half")
+    (folder / "states" / "notes.txt").write_text("mine")
+    assert len(open_run(folder).states) == 3
+
+
+def test_d_and_v_may_have_no_value(folder):
+    with np.load(folder / "history.npz") as archive:
+        d = archive["d"].copy()
+    d[-1] = np.nan
+    _change_arrays(folder / "history.npz", d=d)
+    assert np.isnan(open_run(folder).history["d"][-1])
+
+
+def _halve(file):
+    file.write_bytes(file.read_bytes()[:file.stat().st_size // 2])
+
+
+def _flip(file):
+    data = bytearray(file.read_bytes())
+    data[len(data) // 3] ^= 0xFF
+    file.write_bytes(bytes(data))
+
+
+DAMAGE = {
+    "no folder": (lambda f: shutil.rmtree(f), "no such run folder"),
+    "a file": (lambda f: (shutil.rmtree(f), f.write_text("")), "is not a folder"),
+    "no record": (lambda f: (f / "run.json").unlink(), "run.json: missing, so this is not a run folder"),
+    "half a record": (lambda f: _halve(f / "run.json"), "run.json: not valid JSON"),
+    "binary record": (lambda f: (f / "run.json").write_bytes(b"\xff\xfe\x00"), "run.json: not valid JSON"),
+    "foreign record": (
+        lambda f: (f / "run.json").write_text("{}"),
+        "run.json: not the record of a run: no 'format'",
+    ),
+    "a list": (lambda f: (f / "run.json").write_text("[1]"), "run.json: not the record of a run"),
+    "later format": (
+        lambda f: _change_record(f, lambda r: r.update(format=2)),
+        "format is 2, this analysis reads format 1",
+    ),
+    "no derived": (lambda f: _change_record(f, lambda r: r.pop("derived")), "'derived' is missing"),
+    "zero radius": (
+        lambda f: _change_record(f, lambda r: r["derived"].update(grainRadius=0)),
+        "'grainRadius' must be a positive number, it is 0",
+    ),
+    "no history": (
+        lambda f: (f / "history.npz").unlink(),
+        "history.npz: missing: the run has recorded no history",
+    ),
+    "half a history": (lambda f: _halve(f / "history.npz"), "history.npz: damaged"),
+    "a flipped byte": (lambda f: _flip(f / "history.npz"), "history.npz: damaged"),
+    "text as history": (
+        lambda f: (f / "history.npz").write_text("time d v"),
+        "history.npz: damaged, or not an .npz file",
+    ),
+    "empty history": (
+        lambda f: (f / "history.npz").write_bytes(b""),
+        "history.npz: damaged, or not an .npz file",
+    ),
+    "bare array": (
+        lambda f: np.save(open(f / "history.npz", "wb"), np.zeros(3)),
+        "history.npz: damaged, or not an .npz",
+    ),
+    "no drag": (
+        lambda f: _change_arrays(f / "history.npz", drag=None),
+        "history.npz: lacks the array 'drag'",
+    ),
+    "short drag": (
+        lambda f: _change_arrays(f / "history.npz", drag=np.zeros(3)),
+        "'drag' has the shape (3,), expected",
+    ),
+    "text in drag": (
+        lambda f: _change_arrays(f / "history.npz", drag=np.array(["a"] * 201)),
+        "'drag' must hold numbers",
+    ),
+    "objects": (
+        lambda f: _change_arrays(f / "history.npz", drag=np.array([None] * 201)),
+        "history.npz: damaged",
+    ),
+    "infinite": (
+        lambda f: _change_arrays(f / "history.npz", drag=np.full(201, np.inf)),
+        "'drag' holds a value that is not",
+    ),
+    "time runs back": (
+        lambda f: _change_arrays(f / "history.npz", time=-np.arange(201.0)),
+        "'time' does not increase",
+    ),
+    "no times": (lambda f: _change_arrays(f / "history.npz", time=np.zeros(0)), "'time' must be a non-empty"),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_damaged_folders_say_what_and_where(folder, damage):
+    spoil, message = DAMAGE[damage]
+    spoil(folder)
+    with pytest.raises(RunFolderError) as error:
+        open_run(folder)
+    assert message in str(error.value) and str(folder) in str(error.value) and "\n" not in str(error.value)
+
+
+STATE_DAMAGE = {
+    "half": (_halve, "damaged"),
+    "pair out of range": (
+        lambda f: _change_arrays(f, contact_pairs=np.array([[0, 2]])),
+        "names grain 2, there are grains 0 to 1",
+    ),
+    "negative pair": (lambda f: _change_arrays(f, contact_pairs=np.array([[0, -1]])), "names grain -1"),
+    "fractional pair": (
+        lambda f: _change_arrays(f, contact_pairs=np.array([[0.0, 1.0]])),
+        "must be integers",
+    ),
+    "lost contact": (
+        lambda f: _change_arrays(f, contact_pairs=np.zeros((0, 2), int)),
+        "'contact_pairs' has the shape (0, 2)",
+    ),
+    "third aggregate": (
+        lambda f: _change_arrays(f, aggregate=np.array([0, 2])),
+        "'aggregate' must be 0 or 1",
+    ),
+    "no grain": (
+        lambda f: _change_arrays(
+            f,
+            **{n: np.zeros((0, 3)) for n in ("position", "velocity", "angular_velocity")},
+            radius=np.zeros(0),
+            aggregate=np.zeros(0, int),
+            contact_pairs=np.zeros((0, 2), int),
+            contact_normal_force=np.zeros(0),
+            contact_bonded=np.zeros(0, bool)
+        ),
+        "holds no grain",
+    ),
+    "lost grain": (
+        lambda f: _change_arrays(f, velocity=np.zeros((1, 3))),
+        "'velocity' has the shape (1, 3), expected (2, 3)",
+    ),
+    "nowhere": (
+        lambda f: _change_arrays(f, position=np.full((2, 3), np.nan)),
+        "'position' holds a value that is not finite",
+    ),
+    "two times": (lambda f: _change_arrays(f, time=np.zeros(2)), "'time' must be one number"),
+}
+
+
+@pytest.mark.parametrize("damage", STATE_DAMAGE)
+def test_damaged_states_say_what_and_where(folder, damage):
+    spoil, message = STATE_DAMAGE[damage]
+    spoil(folder / "states" / "000000.npz")
+    run = open_run(folder)
+    with pytest.raises(RunFolderError) as error:
+        run.start
+    assert message in str(error.value) and "000000.npz" in str(error.value) and "\n" not in str(error.value)
+    assert run.last.radius.size == 2
+
+
+def test_a_run_without_states(folder):
+    shutil.rmtree(folder / "states")
+    with pytest.raises(RunFolderError, match="holds no state"):
+        open_run(folder).last

@@ -1,0 +1,212 @@
+"""The theory against the papers' numbers, and against slower ways to the same values."""
+from dataclasses import replace
+from decimal import Decimal, getcontext
+from math import inf, pi
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from analysis import theory
+from analysis.theory.jkr import PULL_OFF_OVERLAP
+
+ICE = theory.pair_constants(theory.ICE, 1e-7)
+
+
+@pytest.mark.parametrize("name, printed, digits", [
+    ("unit", 4.0e-17, 2), ("break", 6.1e-17, 2), ("roll_critical", 1.2e-18, 2), ("roll", 4.7e-16, 2),
+    ("slide_critical", 7.3e-18, 2), ("twist_critical", 2.8e-18, 2), ("twist", 4.4e-16, 2),
+    ("slide", 5.4e-15, 2)])     # the product of eq 21; printed is pi times it
+def test_energies_of_a22_table_2(name, printed, digits):
+    assert float(f"{theory.interaction_energies(ICE)[name]:.{digits - 1}e}") == printed
+
+
+def test_printed_sliding_energy_is_pi_times_its_own_formula():
+    assert float(f"{pi * theory.interaction_energies(ICE)['slide']:.1e}") == 1.7e-14
+
+
+@pytest.mark.parametrize(
+    "name, value",
+    [
+        ("equilibrium_contact_radius", 12.3712e-9),
+        ("equilibrium_overlap", 1.02031e-9),
+        ("pull_off_force", 47.1239e-9),
+        ("sliding_stiffness", 79.176),
+        ("rolling_stiffness", 3.7699),
+        ("twisting_stiffness", 1.41372e-14),
+        ("critical_sliding", 0.43071e-9),
+        ("time_unit", 1.936e-10),
+        ("critical_twisting", 1 / (16 * pi)),
+        ("critical_rolling", 0.8e-9),
+    ],
+)
+def test_constants_of_ice(name, value):
+    assert getattr(ICE, name) == pytest.approx(value, rel=3e-4 if name == "time_unit" else 5e-6 * 3)
+
+
+def test_silicate_of_k13():
+    pair = theory.pair_constants(theory.SILICATE, 0.6e-6)
+    assert float(f"{pair.time_unit:.2e}") == 1.71e-9
+    assert float(f"{theory.interaction_energies(pair)['roll']:.2e}") == 1.42e-15
+
+
+def test_rolling_energy_of_ice_as_k13_section_3_1():
+    assert float(f"{theory.interaction_energies(ICE)['roll']:.2e}") == 4.74e-16
+
+
+def test_unlike_pair_follows_the_rules():
+    one, other = replace(theory.ICE, viscoelastic_time=1e-12), replace(
+        theory.SILICATE, viscoelastic_time=5e-12
+    )
+    pair = theory.pair_constants(one, 1e-7, other, 3e-7)
+    assert pair.reduced_radius == pytest.approx(0.75e-7)
+    young = 1 / ((1 - 0.25 ** 2) / 7e9 + (1 - 0.17 ** 2) / 54e9)
+    assert pair.reduced_young == pytest.approx(young)
+    assert pair.pull_off_force == pytest.approx(3 * pi * (0.1 * 0.02) ** 0.5 * 0.75e-7)
+    assert pair.critical_rolling == pytest.approx(1.4e-9)
+    assert pair.drag_per_contact_radius == pytest.approx(young * (1e-12 / 0.25 ** 2 + 5e-12 / 0.17 ** 2))
+    shear = [7e9 / 2.5, 54e9 / 2.34]
+    assert pair.reduced_shear == pytest.approx(1 / (1.75 / shear[0] + 1.83 / shear[1]))
+    # k_s zeta_crit = 8 a0 G* (G'/G*) a0/(16 pi)
+    twisting = 1 / (1 / shear[0] + 1 / shear[1])
+    assert pair.sliding_stiffness * pair.critical_sliding == pytest.approx(
+        twisting * pair.equilibrium_contact_radius ** 2 / (2 * pi))
+
+
+def test_exchanging_the_grains_changes_nothing():
+    there = theory.pair_constants(theory.ICE, 1e-7, theory.SILICATE, 3e-7, 0.01)
+    back = theory.pair_constants(theory.SILICATE, 3e-7, theory.ICE, 1e-7, 0.01)
+    assert vars(there) == pytest.approx(vars(back), rel=1e-14)
+
+
+def test_equal_pair_of_two_arguments_is_the_pair_of_four():
+    assert vars(ICE) == vars(theory.pair_constants(theory.ICE, 1e-7, theory.ICE, 1e-7))
+
+
+def _root_in_many_digits(overlap):
+    """u of 3 u^4 - 2 u = overlap by bisection with 60 digits."""
+    getcontext().prec = 60
+    target = Decimal(float(overlap))
+    low, high = 1 / Decimal(6) ** (Decimal(1) / 3), Decimal(10)
+    for _ in range(180):
+        middle = (low + high) / 2
+        if 3 * middle ** 4 - 2 * middle < target:
+            low = middle
+        else:
+            high = middle
+    return float(low)
+
+
+@pytest.mark.parametrize(
+    "above_pull_off", [2e-16, 5e-16, 1e-13, 1e-9, 1e-5, 1e-2, 0.3, 0.8254818, 1.0, 1.8254818, 5.0, 300.0]
+)
+def test_contact_radius_to_the_last_digits(above_pull_off):
+    overlap = -PULL_OFF_OVERLAP + above_pull_off
+    assert theory.contact_radius_root(overlap) == pytest.approx(
+        _root_in_many_digits(overlap), rel=1e-15, abs=0
+    )
+
+
+def test_contact_radius_against_brentq():
+    for overlap in np.linspace(-0.8, 20.0, 50):
+        root = brentq(lambda u: 3 * u ** 4 - 2 * u - overlap, 6 ** (-1 / 3), 5.0, xtol=1e-15, rtol=1e-14)
+        assert theory.contact_radius_root(overlap) == pytest.approx(root, rel=1e-13)
+
+
+def test_force_and_energy_at_the_papers_points():
+    delta_c, delta0 = ICE.pull_off_overlap, ICE.equilibrium_overlap
+    unit = ICE.pull_off_force * delta_c
+    assert theory.normal_force(-delta_c, ICE) == pytest.approx(-5 / 9 * ICE.pull_off_force, rel=1e-7)
+    # The strongest pull, F_c, is at u^3 = 1/2, before the pull-off.
+    assert theory.normal_force((3 * 2 ** (-4 / 3) - 2 ** (2 / 3)) * delta0, ICE) == pytest.approx(
+        -ICE.pull_off_force
+    )
+    assert theory.normal_force(np.linspace(-1, 1, 10001) * delta_c, ICE).min() >= -ICE.pull_off_force * (
+        1 + 1e-15
+    )
+    assert abs(theory.normal_force(delta0, ICE)) < 1e-14 * ICE.pull_off_force
+    assert theory.normal_force(0.0, ICE) == pytest.approx(-8 / 9 * ICE.pull_off_force, rel=1e-14)
+    assert theory.normal_energy(0.0, ICE) == pytest.approx(
+        -8 / 15 * 2 ** (2 / 3) * unit, rel=1e-14
+    )  # A22 eq 9
+    assert theory.normal_energy(-delta_c, ICE) == pytest.approx(4 / 45 * unit, rel=1e-7)  # A22 eq 10
+    assert theory.normal_energy(delta0, ICE) == pytest.approx(
+        -0.8 * 6 ** (1 / 3) * unit, rel=1e-14
+    )  # A22 eq 11
+    assert theory.contact_radius(delta0, ICE) == pytest.approx(ICE.equilibrium_contact_radius, rel=1e-15)
+
+
+def test_separated_grains_do_not_interact():
+    beyond = -1.0001 * ICE.pull_off_overlap
+    assert (
+        theory.normal_force(beyond, ICE)
+        == theory.normal_energy(beyond, ICE)
+        == theory.contact_radius(beyond, ICE)
+        == 0
+    )
+    assert np.isnan(theory.contact_radius_root(-0.8255))
+
+
+@pytest.mark.parametrize("overlap", [-0.8, -0.3, 0.0, 0.9, 4.0])
+def test_energy_is_the_integral_of_the_force(overlap):
+    work, error = quad(theory.normalised_force, 1.0, overlap, epsabs=1e-13, epsrel=1e-12)
+    # F_c delta0 against F_c delta_c
+    rise = (theory.normalised_energy(overlap) - theory.normalised_energy(1.0)) * PULL_OFF_OVERLAP
+    assert rise == pytest.approx(work, abs=1e-11 + error)
+
+
+def test_stiffness_is_the_slope_of_the_force():
+    for overlap in (-0.7, 0.0, 1.0, 6.0):
+        slope = (theory.normalised_force(overlap + 1e-6) - theory.normalised_force(overlap - 1e-6)) / 2e-6
+        assert theory.normalised_stiffness(overlap) == pytest.approx(slope, rel=1e-8)
+
+
+def test_sticking_velocity_of_ice_grains():
+    assert theory.sticking_velocity_without_drag(ICE) == pytest.approx(5.95, abs=0.005)
+    assert theory.sticking_velocity(ICE) == pytest.approx(
+        theory.sticking_velocity_without_drag(ICE), rel=1e-10
+    )
+
+
+@pytest.mark.parametrize("picoseconds", [1, 3, 6])
+def test_sticking_velocity_with_drag_parts_sticking_from_bouncing(picoseconds):
+    pair = theory.pair_constants(replace(theory.ICE, viscoelastic_time=picoseconds * 1e-12), 1e-7)
+    threshold = theory.sticking_velocity(pair)
+    assert threshold > theory.sticking_velocity_without_drag(pair)
+    assert theory.collide_pair(threshold * (1 - 1e-7), pair).sticks
+    assert not theory.collide_pair(threshold * (1 + 1e-7), pair).sticks
+
+
+def test_sticking_velocity_at_6_ps_is_about_ten_times_that_without_drag():   # A22 footnote 2 and Fig. 5
+    pair = theory.pair_constants(replace(theory.ICE, viscoelastic_time=6e-12), 1e-7)
+    assert theory.sticking_velocity(pair) / theory.sticking_velocity_without_drag(pair) == pytest.approx(
+        10, rel=0.15
+    )
+
+
+def test_overdamped_pair_always_sticks():
+    pair = theory.pair_constants(replace(theory.ICE, viscoelastic_time=2e-11), 1e-7)
+    assert theory.sticking_velocity(pair) == inf
+    assert theory.collide_pair(300.0, pair).sticks
+
+
+def test_elastic_rebound_obeys_the_energy_balance():
+    velocity, threshold = 8.0, theory.sticking_velocity_without_drag(ICE)
+    collision = theory.collide_pair(velocity, ICE)
+    assert collision.rebound_velocity == pytest.approx((velocity ** 2 - threshold ** 2) ** 0.5, rel=1e-9)
+
+
+def test_motion_of_a_pair_ends_in_the_same_rebound():
+    collision = theory.collide_pair(8.0, ICE)
+    overlap, rate = theory.pair_motion(8.0, ICE, np.array([0.0, 0.999999, 1.001]) * collision.duration)
+    assert overlap[0] == pytest.approx(0.0, abs=1e-20) and rate[0] == pytest.approx(8.0)
+    assert overlap[1] == pytest.approx(-ICE.pull_off_overlap, rel=1e-4)
+    assert rate[1] == pytest.approx(-collision.rebound_velocity, rel=1e-4)
+    assert np.isnan(overlap[2]) and np.isnan(rate[2])
+
+
+@pytest.mark.parametrize("velocity", [0.0, -1.0, float("nan")])
+def test_impact_velocity_must_be_positive(velocity):
+    with pytest.raises(ValueError, match="impact velocity must be positive"):
+        theory.collide_pair(velocity, ICE)

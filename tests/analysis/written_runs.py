@@ -1,0 +1,98 @@
+"""Run folders written for tests, in the format that the collision script writes."""
+import json
+from math import pi
+
+import numpy as np
+
+from analysis.channels import CHANNELS
+from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair_constants, pair_motion
+
+RADIUS = 1e-7
+PAIR = pair_constants(ICE, RADIUS)
+MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS ** 3
+
+
+def record(aggregate_radius, parameters=None):
+    """The dict of run.json for ice grains of 0.1 um and an aggregate radius [m]."""
+    derived = {
+        "young": ICE.young,
+        "poisson": ICE.poisson,
+        "surfaceEnergy": ICE.surface_energy,
+        "density": ICE.density,
+        "criticalRolling": ICE.critical_rolling,
+        "viscoelasticTime": 0.0,
+        "grainRadius": RADIUS,
+        "grainMass": MASS,
+        "equilibriumContactRadius": PAIR.equilibrium_contact_radius,
+        "equilibriumOverlap": PAIR.equilibrium_overlap,
+        "pullOffOverlap": PAIR.pull_off_overlap,
+        "pullOffForce": PAIR.pull_off_force,
+        "timeUnit": PAIR.time_unit,
+        "timeStep": 0.1 * PAIR.time_unit,
+        "steps": 0,
+        "aggregateRadius": aggregate_radius,
+        "grainsPerAggregate": 1,
+    }
+    return {
+        "format": 1,
+        "parameters": parameters or {"material": "ice"},
+        "derived": derived,
+        "versions": {},
+        "commit": "unknown",
+        "seed": 1,
+        "hardware": {"cpu": "", "cores": 1},
+        "wallTime": 0.0,
+        "outcome": "completed",
+    }
+
+
+def write_run(path, run_record, history, states, ended=True):
+    """Write a run folder: record (dict), history (dict of (T,)), states (list of dicts of arrays)."""
+    (path / "states").mkdir(parents=True)
+    (path / "run.json").write_text(json.dumps(run_record))
+    np.savez(path / "history.npz", **history)
+    for number, state in enumerate(states):
+        np.savez(path / "states" / f"{number:06d}.npz", **state)
+    if ended:
+        (path / "ended").touch()
+    return path
+
+
+def state_arrays(time, position, velocity, aggregate, pairs=(), force=None):
+    """A state's dict; position, velocity (N,3), aggregate (N,), pairs (M,2), force (M,)."""
+    position = np.asarray(position, dtype=float)
+    pairs = np.asarray(pairs, dtype=int).reshape(-1, 2)
+    return {"time": time, "position": position, "velocity": np.asarray(velocity, dtype=float),
+            "angular_velocity": np.zeros_like(position), "radius": np.full(len(position), RADIUS),
+            "aggregate": np.asarray(aggregate, dtype=int), "contact_pairs": pairs,
+            "contact_normal_force": np.zeros(len(pairs)) if force is None else np.asarray(force, dtype=float),
+            "contact_bonded": np.zeros(len(pairs), dtype=bool)}
+
+
+def pair_run(path, velocity=8.0, samples=201):
+    """Two grains that bounce, from the closed equation of motion (A22 eq 30); returns (velocity,
+    PairCollision)."""
+    collision = collide_pair(velocity, PAIR)
+    time = np.linspace(0.0, 1.5 * collision.duration, samples)
+    overlap, rate = pair_motion(velocity, PAIR, time)
+    apart = np.isnan(rate)
+    after = time - collision.duration
+    overlap = np.where(apart, -PAIR.pull_off_overlap - collision.rebound_velocity * after, overlap)
+    rate = np.where(apart, -collision.rebound_velocity, rate)
+    history = {name: np.zeros(samples) for name in CHANNELS}
+    history["kinetic"] = 0.5 * PAIR.reduced_mass * rate ** 2
+    history["normal"] = np.where(apart, 0.0, normal_energy(overlap, PAIR))
+    history["connection"] = np.full(samples, -normal_energy(0.0, PAIR))
+    # The contact exists from the first sample on: what it took is part of the start.
+    history["disconnection"] = np.where(apart, normal_energy(-PAIR.pull_off_overlap, PAIR), 0.0)
+    touching = (~apart).astype(int)
+    history.update(time=time, d=overlap - 2 * RADIUS, v=rate, contacts=touching, contacts_between=touching)
+    states = [_pair_state(time[k], overlap[k], rate[k], not apart[k]) for k in (0, samples // 3, samples - 1)]
+    write_run(path, record(0.0), history, states)
+    return velocity, collision
+
+
+def _pair_state(time, overlap, rate, touching):
+    x = RADIUS - 0.5 * overlap
+    return state_arrays(time, [[-x, 0, 0], [x, 0, 0]], [[rate / 2, 0, 0], [-rate / 2, 0, 0]], [0, 1],
+                        [[0, 1]] if touching else [], [normal_force(overlap, PAIR)] if touching else [])

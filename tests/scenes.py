@@ -1,0 +1,83 @@
+"""Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path)."""
+import numpy as np
+from yade import utils
+from yade.wrapper import *
+
+CHANNELS = ("kinetic normal sliding rolling twisting slidingDissipation rollingDissipation twistingDissipation "
+            "connection disconnection drag bondBreaking").split()
+LOST = CHANNELS[5:]
+
+
+def ice(**other):
+    return JKRMat(**{**dict(young=7e9, poisson=0.25, density=1000, surfaceEnergy=0.1, criticalRolling=0.8e-9), **other})
+
+
+def soft(**other):
+    return JKRMat(**{**dict(young=3e9, poisson=0.33, density=1300, surfaceEnergy=0.05, criticalRolling=1.1e-9), **other})
+
+
+def constants(material1, radius1, material2=None, radius2=None, damping=0):
+    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping)
+    return functor.pairConstants(material1, radius1, material2 or material1, radius2 or radius1)
+
+
+def functor_engines(damping=0, verlet=0.0, **law):
+    return [ForceResetter(),
+            InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=verlet),
+            InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping)], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)]),
+            NewtonIntegrator(damping=0)]
+
+
+def new_scene(dt, **options):
+    O.reset()
+    O.dt, O.trackEnergy = dt, True
+    O.engines = functor_engines(**options)
+
+
+def grain(position, radius, material, velocity=(0, 0, 0), spin=(0, 0, 0), blocked=""):
+    """Append a sphere; returns its id."""
+    body = utils.sphere([float(x) for x in position], float(radius), material=material)
+    body.state.vel, body.state.angVel, body.state.blockedDOFs = [float(x) for x in velocity], [float(x) for x in spin], blocked
+    return O.bodies.append(body)
+
+
+def cluster(count, seed, materials, radii, speed=1.0, spin=1e7):
+    """A chain of touching grains in random directions, with random velocities and spins."""
+    random = np.random.default_rng(seed)
+    placed = []
+    for k in range(count):
+        material, radius = materials[k % len(materials)], radii[k % len(radii)]
+        while True:
+            if not placed:
+                x = np.zeros(3)
+            else:
+                other, r, m = placed[random.integers(len(placed))]
+                direction = random.normal(size=3)
+                overlap = constants(m, r, material, radius)["equilibriumOverlap"]
+                x = other + (r + radius - overlap) * direction / np.linalg.norm(direction)
+            if all(np.linalg.norm(x - y) > r + radius + 1e-9 or np.array_equal(y, other) for y, r, _ in placed):
+                break
+        placed.append((x, radius, material))
+    for x, radius, material in placed:
+        grain(x, radius, material, speed * random.normal(size=3), spin * random.normal(size=3))
+
+
+def energies():
+    """The channels now, zero where the scene has none."""
+    have = dict(O.energy.items())
+    return {name: have.get(name, 0.0) for name in CHANNELS}
+
+
+def total_energy():
+    return sum(energies().values())
+
+
+def momenta():
+    """(linear, angular momentum about the origin), with positions and velocities as the integrator holds them."""
+    p, l = np.zeros(3), np.zeros(3)
+    for b in O.bodies:
+        s = b.state
+        x, v = np.array(s.pos), np.array(s.vel)
+        p += s.mass * v
+        l += s.mass * np.cross(x, v) + np.array(s.inertia) * np.array(s.angVel)
+    return p, l
