@@ -27,8 +27,8 @@ def test_channels_are_those_of_the_run_folder_in_order():
 def test_sum_and_closure():
     assert list(total_energy(_history())) == [-8.0] * 4
     assert closure(_history()) == 0.0
-    leaky = _history(drag=np.array([0.0, 0.0, -0.3, 0.1]))
-    assert closure_history(leaky) == pytest.approx([0.0, 0.0, -0.15, 0.05])
+    leaky = _history(drag=np.array([0.0, 0.2, -0.3, 0.1]))
+    assert closure_history(leaky) == pytest.approx([0.0, 0.1, -0.15, 0.05])
     assert closure(leaky) == pytest.approx(0.15)
 
 

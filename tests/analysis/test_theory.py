@@ -5,7 +5,7 @@ from math import inf, pi
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 from analysis import theory
@@ -72,6 +72,13 @@ def test_unlike_pair_follows_the_rules():
     twisting = 1 / (1 / shear[0] + 1 / shear[1])
     assert pair.sliding_stiffness * pair.critical_sliding == pytest.approx(
         twisting * pair.equilibrium_contact_radius ** 2 / (2 * pi))
+
+
+def test_linear_damping_of_k13_equation_4():
+    pair = theory.pair_constants(theory.ICE, 1e-7, linear_damping=0.01)
+    grain_mass = 4 / 3 * pi * 1000 * 1e-7 ** 3
+    assert pair.linear_drag == pytest.approx(0.01 * grain_mass / 1.9365e-10, rel=1e-4)
+    assert theory.sticking_velocity(pair) > theory.sticking_velocity_without_drag(pair)
 
 
 def test_exchanging_the_grains_changes_nothing():
@@ -183,6 +190,23 @@ def test_sticking_velocity_at_6_ps_is_about_ten_times_that_without_drag():   # A
     assert theory.sticking_velocity(pair) / theory.sticking_velocity_without_drag(pair) == pytest.approx(
         10, rel=0.15
     )
+
+
+def test_rebound_with_drag_against_the_equation_as_printed():   # A22 eqs 4, 7, 30, in SI units
+    pair = theory.pair_constants(replace(theory.ICE, viscoelastic_time=3e-12), 1e-7)
+
+    def motion(_, state):
+        drag = 2 * 3e-12 * pair.reduced_young / 0.25 ** 2 * theory.contact_radius(state[0], pair) * state[1]
+        return state[1], -(theory.normal_force(state[0], pair) + drag) / pair.reduced_mass
+
+    def separation(_, state):
+        return state[0] + pair.pull_off_overlap
+
+    separation.terminal, separation.direction = True, -1
+    path = solve_ivp(motion, (0.0, 1e-8), (0.0, 40.0), events=separation, rtol=1e-9, atol=(1e-18, 1e-9))
+    collision = theory.collide_pair(40.0, pair)
+    assert collision.rebound_velocity == pytest.approx(-path.y[1, -1], rel=1e-6)
+    assert collision.duration == pytest.approx(path.t[-1], rel=1e-6)
 
 
 def test_overdamped_pair_always_sticks():

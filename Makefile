@@ -1,0 +1,123 @@
+# make        installs what is missing, and builds the plugin
+# make deps   installs what is missing from Debian's packages
+# make clean  removes what make built
+#
+# Afterwards scripts find the plugin by "import contact_law", or plain yade knows it with YADE_PREFIX=$PWD/build.
+# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface.
+
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.DEFAULT_GOAL := all
+
+# ---- where things are (Debian 12) ----
+
+LIBRARY_FOLDER := lib/x86_64-linux-gnu/yade-double
+YADE_LIBRARIES := /usr/$(LIBRARY_FOLDER)
+OVERLAY        := build/$(LIBRARY_FOLDER)
+PLUGIN         := $(OVERLAY)/libcontact_law.so
+OBJECTS_FOLDER := build/objects
+
+PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
+            python3-numpy python3-scipy python3-matplotlib python3-pytest
+
+# ---- flags ----
+
+# The plugin's numbers must be the same on every machine and however a file is cut into functions: no -ffast-math, and products and sums
+# are not contracted (-ffp-contract=off), nor does the processor of this machine count (no -march=native).
+FLAGS := -std=c++17 -fPIC -fopenmp -O2 -ffp-contract=off -Wall -Wextra -MMD -MP
+
+# Files that see a YADE type. Eigen's three definitions shape YADE's objects; the others say how Debian's YADE was built, for YADE's own headers.
+YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT
+ifdef YADE_INCLUDE
+YADE_DEFINITIONS += -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DYADE_BOOST_LOG \
+                    -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE
+endif
+YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) -I$(or $(YADE_INCLUDE),contact_law/yade_interface) -isystem /usr/include/eigen3 -isystem /usr/include/python3.11
+
+# Files of the engine see no YADE type. Those with an instruction set in their name run only where the processor has it.
+ENGINE_FLAGS := $(FLAGS) -O3 -fno-math-errno -fno-trapping-math
+$(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := -mavx2 -mfma
+$(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := -mavx512f -mavx512dq -mavx512vl -mfma
+
+# -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
+LINK := -shared -fopenmp -Wl,-z,defs -Wl,-rpath,$(YADE_LIBRARIES) -L$(YADE_LIBRARIES)
+LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python311 -lboost_serialization -lpython3.11 -ldl
+
+# ---- what is built ----
+
+INTERFACE := contact_law/yade_interface
+YADE_SOURCES   := $(wildcard contact_law/yade/*.cpp $(INTERFACE)/proof/*.cpp)
+ENGINE_SOURCES := $(wildcard contact_law/engine/*.cpp)
+YADE_OBJECTS   := $(YADE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
+ENGINE_OBJECTS := $(ENGINE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
+OBJECTS        := $(YADE_OBJECTS) $(ENGINE_OBJECTS)
+PRECOMPILED    := $(OBJECTS_FOLDER)/precompiled.hpp
+
+.PHONY: all deps clean build
+all: deps
+	@$(MAKE) --no-print-directory build
+
+# After deps only: without the packages there is nothing to link to, nor to compile with.
+build: $(PLUGIN) build/overlay
+	@echo "contact_law is built: $(PLUGIN)"
+
+# $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
+$(PLUGIN): $(OBJECTS) build/objects.list | build/overlay
+	@echo "link    $@"
+	@g++ $(LINK) $(OBJECTS) $(LIBRARIES) -o $@.new && mv $@.new $@
+
+$(YADE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp $(PRECOMPILED).gch build/flags.list
+	@echo "compile $<"
+	@mkdir -p $(@D)
+	@g++ $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
+
+$(ENGINE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp build/flags.list
+	@echo "compile $<"
+	@mkdir -p $(@D)
+	@g++ $(ENGINE_FLAGS) $(INSTRUCTIONS) -c $< -o $@
+
+$(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
+	@echo "compile $<"
+	@mkdir -p $(@D)
+	@cp $< $(PRECOMPILED)
+	@g++ $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
+
+# The commit goes into one object.
+$(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: build/commit.list
+$(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: YADE_DEFINITIONS += -DCONTACT_LAW_COMMIT='"$(COMMIT)"'
+
+# Changed only when what they hold changes, so that objects are made again then, and only then.
+COMMIT := $(shell c=$$(git rev-parse HEAD 2>/dev/null) || c=unknown; \
+	git diff --quiet HEAD -- contact_law Makefile 2>/dev/null || [ $$c = unknown ] || c=$$c-changed; echo $$c)
+define LIST
+build/$1.list: always
+	@mkdir -p build
+	@echo '$2' | cmp -s - $$@ || echo '$2' > $$@
+endef
+.PHONY: always
+$(eval $(call LIST,commit,$(COMMIT)))
+$(eval $(call LIST,objects,$(OBJECTS)))
+$(eval $(call LIST,flags,$(YADE_FLAGS) $(ENGINE_FLAGS)))
+
+# Links to the installed files, beside which the plugin lies: YADE_PREFIX=$PWD/build yade. yade-batch starts bin/yade-double.
+build/overlay: Makefile
+	@mkdir -p $(OVERLAY) build/bin
+	@ln -sfn $(YADE_LIBRARIES)/* $(OVERLAY)/
+	@ln -sfn /usr/bin/yade build/bin/yade-double
+	@touch $@
+
+deps:
+	@missing=$$(for package in $(PACKAGES); do \
+		dpkg-query -W -f '$${db:Status-Status}' $$package 2>/dev/null | grep -qx installed || echo $$package; done); \
+	[ -z "$$missing" ] && exit 0; \
+	if [ $$(id -u) = 0 ]; then root=; elif command -v sudo >/dev/null; then root=sudo; else \
+		echo "make deps: these packages are missing, and installing them takes root or sudo:" $$missing >&2; exit 1; fi; \
+	echo "install " $$missing; \
+	$$root apt-get -qq update && DEBIAN_FRONTEND=noninteractive $$root env DEBIAN_FRONTEND=noninteractive \
+		apt-get -qq -y --no-install-recommends install $$missing > build-deps.log 2>&1 \
+		|| { cat build-deps.log >&2; rm -f build-deps.log; exit 1; }; rm -f build-deps.log
+
+clean:
+	rm -rf build
+
+-include $(OBJECTS:.o=.d) $(PRECOMPILED).d

@@ -1,0 +1,62 @@
+"""Spheres seen along -z, painted into a pixel image with a depth buffer: the cost is pixels times spheres,
+not objects."""
+import numpy as np
+
+_LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
+
+
+def paint_spheres(position, radius, colour, window, pixel, background=(1.0, 1.0, 1.0)):
+    """Image (H,W,3) of floats 0 to 1, row 0 at the smallest y, of spheres seen from large z (orthographic).
+
+    position (N,3), radius (N,), window (x0, x1, y0, y1) and pixel (edge length) in one unit; colour (N,3) 0
+    to 1. Spheres are shaded by a light from the upper left, and darker the deeper they lie."""
+    x0, x1, y0, y1 = window
+    width, height = max(1, int(round((x1 - x0) / pixel))), max(1, int(round((y1 - y0) / pixel)))
+    depth, owner = _depth_and_owner(position, radius, (x0, y0), (width, height), pixel)
+    image = np.empty((height * width, 3))
+    image[:] = background
+    hit = np.flatnonzero(owner >= 0)
+    if hit.size:
+        image[hit] = _shade(hit, depth[hit], owner[hit], position, radius, colour, (x0, y0), width, pixel)
+    return image.reshape(height, width, 3)
+
+
+def _covered(position, radius, origin, size, pixel):
+    """For every offset from a sphere's central pixel: the spheres (rows), their pixels there and the
+    surface's z."""
+    column, row = ((position[:, k] - origin[k]) / pixel for k in (0, 1))
+    central = np.floor(column).astype(np.intp), np.floor(row).astype(np.intp)
+    # At least one pixel each: a grain smaller than a pixel must not vanish.
+    squared = np.maximum(radius, 0.75 * pixel) ** 2
+    reach = int(np.ceil(np.sqrt(squared.max()) / pixel))
+    for j in range(-reach, reach + 1):
+        for i in range(-reach, reach + 1):
+            c, r = central[0] + i, central[1] + j
+            left = squared - ((c + 0.5 - column) ** 2 + (r + 0.5 - row) ** 2) * pixel ** 2
+            rows = np.flatnonzero((left > 0) & (c >= 0) & (c < size[0]) & (r >= 0) & (r < size[1]))
+            yield rows, r[rows] * size[0] + c[rows], position[rows, 2] + np.sqrt(left[rows])
+
+
+def _depth_and_owner(position, radius, origin, size, pixel):
+    depth = np.full(size[0] * size[1], -np.inf)
+    owner = np.full(size[0] * size[1], -1, dtype=np.intp)
+    if len(radius):
+        for _, pixels, z in _covered(position, radius, origin, size, pixel):
+            np.maximum.at(depth, pixels, z)
+        for rows, pixels, z in _covered(position, radius, origin, size, pixel):
+            front = z == depth[pixels]
+            owner[pixels[front]] = rows[front]
+    return depth, owner
+
+
+def _shade(hit, depth, owner, position, radius, colour, origin, width, pixel):
+    centre = np.stack(
+        [origin[0] + (hit % width + 0.5) * pixel, origin[1] + (hit // width + 0.5) * pixel, depth], axis=1
+    )
+    normal = centre - position[owner]
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    light = 0.45 + 0.55 * np.clip(normal @ _LIGHT, 0.0, 1.0)
+    front, back = depth.max(), depth.min()
+    # Four grain radii behind the front, a sphere has lost most of its light.
+    fade = 0.30 + 0.70 * np.exp(-(front - depth) / (4.0 * radius.max())) if front > back else 1.0
+    return np.clip(colour[owner] * (light * fade)[:, None], 0.0, 1.0)

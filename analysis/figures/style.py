@@ -1,0 +1,71 @@
+"""Common look of the figures: sizes, fonts, and one colour for each energy channel and aggregate."""
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+NANO = 1e9
+
+_SETTINGS = {
+    "font.size": 11,
+    "axes.labelsize": 12,
+    "axes.titlesize": 12,
+    "legend.fontsize": 10,
+    "lines.linewidth": 1.6,
+    "axes.grid": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "savefig.dpi": 150,
+}
+
+# Stored energies in cool colours, dissipation in warm ones, with the same hue order for sliding, rolling,
+# twisting.
+CHANNEL_COLOURS = {
+    "kinetic": "#9aa5b1",
+    "normal": "#1f5fa8",
+    "sliding": "#57b8d9",
+    "rolling": "#1b8a8f",
+    "twisting": "#7fd1ae",
+    "slidingDissipation": "#f2b134",
+    "rollingDissipation": "#d7301f",
+    "twistingDissipation": "#fc8d59",
+    "connection": "#8c4a9e",
+    "disconnection": "#d094d8",
+    "drag": "#7a5230",
+    "bondBreaking": "#3b2a20",
+}
+AGGREGATE_COLOURS = ((0.92, 0.60, 0.18), (0.24, 0.52, 0.82))
+
+
+def styled(make):
+    """Decorator: make(run) -> Figure under this module's settings."""
+    def figure_of(run):
+        with rc_context(_SETTINGS):
+            return make(run)
+    figure_of.__name__, figure_of.__doc__ = make.__name__, make.__doc__
+    return figure_of
+
+
+def new_figure(width, height, **options):
+    """Figure [inches] that draws through Agg, without pyplot's global state."""
+    figure = Figure(figsize=(width, height), **options)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def run_title(run, addition=None):
+    """Short description of a run from its parameters; empty when they say nothing known; with an addition."""
+    p = run.parameters
+    known = [
+        ("filling", "filling {}"),
+        ("radius", "aggregate radius {} $r_p$"),
+        ("grains", "{} grains per aggregate"),
+        ("velocity", "{} m/s"),
+        ("impact", "impact {}"),
+    ]
+    parts = []
+    for key, text in known:
+        value = p.get(key)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or (key == "impact" and not value):
+            continue
+        parts.append(text.format(f"{value:.4g}"))
+    return ", ".join(parts + [addition] * bool(addition))

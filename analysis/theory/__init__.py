@@ -1,0 +1,45 @@
+"""The contact model in closed form, written from the papers alone: nothing here is shared with the simulation
+code.
+
+A22 = Arakawa et al. 2022 (viscous dissipation), A24 = Arakawa et al. 2024 (elastoplastic collisions), K13 =
+Kataoka et al. 2013."""
+from .jkr import (contact_radius_root, normalised_energy, normalised_force, normalised_stiffness,
+                  contact_radius, normal_energy, normal_force)
+from .pair_constants import (
+    ICE,
+    SILICATE,
+    Material,
+    PairConstants,
+    interaction_energies,
+    pair_constants,
+    time_unit,
+)
+from .sticking import (
+    PairCollision,
+    collide_pair,
+    pair_motion,
+    sticking_velocity,
+    sticking_velocity_without_drag,
+)
+
+__all__ = [
+    "contact_radius_root",
+    "normalised_energy",
+    "normalised_force",
+    "normalised_stiffness",
+    "contact_radius",
+    "normal_energy",
+    "normal_force",
+    "ICE",
+    "SILICATE",
+    "Material",
+    "PairConstants",
+    "interaction_energies",
+    "pair_constants",
+    "time_unit",
+    "PairCollision",
+    "collide_pair",
+    "pair_motion",
+    "sticking_velocity",
+    "sticking_velocity_without_drag",
+]

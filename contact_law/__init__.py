@@ -1,0 +1,103 @@
+"""Loads the plugin into the running YADE.
+
+``import contact_law`` at the top of a script that ``yade`` runs makes JKRMat and the other classes known, as if they were YADE's own:
+in ``yade.wrapper``, in ``yade``, in the script's namespace, and as attributes of this package. With ``YADE_PREFIX`` set to the overlay
+in build/, YADE has loaded them already, and the import only finds them.
+
+``contact_law.commit`` is the git commit the plugin was built from, or "unknown"; ``contact_law.__all__`` names its classes.
+"""
+
+import ctypes
+import os
+import sys
+
+from .grain_arrays import snapshot
+
+__version__ = "0.1.0"
+
+LIBRARY = os.path.join(
+    os.path.dirname(os.path.dirname(os.path.abspath(__file__))),
+    "build/lib/x86_64-linux-gnu/yade-double/libcontact_law.so",
+)
+
+
+def _running_yade():
+    """YADE's package, if this Python is a running YADE; ImportError otherwise."""
+    yade = sys.modules.get("yade")
+    if not hasattr(yade, "wrapper"):
+        raise ImportError("contact_law works inside YADE only: run the script with 'yade -n -x SCRIPT.py'")
+    return yade
+
+
+def _load(yade):
+    """Opens the library and takes its classes to YADE; ImportError with one line if that cannot be."""
+    described = "2023.02a"
+    version = yade.config.version
+    if version != described:  # before anything of the library is touched
+        raise ImportError(
+            f"contact_law: refusing to load: this is YADE {version}, not {described} (yade.config.version). "
+            f"Install Debian 12's yade, or compile the plugin against your YADE's source and adapt the version in {__file__}."
+        )
+    if not os.path.exists(LIBRARY):
+        raise ImportError(f"contact_law isn't built: {LIBRARY} is missing; run 'make' in {os.path.dirname(os.path.dirname(os.path.abspath(__file__)))}")
+    try:
+        # PyDLL keeps Python's lock, which the library needs. Like YADE's own libraries, it shares its symbols.
+        library = ctypes.PyDLL(LIBRARY, mode=os.RTLD_NOW | os.RTLD_GLOBAL)
+    except OSError as error:
+        raise ImportError(f"contact_law: cannot open the plugin: {error}; run 'make' again on this machine") from None
+    library.contact_law_load.restype = ctypes.c_char_p
+    refusal = library.contact_law_load().decode()
+    if refusal:
+        raise ImportError(refusal)
+
+
+def _rebuild_dispatchers(yade):
+    """Makes the engines that choose functors by class anew.
+
+    Their tables are as long as the list of classes was when they were made; a new class would lie past the end, and YADE would abort.
+    The functors stay the same objects.
+    """
+
+    def renewed(engine):
+        name = type(engine).__name__
+        if name == "InteractionLoop":
+            arguments = [engine.geomDispatcher.functors, engine.physDispatcher.functors, engine.lawDispatcher.functors]
+        elif name in ("IPhysDispatcher", "LawDispatcher"):
+            arguments = [engine.functors]
+        else:
+            return engine
+        new = type(engine)(*arguments)
+        for attribute, value in engine.dict().items():
+            if attribute not in ("geomDispatcher", "physDispatcher", "lawDispatcher", "functors"):
+                setattr(new, attribute, value)
+        return new
+
+    if any(type(engine).__name__ in ("InteractionLoop", "IPhysDispatcher", "LawDispatcher") for engine in yade.O.engines):
+        yade.O.engines = [renewed(engine) for engine in yade.O.engines]
+    yade.utils.defaultEngines = [renewed(engine) for engine in yade.utils.defaultEngines]
+
+
+def _publish(yade, names):
+    """The classes by their names: here, in yade, and where YADE's scripts run."""
+    classes = {name: getattr(yade.wrapper, name) for name in names}
+    for namespace in (globals(), vars(yade), vars(sys.modules["__main__"])):
+        namespace.update(classes)
+    yade.__all__ += [name for name in names if name not in yade.__all__]
+
+
+def _start():
+    """Everything that importing does. Returns the names of the classes and the commit."""
+    yade = _running_yade()
+    if not hasattr(yade.wrapper, "ContactLawPlugin"):
+        _load(yade)
+        _rebuild_dispatchers(yade)
+    plugin = yade.wrapper.ContactLawPlugin
+    if plugin.refusal:
+        raise ImportError(plugin.refusal)
+    names = list(plugin.classNames)
+    _publish(yade, names)
+    return names, plugin.commit
+
+
+__all__, commit = _start()
+__all__.append("snapshot")

@@ -1,0 +1,28 @@
+"""The grains and contacts of the running scene as numpy arrays."""
+import numpy as np
+
+
+def snapshot():
+    """Everything about the grains and their contacts at one moment, as a dict of arrays in SI units.
+
+    Keys: time [s]; rows in the order of body ids: ids (N,), position (N, 3) [m], velocity (N, 3) [m/s], angular_velocity (N, 3) [rad/s],
+    radius (N,) [m]; contacts: contact_pairs (M, 2) (row numbers), contact_normal_force (M,) [N] (elastic and viscous, positive when
+    repulsive), contact_bonded (M,) bool.
+
+    Call it from a PyRunner that stands last among O.engines. NewtonIntegrator keeps velocities half a step apart from positions and
+    has moved the grains on by then; the arrays are brought to the moment of the forces, which is also that of O.energy.
+    """
+    from yade.wrapper import JKRWadaSnapshot
+
+    raw = JKRWadaSnapshot().read()
+    vectors = {name: np.frombuffer(raw[name]).reshape(-1, 3).copy() for name in ("position", "velocity", "angular_velocity")}
+    pairs = np.frombuffer(raw["contact_pairs"], dtype=np.int32).reshape(-1, 2).copy()
+    return {
+        "time": raw["time"],
+        "ids": np.frombuffer(raw["ids"], dtype=np.int32).copy(),
+        **vectors,
+        "radius": np.frombuffer(raw["radius"]).copy(),
+        "contact_pairs": pairs,
+        "contact_normal_force": np.frombuffer(raw["contact_normal_force"]).copy(),
+        "contact_bonded": np.zeros(len(pairs), dtype=bool),
+    }

@@ -1,0 +1,46 @@
+// All bodies of a scene, by id; erased ones leave an empty pointer.
+#pragma once
+#include <core/Body.hpp>
+#include <vector>
+
+namespace yade {
+
+class BodyContainer : public Serializable {
+public:
+	using ContainerT = std::vector<shared_ptr<Body>>;
+	using iterator   = ContainerT::iterator;
+
+	~BodyContainer() override;
+	YADE_INTERFACE_OVERRIDES_(BodyContainer)
+
+	// Always inline: libyade exports functions of these names, which return other types.
+	[[gnu::always_inline]] iterator                begin() { return body.begin(); }
+	[[gnu::always_inline]] iterator                end() { return body.end(); }
+	[[gnu::always_inline]] size_t                  size() const { return body.size(); }
+	[[gnu::always_inline]] shared_ptr<Body>&       operator[](unsigned int id) { return body[id]; }
+	[[gnu::always_inline]] const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }
+	[[gnu::always_inline]] bool                    exists(Body::id_t id) const { return id >= 0 && size_t(id) < body.size() && bool(body[size_t(id)]); }
+
+	Body::id_t insert(shared_ptr<Body>);
+
+private:
+	BodyContainer(); // made by YADE only
+	ContainerT body;
+
+public:
+	bool             dirty, checkedByCollider;
+	std::vector<int> insertedBodies, erasedBodies, realBodies;
+	bool             useRedirection, enableRedirection;
+
+private:
+	std::vector<int> subdomainBodies;
+	declare::Mutex   drawloopmutex;
+
+	struct Offsets;
+};
+static_assert(sizeof(BodyContainer) == 200, "BodyContainer");
+YADE_INTERFACE_AT_(BodyContainer, dirty, 48) // right behind body
+YADE_INTERFACE_AT_(BodyContainer, insertedBodies, 56)
+YADE_INTERFACE_AT_(BodyContainer, useRedirection, 128)
+
+} // namespace yade

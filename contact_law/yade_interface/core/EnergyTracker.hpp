@@ -1,0 +1,23 @@
+// O.energy: sums by name.
+#pragma once
+#include <declare/overrides.hpp>
+#include <lib/serialization/Serializable.hpp>
+
+namespace yade {
+
+class EnergyTracker : public Serializable {
+	char room[152] __attribute__((aligned(8)));
+	EnergyTracker(); // made by YADE only
+
+public:
+	~EnergyTracker() override;
+	YADE_INTERFACE_OVERRIDES_(EnergyTracker)
+
+	// id is the caller's memory of the name and starts at -1; reset: the sum starts anew each step. Exported by libpkg_dem. Not safe against
+	// concurrent first calls of a name, and ids are stale after O.energy.clear().
+	void add(const Real& value, const std::string& name, int& id, bool reset = false);
+	Real total() const;
+};
+static_assert(sizeof(EnergyTracker) == 176, "EnergyTracker");
+
+} // namespace yade

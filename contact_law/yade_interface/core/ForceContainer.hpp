@@ -1,0 +1,23 @@
+// Forces and torques on bodies. All work is done by functions that libyade exports; the members are room only.
+#pragma once
+#include <core/Body.hpp>
+
+namespace yade {
+
+class ForceContainer {
+	char room[304] __attribute__((aligned(8)));
+	ForceContainer(); // made by YADE only, inside of Scene
+	ForceContainer(const ForceContainer&);
+
+public:
+	// safe from InteractionLoop's threads
+	void addForce(Body::id_t, const Vector3r&);
+	void addTorque(Body::id_t, const Vector3r&);
+	// valid after sync()
+	const Vector3r& getForce(Body::id_t);
+	const Vector3r& getTorque(Body::id_t);
+	void            sync();
+};
+static_assert(sizeof(ForceContainer) == 304, "ForceContainer");
+
+} // namespace yade

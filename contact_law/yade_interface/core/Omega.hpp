@@ -1,0 +1,15 @@
+// The running YADE. Its object lives in libyade and only exported functions are called: its layout doesn't matter here.
+#pragma once
+#include <core/Scene.hpp>
+#include <lib/base/Singleton.hpp>
+
+namespace yade {
+
+class Omega : public Singleton<Omega> {
+public:
+	const shared_ptr<Scene>& getScene() const;
+	// makes the named classes known to YADE and to yade.wrapper
+	void buildDynlibDatabase(const std::vector<std::string>& classNames);
+};
+
+} // namespace yade

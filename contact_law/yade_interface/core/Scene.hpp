@@ -1,0 +1,78 @@
+// The simulation: bodies, interactions, forces, time. Made by YADE only.
+#pragma once
+#include <core/BodyContainer.hpp>
+#include <core/Cell.hpp>
+#include <core/EnergyTracker.hpp>
+#include <core/ForceContainer.hpp>
+#include <core/InteractionContainer.hpp>
+
+namespace yade {
+
+class Engine;
+
+class Scene : public Serializable {
+public:
+	Scene();
+	~Scene() override;
+	YADE_INTERFACE_OVERRIDES_(Scene)
+
+private:
+	unsigned int hostNameMax;
+
+public:
+	ForceContainer forces;
+
+private:
+	char room1[104] __attribute__((aligned(8))); // speed of the last steps, renderer, clock
+
+public:
+	Real dt;
+	long iter;
+	bool subStepping;
+	int  subStep;
+	Real time;
+	Real speed;
+	long stopAtIter;
+	Real stopAtTime;
+	bool isPeriodic;
+	bool trackEnergy;
+	bool doSort;
+	bool runInternalConsistencyChecks;
+
+private:
+	char room2[28] __attribute__((aligned(4))); // selected body, subdomain
+
+public:
+	std::vector<std::string>          tags;
+	std::vector<shared_ptr<Engine>>   engines;
+	std::vector<shared_ptr<Engine>>   _nextEngines;
+	shared_ptr<BodyContainer>         bodies;
+	shared_ptr<InteractionContainer>  interactions;
+	shared_ptr<EnergyTracker>         energy;
+	std::vector<shared_ptr<Material>> materials;
+	shared_ptr<Bound>                 bound;
+	shared_ptr<Cell>                  cell;
+
+private:
+	char room3[48] __attribute__((aligned(8))); // parameters for display and others
+};
+static_assert(sizeof(Scene) == 752, "Scene");
+YADE_INTERFACE_AT_(Scene, forces, 32)
+YADE_INTERFACE_AT_(Scene, dt, 440)
+YADE_INTERFACE_AT_(Scene, iter, 448)
+YADE_INTERFACE_AT_(Scene, subStep, 460)
+YADE_INTERFACE_AT_(Scene, time, 464)
+YADE_INTERFACE_AT_(Scene, stopAtIter, 480)
+YADE_INTERFACE_AT_(Scene, stopAtTime, 488)
+YADE_INTERFACE_AT_(Scene, isPeriodic, 496)
+YADE_INTERFACE_AT_(Scene, trackEnergy, 497)
+YADE_INTERFACE_AT_(Scene, doSort, 498)
+YADE_INTERFACE_AT_(Scene, tags, 528)
+YADE_INTERFACE_AT_(Scene, engines, 552)
+YADE_INTERFACE_AT_(Scene, bodies, 600)
+YADE_INTERFACE_AT_(Scene, interactions, 616)
+YADE_INTERFACE_AT_(Scene, energy, 632)
+YADE_INTERFACE_AT_(Scene, materials, 648)
+YADE_INTERFACE_AT_(Scene, cell, 688)
+
+} // namespace yade

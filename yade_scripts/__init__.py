@@ -1,0 +1,1 @@
+"""What a user runs with yade and yade-batch: short scripts, and the modules that they share."""

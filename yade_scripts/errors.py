@@ -1,0 +1,17 @@
+"""Wrong input ends a script with one line on stderr and exit status 2."""
+from contextlib import contextmanager
+import sys
+
+from yade_scripts.packings import PackingError
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run_folder import RunFolderError
+
+
+@contextmanager
+def one_line_errors(script):
+    """Within it, an error of the user's input, or a plugin that isn't built, becomes one line and exit 2."""
+    try:
+        yield
+    except (ParameterError, PackingError, RunFolderError, ImportError, MemoryError) as error:
+        sys.stderr.write(f'{script}: {" ".join(str(error).split()) or type(error).__name__}\n')
+        sys.exit(2)

@@ -1,0 +1,192 @@
+"""The parameters of a collision: one list of fields, from which defaults, checks and the help text follow."""
+from dataclasses import dataclass
+import math
+from typing import Any, Callable
+
+from yade_scripts.materials import MATERIALS
+from yade_scripts.packings import grain_number
+
+# Velocity Verlet on these packings is stable at 0.4 t0 and blows up at 0.5 t0 (measured on A24's scene).
+STABLE_STEP = 0.4
+UNSTABLE_STEP = 0.5
+# A24 follows aggregates of 80 grain radii for 1000 ns: 12.5 ns per grain radius, in units of ice's t0.
+DURATION_PER_RADIUS = 64.6
+MOST_GRAINS = 5_000_000
+
+
+class ParameterError(ValueError):
+    """A wrong parameter; the message is one line: what, where, what is allowed."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """One column of a table. kind: float, int or str; default None: worked out from the others."""
+    name: str
+    kind: type
+    default: Any
+    unit: str
+    allowed: str
+    accepts: Callable[[Any], bool]
+    meaning: str
+
+
+def _one_of(names):
+    return ', '.join(names), lambda value: value in names
+
+
+FIELDS = [
+    Field('packing', str, 'cpe', '', *_one_of(['cpe']), 'how the aggregates are made'),
+    Field('filling', float, 0.4, '1', '> 0 and at most what the lattice holds', lambda x: x > 0,
+          'filling factor N (r/R)^3 of an aggregate'),
+    Field('radius', float, None, 'grain radii', '> 0', lambda x: x > 0,
+          'radius of an aggregate (20 if grains is not given either)'),
+    Field('grains', int, None, '', f'2 to {MOST_GRAINS}', lambda n: 2 <= n <= MOST_GRAINS,
+          'grains per aggregate, instead of radius'),
+    Field('velocity', float, 10**0.5, 'm/s', '> 0', lambda x: x > 0, 'relative velocity of the aggregates'),
+    Field('impact', float, 0.0, '1', '0 to 1', lambda x: 0 <= x <= 1,
+          'impact parameter B_off in units of the sum of the radii (A22 eq 27)'),
+    Field('viscoelasticTime', float, 0.0, 's', '>= 0', lambda x: x >= 0,
+          'T_vis of the viscous drag (A22 eq 7)'),
+    Field('neck', float, 0.0, '1', 'only 0 as long as there are no sintered bonds', lambda x: x == 0,
+          'neck radius over grain radius of sintered contacts'),
+    Field('planar', int, 0, '', 'only 0 as long as there are no sintered bonds', lambda x: x == 0,
+          '1: grains confined to a plane'),
+    Field('material', str, 'ice', '', *_one_of(list(MATERIALS)), 'what the grains are made of'),
+    Field('seed', int, 1, '', '>= 0', lambda n: n >= 0, 'of the random packings'),
+    Field('duration', float, None, 's', '> 0', lambda x: x > 0,
+          'time that is simulated (64.6 t0 per grain radius of R: 12.5 ns for ice)'),
+    Field('stepFraction', float, 0.1, 't0', f'> 0 and <= {STABLE_STEP}, less with drag',
+          lambda x: 0 < x <= STABLE_STEP, 'time step'),
+    Field('engine', str, 'functors', '', *_one_of(['functors']), 'which engine moves the grains'),
+    Field('threads', int, None, '', '>= 1', lambda n: n >= 1,
+          'threads (those that yade -j or yade-batch set)'),
+    Field('out', str, None, '', 'a folder that can be written', lambda text: text != '',
+          'run folder (runs/<description of the row, or a name made from the parameters>)'),
+    Field('overwrite', int, 0, '', '0 or 1', lambda n: n in (0, 1), '1: replace a run that has ended'),
+]
+BY_NAME = {field.name: field for field in FIELDS}
+
+
+def help_text():
+    """A line per parameter: name, default, unit, meaning, what is allowed."""
+    lines = ['parameters (name=value, or the columns of a table):']
+    for field in FIELDS:
+        default = '' if field.default is None else f' = {field.default:g}' if field.kind is float \
+            else f' = {field.default}'
+        unit = f' [{field.unit}]' if field.unit else ''
+        lines.append(f'  {field.name}{default}{unit}: {field.meaning}; allowed: {field.allowed}')
+    return '\n'.join(lines)
+
+
+def parse(texts, description=None):
+    """Parameters {name: value}, every field by its name, from texts {name: text or number}.
+
+    Numbers may be written as arithmetic (10**0.5), text with or without quotes. radius and grains are both
+    filled in. duration and threads stay None until complete() unless they are given. Raises ParameterError
+    with one line that says what is wrong and what is allowed.
+    """
+    values = {field.name: field.default for field in FIELDS}
+    for name, text in texts.items():
+        if name not in BY_NAME:
+            raise ParameterError(f'{name}: unknown parameter; allowed: {", ".join(BY_NAME)}')
+        values[name] = _value(BY_NAME[name], text)
+    if values['radius'] is not None and values['grains'] is not None:
+        raise ParameterError('radius and grains: both given; allowed: one of the two, the other follows from '
+                             'filling')
+    _fill_in_size(values)
+    if values['out'] is None:
+        values['out'] = 'runs/' + _file_name(description or _name_from(texts, values))
+    return values
+
+
+def complete(values, constants, threads):
+    """The same, with what depends on the contact (the plugin's pairConstants) and on YADE's threads."""
+    limit = step_limit(constants)
+    if values['stepFraction'] > limit:
+        raise ParameterError(f'stepFraction = {values["stepFraction"]:g}: unstable with this drag; '
+                             f'allowed: at most {limit:.3g} (t0)')
+    if values['threads'] not in (None, threads):
+        raise ParameterError(f'threads = {values["threads"]}: YADE was started with {threads}; allowed: '
+                             'the same (yade -jN, or the column !OMP_NUM_THREADS of a table)')
+    values = dict(values, threads=threads)
+    if values['duration'] is None:
+        values['duration'] = DURATION_PER_RADIUS * values['radius'] * constants['timeUnit']
+    return values
+
+
+def step_limit(constants):
+    """Largest stable stepFraction, from the plugin's pairConstants of two equal grains.
+
+    Without drag STABLE_STEP, as measured; where it blows up gives the fastest vibration, 2/(UNSTABLE_STEP
+    t0). A leapfrog with drag by the velocity extrapolated from the last two half steps alternates and grows
+    from step dt on with w^2 dt^2 + 4 (C/m) dt = 4 (the root -1 of its characteristic polynomial). C = 8 c: a
+    grain of the full lattice that moves against eight of its twelve neighbours, each contact at 45 degrees
+    with a dashpot c.
+    """
+    unit = constants['timeUnit']
+    dashpot = (constants['dragPerContactRadius'] * constants['equilibriumContactRadius']
+               + constants['linearDrag'])
+    drag = 4 * 8 * dashpot / (2 * constants['reducedMass']) * unit
+    stiffness = (2 / UNSTABLE_STEP)**2
+    return STABLE_STEP / UNSTABLE_STEP * 8 / (drag + math.sqrt(drag**2 + 16 * stiffness))
+
+
+def _value(field, text):
+    value = _text(text) if field.kind is str else _number(field, text)
+    if not field.accepts(value):
+        raise ParameterError(f'{field.name} = {text}: not allowed; allowed: {field.allowed}{_unit(field)}')
+    return value
+
+
+def _unit(field):
+    return f' [{field.unit}]' if field.unit and field.unit != '1' else ''
+
+
+def _text(text):
+    text = str(text).strip()
+    return text[1:-1] if len(text) >= 2 and text[0] in '\'"' and text[-1] == text[0] else text
+
+
+def _number(field, text):
+    """A finite number from a number, or from arithmetic with the names of math as in YADE's own tables."""
+    try:
+        value = eval(_text(text), {'__builtins__': {}}, vars(math)) if isinstance(text, str) else text
+        number = float(value) if isinstance(value, (int, float)) else None
+    except Exception:  # whatever a typing error in an expression may raise
+        number = None
+    kind = 'a whole number' if field.kind is int else 'a finite number'
+    if number is None or not math.isfinite(number) or (field.kind is int and number != int(number)):
+        raise ParameterError(f'{field.name} = {text}: not {kind}; allowed: {field.allowed}{_unit(field)}')
+    return field.kind(value)
+
+
+def _fill_in_size(values):
+    if values['grains'] is not None:
+        values['radius'] = (values['grains'] / values['filling'])**(1 / 3)
+        return
+    if values['radius'] is None:
+        values['radius'] = 20.0
+    try:
+        grains = grain_number(values['filling'], values['radius'])
+    except OverflowError:
+        grains = math.inf
+    if not 2 <= grains <= MOST_GRAINS:
+        at_least, at_most = ((n / values['filling'])**(1 / 3) for n in (2, MOST_GRAINS))
+        raise ParameterError(f'radius = {values["radius"]:g}: {grains:g} grains at filling '
+                             f'{values["filling"]:g}; allowed: about {at_least:.3g} to {at_most:.3g} '
+                             f'[grain radii], for 2 to {MOST_GRAINS} grains')
+    values['grains'] = grains
+
+
+def _name_from(texts, values):
+    """collide-ice-f0.4-R20-v3.162-s1, and whatever else was given."""
+    in_name = ['material', 'filling', 'radius', 'grains', 'velocity', 'seed']
+    name = 'collide-{material}-f{filling:g}-R{radius:.4g}-v{velocity:.4g}-s{seed}'.format(**values)
+    left_out = in_name + ['out', 'overwrite', 'threads']
+    return name + ''.join(f'-{key}{values[key]}' for key in sorted(texts) if key not in left_out)
+
+
+def _file_name(text):
+    """text as the name of one folder."""
+    allowed = '-_.,=+'
+    return ''.join(c if c.isalnum() or c in allowed else '_' for c in text).lstrip('.')[:200] or 'run'

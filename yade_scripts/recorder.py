@@ -1,0 +1,80 @@
+"""Samples a running collision into its run folder."""
+import time
+
+import contact_law
+import numpy as np
+from yade.wrapper import Omega
+
+from yade_scripts.run_folder import CHANNELS, SERIES, STATE
+from yade_scripts.sampling import compression_and_velocity
+
+SECONDS_BETWEEN_WRITES = 10
+
+
+class RunFailed(RuntimeError):
+    """The simulation has gone wrong; the message is one line."""
+
+
+class Recorder:
+    """sample() takes one row of the history, and some states: for a PyRunner that is the last engine.
+
+    aggregate: (N,) int, the aggregate of each body; aggregate_radius: R_agg [m] of A24 eq 10.
+    An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
+    """
+
+    def __init__(self, folder, schedule, aggregate, aggregate_radius):
+        self.folder, self.schedule = folder, schedule
+        self.aggregate, self.aggregate_radius = aggregate, aggregate_radius
+        self.error = None
+        self.ending = False
+        self._rows, self._states = [], 0
+        self._energy_scale = None
+        self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
+
+    def sample(self):
+        try:
+            self._sample()
+        except Exception as error:
+            self.error = error
+
+    def write_history(self):
+        """Write all samples so far."""
+        columns = np.array(self._rows, dtype=float).reshape(-1, len(SERIES)).T
+        series = dict(zip(SERIES, columns))
+        for name in ('contacts', 'contacts_between'):
+            series[name] = series[name].astype(int)
+        self.folder.write_history(series)
+
+    def _sample(self):
+        state = contact_law.snapshot()
+        energies = dict(Omega().energy.items())
+        energies = [energies.get(channel, 0.0) for channel in CHANNELS]  # none of it so far: no entry
+        self._require_sane(state, energies)
+        compression, velocity = compression_and_velocity(
+            state['position'][:, 0], state['velocity'][:, 0], self.aggregate_radius)
+        pairs = self.aggregate[state['contact_pairs']]
+        between = np.count_nonzero(pairs[:, 0] != pairs[:, 1])
+        number = len(self._rows)
+        self._rows.append((state['time'], *energies, compression, velocity, len(pairs), between))
+        if self.ending or number in self.schedule.states:
+            state['aggregate'] = self.aggregate
+            self.folder.write_state(self._states, {name: state[name] for name in STATE})
+            self._states += 1
+        if time.monotonic() >= self._next_write:
+            self.write_history()
+            self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
+
+    def _require_sane(self, state, energies):
+        """A run that blew up isn't worth its time: stop when the ledger is off by a tenth, or not finite."""
+        when = f'at {state["time"]:.4g} s'
+        for channel, energy in zip(CHANNELS, energies):
+            if not np.isfinite(energy):
+                raise RunFailed(f'energy {channel} is {energy} {when}')
+        if not np.isfinite(state['position']).all():
+            raise RunFailed(f'a position is not finite {when}')
+        total = sum(energies)
+        if self._energy_scale is None:
+            self._energy_scale, self._energy_start = sum(map(abs, energies)), total
+        if abs(total - self._energy_start) > 0.1 * self._energy_scale:
+            raise RunFailed(f'energy is not conserved ({total - self._energy_start:.3g} J more than at the '
+                            f'start, of {self._energy_scale:.3g} J) {when}: the step is too long')

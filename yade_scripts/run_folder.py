@@ -1,0 +1,119 @@
+"""The run folder: run.json, history.npz, states/NNNNNN.npz, ended. All SI; each file whole or not there."""
+import fcntl
+import json
+import os
+import platform
+import re
+
+import numpy as np
+
+from yade_scripts.atomic_write import write_atomically
+
+FORMAT = 1
+CHANNELS = ('kinetic', 'normal', 'sliding', 'rolling', 'twisting',
+            'slidingDissipation', 'rollingDissipation', 'twistingDissipation',
+            'connection', 'disconnection', 'drag', 'bondBreaking')
+STATE = ('time', 'position', 'velocity', 'angular_velocity', 'radius', 'aggregate',
+         'contact_pairs', 'contact_normal_force', 'contact_bonded')
+SERIES = ('time', *CHANNELS, 'd', 'v', 'contacts', 'contacts_between')
+
+
+class RunFolderError(RuntimeError):
+    """A run folder that can't be used; the message is one line: what, where, what is allowed."""
+
+
+class RunFolder:
+    """Writer of one run. Makes the folder, or empties that of an earlier run if it may.
+
+    Raises RunFolderError when the folder can't be written, holds something else, is being written by another
+    run, or holds a run that has ended and overwrite is false.
+    """
+
+    def __init__(self, path, overwrite=False):
+        self.path = path
+        self.states = os.path.join(path, 'states')
+        _require_usable(path, overwrite)
+        try:
+            os.makedirs(self.states, exist_ok=True)
+            self._lock = _locked(path)
+            self._empty()
+            write_atomically(self._file('run.json'), lambda file: file.write(b'{}\n'))
+        except OSError as error:
+            raise RunFolderError(f'out = {path}: {error.strerror}; '
+                                 'allowed: a folder that can be written') from None
+
+    def write_run(self, run):
+        """run.json from a dictionary that JSON can hold."""
+        text = json.dumps({'format': FORMAT, **run}, indent=2, allow_nan=False) + '\n'
+        write_atomically(self._file('run.json'), lambda file: file.write(text.encode()))
+
+    def write_history(self, series):
+        """history.npz from {name: (T,) array}, every name of SERIES."""
+        write_atomically(self._file('history.npz'), lambda file: np.savez(file, **series))
+
+    def write_state(self, number, state):
+        """states/NNNNNN.npz from {name: array}."""
+        write_atomically(os.path.join(self.states, f'{number:06d}.npz'), lambda file: np.savez(file, **state))
+
+    def write_ended(self):
+        """The mark that the run came to its planned end: written last."""
+        write_atomically(self._file('ended'), lambda file: None)
+
+    def _file(self, name):
+        return os.path.join(self.path, name)
+
+    def _empty(self):
+        """Take away an earlier run's files, the mark of its end first, and nothing else."""
+        for name in ('ended', 'history.npz', 'run.json'):
+            if os.path.exists(self._file(name)):
+                os.unlink(self._file(name))
+        for name in os.listdir(self.states):
+            if name.endswith('.npz'):
+                os.unlink(os.path.join(self.states, name))
+
+
+def closing_line(path, outcome, seconds):
+    """What a script prints at its end; read_closing_line() finds it in a log."""
+    return f'run folder: {path} ({outcome}, {seconds:.1f} s)'
+
+
+def read_closing_line(log):
+    """(path, outcome) from the text of a log, or None when the script didn't get to its end."""
+    line = r'^run folder: (.*?) \((completed|interrupted|failed: .*), [0-9.]+ s\)$'
+    found = re.findall(line, log, re.MULTILINE)
+    return found[-1] if found else None
+
+
+def hardware():
+    """{'cpu': model, 'cores': number} of this machine."""
+    model = platform.processor() or platform.machine()
+    try:
+        with open('/proc/cpuinfo') as lines:
+            names = (line.split(':', 1)[1].strip() for line in lines if line.startswith('model name'))
+            model = next(names, model)
+    except OSError:
+        pass
+    return {'cpu': model, 'cores': os.cpu_count()}
+
+
+def _require_usable(path, overwrite):
+    if not os.path.exists(path):
+        return
+    if not os.path.isdir(path):
+        raise RunFolderError(f'out = {path}: is a file; allowed: a folder')
+    if os.listdir(path) and not os.path.exists(os.path.join(path, 'run.json')):
+        raise RunFolderError(f'out = {path}: exists and is no run folder; '
+                             'allowed: a new folder, or one of an earlier run')
+    if os.path.exists(os.path.join(path, 'ended')) and not overwrite:
+        raise RunFolderError(f'out = {path}: holds a run that has ended; '
+                             'allowed: another folder, or overwrite=1')
+
+
+def _locked(path):
+    """The folder opened and locked for as long as this process lives (a killed run leaves no lock behind)."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise RunFolderError(f'out = {path}: another run is writing there; allowed: another folder') from None
+    return handle
