@@ -3,7 +3,8 @@
 # make clean  removes what make built
 #
 # Afterwards scripts find the plugin by "import contact_law", or plain yade knows it with YADE_PREFIX=$PWD/build.
-# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface.
+# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface;
+# YADE_VERSION says which version they are of, and the plugin then loads into that version only.
 
 .DELETE_ON_ERROR:
 .SUFFIXES:
@@ -17,6 +18,8 @@ OVERLAY        := build/$(LIBRARY_FOLDER)
 PLUGIN         := $(OVERLAY)/libcontact_law.so
 OBJECTS_FOLDER := build/objects
 
+YADE_VERSION ?= 2023.02a
+
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-matplotlib python3-pytest
 
@@ -27,7 +30,8 @@ PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serializatio
 FLAGS := -std=c++17 -fPIC -fopenmp -O2 -ffp-contract=off -Wall -Wextra -MMD -MP
 
 # Files that see a YADE type. Eigen's three definitions shape YADE's objects; the others say how Debian's YADE was built, for YADE's own headers.
-YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT
+YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT \
+                    -DBOOST_BIND_GLOBAL_PLACEHOLDERS -DBOOST_ALLOW_DEPRECATED_HEADERS # Boost.Python's own use of older Boost
 ifdef YADE_INCLUDE
 YADE_DEFINITIONS += -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DYADE_BOOST_LOG \
                     -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE
@@ -37,7 +41,7 @@ YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) -I$(or $(YADE_INCLUDE),contact_law/yad
 # Files of the engine see no YADE type. Those with an instruction set in their name run only where the processor has it.
 ENGINE_FLAGS := $(FLAGS) -O3 -fno-math-errno -fno-trapping-math
 $(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := -mavx2 -mfma
-$(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := -mavx512f -mavx512dq -mavx512vl -mfma
+$(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := -mavx512f -mavx512dq -mavx512vl -mfma -Wno-uninitialized -Wno-maybe-uninitialized # the compiler's own avx512fintrin.h
 
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
 LINK := -shared -fopenmp -Wl,-z,defs -Wl,-rpath,$(YADE_LIBRARIES) -L$(YADE_LIBRARIES)
@@ -55,14 +59,14 @@ PRECOMPILED    := $(OBJECTS_FOLDER)/precompiled.hpp
 
 .PHONY: all deps clean build
 all: deps
-	@$(MAKE) --no-print-directory build
+	@$(MAKE) --no-print-directory $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 
 # After deps only: without the packages there is nothing to link to, nor to compile with.
 build: $(PLUGIN) build/overlay
 	@echo "contact_law is built: $(PLUGIN)"
 
 # $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
-$(PLUGIN): $(OBJECTS) build/objects.list | build/overlay
+$(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
 	@echo "link    $@"
 	@g++ $(LINK) $(OBJECTS) $(LIBRARIES) -o $@.new && mv $@.new $@
 
@@ -86,6 +90,9 @@ $(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
 $(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: build/commit.list
 $(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: YADE_DEFINITIONS += -DCONTACT_LAW_COMMIT='"$(COMMIT)"'
 
+$(OBJECTS_FOLDER)/yade_interface/proof/members_compared.o: build/yade_version.list
+$(OBJECTS_FOLDER)/yade_interface/proof/members_compared.o: YADE_DEFINITIONS += -DCONTACT_LAW_YADE_VERSION='"$(YADE_VERSION)"'
+
 # Changed only when what they hold changes, so that objects are made again then, and only then.
 COMMIT := $(shell c=$$(git rev-parse HEAD 2>/dev/null) || c=unknown; \
 	git diff --quiet HEAD -- contact_law Makefile 2>/dev/null || [ $$c = unknown ] || c=$$c-changed; echo $$c)
@@ -96,6 +103,7 @@ build/$1.list: always
 endef
 .PHONY: always
 $(eval $(call LIST,commit,$(COMMIT)))
+$(eval $(call LIST,yade_version,$(YADE_VERSION)))
 $(eval $(call LIST,objects,$(OBJECTS)))
 $(eval $(call LIST,flags,$(YADE_FLAGS) $(ENGINE_FLAGS)))
 
@@ -106,16 +114,19 @@ build/overlay: Makefile
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
 
+# Nothing to do, in a tenth of a second, when all is there.
 deps:
-	@missing=$$(for package in $(PACKAGES); do \
-		dpkg-query -W -f '$${db:Status-Status}' $$package 2>/dev/null | grep -qx installed || echo $$package; done); \
+	@installed=$$(dpkg-query -W -f '$${db:Status-Status} $${Package}\n' $(PACKAGES) 2>/dev/null | sed -n 's/^installed //p'); \
+	missing=; for package in $(PACKAGES); do \
+		case " $$(echo $$installed) " in *" $$package "*) ;; *) missing="$$missing $$package";; esac; done; \
 	[ -z "$$missing" ] && exit 0; \
-	if [ $$(id -u) = 0 ]; then root=; elif command -v sudo >/dev/null; then root=sudo; else \
-		echo "make deps: these packages are missing, and installing them takes root or sudo:" $$missing >&2; exit 1; fi; \
-	echo "install " $$missing; \
-	$$root apt-get -qq update && DEBIAN_FRONTEND=noninteractive $$root env DEBIAN_FRONTEND=noninteractive \
-		apt-get -qq -y --no-install-recommends install $$missing > build-deps.log 2>&1 \
-		|| { cat build-deps.log >&2; rm -f build-deps.log; exit 1; }; rm -f build-deps.log
+	if [ $$(id -u) = 0 ]; then as_root=env; elif command -v sudo >/dev/null; then as_root="sudo env"; else \
+		echo "make deps: installing these Debian packages takes root or sudo:$$missing" >&2; exit 1; fi; \
+	echo "install$$missing"; \
+	log=$$(mktemp); \
+	{ $$as_root apt-get -q update && $$as_root DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install $$missing; } > $$log 2>&1 \
+		|| { cat $$log >&2; rm -f $$log; echo "make deps: apt-get could not install:$$missing" >&2; exit 1; }; \
+	rm -f $$log
 
 clean:
 	rm -rf build

@@ -15,10 +15,8 @@ from .grain_arrays import snapshot
 
 __version__ = "0.1.0"
 
-LIBRARY = os.path.join(
-    os.path.dirname(os.path.dirname(os.path.abspath(__file__))),
-    "build/lib/x86_64-linux-gnu/yade-double/libcontact_law.so",
-)
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+LIBRARY = os.path.join(TOP, "build/lib/x86_64-linux-gnu/yade-double/libcontact_law.so")
 
 
 def _running_yade():
@@ -31,15 +29,16 @@ def _running_yade():
 
 def _load(yade):
     """Opens the library and takes its classes to YADE; ImportError with one line if that cannot be."""
-    described = "2023.02a"
+    if not os.path.exists(LIBRARY):
+        raise ImportError(f"contact_law isn't built: {LIBRARY} is missing; run 'make' in {TOP}")
+    with open(os.path.join(TOP, "build/yade_version.list")) as file:
+        described = file.read().strip()
     version = yade.config.version
     if version != described:  # before anything of the library is touched
         raise ImportError(
-            f"contact_law: refusing to load: this is YADE {version}, not {described} (yade.config.version). "
-            f"Install Debian 12's yade, or compile the plugin against your YADE's source and adapt the version in {__file__}."
+            f"contact_law: refusing to load: this is YADE {version}, not {described} (yade.config.version). It was compiled for YADE {described}; "
+            "use that one (Debian 12 ships 2023.02a), or compile for yours: make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version."
         )
-    if not os.path.exists(LIBRARY):
-        raise ImportError(f"contact_law isn't built: {LIBRARY} is missing; run 'make' in {os.path.dirname(os.path.dirname(os.path.abspath(__file__)))}")
     try:
         # PyDLL keeps Python's lock, which the library needs. Like YADE's own libraries, it shares its symbols.
         library = ctypes.PyDLL(LIBRARY, mode=os.RTLD_NOW | os.RTLD_GLOBAL)
@@ -67,9 +66,8 @@ def _rebuild_dispatchers(yade):
         else:
             return engine
         new = type(engine)(*arguments)
-        for attribute, value in engine.dict().items():
-            if attribute not in ("geomDispatcher", "physDispatcher", "lawDispatcher", "functors"):
-                setattr(new, attribute, value)
+        dispatchers = ("geomDispatcher", "physDispatcher", "lawDispatcher", "functors")
+        new.updateAttrs({name: value for name, value in engine.dict().items() if name not in dispatchers})
         return new
 
     if any(type(engine).__name__ in ("InteractionLoop", "IPhysDispatcher", "LawDispatcher") for engine in yade.O.engines):

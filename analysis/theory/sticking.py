@@ -42,7 +42,7 @@ class _PairMotion:
 
     def forces(self, h, rate):
         u = float(_root_from_distance(max(h, 0.0)))
-        return 4.0 * u ** 3 * (u ** 3 - 1.0), (self.contact_drag * u + self.linear_drag) * rate
+        return 4.0 * u ** 3 * (u ** 3 - 1.0), (self.contact_drag * u * u + self.linear_drag) * rate
 
     def forward(self, _, state):
         elastic, drag = self.forces(*state)

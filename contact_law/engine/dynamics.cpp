@@ -19,7 +19,7 @@ namespace {
 	}
 }
 
-Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_)
+Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_, const std::vector<double>* memory)
         : options(options_)
         , count(int(grains.size()))
 {
@@ -29,8 +29,14 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	setting.linearDamping = options.linearDamping;
 	setting.mechanisms    = options.mechanisms;
 	setting.dt            = options.dt;
-	sortGrains(grains);
+	if (memory) recallOrder(*memory);
+	else orderGrains(grains);
+	loadGrains(grains);
 	makeDomains();
+	if (memory) {
+		recall(*memory);
+		return;
+	}
 	refreshLists(true);
 	for (auto& domain : domains)
 		domain->placeOverlapping();
@@ -38,7 +44,7 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	firstForces();
 }
 
-void Dynamics::sortGrains(const std::vector<GrainInput>& grains)
+void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
 {
 	double low[3] = { grains[0].position[0], grains[0].position[1], grains[0].position[2] }, smallest = grains[0].radius;
 	for (const auto& g : grains) {
@@ -55,14 +61,18 @@ void Dynamics::sortGrains(const std::vector<GrainInput>& grains)
 	original.resize(count);
 	std::iota(original.begin(), original.end(), 0);
 	std::sort(original.begin(), original.end(), [&](int a, int b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+}
 
+void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
+{
+	double smallest = grains[0].radius;
+	indexHere.resize(count);
 	for (int k = 0; k < count; ++k) {
-		const GrainInput& g = grains[original[k]];
-		Grain             grain {};
-		grain.x = g.position[0], grain.y = g.position[1], grain.z = g.position[2];
-		grain.vx = g.velocity[0], grain.vy = g.velocity[1], grain.vz = g.velocity[2];
-		grain.wx = g.angularVelocity[0], grain.wy = g.angularVelocity[1], grain.wz = g.angularVelocity[2];
-		setting.grains.push_back(grain);
+		const GrainInput& g    = grains[original[k]];
+		indexHere[original[k]] = k;
+		smallest               = std::min(smallest, g.radius);
+		setting.grains.push_back(Grain {});
+		write(g, setting.grains.back());
 		setting.radius.push_back(g.radius);
 		setting.kind.push_back(g.kind);
 		setting.inverseMass.push_back(1 / g.mass);
@@ -73,6 +83,30 @@ void Dynamics::sortGrains(const std::vector<GrainInput>& grains)
 	setting.common    = derivePair(m, setting.radius[0], m, setting.radius[0], setting.linearDamping);
 	setting.nearGap   = 0.03 * smallest;
 	setting.farGap    = 0.8 * smallest;
+}
+
+void Dynamics::write(const GrainInput& g, Grain& grain)
+{
+	grain.x = g.position[0], grain.y = g.position[1], grain.z = g.position[2];
+	grain.vx = g.velocity[0], grain.vy = g.velocity[1], grain.vz = g.velocity[2];
+	grain.wx = g.angularVelocity[0], grain.wy = g.angularVelocity[1], grain.wz = g.angularVelocity[2];
+}
+
+void Dynamics::set(int index, const GrainInput& now)
+{
+	const int k = indexHere[index];
+	Grain&    p = setting.grains[k];
+	write(now, p);
+	kick(p, k, -0.5 * setting.dt);
+	travelSinceFar = travelSinceNear = setting.farGap; // whatever the distance: look for neighbours anew
+}
+
+// The velocities through the given time with the forces as they are.
+void Dynamics::kick(Grain& p, int k, double time) const
+{
+	const double m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
+	p.vx += m * p.fx, p.vy += m * p.fy, p.vz += m * p.fz;
+	p.wx += i * p.tx, p.wy += i * p.ty, p.wz += i * p.tz;
 }
 
 void Dynamics::makeDomains()
@@ -110,12 +144,8 @@ void Dynamics::firstForces()
 	for (auto& domain : domains)
 		domain->addForces();
 	setting.dt = dt;
-	for (int g = 0; g < count; ++g) {
-		Grain&       p = setting.grains[g];
-		const double m = 0.5 * dt * setting.inverseMass[g], i = 0.5 * dt * setting.inverseInertia[g];
-		p.vx -= m * p.fx, p.vy -= m * p.fy, p.vz -= m * p.fz;
-		p.wx -= i * p.tx, p.wy -= i * p.ty, p.wz -= i * p.tz;
-	}
+	for (int g = 0; g < count; ++g)
+		kick(setting.grains[g], g, -0.5 * dt);
 }
 
 void Dynamics::run(long steps)
@@ -174,12 +204,12 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 {
 	grains.resize(count);
 	for (int k = 0; k < count; ++k) {
-		const Grain& p = setting.grains[k];
-		GrainInput&  g = grains[original[k]];
-		const double m = 0.5 * setting.dt * setting.inverseMass[k], i = 0.5 * setting.dt * setting.inverseInertia[k];
+		Grain       p = setting.grains[k];
+		GrainInput& g = grains[original[k]];
+		kick(p, k, 0.5 * setting.dt);
 		g.position[0] = p.x, g.position[1] = p.y, g.position[2] = p.z;
-		g.velocity[0] = p.vx + m * p.fx, g.velocity[1] = p.vy + m * p.fy, g.velocity[2] = p.vz + m * p.fz;
-		g.angularVelocity[0] = p.wx + i * p.tx, g.angularVelocity[1] = p.wy + i * p.ty, g.angularVelocity[2] = p.wz + i * p.tz;
+		g.velocity[0] = p.vx, g.velocity[1] = p.vy, g.velocity[2] = p.vz;
+		g.angularVelocity[0] = p.wx, g.angularVelocity[1] = p.wy, g.angularVelocity[2] = p.wz;
 		g.radius = setting.radius[k];
 		g.mass = 1 / setting.inverseMass[k], g.inertia = 1 / setting.inverseInertia[k];
 		g.kind = setting.kind[k];
@@ -203,6 +233,14 @@ Energies Dynamics::energies()
 		        + 0.5 * setting.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
 	}
 	return e;
+}
+
+double Dynamics::normalForce(const Contact& c) const
+{
+	const Grain &       a = setting.grains[c.i], &b = setting.grains[c.j];
+	const Vec3<double>  d { a.x - b.x, a.y - b.y, a.z - b.z };
+	const ContactForces<double> f = contactForces<0>(c.constants, geometryOf(d, c.constants.radius1 + c.constants.radius2), c.history, Vec3<double> {});
+	return f.normalForce + c.drag;
 }
 
 int Dynamics::contactCount() const

@@ -26,39 +26,50 @@ public:
 		int      domains = 2, threads = 1;
 		std::string instructions; // "avx512", "avx2", "portable"; empty: the best this machine has
 	};
-	// Grains that overlap touch from the start, with unstrained springs.
-	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options);
+	// Grains that overlap touch from the start, with unstrained springs; or all is as `memory` (of remember(), from the same grains in the same order) has it.
+	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options, const std::vector<double>* memory = nullptr);
 
 	void run(long steps);
 	void setThreads(int threads) { options.threads = threads; }
+
+	std::vector<double> remember() const;
+
+	// A grain that something else has moved or pushed.
+	void set(int grain, const GrainInput& now);
 
 	// The state now; grains in the order they were given.
 	void     read(std::vector<GrainInput>& grains) const;
 	Energies energies();
 	int      contactCount() const;
-	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, index of grain 1, of grain 2)
+	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, index of grain 1, of grain 2, normal force now)
 	{
 		for (const auto& domain : domains)
 			for (int sort = 0; sort < 2; ++sort)
 				for (int lane = 0; lane < domain->contacts[sort].size(); ++lane)
 					if (domain->contacts[sort].alive(lane)) {
 						const Contact c = domain->contacts[sort].get(lane, setting.common);
-						visit(c, original[c.i], original[c.j]);
+						visit(c, original[c.i], original[c.j], normalForce(c));
 					}
 	}
+	double      normalForce(const Contact&) const; // elastic and viscous, positive when repulsive
 	const char* instructions() const { return setting.passes->name; }
 	long        contactUpdates = 0, farRebuilds = 0, nearRebuilds = 0, events() const;
 
 private:
-	void sortGrains(const std::vector<GrainInput>&);
+	void        orderGrains(const std::vector<GrainInput>&);
+	void        recallOrder(const std::vector<double>& memory);
+	void        loadGrains(const std::vector<GrainInput>&);
+	static void write(const GrainInput&, Grain&);
+	void        kick(Grain&, int index, double time) const;
 	void makeDomains();
+	void recall(const std::vector<double>& memory);
 	void firstForces();
 	void refreshLists(bool farToo);
 
 	Options                              options;
 	Setting                              setting;
 	int                                  count = 0;
-	std::vector<int>                     original; // index given, by index here
+	std::vector<int>                     original, indexHere; // index given, by index here; and the other way round
 	std::vector<std::unique_ptr<Domain>> domains;
 	Grid                                 grid;
 	double                               travelSinceFar = 0, travelSinceNear = 0; // bound on how far any grain went

@@ -10,6 +10,11 @@ namespace contact_law {
 // What a scene's contacts do besides adhering; a template parameter, so that what a scene doesn't use costs nothing.
 enum Mechanism : unsigned { Sliding = 1, Rolling = 2, Twisting = 4, Drag = 8, AllSprings = Sliding | Rolling | Twisting, Everything = AllSprings | Drag };
 
+constexpr unsigned mechanismsOf(bool sliding, bool rolling, bool twisting, bool drag)
+{
+	return (sliding ? unsigned(Sliding) : 0u) | (rolling ? unsigned(Rolling) : 0u) | (twisting ? unsigned(Twisting) : 0u) | (drag ? unsigned(Drag) : 0u);
+}
+
 // A contact's memory, in the frame of the laboratory. The pointers are saved in the grains' frames.
 template <class T> struct ContactHistory {
 	Pointers<T> pointers;

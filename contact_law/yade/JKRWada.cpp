@@ -115,7 +115,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
 	const bool     drag       = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
-	const unsigned mechanisms = (sliding ? contact_law::Sliding : 0) | (rolling ? contact_law::Rolling : 0) | (twisting ? contact_law::Twisting : 0) | (drag ? contact_law::Drag : 0);
+	const unsigned mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
 	const ContactStepResult r  = contact_law::contactStepWith[mechanisms](constants, motion, before, history);
 
 	const Vector3r force = fromKernel(r.force);
@@ -142,50 +142,22 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	return true;
 }
 
-void Law2_ScGeom_JKRWadaPhys_JKRWada::name(Channel channel, const char* channelName, bool perStep)
-{
-	channelIds[channel] = -1;
-	scene->energy->add(0., channelName, channelIds[channel], perStep);
-}
-
-// EnergyTracker forgets its names when it is cleared, and gives them out from one thread only: look once a step.
-void Law2_ScGeom_JKRWadaPhys_JKRWada::nameChannels()
-{
-	if (channelsCheckedAt == scene->iter) return;
-#pragma omp critical(JKRWadaChannels)
-	if (channelsCheckedAt != scene->iter) {
-		name(Kinetic, "kinetic", true);
-		name(Normal, "normal", true);
-		name(SlidingStored, "sliding", true);
-		name(RollingStored, "rolling", true);
-		name(TwistingStored, "twisting", true);
-		name(SlidingLost, "slidingDissipation", false);
-		name(RollingLost, "rollingDissipation", false);
-		name(TwistingLost, "twistingDissipation", false);
-		name(Connection, "connection", false);
-		name(Disconnection, "disconnection", false);
-		name(DragLost, "drag", false);
-		channelsCheckedAt = scene->iter;
-	}
-}
-
 void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
 {
-	nameChannels();
-	const auto add = [this](Channel channel, double energy, bool perStep) {
-		if (energy != 0) scene->energy->add(energy, "", channelIds[channel], perStep);
-	};
-	add(Kinetic, r.workBefore, true);
-	add(Normal, r.stored.normal, true);
-	add(SlidingStored, r.stored.sliding, true);
-	add(RollingStored, r.stored.rolling, true);
-	add(TwistingStored, r.stored.twisting, true);
-	add(SlidingLost, r.dissipated.sliding, false);
-	add(RollingLost, r.dissipated.rolling, false);
-	add(TwistingLost, r.dissipated.twisting, false);
-	add(Connection, r.dissipated.connection, false);
-	add(Disconnection, r.dissipated.disconnection, false);
-	add(DragLost, r.dissipated.drag, false);
+	using C = EnergyChannels;
+	channels.prepare(*scene);
+	const auto add = [this](C::Channel channel, double energy) { channels.add(*scene, channel, energy); };
+	add(C::Kinetic, r.workBefore);
+	add(C::Normal, r.stored.normal);
+	add(C::Sliding, r.stored.sliding);
+	add(C::Rolling, r.stored.rolling);
+	add(C::Twisting, r.stored.twisting);
+	add(C::SlidingDissipation, r.dissipated.sliding);
+	add(C::RollingDissipation, r.dissipated.rolling);
+	add(C::TwistingDissipation, r.dissipated.twisting);
+	add(C::Connection, r.dissipated.connection);
+	add(C::Disconnection, r.dissipated.disconnection);
+	add(C::Drag, r.dissipated.drag);
 }
 
 } // namespace yade

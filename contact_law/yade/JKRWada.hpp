@@ -2,14 +2,13 @@
 // The formulas stand in ../kernel; MODEL.md lists them with their sources. These classes carry them into YADE.
 #pragma once
 #include "../kernel/contact_step.hpp"
+#include "EnergyChannels.hpp"
 #include <core/Interaction.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/Dispatching.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
-#include <array>
-#include <atomic>
 
 namespace yade {
 
@@ -108,27 +107,22 @@ public:
 REGISTER_SERIALIZABLE(Ip2_JKRMat_JKRMat_JKRWadaPhys);
 
 class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
-	enum Channel { Kinetic, Normal, SlidingStored, RollingStored, TwistingStored, SlidingLost, RollingLost, TwistingLost, Connection, Disconnection, DragLost, channelCount };
-	std::array<int, channelCount> channelIds;
-	std::atomic<long>             channelsCheckedAt { -2 }; // iteration
+	EnergyChannels channels;
 
-	void name(Channel, const char*, bool perStep);
-	void nameChannels();
 	void book(const contact_law::ContactStepResult&);
 
 public:
 	bool go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction) override;
 	virtual ~Law2_ScGeom_JKRWadaPhys_JKRWada() {}
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR(Law2_ScGeom_JKRWadaPhys_JKRWada, LawFunctor,
+	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_JKRWadaPhys_JKRWada, LawFunctor,
 		"JKR normal force, Wada's sliding, rolling and twisting springs with their limits, and viscous drag, between grains of any radii and materials. "
 		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: stored ones (normal, sliding, rolling, twisting) "
 		"and what was lost since the start (slidingDissipation, rollingDissipation, twistingDissipation, connection, disconnection, drag). "
 		"O.energy['kinetic'] is brought from half a step ago, where NewtonIntegrator takes it, to the moment of the stored energies, so that the sum is constant. Use NewtonIntegrator(damping=0).",
 		((bool, sliding, true, , "Whether contacts resist sliding."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
-		((bool, twisting, true, , "Whether contacts resist twisting.")),
-		channelIds.fill(-1);
+		((bool, twisting, true, , "Whether contacts resist twisting."))
 	);
 	// clang-format on
 	FUNCTOR2D(ScGeom, JKRWadaPhys);

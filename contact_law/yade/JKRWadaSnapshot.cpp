@@ -1,5 +1,6 @@
 #include "JKRWadaSnapshot.hpp"
 #include "JKRWada.hpp"
+#include "JKRWadaEngine.hpp"
 #include <core/Body.hpp>
 #include <core/Omega.hpp>
 #include <core/State.hpp>
@@ -28,6 +29,7 @@ namespace {
 	}
 
 	/* NewtonIntegrator leaves positions a step, and velocities half a step, ahead of the forces: bring both to the moment of the forces. */
+	// JKRWadaEngine leaves everything at one moment, and so needs nothing of this.
 	void appendAtTimeOfForces(Grains& grains, const Body& body, Scene& scene)
 	{
 		const State&   state = *body.state;
@@ -42,7 +44,21 @@ namespace {
 		append(grains.angularVelocity, spin);
 	}
 
-	Grains readGrains(Scene& scene)
+	const JKRWadaEngine* fusedEngine(const Scene& scene)
+	{
+		for (const auto& engine : scene.engines)
+			if (const auto* fused = dynamic_cast<const JKRWadaEngine*>(engine.get())) return fused;
+		return nullptr;
+	}
+
+	void appendAsItIs(Grains& grains, const Body& body)
+	{
+		append(grains.position, body.state->pos);
+		append(grains.velocity, body.state->vel);
+		append(grains.angularVelocity, body.state->angVel);
+	}
+
+	Grains readGrains(Scene& scene, bool asItIs)
 	{
 		Grains grains;
 		grains.rowOf.assign(scene.bodies->size(), -1);
@@ -54,7 +70,8 @@ namespace {
 			grains.rowOf[body->getId()] = int(grains.radius.size());
 			grains.ids.push_back(body->getId());
 			grains.radius.push_back(sphere->radius);
-			appendAtTimeOfForces(grains, *body, scene);
+			if (asItIs) appendAsItIs(grains, *body);
+			else appendAtTimeOfForces(grains, *body, scene);
 		}
 		return grains;
 	}
@@ -63,10 +80,13 @@ namespace {
 boost::python::dict JKRWadaSnapshot::read() const
 {
 	Scene&              scene  = *Omega::instance().getScene();
-	const Grains        grains = readGrains(scene);
+	const auto*         fused  = fusedEngine(scene);
+	const Grains        grains = readGrains(scene, fused);
 	std::vector<int>    pairs;
 	std::vector<double> normalForce;
+	const bool fromEngine = fused && fused->addContacts(pairs, normalForce);
 	for (const auto& interaction : *scene.interactions) {
+		if (fromEngine) break;
 		if (!interaction->isReal()) continue;
 		const auto* phys     = dynamic_cast<const JKRWadaPhys*>(interaction->phys.get());
 		const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
@@ -76,7 +96,7 @@ boost::python::dict JKRWadaSnapshot::read() const
 		normalForce.push_back(phys->normalForce.dot(geometry->normal));
 	}
 	boost::python::dict result;
-	result["time"]                 = scene.time;
+	result["time"]                 = fromEngine ? scene.time + scene.dt : scene.time; // within a step the engine is at its end already
 	result["ids"]                  = bytes(grains.ids);
 	result["position"]             = bytes(grains.position);
 	result["velocity"]             = bytes(grains.velocity);

@@ -35,8 +35,6 @@ public:
 private:
 	std::vector<int> subdomainBodies;
 	declare::Mutex   drawloopmutex;
-
-	struct Offsets;
 };
 static_assert(sizeof(BodyContainer) == 200, "BodyContainer");
 YADE_INTERFACE_AT_(BodyContainer, dirty, 48) // right behind body

@@ -147,6 +147,7 @@ private:                                                                        
 	friend class boost::serialization::access;                                                                                                             \
 	template <class Archive> void serialize(Archive& archive, const unsigned int)                                                                          \
 	{                                                                                                                                                      \
+		if (Archive::is_saving::value) preSave(*this);                                                                                                 \
 		archive& boost::serialization::make_nvp(#Base, boost::serialization::base_object<Base>(*this));                                                \
 		::yade::attributes::serialize(archive, *this);                                                                                                 \
 		if (Archive::is_loading::value) postLoad(*this); /* O.load doesn't call callPostLoad() of a plugin's classes */                                \

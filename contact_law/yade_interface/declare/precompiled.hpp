@@ -1,5 +1,4 @@
 // Compiled once, included before every file that sees a YADE type: Boost and Eigen are nearly all of what the compiler has to read.
-#pragma once
 #include <core/Omega.hpp>
 #include <core/Interaction.hpp>
 #include <core/Scene.hpp>

@@ -1,12 +1,18 @@
 // Goes through the table of members, and through the versions.
 #include "layouts.hpp"
+#include <algorithm>
 #include <set>
+
+#ifndef CONTACT_LAW_YADE_VERSION
+#define CONTACT_LAW_YADE_VERSION "2023.02a"
+#endif
 
 namespace contact_law {
 namespace proof {
 
 	namespace {
-		const char* const describedVersion = "2023.02a";
+		// With YADE_INCLUDE, the version of that source (make YADE_VERSION=...).
+		const char* const describedVersion = CONTACT_LAW_YADE_VERSION;
 
 		py::object wrapper() { return py::import("yade.wrapper"); }
 
@@ -36,8 +42,8 @@ namespace proof {
 
 	std::string refusal(const std::string& what, const std::string& where)
 	{
-		return "contact_law: refusing to load: " + what + " (" + where + "). This plugin is for YADE " + describedVersion
-		        + " as Debian 12 ships it; install that yade, or compile the plugin against your YADE's source with make YADE_INCLUDE=/path/to/its/source.";
+		return "contact_law: refusing to load: " + what + " (" + where + "). It was compiled for YADE " + describedVersion
+		        + "; use that one (Debian 12 ships 2023.02a), or compile for yours: make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version.";
 	}
 
 	py::object make(const char* className) { return wrapper().attr(className)(); }

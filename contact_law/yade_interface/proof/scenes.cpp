@@ -42,7 +42,7 @@ namespace proof {
 			return "";
 		}
 
-		shared_ptr<Body> sphereWithId(py::object& keepAlive)
+		shared_ptr<Body> newBody(py::object& keepAlive)
 		{
 			keepAlive = make("Body");
 			return py::extract<shared_ptr<Body>>(keepAlive)();
@@ -51,11 +51,14 @@ namespace proof {
 		std::string differenceInContainers(Scene& scene)
 		{
 			py::object             body1, body2;
-			const shared_ptr<Body> first = sphereWithId(body1), second = sphereWithId(body2);
+			const shared_ptr<Body> first = newBody(body1), second = newBody(body2);
 			BodyContainer&         bodies = *scene.bodies;
 			bodies.insert(first);
 			bodies.insert(second);
-			if (bodies.size() != 2 || bodies[0] != first || bodies[1] != second || bodies.end() - bodies.begin() != 2 || second->getId() != 1)
+			int seen = 0;
+			for (const auto& body : bodies)
+				seen += body == first || body == second;
+			if (seen != 2 || bodies.size() != 2 || bodies[0] != first || bodies[1] != second || second->getId() != 1)
 				return refusal("BodyContainer doesn't hold the bodies that it was given", "byte 24");
 
 			py::object                    contact = make("Interaction");

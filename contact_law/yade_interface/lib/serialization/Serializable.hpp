@@ -44,6 +44,7 @@ public:
 
 	// found by name lookup when a class has no postLoad of its own
 	template <class T> void postLoad(T&) { }
+	template <class T> void preSave(T&) { }
 
 	SAVED_BY_YADE_MEMBER
 };

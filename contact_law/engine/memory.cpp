@@ -1,0 +1,116 @@
+// The whole state of a run as a row of numbers, for checkpoints that go on to the same bits.
+#include "dynamics.hpp"
+#include <stdexcept>
+
+namespace contact_law {
+
+namespace {
+	class Reader {
+	public:
+		explicit Reader(const std::vector<double>& from_)
+		        : from(from_)
+		{
+		}
+		double next()
+		{
+			if (at == from.size()) throw std::invalid_argument("the checkpoint of the grains is shorter than it should be: it was not written by this version");
+			return from[at++];
+		}
+		int  integer() { return int(next()); }
+		bool done() const { return at == from.size(); }
+
+	private:
+		const std::vector<double>& from;
+		std::size_t                at = 0;
+	};
+
+	void remember(std::vector<double>& to, const Contact& c)
+	{
+		const Vec3<double>&p = c.history.pointers.n1, &q = c.history.pointers.n2;
+		to.insert(to.end(), { double(c.i), double(c.j), p.x, p.y, p.z, q.x, q.y, q.z, c.history.twist, c.drag, c.overlap });
+	}
+}
+
+std::vector<double> Dynamics::remember() const
+{
+	std::vector<double> to { double(count) };
+	to.insert(to.end(), original.begin(), original.end());
+	to.insert(to.end(), { double(domains.size()), travelSinceFar, travelSinceNear, double(contactUpdates), double(farRebuilds), double(nearRebuilds) });
+	for (int k = 0; k < count; ++k) {
+		const double* numbers = &setting.grains[k].x;
+		to.insert(to.end(), numbers, numbers + sizeof(Grain) / sizeof(double));
+		if (setting.hasDrag()) to.insert(to.end(), { setting.previous[k].x, setting.previous[k].y, setting.previous[k].z });
+	}
+	for (const auto& domain : domains) {
+		const Dissipation& d = domain->sums.dissipated;
+		to.insert(to.end(), { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork, double(domain->events) });
+		for (const ContactList& list : domain->contacts) {
+			to.push_back(list.size());
+			for (int lane = 0; lane < list.size(); ++lane) {
+				to.push_back(list.alive(lane));
+				if (list.alive(lane)) contact_law::remember(to, list.get(lane, setting.common));
+			}
+		}
+	}
+	return to;
+}
+
+void Dynamics::recallOrder(const std::vector<double>& memory)
+{
+	Reader from(memory);
+	if (from.integer() != count) throw std::invalid_argument("the checkpoint holds another number of grains than the scene");
+	original.resize(count);
+	for (int& index : original)
+		index = from.integer();
+}
+
+void Dynamics::recall(const std::vector<double>& memory)
+{
+	Reader from(memory);
+	for (int skip = 0; skip <= count; ++skip)
+		from.next(); // recallOrder has read these
+	if (from.integer() != int(domains.size())) throw std::invalid_argument("the checkpoint holds another number of domains than the engine");
+	travelSinceFar  = from.next();
+	travelSinceNear = from.next();
+	contactUpdates  = long(from.next());
+	farRebuilds     = long(from.next());
+	nearRebuilds    = long(from.next());
+	for (int k = 0; k < count; ++k) {
+		double* numbers = &setting.grains[k].x;
+		for (std::size_t n = 0; n < sizeof(Grain) / sizeof(double); ++n)
+			numbers[n] = from.next();
+		if (setting.hasDrag()) {
+			PreviousVelocity& v = setting.previous[k];
+			v.x = from.next(), v.y = from.next(), v.z = from.next();
+		}
+	}
+	for (auto& domain : domains) {
+		Dissipation& d  = domain->sums.dissipated;
+		for (double* number : { &d.sliding, &d.rolling, &d.twisting, &d.connection, &d.disconnection, &d.drag, &domain->sums.eventWork })
+			*number = from.next();
+		domain->events = long(from.next());
+		for (ContactList& list : domain->contacts) {
+			list.clear();
+			for (int lanes = from.integer(); lanes > 0; --lanes) {
+				if (!from.next()) {
+					list.appendDead();
+					continue;
+				}
+				Contact c {};
+				c.i = from.integer(), c.j = from.integer();
+				Pointers<double>& p = c.history.pointers;
+				for (double* number : { &p.n1.x, &p.n1.y, &p.n1.z, &p.n2.x, &p.n2.y, &p.n2.z, &c.history.twist, &c.drag, &c.overlap })
+					*number = from.next();
+				c.constants = setting.constantsOf(c.i, c.j);
+				list.append(c);
+			}
+		}
+	}
+	if (!from.done()) throw std::invalid_argument("the checkpoint of the grains is longer than it should be: it was not written by this version");
+	const double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
+	refreshLists(true); // the pairs may be others than before, the contacts' order and the births to come are not
+	travelSinceFar  = sinceFar;
+	travelSinceNear = sinceNear;
+}
+
+} // namespace contact_law

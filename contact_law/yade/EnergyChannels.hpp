@@ -1,0 +1,42 @@
+// The energy channels in O.energy, by the names that all of the project uses.
+#pragma once
+#include <core/EnergyTracker.hpp>
+#include <core/Scene.hpp>
+#include <array>
+#include <atomic>
+
+namespace yade {
+
+class EnergyChannels {
+public:
+	enum Channel { Kinetic, Normal, Sliding, Rolling, Twisting, SlidingDissipation, RollingDissipation, TwistingDissipation, Connection, Disconnection, Drag, count };
+
+	// Energies held now are booked anew each step; losses add up.
+	static bool perStep(int channel) { return channel <= Twisting; }
+
+	// EnergyTracker forgets its names when it is cleared, and may give them out from one thread only: to be called once a step before adding.
+	void prepare(Scene& scene)
+	{
+		if (preparedAt == scene.iter) return;
+#pragma omp critical(EnergyChannelsPrepare)
+		if (preparedAt != scene.iter) {
+			static const char* const names[count] = { "kinetic",           "normal",             "sliding",             "rolling",    "twisting",     "slidingDissipation",
+				                                  "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag" };
+			for (int channel = 0; channel < count; ++channel) {
+				ids[channel] = -1;
+				scene.energy->add(0., names[channel], ids[channel], perStep(channel));
+			}
+			preparedAt = scene.iter;
+		}
+	}
+	void add(Scene& scene, Channel channel, double energy)
+	{
+		if (energy != 0) scene.energy->add(energy, "", ids[channel], perStep(channel));
+	}
+
+private:
+	std::array<int, count> ids {};
+	std::atomic<long>      preparedAt { -2 };
+};
+
+} // namespace yade

@@ -1,0 +1,200 @@
+#include "JKRWadaEngine.hpp"
+#include "../engine/dynamics.hpp"
+#include "JKRWada.hpp"
+#include <core/Body.hpp>
+#include <core/State.hpp>
+#include <pkg/common/Sphere.hpp>
+#include <algorithm>
+#include <stdexcept>
+
+namespace yade {
+
+using contact_law::Dynamics;
+using contact_law::GrainInput;
+
+YADE_PLUGIN((JKRWadaEngine));
+CREATE_LOGGER(JKRWadaEngine);
+
+struct JKRWadaEngine::Run {
+	Dynamics                 dynamics;
+	std::vector<GrainInput>  written; // the grains as the bodies were left
+	contact_law::Dissipation booked;  // what O.energy has been told of
+};
+
+namespace {
+	[[noreturn]] void refuse(const std::string& what) { throw std::runtime_error("JKRWadaEngine: " + what); }
+
+	void copy(const Vector3r& from, double (&to)[3])
+	{
+		for (int k = 0; k < 3; ++k)
+			to[k] = from[k];
+	}
+
+	GrainInput grainOf(const Body& body)
+	{
+		const State& s = *body.state;
+		GrainInput   g {};
+		copy(s.pos, g.position);
+		copy(s.vel, g.velocity);
+		copy(s.angVel, g.angularVelocity);
+		g.mass    = s.mass;
+		g.inertia = s.inertia[0];
+		return g;
+	}
+
+	bool sameMotion(const GrainInput& a, const GrainInput& b)
+	{
+		const auto same = [](const double(&x)[3], const double(&y)[3]) { return std::equal(x, x + 3, y); };
+		return same(a.position, b.position) && same(a.velocity, b.velocity) && same(a.angularVelocity, b.angularVelocity);
+	}
+
+	struct SceneGrains {
+		std::vector<GrainInput>             grains;
+		std::vector<contact_law::Material> materials;
+	};
+
+	bool finite(const GrainInput& g)
+	{
+		const auto all = [](const double(&x)[3]) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); };
+		return all(g.position) && all(g.velocity) && all(g.angularVelocity);
+	}
+
+	SceneGrains read(const Scene& scene)
+	{
+		SceneGrains               result;
+		std::vector<const JKRMat*> kinds;
+		for (const auto& body : *scene.bodies) {
+			const std::string who = "body " + std::to_string(body ? body->getId() : -1);
+			if (!body) refuse("erased bodies are not supported: make the scene without them");
+			const auto* sphere   = dynamic_cast<const Sphere*>(body->shape.get());
+			const auto* material = dynamic_cast<const JKRMat*>(body->material.get());
+			if (!sphere || !material) refuse(who + " is not a sphere of JKRMat; this engine moves nothing else");
+			if (body->state->blockedDOFs) refuse(who + " has blocked degrees of freedom; use the functors for such scenes");
+			GrainInput g = grainOf(*body);
+			g.radius     = sphere->radius;
+			if (!finite(g)) refuse(who + " has a position or velocity that is not a finite number");
+			if (!(g.radius > 0) || !(g.mass > 0) || !(g.inertia > 0)) refuse(who + ": radius, mass and moment of inertia must be positive");
+			const auto known = std::find(kinds.begin(), kinds.end(), material);
+			g.kind           = int(known - kinds.begin());
+			if (known == kinds.end()) {
+				kinds.push_back(material);
+				result.materials.push_back(material->forKernel());
+			}
+			result.grains.push_back(g);
+		}
+		return result;
+	}
+}
+
+void JKRWadaEngine::start()
+{
+	if (scene->isPeriodic) refuse("periodic cells are not supported yet; use the functors");
+	if (subSteps < 1) refuse("subSteps = " + std::to_string(subSteps) + ", allowed: 1 or more");
+	const SceneGrains now = read(*scene);
+	if (now.grains.empty()) refuse("there are no bodies");
+	Dynamics::Options options;
+	options.dt            = scene->dt / subSteps;
+	options.linearDamping = linearDamping;
+	options.domains       = domains;
+	options.threads       = threads;
+	options.instructions  = instructions;
+	bool drag             = linearDamping > 0;
+	for (const auto& material : now.materials)
+		drag = drag || material.viscoelasticTime > 0;
+	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
+	const bool continued = !memory.empty();
+	if (continued) options.dt = smallStep;
+	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains, {} });
+	smallStep = options.dt;
+	if (continued) current->booked = current->dynamics.energies().dissipated;
+	memory.clear();
+}
+
+// Bodies that a script moved or pushed since the last step.
+void JKRWadaEngine::takeChanges()
+{
+	if (scene->bodies->size() != current->written.size()) refuse("bodies were added or erased after the start; make a new engine");
+	for (std::size_t k = 0; k < current->written.size(); ++k) {
+		const GrainInput now = grainOf(*(*scene->bodies)[int(k)]);
+		if (sameMotion(now, current->written[k])) continue;
+		if (!finite(now)) refuse("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
+		current->dynamics.set(int(k), now);
+	}
+}
+
+void JKRWadaEngine::action()
+{
+	if (!current) start();
+	else takeChanges();
+	if (scene->dt / subSteps != smallStep) refuse("O.dt or subSteps changed after the start; make a new engine");
+	current->dynamics.setThreads(threads);
+	current->dynamics.run(subSteps);
+	writeBodies();
+	if (scene->trackEnergy) writeEnergies();
+}
+
+void JKRWadaEngine::writeBodies()
+{
+	std::vector<GrainInput> now = current->written;
+	current->dynamics.read(now);
+	for (std::size_t k = 0; k < now.size(); ++k)
+		if (!finite(now[k])) // before anything is written: the bodies keep the last good state
+			refuse("the run went wrong at t = " + boost::lexical_cast<std::string>(scene->time + scene->dt) + " s: body " + std::to_string(k)
+			       + " has no finite position or velocity any more; O.bodies hold the state of t = " + boost::lexical_cast<std::string>(scene->time) + " s. A smaller step may help");
+	for (std::size_t k = 0; k < now.size(); ++k) {
+		State& s = *(*scene->bodies)[int(k)]->state;
+		s.pos    = Vector3r(now[k].position[0], now[k].position[1], now[k].position[2]);
+		s.vel    = Vector3r(now[k].velocity[0], now[k].velocity[1], now[k].velocity[2]);
+		s.angVel = Vector3r(now[k].angularVelocity[0], now[k].angularVelocity[1], now[k].angularVelocity[2]);
+	}
+	current->written.swap(now);
+}
+
+void JKRWadaEngine::writeEnergies()
+{
+	using C = EnergyChannels;
+	const contact_law::Energies now = current->dynamics.energies();
+	channels.prepare(*scene);
+	const auto add = [this](C::Channel channel, double energy) { channels.add(*scene, channel, energy); };
+	add(C::Kinetic, now.kinetic);
+	add(C::Normal, now.stored.normal);
+	add(C::Sliding, now.stored.sliding);
+	add(C::Rolling, now.stored.rolling);
+	add(C::Twisting, now.stored.twisting);
+	add(C::SlidingDissipation, now.dissipated.sliding - current->booked.sliding);
+	add(C::RollingDissipation, now.dissipated.rolling - current->booked.rolling);
+	add(C::TwistingDissipation, now.dissipated.twisting - current->booked.twisting);
+	add(C::Connection, now.dissipated.connection - current->booked.connection);
+	add(C::Disconnection, now.dissipated.disconnection - current->booked.disconnection);
+	add(C::Drag, now.dissipated.drag - current->booked.drag);
+	current->booked = now.dissipated;
+}
+
+void JKRWadaEngine::preSave(JKRWadaEngine&) { memory = current ? current->dynamics.remember() : std::vector<Real>(); }
+
+bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces) const
+{
+	if (!current) return false;
+	current->dynamics.eachContact([&](const contact_law::Contact& contact, int first, int second, double normalForce) {
+		(void)contact;
+		pairs.push_back(first);
+		pairs.push_back(second);
+		normalForces.push_back(normalForce);
+	});
+	return true;
+}
+
+boost::python::dict JKRWadaEngine::statistics() const
+{
+	boost::python::dict result;
+	if (!current) return result;
+	result["contacts"]       = current->dynamics.contactCount();
+	result["contactUpdates"] = current->dynamics.contactUpdates;
+	result["events"]         = current->dynamics.events();
+	result["farRebuilds"]    = current->dynamics.farRebuilds;
+	result["nearRebuilds"]   = current->dynamics.nearRebuilds;
+	result["instructions"]   = current->dynamics.instructions();
+	return result;
+}
+
+} // namespace yade

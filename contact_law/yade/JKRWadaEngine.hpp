@@ -1,0 +1,52 @@
+// The fused engine: neighbour search, contact law and leapfrog of JKR-Wada grains in arrays of its own.
+#pragma once
+#include "EnergyChannels.hpp"
+#include <core/GlobalEngine.hpp>
+#include <boost/python.hpp>
+#include <memory>
+#include <vector>
+
+namespace yade {
+
+class JKRWadaEngine : public GlobalEngine {
+	struct Run; // the arrays, made at the first step
+	std::shared_ptr<Run> current;
+	EnergyChannels       channels;
+
+	void start();
+	void takeChanges();
+	void writeBodies();
+	void writeEnergies();
+
+public:
+	void action() override;
+	void preSave(JKRWadaEngine&);
+	// Adds this engine's arrays to a snapshot (JKRWadaSnapshot); false before the first step.
+	bool                addContacts(std::vector<int>& pairs, std::vector<double>& normalForces) const;
+	boost::python::dict statistics() const;
+	virtual ~JKRWadaEngine() {}
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(JKRWadaEngine, GlobalEngine,
+		"Moves spheres of :yref:`JKRMat` under the contact law of :yref:`Law2_ScGeom_JKRWadaPhys_JKRWada`, much faster than YADE's loop: it replaces ForceResetter, collider, "
+		"InteractionLoop and NewtonIntegrator. Each O.step makes subSteps steps of O.dt/subSteps; after it O.bodies are current (positions and velocities of one and the same moment), "
+		"and so is O.energy when O.trackEnergy. Contacts are not in O.interactions; contact_law.snapshot() has them. "
+		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
+		((int, subSteps, 1, , "Small steps in one O.step."))
+		((int, threads, 1, , "Threads to use, at most as many as domains."))
+		((int, domains, 2, , "Shares the grains are divided into. Another number changes results by rounding."))
+		((std::string, instructions, "", , "Instruction set: 'avx512', 'avx2', 'portable', or '' for the best this machine has. Another one changes results by rounding."))
+		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
+		((bool, sliding, true, , "Whether contacts resist sliding."))
+		((bool, rolling, true, , "Whether contacts resist rolling."))
+		((bool, twisting, true, , "Whether contacts resist twisting."))
+		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
+		((std::vector<Real>, memory, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint.")),
+		,
+		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, contactUpdates (lane updates so far), events (births, breaks, slips), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
+	);
+	// clang-format on
+	DECLARE_LOGGER;
+};
+REGISTER_SERIALIZABLE(JKRWadaEngine);
+
+} // namespace yade
