@@ -33,10 +33,13 @@ FLAGS := -std=c++17 -fPIC -fopenmp -O2 -ffp-contract=off -Wall -Wextra -MMD -MP
 YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT \
                     -DBOOST_BIND_GLOBAL_PLACEHOLDERS -DBOOST_ALLOW_DEPRECATED_HEADERS # Boost.Python's own use of older Boost
 ifdef YADE_INCLUDE
-YADE_DEFINITIONS += -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DYADE_BOOST_LOG \
-                    -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE
+PACKAGES += libopenmpi-dev
+YADE_DEFINITIONS += -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MULTI_HP -DMAX_LOG_LEVEL=5 \
+                    -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE= \
+                    -DOMPI_SKIP_MPICXX -isystem /usr/lib/x86_64-linux-gnu/openmpi/include
 endif
-YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) -I$(or $(YADE_INCLUDE),contact_law/yade_interface) -isystem /usr/include/eigen3 -isystem /usr/include/python3.11
+YADE_HEADERS = $(if $(YADE_INCLUDE),-isystem $(YADE_INCLUDE),-Icontact_law/yade_interface)
+YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python3.11
 
 # Files of the engine see no YADE type. Those with an instruction set in their name run only where the processor has it.
 ENGINE_FLAGS := $(FLAGS) -O3 -fno-math-errno -fno-trapping-math

@@ -81,3 +81,22 @@ def momenta():
         p += s.mass * v
         l += s.mass * np.cross(x, v) + np.array(s.inertia) * np.array(s.angVel)
     return p, l
+
+
+def converging(count, seed, materials, radii, speed=5.0, spin=2e7):
+    """Grains on a loose lattice (no contacts), all flying towards the middle with some spread, and spinning."""
+    random = np.random.default_rng(seed)
+    side = int(np.ceil(count ** (1 / 3)))
+    sites = [np.array([a, b, c]) - (side - 1) / 2 for a in range(side) for b in range(side) for c in range(side)][:count]
+    for k, site in enumerate(sites):
+        radius = radii[k % len(radii)]
+        x = 2.02 * max(radii) * (site + 0.004 * random.normal(size=3))
+        grain(x, radius, materials[k % len(materials)], -speed * site + 0.2 * speed * random.normal(size=3), spin * random.normal(size=3))
+
+
+def fused_engine(**options):
+    O.engines = [JKRWadaEngine(**options)]
+
+
+def positions():
+    return np.array([b.state.pos for b in O.bodies])

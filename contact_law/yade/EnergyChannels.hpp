@@ -11,7 +11,7 @@ class EnergyChannels {
 public:
 	enum Channel { Kinetic, Normal, Sliding, Rolling, Twisting, SlidingDissipation, RollingDissipation, TwistingDissipation, Connection, Disconnection, Drag, count };
 
-	// Energies held now are booked anew each step; losses add up.
+	// Whether add() books a channel anew each step: energies held now are, losses add up. (YADE's ForceResetter is what empties those.)
 	static bool perStep(int channel) { return channel <= Twisting; }
 
 	// EnergyTracker forgets its names when it is cleared, and may give them out from one thread only: to be called once a step before adding.
@@ -29,14 +29,28 @@ public:
 			preparedAt = scene.iter;
 		}
 	}
+	/* For an engine that replaces ForceResetter, so that nobody empties channels between steps: the channels' values at present. `known`: O.energy
+	 * holds them already, from a checkpoint. */
+	void set(Scene& scene, const std::array<double, count>& values, bool known = false)
+	{
+		int kinetic = -1;
+		scene.energy->findId("kinetic", kinetic, false, false);
+		if (kinetic < 0) last.fill(0); // O.energy is new, or was cleared
+		preparedAt = -2;
+		prepare(scene);
+		for (int channel = 0; channel < count; ++channel)
+			if (!known && values[channel] != last[channel]) scene.energy->add(values[channel] - last[channel], "", ids[channel], perStep(channel));
+		last = values;
+	}
 	void add(Scene& scene, Channel channel, double energy)
 	{
 		if (energy != 0) scene.energy->add(energy, "", ids[channel], perStep(channel));
 	}
 
 private:
-	std::array<int, count> ids {};
-	std::atomic<long>      preparedAt { -2 };
+	std::array<int, count>    ids {};
+	std::array<double, count> last {};
+	std::atomic<long>         preparedAt { -2 };
 };
 
 } // namespace yade

@@ -16,9 +16,8 @@ YADE_PLUGIN((JKRWadaEngine));
 CREATE_LOGGER(JKRWadaEngine);
 
 struct JKRWadaEngine::Run {
-	Dynamics                 dynamics;
-	std::vector<GrainInput>  written; // the grains as the bodies were left
-	contact_law::Dissipation booked;  // what O.energy has been told of
+	Dynamics                dynamics;
+	std::vector<GrainInput> written; // the grains as the bodies were left
 };
 
 namespace {
@@ -104,9 +103,9 @@ void JKRWadaEngine::start()
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
 	const bool continued = !memory.empty();
 	if (continued) options.dt = smallStep;
-	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains, {} });
+	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains });
 	smallStep = options.dt;
-	if (continued) current->booked = current->dynamics.energies().dissipated;
+	if (continued && scene->trackEnergy) writeEnergies(true);
 	memory.clear();
 }
 
@@ -130,7 +129,7 @@ void JKRWadaEngine::action()
 	current->dynamics.setThreads(threads);
 	current->dynamics.run(subSteps);
 	writeBodies();
-	if (scene->trackEnergy) writeEnergies();
+	if (scene->trackEnergy) writeEnergies(false);
 }
 
 void JKRWadaEngine::writeBodies()
@@ -150,24 +149,11 @@ void JKRWadaEngine::writeBodies()
 	current->written.swap(now);
 }
 
-void JKRWadaEngine::writeEnergies()
+void JKRWadaEngine::writeEnergies(bool known)
 {
-	using C = EnergyChannels;
-	const contact_law::Energies now = current->dynamics.energies();
-	channels.prepare(*scene);
-	const auto add = [this](C::Channel channel, double energy) { channels.add(*scene, channel, energy); };
-	add(C::Kinetic, now.kinetic);
-	add(C::Normal, now.stored.normal);
-	add(C::Sliding, now.stored.sliding);
-	add(C::Rolling, now.stored.rolling);
-	add(C::Twisting, now.stored.twisting);
-	add(C::SlidingDissipation, now.dissipated.sliding - current->booked.sliding);
-	add(C::RollingDissipation, now.dissipated.rolling - current->booked.rolling);
-	add(C::TwistingDissipation, now.dissipated.twisting - current->booked.twisting);
-	add(C::Connection, now.dissipated.connection - current->booked.connection);
-	add(C::Disconnection, now.dissipated.disconnection - current->booked.disconnection);
-	add(C::Drag, now.dissipated.drag - current->booked.drag);
-	current->booked = now.dissipated;
+	const contact_law::Energies     now = current->dynamics.energies();
+	const contact_law::Dissipation& d   = now.dissipated;
+	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag }, known);
 }
 
 void JKRWadaEngine::preSave(JKRWadaEngine&) { memory = current ? current->dynamics.remember() : std::vector<Real>(); }

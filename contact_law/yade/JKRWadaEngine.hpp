@@ -16,7 +16,7 @@ class JKRWadaEngine : public GlobalEngine {
 	void start();
 	void takeChanges();
 	void writeBodies();
-	void writeEnergies();
+	void writeEnergies(bool known);
 
 public:
 	void action() override;

@@ -143,7 +143,7 @@ WRONG = [
     (['radius=-4'], 'collide.py: radius = -4: not allowed; allowed: > 0'),
     (['filling=0.76'], 'collide.py: filling = 0.76: more than the lattice holds; allowed: at most 0.7519'),
     (['stepFraction=0.3', 'viscoelasticTime=6e-12'],
-     'collide.py: stepFraction = 0.3: unstable with this drag; allowed: '),
+     'collide.py: stepFraction = 0.3: unstable at this filling and drag; allowed: '),
     (['threads=2'], 'collide.py: threads = 2: YADE was started with 1; allowed: '),
     (['out=/dev/null/run'],
      'collide.py: out = /dev/null/run: Not a directory; allowed: a folder that can be written'),

@@ -7,8 +7,9 @@ from yade_scripts import arguments, parameters
 from yade_scripts.materials import MATERIALS
 
 # Constants of a pair of ice grains, as the plugin's pairConstants names them (values from A22's formulas).
-ICE_PAIR = dict(timeUnit=1.936e-10, dragPerContactRadius=0.0, linearDrag=0.0,
-                equilibriumContactRadius=12.3712e-9, reducedMass=2.0944e-18)
+ICE_PAIR = dict(timeUnit=1.936e-10, dragPerContactRadius=0.0, linearDrag=0.0, reducedMass=2.0944e-18,
+                reducedRadius=5e-8, equilibriumContactRadius=12.3712e-9, equilibriumOverlap=1.02031e-9,
+                pullOffForce=47.1239e-9, slidingStiffness=79.176)
 
 
 def with_drag(viscoelastic_time):
@@ -86,11 +87,14 @@ def test_wrong_parameters(texts, message):
     assert message in str(error.value) and '\n' not in str(error.value) and 'allowed' in str(error.value)
 
 
-def test_drag_lowers_the_stable_step():
-    assert parameters.step_limit(ICE_PAIR) == pytest.approx(0.4)
-    limits = [parameters.step_limit(with_drag(t)) for t in (0, 1e-12, 3e-12, 6e-12, 1e-10)]
+def test_drag_and_dense_packings_lower_the_stable_step():
+    """Below the steps at which runs blew up: see step_limit."""
+    assert parameters.step_limit(ICE_PAIR, 0.3) == parameters.step_limit(ICE_PAIR, 0.4) == 0.4
+    assert 0.3 < parameters.step_limit(ICE_PAIR, 0.6) < 0.4
+    assert 0.25 < parameters.step_limit(ICE_PAIR, 0.74) < 0.35
+    limits = [parameters.step_limit(with_drag(t), 0.4) for t in (0, 1e-12, 3e-12, 6e-12, 1e-10)]
     assert limits == sorted(limits, reverse=True) and 0.1 < limits[3] < 0.25
-    with pytest.raises(parameters.ParameterError, match='stepFraction = 0.3: unstable with this drag'):
+    with pytest.raises(parameters.ParameterError, match='stepFraction = 0.3: unstable at this filling'):
         parameters.complete(parameters.parse({'stepFraction': '0.3'}), with_drag(6e-12), 1)
 
 

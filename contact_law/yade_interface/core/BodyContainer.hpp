@@ -1,6 +1,7 @@
-// All bodies of a scene, by id; erased ones leave an empty pointer.
+// All bodies of a scene, by id. Erased ones leave an empty pointer, which operator[] shows and the iterator skips.
 #pragma once
 #include <core/Body.hpp>
+#include <boost/iterator/filter_iterator.hpp>
 #include <vector>
 
 namespace yade {
@@ -8,14 +9,17 @@ namespace yade {
 class BodyContainer : public Serializable {
 public:
 	using ContainerT = std::vector<shared_ptr<Body>>;
-	using iterator   = ContainerT::iterator;
+	struct IsThere {
+		bool operator()(const shared_ptr<Body>& body) const { return bool(body); }
+	};
+	using iterator = boost::filter_iterator<IsThere, ContainerT::iterator>;
 
 	~BodyContainer() override;
 	YADE_INTERFACE_OVERRIDES_(BodyContainer)
 
-	// Always inline: libyade exports functions of these names, which return other types.
-	[[gnu::always_inline]] iterator                begin() { return body.begin(); }
-	[[gnu::always_inline]] iterator                end() { return body.end(); }
+	// Always inline: libyade exports functions of these names, whose iterator is another type.
+	[[gnu::always_inline]] iterator                begin() { return iterator(IsThere(), body.begin(), body.end()); }
+	[[gnu::always_inline]] iterator                end() { return iterator(IsThere(), body.end(), body.end()); }
 	[[gnu::always_inline]] size_t                  size() const { return body.size(); }
 	[[gnu::always_inline]] shared_ptr<Body>&       operator[](unsigned int id) { return body[id]; }
 	[[gnu::always_inline]] const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }

@@ -3,4 +3,4 @@
 #include <core/Interaction.hpp>
 #include <core/Scene.hpp>
 #include <lib/serialization/Serializable.hpp>
-#include <pkg/common/Dispatching.hpp>
+#include <core/Dispatching.hpp>

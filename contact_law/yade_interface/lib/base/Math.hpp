@@ -6,12 +6,37 @@
 #endif
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <boost/lexical_cast.hpp>
+#include <boost/pointer_cast.hpp>
+#include <boost/shared_ptr.hpp>
 #include <boost/serialization/is_bitwise_serializable.hpp>
 #include <boost/serialization/nvp.hpp>
 #include <cmath>
+#include <iostream>
 #include <limits>
+#include <list>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// What YADE's header of this name brings beside the numbers, and sources in its idiom rely on.
+#define YADE_CAST static_cast
+#define YADE_PTR_CAST ::boost::static_pointer_cast
+#define YADE_PTR_DYN_CAST ::boost::dynamic_pointer_cast
 
 namespace yade {
+
+using boost::shared_ptr;
+using std::cerr;
+using std::cout;
+using std::endl;
+using std::invalid_argument;
+using std::logic_error;
+using std::pair;
+using std::runtime_error;
+using std::string;
+using std::vector;
 
 using Real        = double;
 using Vector2r    = Eigen::Matrix<Real, 2, 1>;
@@ -26,6 +51,8 @@ template <class Scalar> struct Se3 {
 	Eigen::Quaternion<Scalar>   orientation;
 };
 using Se3r = Se3<Real>;
+
+const Real NaN = std::numeric_limits<Real>::quiet_NaN();
 
 static_assert(sizeof(Vector3r) == 24 && sizeof(Vector3i) == 12 && sizeof(Matrix3r) == 72 && sizeof(Quaternionr) == 32 && sizeof(Se3r) == 56, "Eigen's layouts");
 

@@ -1,15 +1,11 @@
 // What YADE makes by class name.
 #pragma once
+#include <lib/base/Math.hpp>
 #include <boost/enable_shared_from_this.hpp>
 #include <boost/shared_ptr.hpp>
 #include <string>
-#include <vector>
 
 namespace yade {
-
-using boost::shared_ptr;
-using std::string;
-using std::vector;
 
 class Factorable : public boost::enable_shared_from_this<Factorable> {
 public:

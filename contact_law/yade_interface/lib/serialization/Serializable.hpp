@@ -7,23 +7,12 @@
 #include <lib/base/Logging.hpp>
 #include <lib/base/Math.hpp>
 #include <lib/factory/ClassFactory.hpp>
-#include <boost/lexical_cast.hpp>
-#include <list>
-#include <map>
 #include <string>
 #include <vector>
-
-// what YADE's own header of this name has, and sources in its idiom rely on
-#define YADE_CAST static_cast
-#define YADE_PTR_CAST boost::static_pointer_cast
-#define YADE_PTR_DYN_CAST boost::dynamic_pointer_cast
 
 namespace yade {
 
 namespace py = ::boost::python;
-using boost::dynamic_pointer_cast;
-using boost::make_shared;
-using boost::static_pointer_cast;
 
 class Serializable : public Factorable {
 public:
