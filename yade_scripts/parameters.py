@@ -115,8 +115,7 @@ def complete(values, constants, threads):
 
 
 def step_limit(constants, filling):
-    """Largest stepFraction that is allowed, from the plugin's pairConstants of two equal grains, and the
-    filling.
+    """Largest stepFraction that is allowed; constants: the plugin's pairConstants of two equal grains.
 
     SAFETY times the step at which the first of two vibrations of a CPE packing grows, each an estimate that
     was compared with runs. All grains turning in phase, against 12 p sliding springs each (p the filling

@@ -118,10 +118,15 @@ void Dynamics::makeDomains()
 		domains.push_back(std::make_unique<Domain>(setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
 }
 
+void Dynamics::buildGrid()
+{
+	grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
+}
+
 void Dynamics::refreshLists(bool farToo)
 {
 	if (farToo) {
-		grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
+		buildGrid();
 		for (auto& domain : domains)
 			domain->findPairs(grid);
 		travelSinceFar = 0;
@@ -148,56 +153,53 @@ void Dynamics::firstForces()
 		kick(setting.grains[g], g, -0.5 * dt);
 }
 
+// One thread's share of a run; all threads take the same decisions from the same numbers.
+void Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
+{
+	const auto mine = [&](auto&& what) {
+		for (std::size_t d = thread; d < domains.size(); d += threads)
+			what(*domains[d]);
+	};
+	double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
+	for (long step = 0; step < steps; ++step) {
+		mine([](Domain& domain) { domain.integrate(); });
+		barrier.wait();
+		double fastest = 0;
+		for (const auto& domain : domains)
+			fastest = std::max(fastest, domain->fastestSquared);
+		const double travel = setting.dt * std::sqrt(3 * fastest); // of a component's square
+		sinceFar += travel;
+		sinceNear += travel;
+		if (2 * sinceNear > setting.nearGap) {
+			const bool farToo = 2 * sinceFar + setting.nearGap > setting.farGap;
+			if (farToo) {
+				if (thread == 0) buildGrid();
+				mine([](Domain& domain) { domain.sortContacts(); });
+				barrier.wait();
+				mine([this](Domain& domain) { domain.findPairs(grid); });
+				sinceFar = 0;
+			} else mine([](Domain& domain) { domain.findNearPairs(); });
+			sinceNear = 0;
+			if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
+		}
+		mine([](Domain& domain) { domain.addForces(); });
+		barrier.wait();
+	}
+	if (thread == 0) {
+		travelSinceFar  = sinceFar;
+		travelSinceNear = sinceNear;
+	}
+}
+
 void Dynamics::run(long steps)
 {
 	const int threads = std::max(1, std::min(options.threads, int(domains.size())));
-	long      updates = 0;
-#pragma omp parallel num_threads(threads) reduction(+ : updates)
-	{
-		const int thread = omp_get_thread_num();
-		double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
-		for (long step = 0; step < steps; ++step) {
-			double fastest = 0;
-			for (std::size_t d = thread; d < domains.size(); d += threads)
-				domains[d]->integrate();
-#pragma omp barrier
-			for (const auto& domain : domains)
-				fastest = std::max(fastest, domain->fastestSquared);
-			const double travel = setting.dt * std::sqrt(3 * fastest);
-			sinceFar += travel;
-			sinceNear += travel;
-			if (2 * sinceNear > setting.nearGap) {
-				const bool farToo = 2 * sinceFar + setting.nearGap > setting.farGap;
-				if (farToo) {
-#pragma omp barrier
-#pragma omp single
-					grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
-				}
-				for (std::size_t d = thread; d < domains.size(); d += threads) {
-					if (farToo) {
-						domains[d]->sortContacts();
-						domains[d]->findPairs(grid);
-					} else domains[d]->findNearPairs();
-				}
-				sinceNear = 0;
-				if (farToo) sinceFar = 0;
-				if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
-			}
-			for (std::size_t d = thread; d < domains.size(); d += threads) {
-				domains[d]->addForces();
-				for (const auto& list : domains[d]->contacts)
-					updates += list.size();
-			}
-#pragma omp barrier
-		}
-#pragma omp barrier
-#pragma omp single
-		{
-			travelSinceFar  = sinceFar;
-			travelSinceNear = sinceNear;
-		}
-	}
-	contactUpdates += updates;
+	Barrier   barrier(threads);
+#pragma omp parallel num_threads(threads)
+	runShare(steps, omp_get_thread_num(), threads, barrier);
+	for (const auto& domain : domains)
+		for (const auto& list : domain->contacts)
+			contactUpdates += steps * list.size();
 }
 
 void Dynamics::read(std::vector<GrainInput>& grains) const

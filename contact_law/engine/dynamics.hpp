@@ -1,5 +1,6 @@
 // Many grains through many steps: leapfrog over the domains, neighbour lists, threads. Knows nothing of YADE.
 #pragma once
+#include "barrier.hpp"
 #include "domain.hpp"
 #include <memory>
 #include <string>
@@ -64,7 +65,9 @@ private:
 	void makeDomains();
 	void recall(const std::vector<double>& memory);
 	void firstForces();
+	void buildGrid();
 	void refreshLists(bool farToo);
+	void runShare(long steps, int thread, int threads, Barrier&);
 
 	Options                              options;
 	Setting                              setting;

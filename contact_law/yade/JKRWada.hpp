@@ -5,7 +5,7 @@
 #include "EnergyChannels.hpp"
 #include <core/Interaction.hpp>
 #include <core/Scene.hpp>
-#include <pkg/common/Dispatching.hpp>
+#include <core/Dispatching.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>

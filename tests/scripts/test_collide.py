@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from running import COLLIDE, TINY, collide, environment, messages, read_arrays, read_json
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.parameters import FIELDS
 from yade_scripts.run_folder import CHANNELS, SERIES
 
@@ -89,6 +90,11 @@ def test_starts_at_rest_within_each_aggregate(run):
     towards_each_other = np.outer(1 - 2 * start['aggregate'], (velocity / 2, 0, 0))
     assert np.allclose(start['velocity'], towards_each_other, rtol=0, atol=1e-9)
     assert np.all(start['position'][:26, 0] < 0) and np.all(start['position'][26:, 0] > 0)
+
+
+def test_overlap_of_packings_made_without_yade_is_the_plugins(run):
+    assert read_json(run, 'run.json')['derived']['equilibriumOverlap'] == pytest.approx(
+        equilibrium_overlap(MATERIALS['ice']), rel=1e-12)
 
 
 def test_momentum_is_conserved_to_rounding(run):

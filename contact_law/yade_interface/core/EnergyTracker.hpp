@@ -18,8 +18,6 @@ public:
 	void add(const Real& value, const std::string& name, int& id, bool reset = false);
 	// id stays negative for a name that isn't there, unless newIfNotFound
 	void findId(const std::string& name, int& id, bool reset = false, bool newIfNotFound = true);
-	// Sets id to that of the name; leaves -1 if there is none and none is to be made. Exported by libyade.
-	void findId(const std::string& name, int& id, bool reset = false, bool newIfNotFound = true);
 	Real total() const;
 };
 static_assert(sizeof(EnergyTracker) == 176, "EnergyTracker");

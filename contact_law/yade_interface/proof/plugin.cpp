@@ -1,6 +1,7 @@
 #include "plugin.hpp"
 #include "layouts.hpp"
 #include <core/Omega.hpp>
+#include <dlfcn.h>
 #include <iostream>
 
 #ifndef CONTACT_LAW_COMMIT
@@ -37,7 +38,15 @@ namespace {
 	bool        fromPython  = false; // loaded by import contact_law, which reports a refusal itself
 	std::string whyRefused;
 
-	[[maybe_unused]] bool isInPython(const std::string& className) { return PyObject_HasAttrString(boost::python::import("yade.wrapper").ptr(), className.c_str()); }
+#if !CONTACT_LAW_WAITS_FOR_PROOF
+	// by where its virtual functions are
+	bool isInThisLibrary(const std::string& className)
+	{
+		const shared_ptr<Factorable> object = ClassFactory::instance().createShared(className);
+		Dl_info                      there, here;
+		return dladdr(*reinterpret_cast<void**>(object.get()), &there) && dladdr(&whyRefused, &here) && there.dli_fbase == here.dli_fbase;
+	}
+#endif
 
 	std::vector<std::string>& ownClasses()
 	{
@@ -45,10 +54,10 @@ namespace {
 		return pluginClassesAwaitingProof();
 #else
 		static std::vector<std::string> names = [] {
-			std::vector<std::string> unknown;
+			std::vector<std::string> own;
 			for (const std::string& name : ClassFactory::instance().pluginClasses)
-				if (!isInPython(name) && name != "ContactLawPlugin") unknown.push_back(name);
-			return unknown;
+				if (name != "ContactLawPlugin" && isInThisLibrary(name)) own.push_back(name);
+			return own;
 		}();
 		return names;
 #endif
