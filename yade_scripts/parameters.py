@@ -12,6 +12,7 @@ SAFETY = STABLE_STEP / 0.5
 # A24 follows aggregates of 80 grain radii for 1000 ns: 12.5 ns per grain radius, in units of ice's t0.
 DURATION_PER_RADIUS = 64.6
 MOST_GRAINS = 5_000_000
+FUSED_THREADS = 2  # JKRWadaEngine's domains
 
 
 class ParameterError(ValueError):
@@ -57,9 +58,10 @@ FIELDS = [
           'time that is simulated (64.6 t0 per grain radius of R: 12.5 ns for ice)'),
     Field('stepFraction', float, 0.1, 't0', f'> 0 and <= {STABLE_STEP}, less in dense packings and with drag',
           lambda x: 0 < x <= STABLE_STEP, 'time step'),
-    Field('engine', str, 'functors', '', *_one_of(['functors']), 'which engine moves the grains'),
+    Field('engine', str, 'fused', '', *_one_of(['fused', 'functors']),
+          "JKRWadaEngine, or YADE's own loop (the reference, much slower)"),
     Field('threads', int, None, '', '>= 1', lambda n: n >= 1,
-          'threads (those that yade -j or yade-batch set)'),
+          'threads: 1 or 2 for the fused engine; those that yade -j or yade-batch set for the functors'),
     Field('out', str, None, '', 'a folder that can be written', lambda text: text != '',
           'run folder (runs/<description of the row, or a name made from the parameters>)'),
     Field('overwrite', int, 0, '', '0 or 1', lambda n: n in (0, 1), '1: replace a run that has ended'),
@@ -105,7 +107,12 @@ def complete(values, constants, threads):
     if values['stepFraction'] > limit:
         raise ParameterError(f'stepFraction = {values["stepFraction"]:g}: unstable at this filling and drag; '
                              f'allowed: at most {limit:.3g} (t0)')
-    if values['threads'] not in (None, threads):
+    if values['engine'] == 'fused':
+        threads = values['threads'] or min(threads, FUSED_THREADS)
+        if threads > FUSED_THREADS:
+            raise ParameterError(f'threads = {threads}: more than the fused engine has domains; allowed: 1 to '
+                                 f'{FUSED_THREADS}')
+    elif values['threads'] not in (None, threads):
         raise ParameterError(f'threads = {values["threads"]}: YADE was started with {threads}; allowed: '
                              'the same (yade -jN, or the column !OMP_NUM_THREADS of a table)')
     values = dict(values, threads=threads)

@@ -7,14 +7,14 @@ from yade_scripts.progress import Progress
 
 
 def run(steps, recorder, runner):
-    """Take steps+1 steps (the last one evaluates the end) and return (outcome, exit status).
+    """Take that many O.steps and return (outcome, exit status).
 
     recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
     taken, with one more step that records where it stopped; the outcome is then "interrupted".
     """
     omega, progress, stop = Omega(), Progress(steps), StopSignals()
     try:
-        for step in range(steps + 1):
+        for step in range(1, steps + 1):
             omega.step()
             progress.update(step)
             if recorder.error:

@@ -6,7 +6,7 @@ import numpy as np
 from yade import utils
 from yade.wrapper import (
     Bo1_Sphere_Aabb, ForceResetter, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
-    Ip2_JKRMat_JKRMat_JKRWadaPhys, JKRMat, Law2_ScGeom_JKRWadaPhys_JKRWada, NewtonIntegrator, Omega)
+    Ip2_JKRMat_JKRMat_JKRWadaPhys, JKRMat, JKRWadaEngine, Law2_ScGeom_JKRWadaPhys_JKRWada, NewtonIntegrator, Omega, PyRunner)
 
 # How far, in grain radii, a grain may move before the collider looks for neighbours again: less makes it look
 # more often, more makes every step test more pairs that don't touch. Measured at 6,400 grains, a step costs
@@ -58,8 +58,28 @@ def build(packings, velocities, plugin_material, time_step):
     return aggregate
 
 
-def engines(grain_radius, runner):
-    """The functor path: YADE's own engines with the plugin's law; runner comes last, after a whole step."""
+def start(values, grain_radius, schedule, history):
+    """Choose the engines that sample into history; returns (O.steps to take, the sampling PyRunner).
+
+    The fused engine takes the steps between two samples in one O.step, and its start is sampled here. With the
+    functors a sample comes at the beginning of a step, so that one more step is taken to sample the end.
+    """
+    omega = Omega()
+    runner = PyRunner(command='history.sample()', iterPeriod=schedule.interval, initRun=True)
+    if values['engine'] == 'functors':
+        omega.engines = functor_engines(grain_radius, runner)
+        return schedule.steps + 1, runner
+    runner.iterPeriod = 1
+    fused = JKRWadaEngine(subSteps=schedule.interval, threads=values['threads'])
+    omega.dt *= schedule.interval
+    omega.engines = [fused, runner]
+    fused.prepare()
+    history.sample()
+    return schedule.steps // schedule.interval, runner
+
+
+def functor_engines(grain_radius, runner):
+    """YADE's own engines with the plugin's law; runner comes last, after a whole step."""
     return [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=VERLET_DISTANCE * grain_radius),

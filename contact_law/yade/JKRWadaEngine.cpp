@@ -2,6 +2,7 @@
 #include "../engine/dynamics.hpp"
 #include "JKRWada.hpp"
 #include <core/Body.hpp>
+#include <core/Omega.hpp>
 #include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <algorithm>
@@ -129,6 +130,14 @@ void JKRWadaEngine::action()
 	current->dynamics.setThreads(threads);
 	current->dynamics.run(subSteps);
 	writeBodies();
+	if (scene->trackEnergy) writeEnergies(false);
+	actedAt = scene->iter;
+}
+
+void JKRWadaEngine::prepare()
+{
+	scene = Omega::instance().getScene().get();
+	if (!current) start();
 	if (scene->trackEnergy) writeEnergies(false);
 }
 

@@ -13,6 +13,8 @@ class JKRWadaEngine : public GlobalEngine {
 	std::shared_ptr<Run> current;
 	EnergyChannels       channels;
 
+	long                 actedAt = -1; // iteration
+
 	void start();
 	void takeChanges();
 	void writeBodies();
@@ -21,6 +23,8 @@ class JKRWadaEngine : public GlobalEngine {
 public:
 	void action() override;
 	void preSave(JKRWadaEngine&);
+	void prepare();
+	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// Adds this engine's arrays to a snapshot (JKRWadaSnapshot); false before the first step.
 	bool                addContacts(std::vector<int>& pairs, std::vector<double>& normalForces) const;
 	boost::python::dict statistics() const;
@@ -42,6 +46,7 @@ public:
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
 		((std::vector<Real>, memory, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint.")),
 		,
+		.def("prepare", &JKRWadaEngine::prepare, "Read the bodies and compute forces and energies without moving anything, so that O.energy and contact_law.snapshot() have the start.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, contactUpdates (lane updates so far), events (births, breaks, slips), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
 	);
 	// clang-format on

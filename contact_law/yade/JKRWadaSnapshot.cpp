@@ -96,7 +96,7 @@ boost::python::dict JKRWadaSnapshot::read() const
 		normalForce.push_back(phys->normalForce.dot(geometry->normal));
 	}
 	boost::python::dict result;
-	result["time"]                 = fromEngine ? scene.time + scene.dt : scene.time; // within a step the engine is at its end already
+	result["time"]                 = fromEngine && fused->inStep() ? scene.time + scene.dt : scene.time; // within a step the engine is at its end already
 	result["ids"]                  = bytes(grains.ids);
 	result["position"]             = bytes(grains.position);
 	result["velocity"]             = bytes(grains.velocity);
