@@ -2,12 +2,14 @@
 import json
 import shutil
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analysis.channels import CHANNELS
-from conftest import TOP
+
+TOP = Path(__file__).resolve().parents[2]
 
 KEYS = {"run", "d_max", "t_max", "restitution", "outcome", "largest_fragment", "energy_closure", *CHANNELS}
 

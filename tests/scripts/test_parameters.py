@@ -69,7 +69,7 @@ WRONG = [
     ({'planar': '1'}, 'only 0 as long as there are no sintered bonds'),
     ({'material': 'iron'}, 'material = iron: not allowed; allowed: ice, silicate'),
     ({'packing': 'fcc'}, 'packing = fcc: not allowed; allowed: cpe'),
-    ({'engine': 'magic'}, 'engine = magic: not allowed; allowed: functors'),
+    ({'engine': 'magic'}, 'engine = magic: not allowed; allowed: fused, functors'),
     ({'seed': '-1'}, 'seed = -1: not allowed'),
     ({'seed': '1.5'}, 'seed = 1.5: not a whole number'),
     ({'duration': '0'}, 'duration = 0: not allowed; allowed: > 0 [s]'),
@@ -98,9 +98,17 @@ def test_drag_and_dense_packings_lower_the_stable_step():
         parameters.complete(parameters.parse({'stepFraction': '0.3'}), with_drag(6e-12), 1)
 
 
-def test_threads_are_those_of_yade():
-    assert parameters.complete(parameters.parse({}), ICE_PAIR, 2)['threads'] == 2
+def test_threads_of_the_functors_are_those_of_yade():
+    functors = {'engine': 'functors'}
+    assert parameters.complete(parameters.parse(functors), ICE_PAIR, 2)['threads'] == 2
     with pytest.raises(parameters.ParameterError, match='threads = 3: YADE was started with 1; allowed: '):
+        parameters.complete(parameters.parse({'threads': '3', **functors}), ICE_PAIR, 1)
+
+
+def test_threads_of_the_fused_engine_are_its_own():
+    assert parameters.complete(parameters.parse({}), ICE_PAIR, 1)['threads'] == 1
+    assert parameters.complete(parameters.parse({'threads': '2'}), ICE_PAIR, 1)['threads'] == 2
+    with pytest.raises(parameters.ParameterError, match='threads = 3: more than the fused engine has domains; allowed: 1 to 2'):
         parameters.complete(parameters.parse({'threads': '3'}), ICE_PAIR, 1)
 
 
