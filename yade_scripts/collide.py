@@ -47,11 +47,11 @@ time_step = values['stepFraction'] * constants['timeUnit']
 schedule = sampling.Schedule.of(values['duration'], time_step)
 aggregate_of_body = scene.build(aggregates, velocities, scene.material_of(values, material), time_step)
 history = recorder.Recorder(folder, schedule, aggregate_of_body, aggregate_radius)
-steps, runner = scene.start(values, material.grainRadius, schedule, history)
+steps, runner, begin = scene.start(values, material.grainRadius, schedule, history)
 run = report.Report(folder, values, scene.derived(values, material, constants, schedule, time_step), start)
 
 # The run
-outcome, status = run_loop.run(steps, history, runner)
+outcome, status = run_loop.run(steps, history, runner, begin)
 history.write_history()
 run.end(outcome)
 sys.exit(status)

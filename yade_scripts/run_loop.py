@@ -6,14 +6,15 @@ from yade.wrapper import Omega
 from yade_scripts.progress import Progress
 
 
-def run(steps, recorder, runner):
-    """Take that many O.steps and return (outcome, exit status).
+def run(steps, recorder, runner, begin):
+    """Call begin(), take that many O.steps, and return (outcome, exit status).
 
     recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
     taken, with one more step that records where it stopped; the outcome is then "interrupted".
     """
     omega, progress, stop = Omega(), Progress(steps), StopSignals()
     try:
+        begin()
         for step in range(1, steps + 1):
             omega.step()
             progress.update(step)

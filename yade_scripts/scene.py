@@ -59,23 +59,21 @@ def build(packings, velocities, plugin_material, time_step):
 
 
 def start(values, grain_radius, schedule, history):
-    """Choose the engines that sample into history; returns (O.steps to take, the sampling PyRunner).
+    """Choose the engines that sample into history: (O.steps to take, the sampling PyRunner, what to do first).
 
-    The fused engine takes the steps between two samples in one O.step, and its start is sampled here. With the
+    The fused engine takes the steps between two samples in one O.step, and its start is sampled first. With the
     functors a sample comes at the beginning of a step, so that one more step is taken to sample the end.
     """
     omega = Omega()
     runner = PyRunner(command='history.sample()', iterPeriod=schedule.interval, initRun=True)
     if values['engine'] == 'functors':
         omega.engines = functor_engines(grain_radius, runner)
-        return schedule.steps + 1, runner
+        return schedule.steps + 1, runner, lambda: None
     runner.iterPeriod = 1
     fused = JKRWadaEngine(subSteps=schedule.interval, threads=values['threads'])
     omega.dt *= schedule.interval
     omega.engines = [fused, runner]
-    fused.prepare()
-    history.sample()
-    return schedule.steps // schedule.interval, runner
+    return schedule.steps // schedule.interval, runner, lambda: (fused.prepare(), history.sample())
 
 
 def functor_engines(grain_radius, runner):
