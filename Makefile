@@ -135,7 +135,7 @@ demo: all
 
 # made again when the plugin or the scripts are newer
 runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py) yade_scripts/studies/demo.table
-	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:3 overwrite=1
+	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:3 out=runs/demo overwrite=1
 
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider tests

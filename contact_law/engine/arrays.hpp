@@ -88,6 +88,7 @@ struct InstructionSet {
 	const char* name;
 	void (*forces[16][2])(const ForcePass&);
 	void (*energies[16][2])(const ForcePass&, StoredSums&);
+	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared);
 };
 

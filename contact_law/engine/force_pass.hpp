@@ -4,6 +4,7 @@
 #include "../kernel/contact.hpp"
 #include "../kernel/turning.hpp"
 #include "arrays.hpp"
+#include <type_traits>
 
 namespace contact_law {
 
@@ -11,7 +12,10 @@ namespace contact_law {
 constexpr int batchSize = 8;
 
 struct alignas(64) BatchBuffer {
-	double     separation[3][lanes], velocity[3][lanes], spin1[3][lanes], spin2[3][lanes];
+	double     spin1[3][lanes], spin2[3][lanes];
+	double     normal[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
+	double     drag[lanes], overlap[lanes]; // in scenes with drag
+	unsigned   care; // lanes (bits) where an event needs scalar treatment
 	LaneForces out;
 };
 
@@ -44,18 +48,26 @@ template <class Pack> struct Passes {
 		return to;
 	}
 
-	// Relative position, relative velocity and spins of `width` contacts.
-	static void gatherPair(const Grain* grains, const ContactBlock& block, int at, BatchBuffer& buffer)
+	struct Pair {
+		Vec3<Pack> separation, velocity, spin1, spin2;
+	};
+	static Pair gatherPair(const Grain* grains, const ContactBlock& block, int at)
 	{
 		Pack a[9], b[9];
 		gather(grains, block.i + at, a);
 		gather(grains, block.j + at, b);
-		for (int k = 0; k < 3; ++k) {
-			(a[k] - b[k]).store(buffer.separation[k] + at);
-			(a[3 + k] - b[3 + k]).store(buffer.velocity[k] + at);
-			a[6 + k].store(buffer.spin1[k] + at);
-			b[6 + k].store(buffer.spin2[k] + at);
+		return { { a[0] - b[0], a[1] - b[1], a[2] - b[2] }, { a[3] - b[3], a[4] - b[4], a[5] - b[5] }, { a[6], a[7], a[8] }, { b[6], b[7], b[8] } };
+	}
+
+	// v1 - v2 now, extrapolated from the two steps before (MODEL.md, drag).
+	static Vec3<Pack> velocityNow(const PreviousVelocity* previous, const ContactBlock& block, const Vec3<Pack>& velocity, int at)
+	{
+		alignas(64) double before[3][lanes];
+		for (int k = at; k < at + width; ++k) {
+			const PreviousVelocity &a = previous[block.i[k]], &b = previous[block.j[k]];
+			before[0][k] = a.x - b.x, before[1][k] = a.y - b.y, before[2][k] = a.z - b.z;
 		}
+		return velocity + Pack(0.5) * (velocity - load(before, at));
 	}
 
 	// The next batch's grains on their way to the cache while this batch is computed; its blocks follow each other and come by themselves.
@@ -70,59 +82,87 @@ template <class Pack> struct Passes {
 			}
 	}
 
-	// v1 - v2 now, extrapolated from the two steps before (MODEL.md, drag).
-	static Vec3<Pack> velocityNow(const PreviousVelocity* previous, const ContactBlock& block, const Vec3<Pack>& velocity, int at)
+	// First sweep: where `width` contacts stand, their normal forces, and how far they twisted.
+	template <unsigned mechanisms> static void sweepNormal(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, int at)
 	{
-		alignas(64) double before[3][lanes];
-		for (int k = at; k < at + width; ++k) {
-			const PreviousVelocity &a = previous[block.i[k]], &b = previous[block.j[k]];
-			before[0][k] = a.x - b.x, before[1][k] = a.y - b.y, before[2][k] = a.z - b.z;
+		const Pair                  pair = gatherPair(pass.grains, pass.blocks[index], at);
+		const ContactGeometry<Pack> g    = geometryOf(pair.separation, c.radius1 + c.radius2);
+		const typename Pack::Mask   care = (g.overlap < -c.pullOffOverlap) | (Pack(largestFittedOverlap) < g.overlap * c.inverseEquilibriumOverlap);
+		ContactForces<Pack>         f;
+		Vec3<Pack>                  velocity {};
+		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, pass.blocks[index], pair.velocity, at);
+		normalForces<mechanisms>(c, g, velocity, f);
+		Pack radial = f.normalForce;
+		if constexpr (bool(mechanisms & Drag)) radial = radial + f.drag;
+
+		if constexpr (bool(mechanisms & Twisting))
+			twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, Pack(pass.dt)).store(buffer.twistIncrement + at);
+		store(pair.spin1, buffer.spin1, at);
+		store(pair.spin2, buffer.spin2, at);
+		store(g.normal, buffer.normal, at);
+		g.inverseDistance.store(buffer.inverseDistance + at);
+		radial.store(buffer.normalForce + at);
+		buffer.care |= bitsOf(care) << at;
+		if constexpr (bool(mechanisms & Drag)) {
+			f.drag.store(buffer.drag + at);
+			g.overlap.store(buffer.overlap + at);
 		}
-		return velocity + Pack(0.5) * (velocity - load(before, at));
 	}
 
-	/* Carries the history of `width` contacts to now, and evaluates them. Returns the lanes (bits) where an event needs care; for those the
-	 * history before the step is kept in `before`. */
+	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For lanes with an event `before` keeps the history before the step.
 	template <unsigned mechanisms>
-	static unsigned evaluate(const ForcePass& pass, const PairConstants<Pack>& c, const BatchBuffer& in, int index, ContactBlock& before, LaneForces& out, int at, Pack& dragWork)
+	static unsigned sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, ContactBlock& before, int at, Pack& dragWork)
 	{
-		ContactBlock&               block = pass.blocks[index];
-		const Pack                  dt(pass.dt);
-		const Vec3<Pack>            spin1 = load(in.spin1, at), spin2 = load(in.spin2, at);
-		const ContactGeometry<Pack> g = geometryOf(load(in.separation, at), c.radius1 + c.radius2);
-		ContactHistory<Pack>        h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
-		const ContactHistory<Pack>  old  = h;
-		typename Pack::Mask         care = (g.overlap < -c.pullOffOverlap) | (Pack(largestFittedOverlap) < g.overlap * c.inverseEquilibriumOverlap);
-		if constexpr (bool(mechanisms & (Sliding | Rolling))) h.pointers = { turnedALittle(h.pointers.n1, dt * spin1), turnedALittle(h.pointers.n2, dt * spin2) };
+		ContactBlock&              block = pass.blocks[index];
+		const Pack                 dt(pass.dt);
+		const Vec3<Pack>           none { Pack(0.), Pack(0.), Pack(0.) };
+		ContactGeometry<Pack>      g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
+		const ContactHistory<Pack> old { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
+		ContactHistory<Pack>       h    = old;
+		typename Pack::Mask        care = Pack(1.) < Pack(0.);
+		if constexpr (bool(mechanisms & (Sliding | Rolling)))
+			h.pointers = { turnedALittle(h.pointers.n1, dt * load(buffer.spin1, at)), turnedALittle(h.pointers.n2, dt * load(buffer.spin2, at)) };
 		if constexpr (bool(mechanisms & Twisting)) {
-			h.twist = h.twist + twisting::increment(g.normal, g.inverseDistance, load(in.velocity, at), spin1 - spin2, dt);
+			h.twist = h.twist + Pack::load(buffer.twistIncrement + at);
 			care    = care | (c.criticalTwisting < absolute(h.twist));
 		}
-		Vec3<Pack> velocity {};
-		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, block, load(in.velocity, at), at);
-		const ContactForces<Pack> f = contactForces<mechanisms>(c, g, h, velocity);
+		ContactForces<Pack> f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
+		tangentialForces<mechanisms>(c, g, h, f);
 		if constexpr (bool(mechanisms & Sliding)) care = care | (c.criticalSliding * c.criticalSliding < dot(f.slidingDisplacement, f.slidingDisplacement));
 		if constexpr (bool(mechanisms & Rolling)) care = care | (c.criticalRolling * c.criticalRolling < dot(f.rollingDisplacement, f.rollingDisplacement));
-		if constexpr (bool(mechanisms & Drag)) { // events keep the step before, which they need
-			DragBlock& d          = pass.drags[index];
-			const Pack dragBefore = Pack::load(d.drag + at), overlapBefore = Pack::load(d.overlap + at);
-			dragWork              = dragWork + choose(care, Pack(0.), Pack(0.5) * (dragBefore + f.drag) * (g.overlap - overlapBefore));
-			choose(care, dragBefore, f.drag).store(d.drag + at);
-			choose(care, overlapBefore, g.overlap).store(d.overlap + at);
-		}
-		store((f.normalForce + f.drag) * g.normal + f.sliding, out.force, at);
-		store(f.torque1, out.torque1, at);
-		store(f.torque2, out.torque2, at);
-		if (__builtin_expect(anyOf(care), 0)) keep(old, before, at);
+		store(Pack::load(buffer.normalForce + at) * g.normal + f.sliding, buffer.out.force, at);
+		store(f.torque1, buffer.out.torque1, at);
+		store(f.torque2, buffer.out.torque2, at);
+		const unsigned bits = (bitsOf(care) << at) | (buffer.care & (((1u << width) - 1) << at));
+		if constexpr (bool(mechanisms & Drag)) keepDrag(pass.drags[index], buffer, bits, at, dragWork);
+		if (__builtin_expect(bits != 0, 0)) keep(old, before, at);
 		keep(h, block, at);
-		return bitsOf(care);
+		return bits;
 	}
+
+	// Events keep the step before, which they need.
+	static void keepDrag(DragBlock& d, const BatchBuffer& now, unsigned events, int at, Pack& dragWork)
+	{
+		alignas(64) double quiet[lanes];
+		for (int k = 0; k < width; ++k)
+			quiet[k] = !(events & (1u << (at + k)));
+		const auto plain         = Pack(0.5) < Pack::load(quiet);
+		const Pack dragBefore    = Pack::load(d.drag + at), overlapBefore = Pack::load(d.overlap + at);
+		const Pack drag          = Pack::load(now.drag + at), overlap = Pack::load(now.overlap + at);
+		dragWork                 = dragWork + choose(plain, Pack(0.5) * (dragBefore + drag) * (overlap - overlapBefore), Pack(0.));
+		choose(plain, drag, dragBefore).store(d.drag + at);
+		choose(plain, overlap, overlapBefore).store(d.overlap + at);
+	}
+
 	static void keep(const ContactHistory<Pack>& h, ContactBlock& block, int at)
 	{
 		store(h.pointers.n1, block.n1, at);
 		store(h.pointers.n2, block.n2, at);
 		h.twist.store(block.twist + at);
 	}
+
+	static const PairConstants<Pack>& constants(const ForcePass&, const PairConstants<Pack>& same, int, int, std::true_type) { return same; }
+	static PairConstants<Pack>        constants(const ForcePass& pass, const PairConstants<Pack>&, int index, int at, std::false_type) { return load(pass.constants[index], at); }
 
 	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void forces(const ForcePass& pass)
 	{
@@ -137,16 +177,16 @@ template <class Pack> struct Passes {
 			const int count = pass.blockCount - first < batchSize ? pass.blockCount - first : batchSize;
 			ContactBlock* blocks = pass.blocks + first;
 			fetchAhead(pass, first + batchSize);
-			for (int b = 0; b < count; ++b)
+			for (int b = 0; b < count; ++b) {
+				buffers[b].care = 0;
 				for (int at = 0; at < lanes; at += width)
-					gatherPair(pass.grains, blocks[b], at, buffers[b]);
+					sweepNormal<mechanisms>(pass, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], at);
+			}
 			for (int b = 0; b < count; ++b) {
 				ContactBlock before;
 				unsigned     care = 0;
-				for (int at = 0; at < lanes; at += width) {
-					if constexpr (alike) care |= evaluate<mechanisms>(pass, same, buffers[b], first + b, before, buffers[b].out, at, dragWork) << at;
-					else care |= evaluate<mechanisms>(pass, load(pass.constants[first + b], at), buffers[b], first + b, before, buffers[b].out, at, dragWork) << at;
-				}
+				for (int at = 0; at < lanes; at += width)
+					care |= sweepTangential<mechanisms>(pass, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], before, at, dragWork);
 				if (__builtin_expect(care != 0, 0)) pass.events(pass.owner, first + b, care, before, buffers[b].out);
 			}
 			for (int b = 0; b < count; ++b) {
@@ -170,11 +210,8 @@ template <class Pack> struct Passes {
 		for (int b = 0; b < pass.blockCount; ++b) {
 			ContactBlock& block = pass.blocks[b];
 			for (int at = 0; at < lanes; at += width) {
-				BatchBuffer buffer;
-				gatherPair(pass.grains, block, at, buffer);
-				PairConstants<Pack> c = same;
-				if constexpr (!alike) c = load(pass.constants[b], at);
-				const ContactGeometry<Pack> g = geometryOf(load(buffer.separation, at), c.radius1 + c.radius2);
+				const PairConstants<Pack>   c = constants(pass, same, b, at, std::bool_constant<alike>());
+				const ContactGeometry<Pack> g = geometryOf(gatherPair(pass.grains, block, at).separation, c.radius1 + c.radius2);
 				const ContactHistory<Pack>  h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 				const StoredEnergy<Pack>    e = storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
 				alignas(64) double          counts[lanes];
@@ -199,12 +236,14 @@ template <class Pack> struct Passes {
 
 	static InstructionSet all(const char* name, decltype(InstructionSet::integrate) integrate)
 	{
-		InstructionSet set { name, {}, {}, integrate };
+		InstructionSet set { name, {}, {}, &sumOfProduct, integrate };
 		fill<0>(set);
 		return set;
 	}
 
 private:
+	static double sumOfProduct(double a, double b, double c) { return a * b + c; }
+
 	template <unsigned mechanisms> static void fill(InstructionSet& set)
 	{
 		set.forces[mechanisms][0]   = &forces<mechanisms, false>;

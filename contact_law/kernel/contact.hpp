@@ -42,23 +42,26 @@ template <class T> struct ContactForces {
 	Vec3<T> slidingDisplacement, rollingDisplacement;
 };
 
-/* Forces from the displacements as they are: limits, births and breaks are events, which contact_step.hpp handles.
- * `velocity` is v1 - v2 at this instant; only drag reads it. Torques are written with n1 x n2 and n_i x n_c, which need no zeta:
- *   M_s1 = -r1 k_s n1 x zeta = r1 k_s (r2 n1 x n2 + z n1 x n_c),  M_r1 = -R^2 k_r n1 x n2,  z = zeta0.n_c  (A24 eqs A5-A8, any radii). */
+/* Forces from the displacements as they are: limits, births and breaks are events, which contact_step.hpp handles. In two parts, because the
+ * engine takes them in two sweeps over its contacts.
+ * Along the normal: elastic force and drag. `velocity` is v1 - v2 at this instant; only drag reads it. */
 template <unsigned mechanisms, class T>
-inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, const Vec3<T>& velocity)
+inline void normalForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const Vec3<T>& velocity, ContactForces<T>& f)
 {
-	const Vec3<T>    none { T(0.), T(0.), T(0.) };
-	const Vec3<T>&   n = g.normal;
-	ContactForces<T> f { T(0.), T(0.), none, none, none, T(0.), none, none };
-
 	f.contactRadiusRoot = normal::rootOfContactRadius(g.overlap * c.inverseEquilibriumOverlap);
 	f.normalForce       = c.pullOffForce * normal::force(f.contactRadiusRoot);
-
 	if constexpr (bool(mechanisms & Drag)) { // A22 (7) and K13 (4); v_rel = -(v1 - v2).n_c is positive when approaching
 		const T contactRadius = c.equilibriumContactRadius * f.contactRadiusRoot * f.contactRadiusRoot;
-		f.drag                = -(c.dragPerContactRadius * contactRadius + c.linearDrag) * dot(velocity, n);
+		f.drag                = -(c.dragPerContactRadius * contactRadius + c.linearDrag) * dot(velocity, g.normal);
 	}
+}
+
+/* Sliding, rolling and twisting. Torques are written with n1 x n2 and n_i x n_c, which need no zeta:
+ *   M_s1 = -r1 k_s n1 x zeta = r1 k_s (r2 n1 x n2 + z n1 x n_c),  M_r1 = -R^2 k_r n1 x n2,  z = zeta0.n_c  (A24 eqs A5-A8, any radii). */
+template <unsigned mechanisms, class T>
+inline void tangentialForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, ContactForces<T>& f)
+{
+	const Vec3<T>& n = g.normal;
 	if constexpr (bool(mechanisms & (Sliding | Rolling))) {
 		const Vec3<T>&n1 = h.pointers.n1, &n2 = h.pointers.n2;
 		T             across = T(0.); // factor of n1 x n2
@@ -84,6 +87,15 @@ inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGe
 		f.torque1              = f.torque1 - twisting;
 		f.torque2              = f.torque2 + twisting;
 	}
+}
+
+template <unsigned mechanisms, class T>
+inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, const Vec3<T>& velocity)
+{
+	const Vec3<T>    none { T(0.), T(0.), T(0.) };
+	ContactForces<T> f { T(0.), T(0.), none, none, none, T(0.), none, none };
+	normalForces<mechanisms>(c, g, velocity, f);
+	tangentialForces<mechanisms>(c, g, h, f);
 	return f;
 }
 
