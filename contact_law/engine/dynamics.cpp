@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 #include <omp.h>
+#include <set>
 #include <stdexcept>
 
 namespace contact_law {
@@ -151,6 +152,19 @@ void Dynamics::firstForces()
 	setting.dt = dt;
 	for (int g = 0; g < count; ++g)
 		kick(setting.grains[g], g, -0.5 * dt);
+}
+
+double Dynamics::unstableStep() const
+{
+	double                           least = 1e300;
+	std::set<std::pair<int, double>> seen;
+	for (int k = 0; k < count; ++k) {
+		if (!seen.emplace(setting.kind[k], setting.radius[k]).second) continue;
+		const PairConstants<double> c    = derivePair(setting.material[setting.kind[k]], setting.radius[k], setting.material[setting.kind[k]], setting.radius[k], setting.linearDamping);
+		const double                drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
+		least                            = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
+	}
+	return least;
 }
 
 // One thread's share of a run; all threads take the same decisions from the same numbers.

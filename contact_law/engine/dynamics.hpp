@@ -30,6 +30,10 @@ public:
 	// Grains that overlap touch from the start, with unstrained springs; or all is as `memory` (of remember(), from the same grains in the same order) has it.
 	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options, const std::vector<double>* memory = nullptr);
 
+	/* Steps from here on are unstable for every pair of like grains in the scene, in whatever packing [s]: half a time unit, at which collisions blow up
+	 * (measured; MODEL.md), or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. */
+	double unstableStep() const;
+
 	void run(long steps);
 	void setThreads(int threads) { options.threads = threads; }
 

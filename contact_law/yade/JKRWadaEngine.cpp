@@ -17,8 +17,9 @@ YADE_PLUGIN((JKRWadaEngine));
 CREATE_LOGGER(JKRWadaEngine);
 
 struct JKRWadaEngine::Run {
-	Dynamics                dynamics;
-	std::vector<GrainInput> written; // the grains as the bodies were left
+	Dynamics                       dynamics;
+	std::vector<GrainInput>        written; // the grains as the bodies were left
+	std::vector<shared_ptr<State>> states;  // of the bodies, to reach them quickly
 };
 
 namespace {
@@ -30,10 +31,9 @@ namespace {
 			to[k] = from[k];
 	}
 
-	GrainInput grainOf(const Body& body)
+	GrainInput grainOf(const State& s)
 	{
-		const State& s = *body.state;
-		GrainInput   g {};
+		GrainInput g {};
 		copy(s.pos, g.position);
 		copy(s.vel, g.velocity);
 		copy(s.angVel, g.angularVelocity);
@@ -42,15 +42,16 @@ namespace {
 		return g;
 	}
 
-	bool sameMotion(const GrainInput& a, const GrainInput& b)
+	bool sameMotion(const State& s, const GrainInput& g)
 	{
-		const auto same = [](const double(&x)[3], const double(&y)[3]) { return std::equal(x, x + 3, y); };
-		return same(a.position, b.position) && same(a.velocity, b.velocity) && same(a.angularVelocity, b.angularVelocity);
+		const auto same = [](const Vector3r& x, const double(&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; };
+		return same(s.pos, g.position) && same(s.vel, g.velocity) && same(s.angVel, g.angularVelocity);
 	}
 
 	struct SceneGrains {
 		std::vector<GrainInput>             grains;
 		std::vector<contact_law::Material> materials;
+		std::vector<shared_ptr<State>>      states;
 	};
 
 	bool finite(const GrainInput& g)
@@ -70,7 +71,7 @@ namespace {
 			const auto* material = dynamic_cast<const JKRMat*>(body->material.get());
 			if (!sphere || !material) refuse(who + " is not a sphere of JKRMat; this engine moves nothing else");
 			if (body->state->blockedDOFs) refuse(who + " has blocked degrees of freedom; use the functors for such scenes");
-			GrainInput g = grainOf(*body);
+			GrainInput g = grainOf(*body->state);
 			g.radius     = sphere->radius;
 			if (!finite(g)) refuse(who + " has a position or velocity that is not a finite number");
 			if (!(g.radius > 0) || !(g.mass > 0) || !(g.inertia > 0)) refuse(who + ": radius, mass and moment of inertia must be positive");
@@ -81,6 +82,7 @@ namespace {
 				result.materials.push_back(material->forKernel());
 			}
 			result.grains.push_back(g);
+			result.states.push_back(body->state);
 		}
 		return result;
 	}
@@ -104,8 +106,14 @@ void JKRWadaEngine::start()
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
 	const bool continued = !memory.empty();
 	if (continued) options.dt = smallStep;
-	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains });
+	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains, now.states });
 	smallStep = options.dt;
+	const double unstable = current->dynamics.unstableStep();
+	if (!(smallStep > 0 && smallStep < unstable)) {
+		current.reset();
+		refuse("the small step O.dt/subSteps is " + boost::lexical_cast<std::string>(smallStep) + " s, allowed: above 0 and below " + boost::lexical_cast<std::string>(unstable)
+		       + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
+	}
 	if (continued && scene->trackEnergy) writeEnergies(true);
 	memory.clear();
 }
@@ -115,8 +123,8 @@ void JKRWadaEngine::takeChanges()
 {
 	if (scene->bodies->size() != current->written.size()) refuse("bodies were added or erased after the start; make a new engine");
 	for (std::size_t k = 0; k < current->written.size(); ++k) {
-		const GrainInput now = grainOf(*(*scene->bodies)[int(k)]);
-		if (sameMotion(now, current->written[k])) continue;
+		if (sameMotion(*current->states[k], current->written[k])) continue;
+		const GrainInput now = grainOf(*current->states[k]);
 		if (!finite(now)) refuse("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
 		current->dynamics.set(int(k), now);
 	}
@@ -150,7 +158,7 @@ void JKRWadaEngine::writeBodies()
 			refuse("the run went wrong at t = " + boost::lexical_cast<std::string>(scene->time + scene->dt) + " s: body " + std::to_string(k)
 			       + " has no finite position or velocity any more; O.bodies hold the state of t = " + boost::lexical_cast<std::string>(scene->time) + " s. A smaller step may help");
 	for (std::size_t k = 0; k < now.size(); ++k) {
-		State& s = *(*scene->bodies)[int(k)]->state;
+		State& s = *current->states[k];
 		s.pos    = Vector3r(now[k].position[0], now[k].position[1], now[k].position[2]);
 		s.vel    = Vector3r(now[k].velocity[0], now[k].velocity[1], now[k].velocity[2]);
 		s.angVel = Vector3r(now[k].angularVelocity[0], now[k].angularVelocity[1], now[k].angularVelocity[2]);

@@ -28,8 +28,8 @@ stock_material = CohFrictMat(young=7e9, poisson=0.25, density=1000, frictionAngl
 scene.build(aggregates, velocities, stock_material if mover == "stock" else scene.material_of(values, material), step)
 O.trackEnergy = mover != "stock"
 if mover.startswith("fused"):
-    O.engines = [JKRWadaEngine(threads=int(mover[5:]), subSteps=20)]
-    O.dt *= 20
+    O.engines = [JKRWadaEngine(threads=int(mover[5:]), subSteps=50)]
+    O.dt *= 50
 elif mover == "functors":
     O.engines = scene.functor_engines(material.grainRadius, PyRunner(command="pass", iterPeriod=10**9))
 else:
@@ -37,7 +37,7 @@ else:
                  InteractionLoop([Ig2_Sphere_Sphere_ScGeom6D()], [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True)],
                                  [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(useIncrementalForm=True)]),
                  NewtonIntegrator(damping=0)]
-small_steps = 20 if mover.startswith("fused") else 1
+small_steps = 50 if mover.startswith("fused") else 1
 O.step()  # lists are made, contacts found
 contacts = O.engines[0].statistics()["contacts"] if mover.startswith("fused") else O.interactions.countReal()
 start, steps = time.perf_counter(), 0
