@@ -1,5 +1,6 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
+# make bench  measures speed, and error against the time step
 # make test   builds what is needed and passes the tests
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
@@ -139,6 +140,12 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py) yade_scripts/studies/de
 
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider tests
+
+# Speed against YADE's own loop, and error against step: some ten minutes; results in tests/benchmarks/results.
+.PHONY: bench
+bench: all
+	@$(PYTHON) tests/benchmarks/speed.py
+	@$(PYTHON) tests/benchmarks/error.py
 
 # ---- what must be installed ----
 

@@ -1,20 +1,17 @@
-"""Speed of the fused engine beside the functors and YADE's stock loop, and error against step, measured in one run: make bench.
+"""Speed of the fused engine beside the functors and YADE's stock loop, measured in one run; part of make bench.
 
-Writes results/speed.json, results/speed.md and results/error.png, error.json beside this file, with commit and machine. Every number of a round is
-measured before the next round starts, so that ratios are taken within a round; the table has their medians and ranges.
+Writes results/speed.json and results/speed.md with commit and machine. Every number of a round is measured before the next round starts, so that
+ratios are taken within a round; the table has their medians and ranges.
 """
 import json
-import os
-import platform
 import statistics
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-TOP = HERE.parents[1]
-RESULTS = HERE / "results"
+from measured_on import HERE, RESULTS, machine
+
 SECONDS = {"fused1": 3, "fused2": 3, "functors": 6, "stock": 6}
 ROUNDS = 3
 RADII = (20, 40, 80)
@@ -30,14 +27,6 @@ def measure(mover, radius):
         if not answer.exists():
             raise RuntimeError(f"{mover} at radius {radius} failed:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
         return json.loads(answer.read_text())
-
-
-def machine():
-    """What the numbers belong to."""
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.processor())
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=TOP, capture_output=True, text=True).stdout.strip()
-    changed = subprocess.run(["git", "status", "--porcelain"], cwd=TOP, capture_output=True, text=True).stdout.strip() != ""
-    return {"cpu": cpu, "cores": os.cpu_count(), "commit": commit + ("-changed" if changed else "")}
 
 
 def run_rounds():
