@@ -251,6 +251,17 @@ StoredSums Domain::energies()
 	return total;
 }
 
+double Domain::kineticEnergy() const
+{
+	double sum = sums.eventWork;
+	for (int k = begin; k < end; ++k) {
+		const Grain& p = s.grains[k];
+		sum += 0.5 / s.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz) + 0.5 / s.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
+		        + 0.5 * s.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
+	}
+	return sum;
+}
+
 int Domain::contactCount() const
 {
 	int count = 0;

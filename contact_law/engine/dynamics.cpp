@@ -207,7 +207,7 @@ void Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
 
 void Dynamics::run(long steps)
 {
-	const int threads = std::max(1, std::min(options.threads, int(domains.size())));
+	const int threads = threadCount();
 	Barrier   barrier(threads);
 #pragma omp parallel num_threads(threads)
 	runShare(steps, omp_get_thread_num(), threads, barrier);
@@ -219,6 +219,7 @@ void Dynamics::run(long steps)
 void Dynamics::read(std::vector<GrainInput>& grains) const
 {
 	grains.resize(count);
+#pragma omp parallel for num_threads(threadCount())
 	for (int k = 0; k < count; ++k) {
 		Grain       p = setting.grains[k];
 		GrainInput& g = grains[original[k]];
@@ -232,21 +233,24 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 	}
 }
 
+// Domains side by side, then added up in their order: the same bits on any number of threads.
 Energies Dynamics::energies()
 {
-	Energies e;
-	for (auto& domain : domains) {
-		const StoredSums part = domain->energies();
-		e.stored              = { e.stored.normal + part.normal, e.stored.sliding + part.sliding, e.stored.rolling + part.rolling, e.stored.twisting + part.twisting };
-		const Dissipation& d  = domain->sums.dissipated;
-		e.dissipated.sliding += d.sliding, e.dissipated.rolling += d.rolling, e.dissipated.twisting += d.twisting;
-		e.dissipated.connection += d.connection, e.dissipated.disconnection += d.disconnection, e.dissipated.drag += d.drag;
-		e.kinetic += domain->sums.eventWork;
+	std::vector<StoredSums> stored(domains.size());
+	std::vector<double>     kinetic(domains.size());
+#pragma omp parallel for num_threads(threadCount())
+	for (std::size_t d = 0; d < domains.size(); ++d) {
+		stored[d]  = domains[d]->energies();
+		kinetic[d] = domains[d]->kineticEnergy();
 	}
-	for (int k = 0; k < count; ++k) {
-		const Grain& p = setting.grains[k];
-		e.kinetic += 0.5 / setting.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz) + 0.5 / setting.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
-		        + 0.5 * setting.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
+	Energies e;
+	for (std::size_t d = 0; d < domains.size(); ++d) {
+		const StoredSums& part = stored[d];
+		e.stored = { e.stored.normal + part.normal, e.stored.sliding + part.sliding, e.stored.rolling + part.rolling, e.stored.twisting + part.twisting };
+		e.kinetic += kinetic[d];
+		const Dissipation& lost = domains[d]->sums.dissipated;
+		e.dissipated.sliding += lost.sliding, e.dissipated.rolling += lost.rolling, e.dissipated.twisting += lost.twisting;
+		e.dissipated.connection += lost.connection, e.dissipated.disconnection += lost.disconnection, e.dissipated.drag += lost.drag;
 	}
 	return e;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include "barrier.hpp"
 #include "domain.hpp"
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -36,6 +37,7 @@ public:
 
 	void run(long steps);
 	void setThreads(int threads) { options.threads = threads; }
+	int  threadCount() const { return std::max(1, std::min(options.threads, int(domains.size()))); }
 
 	std::vector<double> remember() const;
 

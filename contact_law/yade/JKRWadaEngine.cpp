@@ -157,6 +157,7 @@ void JKRWadaEngine::writeBodies()
 		if (!finite(now[k])) // before anything is written: the bodies keep the last good state
 			refuse("the run went wrong at t = " + boost::lexical_cast<std::string>(scene->time + scene->dt) + " s: body " + std::to_string(k)
 			       + " has no finite position or velocity any more; O.bodies hold the state of t = " + boost::lexical_cast<std::string>(scene->time) + " s. A smaller step may help");
+#pragma omp parallel for num_threads(current->dynamics.threadCount())
 	for (std::size_t k = 0; k < now.size(); ++k) {
 		State& s = *current->states[k];
 		s.pos    = Vector3r(now[k].position[0], now[k].position[1], now[k].position[2]);
