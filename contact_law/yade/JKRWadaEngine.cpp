@@ -18,7 +18,7 @@ CREATE_LOGGER(JKRWadaEngine);
 
 struct JKRWadaEngine::Run {
 	Dynamics                       dynamics;
-	std::vector<GrainInput>        written; // the grains as the bodies were left
+	std::vector<GrainInput>        written, now; // the grains as the bodies were left; as they are after a step
 	std::vector<shared_ptr<State>> states;  // of the bodies, to reach them quickly
 };
 
@@ -106,7 +106,7 @@ void JKRWadaEngine::start()
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
 	const bool continued = !memory.empty();
 	if (continued) options.dt = smallStep;
-	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains, now.states });
+	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains, now.grains, now.states });
 	smallStep = options.dt;
 	const double unstable = current->dynamics.unstableStep();
 	if (!(smallStep > 0 && smallStep < unstable)) {
@@ -151,7 +151,7 @@ void JKRWadaEngine::prepare()
 
 void JKRWadaEngine::writeBodies()
 {
-	std::vector<GrainInput> now = current->written;
+	std::vector<GrainInput>& now = current->now;
 	current->dynamics.read(now);
 	for (std::size_t k = 0; k < now.size(); ++k)
 		if (!finite(now[k])) // before anything is written: the bodies keep the last good state
