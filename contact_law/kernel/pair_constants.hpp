@@ -50,7 +50,8 @@ inline PairConstants<double> derivePair(const Material& material1, double radius
 	const double    gamma         = std::sqrt(m1.surfaceEnergy) * std::sqrt(m2.surfaceEnergy);
 	const double    mass1         = 4 * pi / 3 * m1.density * radius1 * radius1 * radius1;
 	const double    mass2         = 4 * pi / 3 * m2.density * radius2 * radius2 * radius2;
-	const double    viscosity     = (m1.viscoelasticTime / (m1.poisson * m1.poisson) + m2.viscoelasticTime / (m2.poisson * m2.poisson)) / 2;
+	const auto      viscous       = [](const Material& m) { return m.viscoelasticTime > 0 ? m.viscoelasticTime / (m.poisson * m.poisson) : 0.; };
+	const double    viscosity     = (viscous(m1) + viscous(m2)) / 2;
 
 	PairConstants<double> c;
 	c.radius1       = radius1;

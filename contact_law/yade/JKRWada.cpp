@@ -21,19 +21,22 @@ namespace {
 	Vec3d    toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 	Vector3r fromKernel(const Vec3d& v) { return Vector3r(v.x, v.y, v.z); }
 
-	void requireInRange(const JKRMat& m, Real radius)
+	void require(bool fine, const char* name, Real value, const char* allowed)
 	{
-		const auto require = [](bool fine, const char* name, Real value, const char* allowed) {
-			if (!fine) throw std::invalid_argument("JKRMat: " + std::string(name) + " = " + boost::lexical_cast<std::string>(value) + ", allowed: " + allowed);
-		};
-		require(m.young > 0 && std::isfinite(m.young), "young", m.young, "a positive number [Pa]");
-		require(m.poisson > 0 && m.poisson <= 0.5, "poisson", m.poisson, "above 0 and at most 0.5");
-		require(m.density > 0 && std::isfinite(m.density), "density", m.density, "a positive number [kg/m^3]");
-		require(m.surfaceEnergy > 0 && std::isfinite(m.surfaceEnergy), "surfaceEnergy", m.surfaceEnergy, "a positive number [J/m^2]");
-		require(m.criticalRolling > 0 && std::isfinite(m.criticalRolling), "criticalRolling", m.criticalRolling, "a positive number [m]");
-		require(m.viscoelasticTime >= 0 && std::isfinite(m.viscoelasticTime), "viscoelasticTime", m.viscoelasticTime, "0 or a positive number [s]");
-		require(radius > 0 && std::isfinite(radius), "radius of the grain", radius, "a positive number [m]");
+		if (!fine) throw std::invalid_argument("JKRMat: " + std::string(name) + " = " + boost::lexical_cast<std::string>(value) + ", allowed: " + allowed);
 	}
+
+	void requireRadius(Real radius) { require(radius > 0 && std::isfinite(radius), "radius of the grain", radius, "a positive number [m]"); }
+}
+
+void JKRMat::requireInRange() const
+{
+	require(young > 0 && std::isfinite(young), "young", young, "a positive number [Pa]");
+	require(poisson >= 0 && poisson <= 0.5 && (poisson > 0 || viscoelasticTime == 0), "poisson", poisson, "0 to 0.5, and above 0 with drag");
+	require(density > 0 && std::isfinite(density), "density", density, "a positive number [kg/m^3]");
+	require(surfaceEnergy > 0 && std::isfinite(surfaceEnergy), "surfaceEnergy", surfaceEnergy, "a positive number [J/m^2]");
+	require(criticalRolling > 0 && std::isfinite(criticalRolling), "criticalRolling", criticalRolling, "a positive number [m]");
+	require(viscoelasticTime >= 0 && std::isfinite(viscoelasticTime), "viscoelasticTime", viscoelasticTime, "0 or a positive number [s]");
 }
 
 PairConstants<double> JKRWadaConstants::forKernel() const
@@ -90,8 +93,10 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(const shared_ptr<Material>& material1, co
 boost::python::dict
 Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
 {
-	requireInRange(*material1, radius1);
-	requireInRange(*material2, radius2);
+	material1->requireInRange();
+	material2->requireInRange();
+	requireRadius(radius1);
+	requireRadius(radius2);
 	JKRWadaConstants constants;
 	constants.set(contact_law::derivePair(material1->forKernel(), radius1, material2->forKernel(), radius2, linearDamping));
 	return constants.pyDict();

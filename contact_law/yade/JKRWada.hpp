@@ -15,6 +15,7 @@ namespace yade {
 class JKRMat : public ElastMat {
 public:
 	contact_law::Material forKernel() const { return { young, poisson, density, surfaceEnergy, criticalRolling, viscoelasticTime }; }
+	void requireInRange() const; // throws std::invalid_argument
 	virtual ~JKRMat() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRMat, ElastMat,

@@ -78,6 +78,7 @@ namespace {
 			const auto known = std::find(kinds.begin(), kinds.end(), material);
 			g.kind           = int(known - kinds.begin());
 			if (known == kinds.end()) {
+				material->requireInRange();
 				kinds.push_back(material);
 				result.materials.push_back(material->forKernel());
 			}

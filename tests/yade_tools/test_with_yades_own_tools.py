@@ -113,7 +113,8 @@ for name in ("JKRMat", "JKRWadaPhys", "Ip2_JKRMat_JKRMat_JKRWadaPhys", "Law2_ScG
 
 @pytest.mark.parametrize("setting,message", [
     ("surfaceEnergy=-1", "surfaceEnergy = -1, allowed: a positive number"),
-    ("poisson=0", "poisson = 0, allowed: above 0 and at most 0.5"),
+    ("poisson=0.6", "poisson = 0.59999999999999998, allowed: 0 to 0.5"),
+    ("poisson=0, viscoelasticTime=1e-12", "poisson = 0, allowed: 0 to 0.5, and above 0 with drag"),
     ("criticalRolling=float('nan')", "criticalRolling = nan, allowed: a positive number"),
 ])
 def test_materials_out_of_range_are_refused_in_one_line(yade, setting, message):
