@@ -1,6 +1,6 @@
 // What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the eight side by side.
 #pragma once
-#include "../kernel/pair_constants.hpp"
+#include "../kernel/contact.hpp"
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -79,15 +79,11 @@ struct ForcePass {
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 };
 
-struct StoredSums {
-	double normal, sliding, rolling, twisting;
-};
-
 // One instruction set's compiled passes, by mechanisms (contact.hpp) and whether all pairs are alike.
 struct InstructionSet {
 	const char* name;
 	void (*forces[16][2])(const ForcePass&);
-	void (*energies[16][2])(const ForcePass&, StoredSums&);
+	void (*energies[16][2])(const ForcePass&, StoredEnergy<double>&);
 	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared);
 };

@@ -67,13 +67,7 @@ ContactMotion Domain::motionOf(int i, int j) const
 void Domain::book(const ContactStepResult& r, const ContactMotion& m, int sort)
 {
 	if (sort == Second) return;
-	Dissipation& d = sums.dissipated;
-	d.sliding += r.dissipated.sliding;
-	d.rolling += r.dissipated.rolling;
-	d.twisting += r.dissipated.twisting;
-	d.connection += r.dissipated.connection;
-	d.disconnection += r.dissipated.disconnection;
-	d.drag += r.dissipated.drag;
+	sums.dissipated += r.dissipated;
 	sums.eventWork += r.workBefore - 0.5 * contact_law::events::work(m, r.force, r.torque1, r.torque2);
 	++events;
 }
@@ -234,19 +228,20 @@ void Domain::placeOverlapping()
 		for (const int index : near[sort]) {
 			const Pair          p = far[sort][index];
 			const ContactMotion m { positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]), { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
-			if (s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation)) <= 0) continue;
-			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j), 0, s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation)) });
+			const double        overlap = s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation));
+			if (overlap <= 0) continue;
+			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j), 0, overlap });
 			touching[sort][index] = 1;
 		}
 }
 
-StoredSums Domain::energies()
+StoredEnergy<double> Domain::energies()
 {
-	StoredSums total { 0, 0, 0, 0 };
+	StoredEnergy<double> total { 0, 0, 0, 0 };
 	for (int sort = Both; sort <= First; ++sort) {
-		StoredSums part { 0, 0, 0, 0 };
+		StoredEnergy<double> part { 0, 0, 0, 0 };
 		s.passes->energies[s.mechanisms][s.alike](passFor(sort), part);
-		total = { total.normal + part.normal, total.sliding + part.sliding, total.rolling + part.rolling, total.twisting + part.twisting };
+		total += part;
 	}
 	return total;
 }

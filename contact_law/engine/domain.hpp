@@ -43,7 +43,7 @@ public:
 	void findNearPairs();
 	void sortContacts();     // into the order of pairs, without dead lanes
 	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
-	StoredSums energies();
+	StoredEnergy<double> energies();
 	double     kineticEnergy() const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add
 
 	int                 begin, end;

@@ -236,8 +236,8 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 // Domains side by side, then added up in their order: the same bits on any number of threads.
 Energies Dynamics::energies()
 {
-	std::vector<StoredSums> stored(domains.size());
-	std::vector<double>     kinetic(domains.size());
+	std::vector<StoredEnergy<double>> stored(domains.size());
+	std::vector<double>               kinetic(domains.size());
 #pragma omp parallel for num_threads(threadCount())
 	for (std::size_t d = 0; d < domains.size(); ++d) {
 		stored[d]  = domains[d]->energies();
@@ -245,12 +245,9 @@ Energies Dynamics::energies()
 	}
 	Energies e;
 	for (std::size_t d = 0; d < domains.size(); ++d) {
-		const StoredSums& part = stored[d];
-		e.stored = { e.stored.normal + part.normal, e.stored.sliding + part.sliding, e.stored.rolling + part.rolling, e.stored.twisting + part.twisting };
+		e.stored += stored[d];
 		e.kinetic += kinetic[d];
-		const Dissipation& lost = domains[d]->sums.dissipated;
-		e.dissipated.sliding += lost.sliding, e.dissipated.rolling += lost.rolling, e.dissipated.twisting += lost.twisting;
-		e.dissipated.connection += lost.connection, e.dissipated.disconnection += lost.disconnection, e.dissipated.drag += lost.drag;
+		e.dissipated += domains[d]->sums.dissipated;
 	}
 	return e;
 }

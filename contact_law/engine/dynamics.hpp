@@ -16,7 +16,7 @@ struct GrainInput {
 
 struct Energies {
 	double      kinetic = 0; // 1/2 m v(-dt/2) v(+dt/2): what a leapfrog conserves together with the stored energies (MODEL.md)
-	StoredSums  stored { 0, 0, 0, 0 };
+	StoredEnergy<double> stored { 0, 0, 0, 0 };
 	Dissipation dissipated;
 };
 

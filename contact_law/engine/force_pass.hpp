@@ -209,7 +209,7 @@ template <class Pack> struct Passes {
 		if constexpr (bool(mechanisms & Drag)) *pass.dragWork += sumOf(dragWork);
 	}
 
-	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void energies(const ForcePass& pass, StoredSums& sums)
+	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void energies(const ForcePass& pass, StoredEnergy<double>& sums)
 	{
 		const PairConstants<Pack> same = spread(*pass.alike);
 		StoredEnergy<Pack>        total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };

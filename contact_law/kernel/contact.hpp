@@ -102,6 +102,12 @@ inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGe
 // The energies stored in a contact, by channel.
 template <class T> struct StoredEnergy {
 	T normal, sliding, rolling, twisting;
+
+	StoredEnergy& operator+=(const StoredEnergy& e)
+	{
+		normal = normal + e.normal, sliding = sliding + e.sliding, rolling = rolling + e.rolling, twisting = twisting + e.twisting;
+		return *this;
+	}
 };
 
 template <class T> inline StoredEnergy<T> storedEnergy(const PairConstants<T>& c, const ContactForces<T>& f, const T& twist)

@@ -31,6 +31,13 @@ struct ContactBefore {
 
 struct Dissipation {
 	double sliding = 0, rolling = 0, twisting = 0, connection = 0, disconnection = 0, drag = 0;
+
+	Dissipation& operator+=(const Dissipation& d)
+	{
+		sliding += d.sliding, rolling += d.rolling, twisting += d.twisting;
+		connection += d.connection, disconnection += d.disconnection, drag += d.drag;
+		return *this;
+	}
 };
 
 struct ContactStepResult {

@@ -89,7 +89,6 @@ def draw(results, about):
 def main():
     RESULTS.mkdir(exist_ok=True)
     about, results = machine(), measure()
-    results["collision"] = {step: runs for step, runs in results["collision"].items()}
     draw(results, about)
     (RESULTS / "error.json").write_text(json.dumps({"machine": about, **results}, indent=1))
 
