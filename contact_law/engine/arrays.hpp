@@ -35,6 +35,9 @@ struct alignas(64) Grain {
 
 constexpr int lanes = 8; // contacts in a block
 
+// Blocks handled together, so that what stands between gathering, computing and scattering stays in the first-level cache.
+constexpr int batchSize = 4;
+
 struct alignas(64) ContactBlock {
 	double n1[3][lanes], n2[3][lanes]; // contact pointers, laboratory frame
 	double twist[lanes];
@@ -69,7 +72,7 @@ struct ForcePass {
 	const PairConstants<double>* alike;
 	DragBlock*                   drags;    // null in scenes without drag
 	const PreviousVelocity*      previous; // likewise
-	int                          blockCount;
+	int                          firstBlock, endBlock;
 	int                          addFirst, addSecond; // whether the first / second grain of each contact is this domain's
 	int                          trash;               // grain that takes what is not added
 	double                       dt;
@@ -77,6 +80,8 @@ struct ForcePass {
 	void*                        owner;
 	// contacts of a block (bits of `which`) that slip, break or are pressed beyond the fit: history before the step, forces to be replaced
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
+	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
+	void (*batchDone)(void* owner, int batch);
 };
 
 // One instruction set's compiled passes, by mechanisms (contact.hpp) and whether all pairs are alike.

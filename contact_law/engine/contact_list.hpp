@@ -40,6 +40,7 @@ public:
 		if (!alike) writeConstants(lane, deadConstants);
 		if (drag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
 	}
+	int  firstGrain(int lane) const { return blocks[lane / lanes].i[lane % lanes]; }
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
 	Contact get(int lane, const PairConstants<double>& common) const
@@ -73,6 +74,11 @@ public:
 	{
 		if (used % lanes == 0) addDeadBlock();
 		++used;
+	}
+	// The next contact starts a block of its own.
+	void fillUp()
+	{
+		used = blockCount() * lanes;
 	}
 	void clear()
 	{

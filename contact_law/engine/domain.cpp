@@ -37,24 +37,53 @@ ForcePass Domain::passFor(int sort)
 {
 	ContactList& list = contacts[sort];
 	double*      work = sort == Second ? &ignoredDragWork : &sums.dissipated.drag;
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), list.blockCount(), sort != Second, sort != First, dummy, s.dt, work, &eventCalls[sort], &Domain::eventsOf };
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), 0, list.blockCount(), sort != Second, sort != First, dummy, s.dt, work, &eventCalls[sort], &Domain::eventsOf, nullptr };
 }
 
-void Domain::addForces()
+void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
+{
+	ForcePass pass  = passFor(sort);
+	pass.firstBlock = firstBlock;
+	pass.endBlock   = endBlock;
+	if (behind) pass.batchDone = &Domain::moveBehind;
+	s.passes->forces[s.mechanisms][s.alike](pass);
+}
+
+void Domain::addFirstForces()
 {
 	sums.eventWork = 0;
-	for (int sort = 0; sort < 3; ++sort)
-		s.passes->forces[s.mechanisms][s.alike](passFor(sort));
+	addForces(First, 0, contacts[First].blockCount(), false);
+	addForces(Second, 0, contacts[Second].blockCount(), false);
+	addForces(Both, sortedBlocks, contacts[Both].blockCount(), false);
 	births();
+}
+
+void Domain::addOtherForces(bool behind)
+{
+	if (behind) fastestSquared = 0, moved = begin;
+	addForces(Both, 0, sortedBlocks, behind);
+	if (behind) integrateUpTo(end);
+}
+
+void Domain::moveBehind(void* owner, int batch)
+{
+	Domain& domain = *static_cast<EventCall*>(owner)->domain;
+	domain.integrateUpTo(domain.completed[batch]);
 }
 
 void Domain::integrate()
 {
+	fastestSquared = 0, moved = begin;
+	integrateUpTo(end);
+}
+
+void Domain::integrateUpTo(int grain)
+{
 	if (s.hasDrag())
-		for (int g = begin; g < end; ++g)
+		for (int g = moved; g < grain; ++g)
 			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
-	fastestSquared = 0;
-	s.passes->integrate(&s.grains[begin], &s.grains[0] + end, &s.inverseMass[begin], &s.inverseInertia[begin], s.dt, fastestSquared);
+	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved, s.dt, fastestSquared);
+	moved = grain;
 }
 
 ContactMotion Domain::motionOf(int i, int j) const
@@ -195,8 +224,24 @@ void Domain::sortContacts()
 		list.clear();
 		for (const Contact& c : alive)
 			list.append(c);
+		list.fillUp();
 	}
+	sortedBlocks = contacts[Both].blockCount();
+	findCompleted();
 	s.grains[dummy].fx = s.grains[dummy].fy = s.grains[dummy].fz = 0;
+}
+
+void Domain::findCompleted()
+{
+	const ContactList& list = contacts[Both];
+	completed.assign((sortedBlocks + batchSize - 1) / batchSize, end);
+	int next = end;
+	for (int batch = int(completed.size()) - 1; batch >= 0; --batch) {
+		completed[batch] = next;
+		const int last   = std::min((batch + 1) * batchSize, sortedBlocks) * lanes;
+		for (int lane = last - 1; lane >= batch * batchSize * lanes; --lane)
+			if (list.alive(lane)) next = list.firstGrain(lane);
+	}
 }
 
 void Domain::findNearPairs()

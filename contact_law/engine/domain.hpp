@@ -37,11 +37,15 @@ class Domain {
 public:
 	Domain(Setting& setting, int begin, int end, int dummy);
 
-	void addForces();      // of all contacts; then births
-	void integrate();      // own grains
+	/* A step's forces come in two parts. First what reads grains of other domains, contacts that came since the last sorting, and births; then, when all
+	 * domains have got so far, the sorted rest, behind which grains can be moved as soon as their last contact is done: they are in the cache then. */
+	void addFirstForces();
+	void addOtherForces(bool moveBehind);
+	void integrate(); // own grains, all of them
 	void findPairs(const Grid&); // neighbours, far and near
 	void findNearPairs();
 	void sortContacts();     // into the order of pairs, without dead lanes
+	void findCompleted();    // where in the sorted contacts grains have had their last one
 	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
 	StoredEnergy<double> energies();
 	double     kineticEnergy() const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add
@@ -51,6 +55,7 @@ public:
 	long                events = 0;
 	StepSums            sums;
 	ContactList         contacts[3]; // both grains own; the first; the second
+	int                 sortedBlocks = 0; // of the contacts with both grains own
 	int                 contactCount() const; // alive ones, a border contact counted where its first grain lives
 
 private:
@@ -65,6 +70,9 @@ private:
 	};
 
 	ForcePass     passFor(int sort);
+	void          addForces(int sort, int firstBlock, int endBlock, bool moveBehind);
+	static void   moveBehind(void* owner, int batch);
+	void          integrateUpTo(int grain);
 	static void   eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	void          eventOf(int sort, int lane, const ContactBlock& before, LaneForces& forces);
 	bool          closerThan(int i, int j, double gap) const; // surfaces
@@ -79,6 +87,8 @@ private:
 	int               dummy;
 	double            ignoredDragWork = 0; // of border contacts that the other domain books
 	EventCall         eventCalls[3];
+	int               moved = 0; // grains from begin on that this step has moved already
+	std::vector<int>  completed; // by batch of the sorted contacts with both grains own: the first grain that has contacts after it
 	std::vector<Pair> far[3];
 	std::vector<char> touching[3]; // by far pair
 	std::vector<int>  near[3];     // indices of far pairs that are close and don't touch

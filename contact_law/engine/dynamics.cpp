@@ -42,6 +42,8 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	for (auto& domain : domains)
 		domain->placeOverlapping();
 	refreshLists(false);
+	for (auto& domain : domains)
+		domain->sortContacts();
 	firstForces();
 }
 
@@ -148,7 +150,9 @@ void Dynamics::firstForces()
 		for (int g = 0; g < count; ++g)
 			setting.previous[g] = { setting.grains[g].vx, setting.grains[g].vy, setting.grains[g].vz, 0 };
 	for (auto& domain : domains)
-		domain->addForces();
+		domain->addFirstForces();
+	for (auto& domain : domains)
+		domain->addOtherForces(false);
 	setting.dt = dt;
 	for (int g = 0; g < count; ++g)
 		kick(setting.grains[g], g, -0.5 * dt);
@@ -175,8 +179,8 @@ void Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
 			what(*domains[d]);
 	};
 	double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
-	for (long step = 0; step < steps; ++step) {
-		mine([](Domain& domain) { domain.integrate(); });
+	mine([](Domain& domain) { domain.integrate(); });
+	for (long step = 1; step <= steps; ++step) {
 		barrier.wait();
 		double fastest = 0;
 		for (const auto& domain : domains)
@@ -196,8 +200,9 @@ void Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
 			sinceNear = 0;
 			if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
 		}
-		mine([](Domain& domain) { domain.addForces(); });
+		mine([](Domain& domain) { domain.addFirstForces(); });
 		barrier.wait();
+		mine([=](Domain& domain) { domain.addOtherForces(step < steps); });
 	}
 	if (thread == 0) {
 		travelSinceFar  = sinceFar;
@@ -211,9 +216,7 @@ void Dynamics::run(long steps)
 	Barrier   barrier(threads);
 #pragma omp parallel num_threads(threads)
 	runShare(steps, omp_get_thread_num(), threads, barrier);
-	for (const auto& domain : domains)
-		for (const auto& list : domain->contacts)
-			contactUpdates += steps * list.size();
+	contactUpdates += steps * contactCount();
 }
 
 void Dynamics::read(std::vector<GrainInput>& grains) const

@@ -43,7 +43,7 @@ std::vector<double> Dynamics::remember() const
 	}
 	for (const auto& domain : domains) {
 		const Dissipation& d = domain->sums.dissipated;
-		to.insert(to.end(), { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork, double(domain->events) });
+		to.insert(to.end(), { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork, double(domain->events), double(domain->sortedBlocks) });
 		for (const ContactList& list : domain->contacts) {
 			to.push_back(list.size());
 			for (int lane = 0; lane < list.size(); ++lane) {
@@ -89,6 +89,7 @@ void Dynamics::recall(const std::vector<double>& memory)
 		for (double* number : { &d.sliding, &d.rolling, &d.twisting, &d.connection, &d.disconnection, &d.drag, &domain->sums.eventWork })
 			*number = from.next();
 		domain->events = long(from.next());
+		domain->sortedBlocks = from.integer();
 		for (ContactList& list : domain->contacts) {
 			list.clear();
 			for (int lanes = from.integer(); lanes > 0; --lanes) {
@@ -105,6 +106,7 @@ void Dynamics::recall(const std::vector<double>& memory)
 				list.append(c);
 			}
 		}
+		domain->findCompleted();
 	}
 	if (!from.done()) throw std::invalid_argument("the checkpoint of the grains is longer than it should be: it was not written by this version");
 	const double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
