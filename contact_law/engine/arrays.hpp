@@ -1,6 +1,6 @@
 // What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the eight side by side.
 #pragma once
-#include "../kernel/contact.hpp"
+#include "../kernel/contact_step.hpp"
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -76,9 +76,10 @@ struct ForcePass {
 	int                          addFirst, addSecond; // whether the first / second grain of each contact is this domain's
 	int                          trash;               // grain that takes what is not added
 	double                       dt;
-	double*                      dragWork; // what drag took in this step is added here
+	Dissipation*                 dissipated; // what drag and slips took in this step is added here
+	long*                        slips;      // and their number here
 	void*                        owner;
-	// contacts of a block (bits of `which`) that slip, break or are pressed beyond the fit: history before the step, forces to be replaced
+	// contacts of a block (bits of `which`) that break or are pressed beyond the fit: history before the step, forces to be replaced
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
 	void (*batchDone)(void* owner, int batch);

@@ -2,6 +2,7 @@
 #pragma once
 #include "arrays.hpp"
 #include "../kernel/contact.hpp"
+#include <algorithm>
 
 namespace contact_law {
 
@@ -16,7 +17,7 @@ class ContactList {
 public:
 	ContactList(bool alike_, bool drag_, int dummy_)
 	        : alike(alike_)
-	        , drag(drag_)
+	        , hasDrag(drag_)
 	        , dummy(dummy_)
 	{
 	}
@@ -25,7 +26,7 @@ public:
 	ContactBlock*  data() { return blocks.data(); }
 	ConstantsBlock* constantsData() { return alike ? nullptr : constants.data(); }
 
-	DragBlock*      dragData() { return drag ? drags.data() : nullptr; }
+	DragBlock*      dragData() { return hasDrag ? drags.data() : nullptr; }
 
 	void append(const Contact& contact)
 	{
@@ -38,9 +39,10 @@ public:
 		blocks[lane / lanes].j[lane % lanes] = dummy + 1;
 		writeHistory(lane, deadHistory());
 		if (!alike) writeConstants(lane, deadConstants);
-		if (drag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
+		if (hasDrag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
 	}
 	int  firstGrain(int lane) const { return blocks[lane / lanes].i[lane % lanes]; }
+	int  secondGrain(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
 	Contact get(int lane, const PairConstants<double>& common) const
@@ -48,12 +50,13 @@ public:
 		const ContactBlock& b = blocks[lane / lanes];
 		const int           k = lane % lanes;
 		Contact             c { b.i[k], b.j[k], history(b, k), alike ? common : readConstants(lane) };
-		if (drag) c.drag = drags[lane / lanes].drag[k], c.overlap = drags[lane / lanes].overlap[k];
+		if (hasDrag) c.drag = drag(lane), c.overlap = drags[lane / lanes].overlap[k];
 		return c;
 	}
+	double drag(int lane) const { return drags[lane / lanes].drag[lane % lanes]; }
 	void writeDrag(int lane, double force, double overlap)
 	{
-		if (!drag) return;
+		if (!hasDrag) return;
 		drags[lane / lanes].drag[lane % lanes]    = force;
 		drags[lane / lanes].overlap[lane % lanes] = overlap;
 	}
@@ -75,9 +78,21 @@ public:
 		if (used % lanes == 0) addDeadBlock();
 		++used;
 	}
-	// The next contact starts a block of its own.
-	void fillUp()
+	// Into the order of pairs, without dead lanes; the next contact starts a block of its own.
+	void sort()
 	{
+		struct Key {
+			int  i, j, lane;
+			bool operator<(const Key& other) const { return i != other.i ? i < other.i : j < other.j; }
+		};
+		std::vector<Key> order;
+		for (int lane = 0; lane < used; ++lane)
+			if (alive(lane)) order.push_back({ firstGrain(lane), secondGrain(lane), lane });
+		std::sort(order.begin(), order.end());
+		const ContactList before = *this;
+		clear();
+		for (const Key& key : order)
+			append(before.get(key.lane, deadConstants));
 		used = blockCount() * lanes;
 	}
 	void clear()
@@ -86,6 +101,14 @@ public:
 		constants.clear();
 		drags.clear();
 		used = 0;
+	}
+	PairConstants<double> readConstants(int lane) const
+	{
+		PairConstants<double> c;
+		double*               to = reinterpret_cast<double*>(&c);
+		for (int k = 0; k < constantCount; ++k)
+			to[k] = constants[lane / lanes].field[k][lane % lanes];
+		return c;
 	}
 	void setDeadConstants(const PairConstants<double>& c) { deadConstants = c; } // of the two dummies, which touch at equilibrium
 
@@ -96,7 +119,7 @@ private:
 	{
 		blocks.emplace_back();
 		if (!alike) constants.emplace_back();
-		if (drag) drags.emplace_back();
+		if (hasDrag) drags.emplace_back();
 		for (int k = 0; k < lanes; ++k)
 			kill(int(blocks.size() - 1) * lanes + k);
 	}
@@ -114,20 +137,11 @@ private:
 		for (int k = 0; k < constantCount; ++k)
 			constants[lane / lanes].field[k][lane % lanes] = from[k];
 	}
-	PairConstants<double> readConstants(int lane) const
-	{
-		PairConstants<double> c;
-		double*               to = reinterpret_cast<double*>(&c);
-		for (int k = 0; k < constantCount; ++k)
-			to[k] = constants[lane / lanes].field[k][lane % lanes];
-		return c;
-	}
-
 	Aligned<ContactBlock>   blocks;
 	Aligned<ConstantsBlock> constants;
 	Aligned<DragBlock>      drags;
 	PairConstants<double>   deadConstants {};
-	bool                    alike, drag;
+	bool                    alike, hasDrag;
 	int                     dummy, used = 0;
 };
 

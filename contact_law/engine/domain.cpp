@@ -36,8 +36,8 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
 ForcePass Domain::passFor(int sort)
 {
 	ContactList& list = contacts[sort];
-	double*      work = sort == Second ? &ignoredDragWork : &sums.dissipated.drag;
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), 0, list.blockCount(), sort != Second, sort != First, dummy, s.dt, work, &eventCalls[sort], &Domain::eventsOf, nullptr };
+	const bool   books = sort != Second; // both domains of a border contact compute it; the first grain's books it
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), 0, list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation, books ? &events : &ignoredEvents, &eventCalls[sort], &Domain::eventsOf, nullptr };
 }
 
 void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
@@ -92,7 +92,6 @@ ContactMotion Domain::motionOf(int i, int j) const
 	return { positionOf(a) - positionOf(b), velocityOf(a) - velocityOf(b), spinOf(a), spinOf(b), s.dt, s.inverseMass[i] + s.inverseMass[j] };
 }
 
-// Both domains of a border contact compute it; the first grain's books it.
 void Domain::book(const ContactStepResult& r, const ContactMotion& m, int sort)
 {
 	if (sort == Second) return;
@@ -112,8 +111,11 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 {
 	ContactList&           list = contacts[sort];
 	const int              k    = lane % lanes;
-	const Contact          at   = list.get(lane, s.common);
-	const ContactMotion    m    = motionOf(at.i, at.j);
+	const int              i = list.firstGrain(lane), j = list.secondGrain(lane);
+	const ContactMotion    m = motionOf(i, j);
+	PairConstants<double>  own;
+	if (!s.alike) own = list.readConstants(lane);
+	const PairConstants<double>& constants = s.alike ? s.common : own;
 	ContactHistory<double> h    = ContactList::history(old, k);
 
 	// the moment a step ago, from where it was: positions moved by velocity * dt, and the pointers had not turned yet
@@ -121,18 +123,18 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	const double        apart = std::sqrt(dot(then, then));
 	ContactBefore       before;
 	before.touching = true;
-	before.overlap  = at.constants.radius1 + at.constants.radius2 - apart;
-	before.sliding  = sliding::displacement(h.pointers, at.constants.radius1, at.constants.radius2, (1 / apart) * then);
-	before.rolling  = rolling::displacement(h.pointers, at.constants.reducedRadius);
+	before.overlap  = constants.radius1 + constants.radius2 - apart;
+	before.sliding  = sliding::displacement(h.pointers, constants.radius1, constants.radius2, (1 / apart) * then);
+	before.rolling  = rolling::displacement(h.pointers, constants.reducedRadius);
 	before.twist    = h.twist;
 	if (s.hasDrag()) {
-		const PreviousVelocity &a = s.previous[at.i], &b = s.previous[at.j];
+		const PreviousVelocity &a = s.previous[i], &b = s.previous[j];
 		before.velocity = { a.x - b.x, a.y - b.y, a.z - b.z };
-		before.drag     = at.drag;
+		before.drag     = list.drag(lane);
 	}
 
 	h.pointers                = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
-	const ContactStepResult r = contactStepWith[s.mechanisms](at.constants, m, before, h);
+	const ContactStepResult r = contactStepWith[s.mechanisms](constants, m, before, h);
 	book(r, m, sort);
 	write(r.force, forces.force, k);
 	write(r.torque1, forces.torque1, k);
@@ -143,13 +145,13 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 		return;
 	}
 	// this lane's kicks still go to its grains (scattered by index): add them here, and leave nothing for the dead lane's dummies
-	if (sort != Second) add(s.grains[at.i], r.force, r.torque1);
-	if (sort != First) add(s.grains[at.j], -r.force, r.torque2);
+	if (sort != Second) add(s.grains[i], r.force, r.torque1);
+	if (sort != First) add(s.grains[j], -r.force, r.torque2);
 	write({ 0, 0, 0 }, forces.force, k);
 	write({ 0, 0, 0 }, forces.torque1, k);
 	write({ 0, 0, 0 }, forces.torque2, k);
 	list.kill(lane);
-	const int pair = pairIndex(sort, at.i, at.j);
+	const int pair = pairIndex(sort, i, j);
 	if (pair < 0) return;
 	touching[sort][pair] = 0;
 	near[sort].push_back(pair);
@@ -206,8 +208,7 @@ void Domain::findPairs(const Grid& grid)
 		const ContactList& list = contacts[sort];
 		for (int lane = 0; lane < list.size(); ++lane) {
 			if (!list.alive(lane)) continue;
-			const Contact c    = list.get(lane, s.common);
-			const int     pair = pairIndex(sort, c.i, c.j);
+			const int pair = pairIndex(sort, list.firstGrain(lane), list.secondGrain(lane));
 			if (pair >= 0) touching[sort][pair] = 1;
 		}
 	}
@@ -216,16 +217,8 @@ void Domain::findPairs(const Grid& grid)
 
 void Domain::sortContacts()
 {
-	for (ContactList& list : contacts) {
-		std::vector<Contact> alive;
-		for (int lane = 0; lane < list.size(); ++lane)
-			if (list.alive(lane)) alive.push_back(list.get(lane, s.common));
-		std::sort(alive.begin(), alive.end(), [](const Contact& a, const Contact& b) { return Pair { a.i, a.j } < Pair { b.i, b.j }; });
-		list.clear();
-		for (const Contact& c : alive)
-			list.append(c);
-		list.fillUp();
-	}
+	for (ContactList& list : contacts)
+		list.sort();
 	sortedBlocks = contacts[Both].blockCount();
 	findCompleted();
 	s.grains[dummy].fx = s.grains[dummy].fy = s.grains[dummy].fz = 0;

@@ -85,7 +85,8 @@ private:
 
 	Setting&          s;
 	int               dummy;
-	double            ignoredDragWork = 0; // of border contacts that the other domain books
+	Dissipation       ignoredDissipation; // of border contacts that the other domain books
+	long              ignoredEvents = 0;
 	EventCall         eventCalls[3];
 	int               moved = 0; // grains from begin on that this step has moved already
 	std::vector<int>  completed; // by batch of the sorted contacts with both grains own: the first grain that has contacts after it

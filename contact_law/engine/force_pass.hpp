@@ -1,7 +1,7 @@
 // The passes over contacts and grains that make a step, for one pack type: included once by each instruction set's file, which also brings
 // gather() and scatterAdd() for its packs. No physics of its own: contactForces() of the kernel is evaluated with packs of contacts.
 #pragma once
-#include "../kernel/contact.hpp"
+#include "../kernel/slip.hpp"
 #include "../kernel/turning.hpp"
 #include "arrays.hpp"
 #include <type_traits>
@@ -15,7 +15,7 @@ struct alignas(64) BatchBuffer {
 	double     spin1[3][lanes], spin2[3][lanes];
 	double     normal[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
 	double     drag[lanes], overlap[lanes]; // in scenes with drag
-	unsigned   care; // lanes (bits) where an event needs scalar treatment
+	unsigned   events, slips; // lanes (bits) that need scalar treatment; that slip
 	LaneForces out;
 };
 
@@ -108,16 +108,16 @@ template <class Pack> struct Passes {
 		store(g.normal, buffer.normal, at);
 		g.inverseDistance.store(buffer.inverseDistance + at);
 		radial.store(buffer.normalForce + at);
-		buffer.care |= bitsOf(care) << at;
+		buffer.events |= bitsOf(care) << at;
 		if constexpr (bool(mechanisms & Drag)) {
 			f.drag.store(buffer.drag + at);
 			g.overlap.store(buffer.overlap + at);
 		}
 	}
 
-	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For lanes with an event `before` keeps the history before the step.
+	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before` keeps the history before the step.
 	template <unsigned mechanisms>
-	static unsigned sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, ContactBlock& before, int at, Pack& dragWork)
+	static void sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, ContactBlock& before, int at, Pack& dragWork)
 	{
 		ContactBlock&              block = pass.blocks[index];
 		const Pack                 dt(pass.dt);
@@ -136,23 +136,62 @@ template <class Pack> struct Passes {
 		tangentialForces<mechanisms>(c, g, h, f);
 		if constexpr (bool(mechanisms & Sliding)) care = care | (c.criticalSliding * c.criticalSliding < dot(f.slidingDisplacement, f.slidingDisplacement));
 		if constexpr (bool(mechanisms & Rolling)) care = care | (c.criticalRolling * c.criticalRolling < dot(f.rollingDisplacement, f.rollingDisplacement));
+		storeForces(g, f, buffer, at);
+		const unsigned events = buffer.events >> at & allLanes, slips = bitsOf(care) & ~events;
+		if constexpr (bool(mechanisms & Drag)) keepDrag(pass.drags[index], buffer, events, at, dragWork);
+		if (__builtin_expect((events | slips) != 0, 0)) keep(old, before, at);
+		buffer.slips |= slips << at;
+		keep(h, block, at);
+	}
+
+	static void storeForces(const ContactGeometry<Pack>& g, const ContactForces<Pack>& f, BatchBuffer& buffer, int at)
+	{
 		store(Pack::load(buffer.normalForce + at) * g.normal + f.sliding, buffer.out.force, at);
 		store(f.torque1, buffer.out.torque1, at);
 		store(f.torque2, buffer.out.torque2, at);
-		const unsigned bits = (bitsOf(care) << at) | (buffer.care & (((1u << width) - 1) << at));
-		if constexpr (bool(mechanisms & Drag)) keepDrag(pass.drags[index], buffer, bits, at, dragWork);
-		if (__builtin_expect(bits != 0, 0)) keep(old, before, at);
+	}
+
+	// Lanes that slip, again: their displacements put back, the forces that follow, and what it took.
+	template <unsigned mechanisms>
+	static void sweepSlips(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, const ContactBlock& before, int at, Slip<Pack>& lost)
+	{
+		const unsigned slipping = buffer.slips >> at & allLanes;
+		if (!slipping) return;
+		ContactBlock&               block = pass.blocks[index];
+		const Pair                  pair  = gatherPair(pass.grains, block, at);
+		const Vec3<Pack>            then  = pair.separation - Pack(pass.dt) * pair.velocity;
+		const Pointers<Pack>        old { load(before.n1, at), load(before.n2, at) };
+		const Vec3<Pack>            none { Pack(0.), Pack(0.), Pack(0.) };
+		const Displacements<Pack>   aStepAgo { sliding::displacement(old, c.radius1, c.radius2, inverseRoot(dot(then, then)) * then), rolling::displacement(old, c.reducedRadius),
+			Pack::load(before.twist + at) };
+		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
+		ContactHistory<Pack>        h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
+		ContactForces<Pack>         f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
+		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, h);
+		tangentialForces<mechanisms>(c, g, h, f);
+		storeForces(g, f, buffer, at);
 		keep(h, block, at);
-		return bits;
+		const typename Pack::Mask those = maskOf(slipping);
+		lost.sliding                    = lost.sliding + choose(those, slipped.sliding, Pack(0.));
+		lost.rolling                    = lost.rolling + choose(those, slipped.rolling, Pack(0.));
+		lost.twisting                   = lost.twisting + choose(those, slipped.twisting, Pack(0.));
+		*pass.slips += __builtin_popcount(slipping);
+	}
+
+	static constexpr unsigned allLanes = (1u << width) - 1;
+
+	static typename Pack::Mask maskOf(unsigned bits)
+	{
+		alignas(64) double is[lanes];
+		for (int k = 0; k < width; ++k)
+			is[k] = bits >> k & 1;
+		return Pack(0.5) < Pack::load(is);
 	}
 
 	// Events keep the step before, which they need.
 	static void keepDrag(DragBlock& d, const BatchBuffer& now, unsigned events, int at, Pack& dragWork)
 	{
-		alignas(64) double quiet[lanes];
-		for (int k = 0; k < width; ++k)
-			quiet[k] = !(events & (1u << (at + k)));
-		const auto plain         = Pack(0.5) < Pack::load(quiet);
+		const auto plain         = maskOf(~events);
 		const Pack dragBefore    = Pack::load(d.drag + at), overlapBefore = Pack::load(d.overlap + at);
 		const Pack drag          = Pack::load(now.drag + at), overlap = Pack::load(now.overlap + at);
 		dragWork                 = dragWork + choose(plain, Pack(0.5) * (dragBefore + drag) * (overlap - overlapBefore), Pack(0.));
@@ -175,6 +214,7 @@ template <class Pack> struct Passes {
 		BatchBuffer               buffers[batchSize];
 		const PairConstants<Pack> same = spread(*pass.alike);
 		Pack                      dragWork(0.);
+		Slip<Pack>                lost { Pack(0.), Pack(0.), Pack(0.), {} };
 		int                       trash[lanes];
 		for (int& t : trash)
 			t = pass.trash;
@@ -184,17 +224,20 @@ template <class Pack> struct Passes {
 			ContactBlock* blocks = pass.blocks + first;
 			for (int b = 0; b < count; ++b) {
 				fetchGrains(pass, first + b + grainsAhead);
-				buffers[b].care = 0;
+				buffers[b].events = buffers[b].slips = 0;
 				for (int at = 0; at < lanes; at += width)
 					sweepNormal<mechanisms>(pass, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], at);
 			}
 			for (int b = 0; b < count; ++b) {
 				fetchBlock(pass, first + b + blocksAhead);
 				ContactBlock before;
-				unsigned     care = 0;
+				const auto   c = [&](int at) -> decltype(auto) { return constants(pass, same, first + b, at, std::bool_constant<alike>()); };
 				for (int at = 0; at < lanes; at += width)
-					care |= sweepTangential<mechanisms>(pass, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], before, at, dragWork);
-				if (__builtin_expect(care != 0, 0)) pass.events(pass.owner, first + b, care, before, buffers[b].out);
+					sweepTangential<mechanisms>(pass, c(at), first + b, buffers[b], before, at, dragWork);
+				if (__builtin_expect(buffers[b].slips != 0, 0))
+					for (int at = 0; at < lanes; at += width)
+						sweepSlips<mechanisms>(pass, c(at), first + b, buffers[b], before, at, lost);
+				if (__builtin_expect(buffers[b].events != 0, 0)) pass.events(pass.owner, first + b, buffers[b].events, before, buffers[b].out);
 			}
 			for (int b = 0; b < count; ++b) {
 				const int* to1 = pass.addFirst ? blocks[b].i : trash;
@@ -208,7 +251,10 @@ template <class Pack> struct Passes {
 			}
 			if (pass.batchDone) pass.batchDone(pass.owner, batch);
 		}
-		if constexpr (bool(mechanisms & Drag)) *pass.dragWork += sumOf(dragWork);
+		pass.dissipated->sliding += sumOf(lost.sliding);
+		pass.dissipated->rolling += sumOf(lost.rolling);
+		pass.dissipated->twisting += sumOf(lost.twisting);
+		pass.dissipated->drag += sumOf(dragWork);
 	}
 
 	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void energies(const ForcePass& pass, StoredEnergy<double>& sums)

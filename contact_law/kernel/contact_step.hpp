@@ -5,6 +5,7 @@
 // its force over that part, which keeps the trajectory and the ledger of second order in dt. MODEL.md, "Events", derives each line.
 #pragma once
 #include "contact.hpp"
+#include "slip.hpp"
 #include "turning.hpp"
 #include <array>
 #include <utility>
@@ -62,39 +63,6 @@ namespace events {
 		const Vec3<double> then   = m.separation - since * m.velocity;
 		const Vec3<double> normal = (1 / std::sqrt(dot(then, then))) * then;
 		return { { turned(-normal, since * m.spin1), turned(normal, since * m.spin2) }, since * dot(m.spin1 - m.spin2, normal) };
-	}
-
-	/* Put displacements beyond their limits back onto them, and book what the slips take. Returns whether the pointers moved.
-	 * Putting one displacement back changes the other a little (second order in the pointers' angles): that too is work, and goes with the slip. */
-	template <unsigned mechanisms>
-	inline bool slip(const PairConstants<double>& c, const Vec3<double>& normal, const ContactBefore& before, ContactHistory<double>& h, Dissipation& lost)
-	{
-		if constexpr (bool(mechanisms & Twisting)) {
-			if (std::abs(h.twist) > c.criticalTwisting) {
-				const double trial = h.twist;
-				h.twist            = std::copysign(c.criticalTwisting, trial);
-				lost.twisting += c.twistingStiffness / 2 * (before.twist + h.twist) * (trial - h.twist);
-			}
-		}
-		const double       r1 = c.radius1, r2 = c.radius2;
-		const Vec3<double> zeta = sliding::displacement(h.pointers, r1, r2, normal), xi = rolling::displacement(h.pointers, c.reducedRadius);
-		bool               slid = false, rolled = false;
-		if constexpr (bool(mechanisms & Sliding)) {
-			slid = dot(zeta, zeta) > c.criticalSliding * c.criticalSliding;
-			if (slid) slideBack(h.pointers, r1, r2, zeta, c.criticalSliding);
-		}
-		if constexpr (bool(mechanisms & Rolling)) {
-			rolled = dot(xi, xi) > c.criticalRolling * c.criticalRolling;
-			if (rolled) rollBack(h.pointers, r1, r2, rolling::displacement(h.pointers, c.reducedRadius), c.criticalRolling);
-		}
-		if (!slid && !rolled) return false;
-		double bySliding = 0, byRolling = 0;
-		if constexpr (bool(mechanisms & Sliding)) bySliding = slipDissipation(c.slidingStiffness, before.sliding, zeta, sliding::displacement(h.pointers, r1, r2, normal));
-		if constexpr (bool(mechanisms & Rolling)) byRolling = slipDissipation(c.rollingStiffness, before.rolling, xi, rolling::displacement(h.pointers, c.reducedRadius));
-		if (!rolled) lost.sliding += bySliding + byRolling;
-		else if (!slid) lost.rolling += bySliding + byRolling;
-		else lost.sliding += bySliding, lost.rolling += byRolling;
-		return true;
 	}
 
 	/* The contact broke inside the step: after the share g of it the overlap passed -delta_c. Its last kicks (before the step) covered half a step;
@@ -160,7 +128,9 @@ inline ContactStepResult contactStep(const PairConstants<double>& c, const Conta
 		if (born) aheadTangential /= 2; // springs grow from zero
 	}
 
-	r.pointersMoved = events::slip<mechanisms>(c, g.normal, before, history, r.dissipated) || !before.touching;
+	const Slip<double> slipped = slip<mechanisms>(c, g.normal, { before.sliding, before.rolling, before.twist }, history);
+	r.dissipated.sliding = slipped.sliding, r.dissipated.rolling = slipped.rolling, r.dissipated.twisting = slipped.twisting;
+	r.pointersMoved = slipped.pointersMoved || !before.touching;
 	r.geometry      = g;
 	const Vec3<double> velocity = before.touching ? m.velocity + 0.5 * (m.velocity - before.velocity) : m.velocity; // extrapolated to now
 	r.touching                  = true;

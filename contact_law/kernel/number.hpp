@@ -4,9 +4,12 @@
 
 namespace contact_law {
 
+template <class T> using MaskOf = decltype(T() < T()); // bool, or one truth a lane
+
 inline double root(double x) { return std::sqrt(x); }
 inline double inverseRoot(double x) { return 1 / std::sqrt(x); }
 inline double choose(bool condition, double yes, double no) { return condition ? yes : no; }
 inline bool   anyOf(bool condition) { return condition; }
+inline double absolute(double x) { return std::fabs(x); }
 
 } // namespace contact_law

@@ -55,8 +55,8 @@ void putBack(const double* constants, const double* normalVector, double* pointe
 {
 	const auto       c = constantsFrom(constants);
 	Pointers<double> p { vector(pointers), vector(pointers + 3) };
-	if (which == 0) slideBack(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
-	else rollBack(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
+	if (which == 0) p = slidBack(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
+	else p = rolledBack(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
 	write(pointers, p.n1);
 	write(pointers, p.n2);
 }
