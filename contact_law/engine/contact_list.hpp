@@ -40,6 +40,8 @@ public:
 		if (!alike) writeConstants(lane, deadConstants);
 		if (drag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
 	}
+	int  first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
+	int  second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
 	Contact get(int lane, const PairConstants<double>& common) const

@@ -46,6 +46,7 @@ void Domain::addForces()
 	for (int sort = 0; sort < 3; ++sort)
 		s.passes->forces[s.mechanisms][s.alike](passFor(sort));
 	births();
+	constraints.withhold(s.grains.data(), s.dt);
 }
 
 void Domain::integrate()
@@ -55,12 +56,15 @@ void Domain::integrate()
 			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
 	fastestSquared = 0;
 	s.passes->integrate(&s.grains[begin], &s.grains[0] + end, &s.inverseMass[begin], &s.inverseInertia[begin], s.dt, fastestSquared);
+	if (!s.orientation.empty()) turnOrientations(&s.grains[begin], &s.grains[0] + end, &s.orientation[begin], s.dt);
 }
 
 ContactMotion Domain::motionOf(int i, int j) const
 {
 	const Grain &a = s.grains[i], &b = s.grains[j];
-	return { positionOf(a) - positionOf(b), velocityOf(a) - velocityOf(b), spinOf(a), spinOf(b), s.dt, s.inverseMass[i] + s.inverseMass[j] };
+	const Vec3<double> separation = positionOf(a) - positionOf(b);
+	const double inverseMass = inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
+	return { separation, velocityOf(a) - velocityOf(b), spinOf(a), spinOf(b), s.dt, inverseMass };
 }
 
 // Both domains of a border contact compute it; the first grain's books it.
@@ -220,6 +224,11 @@ int Domain::pairIndex(int sort, int i, int j) const
 	const Pair pair { i, j };
 	const auto found = std::lower_bound(far[sort].begin(), far[sort].end(), pair);
 	return found != far[sort].end() && !(pair < *found) ? int(found - far[sort].begin()) : -1;
+}
+
+void Domain::place(const Contact& c)
+{
+	if (owns(c.i) || owns(c.j)) contacts[owns(c.i) && owns(c.j) ? Both : owns(c.i) ? First : Second].append(c);
 }
 
 void Domain::placeOverlapping()
