@@ -110,6 +110,7 @@ public:
 		double speed = 0, overlap = 0, force = 0; // overlap over the smaller radius; force along the normal [N]
 	};
 	Trouble trouble(int grain = -1) const;
+	Trouble hardest() const; // the contact that pushes or pulls hardest of all
 	// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are not looked up. Grain -1: none does.
 	Trouble tooDeep() const;
 	const char* instructions() const { return setting.passes->name; }

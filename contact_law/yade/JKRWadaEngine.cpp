@@ -1,5 +1,6 @@
 #include "JKRWadaEngine.hpp"
 #include "JKRWada.hpp"
+#include "LedgerWatch.hpp"
 #include "SceneContacts.hpp"
 #include "SceneGrains.hpp"
 #include <core/Body.hpp>
@@ -20,6 +21,7 @@ struct JKRWadaEngine::Run {
 	std::vector<shared_ptr<State>> states;       // of the bodies, to reach them quickly
 	bool                           orientations, constrained;
 	SceneContacts                  contacts;
+	LedgerWatch                    watch {};
 };
 
 namespace {
@@ -29,6 +31,14 @@ namespace {
 		char digits[32];
 		std::snprintf(digits, sizeof digits, "%.4g", double(number));
 		return digits;
+	}
+
+	std::string pairOf(const Dynamics::Trouble& t) { return "body " + std::to_string(t.grain) + " and body " + std::to_string(t.other); }
+	std::string describe(const Dynamics::Trouble& t) { return " (overlap " + rounded(t.overlap) + " of the smaller radius, normal force " + rounded(t.force) + " N)"; }
+	std::string hardestContact(const Dynamics::Trouble& t)
+	{
+		if (t.other < 0) return "; it touches no other";
+		return "; its hardest contact is with body " + std::to_string(t.other) + describe(t);
 	}
 
 	void requireAlone(const Scene& scene)
@@ -70,7 +80,7 @@ void JKRWadaEngine::start()
 	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
 	const bool                   inherits  = !continued && !inherited.contacts.empty();
 	current = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr, inherits ? &inherited : nullptr), now.grains, now.grains,
-	                                         now.states, orientations, false, contacts });
+	                                         now.states, orientations, false, contacts, {} });
 	smallStep = options.dt;
 	try {
 		requireStable();
@@ -79,7 +89,7 @@ void JKRWadaEngine::start()
 		throw;
 	}
 	if (scene->trackEnergy) {
-		if (continued) writeEnergies(true);
+		if (continued) writeEnergies(current->dynamics.energies(), true);
 		else channels.takeOver(*scene);
 	}
 	memory.clear();
@@ -93,7 +103,7 @@ void JKRWadaEngine::requireStable() const
 		               + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
 	const Dynamics::Trouble deep = current->dynamics.tooDeep();
 	if (deep.grain >= 0)
-		refuseInEngine("body " + std::to_string(deep.grain) + " and body " + std::to_string(deep.other) + " overlap by " + rounded(deep.overlap) + " of the smaller radius at the start, allowed: at most 1");
+		refuseInEngine(pairOf(deep) + " overlap by " + rounded(deep.overlap) + " of the smaller radius at the start, allowed: at most 1");
 }
 
 // Bodies that a script moved, pushed or blocked since the last step.
@@ -106,6 +116,7 @@ void JKRWadaEngine::takeChanges()
 		const GrainInput now = grainOf(*current->states[k]);
 		if (!finite(now)) refuseInEngine("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
 		current->dynamics.set(int(k), now);
+		current->watch.forgetSum();
 	}
 }
 
@@ -117,33 +128,41 @@ void JKRWadaEngine::action()
 	current->dynamics.setThreads(threads);
 	const long made = current->dynamics.run(subSteps);
 	current->dynamics.read(current->now);
-	requireSound(made);
+	contact_law::Energies energies;
+	if (scene->trackEnergy) energies = current->dynamics.energies();
+	requireSound(made, scene->trackEnergy ? &energies : nullptr);
 	writeBodies();
 	if (exportInteractions) current->contacts.write(*scene, current->dynamics, true);
 	else current->contacts.withdraw(*scene);
-	if (scene->trackEnergy) writeEnergies(false);
+	if (scene->trackEnergy) writeEnergies(energies, false);
 	actedAt = scene->iter;
 }
 
-// Before anything is written: the bodies keep the last good state.
-void JKRWadaEngine::requireSound(long made)
+// Before anything is written: the bodies keep the last good state. `now`: the energies, or null when nobody asks for them.
+void JKRWadaEngine::requireSound(long made, const contact_law::Energies* now)
 {
 	Dynamics::Trouble trouble;
 	if (made < subSteps) trouble = current->dynamics.trouble();
 	for (std::size_t k = 0; trouble.grain < 0 && k < current->now.size(); ++k)
 		if (!finite(current->now[k])) trouble = current->dynamics.trouble(int(k));
-	const bool motion = trouble.grain >= 0;
-	if (!motion) trouble = current->dynamics.tooDeep();
-	if (trouble.grain < 0) return;
-	const std::string grain = "body " + std::to_string(trouble.grain), other = "body " + std::to_string(trouble.other);
-	std::string       what;
-	if (!motion) what = grain + " and " + other + " overlap by " + rounded(trouble.overlap) + " of the smaller radius";
-	else if (std::isfinite(trouble.speed)) what = grain + " moves at " + rounded(trouble.speed) + " m/s, more than half the smallest radius in a small step";
-	else what = grain + " has no finite position or velocity any more";
-	if (motion && trouble.other >= 0)
-		what += "; of its contacts the one with " + other + " is the hardest (overlap " + rounded(trouble.overlap) + " of the smaller radius, normal force " + rounded(trouble.force) + " N)";
-	failure = "the run went wrong at t = " + text(scene->time + std::min(made + 1, long(subSteps)) * smallStep) + " s: " + what + "; O.bodies hold the last good state, of t = " + text(scene->time)
-	        + " s. A smaller step may help";
+	const Real time = scene->time + std::min(made + 1, long(subSteps)) * smallStep;
+	if (trouble.grain >= 0) {
+		const std::string grain = "body " + std::to_string(trouble.grain);
+		if (!std::isfinite(trouble.speed)) fail(time, grain + " has no finite position or velocity any more" + hardestContact(trouble));
+		fail(time, grain + " moves at " + rounded(trouble.speed) + " m/s, more than half the smallest radius in a small step" + hardestContact(trouble));
+	}
+	trouble = current->dynamics.tooDeep();
+	if (trouble.grain >= 0) fail(time, pairOf(trouble) + " overlap by " + rounded(trouble.overlap) + " of the smaller radius");
+	const std::string wrong = now ? current->watch.wrong(*now) : "";
+	if (wrong.empty()) return;
+	const Dynamics::Trouble fastest = current->dynamics.trouble(), hardest = current->dynamics.hardest();
+	fail(time, wrong + "; body " + std::to_string(fastest.grain) + " is the fastest (" + rounded(fastest.speed) + " m/s)"
+	                   + (hardest.grain < 0 ? ", and none touch any more" : ", the hardest contact is that of " + pairOf(hardest) + describe(hardest)));
+}
+
+void JKRWadaEngine::fail(Real time, const std::string& what)
+{
+	failure = "the run went wrong at t = " + text(time) + " s: " + what + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s. A smaller step may help";
 	current.reset();
 	refuseInEngine(failure);
 }
@@ -153,7 +172,7 @@ void JKRWadaEngine::prepare()
 	scene = Omega::instance().getScene().get();
 	if (!current) start();
 	if (exportInteractions) current->contacts.write(*scene, current->dynamics, true);
-	if (scene->trackEnergy) writeEnergies(false);
+	if (scene->trackEnergy) writeEnergies(current->dynamics.energies(), false);
 }
 
 void JKRWadaEngine::writeInteractions()
@@ -190,9 +209,8 @@ void JKRWadaEngine::writeBodies()
 	current->written.swap(current->now);
 }
 
-void JKRWadaEngine::writeEnergies(bool known)
+void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 {
-	const contact_law::Energies     now = current->dynamics.energies();
 	const contact_law::Dissipation& d   = now.dissipated;
 	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag }, known);
 	current->constrained = current->constrained || current->dynamics.constrained();

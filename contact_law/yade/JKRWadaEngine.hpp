@@ -22,9 +22,10 @@ class JKRWadaEngine : public GlobalEngine {
 	void start();
 	void requireStable() const;
 	void takeChanges();
-	void requireSound(long stepsMade);
+	void requireSound(long stepsMade, const contact_law::Energies*);
+	[[noreturn]] void fail(Real time, const std::string& what);
 	void writeBodies();
-	void writeEnergies(bool known);
+	void writeEnergies(const contact_law::Energies&, bool known);
 
 public:
 	void action() override;
