@@ -140,16 +140,21 @@ void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
 
 void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, bool current)
 {
-	const std::vector<Place> places  = placesOf(dynamics);
-	const bool               inserts = !inOrder(scene, places);
-	if (inserts) arrange(scene, places);
-	for (size_t k = 0; k < places.size(); ++k) {
-		ContactNow c = dynamics.now(places[k].list->get(places[k].lane, dynamics.commonConstants()));
-		if (held[k] ? c.first != held[k]->getId1() : c.first != places[k].id1) c = contact_law::swapped(c);
-		if (!held[k]) held[k] = made(scene, c.first, c.second, c.constants);
-		writeContact(scene, c, current, *held[k]);
-		if (inserts) scene.interactions->insert(held[k]);
+	const std::vector<Place> places = placesOf(dynamics);
+	const auto               now    = [&](size_t k, int id1) {
+                const ContactNow c = dynamics.now(places[k].list->get(places[k].lane, dynamics.commonConstants()));
+                return c.first == id1 ? c : contact_law::swapped(c);
+	};
+	if (!inOrder(scene, places)) {
+		arrange(scene, places);
+		for (size_t k = 0; k < places.size(); ++k) {
+			if (!held[k]) held[k] = made(scene, places[k].id1, places[k].id2, now(k, places[k].id1).constants);
+			scene.interactions->insert(held[k]);
+		}
 	}
+#pragma omp parallel for num_threads(dynamics.threadCount())
+	for (size_t k = 0; k < places.size(); ++k)
+		writeContact(scene, now(k, held[k]->getId1()), current, *held[k]);
 }
 
 void SceneContacts::withdraw(Scene& scene)

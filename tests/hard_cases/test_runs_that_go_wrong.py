@@ -1,6 +1,8 @@
 """A run that goes wrong stops at once, names grain, contact and time, and leaves the last good state."""
+import json
 import re
 
+import numpy as np
 import pytest
 
 SCENE = """
@@ -123,3 +125,27 @@ result["goes_on"] = O.engines[0].statistics()["contacts"]
 """)
     assert "body 0 moves at 1e+05 m/s" in found["message"] and "body 1" in found["message"], found["message"]
     assert found["same"] and found["goes_on"] == 3
+
+
+@pytest.mark.parametrize("engine", ["fused", "functors"])
+def test_a_collision_that_fails_keeps_its_last_good_state(yade, tmp_path, engine):
+    """collide.py with its own guard on the step switched off: exit status 1, the names in run.json, and the last sample before as the last state."""
+    found = yade("""
+import os, runpy
+from yade_scripts import parameters as checks
+checks.step_limit = lambda constants, filling: 1.0
+top = os.path.dirname(os.path.dirname(checks.__file__))
+sys.argv = [os.path.join(top, "yade_scripts/collide.py"), "radius=4", "velocity=30", "duration=15e-9", "stepFraction=0.12", "viscoelasticTime=30e-12",
+            "engine=" + parameters["engine"], "out=" + parameters["out"]]
+try:
+    runpy.run_path(sys.argv[0], init_globals={"O": O}, run_name="__main__")
+except SystemExit as end:
+    result["status"] = end.code
+""", {"engine": engine, "out": str(tmp_path / "run")})
+    outcome = json.loads((tmp_path / "run" / "run.json").read_text())["outcome"]
+    assert found["status"] == 1 and outcome.startswith("failed: ") and " s" in outcome, outcome
+    assert len(re.findall(r"body \d+", outcome)) >= 2 or "none touch" in outcome, outcome
+    times = np.load(tmp_path / "run" / "history.npz")["time"]
+    states = sorted((tmp_path / "run" / "states").iterdir())
+    last = np.load(states[-1])
+    assert last["time"] == times[-1] and np.isfinite(last["position"]).all()
