@@ -29,6 +29,7 @@ class Recorder:
         self.ending = False
         self._rows, self._states = [], 0
         self._energy_scale = None
+        self._last_good = None  # state of the last sample, unless it is written already
         self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
 
     def sample(self):
@@ -36,6 +37,12 @@ class Recorder:
             self._sample()
         except Exception as error:
             self.error = error
+            self.write_last_good()
+
+    def write_last_good(self):
+        """After a failure: the state of the last sample that was in order, if it isn't written yet."""
+        if self._last_good is not None:
+            self._write_state(self._last_good)
 
     def write_history(self):
         """Write all samples so far."""
@@ -54,15 +61,20 @@ class Recorder:
             state['position'][:, 0], state['velocity'][:, 0], self.aggregate_radius)
         pairs = self.aggregate[state['contact_pairs']]
         between = np.count_nonzero(pairs[:, 0] != pairs[:, 1])
+        state['aggregate'] = self.aggregate
         number = len(self._rows)
         self._rows.append((state['time'], *energies, compression, velocity, len(pairs), between))
+        self._last_good = state
         if self.ending or number in self.schedule.states:
-            state['aggregate'] = self.aggregate
-            self.folder.write_state(self._states, {name: state[name] for name in STATE})
-            self._states += 1
+            self._write_state(state)
         if time.monotonic() >= self._next_write:
             self.write_history()
             self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
+
+    def _write_state(self, state):
+        self.folder.write_state(self._states, {name: state[name] for name in STATE})
+        self._states += 1
+        self._last_good = None
 
     def _require_sane(self, state, energies):
         """A run that blew up isn't worth its time: stop when the ledger is off by a tenth, or not finite."""
@@ -70,11 +82,28 @@ class Recorder:
         for channel, energy in zip(CHANNELS, energies):
             if not np.isfinite(energy):
                 raise RunFailed(f'energy {channel} is {energy} {when}')
-        if not np.isfinite(state['position']).all():
-            raise RunFailed(f'a position is not finite {when}')
+        finite = np.isfinite(state['position']).all(axis=1)
+        if not finite.all():
+            raise RunFailed(f'body {state["ids"][~finite][0]} has no finite position {when}')
         total = sum(energies)
         if self._energy_scale is None:
             self._energy_scale, self._energy_start = sum(map(abs, energies)), total
         if abs(total - self._energy_start) > 0.1 * self._energy_scale:
             raise RunFailed(f'energy is not conserved ({total - self._energy_start:.3g} J more than at the '
-                            f'start, of {self._energy_scale:.3g} J) {when}: the step is too long')
+                            f'start, of {self._energy_scale:.3g} J) {when}: the step is too long{suspects(state)}')
+
+
+def suspects(state):
+    """What to look at in a state gone wrong: its fastest body and the contact that overlaps most, as a clause."""
+    speed = np.linalg.norm(state['velocity'], axis=1)
+    fastest = np.argmax(speed)
+    text = f'; body {state["ids"][fastest]} is the fastest ({speed[fastest]:.4g} m/s)'
+    first, second = state['contact_pairs'].T
+    if not len(first):
+        return text + ', and none touch any more'
+    radius, position = state['radius'], state['position']
+    apart = np.linalg.norm(position[first] - position[second], axis=1)
+    overlap = (radius[first] + radius[second] - apart) / np.minimum(radius[first], radius[second])
+    deepest = np.argmax(overlap)
+    return (f'{text}, the deepest contact is that of body {state["ids"][first[deepest]]} and body '
+            f'{state["ids"][second[deepest]]} (overlap {overlap[deepest]:.4g} of the smaller radius)')

@@ -25,6 +25,7 @@ def run(steps, recorder, runner, begin):
                 omega.step()
                 return 'interrupted', 128 + stop.received
     except RuntimeError as error:  # from an engine
+        recorder.write_last_good()
         return f'failed: {one_line(error)}', 1
     finally:
         progress.close()

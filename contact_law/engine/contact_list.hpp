@@ -41,8 +41,8 @@ public:
 		if (!alike) writeConstants(lane, deadConstants);
 		if (hasDrag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
 	}
-	int  firstGrain(int lane) const { return blocks[lane / lanes].i[lane % lanes]; }
-	int  secondGrain(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
+	int  first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
+	int  second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
 	Contact get(int lane, const PairConstants<double>& common) const
@@ -87,7 +87,7 @@ public:
 		};
 		std::vector<Key> order;
 		for (int lane = 0; lane < used; ++lane)
-			if (alive(lane)) order.push_back({ firstGrain(lane), secondGrain(lane), lane });
+			if (alive(lane)) order.push_back({ first(lane), second(lane), lane });
 		std::sort(order.begin(), order.end());
 		const ContactList before = *this;
 		clear();

@@ -52,6 +52,7 @@ void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
 void Domain::addFirstForces()
 {
 	sums.eventWork = 0;
+	constraints.begin();
 	addForces(First, 0, contacts[First].blockCount(), false);
 	addForces(Second, 0, contacts[Second].blockCount(), false);
 	addForces(Both, sortedBlocks, contacts[Both].blockCount(), false);
@@ -62,13 +63,16 @@ void Domain::addOtherForces(bool behind)
 {
 	if (behind) fastestSquared = 0, moved = begin;
 	addForces(Both, 0, sortedBlocks, behind);
+	constraints.withhold(s.grains.data(), s.dt, end);
 	if (behind) integrateUpTo(end);
 }
 
 void Domain::moveBehind(void* owner, int batch)
 {
 	Domain& domain = *static_cast<EventCall*>(owner)->domain;
-	domain.integrateUpTo(domain.completed[batch]);
+	const int complete = domain.completed[batch];
+	domain.constraints.withhold(domain.s.grains.data(), domain.s.dt, complete);
+	domain.integrateUpTo(complete);
 }
 
 void Domain::integrate()
@@ -83,13 +87,16 @@ void Domain::integrateUpTo(int grain)
 		for (int g = moved; g < grain; ++g)
 			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
 	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved, s.dt, fastestSquared);
+	if (!s.orientation.empty()) turnOrientations(s.grains.data() + moved, s.grains.data() + grain, s.orientation.data() + moved, s.dt);
 	moved = grain;
 }
 
 ContactMotion Domain::motionOf(int i, int j) const
 {
 	const Grain &a = s.grains[i], &b = s.grains[j];
-	return { positionOf(a) - positionOf(b), velocityOf(a) - velocityOf(b), spinOf(a), spinOf(b), s.dt, s.inverseMass[i] + s.inverseMass[j] };
+	const Vec3<double> separation = positionOf(a) - positionOf(b);
+	const double inverseMass = inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
+	return { separation, velocityOf(a) - velocityOf(b), spinOf(a), spinOf(b), s.dt, inverseMass };
 }
 
 void Domain::book(const ContactStepResult& r, const ContactMotion& m, int sort)
@@ -111,7 +118,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 {
 	ContactList&           list = contacts[sort];
 	const int              k    = lane % lanes;
-	const int              i = list.firstGrain(lane), j = list.secondGrain(lane);
+	const int              i = list.first(lane), j = list.second(lane);
 	const ContactMotion    m = motionOf(i, j);
 	PairConstants<double>  own;
 	if (!s.alike) own = list.readConstants(lane);
@@ -208,7 +215,7 @@ void Domain::findPairs(const Grid& grid)
 		const ContactList& list = contacts[sort];
 		for (int lane = 0; lane < list.size(); ++lane) {
 			if (!list.alive(lane)) continue;
-			const int pair = pairIndex(sort, list.firstGrain(lane), list.secondGrain(lane));
+			const int pair = pairIndex(sort, list.first(lane), list.second(lane));
 			if (pair >= 0) touching[sort][pair] = 1;
 		}
 	}
@@ -233,7 +240,7 @@ void Domain::findCompleted()
 		completed[batch] = next;
 		const int last   = std::min((batch + 1) * batchSize, sortedBlocks) * lanes;
 		for (int lane = last - 1; lane >= batch * batchSize * lanes; --lane)
-			if (list.alive(lane)) next = list.firstGrain(lane);
+			if (list.alive(lane)) next = list.first(lane);
 	}
 }
 
@@ -258,6 +265,11 @@ int Domain::pairIndex(int sort, int i, int j) const
 	const Pair pair { i, j };
 	const auto found = std::lower_bound(far[sort].begin(), far[sort].end(), pair);
 	return found != far[sort].end() && !(pair < *found) ? int(found - far[sort].begin()) : -1;
+}
+
+void Domain::place(const Contact& c)
+{
+	if (owns(c.i) || owns(c.j)) contacts[owns(c.i) && owns(c.j) ? Both : owns(c.i) ? First : Second].append(c);
 }
 
 void Domain::placeOverlapping()

@@ -2,8 +2,10 @@
 // domains, each adding to its own grains only, so that results do not depend on how many threads the domains are dealt to.
 #pragma once
 #include "../kernel/contact_step.hpp"
+#include "constraints.hpp"
 #include "contact_list.hpp"
 #include "grid.hpp"
+#include "orientations.hpp"
 
 namespace contact_law {
 
@@ -14,6 +16,8 @@ struct Setting {
 	std::vector<double>    inverseMass, inverseInertia, radius;
 	std::vector<Material>  material; // kinds of material
 	std::vector<int>       kind;     // of each grain
+	std::vector<Orientation> orientation; // likewise; none where the scene doesn't ask for them
+	std::vector<unsigned>  blocked;  // likewise (kernel/blocked.hpp)
 	double                 linearDamping = 0;
 	bool                   alike = true;
 	PairConstants<double>  common {}; // of the first grain with itself; of every pair when they are alike
@@ -47,6 +51,7 @@ public:
 	void sortContacts();     // into the order of pairs, without dead lanes
 	void findCompleted();    // where in the sorted contacts grains have had their last one
 	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
+	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and findPairs()
 	StoredEnergy<double> energies();
 	double     kineticEnergy() const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add
 
@@ -56,6 +61,7 @@ public:
 	StepSums            sums;
 	ContactList         contacts[3]; // both grains own; the first; the second
 	int                 sortedBlocks = 0; // of the contacts with both grains own
+	Constraints         constraints;
 	int                 contactCount() const; // alive ones, a border contact counted where its first grain lives
 
 private:

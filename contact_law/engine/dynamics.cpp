@@ -20,7 +20,8 @@ namespace {
 	}
 }
 
-Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_, const std::vector<double>* memory)
+Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_, const std::vector<double>* memory,
+                   const Inherited* inherited)
         : options(options_)
         , count(int(grains.size()))
 {
@@ -38,7 +39,14 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 		recall(*memory);
 		return;
 	}
+	if (inherited) inherit(*inherited);
 	refreshLists(true);
+	if (inherited && inherited->stepBehind) { // an ordinary step's end: events since the histories' moment are found as in any other
+		addForces();
+		for (auto& domain : domains)
+			domain->constraints.work = 0; // half of it would be missing
+		return;
+	}
 	for (auto& domain : domains)
 		domain->placeOverlapping();
 	refreshLists(false);
@@ -78,6 +86,8 @@ void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 		write(g, setting.grains.back());
 		setting.radius.push_back(g.radius);
 		setting.kind.push_back(g.kind);
+		setting.blocked.push_back(g.blocked);
+		if (options.orientations) setting.orientation.push_back(g.orientation);
 		setting.inverseMass.push_back(1 / g.mass);
 		setting.inverseInertia.push_back(1 / g.inertia);
 		setting.alike = setting.alike && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
@@ -95,10 +105,22 @@ void Dynamics::write(const GrainInput& g, Grain& grain)
 	grain.wx = g.angularVelocity[0], grain.wy = g.angularVelocity[1], grain.wz = g.angularVelocity[2];
 }
 
+void Dynamics::write(const Grain& grain, GrainInput& g)
+{
+	g.position[0] = grain.x, g.position[1] = grain.y, g.position[2] = grain.z;
+	g.velocity[0] = grain.vx, g.velocity[1] = grain.vy, g.velocity[2] = grain.vz;
+	g.angularVelocity[0] = grain.wx, g.angularVelocity[1] = grain.wy, g.angularVelocity[2] = grain.wz;
+}
+
 void Dynamics::set(int index, const GrainInput& now)
 {
 	const int k = indexHere[index];
 	Grain&    p = setting.grains[k];
+	if (now.blocked != setting.blocked[k]) {
+		domainOf(k).constraints.block(setting.grains.data(), k, now.blocked);
+		setting.blocked[k] = now.blocked;
+	}
+	if (options.orientations) setting.orientation[k] = now.orientation;
 	write(now, p);
 	kick(p, k, -0.5 * setting.dt);
 	travelSinceFar = travelSinceNear = setting.farGap; // whatever the distance: look for neighbours anew
@@ -119,6 +141,16 @@ void Dynamics::makeDomains()
 	if (setting.hasDrag()) setting.previous.assign(count + 2 * domainCount, PreviousVelocity {});
 	for (int d = 0; d < domainCount; ++d)
 		domains.push_back(std::make_unique<Domain>(setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
+	for (int k = 0; k < count; ++k)
+		if (setting.blocked[k]) domainOf(k).constraints.block(setting.grains.data(), k, setting.blocked[k]);
+}
+
+Domain& Dynamics::domainOf(int index)
+{
+	std::size_t d = 0;
+	while (index >= domains[d]->end)
+		++d;
+	return *domains[d];
 }
 
 void Dynamics::buildGrid()
@@ -149,13 +181,18 @@ void Dynamics::firstForces()
 	if (setting.hasDrag())
 		for (int g = 0; g < count; ++g)
 			setting.previous[g] = { setting.grains[g].vx, setting.grains[g].vy, setting.grains[g].vz, 0 };
+	addForces();
+	setting.dt = dt;
+	for (int g = 0; g < count; ++g)
+		kick(setting.grains[g], g, -0.5 * dt);
+}
+
+void Dynamics::addForces()
+{
 	for (auto& domain : domains)
 		domain->addFirstForces();
 	for (auto& domain : domains)
 		domain->addOtherForces(false);
-	setting.dt = dt;
-	for (int g = 0; g < count; ++g)
-		kick(setting.grains[g], g, -0.5 * dt);
 }
 
 double Dynamics::unstableStep() const
@@ -171,20 +208,22 @@ double Dynamics::unstableStep() const
 	return least;
 }
 
-// One thread's share of a run; all threads take the same decisions from the same numbers.
-void Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
+// One thread's share of a run; all threads take the same decisions from the same numbers. Returns the steps made.
+long Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
 {
 	const auto mine = [&](auto&& what) {
 		for (std::size_t d = thread; d < domains.size(); d += threads)
 			what(*domains[d]);
 	};
-	double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
+	double       sinceFar = travelSinceFar, sinceNear = travelSinceNear;
+	const double allowed = fastestAllowed();
 	mine([](Domain& domain) { domain.integrate(); });
 	for (long step = 1; step <= steps; ++step) {
 		barrier.wait();
 		double fastest = 0;
 		for (const auto& domain : domains)
 			fastest = std::max(fastest, domain->fastestSquared);
+		if (fastest > allowed) return step - 1;
 		const double travel = setting.dt * std::sqrt(3 * fastest); // of a component's square
 		sinceFar += travel;
 		sinceNear += travel;
@@ -208,15 +247,21 @@ void Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
 		travelSinceFar  = sinceFar;
 		travelSinceNear = sinceNear;
 	}
+	return steps;
 }
 
-void Dynamics::run(long steps)
+long Dynamics::run(long steps)
 {
 	const int threads = threadCount();
 	Barrier   barrier(threads);
+	long      made = steps;
 #pragma omp parallel num_threads(threads)
-	runShare(steps, omp_get_thread_num(), threads, barrier);
-	contactUpdates += steps * contactCount();
+	{
+		const long here = runShare(steps, omp_get_thread_num(), threads, barrier);
+		if (omp_get_thread_num() == 0) made = here;
+	}
+	contactUpdates += made * contactCount();
+	return made;
 }
 
 void Dynamics::read(std::vector<GrainInput>& grains) const
@@ -227,12 +272,12 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 		Grain       p = setting.grains[k];
 		GrainInput& g = grains[original[k]];
 		kick(p, k, 0.5 * setting.dt);
-		g.position[0] = p.x, g.position[1] = p.y, g.position[2] = p.z;
-		g.velocity[0] = p.vx, g.velocity[1] = p.vy, g.velocity[2] = p.vz;
-		g.angularVelocity[0] = p.wx, g.angularVelocity[1] = p.wy, g.angularVelocity[2] = p.wz;
+		write(p, g);
 		g.radius = setting.radius[k];
 		g.mass = 1 / setting.inverseMass[k], g.inertia = 1 / setting.inverseInertia[k];
 		g.kind = setting.kind[k];
+		g.blocked = setting.blocked[k];
+		if (options.orientations) g.orientation = setting.orientation[k];
 	}
 }
 
@@ -251,16 +296,9 @@ Energies Dynamics::energies()
 		e.stored += stored[d];
 		e.kinetic += kinetic[d];
 		e.dissipated += domains[d]->sums.dissipated;
+		e.constraintWork += domains[d]->constraints.work;
 	}
 	return e;
-}
-
-double Dynamics::normalForce(const Contact& c) const
-{
-	const Grain &       a = setting.grains[c.i], &b = setting.grains[c.j];
-	const Vec3<double>  d { a.x - b.x, a.y - b.y, a.z - b.z };
-	const ContactForces<double> f = contactForces<0>(c.constants, geometryOf(d, c.constants.radius1 + c.constants.radius2), c.history, Vec3<double> {});
-	return f.normalForce + c.drag;
 }
 
 int Dynamics::contactCount() const

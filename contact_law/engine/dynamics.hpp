@@ -12,12 +12,40 @@ struct GrainInput {
 	double position[3], velocity[3], angularVelocity[3]; // all at the start's moment
 	double radius, mass, inertia;
 	int    kind; // index of its material
+	unsigned    blocked     = 0;              // degrees of freedom (kernel/blocked.hpp)
+	Orientation orientation = { 1, 0, 0, 0 }; // kept up only with Options::orientations
+};
+
+// A contact as it is now, its grains as they were given.
+struct ContactNow {
+	int                     first, second;
+	PairConstants<double>   constants;
+	ContactHistory<double>  history; // laboratory frame
+	ContactGeometry<double> geometry;
+	ContactForces<double>   forces;
+	Vec3<double>            velocity; // of the first past the second through the last small step
+};
+ContactNow swapped(const ContactNow&); // the same with its grains in the other order
+
+// Contacts that grains have when a run starts, in place of unstrained springs where they overlap.
+struct Inherited {
+	struct One {
+		int                    first, second; // grains as given
+		ContactHistory<double> history;       // laboratory frame
+		double                 overlap, drag; // at the moment of the history
+	};
+	std::vector<One> contacts;
+	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
+	 * scenes with drag `previous`, the velocities another step before. Otherwise all is of one moment. */
+	bool                      stepBehind = false;
+	std::vector<Vec3<double>> previous;
 };
 
 struct Energies {
 	double      kinetic = 0; // 1/2 m v(-dt/2) v(+dt/2): what a leapfrog conserves together with the stored energies (MODEL.md)
 	StoredEnergy<double> stored { 0, 0, 0, 0 };
 	Dissipation dissipated;
+	double      constraintWork = 0; // done by contacts on blocked degrees of freedom, since the start
 };
 
 class Dynamics {
@@ -27,38 +55,64 @@ public:
 		unsigned mechanisms = AllSprings;
 		int      domains = 2, threads = 1;
 		std::string instructions; // "avx512", "avx2", "portable"; empty: the best this machine has
+		bool        orientations = false; // whether to keep the grains' orientations up
 	};
-	// Grains that overlap touch from the start, with unstrained springs; or all is as `memory` (of remember(), from the same grains in the same order) has it.
-	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options, const std::vector<double>* memory = nullptr);
+	// Grains that overlap touch from the start, with unstrained springs or as `inherited` has it; or all is as `memory` (of remember(), from the same grains in the
+	// same order) has it.
+	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options, const std::vector<double>* memory = nullptr,
+	         const Inherited* inherited = nullptr);
 
 	/* Steps from here on are unstable for every pair of like grains in the scene, in whatever packing [s]: half a time unit, at which collisions blow up
 	 * (measured; MODEL.md), or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. */
 	double unstableStep() const;
 
-	void run(long steps);
+	// Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (trouble() then tells).
+	long run(long steps);
 	void setThreads(int threads) { options.threads = threads; }
 	int  threadCount() const { return std::max(1, std::min(options.threads, int(domains.size()))); }
 
 	std::vector<double> remember() const;
 
-	// A grain that something else has moved or pushed.
+	// A grain that something else has moved, pushed, or blocked.
 	void set(int grain, const GrainInput& now);
 
 	// The state now; grains in the order they were given.
 	void     read(std::vector<GrainInput>& grains) const;
+	// As YADE's loop leaves grains after a step: moved on by a small step, velocities of half a step before that, contacts as they are now.
+	// Orientations are turned from those of this run, or, where it keeps none, from those given.
+	void     readAhead(std::vector<GrainInput>& grains) const;
 	Energies energies();
+	bool     constrained() const; // whether any grain has a blocked degree of freedom
 	int      contactCount() const;
-	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, index of grain 1, of grain 2, normal force now)
+	template <class Visit> void eachPlace(Visit&& visit) const // of every contact once: visit(list, lane, its first and its second grain as given)
 	{
 		for (const auto& domain : domains)
-			for (int sort = 0; sort < 2; ++sort)
-				for (int lane = 0; lane < domain->contacts[sort].size(); ++lane)
-					if (domain->contacts[sort].alive(lane)) {
-						const Contact c = domain->contacts[sort].get(lane, setting.common);
-						visit(c, original[c.i], original[c.j], normalForce(c));
-					}
+			for (int sort = 0; sort < 2; ++sort) {
+				const ContactList& list = domain->contacts[sort];
+				for (int lane = 0; lane < list.size(); ++lane)
+					if (list.alive(lane)) visit(list, lane, original[list.first(lane)], original[list.second(lane)]);
+			}
+	}
+	const PairConstants<double>& commonConstants() const { return setting.common; } // for ContactList::get
+	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, its first and second grain as given, normal force now)
+	{
+		eachPlace([&](const ContactList& list, int lane, int first, int second) {
+			const Contact c = list.get(lane, setting.common);
+			visit(c, first, second, normalForce(c));
+		});
 	}
 	double      normalForce(const Contact&) const; // elastic and viscous, positive when repulsive
+	ContactNow  now(const Contact&) const;
+
+	// What went wrong: the grain that moves fastest (or the given one) and its contact that pushes or pulls hardest; both as given, -1: none.
+	struct Trouble {
+		int    grain = -1, other = -1;
+		double speed = 0, overlap = 0, force = 0; // overlap over the smaller radius; force along the normal [N]
+	};
+	Trouble trouble(int grain = -1) const;
+	Trouble hardest() const; // the contact that pushes or pulls hardest of all
+	// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are not looked up. Grain -1: none does.
+	Trouble tooDeep() const;
 	const char* instructions() const { return setting.passes->name; }
 	long        contactUpdates = 0, farRebuilds = 0, nearRebuilds = 0, events() const;
 
@@ -66,14 +120,19 @@ private:
 	void        orderGrains(const std::vector<GrainInput>&);
 	void        recallOrder(const std::vector<double>& memory);
 	void        loadGrains(const std::vector<GrainInput>&);
+	void        inherit(const Inherited&);
 	static void write(const GrainInput&, Grain&);
+	static void write(const Grain&, GrainInput&);
 	void        kick(Grain&, int index, double time) const;
 	void makeDomains();
 	void recall(const std::vector<double>& memory);
 	void firstForces();
+	void addForces(); // of all domains, without moving
 	void buildGrid();
 	void refreshLists(bool farToo);
-	void runShare(long steps, int thread, int threads, Barrier&);
+	long runShare(long steps, int thread, int threads, Barrier&);
+	Domain& domainOf(int index);
+	double  fastestAllowed() const; // square of a velocity component
 
 	Options                              options;
 	Setting                              setting;

@@ -44,6 +44,9 @@ std::vector<double> Dynamics::remember() const
 	for (const auto& domain : domains) {
 		const Dissipation& d = domain->sums.dissipated;
 		to.insert(to.end(), { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork, double(domain->events), double(domain->sortedBlocks) });
+		to.insert(to.end(), { domain->constraints.work, double(domain->constraints.grains.size()) });
+		for (const Constrained& c : domain->constraints.grains)
+			to.insert(to.end(), { c.force.x, c.force.y, c.force.z, c.torque.x, c.torque.y, c.torque.z });
 		for (const ContactList& list : domain->contacts) {
 			to.push_back(list.size());
 			for (int lane = 0; lane < list.size(); ++lane) {
@@ -90,6 +93,11 @@ void Dynamics::recall(const std::vector<double>& memory)
 			*number = from.next();
 		domain->events = long(from.next());
 		domain->sortedBlocks = from.integer();
+		domain->constraints.work = from.next();
+		if (from.integer() != int(domain->constraints.grains.size())) throw std::invalid_argument("blockedDOFs of a body are others than in the checkpoint");
+		for (Constrained& c : domain->constraints.grains)
+			for (double* number : { &c.force.x, &c.force.y, &c.force.z, &c.torque.x, &c.torque.y, &c.torque.z })
+				*number = from.next();
 		for (ContactList& list : domain->contacts) {
 			list.clear();
 			for (int lanes = from.integer(); lanes > 0; --lanes) {

@@ -20,11 +20,9 @@ public:
 		if (preparedAt == scene.iter) return;
 #pragma omp critical(EnergyChannelsPrepare)
 		if (preparedAt != scene.iter) {
-			static const char* const names[count] = { "kinetic",           "normal",             "sliding",             "rolling",    "twisting",     "slidingDissipation",
-				                                  "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag" };
 			for (int channel = 0; channel < count; ++channel) {
 				ids[channel] = -1;
-				scene.energy->add(0., names[channel], ids[channel], perStep(channel));
+				scene.energy->add(0., names()[channel], ids[channel], perStep(channel));
 			}
 			preparedAt = scene.iter;
 		}
@@ -35,12 +33,29 @@ public:
 	{
 		int kinetic = -1;
 		scene.energy->findId("kinetic", kinetic, false, false);
-		if (kinetic < 0) last.fill(0); // O.energy is new, or was cleared
+		if (kinetic < 0) last.fill(0), lastConstraintWork = 0; // O.energy is new, or was cleared
 		preparedAt = -2;
 		prepare(scene);
 		for (int channel = 0; channel < count; ++channel)
 			if (!known && values[channel] != last[channel]) scene.energy->add(values[channel] - last[channel], "", ids[channel], perStep(channel));
 		last = values;
+	}
+	// For an engine that starts in a scene where others booked before: what they lost stays booked, what they had stored is stored here from now on.
+	void takeOver(Scene& scene)
+	{
+		for (int channel = 0; channel < count; ++channel) {
+			int id = -1;
+			if (perStep(channel)) scene.energy->findId(names()[channel], id, true, false);
+			if (id >= 0) scene.energy->setItem_py(names()[channel], 0);
+		}
+		last.fill(0);
+	}
+	// Work against whatever holds grains with blocked degrees of freedom, since the start: a channel of its own, only in scenes that have them.
+	void setConstraintWork(Scene& scene, double work, bool known)
+	{
+		int id = -1;
+		if (!known && work != lastConstraintWork) scene.energy->add(work - lastConstraintWork, "constraintWork", id, false);
+		lastConstraintWork = work;
 	}
 	void add(Scene& scene, Channel channel, double energy)
 	{
@@ -48,8 +63,16 @@ public:
 	}
 
 private:
+	static const char* const* names()
+	{
+		static const char* const all[count] = { "kinetic",           "normal",             "sliding",             "rolling",    "twisting",     "slidingDissipation",
+			                                "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag" };
+		return all;
+	}
+
 	std::array<int, count>    ids {};
 	std::array<double, count> last {};
+	double                    lastConstraintWork = 0;
 	std::atomic<long>         preparedAt { -2 };
 };
 

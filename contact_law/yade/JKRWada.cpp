@@ -1,4 +1,5 @@
 #include "JKRWada.hpp"
+#include "../kernel/blocked.hpp"
 #include <core/Body.hpp>
 #include <core/Cell.hpp>
 #include <core/EnergyTracker.hpp>
@@ -68,6 +69,41 @@ void JKRWadaConstants::set(const PairConstants<double>& c)
 	timeUnit                 = c.timeUnit;
 }
 
+shared_ptr<JKRWadaConstants> SharedConstants::of(const PairConstants<double>& derived)
+{
+	const auto                   same = [](const PairConstants<double>& a, const PairConstants<double>& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+	shared_ptr<JKRWadaConstants> result;
+#pragma omp critical(SharedConstantsLatest)
+	{
+		if (!latest || !same(latest->forKernel(), derived)) {
+			latest = shared_ptr<JKRWadaConstants>(new JKRWadaConstants);
+			latest->set(derived);
+		}
+		result = latest;
+	}
+	return result;
+}
+
+void JKRWadaPhys::setConstants(const shared_ptr<JKRWadaConstants>& c)
+{
+	constants = c;
+	kn        = 6 * c->pullOffForce / (5 * c->equilibriumOverlap); // A24 eq 38
+	ks        = c->slidingStiffness;
+}
+
+void JKRWadaPhys::set(const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_)
+{
+	touching            = true;
+	overlap             = g.overlap;
+	slidingDisplacement = fromKernel(f.slidingDisplacement);
+	rollingDisplacement = fromKernel(f.rollingDisplacement);
+	twist               = twist_;
+	dragForce           = f.drag;
+	velocity            = velocity_;
+	normalForce         = -(f.normalForce + f.drag) * fromKernel(g.normal);
+	shearForce          = -fromKernel(f.sliding);
+}
+
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
 {
 	if (interaction->phys) return;
@@ -76,17 +112,7 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(const shared_ptr<Material>& material1, co
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
 	const auto  derived  = contact_law::derivePair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping);
 	const auto  phys     = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
-#pragma omp critical(JKRWadaConstantsLatest)
-	{
-		const auto same = [](const PairConstants<double>& a, const PairConstants<double>& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
-		if (!latest || !same(latest->forKernel(), derived)) {
-			latest = shared_ptr<JKRWadaConstants>(new JKRWadaConstants);
-			latest->set(derived);
-		}
-		phys->constants = latest;
-	}
-	phys->kn          = 6 * derived.pullOffForce / (5 * derived.equilibriumOverlap); // A24 eq 38
-	phys->ks          = derived.slidingStiffness;
+	phys->setConstants(constants.of(derived));
 	interaction->phys = phys;
 }
 
@@ -115,7 +141,10 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 		separation -= scene->cell->hSize * cells;
 		velocity -= scene->cell->velGrad * (scene->cell->prevHSize * cells);
 	}
-	const ContactMotion motion { toKernel(separation), toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), scene->dt, 1 / state1.mass + 1 / state2.mass };
+	const Vec3d  apart       = toKernel(separation);
+	const double inverseMass = contact_law::inverseMassAlong(apart, 1 / state1.mass, state1.blockedDOFs) + contact_law::inverseMassAlong(apart, 1 / state2.mass, state2.blockedDOFs);
+	const Real   dt          = phys.current ? 0 : scene->dt; // JKRWadaEngine has brought the contact here already
+	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass };
 	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement), toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
@@ -132,14 +161,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 
 	phys.touching = r.touching;
 	if (!r.touching) return false;
-	phys.overlap             = r.geometry.overlap;
-	phys.slidingDisplacement = fromKernel(r.now.slidingDisplacement);
-	phys.rollingDisplacement = fromKernel(r.now.rollingDisplacement);
-	phys.twist              = history.twist;
-	phys.dragForce          = r.now.drag;
-	phys.velocity           = velocity;
-	phys.normalForce        = -(r.now.normalForce + r.now.drag) * fromKernel(r.geometry.normal);
-	phys.shearForce         = -fromKernel(r.now.sliding);
+	phys.set(r.geometry, r.now, history.twist, velocity);
+	phys.current = false;
 	if (r.pointersMoved) {
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(history.pointers.n2);

@@ -63,8 +63,19 @@ public:
 };
 REGISTER_SERIALIZABLE(JKRWadaConstants);
 
+// Objects for contacts of the same kind: most scenes have one kind of pair.
+class SharedConstants {
+	shared_ptr<JKRWadaConstants> latest;
+
+public:
+	shared_ptr<JKRWadaConstants> of(const contact_law::PairConstants<double>&); // from any thread
+};
+
 class JKRWadaPhys : public NormShearPhys {
 public:
+	void setConstants(const shared_ptr<JKRWadaConstants>&);
+	// All but the pointers. velocity: of body 1 past body 2 through the last step.
+	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist, const Vector3r& velocity);
 	virtual ~JKRWadaPhys() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRWadaPhys, NormShearPhys,
@@ -78,7 +89,8 @@ public:
 		((Vector3r, rollingDisplacement, Vector3r::Zero(), Attr::readonly, "xi [m]."))
 		((Real, twist, 0, Attr::readonly, "phi [rad]."))
 		((Real, dragForce, 0, Attr::readonly, "Viscous part of the normal force, positive when the grains approach [N]."))
-		((Vector3r, velocity, Vector3r::Zero(), Attr::readonly|Attr::hidden, "Velocity of body 1 past body 2 through the last step [m/s].")),
+		((Vector3r, velocity, Vector3r::Zero(), Attr::readonly|Attr::hidden, "Velocity of body 1 past body 2 through the last step [m/s]."))
+		((bool, current, false, Attr::readonly|Attr::hidden, "Whether all this is of the moment that the bodies' positions are of (written by JKRWadaEngine), not of a step before.")),
 		createIndex();
 	);
 	// clang-format on
@@ -87,7 +99,7 @@ public:
 REGISTER_SERIALIZABLE(JKRWadaPhys);
 
 class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
-	shared_ptr<JKRWadaConstants> latest; // most scenes have one kind of pair
+	SharedConstants constants;
 
 public:
 	void       go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction) override;

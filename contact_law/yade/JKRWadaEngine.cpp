@@ -1,12 +1,11 @@
 #include "JKRWadaEngine.hpp"
-#include "../engine/dynamics.hpp"
 #include "JKRWada.hpp"
+#include "LedgerWatch.hpp"
+#include "SceneContacts.hpp"
+#include "SceneGrains.hpp"
 #include <core/Body.hpp>
 #include <core/Omega.hpp>
 #include <core/State.hpp>
-#include <pkg/common/Sphere.hpp>
-#include <algorithm>
-#include <stdexcept>
 
 namespace yade {
 
@@ -19,115 +18,105 @@ CREATE_LOGGER(JKRWadaEngine);
 struct JKRWadaEngine::Run {
 	Dynamics                       dynamics;
 	std::vector<GrainInput>        written, now; // the grains as the bodies were left; as they are after a step
-	std::vector<shared_ptr<State>> states;  // of the bodies, to reach them quickly
+	std::vector<shared_ptr<State>> states;       // of the bodies, to reach them quickly
+	bool                           orientations, constrained;
+	SceneContacts                  contacts;
+	LedgerWatch                    watch {};
 };
 
 namespace {
-	[[noreturn]] void refuse(const std::string& what) { throw std::runtime_error("JKRWadaEngine: " + what); }
-
-	void copy(const Vector3r& from, double (&to)[3])
+	std::string text(Real number) { return boost::lexical_cast<std::string>(number); }
+	std::string rounded(Real number)
 	{
-		for (int k = 0; k < 3; ++k)
-			to[k] = from[k];
+		char digits[32];
+		std::snprintf(digits, sizeof digits, "%.4g", double(number));
+		return digits;
 	}
 
-	GrainInput grainOf(const State& s)
+	std::string pairOf(const Dynamics::Trouble& t) { return "body " + std::to_string(t.grain) + " and body " + std::to_string(t.other); }
+	std::string describe(const Dynamics::Trouble& t) { return " (overlap " + rounded(t.overlap) + " of the smaller radius, normal force " + rounded(t.force) + " N)"; }
+	std::string hardestContact(const Dynamics::Trouble& t)
 	{
-		GrainInput g {};
-		copy(s.pos, g.position);
-		copy(s.vel, g.velocity);
-		copy(s.angVel, g.angularVelocity);
-		g.mass    = s.mass;
-		g.inertia = s.inertia[0];
-		return g;
+		if (t.other < 0) return "; it touches no other";
+		return "; its hardest contact is with body " + std::to_string(t.other) + describe(t);
 	}
 
-	bool sameMotion(const State& s, const GrainInput& g)
+	void requireAlone(const Scene& scene)
 	{
-		const auto same = [](const Vector3r& x, const double(&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; };
-		return same(s.pos, g.position) && same(s.vel, g.velocity) && same(s.angVel, g.angularVelocity);
-	}
-
-	struct SceneGrains {
-		std::vector<GrainInput>             grains;
-		std::vector<contact_law::Material> materials;
-		std::vector<shared_ptr<State>>      states;
-	};
-
-	bool finite(const GrainInput& g)
-	{
-		const auto all = [](const double(&x)[3]) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); };
-		return all(g.position) && all(g.velocity) && all(g.angularVelocity);
-	}
-
-	SceneGrains read(const Scene& scene)
-	{
-		SceneGrains               result;
-		std::vector<const JKRMat*> kinds;
-		for (const auto& body : *scene.bodies) {
-			const std::string who = "body " + std::to_string(body ? body->getId() : -1);
-			if (!body) refuse("erased bodies are not supported: make the scene without them");
-			const auto* sphere   = dynamic_cast<const Sphere*>(body->shape.get());
-			const auto* material = dynamic_cast<const JKRMat*>(body->material.get());
-			if (!sphere || !material) refuse(who + " is not a sphere of JKRMat; this engine moves nothing else");
-			if (body->state->blockedDOFs) refuse(who + " has blocked degrees of freedom; use the functors for such scenes");
-			GrainInput g = grainOf(*body->state);
-			g.radius     = sphere->radius;
-			if (!finite(g)) refuse(who + " has a position or velocity that is not a finite number");
-			if (!(g.radius > 0) || !(g.mass > 0) || !(g.inertia > 0)) refuse(who + ": radius, mass and moment of inertia must be positive");
-			const auto known = std::find(kinds.begin(), kinds.end(), material);
-			g.kind           = int(known - kinds.begin());
-			if (known == kinds.end()) {
-				material->requireInRange();
-				kinds.push_back(material);
-				result.materials.push_back(material->forKernel());
-			}
-			result.grains.push_back(g);
-			result.states.push_back(body->state);
-		}
-		return result;
+		for (const auto& engine : scene.engines)
+			for (const char* other : { "NewtonIntegrator", "InteractionLoop" })
+				if (!engine->dead && engine->getClassName() == other) refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
 	}
 }
 
-void JKRWadaEngine::start()
+contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
 {
-	if (scene->isPeriodic) refuse("periodic cells are not supported yet; use the functors");
-	if (subSteps < 1) refuse("subSteps = " + std::to_string(subSteps) + ", allowed: 1 or more");
-	const SceneGrains now = read(*scene);
-	if (now.grains.empty()) refuse("there are no bodies");
 	Dynamics::Options options;
 	options.dt            = scene->dt / subSteps;
 	options.linearDamping = linearDamping;
 	options.domains       = domains;
 	options.threads       = threads;
 	options.instructions  = instructions;
+	options.orientations  = orientations;
 	bool drag             = linearDamping > 0;
-	for (const auto& material : now.materials)
+	for (const auto& material : materials)
 		drag = drag || material.viscoelasticTime > 0;
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	const bool continued = !memory.empty();
+	return options;
+}
+
+void JKRWadaEngine::start()
+{
+	if (!failure.empty()) refuseInEngine(failure);
+	if (scene->isPeriodic) refuseInEngine("periodic cells are not supported yet; use the functors");
+	if (subSteps < 1) refuseInEngine("subSteps = " + std::to_string(subSteps) + ", allowed: 1 or more");
+	requireAlone(*scene);
+	const SceneGrains now = readGrains(*scene);
+	if (now.grains.empty()) refuseInEngine("there are no bodies");
+	Dynamics::Options options = optionsFor(now.materials);
+	const bool        continued = !memory.empty();
 	if (continued) options.dt = smallStep;
-	current   = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr), now.grains, now.grains, now.states });
+	SceneContacts                contacts;
+	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
+	const bool                   inherits  = !continued && !inherited.contacts.empty();
+	current = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr, inherits ? &inherited : nullptr), now.grains, now.grains,
+	                                         now.states, orientations, false, contacts, {} });
 	smallStep = options.dt;
-	const double unstable = current->dynamics.unstableStep();
-	if (!(smallStep > 0 && smallStep < unstable)) {
+	try {
+		requireStable();
+	} catch (...) {
 		current.reset();
-		refuse("the small step O.dt/subSteps is " + boost::lexical_cast<std::string>(smallStep) + " s, allowed: above 0 and below " + boost::lexical_cast<std::string>(unstable)
-		       + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
+		throw;
 	}
-	if (continued && scene->trackEnergy) writeEnergies(true);
+	if (scene->trackEnergy) {
+		if (continued) writeEnergies(current->dynamics.energies(), true);
+		else channels.takeOver(*scene);
+	}
 	memory.clear();
 }
 
-// Bodies that a script moved or pushed since the last step.
+void JKRWadaEngine::requireStable() const
+{
+	const double unstable = current->dynamics.unstableStep();
+	if (!(smallStep > 0 && smallStep < unstable))
+		refuseInEngine("the small step O.dt/subSteps is " + text(smallStep) + " s, allowed: above 0 and below " + text(unstable)
+		               + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
+	const Dynamics::Trouble deep = current->dynamics.tooDeep();
+	if (deep.grain >= 0)
+		refuseInEngine(pairOf(deep) + " overlap by " + rounded(deep.overlap) + " of the smaller radius at the start, allowed: at most 1");
+}
+
+// Bodies that a script moved, pushed or blocked since the last step.
 void JKRWadaEngine::takeChanges()
 {
-	if (scene->bodies->size() != current->written.size()) refuse("bodies were added or erased after the start; make a new engine");
+	if (scene->bodies->size() != current->written.size()) refuseInEngine("bodies were added or erased after the start; make a new engine");
+	if (orientations != current->orientations) refuseInEngine("orientations was changed after the start; make a new engine");
 	for (std::size_t k = 0; k < current->written.size(); ++k) {
-		if (sameMotion(*current->states[k], current->written[k])) continue;
+		if (sameMotion(*current->states[k], current->written[k], orientations)) continue;
 		const GrainInput now = grainOf(*current->states[k]);
-		if (!finite(now)) refuse("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
+		if (!finite(now)) refuseInEngine("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
 		current->dynamics.set(int(k), now);
+		current->watch.forgetSum();
 	}
 }
 
@@ -135,44 +124,97 @@ void JKRWadaEngine::action()
 {
 	if (!current) start();
 	else takeChanges();
-	if (scene->dt / subSteps != smallStep) refuse("O.dt or subSteps changed after the start; make a new engine");
+	if (scene->dt / subSteps != smallStep) refuseInEngine("O.dt or subSteps changed after the start; make a new engine");
 	current->dynamics.setThreads(threads);
-	current->dynamics.run(subSteps);
+	const long made = current->dynamics.run(subSteps);
+	current->dynamics.read(current->now);
+	contact_law::Energies energies;
+	if (scene->trackEnergy) energies = current->dynamics.energies();
+	requireSound(made, scene->trackEnergy ? &energies : nullptr);
 	writeBodies();
-	if (scene->trackEnergy) writeEnergies(false);
+	if (exportInteractions) current->contacts.write(*scene, current->dynamics, true);
+	else current->contacts.withdraw(*scene);
+	if (scene->trackEnergy) writeEnergies(energies, false);
 	actedAt = scene->iter;
+}
+
+// Before anything is written: the bodies keep the last good state. `now`: the energies, or null when nobody asks for them.
+void JKRWadaEngine::requireSound(long made, const contact_law::Energies* now)
+{
+	Dynamics::Trouble trouble;
+	if (made < subSteps) trouble = current->dynamics.trouble();
+	for (std::size_t k = 0; trouble.grain < 0 && k < current->now.size(); ++k)
+		if (!finite(current->now[k])) trouble = current->dynamics.trouble(int(k));
+	const Real time = scene->time + std::min(made + 1, long(subSteps)) * smallStep;
+	if (trouble.grain >= 0) {
+		const std::string grain = "body " + std::to_string(trouble.grain);
+		if (!std::isfinite(trouble.speed)) fail(time, grain + " has no finite position or velocity any more" + hardestContact(trouble));
+		fail(time, grain + " moves at " + rounded(trouble.speed) + " m/s, more than half the smallest radius in a small step" + hardestContact(trouble));
+	}
+	trouble = current->dynamics.tooDeep();
+	if (trouble.grain >= 0) fail(time, pairOf(trouble) + " overlap by " + rounded(trouble.overlap) + " of the smaller radius");
+	const std::string wrong = now ? current->watch.wrong(*now) : "";
+	if (wrong.empty()) return;
+	const Dynamics::Trouble fastest = current->dynamics.trouble(), hardest = current->dynamics.hardest();
+	fail(time, wrong + "; body " + std::to_string(fastest.grain) + " is the fastest (" + rounded(fastest.speed) + " m/s)"
+	                   + (hardest.grain < 0 ? ", and none touch any more" : ", the hardest contact is that of " + pairOf(hardest) + describe(hardest)));
+}
+
+void JKRWadaEngine::fail(Real time, const std::string& what)
+{
+	failure = "the run went wrong at t = " + text(time) + " s: " + what + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s. A smaller step may help";
+	current.reset();
+	refuseInEngine(failure);
 }
 
 void JKRWadaEngine::prepare()
 {
 	scene = Omega::instance().getScene().get();
 	if (!current) start();
-	if (scene->trackEnergy) writeEnergies(false);
+	if (exportInteractions) current->contacts.write(*scene, current->dynamics, true);
+	if (scene->trackEnergy) writeEnergies(current->dynamics.energies(), false);
+}
+
+void JKRWadaEngine::writeInteractions()
+{
+	scene = Omega::instance().getScene().get();
+	if (!current) start();
+	current->contacts.write(*scene, current->dynamics, true);
+}
+
+void JKRWadaEngine::handOver()
+{
+	scene = Omega::instance().getScene().get();
+	if (!current) refuseInEngine("handOver() before the first step: there is nothing to hand over");
+	if (inStep()) refuseInEngine("handOver() within an O.step: call it between two");
+	takeChanges();
+	current->contacts.write(*scene, current->dynamics, false); // with the orientations that go with it
+	for (std::size_t k = 0; k < current->now.size(); ++k)
+		current->now[k].orientation = grainOf(*current->states[k]).orientation;
+	current->dynamics.readAhead(current->now);
+	current->orientations = true; // functors turn the pointers with their bodies
+	writeBodies();
+	scene->time += smallStep;
+	scene->iter += 1;
+	scene->dt = smallStep;
+	current.reset();
 }
 
 void JKRWadaEngine::writeBodies()
 {
-	std::vector<GrainInput>& now = current->now;
-	current->dynamics.read(now);
-	for (std::size_t k = 0; k < now.size(); ++k)
-		if (!finite(now[k])) // before anything is written: the bodies keep the last good state
-			refuse("the run went wrong at t = " + boost::lexical_cast<std::string>(scene->time + scene->dt) + " s: body " + std::to_string(k)
-			       + " has no finite position or velocity any more; O.bodies hold the state of t = " + boost::lexical_cast<std::string>(scene->time) + " s. A smaller step may help");
+	const std::vector<GrainInput>& now = current->now;
 #pragma omp parallel for num_threads(current->dynamics.threadCount())
-	for (std::size_t k = 0; k < now.size(); ++k) {
-		State& s = *current->states[k];
-		s.pos    = Vector3r(now[k].position[0], now[k].position[1], now[k].position[2]);
-		s.vel    = Vector3r(now[k].velocity[0], now[k].velocity[1], now[k].velocity[2]);
-		s.angVel = Vector3r(now[k].angularVelocity[0], now[k].angularVelocity[1], now[k].angularVelocity[2]);
-	}
-	current->written.swap(now);
+	for (std::size_t k = 0; k < now.size(); ++k)
+		write(now[k], *current->states[k], current->orientations);
+	current->written.swap(current->now);
 }
 
-void JKRWadaEngine::writeEnergies(bool known)
+void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 {
-	const contact_law::Energies     now = current->dynamics.energies();
 	const contact_law::Dissipation& d   = now.dissipated;
 	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag }, known);
+	current->constrained = current->constrained || current->dynamics.constrained();
+	if (current->constrained) channels.setConstraintWork(*scene, now.constraintWork, known);
 }
 
 void JKRWadaEngine::preSave(JKRWadaEngine&) { memory = current ? current->dynamics.remember() : std::vector<Real>(); }

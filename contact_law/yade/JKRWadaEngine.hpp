@@ -1,5 +1,6 @@
 // The fused engine: neighbour search, contact law and leapfrog of JKR-Wada grains in arrays of its own.
 #pragma once
+#include "../engine/dynamics.hpp"
 #include "EnergyChannels.hpp"
 #include <core/GlobalEngine.hpp>
 #include <boost/python.hpp>
@@ -14,16 +15,24 @@ class JKRWadaEngine : public GlobalEngine {
 	EnergyChannels       channels;
 
 	long                 actedAt = -1; // iteration
+	std::string          failure;      // why the run cannot go on
+
+	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
 
 	void start();
+	void requireStable() const;
 	void takeChanges();
+	void requireSound(long stepsMade, const contact_law::Energies*);
+	[[noreturn]] void fail(Real time, const std::string& what);
 	void writeBodies();
-	void writeEnergies(bool known);
+	void writeEnergies(const contact_law::Energies&, bool known);
 
 public:
 	void action() override;
 	void preSave(JKRWadaEngine&);
 	void prepare();
+	void writeInteractions();
+	void handOver();
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// Adds this engine's arrays to a snapshot (JKRWadaSnapshot); false before the first step.
 	bool                addContacts(std::vector<int>& pairs, std::vector<double>& normalForces) const;
@@ -33,7 +42,10 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(JKRWadaEngine, GlobalEngine,
 		"Moves spheres of :yref:`JKRMat` under the contact law of :yref:`Law2_ScGeom_JKRWadaPhys_JKRWada`, much faster than YADE's loop: it replaces ForceResetter, collider, "
 		"InteractionLoop and NewtonIntegrator. Each O.step makes subSteps steps of O.dt/subSteps; after it O.bodies are current (positions and velocities of one and the same moment), "
-		"and so is O.energy when O.trackEnergy. Contacts are not in O.interactions; contact_law.snapshot() has them. "
+		"and so is O.energy when O.trackEnergy. Contacts are in O.interactions only with exportInteractions or after writeInteractions(); contact_law.snapshot() has them always. "
+		"Contacts that O.interactions holds at the start, from the functors or from another engine's exportInteractions, are taken over with their springs; handOver() goes the other way. "
+		"Degrees of freedom that a body's state blocks keep their velocity, as with NewtonIntegrator; what contacts do against them is O.energy['constraintWork']. "
+		"A run that goes wrong stops with the body, the contact and the time in the message, and leaves O.bodies as they were before the step. "
 		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
 		((int, subSteps, 1, , "Small steps in one O.step."))
 		((int, threads, 1, , "Threads to use, at most as many as domains."))
@@ -43,10 +55,15 @@ public:
 		((bool, sliding, true, , "Whether contacts resist sliding."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
+		((bool, orientations, false, , "Whether to keep the bodies' orientations up (State.ori); otherwise they stay as they were."))
+		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs about as much as a few small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
 		((std::vector<Real>, memory, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint.")),
 		,
 		.def("prepare", &JKRWadaEngine::prepare, "Read the bodies and compute forces and energies without moving anything, so that O.energy and contact_law.snapshot() have the start.")
+		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
+		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors go on from here as if they had been there before: bodies a small step further "
+			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, contactUpdates (lane updates so far), events (births, breaks, slips), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
 	);
 	// clang-format on

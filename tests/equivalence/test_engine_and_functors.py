@@ -126,7 +126,7 @@ result["moved"] = (np.array(O.bodies[3].state.pos) - before) / O.dt
 
 @pytest.mark.parametrize("change,message", [
     ("O.bodies[2].state.vel = Vector3(float('nan'), 0, 0)", "body 2 has a position or velocity that is not a finite number"),
-    ("O.bodies[2].state.blockedDOFs = 'x'", "body 2 has blocked degrees of freedom"),
+    ("O.engines += [NewtonIntegrator()]", "NewtonIntegrator is among O.engines too; this engine replaces it"),
     ("O.engines[0].subSteps = 0", "subSteps = 0, allowed: 1 or more"),
     ("O.engines[0].instructions = 'sse9'", "instructions = 'sse9', allowed here"),
     ("O.periodic = True", "periodic cells are not supported yet"),

@@ -19,6 +19,8 @@ public:
 	// id stays negative for a name that isn't there, unless newIfNotFound
 	void findId(const std::string& name, int& id, bool reset = false, bool newIfNotFound = true);
 	Real total() const;
+	// What O.energy[name] = value calls, with no Python in it; makes the name if it is not there.
+	void setItem_py(const std::string& name, Real value);
 };
 static_assert(sizeof(EnergyTracker) == 176, "EnergyTracker");
 

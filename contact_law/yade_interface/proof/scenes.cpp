@@ -69,6 +69,9 @@ namespace proof {
 			interactions.insert(pair);
 			if (interactions.size() != 1 || interactions[0] != pair || pair->linIx != 0 || interactions.find(0, 1) != pair || first->intrs.size() != 1)
 				return refusal("InteractionContainer doesn't hold the interaction that it was given", "byte 24");
+			interactions.clear();
+			if (interactions.size() != 0 || interactions.begin() != interactions.end() || !first->intrs.empty())
+				return refusal("InteractionContainer isn't empty after it was cleared", "InteractionContainer::clear");
 			return "";
 		}
 
@@ -96,6 +99,8 @@ namespace proof {
 			int            id       = -1;
 			energies.add(3.25, "proof", id, false);
 			if (double(py::extract<double>(tracker["proof"])) != 3.25) return refusal("EnergyTracker doesn't hold what was added", "EnergyTracker::add");
+			energies.setItem_py("proof", 4.5);
+			if (double(py::extract<double>(tracker["proof"])) != 4.5) return refusal("EnergyTracker doesn't hold what was set", "EnergyTracker::setItem_py");
 			return "";
 		}
 	}

@@ -1,0 +1,65 @@
+// Grains with blocked degrees of freedom: there they keep the velocity that they have, whatever pushes them, as with YADE's NewtonIntegrator.
+#pragma once
+#include "../kernel/blocked.hpp"
+#include "arrays.hpp"
+#include <algorithm>
+
+namespace contact_law {
+
+struct Constrained {
+	int          grain;
+	unsigned     blocked;                             // bits, blocked.hpp
+	Vec3<double> force { 0, 0, 0 }, torque { 0, 0, 0 }; // withheld now
+};
+
+// Of one domain's grains. Forces are withheld as soon as they are complete, so that all that comes after (kicks, kinetic energy) knows nothing of it.
+class Constraints {
+public:
+	std::vector<Constrained> grains; // by rising index
+	double                   work = 0; // that contacts did against whatever holds the grains or moves them at their given velocity [J]
+
+	void begin() { next = 0; } // a step's forces, of which grains will have all
+
+	/* Of grains below `end`, whose forces of this step are complete, unless it has been done. The work over the step is half of both its forces, those before and those now, times the way: by just that the leapfrog's
+	 * ledger of the contacts is off when a grain does not answer, events within the step included (MODEL.md, "Blocked degrees of freedom"). */
+	void withhold(Grain* all, double dt, int end)
+	{
+		for (; next < grains.size() && grains[next].grain < end; ++next) {
+			Constrained&       c = grains[next];
+			Grain&             g     = all[c.grain];
+			const Vec3<double> force = blockedForce({ g.fx, g.fy, g.fz }, c.blocked), torque = blockedTorque({ g.tx, g.ty, g.tz }, c.blocked);
+			work += 0.5 * dt * (dot(c.force + force, Vec3<double> { g.vx, g.vy, g.vz }) + dot(c.torque + torque, Vec3<double> { g.wx, g.wy, g.wz }));
+			add(g, -force, -torque);
+			c.force  = force;
+			c.torque = torque;
+		}
+	}
+
+	// Other degrees of freedom of a grain from now on; 0: free.
+	void block(Grain* all, int grain, unsigned blocked)
+	{
+		auto at = std::lower_bound(grains.begin(), grains.end(), grain, [](const Constrained& c, int g) { return c.grain < g; });
+		if (at != grains.end() && at->grain == grain) {
+			add(all[grain], at->force, at->torque);
+			at = grains.erase(at);
+		}
+		if (!blocked) return;
+		Grain&      g = all[grain];
+		Constrained c { grain, blocked };
+		c.force  = blockedForce({ g.fx, g.fy, g.fz }, blocked);
+		c.torque = blockedTorque({ g.tx, g.ty, g.tz }, blocked);
+		add(g, -c.force, -c.torque);
+		grains.insert(at, c);
+	}
+
+private:
+	std::size_t next = 0;
+
+	static void add(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
+	{
+		g.fx += force.x, g.fy += force.y, g.fz += force.z;
+		g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
+	}
+};
+
+} // namespace contact_law

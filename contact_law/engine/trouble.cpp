@@ -1,0 +1,78 @@
+// What to say of a run that went wrong.
+#include "dynamics.hpp"
+
+namespace contact_law {
+
+namespace {
+	Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
+	Vec3<double> separationOf(const Grain& a, const Grain& b) { return { a.x - b.x, a.y - b.y, a.z - b.z }; }
+}
+
+// In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
+double Dynamics::fastestAllowed() const
+{
+	const double way = 0.5 * *std::min_element(setting.radius.begin(), setting.radius.end()) / setting.dt;
+	return way * way;
+}
+
+Dynamics::Trouble Dynamics::trouble(int given) const
+{
+	const auto squared = [&](int k) { return dot(velocityOf(setting.grains[k]), velocityOf(setting.grains[k])); };
+	int        worst   = given >= 0 ? indexHere[given] : 0;
+	for (int k = 0; given < 0 && k < count; ++k)
+		if (squared(k) > squared(worst)) worst = k;
+	Trouble t;
+	t.grain = original[worst];
+	t.speed = std::sqrt(squared(worst));
+	for (const auto& domain : domains)
+		for (const ContactList& list : domain->contacts)
+			for (int lane = 0; lane < list.size(); ++lane) {
+				if (!list.alive(lane)) continue;
+				const Contact c = list.get(lane, setting.common);
+				if (c.i != worst && c.j != worst) continue;
+				// what pushed was the force where they were before they moved
+				const Grain &      a = setting.grains[c.i], &b = setting.grains[c.j];
+				const Vec3<double> d = separationOf(a, b) - setting.dt * (velocityOf(a) - velocityOf(b));
+				const auto         g = geometryOf(d, c.constants.radius1 + c.constants.radius2);
+				const double       f = contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce;
+				if (t.other >= 0 && std::abs(f) <= std::abs(t.force)) continue;
+				t.other   = original[c.i == worst ? c.j : c.i];
+				t.overlap = g.overlap / std::min(c.constants.radius1, c.constants.radius2);
+				t.force   = f;
+			}
+	return t;
+}
+
+Dynamics::Trouble Dynamics::hardest() const
+{
+	Trouble t;
+	eachContact([&](const Contact& c, int first, int second, double force) {
+		if (t.grain >= 0 && std::abs(force) <= std::abs(t.force)) return;
+		const Vec3<double> d    = separationOf(setting.grains[c.i], setting.grains[c.j]);
+		const double       r1 = c.constants.radius1, r2 = c.constants.radius2;
+		t = { std::min(first, second), std::max(first, second), 0, (r1 + r2 - std::sqrt(dot(d, d))) / std::min(r1, r2), force };
+	});
+	return t;
+}
+
+Dynamics::Trouble Dynamics::tooDeep() const
+{
+	Trouble t;
+	for (const auto& domain : domains)
+		for (int sort = 0; sort < 2; ++sort) {
+			const ContactList& list = domain->contacts[sort];
+			for (int lane = 0; lane < list.size(); ++lane) {
+				if (!list.alive(lane)) continue;
+				const int          i = list.first(lane), j = list.second(lane);
+				const Vec3<double> d     = separationOf(setting.grains[i], setting.grains[j]);
+				const double       least = std::max(setting.radius[i], setting.radius[j]);
+				if (dot(d, d) >= least * least) continue;
+				const double overlap = (setting.radius[i] + setting.radius[j] - std::sqrt(dot(d, d))) / std::min(setting.radius[i], setting.radius[j]);
+				if (overlap <= t.overlap) continue;
+				t = { std::min(original[i], original[j]), std::max(original[i], original[j]), 0, overlap, 0 };
+			}
+		}
+	return t;
+}
+
+} // namespace contact_law

@@ -1,0 +1,21 @@
+// Degrees of freedom along which a grain does not answer to forces: bits 1, 2, 4 for x, y, z and 8, 16, 32 for turning about them, as in YADE's State.blockedDOFs.
+#pragma once
+#include "vector3.hpp"
+
+namespace contact_law {
+
+// The components whose bits (1, 2, 4) are set; the others zero.
+inline Vec3<double> componentsOf(const Vec3<double>& v, unsigned bits) { return { bits & 1 ? v.x : 0, bits & 2 ? v.y : 0, bits & 4 ? v.z : 0 }; }
+
+inline Vec3<double> blockedForce(const Vec3<double>& force, unsigned blocked) { return componentsOf(force, blocked & 7); }
+inline Vec3<double> blockedTorque(const Vec3<double>& torque, unsigned blocked) { return componentsOf(torque, blocked >> 3 & 7); }
+
+// 1/mass that an impulse along a direction (of any length) meets: an impulse J adds J^2/2 of it to the kinetic energy of a grain at rest.
+inline double inverseMassAlong(const Vec3<double>& direction, double inverseMass, unsigned blocked)
+{
+	if (!(blocked & 7)) return inverseMass;
+	const Vec3<double> free = componentsOf(direction, ~blocked & 7);
+	return inverseMass * dot(free, free) / dot(direction, direction);
+}
+
+} // namespace contact_law

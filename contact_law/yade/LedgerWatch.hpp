@@ -1,0 +1,49 @@
+// Notices from the energies that a run has gone wrong, while all numbers are finite still.
+#pragma once
+#include "../engine/dynamics.hpp"
+#include <cmath>
+#include <string>
+
+namespace yade {
+
+class LedgerWatch {
+public:
+	// Scripts may give energy to grains, or take it: the sum is another from the next energies on.
+	void forgetSum() { known = false; }
+
+	// Empty, or what is wrong with the energies after a step.
+	std::string wrong(const contact_law::Energies& e)
+	{
+		const contact_law::Dissipation& d       = e.dissipated;
+		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag };
+		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork };
+		double       lost = 0, sum = 0, scale = 0;
+		for (const double x : losses)
+			lost += x, sum += x, scale += std::abs(x);
+		for (const double x : stored)
+			sum += x, scale += std::abs(x);
+		if (!std::isfinite(scale)) return "the energies are not finite";
+		if (lost < lostBefore - lossRegained * scale) return "losses have given back " + text(lostBefore - lost) + " J, which no loss can: the step is too long";
+		lostBefore = std::max(lost, lostBefore);
+		if (!known) first = sum;
+		known = true;
+		if (std::abs(sum - first) > sumChanged * scale) return "energy is not conserved (" + text(sum - first) + " J more than before, of " + text(scale) + " J): the step is too long";
+		return "";
+	}
+
+private:
+	// Ledgers of runs that are merely coarse (half a t0, 100 m/s) are off by a few per cent at most.
+	static constexpr double lossRegained = 0.1, sumChanged = 0.5;
+
+	static std::string text(double number)
+	{
+		char digits[32];
+		std::snprintf(digits, sizeof digits, "%.3g", number);
+		return digits;
+	}
+
+	bool   known = false;
+	double first = 0, lostBefore = 0;
+};
+
+} // namespace yade

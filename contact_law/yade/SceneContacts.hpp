@@ -1,0 +1,37 @@
+// O.interactions and the fused engine's contacts: written out for YADE's recorders and functors, and taken over from functors.
+#pragma once
+#include "../engine/dynamics.hpp"
+#include "JKRWada.hpp"
+
+namespace yade {
+
+class SceneContacts {
+public:
+	/* The scene's contacts, for a run that starts: as the functors leave them after a step of length dt [s], or as write() does. Empty when there are none.
+	 * O.interactions are this object's afterwards. */
+	contact_law::Inherited take(Scene&, Real dt);
+
+	/* All contacts, in the order of their bodies' ids, as real interactions with ScGeom and JKRWadaPhys; those that have ended go. Interactions of contacts
+	 * that go on stay the same objects. `current`: everything is of the moment of the bodies' positions; otherwise as the functors leave it, pointers with the
+	 * orientations as they are at this call. */
+	void write(Scene&, const contact_law::Dynamics&, bool current);
+
+	// Empties O.interactions of what was written before and is no longer so.
+	void withdraw(Scene&);
+
+private:
+	struct Place { // of a contact in the engine, bodies in rising order
+		int                             id1, id2;
+		const contact_law::ContactList* list;
+		int                             lane;
+	};
+	static std::vector<Place> placesOf(const contact_law::Dynamics&);
+	bool                      inOrder(Scene&, const std::vector<Place>&) const;
+	void                      arrange(Scene&, const std::vector<Place>&);
+	shared_ptr<Interaction>   made(const Scene&, int id1, int id2, const contact_law::PairConstants<double>&);
+
+	std::vector<shared_ptr<Interaction>> held; // in O.interactions, by this engine, sorted
+	SharedConstants                      constants;
+};
+
+} // namespace yade
