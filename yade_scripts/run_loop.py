@@ -6,25 +6,29 @@ from yade.wrapper import Omega
 from yade_scripts.progress import Progress
 
 
-def run(steps, recorder, runner, begin):
-    """Call begin(), take that many O.steps, and return (outcome, exit status).
+def run(steps, recorder, runner, begin, checkpoints):
+    """Call begin(), step until that many O.steps are taken, and return (outcome, exit status).
 
     recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
-    taken, with one more step that records where it stopped; the outcome is then "interrupted".
+    taken, with a checkpoint and one more step that records where it stopped; the outcome is then
+    "interrupted". A scene from a checkpoint has taken some of the steps.
     """
-    omega, progress, stop = Omega(), Progress(steps), StopSignals()
+    omega, stop = Omega(), StopSignals()
+    progress = Progress(steps, already=omega.iter)
     try:
         begin()
-        for step in range(1, steps + 1):
+        for step in range(omega.iter + 1, steps + 1):
             omega.step()
             progress.update(step)
             if recorder.error:
                 return f'failed: {one_line(recorder.error)}', 1
+            checkpoints.save_if_due()
             if stop.received and step < steps:
+                checkpoints.save()
                 recorder.ending, runner.iterPeriod = True, 1
                 omega.step()
                 return 'interrupted', 128 + stop.received
-    except RuntimeError as error:  # from an engine
+    except (RuntimeError, OSError) as error:  # from an engine, or a checkpoint that can't be written
         return f'failed: {one_line(error)}', 1
     finally:
         progress.close()
