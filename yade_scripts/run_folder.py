@@ -50,8 +50,7 @@ class RunFolder:
 
     def write_run(self, run):
         """run.json from a dictionary that JSON can hold."""
-        text = json.dumps({'format': FORMAT, **run}, indent=2, allow_nan=False) + '\n'
-        write_atomically(self._file('run.json'), lambda file: file.write(text.encode()))
+        write_json(self._file('run.json'), {'format': FORMAT, **run})
 
     def write_history(self, series):
         """history.npz from {name: (T,) array}, every name of SERIES."""
@@ -83,6 +82,12 @@ class RunFolder:
         self.keep_states(0)
 
 
+def write_json(path, content):
+    """A dictionary as a JSON file, whole or not there."""
+    text = json.dumps(content, indent=2, allow_nan=False) + '\n'
+    write_atomically(path, lambda file: file.write(text.encode()))
+
+
 def closing_line(path, outcome, seconds):
     """What a script prints at its end; read_closing_line() finds it in a log."""
     return f'run folder: {path} ({outcome}, {seconds:.1f} s)'
@@ -93,6 +98,16 @@ def read_closing_line(log):
     line = r'^run folder: (.*?) \((completed|interrupted|failed: .*), [0-9.]+ s\)$'
     found = re.findall(line, log, re.MULTILINE)
     return found[-1] if found else None
+
+
+def being_written(path):
+    """Whether a process of this machine holds the folder's lock (read from the kernel's list, without taking it)."""
+    try:
+        inode = str(os.stat(path).st_ino)
+        with open('/proc/locks') as locks:
+            return any(' FLOCK ' in lock and lock.split()[5].rsplit(':', 1)[1] == inode for lock in locks)
+    except OSError:
+        return False
 
 
 def hardware():

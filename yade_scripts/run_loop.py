@@ -1,9 +1,8 @@
 """Steps a scene to its end, or to where it is stopped or fails."""
-import signal
-
 from yade.wrapper import Omega
 
 from yade_scripts.progress import Progress
+from yade_scripts.stop_signals import StopSignals
 
 
 def run(steps, recorder, runner, begin, checkpoints):
@@ -34,23 +33,6 @@ def run(steps, recorder, runner, begin, checkpoints):
         progress.close()
         stop.restore()
     return 'completed', 0
-
-
-class StopSignals:
-    """Remembers the first SIGINT or SIGTERM in .received; a second one acts as it would have without this."""
-
-    def __init__(self):
-        self.received = 0
-        self._before = {number: signal.signal(number, self._note)
-                        for number in (signal.SIGINT, signal.SIGTERM)}
-
-    def restore(self):
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-
-    def _note(self, number, _frame):
-        self.received = number
-        self.restore()
 
 
 def one_line(error):

@@ -1,0 +1,46 @@
+"""How fast this machine moves a collision: prints one line of JSON; for study.py, which estimates with it.
+
+    yade -n -x yade_scripts/measure_speed.py radius=40 filling=0.3    a scene, as for collide.py
+
+contactUpdatesPerSecond of the fused engine in the first steps of the collision, seconds of setting it up, and
+timeUnit [s], t0 of each material.
+"""
+import json
+import os
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
+from yade_scripts import arguments, packings, parameters
+from yade_scripts.errors import one_line_errors
+from yade_scripts.materials import MATERIALS
+
+SECONDS = 2.0
+STEPS = 20
+
+start = time.monotonic()
+with one_line_errors('measure_speed.py'):
+    values = parameters.parse(*arguments.gather(sys.argv[1:]))
+    from yade_scripts import scene  # needs the plugin
+    material = MATERIALS[values['material']]
+    constants = scene.pair_constants(values, material)
+    values = parameters.complete(values, constants, O.numThreads)
+    centres, velocities = zip(*scene.placements(values, material.grainRadius))
+    aggregates = [packings.moved(packings.cpe(values['filling'], values['radius'] * material.grainRadius,
+                                              material.grainRadius, constants['equilibriumOverlap'],
+                                              values['seed'], index), centre)
+                  for index, centre in enumerate(centres)]
+
+scene.build(aggregates, velocities, scene.material_of(values, material),
+            STEPS * values['stepFraction'] * constants['timeUnit'])
+fused = JKRWadaEngine(subSteps=STEPS, threads=values['threads'])
+O.engines = [fused]
+fused.prepare()
+ready = time.monotonic()
+while time.monotonic() < ready + SECONDS:
+    O.step()
+seconds = time.monotonic() - ready
+print(json.dumps({
+    'contactUpdatesPerSecond': fused.statistics()['contactUpdates'] / seconds, 'setup': ready - start,
+    'timeUnit': {name: scene.pair_constants(values, row)['timeUnit'] for name, row in MATERIALS.items()}}))
+sys.exit(0)
