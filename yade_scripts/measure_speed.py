@@ -15,7 +15,7 @@ from yade_scripts import arguments, packings, parameters
 from yade_scripts.errors import one_line_errors
 from yade_scripts.materials import MATERIALS
 
-SECONDS = 2.0
+SECONDS = 1.0
 STEPS = 20
 
 start = time.monotonic()

@@ -3,12 +3,15 @@ import signal
 
 
 class StopSignals:
-    """Remembers the first SIGINT or SIGTERM in .received; a second one acts as it would have without this."""
+    """Remembers the first of these signals in .received; a second one acts as it would have without this.
 
-    def __init__(self):
+    Signals that are being ignored (nohup) stay so.
+    """
+
+    def __init__(self, numbers=(signal.SIGINT, signal.SIGTERM)):
         self.received = 0
-        self._before = {number: signal.signal(number, self._note)
-                        for number in (signal.SIGINT, signal.SIGTERM)}
+        self._before = {number: signal.signal(number, self._note) for number in numbers
+                        if signal.getsignal(number) != signal.SIG_IGN}
 
     def restore(self):
         for number, handler in self._before.items():

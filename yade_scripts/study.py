@@ -9,10 +9,11 @@ ended, or from a piece of a collision that is measured, and printed. Ctrl-C and 
 a checkpoint. Logs, and the table of the rows that were left, are in runs/logs/NAME of the table.
 
 Exit status: 0 when every row has ended, 1 when a row failed (one line on stderr for each; the others have run),
-2 for a table that can't be used, 130 or 143 when stopped.
+2 for a table that can't be used, 128 and the signal's number when stopped.
 """
 import argparse
 import os
+import signal
 import sys
 import time
 
@@ -145,7 +146,7 @@ def main(arguments):
         print(f'study.py: {error}', file=sys.stderr)
         return 2
     study.since = time.time()
-    stop = StopSignals()
+    stop = StopSignals((signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
     for row in study.rows:
         if row.error:
             print(f'study.py: {row.name}: {row.error}; the other rows are run', file=sys.stderr, flush=True)

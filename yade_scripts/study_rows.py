@@ -3,6 +3,7 @@ from dataclasses import dataclass
 import json
 import os
 import re
+import signal
 import time
 import zipfile
 
@@ -66,10 +67,9 @@ def state(row, log, since=0.0):
         return _running(folder, run)
     outcome = run.get('outcome', '')
     note, progress = _stopped(folder, run)
-    if _changed(log) >= since:
-        problem = failure(log) if _finished(log) else None
-        if problem:
-            return State(FAILED, progress, note=problem.removeprefix(f'{log}: ') + (f' ({note})' if note else ''))
+    problem = _failure(log) if _changed(log) >= since else None
+    if problem:
+        return State(FAILED, progress, note=problem + (f' ({note})' if note else ''))
     if outcome.startswith('failed') and _changed(os.path.join(folder, 'run.json')) >= since:
         return State(FAILED, progress, note=f'{folder}: {outcome}')
     return State(WAITING, progress, run.get('wallTime'), note=note)
@@ -129,13 +129,25 @@ def run_of(folder):
 
 
 def _changed(path):
+    """When a file was written [s since 1970]; -1 when it isn't there."""
     try:
         return os.stat(path).st_mtime
     except OSError:
-        return 0.0
+        return -1.0
 
 
-def _finished(log):
-    """Whether yade-batch has seen the end of the job that writes this log."""
-    with open(log, errors='replace') as file:
-        return 'JOB SUMMARY' in file.read()
+def _failure(log):
+    """What went wrong with the job of a log whose end yade-batch has seen; None when nothing did, or no end is there."""
+    try:
+        with open(log, errors='replace') as file:
+            summary = file.read().partition('JOB SUMMARY')[2]
+    except OSError:
+        return None
+    if not summary:
+        return None
+    status = re.search(r'^status  : (\d+)', summary, re.MULTILINE)
+    code = int(status.group(1)) >> 8 if status else 0  # of the shell: 128 and more for a signal
+    if code > 128 and code - 128 not in (signal.SIGINT, signal.SIGTERM):
+        return f'killed by signal {code - 128}'
+    problem = failure(log)
+    return problem and problem.removeprefix(f'{log}: ')

@@ -13,8 +13,8 @@ class Screen:
     def draw(self, text):
         if not self.shown:
             return
-        width = shutil.get_terminal_size().columns
-        lines = [line[:width - 1] for line in text.splitlines()]
+        size = shutil.get_terminal_size()
+        lines = [line[:size.columns - 1] for line in text.splitlines()[:size.lines - 1]]
         self._erase()
         self.stream.write('\n'.join(lines) + '\n')
         self.stream.flush()

@@ -44,6 +44,8 @@ def read(path):
         plain = {name.rstrip('!'): cell for name, cell in above.items() if cell != '*'}
         description = plain.pop('description', None) or ','.join(
             f'{name.rstrip("!")}={above[name]}' for name in marked).replace("'", '').replace('"', '')
+        if 'description' not in header and any(row.description == description for row in rows):
+            description += f'__line={number}__'
         rows.append(Row(number, description, plain))
     return rows
 
