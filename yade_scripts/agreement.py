@@ -1,4 +1,4 @@
-"""Whether two runs are of the same thing: what a checkpoint or an ended run must agree with to be used. Needs no YADE."""
+"""Whether a checkpoint or an ended run is of the run that is wanted. Needs no YADE."""
 from math import isclose
 
 from yade_scripts.parameters import BY_NAME, DURATION_PER_RADIUS

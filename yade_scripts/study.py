@@ -151,7 +151,11 @@ def main(arguments):
         if row.error:
             print(f'study.py: {row.name}: {row.error}; the other rows are run', file=sys.stderr, flush=True)
     study.announce()
-    run(study, stop)
+    try:
+        run(study, stop)
+    except FileNotFoundError as error:
+        print(f'study.py: {error.filename}: {error.strerror}', file=sys.stderr)
+        return 1
     stop.restore()
     return close(study, stop)
 

@@ -21,7 +21,7 @@ class StudyBusy(RuntimeError):
 
 
 class StudyFolder:
-    """runs/logs/NAME: a log for each row, yade-batch's own, the table of the rows that were left, the measured speed."""
+    """runs/logs/NAME: a log for each row, yade-batch's own, the table of what was left, the measured speed."""
 
     def __init__(self, name):
         self.path = os.path.join(LOGS, name)
@@ -99,6 +99,7 @@ class Batch:
                             '!THREADS': row.values['threads'] or 1} for row in rows])
         self._output = open(folder.file('yade-batch.out'), 'w')
         command = batch_command(left, folder.file('@.log'), ['-j', str(jobs), '--nice', NICE])
+        # Jobs inherit the study's lock: it is free again when the last of them is gone, whatever becomes of this.
         self._process = subprocess.Popen(command, stdout=self._output, stderr=subprocess.STDOUT,
                                          stdin=subprocess.DEVNULL, start_new_session=True, pass_fds=[folder.held])
 

@@ -46,7 +46,7 @@ class Cost:
         return self.contact_updates(values) * values['grains']**CACHE_EXPONENT
 
     def contact_updates(self, values):
-        """Steps times contacts, of which a grain has NEIGHBOURS/2 times the share of the lattice's sites that is filled."""
+        """Steps times contacts; each grain has NEIGHBOURS/2 times the share of sites that is filled (A24 eq 39)."""
         material = MATERIALS[values['material']]
         share = values['filling'] / maximum_filling(material.grainRadius, equilibrium_overlap(material))
         duration = DURATION_PER_RADIUS * values['radius']

@@ -28,7 +28,7 @@ class StudyRow:
 
 @dataclass(frozen=True)
 class State:
-    """kind: DONE, RUNNING, ...; progress 0 to 1; seconds: wall time spent; left: by the run's own pace, if known [s]."""
+    """kind: DONE, ...; progress: 0 to 1; seconds: wall time spent; left: seconds by the run's own pace, if known."""
     kind: str
     progress: float = 0.0
     seconds: float = None
@@ -137,7 +137,7 @@ def _changed(path):
 
 
 def _failure(log):
-    """What went wrong with the job of a log whose end yade-batch has seen; None when nothing did, or no end is there."""
+    """What went wrong with the job of a log; None when nothing did, or yade-batch hasn't seen its end."""
     try:
         with open(log, errors='replace') as file:
             summary = file.read().partition('JOB SUMMARY')[2]

@@ -73,7 +73,7 @@ def test_estimates_follow_ended_runs_and_otherwise_the_measured_piece():
     small, large = parse({'radius': 40}), parse({'radius': 80})
     fast = parse({'radius': 40, 'stepFraction': 0.2})
     assert study_cost.Cost(ICE).seconds(small) is None
-    cost = study_cost.Cost(ICE, ended=[(small, 80.0), (small, 100.0), (small, 300.0), (parse({'radius': 36}), 0.5)])
+    cost = study_cost.Cost(ICE, ended=[(small, 80.0), (small, 100.0), (small, 300.0), (parse({'radius': 10}), 0.5)])
     assert cost.seconds(small) == pytest.approx(100)  # a median; what took half a second says nothing
     assert cost.seconds(fast) == pytest.approx(50)
     assert cost.seconds(large) == pytest.approx(1600 * 8**study_cost.CACHE_EXPONENT, rel=0.01)
