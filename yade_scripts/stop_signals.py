@@ -3,15 +3,11 @@ import signal
 
 
 class StopSignals:
-    """Remembers the first of these signals in .received; a second one acts as it would have without this.
-
-    Signals that are being ignored (nohup) stay so.
-    """
+    """Remembers the first of these signals in .received; a second one acts as it would have without this."""
 
     def __init__(self, numbers=(signal.SIGINT, signal.SIGTERM)):
         self.received = 0
-        self._before = {number: signal.signal(number, self._note) for number in numbers
-                        if signal.getsignal(number) != signal.SIG_IGN}
+        self._before = {number: signal.signal(number, self._note) for number in numbers}
 
     def restore(self):
         for number, handler in self._before.items():

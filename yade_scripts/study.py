@@ -28,6 +28,7 @@ from yade_scripts.stop_signals import StopSignals
 from yade_scripts.table import TableError
 
 POLL = 1.0  # s
+STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def parse_arguments(arguments):
@@ -146,7 +147,7 @@ def main(arguments):
         print(f'study.py: {error}', file=sys.stderr)
         return 2
     study.since = time.time()
-    stop = StopSignals((signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
+    stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup
     for row in study.rows:
         if row.error:
             print(f'study.py: {row.name}: {row.error}; the other rows are run', file=sys.stderr, flush=True)
