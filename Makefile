@@ -1,6 +1,9 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
 # make bench  measures speed, and error against the time step
+# make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
+#             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
+#             Stop it at will; called again it goes on. make study-status tells from another shell how far it is.
 # make test   builds what is needed and passes the tests
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
@@ -140,6 +143,24 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py) yade_scripts/studies/de
 
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider tests
+
+# The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
+SIZE  ?= desk
+JOBS  ?= $(shell nproc)
+STUDY := yade_scripts/studies/elastoplastic-$(SIZE).table
+RUNS  := runs/elastoplastic$(filter-out -desk,-$(SIZE))
+
+.PHONY: study-elastoplastic study-status gallery-elastoplastic
+study-elastoplastic: all
+	@$(PYTHON) yade_scripts/study.py $(STUDY) -j $(JOBS)
+	@$(PYTHON) -m analysis elastoplastic $(RUNS) --figures $(RUNS)/figures
+
+study-status:
+	@$(PYTHON) yade_scripts/study.py $(STUDY) -j $(JOBS) --status
+
+# the comparison and figures that the repository keeps, of the runs that are there
+gallery-elastoplastic:
+	@$(PYTHON) -m analysis elastoplastic $(RUNS) --figures analysis/gallery/elastoplastic
 
 # Speed against YADE's own loop, and error against step: some ten minutes; results in tests/benchmarks/results.
 .PHONY: bench

@@ -8,7 +8,7 @@
 
 Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing
 was run), 1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder
-that can be read.
+that can be read, with a checkpoint; a killed run leaves its last one. resume=1 goes on from there.
 """
 import os
 import sys
@@ -26,7 +26,7 @@ if '--help' in sys.argv[1:]:
 
 with one_line_errors('collide.py'):
     values = parameters.parse(*arguments.gather(sys.argv[1:]))
-    from yade_scripts import recorder, report, run_folder, run_loop, scene  # these need the plugin
+    from yade_scripts import checkpoint, recorder, report, run_folder, run_loop, scene  # these need the plugin
 
     # What is made of what
     material = MATERIALS[values['material']]
@@ -40,18 +40,27 @@ with one_line_errors('collide.py'):
                                               constants['equilibriumOverlap'], values['seed'], index), centre)
                   for index, centre in enumerate(centres)]
     packings.require_apart(*aggregates)
-    folder = run_folder.RunFolder(values['out'], values['overwrite'])
+    folder = run_folder.RunFolder(values['out'], values['overwrite'], values['resume'])
+    saved = folder.checkpoint
+    if saved:
+        saved.require_agreement(values, report.made_with())
 
 # YADE's scene, and what is recorded of it
 time_step = values['stepFraction'] * constants['timeUnit']
 schedule = sampling.Schedule.of(values['duration'], time_step)
-aggregate_of_body = scene.build(aggregates, velocities, scene.material_of(values, material), time_step)
-history = recorder.Recorder(folder, schedule, aggregate_of_body, aggregate_radius)
-steps, runner, begin = scene.start(values, material.grainRadius, schedule, history)
-run = report.Report(folder, values, scene.derived(values, material, constants, schedule, time_step), start)
+history = recorder.Recorder(folder, schedule, scene.aggregate_of_grain(aggregates), aggregate_radius)
+if saved:
+    history.go_on(saved.rows)
+    steps, runner, begin = scene.go_on(values, schedule, saved)
+else:
+    scene.build(aggregates, velocities, scene.material_of(values, material), time_step)
+    steps, runner, begin = scene.start(values, material.grainRadius, schedule, history)
+run = report.Report(folder, values, scene.derived(values, material, constants, schedule, time_step), start,
+                    saved.wallTime if saved else 0.0)
+checkpoints = checkpoint.Writer(folder.path, run.run, history, run.wall_time, values['checkpointInterval'])
 
 # The run
-outcome, status = run_loop.run(steps, history, runner, begin)
+outcome, status = run_loop.run(steps, history, runner, begin, checkpoints)
 history.write_history()
 run.end(outcome)
 sys.exit(status)

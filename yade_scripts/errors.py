@@ -2,6 +2,7 @@
 from contextlib import contextmanager
 import sys
 
+from yade_scripts.checkpoint import CheckpointError
 from yade_scripts.packings import PackingError
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run_folder import RunFolderError
@@ -12,6 +13,6 @@ def one_line_errors(script):
     """Within it, an error of the user's input, or a plugin that isn't built, becomes one line and exit 2."""
     try:
         yield
-    except (ParameterError, PackingError, RunFolderError, ImportError, MemoryError) as error:
+    except (ParameterError, PackingError, RunFolderError, CheckpointError, ImportError, MemoryError) as error:
         sys.stderr.write(f'{script}: {" ".join(str(error).split()) or type(error).__name__}\n')
         sys.exit(2)

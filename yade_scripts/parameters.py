@@ -65,6 +65,9 @@ FIELDS = [
     Field('out', str, None, '', 'a folder that can be written', lambda text: text != '',
           'run folder (runs/<description of the row, or a name made from the parameters>)'),
     Field('overwrite', int, 0, '', '0 or 1', lambda n: n in (0, 1), '1: replace a run that has ended'),
+    Field('resume', int, 0, '', '0 or 1', lambda n: n in (0, 1),
+          "1: go on from the run folder's checkpoint, if there is one"),
+    Field('checkpointInterval', float, 300.0, 's', '> 0', lambda x: x > 0, 'wall time between checkpoints'),
 ]
 BY_NAME = {field.name: field for field in FIELDS}
 
@@ -195,7 +198,7 @@ def _name_from(texts, values):
     """collide-ice-f0.4-R20-v3.162-s1, and whatever else was given."""
     in_name = ['material', 'filling', 'radius', 'grains', 'velocity', 'seed']
     name = 'collide-{material}-f{filling:g}-R{radius:.4g}-v{velocity:.4g}-s{seed}'.format(**values)
-    left_out = in_name + ['out', 'overwrite', 'threads']
+    left_out = in_name + ['out', 'overwrite', 'resume', 'checkpointInterval', 'threads']
     return name + ''.join(f'-{key}{values[key]}' for key in sorted(texts) if key not in left_out)
 
 

@@ -4,10 +4,13 @@ import time
 
 
 class Progress:
-    """Progress(total).update(done) draws at most twice a second; silent when the stream is no terminal."""
+    """Progress(total).update(done) draws at most twice a second; silent when the stream is no terminal.
 
-    def __init__(self, total, stream=sys.stderr, width=40):
-        self.total, self.stream, self.width = total, stream, width
+    already: how much was done before the clock began.
+    """
+
+    def __init__(self, total, stream=sys.stderr, width=40, already=0):
+        self.total, self.stream, self.width, self.already = total, stream, width, already
         self.shown = stream.isatty()
         self.start = self.next_drawing = time.monotonic()
 
@@ -27,7 +30,8 @@ class Progress:
 
     def _draw(self, done, elapsed):
         filled = int(self.width * done / self.total)
-        left = duration_text(elapsed / done * (self.total - done)) if done > 0 else '?'
+        new = done - self.already
+        left = duration_text(elapsed / new * (self.total - done)) if new > 0 else '?'
         self.stream.write(f'\r\033[K[{"#" * filled}{"." * (self.width - filled)}] '
                           f'{100 * done / self.total:5.1f} %  {left} left')
         self.stream.flush()

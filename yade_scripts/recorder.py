@@ -28,9 +28,18 @@ class Recorder:
         self.error = None
         self.ending = False
         self._rows, self._states = [], 0
-        self._energy_scale = None
         self._last_good = None  # state of the last sample, unless it is written already
         self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
+
+    def rows(self):
+        """The history so far, (T, columns), for a checkpoint."""
+        return np.array(self._rows, dtype=float).reshape(-1, len(SERIES))
+
+    def go_on(self, rows):
+        """Have these rows, of a checkpoint, as the history so far; later states of the folder are taken away."""
+        self._rows = [tuple(row) for row in rows.tolist()]
+        self._states = sum(number < len(rows) for number in self.schedule.states)
+        self.folder.keep_states(self._states)
 
     def sample(self):
         try:
@@ -46,8 +55,7 @@ class Recorder:
 
     def write_history(self):
         """Write all samples so far."""
-        columns = np.array(self._rows, dtype=float).reshape(-1, len(SERIES)).T
-        series = dict(zip(SERIES, columns))
+        series = dict(zip(SERIES, self.rows().T))
         for name in ('contacts', 'contacts_between'):
             series[name] = series[name].astype(int)
         self.folder.write_history(series)
@@ -85,12 +93,11 @@ class Recorder:
         finite = np.isfinite(state['position']).all(axis=1)
         if not finite.all():
             raise RunFailed(f'body {state["ids"][~finite][0]} has no finite position {when}')
-        total = sum(energies)
-        if self._energy_scale is None:
-            self._energy_scale, self._energy_start = sum(map(abs, energies)), total
-        if abs(total - self._energy_start) > 0.1 * self._energy_scale:
-            raise RunFailed(f'energy is not conserved ({total - self._energy_start:.3g} J more than at the '
-                            f'start, of {self._energy_scale:.3g} J) {when}: the step is too long{suspects(state)}')
+        start = self._rows[0][1:1 + len(CHANNELS)] if self._rows else energies
+        more, scale = sum(energies) - sum(start), sum(map(abs, start))
+        if abs(more) > 0.1 * scale:
+            raise RunFailed(f'energy is not conserved ({more:.3g} J more than at the start, of {scale:.3g} J) '
+                            f'{when}: the step is too long{suspects(state)}')
 
 
 def suspects(state):

@@ -7,30 +7,44 @@ import contact_law
 import numpy as np
 import yade.config
 
+from yade_scripts import checkpoint
 from yade_scripts.run_folder import closing_line, hardware
 
 
-class Report:
-    """Writes run.json at the start (outcome "running", which a killed run keeps) and at the end."""
-
-    def __init__(self, folder, values, derived, start):
-        self.folder, self.start = folder, start
-        self.run = {
-            'parameters': values, 'derived': derived,
-            'versions': {'yade': yade.config.version, 'python': sys.version.split()[0],
+def made_with():
+    """What run.json says of the software: its versions, and the plugin's commit."""
+    return {'versions': {'yade': yade.config.version, 'python': sys.version.split()[0],
                          'numpy': np.__version__, 'contact_law': contact_law.__version__},
-            'commit': contact_law.commit, 'seed': values['seed'], 'hardware': hardware(),
+            'commit': contact_law.commit}
+
+
+class Report:
+    """Writes run.json at the start (outcome "running", which a killed run keeps) and at the end.
+
+    start: of this process, on the clock of time.monotonic(); earlier: wall time [s] before interruptions.
+    """
+
+    def __init__(self, folder, values, derived, start, earlier=0.0):
+        self.folder, self.start = folder, start - earlier
+        self.run = {
+            'parameters': values, 'derived': derived, **made_with(),
+            'seed': values['seed'], 'hardware': hardware(),
         }
         self._write('running')
+
+    def wall_time(self):
+        """Seconds that the run has taken, those before interruptions included."""
+        return time.monotonic() - self.start
 
     def end(self, outcome):
         """Write the outcome and, if the run came to its planned end, the mark of that; print one line."""
         self._write(outcome)
         if outcome == 'completed':
             self.folder.write_ended()
+            checkpoint.remove(self.folder.path)
         if outcome.startswith('failed'):
             sys.stderr.write(f'{os.path.basename(sys.argv[0])}: {outcome}\n')
-        print(closing_line(self.folder.path, outcome, time.monotonic() - self.start), flush=True)
+        print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
 
     def _write(self, outcome):
-        self.folder.write_run({**self.run, 'wallTime': time.monotonic() - self.start, 'outcome': outcome})
+        self.folder.write_run({**self.run, 'wallTime': self.wall_time(), 'outcome': outcome})

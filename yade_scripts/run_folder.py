@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 
+from yade_scripts import checkpoint
 from yade_scripts.atomic_write import write_atomically
 
 FORMAT = 1
@@ -26,16 +27,21 @@ class RunFolder:
     """Writer of one run. Makes the folder, or empties that of an earlier run if it may.
 
     Raises RunFolderError when the folder can't be written, holds something else, is being written by another
-    run, or holds a run that has ended and overwrite is false.
+    run, or holds a run that has ended and overwrite is false. With resume, a folder with a checkpoint is left as
+    it is, and .checkpoint is that checkpoint, otherwise None; raises CheckpointError when it can't be read.
     """
 
-    def __init__(self, path, overwrite=False):
+    def __init__(self, path, overwrite=False, resume=False):
         self.path = path
+        self.checkpoint = None
         self.states = os.path.join(path, 'states')
         _require_usable(path, overwrite)
         try:
             os.makedirs(self.states, exist_ok=True)
             self._lock = _locked(path)
+            if resume and checkpoint.exists(path):
+                self.checkpoint = checkpoint.Checkpoint(path)
+                return
             self._empty()
             write_atomically(self._file('run.json'), lambda file: file.write(b'{}\n'))
         except OSError as error:
@@ -44,8 +50,7 @@ class RunFolder:
 
     def write_run(self, run):
         """run.json from a dictionary that JSON can hold."""
-        text = json.dumps({'format': FORMAT, **run}, indent=2, allow_nan=False) + '\n'
-        write_atomically(self._file('run.json'), lambda file: file.write(text.encode()))
+        write_json(self._file('run.json'), {'format': FORMAT, **run})
 
     def write_history(self, series):
         """history.npz from {name: (T,) array}, every name of SERIES."""
@@ -54,6 +59,12 @@ class RunFolder:
     def write_state(self, number, state):
         """states/NNNNNN.npz from {name: array}."""
         write_atomically(os.path.join(self.states, f'{number:06d}.npz'), lambda file: np.savez(file, **state))
+
+    def keep_states(self, number):
+        """Take away all states but the first `number`."""
+        for name in os.listdir(self.states):
+            if name.endswith('.npz') and name >= f'{number:06d}.npz':
+                os.unlink(os.path.join(self.states, name))
 
     def write_ended(self):
         """The mark that the run came to its planned end: written last."""
@@ -64,12 +75,17 @@ class RunFolder:
 
     def _empty(self):
         """Take away an earlier run's files, the mark of its end first, and nothing else."""
+        checkpoint.remove(self.path)
         for name in ('ended', 'history.npz', 'run.json'):
             if os.path.exists(self._file(name)):
                 os.unlink(self._file(name))
-        for name in os.listdir(self.states):
-            if name.endswith('.npz'):
-                os.unlink(os.path.join(self.states, name))
+        self.keep_states(0)
+
+
+def write_json(path, content):
+    """A dictionary as a JSON file, whole or not there."""
+    text = json.dumps(content, indent=2, allow_nan=False) + '\n'
+    write_atomically(path, lambda file: file.write(text.encode()))
 
 
 def closing_line(path, outcome, seconds):
@@ -82,6 +98,16 @@ def read_closing_line(log):
     line = r'^run folder: (.*?) \((completed|interrupted|failed: .*), [0-9.]+ s\)$'
     found = re.findall(line, log, re.MULTILINE)
     return found[-1] if found else None
+
+
+def being_written(path):
+    """Whether a process of this machine holds the folder's lock (read from the kernel's list, without taking it)."""
+    try:
+        inode = str(os.stat(path).st_ino)
+        with open('/proc/locks') as locks:
+            return any(' FLOCK ' in lock and lock.split()[5].rsplit(':', 1)[1] == inode for lock in locks)
+    except OSError:
+        return False
 
 
 def hardware():

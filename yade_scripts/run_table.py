@@ -18,13 +18,18 @@ from yade_scripts.run_folder import read_closing_line
 LOGS = os.path.join('runs', 'logs')
 
 
+def batch_command(table, log, options=()):
+    """yade-batch's command line; log: a path in which % stands for a row's line and @ for its description."""
+    return ['yade-batch', '--disable-pynotify', '--plot-update', '0',
+            '--executable', shutil.which('yade') or 'yade', '--log', log,
+            *options, table, os.path.join(HERE, 'collide.py')]
+
+
 def run_batch(table, options):
     """Run yade-batch, its output passed on; returns what it printed. Raises OSError when it isn't there."""
     name = os.path.splitext(os.path.basename(table))[0]
     os.makedirs(LOGS, exist_ok=True)
-    command = ['yade-batch', '--disable-pynotify', '--plot-update', '0',
-               '--executable', shutil.which('yade') or 'yade', '--log', os.path.join(LOGS, f'{name}.%.@.log'),
-               *options, table, os.path.join(HERE, 'collide.py')]
+    command = batch_command(table, os.path.join(LOGS, f'{name}.%.@.log'), options)
     lines = []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as batch:
         for line in batch.stdout:

@@ -42,11 +42,15 @@ def placements(values, grain_radius):
     return (-centre, velocity), (centre, -velocity)
 
 
+def aggregate_of_grain(packings):
+    """The number of the aggregate that each grain belongs to, (N,)."""
+    return np.repeat(np.arange(len(packings)), [packing.grains for packing in packings])
+
+
 def build(packings, velocities, plugin_material, time_step):
-    """Make bodies of the packings, each with its velocity (3,) [m/s]; returns each body's aggregate (N,)."""
+    """Make bodies of the packings, each with its velocity (3,) [m/s]."""
     omega = Omega()
     plugin_material_id = omega.materials.append(plugin_material)
-    aggregate = np.repeat(np.arange(len(packings)), [packing.grains for packing in packings])
     for packing, velocity, colour in zip(packings, velocities, COLOURS):
         bodies = [utils.sphere(centre, radius, material=plugin_material_id, color=colour)
                   for centre, radius in zip(packing.position.tolist(), packing.radius.tolist())]
@@ -55,7 +59,6 @@ def build(packings, velocities, plugin_material, time_step):
         omega.bodies.append(bodies)
     omega.dt = time_step
     omega.trackEnergy = True
-    return aggregate
 
 
 def start(values, grain_radius, schedule, history):
@@ -74,6 +77,17 @@ def start(values, grain_radius, schedule, history):
     omega.dt *= schedule.interval
     omega.engines = [fused, runner]
     return schedule.steps // schedule.interval, runner, lambda: (fused.prepare(), history.sample())
+
+
+def go_on(values, schedule, saved):
+    """The same for a scene out of a checkpoint, which has its engines and whose start has been sampled."""
+    omega = Omega()
+    saved.load_scene()
+    fused, runner = omega.engines[0], omega.engines[-1]
+    if values['engine'] == 'functors':
+        return schedule.steps + 1, runner, lambda: None
+    fused.threads = values['threads']
+    return schedule.steps // schedule.interval, runner, lambda: None
 
 
 def functor_engines(grain_radius, runner):

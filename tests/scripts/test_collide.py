@@ -137,7 +137,7 @@ def test_an_interrupted_run_leaves_what_it_had(tmp_path, signal_number, status):
     output, errors = process.communicate(timeout=30)
     assert process.returncode == status, errors
     assert 'run folder: run (interrupted, ' in output
-    assert sorted(os.listdir(tmp_path / 'run')) == ['history.npz', 'run.json', 'states']
+    assert sorted(os.listdir(tmp_path / 'run')) == ['checkpoint', 'history.npz', 'run.json', 'states']
     assert read_json(tmp_path, 'run', 'run.json')['outcome'] == 'interrupted'
     history = read_arrays(tmp_path, 'run', 'history.npz')
     last = read_arrays(tmp_path, 'run', 'states', sorted(os.listdir(tmp_path / 'run' / 'states'))[-1])

@@ -1,0 +1,60 @@
+"""Writes the tables of the study of Arakawa et al. (2024): python3 yade_scripts/elastoplastic_tables.py
+
+full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every scene, at its default step. desk is a
+selection for an hour and a half on two cores, at twice that step. Rows are in the order in which they are
+worth having: small scenes first, and every figure gets its first points early.
+"""
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from yade_scripts import table
+
+FASTEST_STEP = 0.2  # t0; the ledger closes to 1e-4 of the kinetic energy
+REFERENCE = 5       # i of the velocity 10^0.5 m/s at which sizes are compared (Figs 5 to 7)
+VELOCITIES = range(8)
+
+# {(filling, radius): seeds} at the reference velocity, and seeds of every other velocity at R = 40
+DESK_SIZES = {(0.4, 40): 10, (0.3, 40): 10, (0.4, 50): 6, (0.3, 50): 5, (0.4, 60): 5, (0.3, 60): 4,
+              (0.4, 80): 2, (0.3, 80): 2}
+DESK_VELOCITIES = 4
+FIRST = 2  # seeds of each of these that come before any third
+
+
+def desk():
+    """[(filling, radius, i, seed)] of the small study."""
+    sizes = [(filling, radius, REFERENCE, seed) for (filling, radius), seeds in DESK_SIZES.items()
+             for seed in range(1, seeds + 1)]
+    velocities = [(filling, 40, i, seed) for seed in range(1, DESK_VELOCITIES + 1) for filling in (0.4, 0.3)
+                  for i in VELOCITIES if i != REFERENCE]
+    return sorted(sizes + velocities, key=lambda row: (row[3] > FIRST, row[1], row[3]))
+
+
+def full():
+    """[(filling, radius, i, seed)] of all of the paper's runs."""
+    sizes = {(filling, radius, REFERENCE) for filling in (0.4, 0.3) for radius in (40, 50, 60, 70, 80)}
+    velocities = {(filling, radius, i) for filling in (0.4, 0.3) for radius in (40, 80) for i in VELOCITIES}
+    scenes = sorted(sizes | velocities, key=lambda scene: (scene[1], -scene[0], scene[2]))
+    rows = [(*scene, seed) for scene in scenes for seed in range(1, 11)]
+    return sorted(rows, key=lambda row: (row[3] > FIRST, row[1], row[3]))
+
+
+def rows(scenes, folder, step):
+    """A table's rows, with run folders FOLDER/fFILLING-RRADIUS-iI-sSEED."""
+    found = []
+    for filling, radius, i, seed in scenes:
+        name = f'f{filling:g}-R{radius:g}-i{i}-s{seed}'
+        found.append({'description': name, 'filling': filling, 'radius': radius, 'velocity': f'10**(0.1*{i})',
+                      'seed': seed, 'stepFraction': step, 'threads': 1, 'out': f'{folder}/{name}'})
+    return found
+
+
+def write_tables(folder):
+    """Write elastoplastic-desk.table and elastoplastic-full.table into a folder."""
+    table.write(os.path.join(folder, 'elastoplastic-desk.table'), rows(desk(), 'runs/elastoplastic', FASTEST_STEP))
+    table.write(os.path.join(folder, 'elastoplastic-full.table'), rows(full(), 'runs/elastoplastic-full', 0.1))
+
+
+if __name__ == '__main__':
+    write_tables(os.path.join(HERE, 'studies'))
