@@ -1,0 +1,142 @@
+"""Yield stress and E* of aggregates from delta_max and tau_max against velocity (A24 section 4.3.3).
+
+Weighted least squares over all runs of a filling at the sizes that have several velocities. The weight of a run is
+1/s^2, with s the standard deviation of d_max (of t_max) over the seeds of its point, smoothed over the velocities of
+that size (points.smoothed_scatter); `raw` takes each point's own s instead, where it has three seeds or more."""
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .andrews import Spheres, critical_compression, largest_compression, time_of_largest_compression
+from .points import percentile_error
+
+FEWEST_VELOCITIES = 3
+# sigma and E* where the search begins, in rho v^2 (A24's are at 1,100 and 7,900).
+_GRID = (np.geomspace(10.0, 3e4, 45), np.geomspace(50.0, 1e7, 55))
+_LARGEST_LOG = 60.0
+# E* above this many times the yield stress can't be told from a rigid sphere: delta_crit < 3e-6 R*.
+_RUNAWAY = 1e3
+
+
+@dataclass(frozen=True)
+class VelocityFit:
+    """yield_stress and young [Pa] with errors [Pa] (None without scatter), resamples (B, 2), correlation of the two,
+    chi_square of the points' means, its degrees of freedom, radii [grain radii] and runs that were fitted,
+    offset (delta_offset) [m] used and where it is from, unbounded: the share of resamples in which a modulus ran
+    away to infinity (then it has no error when that share is above 16 %). All None where `reason` says why nothing was fitted."""
+    filling: float
+    values: tuple = (None, None)
+    errors: tuple = (None, None)
+    resamples: np.ndarray = None
+    correlation: float = None
+    chi_square: float = None
+    freedom: int = None
+    radii: tuple = ()
+    runs: int = 0
+    offset: float = None
+    offset_source: str = None
+    unbounded: float = 0.0
+    reason: str = None
+
+
+def reduced_radius(radius, offset):
+    """R* = (R + delta_offset)/2: A24 eqs 15, 16."""
+    return 0.5 * (radius + offset)
+
+
+def effective(d_max, t_max, velocity, offset, grain_radius):
+    """(delta_max, tau_max): d_max + 2 delta_offset, and t_max less the time until contact, (2 r - 2
+    delta_offset)/v (A24 eqs 17, 22; separation of the spheres at the start: 2 r)."""
+    return d_max + 2.0 * offset, t_max - 2.0 * (grain_radius - offset) / velocity
+
+
+class ModuliSearch:
+    """Least squares for (sigma, E*) of Andrews's model at fixed velocities [m/s] (K,) and density [kg/m^3] of the
+    aggregates: the best place of a wide grid first, then Levenberg-Marquardt in ln sigma, ln E*."""
+
+    def __init__(self, velocity, density):
+        self.velocity, self.density = velocity, density
+        self.pressure = density * np.exp(np.mean(np.log(velocity))) ** 2
+        moduli = [axis.ravel() for axis in np.meshgrid(*(self.pressure * places for places in _GRID))]
+        self._log_moduli = np.log(moduli).T
+        # Everything in the model is proportional to R*.
+        self._delta, self._tau = self._model(1.0, moduli[0][:, None], moduli[1][:, None])
+
+    def best(self, delta, tau, delta_error, tau_error, radius):
+        """(sigma, E*) [Pa] and chi square for delta_max [m], tau_max [s] (K,) with errors (K,) at reduced radii [m]
+        (K,). sigma is inf where no point yields, E* inf where the spheres are rigid."""
+        def residuals(log_moduli):
+            model = self._model(radius, *np.exp(np.clip(log_moduli, -_LARGEST_LOG, _LARGEST_LOG)))
+            return np.concatenate([(model[0] - delta) / delta_error, (model[1] - tau) / tau_error])
+
+        chi_square = (np.sum(((self._delta * radius - delta) / delta_error) ** 2, axis=1)
+                      + np.sum(((self._tau * radius - tau) / tau_error) ** 2, axis=1))
+        end = least_squares(residuals, self._log_moduli[np.argmin(chi_square)], method="lm", xtol=1e-10, ftol=1e-10)
+        sigma, young = np.exp(np.clip(end.x, -_LARGEST_LOG, _LARGEST_LOG))
+        spheres = Spheres(radius, self.density, sigma, young)
+        if np.all(largest_compression(self.velocity, spheres) <= critical_compression(spheres)):
+            sigma = np.inf
+        elif young > _RUNAWAY * sigma:
+            young = np.inf
+        return np.array([sigma, young]), 2.0 * end.cost
+
+    def _model(self, radius, sigma, young):
+        spheres = Spheres(radius, self.density, sigma, young)
+        return largest_compression(self.velocity, spheres), time_of_largest_compression(self.velocity, spheres)
+
+
+def fitted_sizes(points):
+    """Mask (K,) of the points (one filling) whose size has FEWEST_VELOCITIES or more."""
+    radii, counts = np.unique(points.radius, return_counts=True)
+    return np.isin(points.radius, radii[counts >= FEWEST_VELOCITIES])
+
+
+def fit_velocities(points, resampled, offset, resampled_offset, source, grain_radius, grain_density, raw=False):
+    """VelocityFit of the points (one filling); resampled: (d_max, t_max), each (B, K); offset [m] with its
+    resamples (B,), or a number for all of them; source: where the offset is from (str)."""
+    filling = float(points.filling[0])
+    mask = fitted_sizes(points)
+    if not mask.any():
+        most = np.unique(points.radius, return_counts=True)[1].max()
+        return VelocityFit(filling, reason=f"no size at filling {filling:g} has {FEWEST_VELOCITIES} velocities "
+                                           f"(at most {most})")
+    used = points.chosen(mask)
+    scatter = [_scatter(used, own, smooth, raw) for own, smooth in
+               ((used.raw_d_scatter, used.d_scatter), (used.raw_t_scatter, used.t_scatter))]
+    if not np.all(np.isfinite(scatter)):
+        return VelocityFit(filling, reason=f"a size at filling {filling:g} has no point with two seeds: no "
+                                           "scatter, so no weights")
+    errors = [s / np.sqrt(used.number) for s in scatter]
+    search = ModuliSearch(used.velocity, filling * grain_density)
+
+    def fit(d_max, t_max, shift):
+        delta, tau = effective(d_max, t_max, used.velocity, shift, grain_radius)
+        return search.best(delta, tau, *errors, reduced_radius(used.radius, shift))
+
+    moduli, chi_square = fit(used.d_max, used.t_max, offset)
+    shifts = np.broadcast_to(resampled_offset, len(resampled[0]))
+    ends = np.array([fit(d[mask], t[mask], shift)[0] for d, t, shift in zip(*resampled, shifts)])
+    sane = ends[np.all(np.isfinite(ends), axis=1)]
+    return VelocityFit(
+        filling, tuple(map(float, moduli)), tuple(percentile_error(ends[:, i]) for i in (0, 1)), ends,
+        float(np.corrcoef(np.log(sane.T))[0, 1]) if len(sane) > 2 else None, float(chi_square), 2 * len(used) - 2, tuple(np.unique(used.radius) / grain_radius), int(used.number.sum()), float(offset), source,
+        1.0 - len(sane) / len(ends))
+
+
+def _scatter(points, own, smooth, raw):
+    return np.where(points.number >= 3, own, smooth) if raw else smooth
+
+
+def degenerate_curve(ratio, velocity, density, samples=300):
+    """(sigma, E*) [Pa] (samples,) of all elastoplastic pairs with delta_max/R* = ratio at velocity [m/s], and
+    sigma_elastic from which nothing yields, with E* of eq 30: A24 Fig. 10. sigma goes from the rigid-plastic
+    limit (where E* = inf, left out) to sigma_elastic."""
+    young = 5.0 * np.pi * density * velocity ** 2 / ratio ** 2.5
+    elastic_from = 2.0 * young / np.pi * np.sqrt(ratio)
+    least = 16.0 / 3.0 * density * velocity ** 2 / ratio ** 2
+    sigma = least + (elastic_from - least) * np.linspace(0.0, 1.0, samples + 1)[1:] ** 2
+    # 28 with 27 and 29 is a square equation in delta_crit/R*; the smaller root is the one below delta_max.
+    rest = 0.5 * ratio ** 2 * (1.0 - least / sigma)
+    critical = (ratio / 3.0 - np.sqrt(np.maximum(ratio ** 2 / 9.0 - 0.4 * rest, 0.0))) / 0.2
+    return sigma, np.pi * sigma / (2.0 * np.sqrt(critical)), float(elastic_from), float(young)
