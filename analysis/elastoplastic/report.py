@@ -138,4 +138,4 @@ def _plain_value(value):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):
         return None
-    return value if isinstance(value, (int, float, bool, str, type(None))) else str(value)
+    return value if isinstance(value, (int, float, bool, str, type(None))) else value.name   # a run's folder

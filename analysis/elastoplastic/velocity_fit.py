@@ -17,6 +17,8 @@ _GRID = (np.geomspace(10.0, 3e4, 45), np.geomspace(50.0, 1e7, 55))
 _LARGEST_LOG = 60.0
 # E* above this many times the yield stress can't be told from a rigid sphere: delta_crit < 3e-6 R*.
 _RUNAWAY = 1e3
+_HARDLY_YIELDING = 1.3      # delta_max/delta_crit
+_LEAST_SQUARES = {"method": "lm", "xtol": 1e-10, "ftol": 1e-10}
 
 
 @dataclass(frozen=True)
@@ -72,14 +74,15 @@ class ModuliSearch:
 
         chi_square = (np.sum(((self._delta * radius - delta) / delta_error) ** 2, axis=1)
                       + np.sum(((self._tau * radius - tau) / tau_error) ** 2, axis=1))
-        end = least_squares(residuals, self._log_moduli[np.argmin(chi_square)], method="lm", xtol=1e-10, ftol=1e-10)
+        end = least_squares(residuals, self._log_moduli[np.argmin(chi_square)], **_LEAST_SQUARES)
         sigma, young = np.exp(np.clip(end.x, -_LARGEST_LOG, _LARGEST_LOG))
         spheres = Spheres(radius, self.density, sigma, young)
-        if np.all(largest_compression(self.velocity, spheres) <= critical_compression(spheres)):
-            sigma = np.inf
-        elif young > _RUNAWAY * sigma:
-            young = np.inf
-        return np.array([sigma, young]), 2.0 * end.cost
+        if np.max(largest_compression(self.velocity, spheres) / critical_compression(spheres)) < _HARDLY_YIELDING:
+            # The chi square is flat towards spheres that never yield: they are tried by themselves.
+            elastic = least_squares(lambda x: residuals([_LARGEST_LOG, x[0]]), [np.log(young)], **_LEAST_SQUARES)
+            if elastic.cost <= end.cost + 1e-3:
+                return np.array([np.inf, np.exp(elastic.x[0])]), 2.0 * elastic.cost
+        return np.array([sigma, np.inf if young > _RUNAWAY * sigma else young]), 2.0 * end.cost
 
     def _model(self, radius, sigma, young):
         spheres = Spheres(radius, self.density, sigma, young)
