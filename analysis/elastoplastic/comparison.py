@@ -29,8 +29,10 @@ class Line:
 
     @property
     def difference(self):
-        """(ours - paper)/error, in our standard errors; None where one of them is missing."""
-        return None if None in (self.ours, self.error, self.paper) else (self.ours - self.paper) / self.error
+        """(ours - paper)/error, in our standard errors; None where one of them is missing, or the error is 0."""
+        if self.ours is None or self.paper is None or not self.error:
+            return None
+        return (self.ours - self.paper) / self.error
 
     @property
     def combined_difference(self):
@@ -159,8 +161,9 @@ def _unbounded(fit, i):
     share = float(np.mean(~np.isfinite(fit.resamples[:, i])))
     if not share > 0.01:
         return ""
+    least = np.quantile(fit.resamples[:, i], 0.05, method="nearest") / MEGA
     return f"{('nothing yields', 'nothing is elastic')[i]} in {share:.0%} of the resamples: " + (
-        "no upper bound" if fit.errors[i] is None else "a long upper tail")
+        f"no upper bound, {least:.3g} MPa or more at 95 %" if fit.errors[i] is None else "a long upper tail")
 
 
 def _curve_lines(study, results):

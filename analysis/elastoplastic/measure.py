@@ -18,7 +18,8 @@ SKIN = 2.0              # grain radii
 @dataclass(frozen=True)
 class Row:
     """A collision's numbers, SI. radius: of an aggregate [m]; offset: d(0) + 2 r, by which the centres of mass are
-    closer than the spheres' centres by chance; d_max, t_max and their errors (compression.Maximum);
+    closer than the spheres' centres by chance; d_max, t_max and their errors (compression.Maximum) of the first
+    compression; exceeded: whether d grows beyond it later;
     label_d_max: d_max with each aggregate's own grains in place of A24's x > 0 and x < 0; shares: by channel, the
     change since the start over K(0) at t_max and at the end (kinetic: what is left); bulk: (v/v_col)^2 at the end,
     the kinetic share of the motion of the halves; coordination of all grains and of those inside, at the start."""
@@ -34,6 +35,7 @@ class Row:
     offset: float
     d_max: float
     d_max_error: float
+    exceeded: bool
     t_max: float
     t_max_error: float
     label_d_max: float
@@ -48,12 +50,12 @@ class Row:
 
 
 def measure(run):
-    """Row of a RunFolder of A24's scene that has ended. RunFolderError where it holds no compression: never met,
-    never turned around, or no kinetic energy."""
+    """Row of a RunFolder of A24's scene that has ended. RunFolderError where it holds no compression (never met,
+    never turned around) or had no kinetic energy."""
     history, derived = run.history, run.derived
-    maximum = maximum_compression(history["time"], history["d"], history["v"])
+    maximum, again = first_compression(history["time"], history["d"], history["v"])
     if maximum is None or not maximum.inside or not np.any(history["contacts_between"] > 0):
-        raise RunFolderError(f"{run.path / 'history.npz'}: the compression has no maximum inside the record")
+        raise RunFolderError(f"{run.path / 'history.npz'}: d has no maximum inside the record: the aggregates have not met or not turned around")
     if not initial_kinetic_energy(history) > 0:
         raise RunFolderError(f"{run.path / 'history.npz'}: no kinetic energy at the start")
     start = run.start
@@ -70,7 +72,8 @@ def measure(run):
         seed=int(run.parameters["seed"]), grain_radius=grain_radius, grain_density=constants[0],
         pull_off_force=constants[1], overlap=constants[2],
         offset=float(history["d"][0]) + 2.0 * grain_radius,
-        d_max=maximum.length, d_max_error=maximum.length_error, t_max=maximum.time, t_max_error=maximum.time_error,
+        d_max=maximum.length, d_max_error=maximum.length_error, exceeded=again,
+        t_max=maximum.time, t_max_error=maximum.time_error,
         label_d_max=maximum.length + _label_difference(run, maximum.time, radius),
         outcome=outcome.kind, restitution=outcome.restitution,
         shares_at_maximum={c: float(np.interp(maximum.time, history["time"], parts[c])) for c in CHANNELS},
@@ -78,6 +81,20 @@ def measure(run):
         bulk=float(np.nan_to_num(history["v"][-1] / velocity) ** 2),
         coordination=2.0 * len(start.contact_pairs) / len(start.radius),
         inner_coordination=_inner_coordination(start, radius, grain_radius), closure=closure(history))
+
+
+def first_compression(time, d, v):
+    """(Maximum, whether d exceeds it later): the largest d before v, once fallen through zero, rises through it
+    again. Aggregates that stuck may creep together further, long after the collision (A24 defines d_max as the
+    largest d; it is this one then). Arguments and None as maximum_compression, of whole arrays without NaN
+    between."""
+    v = np.asarray(v, dtype=float)
+    falls = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0))
+    rises = np.flatnonzero((v[:-1] <= 0) & (v[1:] > 0))
+    rises = rises[rises > falls[0]] if falls.size else rises[:0]
+    end = int(rises[0]) + 1 if rises.size else len(v)
+    first = maximum_compression(time[:end], d[:end], v[:end])
+    return first, bool(first is not None and np.nanmax(d) > first.length)
 
 
 def label_length(x, aggregate, aggregate_radius):

@@ -7,6 +7,9 @@ from .points import RESAMPLES
 from .provenance import provenance_lines
 
 HEADS = ("quantity", "ours", "error", "paper", "diff", "diff*")
+# A terminal is no wider than 160.
+_SHORT = {**{c: c for c in CHANNELS}, "slidingDissipation": "slid. diss.", "rollingDissipation": "roll. diss.",
+          "twistingDissipation": "twist. diss.", "disconnection": "disconn.", "bondBreaking": "bonds"}
 LEGEND = (
     f"error: standard error from the scatter of the seeds (bootstrap, {RESAMPLES} resamples of the pairs of aggregates).",
     "diff: (ours - paper)/error. The paper gives no errors; its points scatter as ours, over ten seeds each.",
@@ -17,11 +20,14 @@ LEGEND = (
 
 
 def missing(study):
-    """Lines that say what could not be fitted, and why."""
+    """Lines that say what could not be fitted, and why, and what was decided."""
     for results in study.by_filling.values():
         for fit in (results.size_fit, results.velocity_fit):
             if fit.reason:
                 yield f"not fitted: {fit.reason}"
+    late = sum(row.exceeded for row in study.rows)
+    if late:
+        yield f"in {late} of {len(study.rows)} runs d grows beyond its first maximum later; the first is taken"
 
 
 def text(study, origin):
@@ -37,7 +43,7 @@ def text(study, origin):
     parts += ["", *LEGEND, *missing(study), "", "outcomes (95 % intervals)"]
     parts += _plain(outcome_rows(study))
     parts += ["", "energy: change in per cent of K(0), from the start to t_max | from t_max to the end"]
-    parts += _plain(energy_rows(study))
+    parts += _plain(energy_rows(study, _SHORT))
     return "\n".join(parts)
 
 
@@ -76,12 +82,12 @@ def outcome_rows(study):
                _interval(b.sticking), kinds, f"{100 * b.bulk[0]:.2g} %")
 
 
-def energy_rows(study):
-    """Cells of the energy table: a row a point, a column a channel that is not zero everywhere."""
+def energy_rows(study, names=LABELS):
+    """Cells of the energy table: a row a point, a column a channel (by its name) that is not zero everywhere."""
     shown = [c for c in CHANNELS if any(b.compression[c][0] or b.parting[c][0] for b in study.bounces)]
-    yield ("filling", "R [r]", "v [m/s]") + tuple(LABELS[c] for c in shown)
+    yield ("filling", "R [r]", "v [m/s]") + tuple(names[c] for c in shown)
     for b in study.bounces:
-        cells = (f"{100 * b.compression[c][0]:+.1f} | {100 * b.parting[c][0]:+.1f}" for c in shown)
+        cells = (f"{100 * b.compression[c][0]:.1f} | {100 * b.parting[c][0]:.1f}" for c in shown)
         yield (f"{b.filling:g}", f"{b.radius:g}", f"{b.velocity:.4g}", *cells)
 
 
@@ -99,7 +105,7 @@ def _cells(line):
 def _number(value, error=None):
     """As many digits as the error has use for (two of its own), or four."""
     if value is None or not math.isfinite(value):
-        return "-"
+        return "inf" if value == math.inf else "-"
     if not error:
         return f"{value:.4g}"
     return f"{value:.{max(0, 1 - math.floor(math.log10(error)))}f}"

@@ -121,7 +121,7 @@ def _corrections(points, rows):
 
 
 def _poisson(fit, modulus):
-    if fit.reason:
+    if fit.reason or not np.isfinite(fit.values[1]):
         return None, None
     # An E* without bound is one beyond every nu_agg: eq 42 goes to -1 there.
     young = np.minimum(fit.resamples[:, 1], 1e6 * modulus)

@@ -18,7 +18,7 @@ _LARGEST_LOG = 60.0
 # E* above this many times the yield stress can't be told from a rigid sphere: delta_crit < 3e-6 R*.
 _RUNAWAY = 1e3
 _HARDLY_YIELDING = 1.3      # delta_max/delta_crit
-_LEAST_SQUARES = {"method": "lm", "xtol": 1e-10, "ftol": 1e-10}
+_LEAST_SQUARES = {"method": "lm", "xtol": 1e-8, "ftol": 1e-8}
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
     used = points.chosen(mask)
     scatter = [_scatter(used, own, smooth, raw) for own, smooth in
                ((used.raw_d_scatter, used.d_scatter), (used.raw_t_scatter, used.t_scatter))]
-    if not np.all(np.isfinite(scatter)):
+    if not np.all(np.isfinite(scatter) & (np.array(scatter) > 0)):
         return VelocityFit(filling, reason=f"a size at filling {filling:g} has no point with two seeds: no "
                                            "scatter, so no weights")
     errors = [s / np.sqrt(used.number) for s in scatter]
@@ -128,7 +128,7 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
 
 
 def _scatter(points, own, smooth, raw):
-    return np.where(points.number >= 3, own, smooth) if raw else smooth
+    return np.where((points.number >= 3) & (own > 0), own, smooth) if raw else smooth
 
 
 def degenerate_curve(ratio, velocity, density, samples=300):

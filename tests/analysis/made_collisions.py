@@ -39,20 +39,22 @@ def line_of(moduli=MODULI, v=V):
     return {"c1": ratio / 2.0, "c2": offset * (2.0 - ratio / 2.0), "offset": offset, "ratio": ratio}
 
 
-def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, ended=True, **parameters):
+def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, ended=True, stretch=1.0,
+             **parameters):
     """Write a run folder of two aggregates of two grains each that move as Andrews's spheres of radius `size`
-    [grain radii] would, d being too large by `shift` [grain radii] throughout."""
+    [grain radii] would, with compressions and times larger by the factor `stretch`, and d too large by `shift`
+    [grain radii] throughout."""
     spheres = Spheres(reduced_radius(size * RADIUS, OFFSET), filling * DENSITY, *MODULI)
     course = motion(velocity, spheres)
     contact = 2.0 * (RADIUS - OFFSET) / velocity
     time = np.linspace(0.0, contact + 2.0 * course.time_of_parting, 401)
-    d = course.compression(time - contact) - 2.0 * OFFSET + shift * RADIUS
-    v = course.velocity(time - contact)
+    d = stretch * course.compression((time - contact) / stretch) - 2.0 * OFFSET + shift * RADIUS
+    v = course.velocity((time - contact) / stretch)
     history = {name: np.zeros(time.size) for name in CHANNELS}
     energy = 1e-15 * velocity ** 2
     history["kinetic"] = energy * (v / velocity) ** 2
     history["slidingDissipation"] = energy - history["kinetic"]
-    touching = (time > contact) & (sticks | (time < contact + course.time_of_parting))
+    touching = (time > contact) & (sticks | (time < contact + stretch * course.time_of_parting))
     history.update(time=time, d=d, v=v, contacts=2 + touching, contacts_between=touching.astype(int))
     states = [_state(time[k], d[k], v[k], size, bool(touching[k])) for k in range(0, 401, 50)]
     values = {"packing": "cpe", "material": "ice", "filling": filling, "radius": size, "velocity": velocity, "seed": seed,

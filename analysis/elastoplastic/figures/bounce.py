@@ -35,6 +35,7 @@ def outcome_figure(study):
             place.set_ylim(-0.03, 1.05)
         velocity_axis(row[0], [b.velocity for b in own])
         row[1].set_xlabel("aggregate radius  [grain radii]")
+        row[1].set_xticks(sorted({b.radius for b in study.bounces}))
     for place in axes[0]:
         place.legend(frameon=False, fontsize=8, loc="best")
     letter(axes, "")
