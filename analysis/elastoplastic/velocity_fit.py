@@ -6,19 +6,11 @@ that size (points.smoothed_scatter); `raw` takes each point's own s instead, whe
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
-from .andrews import Spheres, critical_compression, largest_compression, time_of_largest_compression
+from .moduli_search import ModuliSearch
 from .points import percentile_error
 
 FEWEST_VELOCITIES = 3
-# sigma and E* where the search begins, in rho v^2 (A24's are at 1,100 and 7,900).
-_GRID = (np.geomspace(10.0, 3e4, 45), np.geomspace(50.0, 1e7, 55))
-_LARGEST_LOG = 60.0
-# E* above this many times the yield stress can't be told from a rigid sphere: delta_crit < 3e-6 R*.
-_RUNAWAY = 1e3
-_HARDLY_YIELDING = 1.3      # delta_max/delta_crit
-_LEAST_SQUARES = {"method": "lm", "xtol": 1e-8, "ftol": 1e-8}
 
 
 @dataclass(frozen=True)
@@ -53,42 +45,6 @@ def effective(d_max, t_max, velocity, offset, grain_radius):
     return d_max + 2.0 * offset, t_max - 2.0 * (grain_radius - offset) / velocity
 
 
-class ModuliSearch:
-    """Least squares for (sigma, E*) of Andrews's model at fixed velocities [m/s] (K,) and density [kg/m^3] of the
-    aggregates: the best place of a wide grid first, then Levenberg-Marquardt in ln sigma, ln E*."""
-
-    def __init__(self, velocity, density):
-        self.velocity, self.density = velocity, density
-        self.pressure = density * np.exp(np.mean(np.log(velocity))) ** 2
-        moduli = [axis.ravel() for axis in np.meshgrid(*(self.pressure * places for places in _GRID))]
-        self._log_moduli = np.log(moduli).T
-        # Everything in the model is proportional to R*.
-        self._delta, self._tau = self._model(1.0, moduli[0][:, None], moduli[1][:, None])
-
-    def best(self, delta, tau, delta_error, tau_error, radius):
-        """(sigma, E*) [Pa] and chi square for delta_max [m], tau_max [s] (K,) with errors (K,) at reduced radii [m]
-        (K,). sigma is inf where no point yields, E* inf where the spheres are rigid."""
-        def residuals(log_moduli):
-            model = self._model(radius, *np.exp(np.clip(log_moduli, -_LARGEST_LOG, _LARGEST_LOG)))
-            return np.concatenate([(model[0] - delta) / delta_error, (model[1] - tau) / tau_error])
-
-        chi_square = (np.sum(((self._delta * radius - delta) / delta_error) ** 2, axis=1)
-                      + np.sum(((self._tau * radius - tau) / tau_error) ** 2, axis=1))
-        end = least_squares(residuals, self._log_moduli[np.argmin(chi_square)], **_LEAST_SQUARES)
-        sigma, young = np.exp(np.clip(end.x, -_LARGEST_LOG, _LARGEST_LOG))
-        spheres = Spheres(radius, self.density, sigma, young)
-        if np.max(largest_compression(self.velocity, spheres) / critical_compression(spheres)) < _HARDLY_YIELDING:
-            # The chi square is flat towards spheres that never yield: they are tried by themselves.
-            elastic = least_squares(lambda x: residuals([_LARGEST_LOG, x[0]]), [np.log(young)], **_LEAST_SQUARES)
-            if elastic.cost <= end.cost + 1e-3:
-                return np.array([np.inf, np.exp(elastic.x[0])]), 2.0 * elastic.cost
-        return np.array([sigma, np.inf if young > _RUNAWAY * sigma else young]), 2.0 * end.cost
-
-    def _model(self, radius, sigma, young):
-        spheres = Spheres(radius, self.density, sigma, young)
-        return largest_compression(self.velocity, spheres), time_of_largest_compression(self.velocity, spheres)
-
-
 def fitted_sizes(points):
     """Mask (K,) of the points (one filling) whose size has FEWEST_VELOCITIES or more."""
     radii, counts = np.unique(points.radius, return_counts=True)
@@ -115,11 +71,11 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
 
     def fit(d_max, t_max, shift):
         delta, tau = effective(d_max, t_max, used.velocity, shift, grain_radius)
-        return search.best(delta, tau, *errors, reduced_radius(used.radius, shift))
+        return search.best(delta, tau, *errors, np.broadcast_to(reduced_radius(used.radius, shift), delta.shape))
 
-    moduli, chi_square = fit(used.d_max, used.t_max, offset)
+    moduli, chi_square = (result[0] for result in fit(used.d_max[None], used.t_max[None], offset))
     shifts = np.broadcast_to(resampled_offset, len(resampled[0]))
-    ends = np.array([fit(d[mask], t[mask], shift)[0] for d, t, shift in zip(*resampled, shifts)])
+    ends, _ = fit(resampled[0][:, mask], resampled[1][:, mask], shifts[:, None])
     sane = ends[np.all(np.isfinite(ends), axis=1)]
     return VelocityFit(
         filling, tuple(map(float, moduli)), tuple(percentile_error(ends[:, i]) for i in (0, 1)), ends,

@@ -4,16 +4,18 @@ Random seeds are fixed; a statistical bound says how often it would fail for oth
 import numpy as np
 import pytest
 from made_collisions import MODULI, OFFSET, V, line_of, made_points
+from scipy.optimize import least_squares
 from written_runs import RADIUS
 
 from analysis.elastoplastic import paper
-from analysis.elastoplastic.andrews import (Spheres, elastic_compression, elastic_time, plastic_compression,
-                                            plastic_time)
+from analysis.elastoplastic.andrews import (Spheres, elastic_compression, elastic_time, largest_compression,
+                                            plastic_compression, plastic_time, time_of_largest_compression)
 from analysis.elastoplastic.bounce import restitution_interval, wilson
+from analysis.elastoplastic.moduli_search import ModuliSearch
 from analysis.elastoplastic.points import make_points, resampled, smoothed_scatter
 from analysis.elastoplastic.size_fit import errors_of_design, fit_sizes, offset_from_line
 from analysis.elastoplastic.start_offset import common_slope, correct
-from analysis.elastoplastic.velocity_fit import ModuliSearch, fit_velocities
+from analysis.elastoplastic.velocity_fit import fit_velocities
 
 VELOCITIES = tuple(10 ** (0.1 * i) for i in range(8))
 
@@ -100,7 +102,7 @@ def test_spheres_that_never_yield_have_no_yield_stress():
     v = np.array(VELOCITIES)
     elastic, radius = Spheres(4e-6, 400.0, np.inf, 20e6), np.full(8, 4e-6)
     delta, tau = elastic_compression(v, elastic), elastic_time(v, elastic)
-    moduli, chi_square = ModuliSearch(v, 400.0).best(delta, tau, 1e-9, 1e-9, radius)
+    moduli, chi_square = (a[0] for a in ModuliSearch(v, 400.0).best(delta[None], tau[None], 1e-9, 1e-9, radius[None]))
     assert moduli[0] == np.inf and moduli[1] == pytest.approx(20e6, rel=1e-5) and chi_square < 1e-6
     # Scatter may look like a little yield at the largest velocity, but the resamples know no upper bound.
     fit = fitted(made_points(np.random.default_rng(8), 10, (80.0,), VELOCITIES, 0.01, (60e6, 20e6)))
@@ -112,8 +114,27 @@ def test_spheres_that_never_yield_have_no_yield_stress():
 def test_rigid_spheres_have_no_modulus():
     v, radius = np.array(VELOCITIES), np.full(8, 4e-6)
     rigid = Spheres(4e-6, 400.0, 2e6, np.inf)
-    moduli, _ = ModuliSearch(v, 400.0).best(plastic_compression(v, rigid), plastic_time(v, rigid), 1e-9, 1e-9, radius)
+    delta, tau = plastic_compression(v, rigid), np.full(8, plastic_time(v, rigid))
+    moduli = ModuliSearch(v, 400.0).best(delta[None], tau[None], 1e-9, 1e-9, radius[None])[0][0]
     assert moduli[1] == np.inf and moduli[0] == pytest.approx(2e6, rel=1e-3)
+
+
+def test_search_agrees_with_scipys():
+    """Ten noisy sets at once against least_squares from the truth: chi square no higher, moduli the same."""
+    random, v, radius = np.random.default_rng(15), np.array(VELOCITIES), np.full(8, 4e-6)
+    truth = Spheres(4e-6, 400.0, *MODULI)
+    delta = largest_compression(v, truth) * (1 + 0.02 * random.normal(size=(10, 8)))
+    tau = time_of_largest_compression(v, truth) * (1 + 0.02 * random.normal(size=(10, 8)))
+    found, chi_square = ModuliSearch(v, 400.0).best(delta, tau, 5e-9, 3e-9, np.tile(radius, (10, 1)))
+
+    def residuals(x, k):
+        spheres = Spheres(radius, 400.0, *np.exp(x))
+        return np.concatenate([(largest_compression(v, spheres) - delta[k]) / 5e-9,
+                               (time_of_largest_compression(v, spheres) - tau[k]) / 3e-9])
+    for k in range(10):
+        end = least_squares(residuals, np.log(MODULI), args=(k,), method="lm", xtol=1e-12, ftol=1e-12)
+        assert chi_square[k] <= 2 * end.cost * (1 + 1e-6) + 1e-6
+        assert found[k] == pytest.approx(np.exp(end.x), rel=1e-3)
 
 
 def test_what_cannot_be_fitted_says_why():
