@@ -6,7 +6,7 @@ from pathlib import Path
 from ..progress import progress
 from ..run_folder import RunFolderError
 from .collect import collect
-from .measure import measure
+from .measure import NoCompression, measure
 from .provenance import provenance
 from .report import data, markdown, text
 from .study import make_study
@@ -34,37 +34,39 @@ def add_parser(commands):
 def run(options):
     """Exit status: 0, or 2 when a path or run could not be read or nothing was left to analyse."""
     collection = collect(options.runs)
-    rows, measured, problems = [], [], list(collection.problems)
+    rows, measured, notes, problems = [], [], list(collection.notes), list(collection.problems)
     for folder in progress(collection.runs, "reading runs"):
         try:
             rows.append(measure(folder))
             measured.append(folder)
+        except NoCompression as error:
+            notes.append(f"{error}, left out")
         except RunFolderError as error:
             problems.append(str(error))
-    for line in (*collection.notes, *problems):
+    for line in (*notes, *problems):
         print(f"analysis: {line}", file=sys.stderr, flush=True)
     if not rows:
         if not problems:
-            print("analysis: no run of A24's scene has ended yet", file=sys.stderr)
+            print("analysis: no run of A24's scene to analyse", file=sys.stderr)
         return FAILED
     study, origin = make_study(rows), provenance(measured)
-    notes = _summary(collection, problems)
+    kept = _summary(notes, problems)
     try:
         if options.figures:
-            _write(Path(options.figures), study, origin, notes)
+            _write(Path(options.figures), study, origin, kept)
     except OSError as error:
         print(f"analysis: {error.filename or options.figures}: {error.strerror}", file=sys.stderr)
         return FAILED
     except RunFolderError as error:
         print(f"analysis: {error}", file=sys.stderr)
         return FAILED
-    print(json.dumps(data(study, origin, notes), indent=2, allow_nan=False) if options.json else text(study, origin))
+    print(json.dumps(data(study, origin, kept), indent=2, allow_nan=False) if options.json else text(study, origin))
     return FAILED if problems else 0
 
 
-def _summary(collection, problems):
+def _summary(notes, problems):
     """What the kept files say of runs left out, without this machine's paths."""
-    counts = ((len(collection.notes), "left out (not ended, or of another scene)"), (len(problems), "not readable"))
+    counts = ((len(notes), "left out (not ended, of another scene, or without a compression)"), (len(problems), "not readable"))
     return [f"{number} runs {what}" for number, what in counts if number]
 
 

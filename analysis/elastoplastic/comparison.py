@@ -137,18 +137,18 @@ def _error(values):
 
 
 def _moduli_lines(study, results):
-    fit, raw = results.velocity_fit, results.raw_velocity_fit
-    note = (f"{fit.runs} runs, R = {_list(fit.radii)}; delta_offset = {fit.offset / study.grain_radius:.3f} r "
-            f"({fit.offset_source}); chi^2 = {fit.chi_square:.1f} at {fit.freedom} degrees of freedom")
     theirs = (paper.YIELD_STRESS.get(results.filling), paper.YOUNG.get(results.filling))
     lines = []
-    for i, name in enumerate(("sigma_plastic", "E*")):
-        lines.append(Line(name, "MPa", fit.values[i] / MEGA, _scaled(fit.errors[i]), _scaled(theirs[i]),
-                          note="; ".join(filter(None, (note if i == 0 else "", _unbounded(fit, i))))))
-    if raw.reason is None:
-        for i, name in enumerate(("sigma_plastic", "E*")):
-            lines.append(Line(f"{name}, weights unsmoothed", "MPa", raw.values[i] / MEGA, _scaled(raw.errors[i]),
-                              _scaled(theirs[i]), note=_unbounded(raw, i)))
+    for name, fit in results.velocity_fits.items():
+        if fit.reason:
+            continue
+        note = (f"{fit.runs} runs, R = {_list(fit.radii)}; delta_offset = {fit.offset / study.grain_radius:.3f} r "
+                f"({fit.offset_source}); chi^2 = {fit.chi_square:.1f} at {fit.freedom} degrees of freedom")
+        for i, quantity in enumerate(("sigma_plastic", "E*")):
+            notes = (note if i == 0 and not name else "", _unbounded(fit, i))
+            lines.append(Line(quantity + (f", {name}" if name else ""), "MPa", fit.values[i] / MEGA,
+                              _scaled(fit.errors[i]), _scaled(theirs[i]), note="; ".join(filter(None, notes))))
+    fit = results.velocity_fit
     lines += _curve_lines(study, results)
     radius = reduced_radius(max(fit.radii) * study.grain_radius, fit.offset)
     spheres = Spheres(radius, results.filling * study.grain_density, *fit.values)
@@ -163,12 +163,13 @@ def _unbounded(fit, i):
         return ""
     least = np.quantile(fit.resamples[:, i], 0.05, method="nearest") / MEGA
     return f"{('nothing yields', 'nothing is elastic')[i]} in {share:.0%} of the resamples: " + (
-        f"no upper bound, {least:.3g} MPa or more at 95 %" if fit.errors[i] is None else "a long upper tail")
+        "a long upper tail" if fit.errors[i] is not None else
+        f"no upper bound, {least:.3g} MPa or more at 95 %" if np.isfinite(least) else "no bound")
 
 
 def _curve_lines(study, results):
     """Ends of the curve of Fig. 10."""
-    if results.size_fit.reason:
+    if results.size_fit.ratio is None:
         return []
     velocity, density = results.size_fit.velocity, results.filling * study.grain_density
 
@@ -180,8 +181,8 @@ def _curve_lines(study, results):
     known = results.filling == 0.4 and _is_papers(results)
     names = ("least sigma_plastic (rigid plastic, eq 31)", "sigma_plastic from which nothing yields",
              "E* if nothing yields (eq 30)")
-    ours = ends(results.size_fit.values["ratio"])
-    slope = (ends(results.size_fit.values["ratio"] * 1.001) - ours) / (0.001 * results.size_fit.values["ratio"])
+    ours = ends(results.size_fit.ratio)
+    slope = (ends(results.size_fit.ratio * 1.001) - ours) / (0.001 * results.size_fit.ratio)
     error = results.size_fit.errors["ratio"]
     return [Line(name, "MPa", float(ours[i]), None if error is None else float(abs(slope[i]) * error),
                  theirs[i] / MEGA if known else None) for i, name in enumerate(names)]

@@ -15,6 +15,10 @@ from ..run_folder import RunFolderError, read_arrays
 SKIN = 2.0              # grain radii
 
 
+class NoCompression(RunFolderError):
+    """A sound run in which the aggregates did not meet, or not turn around."""
+
+
 @dataclass(frozen=True)
 class Row:
     """A collision's numbers, SI. radius: of an aggregate [m]; offset: d(0) + 2 r, by which the centres of mass are
@@ -50,12 +54,12 @@ class Row:
 
 
 def measure(run):
-    """Row of a RunFolder of A24's scene that has ended. RunFolderError where it holds no compression (never met,
-    never turned around) or had no kinetic energy."""
+    """Row of a RunFolder of A24's scene that has ended. NoCompression where the aggregates never met or never turned
+    around, RunFolderError where something is missing."""
     history, derived = run.history, run.derived
     maximum, again = first_compression(history["time"], history["d"], history["v"])
     if maximum is None or not maximum.inside or not np.any(history["contacts_between"] > 0):
-        raise RunFolderError(f"{run.path / 'history.npz'}: d has no maximum inside the record: the aggregates have not met or not turned around")
+        raise NoCompression(f"{run.path}: the aggregates have not met, or not turned around")
     if not initial_kinetic_energy(history) > 0:
         raise RunFolderError(f"{run.path / 'history.npz'}: no kinetic energy at the start")
     start = run.start

@@ -22,6 +22,11 @@ class SizeFit:
     resamples: dict
     reason: str = None
 
+    @property
+    def ratio(self):
+        """delta_max/R* if it was fitted and is positive, None otherwise (few runs may give any slope)."""
+        return self.values["ratio"] if self.reason is None and self.values["ratio"] > 0 else None
+
     def line(self, radius):
         """(d_max, its error, None without scatter) [grain radii] of the line at a radius [grain radii]."""
         value = self.values["c1"] * radius - self.values["c2"]

@@ -18,14 +18,13 @@ DEFINITIONS = {
     "less d(0) + 2 r": lambda row: row.d_max - row.offset,
     "by each aggregate's own grains": lambda row: row.label_d_max,
 }
-RAW_RESAMPLES = 200
 
 
 @dataclass(frozen=True)
 class Filling:
     """Results at one filling factor: points with resamples (d_max, t_max), size_fits (SizeFit by DEFINITIONS),
-    offset [m] and offset_source, velocity_fit, raw_velocity_fit (weights from each point's own scatter), slope
-    (of d_max on the start's offset, its error), corrections ({index of point: Correction} in grain radii),
+    offset [m] and offset_source, velocity_fits (VelocityFit by what is special about it; '' comes first), slope (of
+    d_max on the start's offset, its error), corrections ({index of point: Correction} in grain radii),
     coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson (value, error),
     grain_radius [m]."""
     filling: float
@@ -34,8 +33,7 @@ class Filling:
     size_fits: Mapping
     offset: float
     offset_source: str
-    velocity_fit: VelocityFit
-    raw_velocity_fit: VelocityFit
+    velocity_fits: Mapping
     slope: tuple
     corrections: Mapping
     coordination: tuple
@@ -46,6 +44,10 @@ class Filling:
     @property
     def size_fit(self) -> SizeFit:
         return next(iter(self.size_fits.values()))
+
+    @property
+    def velocity_fit(self) -> VelocityFit:
+        return self.velocity_fits[""]
 
 
 @dataclass(frozen=True)
@@ -82,14 +84,19 @@ def _filling(filling, rows):
         if name == next(iter(DEFINITIONS)):
             own_points, own_draws = points, draws
     offset, offset_draws, source = _offset(filling, next(iter(size_fits.values())), r)
-    fits = [_velocity_fit(own_points, own_draws, offset, offset_draws, source, first, raw) for raw in (False, True)]
+    offsets = offset, offset_draws, source
+    fits = {"": _velocity_fit(own_points, own_draws, *offsets, first),
+            "weights unsmoothed": _velocity_fit(own_points, own_draws, *offsets, first, raw=True)}
+    if filling in paper.OFFSET and next(iter(size_fits.values())).reason is None:
+        theirs = paper.OFFSET[filling] * r
+        fits["A24's delta_offset"] = _velocity_fit(own_points, own_draws, theirs, theirs, "A24's", first)
     slope, corrections = _corrections(own_points, rows)
     inner = np.array([row.inner_coordination for row in rows])
     modulus = float(bulk_modulus(filling, cpe_coordination(filling, r, first.overlap), r, first.overlap,
                                  first.pull_off_force))
-    return Filling(filling, own_points, own_draws, size_fits, offset, source, *fits, slope, corrections,
+    return Filling(filling, own_points, own_draws, size_fits, offset, source, fits, slope, corrections,
                    (float(inner.mean()), float(inner.std(ddof=1) / np.sqrt(len(inner))) if len(inner) > 1 else None),
-                   modulus, _poisson(fits[0], modulus), r)
+                   modulus, _poisson(fits[""], modulus), r)
 
 
 def _offset(filling, fit, grain_radius):
@@ -102,13 +109,10 @@ def _offset(filling, fit, grain_radius):
     return None, None, None
 
 
-def _velocity_fit(points, draws, offset, offset_draws, source, row, raw):
+def _velocity_fit(points, draws, offset, offset_draws, source, row, raw=False):
     if offset is None:
         filling = float(points.filling[0])
         return VelocityFit(filling, reason=f"no delta_offset at filling {filling:g}: neither two sizes, nor one of A24's")
-    if raw:
-        draws = tuple(d[:RAW_RESAMPLES] for d in draws)
-        offset_draws = offset_draws[:RAW_RESAMPLES] if np.ndim(offset_draws) else offset_draws
     return fit_velocities(points, draws, offset, offset_draws, source, row.grain_radius, row.grain_density, raw)
 
 

@@ -115,7 +115,7 @@ def test_what_does_not_belong_is_left_out_with_a_note(runs, tmp_path):
         assert text in done.stderr
     answer = json.loads(done.stdout)
     assert [row["path"] for row in answer["runs"]] == ["good"] and answer["notes"] == [
-        "3 runs left out (not ended, or of another scene)"]
+        "3 runs left out (not ended, of another scene, or without a compression)"]
     assert ["only one size" in answer["missing"][0], "has 3 velocities" in answer["missing"][1]] == [True, True]
 
 
@@ -139,7 +139,7 @@ def test_nothing_to_analyse(tmp_path):
     assert (done.returncode, done.stdout) == (2, "") and "no run folder (run.json) there" in done.stderr
     made_run(tmp_path / "late", 40.0, 3.0, 1, 0.0, ended=False)
     done = analyse(tmp_path / "late", "--json")
-    assert (done.returncode, done.stdout) == (2, "") and "no run of A24's scene has ended" in done.stderr
+    assert (done.returncode, done.stdout) == (2, "") and "no run of A24's scene to analyse" in done.stderr
 
 
 def test_a_place_that_cannot_be_written_is_one_line(runs, tmp_path):
@@ -155,7 +155,20 @@ def test_aggregates_that_never_turned_around_are_reported(tmp_path):
         arrays = {name: array[:60] for name, array in archive.items()}
     np.savez(path / "history.npz", **arrays)
     done = analyse(path)
-    assert done.returncode == 2 and "not met or not turned around" in done.stderr and done.stderr.count("\n") == 1
+    assert done.returncode == 2 and "not met, or not turned around, left out" in done.stderr
+    made_run(tmp_path / "other", 40.0, 3.0, 2, 0.0)
+    assert analyse(tmp_path).returncode == 0
+
+
+def test_a_line_that_falls_is_reported_as_it_is(tmp_path):
+    """Two runs may give any slope: what rests on a positive delta_max/R* is left out, the rest is drawn."""
+    for size, shift in ((40.0, 2.0), (60.0, -3.0)):
+        made_run(tmp_path / "runs" / f"R{size:g}", size, 3.0, 1, shift)
+    done = analyse(tmp_path / "runs", "--figures", tmp_path / "figures", "--json")
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    size = lines(json.loads(done.stdout), "size dependence")
+    assert size["c1"]["ours"] < 0 and size["c1"]["error"] is None and size["c1"]["difference"] is None
+    assert (tmp_path / "figures" / "fig10_moduli.png").exists()
 
 
 def test_first_compression_is_taken_where_aggregates_creep_together_later():

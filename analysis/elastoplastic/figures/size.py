@@ -79,8 +79,8 @@ def time_figure(study, results):
         scatter_of_seeds(place, half, tau * NANO, _RED)
         largest = max(largest, half)
     line = np.array([0.0, 1.08 * largest])
-    if fit.reason is None:
-        _draw_limits(place, line, fit.values["ratio"], fit.velocity, results, study, unit, "our")
+    if fit.ratio is not None:
+        _draw_limits(place, line, fit.ratio, fit.velocity, results, study, unit, "our")
     if results.filling in paper.RATIO and is_papers_velocity(fit.velocity):
         _draw_limits(place, line, paper.RATIO[results.filling], fit.velocity, results, study, unit, "A24's")
     place.set_xlim(0.0, None)

@@ -35,15 +35,14 @@ def velocity_figure(study, results):
         _draw_models(left, right, v, study, results, radius, radius == max(shown))
     velocity_axis(left, points.velocity)
     velocity_axis(right, points.velocity)
-    left.set_yscale("log")
-    positive = [effective(d, t, v, results.offset, unit)[0] / unit
-                for (d, t), v in zip(points.samples, points.velocity)]
-    means = np.array([p.mean() for p in positive])
-    left.set_ylim(0.5 * means[means > 0].min(), 2.0 * means.max())
-    low, high = left.get_ylim()
-    left.set_yticks([t for t in (0.05, 0.1, 0.2, 0.5, 1, 2, 3, 5, 10, 20, 50) if low <= t <= high])
-    left.set_yticks([], minor=True)
-    left.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    means = (points.d_max + 2.0 * results.offset) / unit
+    if np.any(means > 0):
+        left.set_yscale("log")
+        left.set_ylim(0.5 * means[means > 0].min(), 2.0 * means.max())
+        low, high = left.get_ylim()
+        left.set_yticks([t for t in (0.05, 0.1, 0.2, 0.5, 1, 2, 3, 5, 10, 20, 50) if low <= t <= high])
+        left.set_yticks([], minor=True)
+        left.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     right.set_ylim(0.0, None)
     left.set_ylabel("largest compression $\\delta_{max}$  [grain radii]")
     right.set_ylabel("time to it $\\tau_{max}$  [ns]")
@@ -67,9 +66,10 @@ def _draw_models(left, right, v, study, results, radius, named):
         spheres = Spheres(half, density, *theirs)
         curves.append((largest_compression(v, spheres), time_of_largest_compression(v, spheres), PAPER, "--",
                        f"A24: {theirs[0] / MEGA:g}, {theirs[1] / MEGA:g} MPa"))
-    ratio = results.size_fit.values["ratio"] if results.size_fit.reason is None else paper.RATIO.get(results.filling)
+    ratio, anchor = results.size_fit.ratio, results.size_fit.velocity
+    if ratio is None:
+        ratio, anchor = paper.RATIO.get(results.filling), paper.VELOCITY
     if ratio is not None:
-        anchor = results.size_fit.velocity if results.size_fit.reason is None else paper.VELOCITY
         young = 5.0 * np.pi * density * anchor ** 2 / ratio ** 2.5
         sigma = 16.0 / 3.0 * density * anchor ** 2 / ratio ** 2
         limit = Spheres(half, density, sigma, young)
@@ -89,11 +89,11 @@ def moduli_figure(study):
     for place, results in zip(axes[0], fillings):
         density = results.filling * study.grain_density
         size_fit, fit = results.size_fit, results.velocity_fit
-        if size_fit.reason is None:
-            ratio, error = size_fit.values["ratio"], size_fit.errors["ratio"] or 0.0
+        if size_fit.ratio is not None:
+            ratio, error = size_fit.ratio, size_fit.errors["ratio"] or 0.0
             _draw_curve(place, ratio, size_fit.velocity, density, OURS, "-",
                         f"$\\delta_{{max}}/R^*$ = {ratio:.4f} $\\pm$ {error:.4f}")
-            for other in (ratio - error, ratio + error):
+            for other in (max(ratio - error, 0.5 * ratio), ratio + error):
                 _draw_curve(place, other, size_fit.velocity, density, "0.6", "-", None)
         if results.filling in paper.RATIO:
             _draw_curve(place, paper.RATIO[results.filling], paper.VELOCITY, density, PAPER, "--",
