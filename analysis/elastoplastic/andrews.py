@@ -1,16 +1,16 @@
 """Andrews's model of two equal elastoplastic spheres that collide head on (A24 eqs 23-33, appendix B).
 
 delta is the compression length, R* = R_eff/2 the reduced radius, rho the density of a sphere, sigma the yield
-stress, E* the reduced Young's modulus, delta_c the compression at yield. All integrals of the model are closed,
-and are used in that form; they scale as delta ~ R* and time ~ R*/v.
+stress, E* the reduced Young's modulus, delta_c the compression at yield. All integrals of the model are
+closed, and are used in that form; they scale as delta ~ R* and time ~ R*/v.
 
 Checked while writing: B15 and B19 are what B13 makes of B14 and B16, and B23 what it makes of B21, B22; the
 force is continuous at delta_c and at delta_max; eqs 30-33 are the limits of eqs 27-29. Three things to know:
 
 - eq 18 prints delta_offset = c2 r/(2 - c1/2). Eqs 14, 15, 17 and 19 give c2 r/(2 - c1), and only that gives
-  the printed 0.271 r (the printed form gives 0.267 r). Used in points.offset_from_line.
-- eq 29 takes the mass of spheres of radius R_eff = R + delta_offset; what collides is phi rho_p of radius R. K_ini
-  differs by (1 + delta_offset/R)^3, 2 % at R = 40 r. Kept as printed, because the paper's fits use it.
+  the printed 0.271 r (the printed form gives 0.267 r). Used in size_fit.offset_from_line.
+- eq 29 takes the mass of spheres of radius R_eff = R + delta_offset; what collides is phi rho_p of radius R.
+  K_ini differs by (1 + delta_offset/R)^3, 2 % at R = 40 r. Kept as printed, because the paper's fits use it.
 - After B21 the stress is cut at sigma_inner only inside a_max, so that a collision that stayed elastic
   (delta_max <= delta_c) has delta_return = 0, not B24's negative value, and B23 becomes B15.
 """
@@ -36,7 +36,8 @@ def critical_compression(spheres):
 
 
 def return_compression(spheres, largest):
-    """delta_return [m] at which the spheres part again after the largest compression [m]: B24, 0 if elastic."""
+    """delta_return [m] at which the spheres part again after the largest compression [m]: B24, 0 if
+    elastic."""
     return np.maximum(largest - critical_compression(spheres), 0.0)
 
 

@@ -15,8 +15,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 @dataclass(frozen=True)
 class Motion:
-    """compression(t) [m] and velocity(t) [m/s] (positive while it grows) of two spheres that touch at t = 0 [s];
-    largest [m] at time_of_largest [s]; they part at time_of_parting [s] with the restitution."""
+    """compression(t) [m] and velocity(t) [m/s] (positive while it grows) of two spheres that touch at t = 0
+    [s]; largest [m] at time_of_largest [s]; they part at time_of_parting [s] with the restitution."""
     largest: float
     time_of_largest: float
     time_of_parting: float
@@ -26,7 +26,8 @@ class Motion:
     _speed: CubicHermiteSpline
 
     def compression(self, time):
-        """delta (T,) [m] at times (T,) [s], before contact and after parting too (there on straight lines)."""
+        """delta (T,) [m] at times (T,) [s], before contact and after parting too (there on straight
+        lines)."""
         time = np.asarray(time, dtype=float)
         after = self._spline(self.time_of_parting) - self.restitution * self._velocity * (
             time - self.time_of_parting)
@@ -41,8 +42,8 @@ class Motion:
 def motion(velocity, spheres):
     """Motion of spheres (andrews.Spheres of floats, both moduli finite) that collide at velocity [m/s].
 
-    With delta = delta_max - s^2 the time is the integral of 2 s/|v(delta)| over s, which is smooth, v following
-    from the energy; between the nodes delta and v are cubics with the right slopes."""
+    With delta = delta_max - s^2 the time is the integral of 2 s/|v(delta)| over s, which is smooth, v
+    following from the energy; between the nodes delta and v are cubics with the right slopes."""
     largest = float(largest_compression(velocity, spheres))
     yield_at = min(float(critical_compression(spheres)), largest)
     kinetic, mass = initial_kinetic_energy(velocity, spheres), reduced_mass(spheres)

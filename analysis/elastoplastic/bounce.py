@@ -1,5 +1,5 @@
-"""What becomes of a collision's energy before and after the largest compression, and how it ends: restitution and
-sticking probability with confidence intervals (what A24 section 5.3 asks for)."""
+"""What becomes of a collision's energy before and after the largest compression, and how it ends: restitution
+and sticking probability with confidence intervals (what A24 section 5.3 asks for)."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,9 +45,12 @@ def _bounce(rows):
     parting = {c: _mean([r.shares_at_end[c] - r.shares_at_maximum[c] for r in rows]) for c in CHANNELS}
     stuck = sum(row.outcome == STICKING for row in rows)
     kinds = [row.outcome for row in rows]
-    return Bounce(first.filling, first.radius / first.grain_radius, first.velocity, len(rows), compression, parting,
-                  _mean([row.bulk for row in rows]), restitution_interval([row.restitution for row in rows]),
-                  (stuck / len(rows), *wilson(stuck, len(rows))), {kind: kinds.count(kind) for kind in sorted(set(kinds))})
+    return Bounce(
+        filling=first.filling, radius=first.radius / first.grain_radius, velocity=first.velocity, seeds=len(rows),
+        compression=compression, parting=parting, bulk=_mean([row.bulk for row in rows]),
+        restitution=restitution_interval([row.restitution for row in rows]),
+        sticking=(stuck / len(rows), *wilson(stuck, len(rows))),
+        outcomes={kind: kinds.count(kind) for kind in sorted(set(kinds))})
 
 
 def _mean(values):
@@ -61,12 +64,13 @@ def wilson(successes, trials, z=_Z):
     centre = (share + 0.5 * square) / (1.0 + square)
     half = z * np.sqrt(share * (1.0 - share) / trials + 0.25 * square / trials) / (1.0 + square)
     # Without rounding at the ends, where the formula gives 0 and 1.
-    return (0.0 if successes == 0 else float(centre - half)), (1.0 if successes == trials else float(centre + half))
+    low, high = float(centre - half), float(centre + half)
+    return (0.0 if successes == 0 else low), (1.0 if successes == trials else high)
 
 
 def restitution_interval(values):
-    """(mean, low, high) of the coefficient of restitution: percentile bootstrap over the seeds, the deviations
-    stretched by [n/(n-1)]^(1/2) for few seeds, not below 0; (mean, None, None) for one seed."""
+    """(mean, low, high) of the coefficient of restitution: percentile bootstrap over the seeds, the
+    deviations stretched by [n/(n-1)]^(1/2) for few seeds, not below 0; (mean, None, None) for one seed."""
     values = np.asarray(values, dtype=float)
     mean, n = values.mean(), len(values)
     if n < 2:

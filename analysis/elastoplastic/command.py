@@ -27,7 +27,8 @@ def add_parser(commands):
                         help="run folder, or folder that holds run folders (one or two levels below)")
     parser.add_argument("--figures", metavar="FOLDER",
                         help="write comparison.md, comparison.json and the figures there; made if it is missing")
-    parser.add_argument("--json", action="store_true", help="print JSON (SI units unless a unit is named) instead of text")
+    parser.add_argument("--json", action="store_true",
+                        help="print JSON (SI units unless a unit is named) instead of text")
     parser.set_defaults(command=run)
 
 
@@ -66,7 +67,8 @@ def run(options):
 
 def _summary(notes, problems):
     """What the kept files say of runs left out, without this machine's paths."""
-    counts = ((len(notes), "left out (not ended, of another scene, or without a compression)"), (len(problems), "not readable"))
+    counts = ((len(notes), "left out (not ended, of another scene, or without a compression)"),
+              (len(problems), "not readable"))
     return [f"{number} runs {what}" for number, what in counts if number]
 
 

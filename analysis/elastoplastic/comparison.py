@@ -7,12 +7,14 @@ from . import paper
 from .aggregate_constants import bulk_modulus, cpe_coordination
 from .andrews import Spheres, restitution
 from .size_fit import errors_of_design
-from .velocity_fit import degenerate_curve, reduced_radius
+from .velocity_fit import degenerate_curve, fitted_sizes, moduli_errors_of_design, reduced_radius
 
 MEGA = 1e6
 # A24 gives neither errors nor the list of its sizes; with ten seeds at each of these its fit has about the errors
 # that our scatter would give such a set.
 PAPER_RADII = (40, 50, 60, 70, 80)
+# Its moduli are from these sizes and velocities (Figs. 8, 9), also with ten seeds each.
+PAPER_MODULI_RADII, PAPER_VELOCITIES = (40, 80), tuple(10.0 ** (0.1 * i) for i in range(8))
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,8 @@ class Line:
 
     @property
     def difference(self):
-        """(ours - paper)/error, in our standard errors; None where one of them is missing, or the error is 0."""
+        """(ours - paper)/error, in our standard errors; None where one of them is missing, or the error is
+        0."""
         if self.ours is None or self.paper is None or not self.error:
             return None
         return (self.ours - self.paper) / self.error
@@ -63,7 +66,8 @@ def _is_papers(results):
 
 
 def _paper_errors(results):
-    """{name: error} that the paper's line should have, from our scatter of d_max at that velocity; {} without."""
+    """{name: error} that the paper's line should have, from our scatter of d_max at that velocity; {}
+    without."""
     at = results.points.velocity == results.size_fit.velocity
     own, number = results.points.raw_d_scatter[at], results.points.number[at]
     known = np.isfinite(own)
@@ -87,7 +91,8 @@ def _size_lines(results):
         note = back if printed[name] is not None and results.filling != 0.4 and name in ("c1", "c2") else ""
         if name == "c1":
             note = f"{fit.runs} runs, R = {_list(fit.radii)}" + ("; " + note if note else "")
-        lines.append(Line(quantity, unit, fit.values[name], fit.errors[name], printed[name], expected.get(name), note))
+        lines.append(Line(quantity, unit, fit.values[name], fit.errors[name], printed[name], expected.get(name),
+                          note))
     for definition, other in list(results.size_fits.items())[1:]:
         for name in ("offset", "ratio"):
             lines.append(Line(f"{names[name][0]}, d_max {definition}", names[name][1], other.values[name],
@@ -105,10 +110,12 @@ def _d_max_lines(study, results):
         error = _line_error(radius, results, expected)
         fix = results.corrections[k]
         name = f"d_max, R = {radius:g}"
-        lines.append(Line(name, "r", fix.mean, fix.error, theirs, error, f"{fix.seeds} seeds; paper's value: its line"))
+        lines.append(Line(name, "r", fix.mean, fix.error, theirs, error,
+                          f"{fix.seeds} seeds; paper's value: its line"))
         if fix.corrected is not None:
             by = "of these seeds" if fix.own_slope else "of all points of this filling"
-            note = f"slope on the offset {fix.slope:.2f} +- {fix.slope_error:.2f} ({by}), mean offset {fix.mean_offset:+.3f} r"
+            note = (f"slope on the offset {fix.slope:.2f} +- {fix.slope_error:.2f} ({by}), mean offset "
+                    f"{fix.mean_offset:+.3f} r")
             lines.append(Line(name + ", read off at d(0) = -2 r", "r", fix.corrected, fix.corrected_error, theirs,
                               error, note))
         lines.append(Line(name + ", less d(0) + 2 r", "r", fix.shifted, fix.shifted_error, theirs, error))
@@ -138,16 +145,20 @@ def _error(values):
 
 def _moduli_lines(study, results):
     theirs = (paper.YIELD_STRESS.get(results.filling), paper.YOUNG.get(results.filling))
+    expected = _paper_moduli_errors(study, results)
     lines = []
     for name, fit in results.velocity_fits.items():
         if fit.reason:
             continue
         note = (f"{fit.runs} runs, R = {_list(fit.radii)}; delta_offset = {fit.offset / study.grain_radius:.3f} r "
                 f"({fit.offset_source}); chi^2 = {fit.chi_square:.1f} at {fit.freedom} degrees of freedom")
+        if fit.correlation is not None:
+            note += f"; correlation of the two {fit.correlation:.2f}"
         for i, quantity in enumerate(("sigma_plastic", "E*")):
             notes = (note if i == 0 and not name else "", _unbounded(fit, i))
             lines.append(Line(quantity + (f", {name}" if name else ""), "MPa", fit.values[i] / MEGA,
-                              _scaled(fit.errors[i]), _scaled(theirs[i]), note="; ".join(filter(None, notes))))
+                              _scaled(fit.errors[i]), _scaled(theirs[i]), _scaled(expected[i]),
+                              "; ".join(filter(None, notes))))
     fit = results.velocity_fit
     lines += _curve_lines(study, results)
     radius = reduced_radius(max(fit.radii) * study.grain_radius, fit.offset)
@@ -155,6 +166,20 @@ def _moduli_lines(study, results):
     lines.append(Line(f"restitution of Andrews's model at {paper.VELOCITY:.4g} m/s", "",
                       float(restitution(paper.VELOCITY, spheres)), note="measured: the table of outcomes"))
     return lines
+
+
+def _paper_moduli_errors(study, results):
+    """Errors [Pa] that the paper's moduli should have, from our scatter against velocity, which is taken to be the
+    same at all sizes; Nones where the paper has no moduli."""
+    if results.filling not in paper.YOUNG:
+        return None, None
+    points = results.points.chosen(fitted_sizes(results.points))
+    radius, velocity = (a.ravel() for a in np.meshgrid(PAPER_MODULI_RADII, PAPER_VELOCITIES))
+    errors = [np.exp(np.polyval(np.polyfit(np.log(points.velocity), np.log(scatter), 1), np.log(velocity)))
+              / np.sqrt(paper.SEEDS) for scatter in (points.d_scatter, points.t_scatter)]
+    half = reduced_radius(radius, paper.OFFSET[results.filling]) * study.grain_radius
+    moduli = paper.YIELD_STRESS[results.filling], paper.YOUNG[results.filling]
+    return tuple(moduli_errors_of_design(moduli, velocity, half, results.filling * study.grain_density, *errors))
 
 
 def _unbounded(fit, i):

@@ -21,12 +21,12 @@ class NoCompression(RunFolderError):
 
 @dataclass(frozen=True)
 class Row:
-    """A collision's numbers, SI. radius: of an aggregate [m]; offset: d(0) + 2 r, by which the centres of mass are
-    closer than the spheres' centres by chance; d_max, t_max and their errors (compression.Maximum) of the first
-    compression; exceeded: whether d grows beyond it later;
-    label_d_max: d_max with each aggregate's own grains in place of A24's x > 0 and x < 0; shares: by channel, the
-    change since the start over K(0) at t_max and at the end (kinetic: what is left); bulk: (v/v_col)^2 at the end,
-    the kinetic share of the motion of the halves; coordination of all grains and of those inside, at the start."""
+    """A collision's numbers, SI. radius: of an aggregate [m]; offset: d(0) + 2 r, by which the centres of
+    mass are closer than the spheres' centres by chance; d_max, t_max and their errors (compression.Maximum)
+    of the first compression; exceeded: whether d grows beyond it later; label_d_max: d_max with each
+    aggregate's own grains in place of A24's x > 0 and x < 0; shares: by channel, the change since the start
+    over K(0) at t_max and at the end (kinetic: what is left); bulk: (v/v_col)^2 at the end, the kinetic share
+    of the motion of the halves; coordination of all grains and of those inside, at the start."""
     path: Path
     filling: float
     radius: float
@@ -54,8 +54,8 @@ class Row:
 
 
 def measure(run):
-    """Row of a RunFolder of A24's scene that has ended. NoCompression where the aggregates never met or never turned
-    around, RunFolderError where something is missing."""
+    """Row of a RunFolder of A24's scene that has ended. NoCompression where the aggregates never met or never
+    turned around, RunFolderError where something is missing."""
     history, derived = run.history, run.derived
     maximum, again = first_compression(history["time"], history["d"], history["v"])
     if maximum is None or not maximum.inside or not np.any(history["contacts_between"] > 0):
@@ -88,10 +88,10 @@ def measure(run):
 
 
 def first_compression(time, d, v):
-    """(Maximum, whether d exceeds it later): the largest d before v, once fallen through zero, rises through it
-    again. Aggregates that stuck may creep together further, long after the collision (A24 defines d_max as the
-    largest d; it is this one then). Arguments and None as maximum_compression, of whole arrays without NaN
-    between."""
+    """(Maximum, whether d exceeds it later): the largest d before v, once fallen through zero, rises through
+    it again. Aggregates that stuck may creep together further, long after the collision (A24 defines d_max as
+    the largest d; it is this one then). Arguments and None as maximum_compression, of whole arrays without
+    NaN between."""
     v = np.asarray(v, dtype=float)
     falls = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0))
     rises = np.flatnonzero((v[:-1] <= 0) & (v[1:] > 0))
@@ -102,13 +102,14 @@ def first_compression(time, d, v):
 
 
 def label_length(x, aggregate, aggregate_radius):
-    """d [m] as A24 eq 10, but with the means over the grains that belonged to each aggregate at the start: x (N,)
-    [m], aggregate (N,) 0 or 1."""
+    """d [m] as A24 eq 10, but with the means over the grains that belonged to each aggregate at the start: x
+    (N,) [m], aggregate (N,) 0 or 1."""
     return 2.0 * aggregate_radius - abs(x[aggregate == 1].mean() - x[aggregate == 0].mean())
 
 
 def _label_difference(run, time, radius):
-    """What d by the label has over d by the sign of x at `time` [m]: between the states before and after it."""
+    """What d by the label has over d by the sign of x at `time` [m]: between the states before and after
+    it."""
     times = run.states.times
     after = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1)) if len(times) > 1 else 0
     differences = []
@@ -120,7 +121,8 @@ def _label_difference(run, time, radius):
 
 
 def _inner_coordination(start, radius, grain_radius):
-    """Mean contacts of the grains whose centre lies SKIN below the sphere of all centres; nan if there is none."""
+    """Mean contacts of the grains whose centre lies SKIN below the sphere of all centres; nan if there is
+    none."""
     contacts = np.bincount(start.contact_pairs.ravel(), minlength=len(start.radius))
     # The spheres stand at -+(R + r) on the collision axis (A24 section 3).
     centre = np.where(start.aggregate == 1, 1.0, -1.0) * (radius + grain_radius)

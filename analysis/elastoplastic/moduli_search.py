@@ -10,14 +10,14 @@ _CHUNK = 50             # sets of data compared with the grid at a time, for the
 _STEPS = 60
 _DIFFERENCE = 1e-6      # of ln sigma and ln E* in the derivatives
 _ENOUGH = 1e-7          # change of ln sigma and ln E* at which the search ends
-# A limit of the model is taken where its chi square is no higher than that of the best finite moduli by more: towards
-# it chi square is flat, so that the search stops anywhere.
+# A limit of the model is taken where its chi square is no higher than that of the best finite moduli by more:
+# towards it chi square is flat, so that the search stops anywhere.
 _NO_WORSE = 2e-3
 
 
 class ModuliSearch:
-    """The best (sigma, E*) at fixed velocities [m/s] (K,) and density [kg/m^3] of the aggregates: the best place of
-    a wide grid first, then Levenberg's and Marquardt's method in ln sigma, ln E*."""
+    """The best (sigma, E*) at fixed velocities [m/s] (K,) and density [kg/m^3] of the aggregates: the best
+    place of a wide grid first, then Levenberg's and Marquardt's method in ln sigma, ln E*."""
 
     def __init__(self, velocity, density):
         self.velocity, self.density = velocity, density
@@ -28,9 +28,9 @@ class ModuliSearch:
         self._on_grid = np.concatenate(self._model(self._grid, 1.0), axis=1)
 
     def best(self, delta, tau, delta_error, tau_error, radius):
-        """(sigma, E*) (B, 2) [Pa] and chi square (B,) for B sets of delta_max [m], tau_max [s] and reduced radii [m]
-        (B, K), with errors (K,). sigma is inf where spheres that never yield fit as well, E* inf where rigid ones
-        do."""
+        """(sigma, E*) (B, 2) [Pa] and chi square (B,) for B sets of delta_max [m], tau_max [s] and reduced
+        radii [m] (B, K), with errors (K,). sigma is inf where spheres that never yield fit as well, E* inf
+        where rigid ones do."""
         radius = np.concatenate([radius, radius], axis=1)
         error = np.concatenate([np.broadcast_to(delta_error, self.velocity.shape),
                                 np.broadcast_to(tau_error, self.velocity.shape)])
@@ -79,10 +79,10 @@ class ModuliSearch:
         rest = residuals(x)
         chi_square = np.sum(rest ** 2, axis=1)
         for _ in range(_STEPS):
-            slope = np.stack([(residuals(x + _DIFFERENCE * unit) - rest) / _DIFFERENCE for unit in np.eye(2)], axis=2)
+            slope = np.stack([residuals(x + _DIFFERENCE * unit) - rest for unit in np.eye(2)], axis=2) / _DIFFERENCE
             normal = np.einsum("bki,bkj->bij", slope, slope)
-            damped = normal + np.eye(2) * (damping[:, None] * (np.trace(normal, axis1=1, axis2=2)[:, None] + 1e-30)
-                                           )[:, :, None]
+            size = np.trace(normal, axis1=1, axis2=2) + 1e-30
+            damped = normal + np.eye(2) * (damping * size)[:, None, None]
             step = -np.linalg.solve(damped, np.einsum("bki,bk->bi", slope, rest)[:, :, None])[:, :, 0]
             new = np.clip(x + np.clip(step, -1.0, 1.0), low, high)
             new_rest = residuals(new)

@@ -1,4 +1,5 @@
-"""The numbers that A24 gives. It states no errors; like ours its points are means over seeds (ten of each)."""
+"""The numbers that A24 gives. It states no errors; like ours its points are means over seeds (ten of
+each)."""
 from math import sqrt
 from types import MappingProxyType
 

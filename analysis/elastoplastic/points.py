@@ -1,8 +1,8 @@
 """Seeds of one parameter set gathered into points, and their bootstrap.
 
-A seed is one pair of aggregates; at other velocities (same filling and radius) it is the same pair, so that such
-points are not independent. The bootstrap therefore draws one weight for each pair and uses it at all velocities
-(Rubin's Bayesian bootstrap: Dirichlet weights), and stretches the deviations from the mean by
+A seed is one pair of aggregates; at other velocities (same filling and radius) it is the same pair, so that
+such points are not independent. The bootstrap therefore draws one weight for each pair and uses it at all
+velocities (Rubin's Bayesian bootstrap: Dirichlet weights), and stretches the deviations from the mean by
 [(n+1)/(n-1)]^(1/2), without which the errors of few seeds come out too small."""
 from dataclasses import dataclass
 
@@ -15,10 +15,10 @@ RANDOM_SEED = 20240124
 
 @dataclass(frozen=True)
 class Points:
-    """K parameter sets: filling, radius [m], velocity [m/s], number of seeds (K,); seeds (K,) tuples; d_max [m],
-    t_max [s] (K,) means, or (B, K) for B resamples; d_scatter, t_scatter (K,): standard deviations of one run,
-    smoothed (smoothed_scatter; nan where no point of that size has two seeds), raw_d_scatter, raw_t_scatter:
-    each point's own (nan for one seed); samples (K,) tuples of (d (n,), t (n,))."""
+    """K parameter sets: filling, radius [m], velocity [m/s], number of seeds (K,); seeds (K,) tuples; d_max
+    [m], t_max [s] (K,) means, or (B, K) for B resamples; d_scatter, t_scatter (K,): standard deviations of
+    one run, smoothed (smoothed_scatter; nan where no point of that size has two seeds), raw_d_scatter,
+    raw_t_scatter: each point's own (nan for one seed); samples (K,) tuples of (d (n,), t (n,))."""
     filling: np.ndarray
     radius: np.ndarray
     velocity: np.ndarray
@@ -78,9 +78,9 @@ def make_points(filling, radius, velocity, samples, seeds):
 
 
 def smoothed_scatter(velocity, scatter, number):
-    """Standard deviations (K,) of one run that follow a power of the velocity, from each point's own (K,) and its
-    number of seeds: ln s^2 against ln v by least squares, weighted with the degrees of freedom and freed of
-    its bias (digamma). A constant for less than four points; nan without any point of two seeds.
+    """Standard deviations (K,) of one run that follow a power of the velocity, from each point's own (K,) and
+    its number of seeds: ln s^2 against ln v by least squares, weighted with the degrees of freedom and freed
+    of its bias (digamma). A constant for less than four points; nan without any point of two seeds.
 
     Weights 1/s^2 of three seeds each would vary by orders of magnitude by chance alone."""
     known = np.isfinite(scatter) & (scatter > 0) & (number > 1)
@@ -125,8 +125,9 @@ def standard_error(values):
 
 
 def percentile_error(values):
-    """Half the distance between the 15.87 and the 84.13 per cent of resamples (B,), which is one standard deviation
-    of a normal distribution and bears the long tails of a modulus; None where it is zero or not finite."""
+    """Half the distance between the 15.87 and the 84.13 per cent of resamples (B,), which is one standard
+    deviation of a normal distribution and bears the long tails of a modulus; None where it is zero or not
+    finite."""
     low, high = np.quantile(values, [0.158655, 0.841345], method="nearest")
     spread = 0.5 * float(high - low) if np.isfinite(high) else np.inf
     return spread if np.isfinite(spread) and spread > 0 else None

@@ -3,8 +3,8 @@ from collections import Counter
 
 
 def provenance(runs):
-    """Dict of what made the runs (RunFolder): runs, commits, machines, versions (each {text: number of runs}),
-    stepFractions [t0] ({value: number}), steps (their sum) and hours (of wall time)."""
+    """Dict of what made the runs (RunFolder): runs, commits, machines, versions (each {text: number of
+    runs}), stepFractions [t0] ({value: number}), steps (their sum) and hours (of wall time)."""
     records = [run.record for run in runs]
     return {
         "runs": len(runs),

@@ -11,9 +11,11 @@ HEADS = ("quantity", "ours", "error", "paper", "diff", "diff*")
 _SHORT = {**{c: c for c in CHANNELS}, "slidingDissipation": "slid. diss.", "rollingDissipation": "roll. diss.",
           "twistingDissipation": "twist. diss.", "disconnection": "disconn.", "bondBreaking": "bonds"}
 LEGEND = (
-    f"error: standard error from the scatter of the seeds (bootstrap, {RESAMPLES} resamples of the pairs of aggregates).",
+    f"error: standard error from the scatter of the seeds (bootstrap, {RESAMPLES} resamples of the pairs of "
+    "aggregates).",
     "diff: (ours - paper)/error. The paper gives no errors; its points scatter as ours, over ten seeds each.",
-    "diff*: in units of both errors, the paper's estimated from our scatter (ten seeds at R = 40, 50, 60, 70, 80).",
+    "diff*: in units of both errors, the paper's estimated from our scatter (ten seeds at R = 40, 50, 60, 70, 80; for "
+    "the moduli at R = 40, 80 and eight velocities).",
     "sigma_plastic and E*: least squares over delta_max and tau_max at all velocities, weight 1/s^2 of a run, s the "
     "standard deviation over the seeds of its point, smoothed over velocity.",
 )
@@ -66,7 +68,8 @@ def markdown(study, origin, notes=(), figures=()):
 
 def data(study, origin, notes=()):
     """The same for JSON (dict; null for what does not exist)."""
-    sections = [{"heading": heading, "lines": [_line_data(line) for line in lines]} for heading, lines in compare(study)]
+    sections = [{"heading": heading, "lines": [_line_data(line) for line in lines]}
+                for heading, lines in compare(study)]
     rows = [{key: _plain_value(getattr(row, key)) for key in row.__dataclass_fields__} for row in study.rows]
     points = [{key: _plain_value(getattr(b, key)) for key in b.__dataclass_fields__} for b in study.bounces]
     return {"provenance": origin, "notes": list(notes), "missing": list(missing(study)), "comparison": sections,
@@ -75,7 +78,8 @@ def data(study, origin, notes=()):
 
 def outcome_rows(study):
     """Cells (tuples of str), the first row the heads: restitution and sticking probability of each point."""
-    yield "filling", "R [r]", "v [m/s]", "seeds", "restitution", "sticking probability", "outcomes", "bulk K at the end"
+    yield ("filling", "R [r]", "v [m/s]", "seeds", "restitution", "sticking probability", "outcomes",
+           "bulk K at the end")
     for b in study.bounces:
         kinds = ", ".join(f"{number} {kind}" for kind, number in b.outcomes.items())
         yield (f"{b.filling:g}", f"{b.radius:g}", f"{b.velocity:.4g}", str(b.seeds), _interval(b.restitution),
@@ -83,7 +87,8 @@ def outcome_rows(study):
 
 
 def energy_rows(study, names=LABELS):
-    """Cells of the energy table: a row a point, a column a channel (by its name) that is not zero everywhere."""
+    """Cells of the energy table: a row a point, a column a channel (by its name) that is not zero
+    everywhere."""
     shown = [c for c in CHANNELS if any(b.compression[c][0] or b.parting[c][0] for b in study.bounces)]
     yield ("filling", "R [r]", "v [m/s]") + tuple(names[c] for c in shown)
     for b in study.bounces:

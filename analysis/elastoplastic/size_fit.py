@@ -10,9 +10,10 @@ NAMES = ("c1", "c2", "offset", "ratio")
 
 @dataclass(frozen=True)
 class SizeFit:
-    """d_max = c1 R - c2 r at one filling and velocity [m/s]: c2 and offset (delta_offset) in grain radii, ratio =
-    delta_max/R*. radii (sizes fitted [grain radii]), runs (their number); errors by name, None without scatter;
-    resamples: {name: (B,)}. Values are None where `reason` says why nothing could be fitted."""
+    """d_max = c1 R - c2 r at one filling and velocity [m/s]: c2 and offset (delta_offset) in grain radii,
+    ratio = delta_max/R*. radii (sizes fitted [grain radii]), runs (their number); errors by name, None
+    without scatter; resamples: {name: (B,)}. Values are None where `reason` says why nothing could be
+    fitted."""
     filling: float
     velocity: float
     radii: tuple
@@ -34,8 +35,8 @@ class SizeFit:
 
 
 def fit_line(radius, d_max, number):
-    """(c1, c2) of d_max = c1 R - c2 by least squares over all runs: radius (K,), d_max (K,) or (B, K) means over
-    `number` (K,) runs, all in one unit. A24 eq 14."""
+    """(c1, c2) of d_max = c1 R - c2 by least squares over all runs: radius (K,), d_max (K,) or (B, K) means
+    over `number` (K,) runs, all in one unit. A24 eq 14."""
     weight = np.asarray(number, dtype=float) / np.sum(number)
     centre = weight @ radius
     away = weight * (radius - centre)
@@ -81,8 +82,8 @@ def _derived(c1, c2):
 
 
 def errors_of_design(scatter, radii, seeds, c1, c2):
-    """Standard errors {name: error} that a line through `seeds` runs at each of `radii` [grain radii] has when one
-    run scatters by `scatter` [grain radii]; to first order around (c1, c2)."""
+    """Standard errors {name: error} that a line through `seeds` runs at each of `radii` [grain radii] has
+    when one run scatters by `scatter` [grain radii]; to first order around (c1, c2)."""
     radii = np.asarray(radii, dtype=float)
     spread = seeds * np.sum((radii - radii.mean()) ** 2)
     variance1 = scatter ** 2 / spread

@@ -1,8 +1,9 @@
 """How much of d_max comes from where the aggregates' centres of mass lie at the start.
 
-A24 places the centres of the spheres at -+(R + r), so that d should start at -2 r; the centres of mass lie off by
-chance, and d(0) + 2 r is known for every run. As a control variate it takes that part of the scatter away: d_max
-is regressed on it and read off at zero (where a mere shift of the zero of d gives a slope of 1)."""
+A24 places the centres of the spheres at -+(R + r), so that d should start at -2 r; the centres of mass lie
+off by chance, and d(0) + 2 r is known for every run. As a control variate it takes that part of the scatter
+away: d_max is regressed on it and read off at zero (where a mere shift of the zero of d gives a slope of
+1)."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +13,9 @@ FEWEST_FOR_SLOPE = 4
 
 @dataclass(frozen=True)
 class Correction:
-    """d_max of one point: seeds, mean with error as defined, mean_offset, slope with error (own or common to its
-    filling: own_slope), corrected (at offset zero) with error, shifted = mean of d_max - offset with error.
-    Lengths in the unit given; errors None where the seeds don't suffice."""
+    """d_max of one point: seeds, mean with error as defined, mean_offset, slope with error (own or common to
+    its filling: own_slope), corrected (at offset zero) with error, shifted = mean of d_max - offset with
+    error. Lengths in the unit given; errors None where the seeds don't suffice."""
     seeds: int
     mean: float
     error: float
@@ -29,8 +30,8 @@ class Correction:
 
 
 def common_slope(groups):
-    """(slope, its error) of d_max on offset, common to groups of (offset (n,), d_max (n,)), each with a mean of its
-    own; (None, None) when too few runs are left for an error."""
+    """(slope, its error) of d_max on offset, common to groups of (offset (n,), d_max (n,)), each with a mean
+    of its own; (None, None) when too few runs are left for an error."""
     x = np.concatenate([o - o.mean() for o, _ in groups]) if groups else np.zeros(0)
     y = np.concatenate([d - d.mean() for _, d in groups]) if groups else np.zeros(0)
     freedom = x.size - len(groups) - 1

@@ -22,11 +22,11 @@ DEFINITIONS = {
 
 @dataclass(frozen=True)
 class Filling:
-    """Results at one filling factor: points with resamples (d_max, t_max), size_fits (SizeFit by DEFINITIONS),
-    offset [m] and offset_source, velocity_fits (VelocityFit by what is special about it; '' comes first), slope (of
-    d_max on the start's offset, its error), corrections ({index of point: Correction} in grain radii),
-    coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson (value, error),
-    grain_radius [m]."""
+    """Results at one filling factor: points with resamples (d_max, t_max), size_fits (SizeFit by
+    DEFINITIONS), offset [m] and offset_source, velocity_fits (VelocityFit by what is special about it; ''
+    comes first), slope (of d_max on the start's offset, its error), corrections ({index of point: Correction}
+    in grain radii), coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson
+    (value, error), grain_radius [m]."""
     filling: float
     points: Points
     resamples: tuple
@@ -112,7 +112,8 @@ def _offset(filling, fit, grain_radius):
 def _velocity_fit(points, draws, offset, offset_draws, source, row, raw=False):
     if offset is None:
         filling = float(points.filling[0])
-        return VelocityFit(filling, reason=f"no delta_offset at filling {filling:g}: neither two sizes, nor one of A24's")
+        return VelocityFit(filling, reason=f"no delta_offset at filling {filling:g}: neither two sizes, nor one of "
+                                           "A24's")
     return fit_velocities(points, draws, offset, offset_draws, source, row.grain_radius, row.grain_density, raw)
 
 

@@ -1,12 +1,14 @@
 """Yield stress and E* of aggregates from delta_max and tau_max against velocity (A24 section 4.3.3).
 
-Weighted least squares over all runs of a filling at the sizes that have several velocities. The weight of a run is
-1/s^2, with s the standard deviation of d_max (of t_max) over the seeds of its point, smoothed over the velocities of
-that size (points.smoothed_scatter); `raw` takes each point's own s instead, where it has three seeds or more."""
+Weighted least squares over all runs of a filling at the sizes that have several velocities. The weight of a
+run is 1/s^2, with s the standard deviation of d_max (of t_max) over the seeds of its point, smoothed over the
+velocities of that size (points.smoothed_scatter); `raw` takes each point's own s instead, where it has three
+seeds or more."""
 from dataclasses import dataclass
 
 import numpy as np
 
+from .andrews import Spheres, largest_compression, time_of_largest_compression
 from .moduli_search import ModuliSearch
 from .points import percentile_error
 
@@ -15,10 +17,11 @@ FEWEST_VELOCITIES = 3
 
 @dataclass(frozen=True)
 class VelocityFit:
-    """yield_stress and young [Pa] with errors [Pa] (None without scatter), resamples (B, 2), correlation of the two,
-    chi_square of the points' means, its degrees of freedom, radii [grain radii] and runs that were fitted,
-    offset (delta_offset) [m] used and where it is from, unbounded: the share of resamples in which a modulus ran
-    away to infinity (then it has no error when that share is above 16 %). All None where `reason` says why nothing was fitted."""
+    """values (sigma_plastic, E*) [Pa], inf where spheres that never yield (rigid ones) fit as well; their
+    errors [Pa], None where too many resamples have no bound; resamples (B, 2); correlation of the logarithms;
+    chi_square of the points' means with its degrees of freedom; radii [grain radii] and number of runs that
+    were fitted; offset (delta_offset) [m] used, and where it is from; unbounded: the share of resamples in
+    which a modulus is inf. All None where `reason` says why nothing was fitted."""
     filling: float
     values: tuple = (None, None)
     errors: tuple = (None, None)
@@ -78,13 +81,28 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
     ends, _ = fit(resampled[0][:, mask], resampled[1][:, mask], shifts[:, None])
     sane = ends[np.all(np.isfinite(ends), axis=1)]
     return VelocityFit(
-        filling, tuple(map(float, moduli)), tuple(percentile_error(ends[:, i]) for i in (0, 1)), ends,
-        float(np.corrcoef(np.log(sane.T))[0, 1]) if len(sane) > 2 else None, float(chi_square), 2 * len(used) - 2, tuple(np.unique(used.radius) / grain_radius), int(used.number.sum()), float(offset), source,
-        1.0 - len(sane) / len(ends))
+        filling=filling, values=tuple(map(float, moduli)), resamples=ends, chi_square=float(chi_square),
+        errors=tuple(percentile_error(ends[:, i]) for i in (0, 1)), freedom=2 * len(used) - 2,
+        correlation=float(np.corrcoef(np.log(sane.T))[0, 1]) if len(sane) > 2 else None,
+        radii=tuple(np.unique(used.radius) / grain_radius), runs=int(used.number.sum()), offset=float(offset),
+        offset_source=source, unbounded=1.0 - len(sane) / len(ends))
 
 
 def _scatter(points, own, smooth, raw):
     return np.where((points.number >= 3) & (own > 0), own, smooth) if raw else smooth
+
+
+def moduli_errors_of_design(moduli, velocity, radius, density, d_error, t_error):
+    """Standard errors [Pa] of (sigma, E*) that a weighted fit has to first order when the means d_max [m] and t_max
+    [s] (K,) at velocities [m/s] and reduced radii [m] (K,) have the errors d_error, t_error (K,), independent of
+    each other."""
+    def model(log_moduli):
+        spheres = Spheres(radius, density, *np.exp(log_moduli))
+        return np.concatenate([largest_compression(velocity, spheres) / d_error,
+                               time_of_largest_compression(velocity, spheres) / t_error])
+    x, step = np.log(moduli), 1e-5
+    slope = np.stack([(model(x + step * unit) - model(x - step * unit)) / (2.0 * step) for unit in np.eye(2)], axis=1)
+    return np.asarray(moduli) * np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
 
 
 def degenerate_curve(ratio, velocity, density, samples=300):

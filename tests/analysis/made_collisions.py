@@ -1,4 +1,5 @@
-"""Made-up collisions of elastoplastic aggregates with known answers: points for the fits, and whole run folders."""
+"""Made-up collisions of elastoplastic aggregates with known answers: points for the fits, and whole run
+folders."""
 import numpy as np
 from written_runs import RADIUS, record, state_arrays, write_run
 
@@ -13,8 +14,8 @@ V = 10 ** 0.5
 
 
 def made_points(random, seeds, radii=(40.0, 60.0, 80.0), velocities=(V,), scatter=0.2, moduli=MODULI):
-    """Points whose d_max and t_max are Andrews's and scatter: half of the variance belongs to the pair (same seed,
-    same at all velocities), as it does in collisions of the same aggregates."""
+    """Points whose d_max and t_max are Andrews's and scatter: half of the variance belongs to the pair (same
+    seed, same at all velocities), as it does in collisions of the same aggregates."""
     filling, radius, velocity, samples, names = [], [], [], [], []
     for size in radii:
         pair = random.normal(size=seeds)
@@ -42,8 +43,8 @@ def line_of(moduli=MODULI, v=V):
 def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, ended=True, stretch=1.0,
              **parameters):
     """Write a run folder of two aggregates of two grains each that move as Andrews's spheres of radius `size`
-    [grain radii] would, with compressions and times larger by the factor `stretch`, and d too large by `shift`
-    [grain radii] throughout."""
+    [grain radii] would, with compressions and times larger by the factor `stretch`, and d too large by
+    `shift` [grain radii] throughout."""
     spheres = Spheres(reduced_radius(size * RADIUS, OFFSET), filling * DENSITY, *MODULI)
     course = motion(velocity, spheres)
     contact = 2.0 * (RADIUS - OFFSET) / velocity
@@ -57,8 +58,8 @@ def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, e
     touching = (time > contact) & (sticks | (time < contact + stretch * course.time_of_parting))
     history.update(time=time, d=d, v=v, contacts=2 + touching, contacts_between=touching.astype(int))
     states = [_state(time[k], d[k], v[k], size, bool(touching[k])) for k in range(0, 401, 50)]
-    values = {"packing": "cpe", "material": "ice", "filling": filling, "radius": size, "velocity": velocity, "seed": seed,
-              "impact": 0.0, "stepFraction": 0.1, **parameters}
+    values = {"packing": "cpe", "material": "ice", "filling": filling, "radius": size, "velocity": velocity,
+              "seed": seed, "impact": 0.0, "stepFraction": 0.1, **parameters}
     return write_run(path, record(size * RADIUS, values), history, states, ended)
 
 

@@ -13,8 +13,8 @@ from analysis.elastoplastic.velocity_fit import degenerate_curve
 V = 10 ** 0.5
 PAPER = Spheres(0.5 * 80.271e-7, 400.0, 2.25e6, 15.7e6)
 # Mostly plastic, as the paper's, just beyond yield, and elastic throughout.
-CASES = {"plastic": Spheres(2e-6, 400.0, 1.7e6, 80e6), "paper": PAPER, "yielding": Spheres(4e-6, 400.0, 3.2e6, 15.7e6),
-         "elastic": Spheres(4e-6, 300.0, 9e6, 5e6)}
+CASES = {"plastic": Spheres(2e-6, 400.0, 1.7e6, 80e6), "paper": PAPER,
+         "yielding": Spheres(4e-6, 400.0, 3.2e6, 15.7e6), "elastic": Spheres(4e-6, 300.0, 9e6, 5e6)}
 
 
 @pytest.fixture(params=CASES, ids=str)
@@ -125,7 +125,8 @@ def test_units_scale_as_they_must():
             assert function(v, large) == pytest.approx(factor * function(v, PAPER))
         assert andrews.restitution(v, large) == pytest.approx(andrews.restitution(v, PAPER))
         # Pressures in units of rho v^2.
-        stiff = Spheres(PAPER.reduced_radius, PAPER.density, factor ** 2 * PAPER.yield_stress, factor ** 2 * PAPER.young)
+        stiff = Spheres(PAPER.reduced_radius, PAPER.density, factor ** 2 * PAPER.yield_stress,
+                        factor ** 2 * PAPER.young)
         assert andrews.largest_compression(factor * v, stiff) == pytest.approx(andrews.largest_compression(v, PAPER))
 
 

@@ -1,4 +1,5 @@
-"""python3 -m analysis elastoplastic as a user runs it: on made-up run folders, and on small real collisions."""
+"""python3 -m analysis elastoplastic as a user runs it: on made-up run folders, and on small real
+collisions."""
 import json
 import shutil
 import subprocess
@@ -24,8 +25,9 @@ def analyse(*arguments):
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
-    """Folder of three sizes at 10^0.5 m/s with four seeds and four velocities at one size, in two levels; seed 1
-    sticks. Shifts of d scatter by 0.1 r around 0; compressions and times by 2 %, but not in the mean."""
+    """Folder of three sizes at 10^0.5 m/s with four seeds and four velocities at one size, in two levels;
+    seed 1 sticks. Shifts of d scatter by 0.1 r around 0; compressions and times by 2 %, but not in the
+    mean."""
     folder, random = tmp_path_factory.mktemp("elastoplastic"), np.random.default_rng(21)
     for size in (40.0, 60.0, 80.0):
         for velocity in VELOCITIES if size == 80.0 else [10 ** 0.5]:
@@ -181,7 +183,8 @@ def test_first_compression_is_taken_where_aggregates_creep_together_later():
 
 
 def test_small_real_collisions(tmp_path):
-    """Two sizes and two seeds of YADE's own runs: everything is measured, nothing is made up where data lack."""
+    """Two sizes and two seeds of YADE's own runs: everything is measured, nothing is made up where data
+    lack."""
     for size, seed in ((5, 1), (5, 2), (7, 1)):
         out = tmp_path / "runs" / f"R{size}-s{seed}"
         subprocess.run(["yade", "-n", "-x", TOP / "yade_scripts" / "collide.py", f"radius={size}", f"seed={seed}",

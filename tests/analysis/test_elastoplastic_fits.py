@@ -15,7 +15,7 @@ from analysis.elastoplastic.moduli_search import ModuliSearch
 from analysis.elastoplastic.points import make_points, resampled, smoothed_scatter
 from analysis.elastoplastic.size_fit import errors_of_design, fit_sizes, offset_from_line
 from analysis.elastoplastic.start_offset import common_slope, correct
-from analysis.elastoplastic.velocity_fit import fit_velocities
+from analysis.elastoplastic.velocity_fit import fit_velocities, moduli_errors_of_design
 
 VELOCITIES = tuple(10 ** (0.1 * i) for i in range(8))
 
@@ -58,8 +58,8 @@ def test_errors_of_the_line_are_those_it_has():
 
 
 def test_bootstrap_variance_is_right_for_three_seeds():
-    """Mean of error^2 over 1,500 sets against the true variance s^2/3: 1 +- 0.12 at 99.9 % (two degrees of freedom
-    each give a relative variance of 1)."""
+    """Mean of error^2 over 1,500 sets against the true variance s^2/3: 1 +- 0.12 at 99.9 % (two degrees of
+    freedom each give a relative variance of 1)."""
     random, ratios = np.random.default_rng(4), []
     for k in range(1500):
         points = made_points(random, 3, (40.0,), scatter=0.3)
@@ -68,8 +68,9 @@ def test_bootstrap_variance_is_right_for_three_seeds():
 
 
 def test_same_pairs_at_all_velocities_are_not_taken_for_independent():
-    """The mean of d_max over eight velocities, half of whose variance is the pair's: its true variance is s^2/n (1/2 +
-    1/16); independent draws would find s^2/n/8. 400 sets with 10 seeds, ratio 1 +- 0.1 at 99.9 %."""
+    """The mean of d_max over eight velocities, half of whose variance is the pair's: its true variance is
+    s^2/n (1/2 + 1/16); independent draws would find s^2/n/8. 400 sets with 10 seeds, ratio 1 +- 0.1 at 99.9
+    %."""
     random, found = np.random.default_rng(5), []
     for k in range(400):
         d_max = resampled(made_points(random, 10, (40.0,), VELOCITIES), 60, k)[0]
@@ -78,8 +79,8 @@ def test_same_pairs_at_all_velocities_are_not_taken_for_independent():
 
 
 def test_moduli_are_recovered_within_their_errors():
-    """30 data sets of two sizes, eight velocities, ten seeds. Their pulls have a root mean square of 1.2 (t(9): 1.13),
-    which 30 tell to +- 0.5 at 99.9 %; the share within one error is 65 % +- 29 %."""
+    """30 data sets of two sizes, eight velocities, ten seeds. Their pulls have a root mean square of 1.2
+    (t(9): 1.13), which 30 tell to +- 0.5 at 99.9 %; the share within one error is 65 % +- 29 %."""
     random, pulls, chi_square = np.random.default_rng(6), [], []
     for k in range(30):
         fit = fitted(made_points(random, 10, (40.0, 80.0), VELOCITIES, 0.15), 40, k)
@@ -157,7 +158,8 @@ def test_one_seed_takes_the_scatter_of_its_size():
 
 
 def test_smoothed_scatter_follows_a_power_without_bias():
-    """s ~ v^-1 from three seeds at eight velocities, 400 times: the mean logarithm is right to 3.3 standard errors."""
+    """s ~ v^-1 from three seeds at eight velocities, 400 times: the mean logarithm is right to 3.3 standard
+    errors."""
     random, v = np.random.default_rng(11), np.array(VELOCITIES)
     found = [smoothed_scatter(v, random.normal(size=(3, 8)).std(axis=0, ddof=1) / v, np.full(8, 3))
              for _ in range(400)]
@@ -166,7 +168,8 @@ def test_smoothed_scatter_follows_a_power_without_bias():
 
 
 def test_errors_of_a_design_are_those_of_its_fits():
-    """The closed form against the scatter of 2,000 fits: 10 % is six standard errors of a standard deviation."""
+    """The closed form against the scatter of 2,000 fits: 10 % is six standard errors of a standard
+    deviation."""
     random, radii, truth = np.random.default_rng(12), np.array([40.0, 60.0, 80.0]), line_of()
     lines = truth["c1"] * radii - truth["c2"] + 0.2 / np.sqrt(10) * random.normal(size=(2000, 3))
     slope, negative = np.polyfit(radii, lines.T, 1)
@@ -176,8 +179,23 @@ def test_errors_of_a_design_are_those_of_its_fits():
     assert offset_from_line(slope, -negative).std() == pytest.approx(expected["offset"], rel=0.1)
 
 
+def test_errors_of_the_moduli_of_a_design_are_those_of_its_fits():
+    """The first-order errors against the scatter of 400 fits: 15 % is four standard errors of a standard deviation,
+    and some more for the second order."""
+    random = np.random.default_rng(16)
+    radius, v = (a.ravel() for a in np.meshgrid([2e-6, 4e-6], VELOCITIES))
+    truth = Spheres(radius, 400.0, *MODULI)
+    errors = 3e-9, 1e-9 / v
+    data = [model(v, truth) + error * random.normal(size=(400, 16))
+            for model, error in zip((largest_compression, time_of_largest_compression), errors)]
+    found, chi_square = ModuliSearch(v, 400.0).best(*data, *errors, np.tile(radius, (400, 1)))
+    assert found.std(axis=0) == pytest.approx(moduli_errors_of_design(MODULI, v, radius, 400.0, *errors), rel=0.15)
+    assert chi_square.mean() == pytest.approx(30, abs=3.3 * (60 / 400) ** 0.5)
+
+
 def test_control_variate_takes_the_offsets_scatter_away():
-    """500 sets of ten: corrected values are right in the mean and scatter as stated, by less than the plain means."""
+    """500 sets of ten: corrected values are right in the mean and scatter as stated, by less than the plain
+    means."""
     random, corrected, plain, errors = np.random.default_rng(13), [], [], []
     for _ in range(500):
         offset = 0.3 + random.normal(size=10)
@@ -205,7 +223,8 @@ def test_wilsons_interval():
 
 
 def test_restitutions_interval_covers_the_mean():
-    """The mean of ten uniform numbers lies in the 95 % interval 92 % of the time or more: 300 sets, 88 % at least."""
+    """The mean of ten uniform numbers lies in the 95 % interval 92 % of the time or more: 300 sets, 88 % at
+    least."""
     random = np.random.default_rng(14)
     inside = 0
     for _ in range(300):

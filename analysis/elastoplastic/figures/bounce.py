@@ -1,11 +1,12 @@
-"""Restitution, sticking probability and the energy of a bounce, channel by channel: beyond A24 (section 5.3)."""
+"""Restitution, sticking probability and the energy of a bounce, channel by channel: beyond A24 (section
+5.3)."""
 import numpy as np
 
 from ...channels import CHANNELS, LABELS
 from ...figures.style import CHANNEL_COLOURS, styled
 from .. import paper
 from ..andrews import Spheres, restitution
-from .common import OURS, PAPER, filling_text, letter, main_filling, panels, size_colours, velocity_axis
+from .common import OURS, PAPER, filling_text, legend, letter, main_filling, panels, size_colours, velocity_axis
 
 _SHOWN = tuple(c for c in CHANNELS if c != "kinetic")
 _FILLING_COLOURS = ("#c62828", "#2166ac", "#1b8a8f", "#e08214")
@@ -13,8 +14,9 @@ _FILLING_COLOURS = ("#c62828", "#2166ac", "#1b8a8f", "#e08214")
 
 @styled
 def outcome_figure(study):
-    """Coefficient of restitution and sticking probability against velocity (main filling, by size) and against size
-    (at the velocity of the size fit, by filling), with 95 % intervals and Andrews's restitution."""
+    """Coefficient of restitution and sticking probability against velocity (main filling, by size) and
+    against size (at the velocity of the size fit, by filling), with 95 % intervals and Andrews's
+    restitution."""
     filling = main_filling(study)
     velocity = study.by_filling[filling].size_fit.velocity
     figure, axes = panels(2, 2, 5.4, 3.7)
@@ -37,7 +39,7 @@ def outcome_figure(study):
         row[1].set_xlabel("aggregate radius  [grain radii]")
         row[1].set_xticks(sorted({b.radius for b in study.bounces}))
     for place in axes[0]:
-        place.legend(frameon=False, fontsize=8, loc="best")
+        legend(place, fontsize=8, loc="best")
     letter(axes, "")
     axes[0, 0].set_title(filling_text(filling), loc="right", fontsize=10, color="0.3")
     axes[0, 1].set_title(f"{velocity:.4g} m/s", loc="right", fontsize=10, color="0.3")
@@ -67,8 +69,8 @@ def _draw_theory(axes, study, filling, velocities):
 
 @styled
 def energy_velocity_figure(study):
-    """Change of every channel against velocity, in compression and in the return phase, for each filling at its
-    size with the most velocities."""
+    """Change of every channel against velocity, in compression and in the return phase, for each filling at
+    its size with the most velocities."""
     return _energy_figure(study, _by_velocity, "collision velocity  [m/s]")
 
 
@@ -95,7 +97,7 @@ def _by_size(study, filling):
 
 def _energy_figure(study, choose, xlabel):
     fillings = list(study.by_filling)
-    figure, axes = panels(len(fillings), 2, 5.2, 3.6)
+    figure, axes = panels(len(fillings), 2, 6.2, 3.6)
     for row, filling in zip(axes, fillings):
         chosen, names, fixed = choose(study, filling)
         for place, phase, title in zip(row, ("compression", "parting"), ("start to $t_{max}$", "$t_{max}$ to end")):
@@ -107,14 +109,14 @@ def _energy_figure(study, choose, xlabel):
         row[0].set_ylabel("change  [% of $K(0)$]")
         row[1].set_title(f"filling {filling:g}, {fixed}", loc="right", fontsize=10, color="0.3")
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="center left", bbox_to_anchor=(1.0, 0.5),
-                  frameon=False, fontsize=9)
+    figure.get_layout_engine().set(rect=(0.0, 0.0, 0.8, 1.0))
+    figure.legend(handles, labels, loc="center left", bbox_to_anchor=(0.805, 0.5), frameon=False, fontsize=9)
     return figure
 
 
 def _stack(axes, phases):
-    """Bars of the channels' changes, positive ones stacked up and negative ones down, and diamonds for their sum,
-    which is the kinetic energy lost."""
+    """Bars of the channels' changes, positive ones stacked up and negative ones down, and diamonds for their
+    sum, which is the kinetic energy lost."""
     base = {True: np.zeros(len(phases)), False: np.zeros(len(phases))}
     for channel in _SHOWN:
         change = 100.0 * np.array([phase[channel][0] for phase in phases])
@@ -124,7 +126,7 @@ def _stack(axes, phases):
         for up in (True, False):
             part = np.where((change > 0) == up, change, 0.0)
             if np.any(part):
-                axes.bar(range(len(phases)), part, bottom=base[up], color=CHANNEL_COLOURS[channel], width=0.8, label=label)
+                axes.bar(range(len(phases)), part, bottom=base[up], color=CHANNEL_COLOURS[channel], label=label)
                 label = None
                 base[up] = base[up] + part
     lost = -100.0 * np.array([phase["kinetic"][0] for phase in phases])

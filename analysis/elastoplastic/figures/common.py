@@ -32,6 +32,12 @@ def letter(axes, text):
     flat[-1].set_title(text, loc="right", fontsize=10, color="0.3")
 
 
+def legend(axes, **options):
+    """Legend without a frame, where there is something to name."""
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(frameon=False, **options)
+
+
 def scatter_of_seeds(axes, x, values, colour, label=None, spread=0.0):
     """Small open diamonds for the runs at x, values (n,), and their mean with its standard error."""
     values = np.asarray(values, dtype=float)
@@ -47,7 +53,8 @@ def velocity_axis(axes, velocities):
     axes.set_xscale("log")
     low, high = min(velocities), max(velocities)
     axes.set_xlim(low / 1.12, high * 1.12)
-    ticks = [t for t in (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 100) if low / 1.12 <= t <= high * 1.12]
+    ticks = [t for t in (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 100)
+             if low / 1.12 <= t <= high * 1.12]
     axes.set_xticks(ticks if len(ticks) > 1 else [low, high])
     axes.set_xticks([], minor=True)
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")

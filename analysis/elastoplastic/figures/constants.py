@@ -4,7 +4,7 @@ import numpy as np
 from ...figures.style import styled
 from .. import paper
 from ..aggregate_constants import bcca_coordination, bcca_strength, cpe_coordination
-from .common import MEGA, OURS, PAPER, letter, panels
+from .common import MEGA, OURS, PAPER, legend, letter, panels
 
 _RED = "#c62828"
 
@@ -41,7 +41,7 @@ def strength_figure(study):
     right.set_ylim(0.0, 12.0)
     for place in axes[0]:
         place.set_xlabel("filling factor")
-        place.legend(frameon=False, loc="upper left", fontsize=9)
+        legend(place, loc="upper left", fontsize=9)
     left.set_ylim(None, left.get_ylim()[1] * 8.0)
     letter(axes, "")
     return figure

@@ -41,7 +41,7 @@ FIGURES = {
     "fig07_time": (_of_filling(time_figure), "A24 Fig. 7: time to the largest compression against size."),
     "fig08_velocity": (_of_filling(velocity_figure), "A24 Fig. 8: largest compression and its time against velocity."),
     "fig09_velocity": (_others(velocity_figure), "A24 Fig. 9: the same at the other filling."),
-    "fig10_moduli": (moduli_figure, "A24 Fig. 10: pairs of yield stress and E* that give the same largest compression."),
+    "fig10_moduli": (moduli_figure, "A24 Fig. 10: pairs of yield stress and E* that give one largest compression."),
     "fig11_strength": (strength_figure, "A24 Fig. 11: yield stress and coordination number beside other aggregates."),
     "fig12_andrews": (andrews_figure, "A24 Fig. 12: mutual velocity beside Andrews's model with its return phase."),
     "fig13_forces": (chains_figure, "A24 Fig. 13: contact forces around the largest compression."),
@@ -53,8 +53,8 @@ FIGURES = {
 
 
 def draw(name, study, folder):
-    """Draw one of FIGURES as folder/NAME.png; its caption, or None where the runs don't suffice for it (an older
-    file of that name is taken away then)."""
+    """Draw one of FIGURES as folder/NAME.png; its caption, or None where the runs don't suffice for it (an
+    older file of that name is taken away then)."""
     make, caption = FIGURES[name]
     file = folder / f"{name}.png"
     figure = make(study)
@@ -62,7 +62,7 @@ def draw(name, study, folder):
         file.unlink(missing_ok=True)
         return None
     image = io.BytesIO()
-    figure.savefig(image, dpi=DOTS_PER_INCH, bbox_inches="tight")
+    figure.savefig(image, dpi=DOTS_PER_INCH)
     # Few colours, so that a palette loses nothing that one sees, and is a third of the size.
     Image.open(image).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(file, optimize=True)
     return caption

@@ -1,4 +1,5 @@
-"""d and v of all seeds against time, and v beside Andrews's model: A24 Figs. 4, 12; the force chains: Fig. 13."""
+"""d and v of all seeds against time, and v beside Andrews's model: A24 Figs. 4, 12; the force chains: Fig.
+13."""
 import numpy as np
 
 from ...figures.forces import forces_figure
@@ -8,14 +9,14 @@ from .. import paper
 from ..andrews import Spheres
 from ..andrews_motion import motion
 from ..velocity_fit import reduced_radius
-from .common import MEGA, OURS, PAPER, filling_text, letter, main_filling, panels
+from .common import MEGA, OURS, PAPER, filling_text, legend, letter, main_filling, panels
 
 _RED, _GREY, _ENOUGH = "#c62828", "0.6", 3
 
 
 def shown_rows(study):
-    """Rows (measure.Row) of the point whose motion is shown: of the main filling, at the velocity of its size fit,
-    the largest size that has three seeds (or as many as any has)."""
+    """Rows (measure.Row) of the point whose motion is shown: of the main filling, at the velocity of its size
+    fit, the largest size that has three seeds (or as many as any has)."""
     filling = main_filling(study)
     velocity = study.by_filling[filling].size_fit.velocity
     sets = {}
@@ -43,7 +44,7 @@ def motion_figure(study):
     if line and abs(row.velocity / paper.VELOCITY - 1.0) < 1e-3:
         axes[0, 0].axhline(line[0] * radius - line[1], color=PAPER, linestyle="--", linewidth=1.2,
                            label=f"A24's line: $d_{{max}}$ = {line[0] * radius - line[1]:.2f} $r$")
-        axes[0, 0].legend(frameon=False, loc="lower right")
+        legend(axes[0, 0], loc="lower right")
     for place in axes[0]:
         place.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
         place.set_xlabel("time $t$  [ns]")
@@ -77,7 +78,7 @@ def andrews_figure(study):
     place.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
     place.set_xlabel("time $t$  [ns]")
     place.set_ylabel("mutual velocity $v$  [m/s]")
-    place.legend(frameon=False, loc="upper right")
+    legend(place, loc="upper right")
     letter(axes, f"{filling_text(row.filling, row.velocity)}, $R$ = {row.radius / row.grain_radius:g} $r$")
     return figure
 

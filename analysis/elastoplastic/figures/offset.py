@@ -3,13 +3,13 @@ import numpy as np
 
 from ...figures.style import styled
 from .. import paper
-from .common import PAPER, filling_text, is_papers_velocity, letter, main_filling, panels, size_colours
+from .common import PAPER, filling_text, is_papers_velocity, legend, letter, main_filling, panels, size_colours
 
 
 @styled
 def offset_figure(study):
-    """d_max of every run against d(0) + 2 r at the velocity of the size fit, with the regression of each size and
-    A24's value (its line)."""
+    """d_max of every run against d(0) + 2 r at the velocity of the size fit, with the regression of each size
+    and A24's value (its line)."""
     results = study.by_filling[main_filling(study)]
     points, unit = results.points, study.grain_radius
     chosen = np.flatnonzero(points.velocity == results.size_fit.velocity)
@@ -24,7 +24,8 @@ def offset_figure(study):
                            if row.seed == seed and abs(row.radius / points.radius[k] - 1.0) < 1e-6
                            and round(row.filling, 6) == results.filling
                            and abs(row.velocity / points.velocity[k] - 1.0) < 1e-6])
-        place.plot(offset, d_max, "D", markersize=5, color=colours[radius], label=f"$R$ = {radius:g} $r$, {len(d_max)} seeds")
+        place.plot(offset, d_max, "D", markersize=5, color=colours[radius],
+                   label=f"$R$ = {radius:g} $r$, {len(d_max)} seeds")
         if fix.slope is not None:
             reach = np.array([min(offset.min(), 0.0), max(offset.max(), 0.0)])
             place.plot(reach, fix.corrected + fix.slope * reach, color=colours[radius], linewidth=1.0)
@@ -36,6 +37,6 @@ def offset_figure(study):
     place.axvline(0.0, color="0.8", linewidth=0.8, zorder=0)
     place.set_xlabel("offset of the centres of mass at the start, $d(0) + 2r$  [grain radii]")
     place.set_ylabel("$d_{max}$  [grain radii]")
-    place.legend(frameon=False, fontsize=9)
+    legend(place, fontsize=9)
     letter(axes, filling_text(results.filling, results.size_fit.velocity))
     return figure

@@ -5,14 +5,15 @@ from ...figures.style import NANO, styled
 from .. import paper
 from ..andrews import Spheres, elastic_time, plastic_time
 from ..velocity_fit import effective, reduced_radius
-from .common import ELASTIC, OURS, PAPER, RIGID, filling_text, is_papers_velocity, letter, panels, scatter_of_seeds
+from .common import (ELASTIC, OURS, PAPER, RIGID, filling_text, is_papers_velocity, legend, letter, panels,
+                     scatter_of_seeds)
 
 _RED = "#c62828"
 
 
 def size_points(study, results):
-    """(radius [grain radii], d_max (n,) [grain radii], t_max (n,) [s]) of the sizes at the velocity of the size
-    fit."""
+    """(radius [grain radii], d_max (n,) [grain radii], t_max (n,) [s]) of the sizes at the velocity of the
+    size fit."""
     points = results.points
     for k in np.flatnonzero(points.velocity == results.size_fit.velocity):
         d_max, t_max = points.samples[k]
@@ -45,7 +46,7 @@ def size_figure(study, results):
     for place in (left, right):
         place.set_xlim(0.0, None)
         place.set_ylim(min(0.0, place.get_ylim()[0]), None)
-        place.legend(frameon=False, loc="upper left")
+        legend(place, loc="upper left")
     letter(axes, filling_text(results.filling, fit.velocity))
     return figure
 
@@ -57,7 +58,8 @@ def _draw_effective(axes, results, theirs, sizes, unit, radii):
     half = 0.5 * radii
     if results.size_fit.reason is None:
         ratio = results.size_fit.values["ratio"]
-        axes.plot(half, ratio * half, color=OURS, label=f"fit: {ratio:.4f} $R^*$, $\\delta_{{offset}}$ = {offset:.3f} $r$")
+        axes.plot(half, ratio * half, color=OURS,
+                  label=f"fit: {ratio:.4f} $R^*$, $\\delta_{{offset}}$ = {offset:.3f} $r$")
     if theirs:
         axes.plot(half, 2.0 * theirs[0] * half, "--", color=PAPER,
                   label=f"A24: {paper.RATIO[results.filling]:g} $R^*$, $\\delta_{{offset}}$ = "
@@ -87,7 +89,7 @@ def time_figure(study, results):
     place.set_ylim(0.0, None)
     place.set_xlabel("reduced radius $R^*$  [grain radii]")
     place.set_ylabel("time to the largest compression $\\tau_{max}$  [ns]")
-    place.legend(frameon=False)
+    legend(place)
     letter(axes, filling_text(results.filling, fit.velocity))
     return figure
 

@@ -6,8 +6,8 @@ from .. import paper
 from ..andrews import (Spheres, elastic_compression, elastic_time, largest_compression, plastic_compression,
                        plastic_time, time_of_largest_compression)
 from ..velocity_fit import degenerate_curve, effective, reduced_radius
-from .common import (ELASTIC, MEGA, OURS, PAPER, RIGID, filling_text, letter, panels, scatter_of_seeds, size_colours,
-                     velocity_axis)
+from .common import (ELASTIC, MEGA, OURS, PAPER, RIGID, filling_text, legend, letter, panels, scatter_of_seeds,
+                     size_colours, velocity_axis)
 
 
 @styled
@@ -46,7 +46,7 @@ def velocity_figure(study, results):
     right.set_ylim(0.0, None)
     left.set_ylabel("largest compression $\\delta_{max}$  [grain radii]")
     right.set_ylabel("time to it $\\tau_{max}$  [ns]")
-    left.legend(frameon=False, fontsize=8)
+    legend(left, fontsize=8)
     letter(axes, filling_text(results.filling))
     return figure
 
@@ -83,7 +83,8 @@ def _draw_models(left, right, v, study, results, radius, named):
 
 @styled
 def moduli_figure(study):
-    """Pairs (sigma_plastic, E*) that give the measured delta_max/R*, with its error, and the best fits: Fig. 10."""
+    """Pairs (sigma_plastic, E*) that give the measured delta_max/R*, with its error, and the best fits: Fig.
+    10."""
     fillings = list(study.by_filling.values())
     figure, axes = panels(1, len(fillings), 5.4, 4.6)
     for place, results in zip(axes[0], fillings):
@@ -110,7 +111,7 @@ def moduli_figure(study):
         place.set_yscale("log")
         place.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         place.set_xlim(0.0, None)
-        place.legend(frameon=False, loc="upper right")
+        legend(place, loc="upper right")
         place.set_title(filling_text(results.filling), loc="right", fontsize=10, color="0.3")
     return figure
 
