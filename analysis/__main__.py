@@ -1,10 +1,11 @@
-"""Command line: python3 -m analysis summary RUN... [--json] and python3 -m analysis figures RUN [--out
-DIR]."""
+"""Command line: python3 -m analysis summary RUN... [--json], figures RUN [--out DIR], and elastoplastic RUNS...
+[--figures FOLDER] [--json]."""
 import argparse
 import json
 import os
 import sys
 
+from .elastoplastic.command import add_parser as add_elastoplastic
 from .run_folder import RunFolderError, open_run
 from .summary import summarise, table
 
@@ -58,6 +59,7 @@ def _parser():
         "--out", metavar="DIR", help="folder for the figures (default: RUN/figures), made if it is missing"
     )
     figures.set_defaults(command=_figures)
+    add_elastoplastic(commands)
     return parser
 
 

@@ -64,7 +64,7 @@ class StateSequence(Sequence):
     def times(self):
         """Time [s] (number of states,) of every state, read without the grains."""
         if self._times is None:
-            times = [float(_scalar(_read_arrays(f, ("time",))["time"], "time", f)) for f in self.files]
+            times = [float(_scalar(read_arrays(f, ("time",))["time"], "time", f)) for f in self.files]
             self._times = np.array(times)
             self._times.flags.writeable = False
         return self._times
@@ -146,7 +146,7 @@ def _read_record(file):
 def _read_history(file):
     if not file.exists():
         raise RunFolderError(f"{file}: missing: the run has recorded no history yet")
-    history = _read_arrays(file, HISTORY_ARRAYS)
+    history = read_arrays(file, HISTORY_ARRAYS)
     shape = history["time"].shape
     if len(shape) != 1 or shape[0] == 0:
         raise RunFolderError(
@@ -175,7 +175,7 @@ def read_state(file):
     file = Path(file)
     if not file.exists():
         raise RunFolderError(f"{file}: missing")
-    arrays = _read_arrays(file, [field.name for field in fields(State)])
+    arrays = read_arrays(file, [field.name for field in fields(State)])
     grains, contacts = arrays["radius"].size, arrays["contact_normal_force"].size
     for name in ("position", "velocity", "angular_velocity"):
         _require_shape(file, name, arrays[name], (grains, 3))
@@ -205,9 +205,9 @@ def _require_contents(file, arrays, grains):
         raise RunFolderError(f"{file}: 'aggregate' must be 0 or 1 for every grain")
 
 
-def _read_arrays(file, names):
-    """The named arrays of an .npz file, read-only; RunFolderError when the file or an array is missing or
-    damaged."""
+def read_arrays(file, names):
+    """The named arrays of an .npz file (a history's or a state's), read-only; RunFolderError when the file or an
+    array is missing or damaged."""
     try:
         archive = np.load(file, allow_pickle=False)
         if isinstance(archive, np.ndarray):

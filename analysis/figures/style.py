@@ -37,10 +37,10 @@ AGGREGATE_COLOURS = ((0.92, 0.60, 0.18), (0.24, 0.52, 0.82))
 
 
 def styled(make):
-    """Decorator: make(run) -> Figure under this module's settings."""
-    def figure_of(run):
+    """Decorator: make(...) -> Figure under this module's settings."""
+    def figure_of(*arguments, **options):
         with rc_context(_SETTINGS):
-            return make(run)
+            return make(*arguments, **options)
     figure_of.__name__, figure_of.__doc__ = make.__name__, make.__doc__
     return figure_of
 
