@@ -31,6 +31,7 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	setting.linearDamping = options.linearDamping;
 	setting.mechanisms    = options.mechanisms;
 	setting.dt            = options.dt;
+	setting.convective    = options.convective;
 	if (memory) recallOrder(*memory);
 	else orderGrains(grains);
 	loadGrains(grains);

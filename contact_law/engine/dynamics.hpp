@@ -59,6 +59,7 @@ public:
 		std::string instructions; // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool        orientations = false; // whether to keep the grains' orientations up
 		PeriodicCell cell {};             // at the start's moment; off: open space
+		Vec3<double> convective { 0, 0, 0 }; // see setMeanField
 	};
 	// Grains that overlap touch from the start, with unstrained springs or as `inherited` has it; or all is as `memory` (of remember(), from the same grains in the
 	// same order) has it.

@@ -85,6 +85,7 @@ void JKRWadaEngine::start(bool inStep)
 	const bool                   inherits  = !continued && !inherited.contacts.empty();
 	SceneCell                    cell;
 	options.cell = cell.start(*scene, inStep, inherits && inherited.stepBehind, options.dt);
+	options.convective = SceneCell::convective(*scene);
 	current = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr, inherits ? &inherited : nullptr), now.grains, now.grains,
 	                                         now.states, orientations, false, contacts, cell });
 	smallStep = options.dt;

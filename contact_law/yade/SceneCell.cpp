@@ -27,15 +27,18 @@ namespace {
 		requireDiagonal(cell.nextVelGrad, "velGrad", "stretching along the axes (diagonal)");
 	}
 
-	std::string text(const Vec3d& v)
+	std::string text(Real length)
 	{
-		char digits[80];
-		std::snprintf(digits, sizeof digits, "(%.6g, %.6g, %.6g)", v.x, v.y, v.z);
+		char digits[32];
+		std::snprintf(digits, sizeof digits, "%.6g", double(length));
 		return digits;
 	}
+	std::string text(const Vec3d& v) { return "(" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + ")"; }
 }
 
 Vec3d SceneCell::now(const Scene& scene) { return scene.isPeriodic ? diagonal(scene.cell->hSize) : Vec3d { 0, 0, 0 }; }
+
+Vec3d SceneCell::convective(const Scene& scene) { return scene.isPeriodic && scene.cell->homoDeform == 2 ? diagonal(scene.cell->velGrad) : Vec3d { 0, 0, 0 }; }
 
 PeriodicCell SceneCell::start(Scene& scene, bool inStep, bool stepBehind, Real dt)
 {
@@ -66,7 +69,7 @@ void SceneCell::require(const Scene& scene, const Dynamics& dynamics) const
 std::string SceneCell::tooSmall(const PeriodicCell& cell, const Dynamics& dynamics)
 {
 	if (!cell.on || cell.holds(dynamics.reach())) return "";
-	return "the periodic cell of " + text(cell.size) + " m is too small, allowed: at least " + boost::lexical_cast<std::string>(2 * dynamics.reach()) + " m along each axis, twice the reach of a pair of grains";
+	return "the periodic cell of " + text(cell.size) + " m is too small, allowed: at least " + text(2 * dynamics.reach()) + " m along each axis, twice the reach of a pair of grains";
 }
 
 std::string SceneCell::wrong(const Scene& scene, const Dynamics& dynamics, int steps) const
@@ -90,7 +93,7 @@ void SceneCell::takeVelocityGradient(Scene& scene, Dynamics& dynamics, bool want
 		cell.nextVelGrad    = Matrix3r::Zero();
 	}
 	const Vec3d gradient = diagonal(cell.velGrad), none { 0, 0, 0 };
-	dynamics.setMeanField(cell.homoDeform ? gradient - diagonal(cell.prevVelGrad) : none, cell.homoDeform == 2 ? gradient : none);
+	dynamics.setMeanField(cell.homoDeform ? gradient - diagonal(cell.prevVelGrad) : none, convective(scene));
 	cell.prevVelGrad = cell.velGrad;
 }
 

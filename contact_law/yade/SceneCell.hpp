@@ -23,6 +23,7 @@ public:
 	static void takeVelocityGradient(Scene&, contact_law::Dynamics&, bool wanted);
 
 	static contact_law::Vec3<double> now(const Scene&);
+	static contact_law::Vec3<double> convective(const Scene&); // diagonal of the gradient whose convective acceleration grains have [1/s]
 
 private:
 	contact_law::Vec3<double> size { 0, 0, 0 }; // that the engine's run has reached [m]
