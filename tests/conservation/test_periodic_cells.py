@@ -71,7 +71,8 @@ fused_engine(subSteps=10)
 O.dt *= 10
 O.engines[0].prepare()
 def virial():
-    shot, size = contact_law.snapshot(), O.cell.hSize[0, 0]
+    shot = contact_law.snapshot()
+    size = shot["cell_size"][0]
     apart = np.diff(shot["position"][shot["contact_pairs"]], axis=1)[:, 0]
     apart -= size * np.round(apart / size)
     result["contacts"] = len(apart)

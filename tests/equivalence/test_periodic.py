@@ -113,3 +113,29 @@ for domains in (1, 3):
 """)
     assert found.pop("events") > 50
     assert max(found.values()) < 1e-9, found
+
+
+def test_exported_interactions_are_those_of_the_nearest_images(yade):
+    found = yade(SCENE + """
+start("unlike", 1e-3, 1)
+fused_engine(exportInteractions=True, subSteps=10)
+O.dt *= 10
+O.run(100, True)
+size = np.array([O.cell.hSize[k, k] for k in range(3)])
+result["cells"], result["normals"], result["overlaps"] = 0, 0.0, 0.0
+for i in O.interactions:
+    a, b = O.bodies[i.id1], O.bodies[i.id2]
+    branch = np.array(b.state.pos) + size * np.array(i.cellDist) - np.array(a.state.pos)
+    distance = np.linalg.norm(branch)
+    result["normals"] = max(result["normals"], float(np.abs(branch / distance - np.array(i.geom.normal)).max()))
+    result["overlaps"] = max(result["overlaps"], abs(a.shape.radius + b.shape.radius - distance - i.geom.penetrationDepth) / 1e-7)
+    result["cells"] += any(i.cellDist)
+stress = np.array(utils.getStress(O.cell.volume)).reshape(3, 3)
+shot = contact_law.snapshot()
+apart = shot["position"][shot["contact_pairs"][:, 0]] - shot["position"][shot["contact_pairs"][:, 1]]
+apart -= size * np.round(apart / size)
+result["normal part"] = -float((np.linalg.norm(apart, axis=1) * shot["contact_normal_force"]).sum() / size.prod())
+result["stress"] = float(np.trace(stress))
+""")
+    assert found["cells"] > 5 and found["normals"] < 1e-12 and found["overlaps"] < 1e-12
+    assert found["stress"] == pytest.approx(found["normal part"], rel=1e-6)  # sliding forces have no part in the trace
