@@ -65,13 +65,13 @@ def draw_collision(axis, how, collision):
         axis.stairs(rates, ends, color=COLOURS["engine"], linestyle=style["linestyle"], label=f"{threads} core{'s' * (threads > 1)}")
         axis.axhline(0.75 * collision["before"][threads] / 1e6, color="0.6", linewidth=0.8, linestyle=style["linestyle"],
                      label="75 % of the speed before" if threads == 1 else None)
-    axis.set(xlabel="time [ns]", ylabel="million contact updates a second", title=f"through a collision, R = {how.reference:g} r, {how.collision_speed:g} m/s", ylim=(0, None))
+    axis.set(xlabel="time [ns]", ylabel="million contact updates a second", title=f"through a collision, R = {how.reference:g} r, {how.collision_speed:g} m/s", ylim=(0, 1.15e-6 * max(part[f"rate{threads}"] for part in collision["parts"] for threads in THREADS)))
     axis.grid(alpha=0.25)
     axis.legend(loc="lower left", fontsize=8)
     contacts = axis.twinx()
     contacts.plot((ends[1:] + ends[:-1]) / 2, [part["contacts"] / 1e3 for part in collision["parts"]], ".:", color=COLOURS["stock"])
     contacts.set_ylabel("thousand contacts at a part's end (dotted)", color=COLOURS["stock"])
-    contacts.set_ylim(0, None)
+    contacts.set_ylim(0, 1.15e-3 * max(part["contacts"] for part in collision["parts"]))
 
 
 def draw_error(how, found):

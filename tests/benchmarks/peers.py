@@ -5,9 +5,11 @@ Materials' constants are the scene's; friction limits are those of JKR-Wada at z
 """
 import os
 import re
+import resource
 import shutil
 import subprocess
 import tempfile
+import time
 from math import pi
 from pathlib import Path
 
@@ -90,9 +92,9 @@ def version(code):
 
 
 def measure(code, scene, steps, cores=1):
-    """{contacts, grains, steps, seconds, rate} of a run of `steps` steps; rate: contact updates a second of the time loop.
+    """{contacts, grains, steps, seconds, rate, share} of a run of `steps` steps; rate: contact updates a second of the time loop.
 
-    contacts is the mean of the touching pairs that the code itself counts at start and end. Raises RuntimeError with the program's last words.
+    share: processor seconds a second of the whole run, all processes together; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises RuntimeError with the program's last words.
     """
     program, text = PROGRAMS[code]
     with tempfile.TemporaryDirectory() as folder:
@@ -101,7 +103,9 @@ def measure(code, scene, steps, cores=1):
         command = [program, "-in", "input", "-log", "none"]
         if cores > 1:
             command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores)] + command
+        start, processor = time.perf_counter(), processor_seconds()
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
+        share = (processor_seconds() - processor) / (time.perf_counter() - start)
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
     if done.returncode or not loop:
         raise RuntimeError(f"{' '.join(command)} failed:\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
@@ -109,7 +113,13 @@ def measure(code, scene, steps, cores=1):
     if len(counted) < 2 or int(counted[-1][0]) != scene.grains:
         raise RuntimeError(f"{program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
     contacts, seconds = sum(float(count) for _, count in counted) / 2 / len(counted), float(loop.group(1))
-    return {"contacts": contacts, "grains": scene.grains, "steps": steps, "seconds": seconds, "rate": contacts * steps / seconds}
+    return {"contacts": contacts, "grains": scene.grains, "steps": steps, "seconds": seconds, "rate": contacts * steps / seconds, "share": share}
+
+
+def processor_seconds():
+    """Of all programs that were started here and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def scaled_constants(scene):

@@ -2,7 +2,7 @@
 import os
 import time
 
-LOUD = 0.05  # share of the machine that others may take before the report warns
+LOUD = 0.05  # share of the machine, or of its core, that a measurement may lack before the report warns
 
 
 def share_of_others(seconds=1.0):

@@ -20,6 +20,11 @@ class Spread:
         return f"{self.median:.{digits}f} ({self.least:.{digits}f} - {self.most:.{digits}f})"
 
 
+def by_processor_time(result):
+    """Contact updates a second of processor time: what a program does when others take part of the machine. One core only: waiting threads spin."""
+    return result["rate"] / result["share"]
+
+
 class Speeds:
     """Looks up what was measured of a code (the labels of speed.py); None where it was not."""
 
@@ -35,9 +40,9 @@ class Speeds:
         found = self.find(*code, **labels)
         return Spread.of([result["rate"] for result in found]) if found else None
 
-    def ratio(self, first, second):
-        """Spread over the rounds of the ratio of two codes, each a dict of labels."""
+    def ratio(self, first, second, rate=lambda result: result["rate"]):
+        """Spread over the rounds of the ratio of two codes, each a dict of labels; rate: function of a result."""
         a, b = self.find(**first), self.find(**second)
         if not a or not b:
             return None
-        return Spread.of([x["rate"] / y["rate"] for x, y in zip(a, b)])
+        return Spread.of([rate(x) / rate(y) for x, y in zip(a, b)])

@@ -23,7 +23,7 @@ class Task:
 def engine(settings, radius, threads, kind="alike", instructions=""):
     labels = {"code": "engine", "kind": kind, "radius": radius, "threads": threads, "instructions": instructions or "best"}
     request = {"do": "fused", "seconds": settings.seconds, "threads": threads, "instructions": instructions}
-    return Task(labels, ("jkr-wada", kind, radius, 1), request, settings.seconds + 0.3 + 6e-6 * 0.8 * radius**3)
+    return Task(labels, ("jkr-wada", kind, radius, 1), request, settings.seconds + 0.3 + 8e-6 * 0.8 * radius**3)
 
 
 def loop(settings, law, radius, threads):
@@ -41,12 +41,14 @@ def tasks_of_a_round(settings):
     """The tasks, in the order in which a round measures them: what is compared stands together."""
     others = [radius for radius in settings.radii if radius != settings.reference]
     loops = [(law, threads) for law in ("jkr-wada", "stock") for threads in (1, 2)]
+    codes = [[loop(settings, "stock", settings.reference, cores)] + [peer(settings, code, cores) for code in peers.PROGRAMS if not peers.missing(code)] for cores in (1, 2)]
     tasks = [engine(settings, radius, threads) for radius in others for threads in (1, 2)]
     tasks += [engine(settings, radius, 1, instructions=name) for radius in settings.instruction_radii for name in SLOWER_SETS]
     tasks += [loop(settings, law, radius, threads) for radius in settings.loop_radii if radius != settings.reference for law, threads in loops]
-    tasks += [engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("alike",) for threads in (1, 2)]
-    tasks += [loop(settings, law, settings.reference, threads) for law, threads in loops]
-    return tasks + [peer(settings, code, cores) for code in peers.PROGRAMS if not peers.missing(code) for cores in (1, 2)]
+    tasks += [loop(settings, "jkr-wada", settings.reference, threads) for threads in (1, 2)]
+    tasks += codes[1]
+    tasks += [engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("alike",) for threads in (2, 1)]
+    return tasks + codes[0]
 
 
 def estimate(settings):

@@ -67,14 +67,14 @@ def loop():
 
 
 def timed(seconds, small_steps, contacts):
-    """Steps for at least that long; contacts: function that counts them."""
-    before, steps, start = contacts(), 0, time.perf_counter()
+    """Steps for at least that long; contacts: function that counts them. share: processor seconds a second, all threads together."""
+    before, steps, processor, start = contacts(), 0, time.process_time(), time.perf_counter()
     while steps == 0 or time.perf_counter() - start < seconds:
         O.step()
         steps += small_steps
-    elapsed = time.perf_counter() - start
+    elapsed, processor = time.perf_counter() - start, time.process_time() - processor
     mean = (before + contacts()) / 2
-    return {"contacts": mean, "grains": scene.grains, "steps": steps, "seconds": elapsed, "rate": mean * steps / elapsed}
+    return {"contacts": mean, "grains": scene.grains, "steps": steps, "seconds": elapsed, "rate": mean * steps / elapsed, "share": processor / elapsed}
 
 
 def measure_fused(seconds, threads, instructions=""):
