@@ -74,6 +74,10 @@ PROGRAMS = {"lammps": ("lmp", LAMMPS_INPUT), "liggghts": ("liggghts", LIGGGHTS_I
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 
 
+class PeerFailed(RuntimeError):
+    """A peer that is installed did not come to its end, or lost grains."""
+
+
 def missing(code):
     """Why this code cannot be measured here, in a line; None when it can."""
     program, _ = PROGRAMS[code]
@@ -82,6 +86,11 @@ def missing(code):
     if code == "lammps" and "granular" not in subprocess.run([program, "-h"], capture_output=True, text=True).stdout:
         return f"this {program} was built without pair_style granular"
     return None
+
+
+def core_counts():
+    """Numbers of cores that a peer can be run on here."""
+    return (1, 2) if shutil.which("mpirun") else (1,)
 
 
 def version(code):
@@ -94,7 +103,7 @@ def version(code):
 def measure(code, scene, steps, cores=1):
     """{contacts, grains, steps, seconds, rate, share} of a run of `steps` steps; rate: contact updates a second of the time loop.
 
-    share: processor seconds a second of the whole run, all processes together; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises RuntimeError with the program's last words.
+    share: processor seconds a second of the whole run, all processes together; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
     """
     program, text = PROGRAMS[code]
     with tempfile.TemporaryDirectory() as folder:
@@ -108,10 +117,10 @@ def measure(code, scene, steps, cores=1):
         share = (processor_seconds() - processor) / (time.perf_counter() - start)
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
     if done.returncode or not loop:
-        raise RuntimeError(f"{' '.join(command)} failed:\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
+        raise PeerFailed(f"{' '.join(command)} failed:\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
     counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)  # grains and contacts (twice, once from each grain)
     if len(counted) < 2 or int(counted[-1][0]) != scene.grains:
-        raise RuntimeError(f"{program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
+        raise PeerFailed(f"{program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
     contacts, seconds = sum(float(count) for _, count in counted) / 2 / len(counted), float(loop.group(1))
     return {"contacts": contacts, "grains": scene.grains, "steps": steps, "seconds": seconds, "rate": contacts * steps / seconds, "share": share}
 

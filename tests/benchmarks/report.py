@@ -60,11 +60,12 @@ def codes(how, speeds, found):
             lines.append(f"| {name} | - | - | - | - | - | not measured: {found['missing'][code]} |")
             continue
         version = f" ({found['versions'][code]})" if code in found["versions"] else ""
-        contacts = speeds.find(code)[0]["contacts"]
+        contacts = next((f"{result['contacts']:.0f}" for threads in (1, 2) for result in speeds.find(code, threads)), "-")
         ratios = [ratio_text(speeds.ratio(engine(threads), {"code": code, "threads": threads})) for threads in (1, 2)]
         rates = [million(speeds.rate(code, threads)) for threads in (1, 2)]
-        lines.append(f"| {name}{version} | {contacts:.0f} | {rates[0]} | {rates[1]} | {ratios[0]} | {ratios[1]} | {OURS.get(code) or PHYSICS[code]} |")
-    return section(f"The same grains in every code (R = {how.reference:g})", lines)
+        lines.append(f"| {name}{version} | {contacts} | {rates[0]} | {rates[1]} | {ratios[0]} | {ratios[1]} | {OURS.get(code) or PHYSICS[code]} |")
+    failed = [f"- {name} core{'s' * (name[-1] != '1')} failed: {' '.join(words.split())[:300]}" for name, words in found["speed"]["failed"].items()]
+    return section(f"The same grains in every code (R = {how.reference:g})", lines + [""] * bool(failed) + failed)
 
 
 def sizes(how, speeds):

@@ -41,7 +41,8 @@ def tasks_of_a_round(settings):
     """The tasks, in the order in which a round measures them: what is compared stands together."""
     others = [radius for radius in settings.radii if radius != settings.reference]
     loops = [(law, threads) for law in ("jkr-wada", "stock") for threads in (1, 2)]
-    codes = [[loop(settings, "stock", settings.reference, cores)] + [peer(settings, code, cores) for code in peers.PROGRAMS if not peers.missing(code)] for cores in (1, 2)]
+    codes = [[loop(settings, "stock", settings.reference, cores)] + [peer(settings, code, cores) for code in peers.PROGRAMS if not peers.missing(code) and cores in peers.core_counts()]
+             for cores in (1, 2)]
     tasks = [engine(settings, radius, threads) for radius in others for threads in (1, 2)]
     tasks += [engine(settings, radius, 1, instructions=name) for radius in settings.instruction_radii for name in SLOWER_SETS]
     tasks += [loop(settings, law, radius, threads) for radius in settings.loop_radii if radius != settings.reference for law, threads in loops]
@@ -70,11 +71,12 @@ def yades(tasks):
 
 
 def measure(settings, done):
-    """{"results": [labels, round and what was measured], "memory": {radius: ...}, "others": largest share of the machine that other programs took}.
+    """{"results": [labels, round and what was measured], "memory": {radius: ...}, "others": largest share of the machine that other programs took,
+    "failed": {peer: last words of one that ended with an error, and was not tried again}}.
 
     done(seconds) is called after each measurement with its estimated length.
     """
-    tasks, results, others = tasks_of_a_round(settings), [], 0.0
+    tasks, results, others, failed = tasks_of_a_round(settings), [], 0.0, {}
     peers_scene = measured_scenes.make("alike", settings.reference)
     with yades(tasks) as started:
         for process in started.values():
@@ -84,8 +86,22 @@ def measure(settings, done):
             others = max(others, share_of_others())
             done(1)
             for task in tasks:
-                answer = started[task.process].ask(**task.request) if task.process else peers.measure(task.labels["code"], peers_scene, **task.request)
-                results.append({**answer, **task.labels, "round": turn, "instructions_used": answer.get("instructions", "")})
+                answer = take(task, started, peers_scene, failed)
+                if answer:
+                    results.append({**answer, **task.labels, "round": turn, "instructions_used": answer.get("instructions", "")})
                 done(task.seconds)
         memory = {radius: started["jkr-wada", "alike", radius, 1].ask("memory") for radius in settings.radii if radius >= settings.reference}
-    return {"results": results, "memory": memory, "others": others}
+    return {"results": results, "memory": memory, "others": others, "failed": failed}
+
+
+def take(task, started, peers_scene, failed):
+    """What a task measured; None of a peer that fails, now or in an earlier round: noted in failed, {name: last words}."""
+    if task.process:
+        return started[task.process].ask(**task.request)
+    name = f"{task.labels['code']} on {task.labels['threads']}"
+    if name in failed:
+        return None
+    try:
+        return peers.measure(task.labels["code"], peers_scene, **task.request)
+    except peers.PeerFailed as error:
+        failed[name] = str(error)

@@ -11,6 +11,7 @@ import pytest
 import errors
 import measured_scenes
 import peers
+import speed
 from ratios import Spread, Speeds
 from settings import FULL, TINY
 from targets import Target
@@ -72,6 +73,20 @@ def test_peers_run_the_scene(code):
     scene = measured_scenes.make("alike", 5)
     found = peers.measure(code, scene, 20)
     assert found["contacts"] == measured_scenes.touching(scene) and found["grains"] == scene.grains and found["rate"] > 1e5
+
+
+def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
+    """A program of that name that only fails, as one does whose libraries are missing."""
+    for name in ("lmp", "liggghts"):
+        (tmp_path / name).write_text("#!/bin/sh\necho no such library >&2; exit 127\n")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    task, failed = speed.peer(TINY, "liggghts", 1), {}
+    scene = measured_scenes.make("alike", TINY.reference)
+    assert speed.take(task, {}, scene, failed) is None and "no such library" in failed["liggghts on 1"]
+    (tmp_path / "liggghts").unlink()
+    assert speed.take(task, {}, scene, failed) is None
+    assert "pair_style granular" in peers.missing("lammps")
 
 
 def test_two_sizes_start_at_rest():
