@@ -32,11 +32,15 @@ def save(figure, about, path):
 
 
 def draw_speed(how, found):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), constrained_layout=True)
+    """A panel for the sizes and one for each collision."""
+    collisions = found.get("collision", [])
+    panels = len(collisions) + ("speed" in found)
+    figure, axes = plt.subplots(1, panels, figsize=(6 * panels, 4.8), constrained_layout=True, squeeze=False)
+    axes = list(axes[0])
     if "speed" in found:
-        draw_sizes(left, Speeds(found["speed"]["results"], how.reference), found["speed"]["results"])
-    if "collision" in found:
-        draw_collision(right, how, found["collision"])
+        draw_sizes(axes.pop(0), Speeds(found["speed"]["results"], how.reference), found["speed"]["results"])
+    for axis, collision in zip(axes, collisions):
+        draw_collision(axis, collision)
     return figure
 
 
@@ -58,14 +62,14 @@ def draw_sizes(axis, speeds, results):
     axis.legend(fontsize=7.5, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
-def draw_collision(axis, how, collision):
+def draw_collision(axis, collision):
     ends = np.array([0.0] + [part["until"] for part in collision["parts"]]) * 1e9
     for threads, style in THREADS.items():
         rates = np.array([part[f"rate{threads}"] for part in collision["parts"]]) / 1e6
         axis.stairs(rates, ends, color=COLOURS["engine"], linestyle=style["linestyle"], label=f"{threads} core{'s' * (threads > 1)}")
         axis.axhline(0.75 * collision["before"][threads] / 1e6, color="0.6", linewidth=0.8, linestyle=style["linestyle"],
                      label="75 % of the speed before" if threads == 1 else None)
-    axis.set(xlabel="time [ns]", ylabel="million contact updates a second", title=f"through a collision, R = {how.reference:g} r, {how.collision_speed:g} m/s", ylim=(0, 1.15e-6 * max(part[f"rate{threads}"] for part in collision["parts"] for threads in THREADS)))
+    axis.set(xlabel="time [ns]", ylabel="million contact updates a second", title=f"through a collision, R = {collision['radius']:g} r, {collision['speed']:g} m/s", ylim=(0, 1.15e-6 * max(part[f"rate{threads}"] for part in collision["parts"] for threads in THREADS)))
     axis.grid(alpha=0.25)
     axis.legend(loc="lower left", fontsize=8)
     contacts = axis.twinx()

@@ -20,7 +20,7 @@ def text(how, found):
         speeds = Speeds(found["speed"]["results"], how.reference)
         parts += [codes(how, speeds, found), sizes(how, speeds), instruction_sets(how, speeds), kinds(speeds), memory(found["speed"]["memory"])]
     if "collision" in found:
-        parts.append(collision(how, found["collision"]))
+        parts += [collision(one) for one in found["collision"]]
     if "error" in found:
         parts.append(error(how, found["error"]))
     return "\n".join(part for part in parts if part)
@@ -105,11 +105,11 @@ def memory(measured):
     return section("Memory that the engine takes (what the process holds beyond YADE's scene, two threads)", lines)
 
 
-def collision(how, found):
+def collision(found):
     lines = ["| until [ns] | contacts | pieces | events so far | one core | two cores |", "|---:|---:|---:|---:|---:|---:|"]
     lines.append(f"| before | | | | {found['before'][1] / 1e6:.1f} | {found['before'][2] / 1e6:.1f} |")
     lines += [f"| {part['until'] * 1e9:.0f} | {part['contacts']} | {part['pieces']} | {part['events']} | {part['rate1'] / 1e6:.1f} | {part['rate2'] / 1e6:.1f} |" for part in found["parts"]]
-    return section(f"Through a collision (R = {how.reference:g}, {how.collision_speed:g} m/s; one and two cores take turns)", lines)
+    return section(f"Through a collision (R = {found['radius']:g}, {found['speed']:g} m/s; one and two cores take turns)", lines)
 
 
 def error(how, found):

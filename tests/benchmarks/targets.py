@@ -33,7 +33,8 @@ def targets(how, found):
         result += against_others(speeds) + over_sizes(how, speeds) + unlike(speeds)
         result += [memory(found["speed"]["memory"])]
     if "collision" in found:
-        result += through_collision(found["collision"])
+        for collision in found["collision"]:
+            result += through_collision(collision)
     return result
 
 
@@ -70,7 +71,7 @@ def through_collision(collision):
     found = []
     for threads in (1, 2):
         rates = [part[f"rate{threads}"] / collision["before"][threads] for part in collision["parts"]]
-        found.append(Target(f"slowest part of a collision (range: all parts) / before it, {cores(threads)}", 0.75, Spread(min(rates), min(rates), max(rates))))
+        found.append(Target(f"slowest part of a collision at {collision['speed']:g} m/s, R = {collision['radius']:g} (range: all parts) / before it, {cores(threads)}", 0.75, Spread(min(rates), min(rates), max(rates))))
     return found
 
 

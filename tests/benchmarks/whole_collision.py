@@ -3,17 +3,28 @@ from yade_process import YadeProcess
 
 
 def estimate(settings):
-    contacts, steps = 2.5 * settings.reference**3, settings.collision_duration / 1.94e-11
-    return 5 + 1.2 * contacts * steps / 75e6
+    return sum(_one(radius, speed, duration) for radius, speed, duration in settings.collisions)
+
+
+def _one(radius, speed, duration):
+    """Slips cost more than other contact updates, and there are more at a higher speed."""
+    return 5 + 2.5 * radius**3 * duration / 1.94e-11 / 75e6 * (1 + speed / 20)
 
 
 def measure(settings, done):
-    """{"before": {threads: rate}, "parts": [{until [s], contacts, pieces, events, rate1, rate2}]}; rates in contact updates a second."""
-    process = YadeProcess("jkr-wada", "alike", settings.reference, settings.collision_speed)
+    """[{"radius", "speed", "before": {threads: rate}, "parts": [{until [s], contacts, pieces, events, rate1, rate2}]}]; rates in contact updates a second."""
+    found = []
+    for radius, speed, duration in settings.collisions:
+        found.append(collide(settings, radius, speed, duration))
+        done(_one(radius, speed, duration))
+    return found
+
+
+def collide(settings, radius, speed, duration):
+    process = YadeProcess("jkr-wada", "alike", radius, speed)
     try:
         before = {threads: process.ask("fused", seconds=settings.seconds, threads=threads)["rate"] for threads in (1, 2)}
-        parts = process.ask("collision", duration=settings.collision_duration, parts=settings.collision_parts)
+        parts = process.ask("collision", duration=duration, parts=settings.collision_parts)
     finally:
         process.close()
-    done(estimate(settings))
-    return {"before": before, "parts": parts}
+    return {"radius": radius, "speed": speed, "before": before, "parts": parts}
