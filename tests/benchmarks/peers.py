@@ -83,9 +83,14 @@ def missing(code):
     program, _ = PROGRAMS[code]
     if not shutil.which(program):
         return f"{program} is not installed (make bench-peers installs it)"
-    if code == "lammps" and "granular" not in subprocess.run([program, "-h"], capture_output=True, text=True).stdout:
+    if code == "lammps" and "granular" not in help_text(program):
         return f"this {program} was built without pair_style granular"
     return None
+
+
+def help_text(program):
+    with tempfile.TemporaryDirectory() as folder:  # LIGGGHTS leaves a log file where it is called
+        return subprocess.run([program, "-h"], cwd=folder, capture_output=True, text=True).stdout
 
 
 def core_counts():
@@ -95,8 +100,7 @@ def core_counts():
 
 def version(code):
     program, _ = PROGRAMS[code]
-    text = subprocess.run([program, "-h"], capture_output=True, text=True).stdout
-    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", text)
+    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", help_text(program))
     return next(group for group in found.groups() if group) if found else "unknown"
 
 
