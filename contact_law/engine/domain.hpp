@@ -28,6 +28,7 @@ struct Setting {
 
 	bool                  hasDrag() const { return mechanisms & Drag; }
 	bool                  convects() const { return convective.x != 0 || convective.y != 0 || convective.z != 0; }
+	Contact               contactOf(const ContactList& list, int lane) const { return list.get(lane, constantsOf(list.first(lane), list.second(lane))); }
 	PairConstants<double> constantsOf(int i, int j) const
 	{
 		return alike ? common : derivePair(material[kind[i]], radius[i], material[kind[j]], radius[j], linearDamping);
