@@ -1,0 +1,73 @@
+"""The longest step that keeps the energy ledger of a collision within a tolerance (stepFraction=auto).
+
+The ledger closes with second order in the step. What is left of the largest |E(t) - E(0)|/K(0) of a run has two
+sources (s: the step in t0; e = F_c delta_c, the scale of a contact's energy; K(0): all grains together; N: their
+number):
+
+- Contacts that are born or broken, or begin to slip, in the midst of a step: each leaves an error of the order e s^2
+  of either sign, and their number grows with the energy that there is for them, as 1 + K(0)/e. Together they leave
+  EVENTS s^2 sqrt(1 + x)/x of K(0), x = K(0)/e.
+- The curvature of the normal force along the way that grains make in a step: SPEED s^2 K(0)/(N e). K(0)/(N e)
+  is the relative velocity squared over 8 e/m, so this is the square of the overlap travelled in a step over
+  delta_c, but for a factor.
+
+Both constants are 95 % levels: fitted by quantile regression so that 95 % of the measured collisions stay
+below the sum (tests/benchmarks/step_choice.py, which measures and fits; results/step_choice.md has the data, their scatter
+and what was left out of the formula, and why). Runs without drag and with T_vis up to 6 ps.
+"""
+import math
+
+AUTO = 'auto'
+EVENTS, SPEED, FAST = 0.08, 0.0018, 10.0
+SHORTEST = 0.01  # t0: below, rather another tolerance
+
+
+class ToleranceTooTight(ValueError):
+    """No sensible step keeps to a tolerance; the message is one line: what, and what is allowed."""
+
+
+def choose(values, constants, limit):
+    """The step [t0], rounded down to two digits: the longest that keeps to values['tolerance'], at most limit.
+
+    values: parameters as parse() gives them; constants: the plugin's pairConstants of two grains; limit:
+    parameters.step_limit. Raises ToleranceTooTight when the step would be shorter than SHORTEST.
+    """
+    events, speed = coefficients(*energies(values, constants))
+    step = math.sqrt(values['tolerance'] / (events + speed))
+    if step < SHORTEST:
+        least = (events + speed) * SHORTEST**2
+        raise ToleranceTooTight(f'tolerance = {values["tolerance"]:g}: would take a step of {step:.2g} t0 at '
+                                f'{values["velocity"]:.3g} m/s; allowed: at least {_rounded(least, math.ceil):g} K(0) '
+                                f'in this scene, for {SHORTEST:g} t0')
+    return min(limit, _rounded(step, math.floor))
+
+
+def energies(values, constants):
+    """(K(0), the same for a grain), both over F_c delta_c."""
+    grain = constants['reducedMass'] * (values['velocity'] / 2)**2 / (constants['pullOffForce'] * constants['pullOffOverlap'])
+    return 2 * values['grains'] * grain, grain
+
+
+def coefficients(kinetic, of_grain, events=EVENTS, speed=SPEED, fast=FAST):
+    """(of events, of speed): what energies() leave of error [K(0)] over the square of the step [t0], 95 % level."""
+    return events * (1 + kinetic)**0.5 / kinetic, speed * of_grain / (1 + of_grain / fast)**0.8
+
+
+def reason(values, constants, limit):
+    """Which step complete() chose and why, in one line."""
+    events, speed = coefficients(*energies(values, constants))
+    step = values['stepFraction']
+    drag = f'T_vis = {values["viscoelasticTime"] * 1e12:.3g} ps' if values['viscoelasticTime'] else 'no drag'
+    if step == limit:
+        why = f'set by the limit of stability, where {(events + speed) * step**2:.1g} is expected'
+    else:
+        source = "contacts' births and breaks" if events > speed else 'the speed of the impact'
+        why = f'set by {source}; limit of stability {limit:.3g} t0'
+    return (f'{step:.3g} t0 for a ledger error of at most {values["tolerance"]:g} K(0) in 95 % of runs, '
+            f'{2 * values["grains"]} grains at {values["velocity"]:.3g} m/s, {drag} ({why})')
+
+
+def _rounded(x, direction):
+    """x at two significant digits, by math.floor or math.ceil."""
+    unit = 10.0**(math.floor(math.log10(x)) - 1)
+    return float(f'{direction(x / unit * (1 + (1e-9 if direction is math.floor else -1e-9))) * unit:.2g}')
