@@ -2,8 +2,9 @@
 
     python3 tests/benchmarks/step_choice.py          measure (half an hour on one core; goes on where it was stopped), fit, write results
     python3 tests/benchmarks/step_choice.py --fit    fit and write from the results that are there
+    python3 tests/benchmarks/step_choice.py --fit --runs runs/elastoplastic    with the ended runs of a study, which are larger
 
-Measured are a grid of scenes, to which the constants are fitted, and random ones between and beyond, which only judge them. Writes
+The constants are fitted to a grid of scenes and the study's runs; random scenes between and beyond only judge them. Writes
 results/step_choice.csv (a line for each collision), results/step_choice.md (fit and scatter) and results/step_choice.png.
 """
 import csv
@@ -24,6 +25,8 @@ sys.path.insert(0, str(TOP))
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+from analysis import open_run  # noqa: E402
+from analysis.ledger import closure  # noqa: E402
 from yade_scripts import parameters, step_choice, study_cost  # noqa: E402
 from yade_scripts.materials import MATERIALS  # noqa: E402
 
@@ -82,10 +85,19 @@ def read():
         return [{name: kind(row[name]) for name, kind in COLUMNS.items()} for row in csv.DictReader(line for line in file if line[0] != "#")]
 
 
-def write(measured):
+def origins():
+    """{sets: where they were measured}, the comments of the results."""
+    if not CSV.exists():
+        return {}
+    with CSV.open() as file:
+        return dict(line[2:].strip().split(": ", 1) for line in file if line[0] == "#")
+
+
+def write(measured, **origin):
+    """Write the results; origin: what to say of a set that is new, the others' comments stay."""
+    comments = {**origins(), "columns": "s, m/s, t0; error: largest |E(t) - E(0)|/K(0)", **origin}
     with CSV.open("w") as file:
-        about = machine()
-        file.write(f"# largest |E(t) - E(0)|/K(0) of collisions, times in s, velocities in m/s, steps in t0; {about['cpu']}, commit {about['commit']}\n")
+        file.writelines(f"# {name}: {text}\n" for name, text in comments.items())
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows({**s, "error": f"{s['error']:.4g}"} for s in measured)
@@ -93,13 +105,27 @@ def write(measured):
 
 def measure(scenes, chunk=20):
     """Collide what the results don't hold yet, and write them after each chunk."""
+    about = machine()
+    study = [s for s in read() if s["set"] == "study"]
     known = {key(s): s["error"] for s in read()}
     missing = [s for s in scenes if key(s) not in known]
     for start in range(0, len(missing), chunk):
         print(f"{start} of {len(missing)} scenes", flush=True)
         for answer in collide(missing[start:start + chunk]):
             known[key(answer)] = answer["error"]
-        write([{**s, "error": known[key(s)]} for s in scenes if key(s) in known])
+        write([{**s, "error": known[key(s)]} for s in scenes if key(s) in known] + study, **{"grid and random": f"{about['cpu']}, commit {about['commit']}"})
+
+
+def of_study(folder):
+    """(the ended runs of a folder of run folders as measured scenes, what made them)."""
+    scenes, made = [], set()
+    for path in sorted(Path(folder).iterdir()):
+        if (path / "ended").exists():
+            about = json.loads((path / "run.json").read_text())
+            given = about["parameters"]
+            made.add(f"{about['hardware']['cpu']}, commit {about['commit'][:7]}")
+            scenes.append({"set": "study", **{name: given[name] for name in COLUMNS if name in given}, "error": closure(open_run(path).history)})
+    return scenes, "; ".join(sorted(made))
 
 
 def collide(scenes):
@@ -121,13 +147,13 @@ def terms(scenes):
 
 
 def fit(scenes, level=LEVEL):
-    """(EVENTS, SPEED, FAST) of step_choice.py: quantile regression of the logarithm of the error at a level."""
+    """(EVENTS, DECAY, SPEED) of step_choice.py: quantile regression of the logarithm of the error at a level."""
     kinetic, of_grain, step, error = terms(scenes)
 
     def loss(logs):
         over = np.log(error / (step**2 * sum(step_choice.coefficients(kinetic, of_grain, *np.exp(logs)))))
         return np.mean(np.where(over > 0, level * over, (level - 1) * over))
-    starts = product((-3.5, -2.5), (-7.0, -6.0), (1.0, 3.0))
+    starts = product((-3.5, -2.5), (-1.2, -0.7), (-6.0, -4.0))
     found = [minimize(loss, start, method="Nelder-Mead", options={"maxiter": 4000, "xatol": 1e-6, "fatol": 1e-10}) for start in starts]
     return np.exp(min(found, key=lambda f: f.fun).x)
 
@@ -138,7 +164,9 @@ def ratios(scenes):
     return error / (step**2 * sum(step_choice.coefficients(kinetic, of_grain)))
 
 
-GROUPS = {"grid": lambda s: s["set"] == "grid", "random": lambda s: s["set"] == "random", "without drag": lambda s: s["viscoelasticTime"] == 0,
+SETS = ("grid", "study", "random")
+GROUPS = {"grid": lambda s: s["set"] == "grid", "study (A24's scenes, radius 40 and more)": lambda s: s["set"] == "study", "random": lambda s: s["set"] == "random",
+          "without drag": lambda s: s["viscoelasticTime"] == 0,
           "with drag": lambda s: s["viscoelasticTime"] > 0, "ice": lambda s: s["material"] == "ice", "silicate": lambda s: s["material"] == "silicate",
           "velocity < 2 m/s": lambda s: s["velocity"] < 2, "2 to 15 m/s": lambda s: 2 <= s["velocity"] < 15, "> 15 m/s": lambda s: s["velocity"] >= 15,
           "filling < 0.35": lambda s: s["filling"] < 0.35, "filling > 0.5": lambda s: s["filling"] > 0.5, "radius 5 to 8": lambda s: s["radius"] <= 8,
@@ -147,12 +175,12 @@ GROUPS = {"grid": lambda s: s["set"] == "grid", "random": lambda s: s["set"] == 
 
 def report(measured):
     """The text of results/step_choice.md."""
-    about, met = machine(), [s for s in measured if s["error"] > NEVER_MET]
-    on_grid = [s for s in met if s["set"] == "grid"]
-    lines = [f"Largest closure error of the ledger in {len(met)} collisions that met ({len(measured) - len(met)} did not), {sum(s['set'] == 'grid' for s in met)} on a grid and "
-             f"{sum(s['set'] == 'random' for s in met)} random; {about['cpu']}, commit {about['commit']}. Data: step_choice.csv; formula: yade_scripts/step_choice.py.", "",
-             "Fit to the grid at a level (share of runs below):", "", "| level | EVENTS | SPEED | FAST |", "|---:|---:|---:|---:|"]
-    lines += [f"| {level:g} | {a:.3g} | {b:.3g} | {c:.3g} |" for level in (0.5, 0.9, LEVEL, 0.98) for a, b, c in [fit(on_grid, level)]]
+    met = [s for s in measured if s["error"] > NEVER_MET]
+    fitted = [s for s in met if s["set"] != "random"]
+    lines = [f"Largest closure error of the ledger in {len(met)} collisions that met ({len(measured) - len(met)} did not), " + ", ".join(f"{sum(s['set'] == name for s in met)} {name}" for name in SETS)
+             + ". Measured on: " + "; ".join(f"{name}: {text}" for name, text in origins().items() if name != "columns") + ". Data: step_choice.csv; formula: yade_scripts/step_choice.py.", "",
+             "Fit to all but the random ones at a level (share of runs below):", "", "| level | EVENTS | DECAY | SPEED |", "|---:|---:|---:|---:|"]
+    lines += [f"| {level:g} | {a:.3g} | {b:.3g} | {c:.3g} |" for level in (0.5, 0.9, LEVEL, 0.98) for a, b, c in [fit(fitted, level)]]
     lines += ["", "Error over the formula's 95 % level, with the constants as they stand in step_choice.py:", "", "| scenes | number | share below | median | 95 % | largest |", "|---|---:|---:|---:|---:|---:|"]
     for name, belongs in GROUPS.items():
         r = ratios([s for s in met if belongs(s)])
@@ -163,7 +191,7 @@ def report(measured):
 def draw(measured):
     met = [s for s in measured if s["error"] > NEVER_MET]
     figure, axis = plt.subplots(figsize=(7, 5), constrained_layout=True)
-    for name, marker in (("grid", "o"), ("random", "^")):
+    for name, marker in zip(SETS, "os^"):
         chosen = [s for s in met if s["set"] == name]
         kinetic, of_grain, step, error = terms(chosen)
         points = axis.scatter(step**2 * sum(step_choice.coefficients(kinetic, of_grain)), error, c=np.log10(of_grain), s=14, marker=marker, cmap="viridis", vmin=-3, vmax=4, label=f"{name} ({len(chosen)})")
@@ -180,6 +208,10 @@ def main():
     if "--fit" not in sys.argv[1:]:
         measure(grid() + random_scenes())
     measured = read()
+    if "--runs" in sys.argv[1:]:
+        study, made = of_study(sys.argv[sys.argv.index("--runs") + 1])
+        measured = [s for s in measured if s["set"] != "study"] + study
+        write(measured, study=made)
     (RESULTS / "step_choice.md").write_text(report(measured))
     draw(measured)
     print(report(measured))
