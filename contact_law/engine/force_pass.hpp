@@ -167,7 +167,7 @@ template <class Pack> struct Passes {
 		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
 		ContactHistory<Pack>        h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 		ContactForces<Pack>         f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
-		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, h);
+		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, { normalRate(g.normal, g.inverseDistance, pair.velocity), pair.spin1, pair.spin2, Pack(pass.dt) }, h);
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
 		keep(h, block, at);
