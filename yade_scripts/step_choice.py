@@ -1,27 +1,26 @@
 """The longest step that keeps the energy ledger of a collision within a tolerance (stepFraction=auto).
 
-The ledger closes with second order in the step. What is left of the largest |E(t) - E(0)|/K(0) of a run has two
-sources (s: the step in t0; e = F_c delta_c, the scale of a contact's energy; K(0): all grains together; N: their
-number):
+The ledger closes with second order in the step s [t0]. What is left of the largest |E(t) - E(0)|/K(0) of a run
+has two sources (e = F_c delta_c, the scale of a contact's energy; K(0): of all grains together; N: their number):
 
-- Contacts that are born or broken, or begin to slip, in the midst of a step: each leaves an error of the order e s^2,
-  and their number grows with the energy that there is for them, as 1 + x with x = K(0)/e. Were all errors of random
-  sign, they would leave s^2 (1 + x)^(1/2)/x of K(0), and s^2 (1 + x)/x, were all of one sign; measured is a power in
-  between: EVENTS s^2 (1 + 1/x)^(1/2) x^-DECAY.
-- The curvature of the normal force along the way that grains make in a step: SPEED s^2 k/(1 + k)^(4/5), k =
-  K(0)/(N e), which is the relative velocity squared over 8 e/m. For small k this goes with the square of the overlap
-  travelled in a step; for large ones a contact lasts as long as Hertz's, ~ v^(-1/5), and the step over that time
-  squared goes with k^(1/5).
+- Contacts that are born or broken, or begin to slip, in the midst of a step. Each leaves an error of the order
+  e s^2, and their number grows with the energy that there is for them, as 1 + x with x = K(0)/e. Of random sign
+  they would leave s^2 (1 + x)^(1/2)/x of K(0), of one sign s^2 (1 + x)/x; measured is a power in between:
+  EVENTS s^2 (1 + 1/x)^(1/2) x^-DECAY.
+- The curvature of the normal force along the way that grains make in a step: SPEED s^2 k/(1 + k)^(4/5), where
+  k = K(0)/(N e) is the relative velocity squared over 8 e/m. For small k this goes with the square of the
+  overlap travelled in a step; for large k a contact lasts as long as Hertz's, ~ v^(-1/5), and the step over that
+  time squared goes with k^(1/5).
 
-The constants are 95 % levels: fitted by quantile regression so that 95 % of the measured collisions stay below the
-sum (tests/benchmarks/step_choice.py measures and fits; results/step_choice.md has fit and scatter, step_choice.csv the data: 2 x
-50 to 2 x 86,400 grains, fillings 0.2 to 0.65, 0.3 to 80 m/s, ice and silicate, T_vis up to 6 ps, up to 400 t0 a grain
-radius). The typical error is a third of it. Filling and drag are left out: the level with drag is somewhat lower.
+The constants are 95 % levels: by quantile regression, 95 % of the measured collisions stay below the sum
+(tests/benchmarks/step_choice.py measures and fits; results/step_choice.md has fit and scatter, step_choice.csv
+the data: 50 to 86,400 grains in an aggregate, fillings 0.2 to 0.65, 0.3 to 80 m/s, ice and silicate, T_vis up to
+6 ps). The typical error is a third of it. Filling and drag are left out: with drag errors are somewhat smaller.
 """
 import math
 
 AUTO = 'auto'
-EVENTS, DECAY, SPEED = 0.05, 0.39, 0.011
+EVENTS, DECAY, SPEED = 0.05, 0.39, 0.008
 SHORTEST = 0.01  # t0: below, rather another tolerance
 
 
@@ -38,21 +37,25 @@ def choose(values, constants, limit):
     events, speed = coefficients(*energies(values, constants))
     step = math.sqrt(values['tolerance'] / (events + speed))
     if step < SHORTEST:
-        least = (events + speed) * SHORTEST**2
+        least = _rounded((events + speed) * SHORTEST**2, math.ceil)
         raise ToleranceTooTight(f'tolerance = {values["tolerance"]:g}: would take a step of {step:.2g} t0 at '
-                                f'{values["velocity"]:.3g} m/s; allowed: at least {_rounded(least, math.ceil):g} K(0) '
-                                f'in this scene, for {SHORTEST:g} t0')
+                                f'{values["velocity"]:.3g} m/s; allowed: at least {least:g} K(0) in this scene, '
+                                f'for {SHORTEST:g} t0, or stepFraction as a number')
     return min(limit, _rounded(step, math.floor))
 
 
 def energies(values, constants):
     """(K(0), the same for a grain), both over F_c delta_c."""
-    grain = constants['reducedMass'] * (values['velocity'] / 2)**2 / (constants['pullOffForce'] * constants['pullOffOverlap'])
+    contact = constants['pullOffForce'] * constants['pullOffOverlap']
+    grain = constants['reducedMass'] * (values['velocity'] / 2)**2 / contact  # a grain's mass is 2 m*
     return 2 * values['grains'] * grain, grain
 
 
 def coefficients(kinetic, of_grain, events=EVENTS, decay=DECAY, speed=SPEED):
-    """(of events, of speed): what energies() leave of error [K(0)] over the square of the step [t0], 95 % level."""
+    """(of events, of speed): error of the ledger [K(0)] over the square of the step [t0], 95 % level.
+
+    kinetic, of_grain: as energies() gives them, numbers or arrays.
+    """
     return events * (1 + 1 / kinetic)**0.5 * kinetic**-decay, speed * of_grain / (1 + of_grain)**0.8
 
 
@@ -73,4 +76,4 @@ def reason(values, constants, limit):
 def _rounded(x, direction):
     """x at two significant digits, by math.floor or math.ceil."""
     unit = 10.0**(math.floor(math.log10(x)) - 1)
-    return float(f'{direction(x / unit * (1 + (1e-9 if direction is math.floor else -1e-9))) * unit:.2g}')
+    return float(f'{direction(round(x / unit, 9)) * unit:.2g}')

@@ -129,11 +129,11 @@ def of_study(folder):
 
 
 def collide(scenes):
-    """The answers of step_case.py."""
+    """The answers of yade_step_choice.py."""
     with tempfile.TemporaryDirectory() as folder:
         given, answers = Path(folder) / "scenes.json", Path(folder) / "answers.jsonl"
         given.write_text(json.dumps([{name: value for name, value in s.items() if name != "set"} for s in scenes]))
-        subprocess.run(["yade", "-n", "-x", "-j1", str(HERE / "step_case.py"), str(given), str(answers)], check=True, capture_output=True)
+        subprocess.run(["yade", "-n", "-x", "-j1", str(HERE / "yade_step_choice.py"), str(given), str(answers)], check=True, capture_output=True)
         return [json.loads(line) for line in answers.read_text().splitlines()]
 
 
@@ -183,6 +183,8 @@ def report(measured):
     lines += [f"| {level:g} | {a:.3g} | {b:.3g} | {c:.3g} |" for level in (0.5, 0.9, LEVEL, 0.98) for a, b, c in [fit(fitted, level)]]
     lines += ["", "Error over the formula's 95 % level, with the constants as they stand in step_choice.py:", "", "| scenes | number | share below | median | 95 % | largest |", "|---|---:|---:|---:|---:|---:|"]
     for name, belongs in GROUPS.items():
+        if not any(map(belongs, met)):
+            continue
         r = ratios([s for s in met if belongs(s)])
         lines.append(f"| {name} | {len(r)} | {np.mean(r <= 1):.3f} | {np.median(r):.2f} | {np.quantile(r, LEVEL):.2f} | {r.max():.2f} |")
     return "\n".join(lines) + "\n"
@@ -193,6 +195,8 @@ def draw(measured):
     figure, axis = plt.subplots(figsize=(7, 5), constrained_layout=True)
     for name, marker in zip(SETS, "os^"):
         chosen = [s for s in met if s["set"] == name]
+        if not chosen:
+            continue
         kinetic, of_grain, step, error = terms(chosen)
         points = axis.scatter(step**2 * sum(step_choice.coefficients(kinetic, of_grain)), error, c=np.log10(of_grain), s=14, marker=marker, cmap="viridis", vmin=-3, vmax=4, label=f"{name} ({len(chosen)})")
     line = np.array([1e-5, 1e-1])

@@ -1,4 +1,4 @@
-"""Ledger errors of many small collisions, for step_choice.py: yade -n -x step_case.py SCENES.json ANSWERS.jsonl
+"""Ledger errors of many small collisions, for step_choice.py: yade -n -x yade_step_choice.py SCENES.json ANSWERS.jsonl
 
 SCENES.json: a list of {parameter: value}, as for collide.py. Appends a line of JSON to ANSWERS.jsonl for each: the
 scene's parameters, error (the largest |E(t) - E(0)|/K(0) of the samples that collide.py would take), errorAtHalf (the
