@@ -31,6 +31,7 @@ from yade_scripts import parameters, step_choice, study_cost  # noqa: E402
 from yade_scripts.materials import MATERIALS  # noqa: E402
 
 CSV, LEVEL = RESULTS / "step_choice.csv", 0.95
+FITTED_LEVEL = 0.98  # its constants are taken: the fit's own 95 % level holds for less among scenes unlike the grid's
 COLUMNS = {"set": str, "material": str, "radius": float, "filling": float, "velocity": float, "viscoelasticTime": float, "stepFraction": float, "seed": int, "error": float}
 NEVER_MET = 1e-9  # of K(0): the error of aggregates that passed each other or didn't get that far is rounding
 VELOCITIES, STEPS = (0.3, 1.0, 3.0, 10.0, 30.0), (0.05, 0.1, 0.2, 0.4)
@@ -146,7 +147,7 @@ def terms(scenes):
     return np.array(numbers).T
 
 
-def fit(scenes, level=LEVEL):
+def fit(scenes, level=FITTED_LEVEL):
     """(EVENTS, DECAY, SPEED) of step_choice.py: quantile regression of the logarithm of the error at a level."""
     kinetic, of_grain, step, error = terms(scenes)
 
@@ -180,8 +181,8 @@ def report(measured):
     lines = [f"Largest closure error of the ledger in {len(met)} collisions that met ({len(measured) - len(met)} did not), " + ", ".join(f"{sum(s['set'] == name for s in met)} {name}" for name in SETS)
              + ". Measured on: " + "; ".join(f"{name}: {text}" for name, text in origins().items() if name != "columns") + ". Data: step_choice.csv; formula: yade_scripts/step_choice.py.", "",
              "Fit to all but the random ones at a level (share of runs below):", "", "| level | EVENTS | DECAY | SPEED |", "|---:|---:|---:|---:|"]
-    lines += [f"| {level:g} | {a:.3g} | {b:.3g} | {c:.3g} |" for level in (0.5, 0.9, LEVEL, 0.98) for a, b, c in [fit(fitted, level)]]
-    lines += ["", "Error over the formula's 95 % level, with the constants as they stand in step_choice.py:", "", "| scenes | number | share below | median | 95 % | largest |", "|---|---:|---:|---:|---:|---:|"]
+    lines += [f"| {level:g} | {a:.3g} | {b:.3g} | {c:.3g} |" for level in (0.5, 0.9, LEVEL, FITTED_LEVEL) for a, b, c in [fit(fitted, level)]]
+    lines += ["", f"Error over the formula, with the constants as they stand in step_choice.py ({step_choice.EVENTS:g}, {step_choice.DECAY:g}, {step_choice.SPEED:g}: those of the {FITTED_LEVEL:.0%} level):", "", "| scenes | number | share below | median | 95 % | largest |", "|---|---:|---:|---:|---:|---:|"]
     for name, belongs in GROUPS.items():
         if not any(map(belongs, met)):
             continue

@@ -95,7 +95,10 @@ for name, drag in parameters["cases"]:
 
 
 def test_the_constants_are_those_of_the_data():
-    """95 % of the measured collisions that met lie below the formula, in the grid and among the random scenes."""
+    """95 % and a little more of the measured collisions that met lie below it, of each set.
+
+    Of the sets together that were fitted about 98 % do. Fewer of a set than binom.ppf would be a chance of 2 %.
+    """
     with open(os.path.join(BENCHMARKS, 'results', 'step_choice.csv')) as file:
         rows = [row for row in csv.DictReader(line for line in file if line[0] != '#') if float(row['error']) > 1e-9]
     below = {}
@@ -105,8 +108,9 @@ def test_the_constants_are_those_of_the_data():
         constants = study_cost.pair_constants(MATERIALS[values['material']], values['viscoelasticTime'])
         below.setdefault(row['set'], []).append(float(row['error']) <= expected_error(values, constants))
     assert len(below['grid']) > 400 and len(below['random']) > 90
-    assert 0.93 < np.mean(below['grid']) < 0.97
-    assert np.mean(below['random']) > 0.92
+    assert 0.95 < np.mean(below['grid'] + below['study']) < 0.99
+    for name, found in below.items():
+        assert sum(found) >= binom.ppf(0.02, len(found), 0.95), name
 
 
 # Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds.
