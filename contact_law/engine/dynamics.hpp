@@ -93,11 +93,11 @@ public:
 					if (list.alive(lane)) visit(list, lane, original[list.first(lane)], original[list.second(lane)]);
 			}
 	}
-	const PairConstants<double>& commonConstants() const { return setting.common; } // for ContactList::get
+	Contact contactOf(const ContactList& list, int lane) const { return setting.contactOf(list, lane); }
 	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, its first and second grain as given, normal force now)
 	{
 		eachPlace([&](const ContactList& list, int lane, int first, int second) {
-			const Contact c = list.get(lane, setting.common);
+			const Contact c = setting.contactOf(list, lane);
 			visit(c, first, second, normalForce(c));
 		});
 	}

@@ -142,7 +142,7 @@ void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, b
 {
 	const std::vector<Place> places = placesOf(dynamics);
 	const auto               now    = [&](size_t k, int id1) {
-                const ContactNow c = dynamics.now(places[k].list->get(places[k].lane, dynamics.commonConstants()));
+                const ContactNow c = dynamics.now(dynamics.contactOf(*places[k].list, places[k].lane));
                 return c.first == id1 ? c : contact_law::swapped(c);
 	};
 	if (!inOrder(scene, places)) {
