@@ -31,6 +31,7 @@ namespace {
 		const State &state1 = stateOf(scene, c.first), &state2 = stateOf(scene, c.second);
 		auto&        geometry     = static_cast<ScGeom&>(*interaction.geom);
 		auto&        phys         = static_cast<JKRWadaPhys&>(*interaction.phys);
+	interaction.cellDist      = Vector3i(-int(c.shift.x), -int(c.shift.y), -int(c.shift.z)); // of body 2, not body 1
 		geometry.normal           = -fromKernel(c.geometry.normal); // YADE's points from body 1 to body 2
 		geometry.refR1            = c.constants.radius1;
 		geometry.refR2            = c.constants.radius2;
