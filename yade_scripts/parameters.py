@@ -3,8 +3,10 @@ from dataclasses import dataclass
 import math
 from typing import Any, Callable
 
+from yade_scripts import step_choice
 from yade_scripts.materials import MATERIALS
 from yade_scripts.packings import grain_number, maximum_filling
+from yade_scripts.step_choice import AUTO
 
 # Velocity Verlet is stable at 0.4 t0 and blows up at 0.5 t0 on A24's scene, without drag (measured).
 STABLE_STEP = 0.4
@@ -13,6 +15,7 @@ SAFETY = STABLE_STEP / 0.5
 DURATION_PER_RADIUS = 64.6
 MOST_GRAINS = 5_000_000
 FUSED_THREADS = 2  # JKRWadaEngine's domains
+TOLERANCE, TOLERANCES = 1e-4, (1e-7, 1e-2)  # with stepFraction=auto: default, and what is allowed
 
 
 class ParameterError(ValueError):
@@ -21,7 +24,10 @@ class ParameterError(ValueError):
 
 @dataclass(frozen=True)
 class Field:
-    """One column of a table. kind: float, int or str; default None: worked out from the others."""
+    """One column of a table. kind: float, int or str; default None: worked out from the others.
+
+    word: a text that a number's column may hold as well.
+    """
     name: str
     kind: type
     default: Any
@@ -29,6 +35,7 @@ class Field:
     allowed: str
     accepts: Callable[[Any], bool]
     meaning: str
+    word: str = None
 
 
 def _one_of(names):
@@ -56,8 +63,12 @@ FIELDS = [
     Field('seed', int, 1, '', '>= 0', lambda n: n >= 0, 'of the random packings'),
     Field('duration', float, None, 's', '> 0', lambda x: x > 0,
           'time that is simulated (64.6 t0 per grain radius of R: 12.5 ns for ice)'),
-    Field('stepFraction', float, 0.1, 't0', f'> 0 and <= {STABLE_STEP}, less in dense packings and with drag',
-          lambda x: 0 < x <= STABLE_STEP, 'time step'),
+    Field('stepFraction', float, 0.1, 't0',
+          f'> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}',
+          lambda x: 0 < x <= STABLE_STEP, f'time step; {AUTO}: the longest that keeps to tolerance', word=AUTO),
+    Field('tolerance', float, None, 'K(0)', '{:g} to {:g}, with stepFraction=auto only'.format(*TOLERANCES),
+          lambda x: TOLERANCES[0] <= x <= TOLERANCES[1],
+          f'largest error of the ledger, with stepFraction={AUTO} ({TOLERANCE:g})'),
     Field('engine', str, 'fused', '', *_one_of(['fused', 'functors']),
           "JKRWadaEngine, or YADE's own loop (the reference, much slower)"),
     Field('threads', int, None, '', '>= 1', lambda n: n >= 1,
@@ -87,8 +98,9 @@ def parse(texts, description=None):
     """Parameters {name: value}, every field by its name, from texts {name: text or number}.
 
     Numbers may be written as arithmetic (10**0.5), text with or without quotes. radius and grains are both
-    filled in. duration and threads stay None until complete() unless they are given. Raises ParameterError
-    with one line that says what is wrong and what is allowed.
+    filled in, and tolerance if stepFraction is AUTO, otherwise it is None. duration and threads stay None until
+    complete() unless they are given, and stepFraction stays AUTO. Raises ParameterError with one line that says
+    what is wrong and what is allowed.
     """
     values = {field.name: field.default for field in FIELDS}
     for name, text in texts.items():
@@ -99,6 +111,7 @@ def parse(texts, description=None):
         raise ParameterError('radius and grains: both given; allowed: one of the two, the other follows from '
                              'filling')
     _fill_in_size(values)
+    _fill_in_tolerance(values)
     if values['out'] is None:
         values['out'] = 'runs/' + _file_name(description or _name_from(texts, values))
     return values
@@ -107,6 +120,8 @@ def parse(texts, description=None):
 def complete(values, constants, threads):
     """The same, with what depends on the contact (the plugin's pairConstants) and on YADE's threads."""
     limit = step_limit(constants, values['filling'])
+    if values['stepFraction'] == AUTO:
+        values = dict(values, stepFraction=_chosen_step(values, constants, limit))
     if values['stepFraction'] > limit:
         raise ParameterError(f'stepFraction = {values["stepFraction"]:g}: unstable at this filling and drag; '
                              f'allowed: at most {limit:.3g} (t0)')
@@ -122,6 +137,13 @@ def complete(values, constants, threads):
     if values['duration'] is None:
         values['duration'] = DURATION_PER_RADIUS * values['radius'] * constants['timeUnit']
     return values
+
+
+def step_chosen(values, constants):
+    """How complete() came to values['stepFraction'], in one line."""
+    if values['tolerance'] is None:
+        return 'as given'
+    return step_choice.reason(values, constants, step_limit(constants, values['filling']))
 
 
 def step_limit(constants, filling):
@@ -147,7 +169,16 @@ def step_limit(constants, filling):
     return min(STABLE_STEP, SAFETY * min(turning, moving) / constants['timeUnit'])
 
 
+def _chosen_step(values, constants, limit):
+    try:
+        return step_choice.choose(values, constants, limit)
+    except step_choice.ToleranceTooTight as problem:
+        raise ParameterError(str(problem)) from None
+
+
 def _value(field, text):
+    if field.word is not None and _text(text) == field.word:
+        return field.word
     value = _text(text) if field.kind is str else _number(field, text)
     if not field.accepts(value):
         raise ParameterError(f'{field.name} = {text}: not allowed; allowed: {field.allowed}{_unit(field)}')
@@ -174,6 +205,14 @@ def _number(field, text):
     if number is None or not math.isfinite(number) or (field.kind is int and number != int(number)):
         raise ParameterError(f'{field.name} = {text}: not {kind}; allowed: {field.allowed}{_unit(field)}')
     return field.kind(value)
+
+
+def _fill_in_tolerance(values):
+    if values['stepFraction'] == AUTO:
+        values['tolerance'] = TOLERANCE if values['tolerance'] is None else values['tolerance']
+    elif values['tolerance'] is not None:
+        raise ParameterError(f'tolerance = {values["tolerance"]:g}: given with stepFraction = '
+                             f'{values["stepFraction"]:g}; allowed: with stepFraction={AUTO} only')
 
 
 def _fill_in_size(values):
