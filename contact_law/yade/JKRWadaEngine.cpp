@@ -220,7 +220,7 @@ void JKRWadaEngine::writeBodies()
 void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 {
 	const contact_law::Dissipation& d   = now.dissipated;
-	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag }, known);
+	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() }, known);
 	current->constrained = current->constrained || current->dynamics.constrained();
 	if (current->constrained) channels.setConstraintWork(*scene, now.constraintWork, known);
 }

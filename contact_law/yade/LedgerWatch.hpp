@@ -15,7 +15,7 @@ public:
 	std::string wrong(const contact_law::Energies& e)
 	{
 		const contact_law::Dissipation& d       = e.dissipated;
-		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag };
+		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() };
 		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork };
 		double       lost = 0, sum = 0, scale = 0;
 		for (const double x : losses)
