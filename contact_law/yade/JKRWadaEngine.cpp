@@ -57,6 +57,7 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	Dynamics::Options options;
 	options.dt            = scene->dt / subSteps;
 	options.linearDamping = linearDamping;
+	options.neck          = neck;
 	options.domains       = domains;
 	options.threads       = threads;
 	options.instructions  = instructions;
@@ -73,6 +74,7 @@ void JKRWadaEngine::start()
 	if (!failure.empty()) refuseInEngine(failure);
 	if (scene->isPeriodic) refuseInEngine("periodic cells are not supported yet; use the functors");
 	if (subSteps < 1) refuseInEngine("subSteps = " + std::to_string(subSteps) + ", allowed: 1 or more");
+	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck)) refuseInEngine("neck = " + text(neck) + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
 	requireAlone(*scene);
 	const SceneGrains now = readGrains(*scene);
 	if (now.grains.empty()) refuseInEngine("there are no bodies");
@@ -81,6 +83,8 @@ void JKRWadaEngine::start()
 	if (continued) options.dt = smallStep;
 	SceneContacts                contacts;
 	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
+	for (const auto& one : inherited.contacts)
+		if (one.bonded && neck == 0) refuseInEngine("O.interactions has sintered bonds, and neck is 0; allowed: the neck they were made with");
 	const bool                   inherits  = !continued && !inherited.contacts.empty();
 	current = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr, inherits ? &inherited : nullptr), now.grains, now.grains,
 	                                         now.states, orientations, false, contacts });
@@ -227,15 +231,17 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 
 void JKRWadaEngine::preSave(JKRWadaEngine&) { memory = current ? current->dynamics.remember() : std::vector<Real>(); }
 
-bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces) const
+bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const
 {
 	if (!current) return false;
-	current->dynamics.eachContact([&](const contact_law::Contact& contact, int first, int second, double normalForce) {
-		(void)contact;
+	const auto add = [&](int first, int second, double normalForce, bool isBond) {
 		pairs.push_back(first);
 		pairs.push_back(second);
 		normalForces.push_back(normalForce);
-	});
+		bonded.push_back(isBond);
+	};
+	current->dynamics.eachContact([&](const contact_law::Contact&, int first, int second, double force) { add(first, second, force, false); });
+	current->dynamics.eachBond([&](const contact_law::Bond&, int first, int second, double force) { add(first, second, force, true); });
 	return true;
 }
 
@@ -244,6 +250,14 @@ boost::python::dict JKRWadaEngine::statistics() const
 	boost::python::dict result;
 	if (!current) return result;
 	result["contacts"]       = current->dynamics.contactCount();
+	result["bonds"]          = current->dynamics.bondCount();
+	const auto                           broken = current->dynamics.brokenBonds();
+	const contact_law::Dissipation       lost   = current->dynamics.dissipated();
+	static const char* const             modes[contact_law::bondModes] = { "brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting" };
+	for (int mode = 0; mode < contact_law::bondModes; ++mode) {
+		result[modes[mode]]                         = broken[mode];
+		result[modes[mode] + std::string("Energy")] = lost.bondBreaking[mode];
+	}
 	result["contactUpdates"] = current->dynamics.contactUpdates;
 	result["events"]         = current->dynamics.events();
 	result["farRebuilds"]    = current->dynamics.farRebuilds;
