@@ -1,6 +1,7 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
-# make bench  measures speed, and error against the time step
+# make bench  measures speed beside other codes, and error against the time step
+# make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
 #             Stop it at will; called again it goes on. make study-status tells from another shell how far it is.
@@ -162,11 +163,15 @@ study-status:
 gallery-elastoplastic:
 	@$(PYTHON) -m analysis elastoplastic $(RUNS) --figures analysis/gallery/elastoplastic
 
-# Speed against YADE's own loop, and error against step: some ten minutes; results in tests/benchmarks/results.
-.PHONY: bench
+# Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
+.PHONY: bench bench-peers
 bench: all
-	@$(PYTHON) tests/benchmarks/speed.py
-	@$(PYTHON) tests/benchmarks/error.py
+	@$(PYTHON) tests/benchmarks/bench.py $(BENCH)
+
+# One by one: the bench measures those that could be installed, and says which could not.
+bench-peers:
+	@for package in lammps liggghts openmpi-bin; do \
+		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make bench-peers: make bench will go without $$package" >&2; done
 
 # ---- what must be installed ----
 

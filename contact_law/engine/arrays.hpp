@@ -44,10 +44,17 @@ struct alignas(64) ContactBlock {
 	int    i[lanes], j[lanes]; // grains; a dead lane points to the domain's two dummies
 };
 
-// Constants of eight contacts of a scene with several kinds of pairs, in the order of PairConstants.
-constexpr int constantCount = sizeof(PairConstants<double>) / sizeof(double);
+/* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces take, since reading them is what such scenes are
+ * slower for; the rest are derived anew where they are wanted. The last three are for drag. */
+template <class T>
+constexpr T PairConstants<T>::*keptConstants[] = { &PairConstants<T>::radius1,          &PairConstants<T>::radius2,           &PairConstants<T>::reducedRadius,
+	                                           &PairConstants<T>::inverseEquilibriumOverlap, &PairConstants<T>::pullOffForce,  &PairConstants<T>::rollingStiffness,
+	                                           &PairConstants<T>::slidingStiffness, &PairConstants<T>::twistingStiffness, &PairConstants<T>::criticalSliding,
+	                                           &PairConstants<T>::criticalRolling,  &PairConstants<T>::equilibriumContactRadius, &PairConstants<T>::dragPerContactRadius,
+	                                           &PairConstants<T>::linearDrag };
+constexpr int keptCount = sizeof(keptConstants<double>) / sizeof(keptConstants<double>[0]);
 struct alignas(64) ConstantsBlock {
-	double field[constantCount][lanes];
+	double field[keptCount][lanes];
 };
 
 // What drag needs of the step before: the ledger takes the mean of two forces.

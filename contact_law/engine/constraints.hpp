@@ -20,19 +20,24 @@ public:
 
 	void begin() { next = 0; } // a step's forces, of which grains will have all
 
-	/* Of grains below `end`, whose forces of this step are complete, unless it has been done. The work over the step is half of both its forces, those before and those now, times the way: by just that the leapfrog's
-	 * ledger of the contacts is off when a grain does not answer, events within the step included (MODEL.md, "Blocked degrees of freedom"). */
+	/* Of grains below `end`, whose forces of this step are complete, unless it has been done. The work over the step is half of both its forces, those
+	 * before and those now, times the way: by just that the leapfrog's ledger of the contacts is off when a grain does not answer, events within the
+	 * step included (MODEL.md, "Blocked degrees of freedom"). */
 	void withhold(Grain* all, double dt, int end)
 	{
-		for (; next < grains.size() && grains[next].grain < end; ++next) {
-			Constrained&       c = grains[next];
+		double sum = work; // grain by grain, so that it doesn't depend on where `end` stood
+		auto   at  = grains.begin() + next;
+		for (; at != grains.end() && at->grain < end; ++at) {
+			Constrained&       c     = *at;
 			Grain&             g     = all[c.grain];
 			const Vec3<double> force = blockedForce({ g.fx, g.fy, g.fz }, c.blocked), torque = blockedTorque({ g.tx, g.ty, g.tz }, c.blocked);
-			work += 0.5 * dt * (dot(c.force + force, Vec3<double> { g.vx, g.vy, g.vz }) + dot(c.torque + torque, Vec3<double> { g.wx, g.wy, g.wz }));
+			sum += 0.5 * dt * (dot(c.force + force, Vec3<double> { g.vx, g.vy, g.vz }) + dot(c.torque + torque, Vec3<double> { g.wx, g.wy, g.wz }));
 			add(g, -force, -torque);
 			c.force  = force;
 			c.torque = torque;
 		}
+		work = sum;
+		next = at - grains.begin();
 	}
 
 	// Other degrees of freedom of a grain from now on; 0: free.

@@ -45,11 +45,11 @@ public:
 	int  second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
-	Contact get(int lane, const PairConstants<double>& common) const
+	Contact get(int lane, const PairConstants<double>& pairConstants) const
 	{
 		const ContactBlock& b = blocks[lane / lanes];
 		const int           k = lane % lanes;
-		Contact             c { b.i[k], b.j[k], history(b, k), alike ? common : readConstants(lane) };
+		Contact             c { b.i[k], b.j[k], history(b, k), pairConstants };
 		if (hasDrag) c.drag = drag(lane), c.overlap = drags[lane / lanes].overlap[k];
 		return c;
 	}
@@ -93,8 +93,10 @@ public:
 		std::sort(order.begin(), order.end());
 		const ContactList before = *this;
 		clear();
-		for (const Key& key : order)
-			append(before.get(key.lane, deadConstants));
+		for (const Key& key : order) {
+			appendDead();
+			copy(before, key.lane, used - 1);
+		}
 		used = blockCount() * lanes;
 	}
 	void clear()
@@ -103,14 +105,6 @@ public:
 		constants.clear();
 		drags.clear();
 		used = 0;
-	}
-	PairConstants<double> readConstants(int lane) const
-	{
-		PairConstants<double> c;
-		double*               to = reinterpret_cast<double*>(&c);
-		for (int k = 0; k < constantCount; ++k)
-			to[k] = constants[lane / lanes].field[k][lane % lanes];
-		return c;
 	}
 	void setDeadConstants(const PairConstants<double>& c) { deadConstants = c; } // of the two dummies, which touch at equilibrium
 
@@ -125,6 +119,15 @@ private:
 		for (int k = 0; k < lanes; ++k)
 			kill(int(blocks.size() - 1) * lanes + k);
 	}
+	void copy(const ContactList& from, int lane, int here)
+	{
+		blocks[here / lanes].i[here % lanes] = from.first(lane);
+		blocks[here / lanes].j[here % lanes] = from.second(lane);
+		writeHistory(here, history(from.blocks[lane / lanes], lane % lanes));
+		if (hasDrag) writeDrag(here, from.drag(lane), from.drags[lane / lanes].overlap[lane % lanes]);
+		for (int k = 0; !alike && k < keptCount; ++k)
+			constants[here / lanes].field[k][here % lanes] = from.constants[lane / lanes].field[k][lane % lanes];
+	}
 	void set(int lane, const Contact& contact)
 	{
 		blocks[lane / lanes].i[lane % lanes] = contact.i;
@@ -135,9 +138,8 @@ private:
 	}
 	void writeConstants(int lane, const PairConstants<double>& c)
 	{
-		const double* from = reinterpret_cast<const double*>(&c);
-		for (int k = 0; k < constantCount; ++k)
-			constants[lane / lanes].field[k][lane % lanes] = from[k];
+		for (int k = 0; k < keptCount; ++k)
+			constants[lane / lanes].field[k][lane % lanes] = c.*keptConstants<double>[k];
 	}
 	Aligned<ContactBlock>   blocks;
 	Aligned<ConstantsBlock> constants;

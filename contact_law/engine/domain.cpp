@@ -124,9 +124,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	const int              k    = lane % lanes;
 	const int              i = list.first(lane), j = list.second(lane);
 	const ContactMotion    m = motionOf(i, j);
-	PairConstants<double>  own;
-	if (!s.alike) own = list.readConstants(lane);
-	const PairConstants<double>& constants = s.alike ? s.common : own;
+	const PairConstants<double> constants = s.constantsOf(i, j);
 	ContactHistory<double> h    = ContactList::history(old, k);
 
 	// the moment a step ago, from where it was: positions moved by velocity * dt, and the pointers had not turned yet

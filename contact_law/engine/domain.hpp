@@ -30,6 +30,7 @@ struct Setting {
 	const InstructionSet*  passes = nullptr;
 
 	bool                  hasDrag() const { return mechanisms & Drag; }
+	Contact               contactOf(const ContactList& list, int lane) const { return list.get(lane, constantsOf(list.first(lane), list.second(lane))); }
 	PairConstants<double> constantsOf(int i, int j) const
 	{
 		return alike ? common : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);

@@ -123,7 +123,7 @@ public:
 	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, its first and second grain as given, normal force now)
 	{
 		eachPlace([&](const ContactList& list, int lane, int first, int second) {
-			const Contact c = list.get(lane, setting.common);
+			const Contact c = setting.contactOf(list, lane);
 			visit(c, first, second, normalForce(c));
 		});
 	}

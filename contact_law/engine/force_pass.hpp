@@ -35,16 +35,17 @@ template <class Pack> struct Passes {
 		const double*       from = reinterpret_cast<const double*>(&c);
 		PairConstants<Pack> to;
 		Pack*               field = reinterpret_cast<Pack*>(&to);
-		for (int k = 0; k < constantCount; ++k)
+		for (std::size_t k = 0; k < sizeof c / sizeof(double); ++k)
 			field[k] = Pack(from[k]);
 		return to;
 	}
-	static PairConstants<Pack> load(const ConstantsBlock& c, int at)
+	static PairConstants<Pack> load(const ConstantsBlock& c, int at) { return loadKept(c, at, std::make_index_sequence<keptCount>()); }
+	template <std::size_t... k> static PairConstants<Pack> loadKept(const ConstantsBlock& c, int at, std::index_sequence<k...>)
 	{
-		PairConstants<Pack> to;
-		Pack*               field = reinterpret_cast<Pack*>(&to);
-		for (int k = 0; k < constantCount; ++k)
-			field[k] = Pack::load(c.field[k] + at);
+		PairConstants<Pack> to {};
+		((to.*keptConstants<Pack>[k] = Pack::load(c.field[k] + at)), ...);
+		to.pullOffOverlap   = Pack(normal::pullOffOverlap) / to.inverseEquilibriumOverlap;
+		to.criticalTwisting = Pack(criticalTwistingAngle);
 		return to;
 	}
 
@@ -80,12 +81,16 @@ template <class Pack> struct Passes {
 			__builtin_prefetch(&pass.grains[j].wz);
 		}
 	}
-	static void fetchBlock(const ForcePass& pass, int index)
+	template <bool alike> static void fetchBlock(const ForcePass& pass, int index)
 	{
 		if (index >= pass.endBlock) return;
-		const char* block = reinterpret_cast<const char*>(&pass.blocks[index]);
-		for (std::size_t line = 0; line < sizeof(ContactBlock); line += 64)
-			__builtin_prefetch(block + line, 1);
+		fetch(&pass.blocks[index]);
+		if constexpr (!alike) fetch(&pass.constants[index]);
+	}
+	template <class Block> static void fetch(const Block* block)
+	{
+		for (std::size_t line = 0; line < sizeof(Block); line += 64)
+			__builtin_prefetch(reinterpret_cast<const char*>(block) + line);
 	}
 
 	// First sweep: where `width` contacts stand, their normal forces, and how far they twisted.
@@ -93,7 +98,8 @@ template <class Pack> struct Passes {
 	{
 		const Pair                  pair = gatherPair(pass.grains, pass.blocks[index], at);
 		const ContactGeometry<Pack> g    = geometryOf(pair.separation, c.radius1 + c.radius2);
-		const typename Pack::Mask   care = (g.overlap < -c.pullOffOverlap) | (Pack(largestFittedOverlap) < g.overlap * c.inverseEquilibriumOverlap);
+		const Pack                  inUnits = g.overlap * c.inverseEquilibriumOverlap;
+		const typename Pack::Mask   care    = (inUnits < Pack(-normal::pullOffOverlap)) | (Pack(largestFittedOverlap) < inUnits);
 		ContactForces<Pack>         f;
 		Vec3<Pack>                  velocity {};
 		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, pass.blocks[index], pair.velocity, at);
@@ -167,7 +173,7 @@ template <class Pack> struct Passes {
 		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
 		ContactHistory<Pack>        h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 		ContactForces<Pack>         f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
-		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, h);
+		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, { normalRate(g.normal, g.inverseDistance, pair.velocity), pair.spin1, pair.spin2, Pack(pass.dt) }, h);
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
 		keep(h, block, at);
@@ -229,7 +235,7 @@ template <class Pack> struct Passes {
 					sweepNormal<mechanisms>(pass, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], at);
 			}
 			for (int b = 0; b < count; ++b) {
-				fetchBlock(pass, first + b + blocksAhead);
+				fetchBlock<alike>(pass, first + b + blocksAhead);
 				ContactBlock before;
 				const auto   c = [&](int at) -> decltype(auto) { return constants(pass, same, first + b, at, std::bool_constant<alike>()); };
 				for (int at = 0; at < lanes; at += width)

@@ -86,7 +86,7 @@ std::vector<double> Dynamics::remember() const
 			to.push_back(list.size());
 			for (int lane = 0; lane < list.size(); ++lane) {
 				to.push_back(list.alive(lane));
-				if (list.alive(lane)) contact_law::remember(to, list.get(lane, setting.common));
+				if (list.alive(lane)) contact_law::remember(to, setting.contactOf(list, lane));
 			}
 		}
 	}

@@ -15,8 +15,8 @@ inline Orientation turnedBy(double turnX, double turnY, double turnZ, const Orie
 	const double h = 0.25 * (turnX * turnX + turnY * turnY + turnZ * turnZ); // half the angle, squared
 	double       c, s;                                                       // cos(half), sin(half)/(2 half)
 	if (h < 0.01) { // series of both, cut where the rest is below 1e-16
-		c = 1 - h * (1. / 2 - h * (1. / 24 - h * (1. / 720 - h * (1. / 40320 - h / 3628800))));
-		s = 0.5 * (1 - h * (1. / 6 - h * (1. / 120 - h * (1. / 5040 - h / 362880))));
+		c = 1 - h * (1. / 2 - h * (1. / 24 - h * (1. / 720 - h * (1. / 40320 - h * (1. / 3628800)))));
+		s = 0.5 * (1 - h * (1. / 6 - h * (1. / 120 - h * (1. / 5040 - h * (1. / 362880)))));
 	} else {
 		const double half = std::sqrt(h);
 		c                 = std::cos(half);

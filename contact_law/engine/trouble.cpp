@@ -28,8 +28,8 @@ Dynamics::Trouble Dynamics::trouble(int given) const
 		for (const ContactList& list : domain->contacts)
 			for (int lane = 0; lane < list.size(); ++lane) {
 				if (!list.alive(lane)) continue;
-				const Contact c = list.get(lane, setting.common);
-				if (c.i != worst && c.j != worst) continue;
+				if (list.first(lane) != worst && list.second(lane) != worst) continue;
+				const Contact c = setting.contactOf(list, lane);
 				// what pushed was the force where they were before they moved
 				const Grain &      a = setting.grains[c.i], &b = setting.grains[c.j];
 				const Vec3<double> d = separationOf(a, b) - setting.dt * (velocityOf(a) - velocityOf(b));

@@ -136,7 +136,8 @@ inline ContactStepResult contactStep(const PairConstants<double>& c, const Conta
 		if (born) aheadTangential /= 2; // springs grow from zero
 	}
 
-	const Slip<double> slipped = slip<mechanisms>(c, g.normal, { before.sliding, before.rolling, before.twist }, history);
+	const Slip<double> slipped = slip<mechanisms>(c, g.normal, { before.sliding, before.rolling, before.twist },
+	        { normalRate(g.normal, g.inverseDistance, m.velocity), m.spin1, m.spin2, m.dt }, history);
 	r.dissipated.sliding = slipped.sliding, r.dissipated.rolling = slipped.rolling, r.dissipated.twisting = slipped.twisting;
 	r.pointersMoved = slipped.pointersMoved || !before.touching;
 	r.geometry      = g;

@@ -6,6 +6,7 @@
 namespace contact_law {
 
 constexpr double pi = 3.14159265358979323846;
+constexpr double criticalTwistingAngle = 1 / (16 * pi); // A22 (24), of every pair
 
 struct Material {
 	double young;            // E [Pa]
@@ -72,7 +73,7 @@ inline PairConstants<double> derivePair(const Material& material1, double radius
 	c.twistingStiffness        = 16. / 3. * twistingShear * a0 * a0 * a0;        // A22 (23)
 	c.criticalSliding          = twistingShear / c.reducedShear * a0 / (16 * pi); // A22 (19)
 	c.criticalRolling          = (m1.criticalRolling + m2.criticalRolling) / 2;
-	c.criticalTwisting         = 1 / (16 * pi);                     // A22 (24)
+	c.criticalTwisting         = criticalTwistingAngle;
 	c.dragPerContactRadius     = 2 * viscosity * c.reducedYoung;    // A22 (7)
 
 	const double mass = 2 * c.reducedMass, radius = 2 * R;

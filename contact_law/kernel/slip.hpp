@@ -32,10 +32,22 @@ template <class T> inline Pointers<T> rolledBack(const Pointers<T>& p, const T& 
 
 /* The energy that a slip takes in one step of a kick-drift-kick integrator. The kicks use the forces before the step (displacement
  * `before`) and after the putting back (`after`), so that the motion loses k/2 (before + after).(trial - before), of which
- * k/2 (after^2 - before^2) is stored. */
-template <class T> inline T slipDissipation(const T& stiffness, const Vec3<T>& before, const Vec3<T>& trial, const Vec3<T>& after)
+ * k/2 (after^2 - before^2) is stored. The last kick's lever arms are those of the pointers put back: over the step their displacement would have
+ * changed by `further` more than the one that was put back, and that too the kick takes. */
+template <class T> inline T slipDissipation(const T& stiffness, const Vec3<T>& before, const Vec3<T>& trial, const Vec3<T>& after, const Vec3<T>& further)
 {
-	return T(0.5) * stiffness * dot(before + after, trial - after);
+	return T(0.5) * stiffness * (dot(before + after, trial - after) + dot(after, further));
+}
+
+// How the grains moved through the step.
+template <class T> struct Turning {
+	Vec3<T> normalRate, spin1, spin2; // dn/dt, angular velocities
+	T       dt;
+};
+
+template <class T> inline Vec3<T> normalRate(const Vec3<T>& normal, const T& inverseDistance, const Vec3<T>& velocity)
+{
+	return inverseDistance * (velocity - dot(velocity, normal) * normal);
 }
 
 template <class T> struct Displacements {
@@ -54,9 +66,9 @@ template <class T> inline Pointers<T> choose(const MaskOf<T>& m, const Pointers<
 	return { each(yes.n1, no.n1), each(yes.n2, no.n2) };
 }
 
-/* Put the displacements of `h` that are beyond their limits back onto them; `before`: the displacements a step ago.
+/* Put the displacements of `h` that are beyond their limits back onto them; `before`: the displacements a step ago, `t`: the way from there.
  * Putting one displacement back changes the other a little (second order in the pointers' angles): that too is work, and goes with the slip. */
-template <unsigned mechanisms, class T> inline Slip<T> slip(const PairConstants<T>& c, const Vec3<T>& normal, const Displacements<T>& before, ContactHistory<T>& h)
+template <unsigned mechanisms, class T> inline Slip<T> slip(const PairConstants<T>& c, const Vec3<T>& normal, const Displacements<T>& before, const Turning<T>& t, ContactHistory<T>& h)
 {
 	const T       none(0.);
 	Slip<T>       lost { none, none, none, none < none };
@@ -67,6 +79,7 @@ template <unsigned mechanisms, class T> inline Slip<T> slip(const PairConstants<
 		h.twist       = choose(c.criticalTwisting < absolute(trial), limit, trial);
 		lost.twisting = T(0.5) * c.twistingStiffness * (before.twist + h.twist) * (trial - h.twist);
 	}
+	const Pointers<T> trial = p;
 	const Vec3<T> zeta = sliding::displacement(p, r1, r2, normal), xi = rolling::displacement(p, c.reducedRadius);
 	MaskOf<T>     slid = none < none, rolled = none < none;
 	if constexpr (bool(mechanisms & Sliding)) {
@@ -79,9 +92,16 @@ template <unsigned mechanisms, class T> inline Slip<T> slip(const PairConstants<
 	}
 	lost.pointersMoved = slid | rolled;
 	if (!anyOf(lost.pointersMoved)) return lost;
+	const Pointers<T> moved { p.n1 - trial.n1, p.n2 - trial.n2 };
 	T bySliding = none, byRolling = none;
-	if constexpr (bool(mechanisms & Sliding)) bySliding = slipDissipation(c.slidingStiffness, before.sliding, zeta, sliding::displacement(p, r1, r2, normal));
-	if constexpr (bool(mechanisms & Rolling)) byRolling = slipDissipation(c.rollingStiffness, before.rolling, xi, rolling::displacement(p, c.reducedRadius));
+	if constexpr (bool(mechanisms & Sliding)) {
+		const Vec3<T> further = t.dt * sliding::rate(moved, r1, r2, normal, t.normalRate, t.spin1, t.spin2);
+		bySliding             = slipDissipation(c.slidingStiffness, before.sliding, zeta, sliding::displacement(p, r1, r2, normal), further);
+	}
+	if constexpr (bool(mechanisms & Rolling)) {
+		const Vec3<T> further = t.dt * rolling::rate(moved, c.reducedRadius, t.spin1, t.spin2);
+		byRolling             = slipDissipation(c.rollingStiffness, before.rolling, xi, rolling::displacement(p, c.reducedRadius), further);
+	}
 	const T both = bySliding + byRolling;
 	lost.sliding = choose(rolled, choose(slid, bySliding, none), both);
 	lost.rolling = choose(rolled, choose(slid, byRolling, both), none);

@@ -26,7 +26,7 @@ struct JKRWadaEngine::Run {
 };
 
 namespace {
-	constexpr long stepsBetweenLooks = 10; // looking through the overlaps takes a quarter of a small step
+	constexpr long stepsBetweenLooks = 30; // looking through the overlaps takes about half a small step
 
 	std::string text(Real number) { return boost::lexical_cast<std::string>(number); }
 	std::string rounded(Real number)

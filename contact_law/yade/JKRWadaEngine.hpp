@@ -58,7 +58,7 @@ public:
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
 		((bool, orientations, false, , "Whether to keep the bodies' orientations up (State.ori); otherwise they stay as they were."))
-		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs about as much as a few small steps."))
+		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
 		((std::vector<Real>, memory, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint.")),
 		,

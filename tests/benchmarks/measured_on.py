@@ -11,7 +11,8 @@ RESULTS = HERE / "results"
 
 def machine():
     """{cpu, cores, commit}; the commit ends in -changed when the work tree differs from it."""
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.processor())
+    about = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in open("/proc/cpuinfo"))}
+    cpu = f"{about.get('model name', platform.processor())} (model {about.get('model', '?')}, {float(about.get('cpu MHz', 'nan')) / 1000:.1f} GHz)"
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=TOP, capture_output=True, text=True).stdout.strip()
     changed = subprocess.run(["git", "status", "--porcelain", "--", "contact_law", "yade_scripts"], cwd=TOP, capture_output=True, text=True).stdout.strip() != ""
     return {"cpu": cpu, "cores": os.cpu_count(), "commit": commit + ("-changed" if changed else "")}

@@ -1,72 +1,107 @@
-"""Speed of the fused engine beside the functors and YADE's stock loop, measured in one run; part of make bench.
+"""Contact updates a second of every code, in rounds: each round measures all of them once, so that ratios are taken between neighbours in time."""
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 
-Writes results/speed.json and results/speed.md with commit and machine. Every number of a round is measured before the next round starts, so that
-ratios are taken within a round; the table has their medians and ranges.
-"""
-import json
-import statistics
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
+import measured_scenes
+import peers
+from quiet import share_of_others
+from yade_process import YadeProcess
 
-from measured_on import HERE, RESULTS, machine
-
-SECONDS = {"fused1": 3, "fused2": 3, "functors": 6, "stock": 6}
-ROUNDS = 3
-RADII = (20, 40, 80)
-SLOW_MOVERS_UP_TO = 40  # grain radii; beyond, the functors' and YADE's loop take minutes to start and change little
+SLOWER_SETS = ("avx2", "portable")
+UNLIKE = ("materials", "radii")
 
 
-def measure(mover, radius):
-    """Contact updates a second of one mover (speed_case.py), in a YADE of its own."""
-    with tempfile.TemporaryDirectory() as folder:
-        answer = Path(folder) / "answer.json"
-        command = ["yade", "-n", "-x", "-j1", str(HERE / "speed_case.py"), mover, str(radius), str(SECONDS[mover]), str(answer)]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if not answer.exists():
-            raise RuntimeError(f"{mover} at radius {radius} failed:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
-        return json.loads(answer.read_text())
+@dataclass(frozen=True)
+class Task:
+    """One measurement: labels of its result; which YADE to ask (law, kind, radius, its -j), None for a peer; the request; seconds it takes about."""
+    labels: dict
+    process: tuple
+    request: dict
+    seconds: float
 
 
-def run_rounds():
-    """{radius: {mover: [result of each round]}}"""
-    results = {radius: {} for radius in RADII}
-    for turn in range(ROUNDS):
-        for radius in RADII:
-            for mover in SECONDS:
-                if radius > SLOW_MOVERS_UP_TO and not mover.startswith("fused"):
-                    continue
-                result = measure(mover, radius)
-                results[radius].setdefault(mover, []).append(result)
-                print(f"round {turn + 1}/{ROUNDS}  R = {radius}  {mover:9s} {result['rate'] / 1e6:7.2f} million contact updates/s  ({result['contacts']} contacts)", flush=True)
-    return results
+def engine(settings, radius, threads, kind="alike", instructions=""):
+    labels = {"code": "engine", "kind": kind, "radius": radius, "threads": threads, "instructions": instructions or "best"}
+    request = {"do": "fused", "seconds": settings.seconds, "threads": threads, "instructions": instructions}
+    return Task(labels, ("jkr-wada", kind, radius, 1), request, settings.seconds + 0.3 + 8e-6 * 0.8 * radius**3)
 
 
-def ratio(results, mover, to):
-    """'median (least - most)' of the rounds' ratios."""
-    ratios = [a["rate"] / b["rate"] for a, b in zip(results[mover], results[to])]
-    return f"{statistics.median(ratios):.1f} ({min(ratios):.1f} - {max(ratios):.1f})"
+def loop(settings, law, radius, threads):
+    """YADE's own loop with this repository's law (functors) or with the stock one."""
+    labels = {"code": {"jkr-wada": "functors", "stock": "stock"}[law], "kind": "alike", "radius": radius, "threads": threads, "instructions": ""}
+    return Task(labels, (law, "alike", radius, threads), {"do": "loop", "seconds": settings.loop_seconds}, settings.loop_seconds + 0.5)
 
 
-def table(results, about):
-    lines = [f"Million contact updates a second; {about['cpu']}, {about['cores']} cores, commit {about['commit']}. Best of {ROUNDS} rounds; ratios: median (range) of the rounds.", "",
-             "| R_agg | contacts | fused, 1 thread | 2 threads | functors | YADE's stock cohesive loop | fused 1 / stock | fused 1 / functors | fused 2 / fused 1 |", "|---:|---:|---:|---:|---:|---:|---:|---:|---:|"]
-    for radius, movers in results.items():
-        best = {mover: f"{max(r['rate'] for r in rounds) / 1e6:.2f}" for mover, rounds in movers.items()}
-        lines.append(f"| {radius} | {movers['fused1'][0]['contacts']} | {best['fused1']} | {best['fused2']} | {best.get('functors', '-')} | {best.get('stock', '-')} | "
-                     + " | ".join(ratio(movers, a, b) if a in movers and b in movers else "-" for a, b in (("fused1", "stock"), ("fused1", "functors"), ("fused2", "fused1"))) + " |")
-    return "\n".join(lines) + "\n"
+def peer(settings, code, cores):
+    labels = {"code": code, "kind": "alike", "radius": settings.reference, "threads": cores, "instructions": ""}
+    return Task(labels, None, {"steps": settings.peer_steps, "cores": cores}, 1 + settings.peer_steps * 0.8 * settings.reference**3 * 3 / 7e6)
 
 
-def main():
-    RESULTS.mkdir(exist_ok=True)
-    about, results = machine(), run_rounds()
-    text = table(results, about)
-    (RESULTS / "speed.json").write_text(json.dumps({"machine": about, "results": results}, indent=1))
-    (RESULTS / "speed.md").write_text(text)
-    print(text)
+def tasks_of_a_round(settings):
+    """The tasks, in the order in which a round measures them: what is compared stands together."""
+    others = [radius for radius in settings.radii if radius != settings.reference]
+    loops = [(law, threads) for law in ("jkr-wada", "stock") for threads in (1, 2)]
+    codes = [[loop(settings, "stock", settings.reference, cores)] + [peer(settings, code, cores) for code in peers.PROGRAMS if not peers.missing(code) and cores in peers.core_counts()]
+             for cores in (1, 2)]
+    tasks = [engine(settings, radius, threads) for radius in others for threads in (1, 2)]
+    tasks += [engine(settings, radius, 1, instructions=name) for radius in settings.instruction_radii for name in SLOWER_SETS]
+    tasks += [loop(settings, law, radius, threads) for radius in settings.loop_radii if radius != settings.reference for law, threads in loops]
+    tasks += [loop(settings, "jkr-wada", settings.reference, threads) for threads in (1, 2)]
+    tasks += codes[1]
+    tasks += [engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("alike",) for threads in (2, 1)]
+    return tasks + codes[0]
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def estimate(settings):
+    """Seconds that measure() takes about."""
+    starting = 10 + 6e-5 * sum(0.8 * radius**3 for radius in settings.radii)
+    return starting + settings.rounds * (1 + sum(task.seconds for task in tasks_of_a_round(settings)))
+
+
+@contextmanager
+def yades(tasks):
+    """The YADEs that the tasks ask, started together: {process of the task: YadeProcess}."""
+    with ExitStack() as stack:
+        started = {}
+        for key in sorted({task.process for task in tasks if task.process}):
+            law, kind, radius, threads = key
+            started[key] = YadeProcess(law, kind, radius, measured_scenes.SPEED, threads)
+            stack.callback(started[key].close)
+        yield started
+
+
+def measure(settings, done):
+    """{"results": [labels, round and what was measured], "memory": {radius: ...}, "others": largest share of the machine that other programs took,
+    "failed": {peer: last words of one that ended with an error, and was not tried again}}.
+
+    done(seconds) is called after each measurement with its estimated length.
+    """
+    tasks, results, others, failed = tasks_of_a_round(settings), [], 0.0, {}
+    peers_scene = measured_scenes.make("alike", settings.reference)
+    with yades(tasks) as started:
+        for process in started.values():
+            process.wait()
+        done(estimate(settings) - settings.rounds * (1 + sum(task.seconds for task in tasks)))
+        for turn in range(settings.rounds):
+            others = max(others, share_of_others())
+            done(1)
+            for task in tasks:
+                answer = take(task, started, peers_scene, failed)
+                if answer:
+                    results.append({**answer, **task.labels, "round": turn, "instructions_used": answer.get("instructions", "")})
+                done(task.seconds)
+        memory = {radius: started["jkr-wada", "alike", radius, 1].ask("memory") for radius in settings.radii if radius >= settings.reference}
+    return {"results": results, "memory": memory, "others": others, "failed": failed}
+
+
+def take(task, started, peers_scene, failed):
+    """What a task measured; None of a peer that fails, now or in an earlier round: noted in failed, {name: last words}."""
+    if task.process:
+        return started[task.process].ask(**task.request)
+    name = f"{task.labels['code']} on {task.labels['threads']}"
+    if name in failed:
+        return None
+    try:
+        return peers.measure(task.labels["code"], peers_scene, **task.request)
+    except peers.PeerFailed as error:
+        failed[name] = str(error)

@@ -137,7 +137,8 @@ start("like", count=8)
 fused_engine()
 {change}
 try:
-    O.run(1, True)
+    for attempt in range(3):  # on a busy machine O.run now and then loses what its thread threw
+        O.run(1, True)
     result["message"] = ""
 except Exception as error:
     result["message"] = str(error)

@@ -1,0 +1,163 @@
+"""LAMMPS and LIGGGHTS on the same grains: is it installed, and how fast does it go?
+
+Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that mean SI or reduced units.
+Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What differs is in PHYSICS. One material and one size only.
+"""
+import os
+import re
+import resource
+import shutil
+import subprocess
+import tempfile
+import time
+from math import pi
+from pathlib import Path
+
+from analysis.theory import pair_constants
+
+TIME = 1e-9  # s
+SKIN = 0.3  # grain radii; 0.1 to 0.6 measured the same
+PHYSICS = {
+    "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; births and breaks at whole steps; no energy ledger.",
+    "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential history, rolling epsd2; no twisting, no energy ledger.",
+}
+
+LAMMPS_INPUT = """units lj
+atom_style sphere
+boundary f f f
+newton off
+{processors}
+comm_modify vel yes
+read_data grains.data
+pair_style granular
+pair_coeff * * jkr {young} 0 {poisson} {surface_energy} tangential mindlin NULL 0 {friction} rolling sds {rolling_stiffness} 0 {rolling_friction} twisting marshall damping velocity
+neighbor {skin} bin
+neigh_modify delay 0 every 1 check yes
+timestep {step}
+fix move all nve/sphere
+compute touching all contact/atom
+compute touch all reduce sum c_touching
+thermo_style custom step atoms c_touch
+thermo_modify norm no
+thermo {steps}
+run {steps}
+"""
+LIGGGHTS_INPUT = """units si
+atom_style granular
+boundary f f f
+newton off
+{processors}
+communicate single vel yes
+read_data grains.data
+soft_particles yes
+neighbor {skin} bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype {young}
+fix m2 all property/global poissonsRatio peratomtype {poisson}
+fix m3 all property/global coefficientRestitution peratomtypepair 1 1.0
+fix m4 all property/global coefficientFriction peratomtypepair 1 {friction}
+fix m5 all property/global cohesionEnergyDensity peratomtypepair 1 {cohesion}
+fix m6 all property/global coefficientRollingFriction peratomtypepair 1 {rolling_friction}
+fix m7 all property/global coefficientRollingViscousDamping peratomtypepair 1 0.0
+pair_style gran model hertz tangential history cohesion sjkr2 rolling_friction epsd2
+pair_coeff * *
+timestep {step}
+fix move all nve/sphere
+compute touching all contact/atom
+compute touch all reduce sum c_touching
+thermo_style custom step atoms c_touch
+thermo_modify norm no
+thermo {steps}
+run {steps}
+"""
+PROGRAMS = {"lammps": ("lmp", LAMMPS_INPUT), "liggghts": ("liggghts", LIGGGHTS_INPUT)}
+ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
+
+
+class PeerFailed(RuntimeError):
+    """A peer that is installed did not come to its end, or lost grains."""
+
+
+def missing(code):
+    """Why this code cannot be measured here, in a line; None when it can."""
+    program, _ = PROGRAMS[code]
+    if not shutil.which(program):
+        return f"{program} is not installed (make bench-peers installs it)"
+    if code == "lammps" and "granular" not in help_text(program):
+        return f"this {program} was built without pair_style granular"
+    return None
+
+
+def help_text(program):
+    with tempfile.TemporaryDirectory() as folder:  # LIGGGHTS leaves a log file where it is called
+        return subprocess.run([program, "-h"], cwd=folder, capture_output=True, text=True).stdout
+
+
+def core_counts():
+    """Numbers of cores that a peer can be run on here."""
+    return (1, 2) if shutil.which("mpirun") else (1,)
+
+
+def version(code):
+    program, _ = PROGRAMS[code]
+    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", help_text(program))
+    return next(group for group in found.groups() if group) if found else "unknown"
+
+
+def measure(code, scene, steps, cores=1):
+    """{contacts, grains, steps, seconds, rate, share} of a run of `steps` steps; rate: contact updates a second of the time loop.
+
+    share: processor seconds a second of the whole run, all processes together; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
+    """
+    program, text = PROGRAMS[code]
+    with tempfile.TemporaryDirectory() as folder:
+        write_grains(Path(folder) / "grains.data", scene)
+        (Path(folder) / "input").write_text(text.format(steps=steps, skin=SKIN, processors=f"processors {cores} 1 1", **scaled_constants(scene)))
+        command = [program, "-in", "input", "-log", "none"]
+        if cores > 1:
+            command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores)] + command
+        start, processor = time.perf_counter(), processor_seconds()
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
+        share = (processor_seconds() - processor) / (time.perf_counter() - start)
+    loop = re.search(r"Loop time of (\S+) on", done.stdout)
+    if done.returncode or not loop:
+        raise PeerFailed(f"{' '.join(command)} failed:\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
+    counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)  # grains and contacts (twice, once from each grain)
+    if len(counted) < 2 or int(counted[-1][0]) != scene.grains:
+        raise PeerFailed(f"{program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
+    contacts, seconds = sum(float(count) for _, count in counted) / 2 / len(counted), float(loop.group(1))
+    return {"contacts": contacts, "grains": scene.grains, "steps": steps, "seconds": seconds, "rate": contacts * steps / seconds, "share": share}
+
+
+def processor_seconds():
+    """Of all programs that were started here and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def scaled_constants(scene):
+    """The numbers that the inputs ask for, in the units of the module's head."""
+    material, r = scene.materials[0], scene.radius[0]
+    pair = pair_constants(material, r)
+    spring = material.density * r**3 / TIME**2  # unit of N/m
+    pressure = spring / r
+    # of the pull that balances Hertz at the equilibrium overlap d: 4/3 E* R^1/2 d^3/2 = k 4 pi R d
+    cohesion = pair.reduced_young * (pair.equilibrium_overlap / pair.reduced_radius) ** 0.5 / (3 * pi)
+    at_no_load = 2 * pair.pull_off_force  # LAMMPS's critical normal force then
+    return {"young": material.young / pressure, "poisson": material.poisson, "surface_energy": material.surface_energy / spring,
+            "friction": pair.sliding_stiffness * pair.critical_sliding / at_no_load, "rolling_stiffness": pair.rolling_stiffness / spring,
+            "rolling_friction": pair.rolling_stiffness * pair.critical_rolling / at_no_load, "cohesion": cohesion / pressure, "step": scene.step / TIME}
+
+
+def write_grains(path, scene):
+    """A data file that both read: id, type, diameter, density, position; id, velocity, spin."""
+    r = scene.radius[0]
+    assert len(scene.materials) == 1 and (scene.radius == r).all(), "peers are measured on like grains"
+    edge = 2 * abs(scene.position).max() / r
+    with open(path, "w") as file:
+        file.write(f"grains\n\n{scene.grains} atoms\n1 atom types\n\n")
+        file.writelines(f"{-edge} {edge} {axis}lo {axis}hi\n" for axis in "xyz")
+        file.write("\nAtoms\n\n")
+        file.writelines(f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((scene.position / r).tolist(), 1))
+        file.write("\nVelocities\n\n")
+        file.writelines(f"{k} {x!r} {y!r} {z!r} 0 0 0\n" for k, (x, y, z) in enumerate((scene.velocity * TIME / r).tolist(), 1))

@@ -1,0 +1,30 @@
+"""Speed in each part of a collision, from the approach to fragments flying apart, beside the speed of the same scene before it."""
+from yade_process import YadeProcess
+
+
+def estimate(settings):
+    return sum(_one(radius, speed, duration) for radius, speed, duration in settings.collisions)
+
+
+def _one(radius, speed, duration):
+    """Slips cost more than other contact updates, and there are more at a higher speed."""
+    return 5 + 2.5 * radius**3 * duration / 1.94e-11 / 75e6 * (1 + speed / 20)
+
+
+def measure(settings, done):
+    """[{"radius", "speed", "before": {threads: rate}, "parts": [{until [s], contacts, pieces, events, rate1, rate2}]}]; rates in contact updates a second."""
+    found = []
+    for radius, speed, duration in settings.collisions:
+        found.append(collide(settings, radius, speed, duration))
+        done(_one(radius, speed, duration))
+    return found
+
+
+def collide(settings, radius, speed, duration):
+    process = YadeProcess("jkr-wada", "alike", radius, speed)
+    try:
+        before = {threads: process.ask("fused", seconds=settings.seconds, threads=threads)["rate"] for threads in (1, 2)}
+        parts = process.ask("collision", duration=duration, parts=settings.collision_parts)
+    finally:
+        process.close()
+    return {"radius": radius, "speed": speed, "before": before, "parts": parts}
