@@ -165,7 +165,8 @@ void JKRWadaEngine::requireSound(long made, const contact_law::Energies* now)
 		trouble           = current->dynamics.tooDeep();
 	}
 	if (trouble.grain >= 0) fail(time, pairOf(trouble) + " overlap by " + rounded(trouble.overlap) + " of the smaller radius");
-	const std::string wrong = now ? current->watch.wrong(*now) : "";
+	const auto&       c     = current->dynamics.commonConstants();
+	const std::string wrong = now ? current->watch.wrong(*now, c.pullOffForce * c.pullOffOverlap) : "";
 	if (wrong.empty()) return;
 	const Dynamics::Trouble fastest = current->dynamics.trouble(), hardest = current->dynamics.hardest();
 	fail(time, wrong + "; body " + std::to_string(fastest.grain) + " is the fastest (" + rounded(fastest.speed) + " m/s)"

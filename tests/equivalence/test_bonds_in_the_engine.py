@@ -171,3 +171,16 @@ except RuntimeError as error: result["message"] = str(error)
 """)
     assert max(found["below"]) < 20 and found["above"] > 1e6, found
     assert "is unstable" in found["message"]
+
+
+def test_bonded_grains_at_rest_stay_there(yade):
+    """All energies are rounding then, and no reason to stop the run."""
+    found = yade(SCENE + """
+start(count=60, speed=0.0)
+O.dt *= 50
+fused(subSteps=50)
+before = positions()
+for _ in range(20): O.step()
+result.update(moved=float(np.abs(positions() - before).max() / 1e-7), bonds=O.engines[0].statistics()["bonds"])
+""")
+    assert found["moved"] < 1e-12 and found["bonds"] == 59
