@@ -2,6 +2,7 @@
 from math import isclose
 
 from yade_scripts.parameters import BY_NAME, DURATION_PER_RADIUS
+from yade_scripts.step_choice import AUTO
 
 # They say how a run is carried out and kept, not what it gives.
 OF_NO_CONSEQUENCE = ('threads', 'out', 'overwrite', 'resume', 'checkpointInterval')
@@ -14,6 +15,7 @@ def difference(wanted, run):
     and 'derived'. A parameter that the run doesn't know (an older one) had its default.
     """
     held = run.get('parameters', {})
+    wanted = _step_as_compared(wanted, held)
     for name, value in wanted.items():
         if name in OF_NO_CONSEQUENCE:
             continue
@@ -23,6 +25,16 @@ def difference(wanted, run):
         if not _same(value, there):
             return f'{name} = {_text(there)}, not {_text(value)}'
     return None
+
+
+def _step_as_compared(wanted, held):
+    """wanted without the one of stepFraction and tolerance that says nothing beside the other.
+
+    A step that is still to be chosen is that of any run that chose it for the same tolerance. A number is
+    compared as such, whether or not it was chosen.
+    """
+    chosen = wanted.get('stepFraction') == AUTO and held.get('tolerance') is not None
+    return {name: value for name, value in wanted.items() if name != ('stepFraction' if chosen else 'tolerance')}
 
 
 def _same(one, other):

@@ -32,6 +32,7 @@ with one_line_errors('collide.py'):
     material = MATERIALS[values['material']]
     constants = scene.pair_constants(values, material)
     values = parameters.complete(values, constants, O.numThreads)
+    step_chosen = parameters.step_chosen(values, constants)
     aggregate_radius = values['radius'] * material.grainRadius
 
     # Two aggregates on their way to each other
@@ -54,11 +55,14 @@ if saved:
 else:
     scene.build(pair, velocities, scene.material_of(values, material), time_step, values['planar'])
     steps, runner, begin = scene.start(values, material.grainRadius, schedule, history)
-run = report.Report(folder, values, scene.derived(values, material, constants, schedule, time_step), start,
+run = report.Report(folder, values, {**scene.derived(values, material, constants, schedule, time_step),
+                                      'stepChoice': step_chosen}, start,
                     saved.wallTime if saved else 0.0)
 checkpoints = checkpoint.Writer(folder.path, run.run, history, run.wall_time, values['checkpointInterval'])
 
 # The run
+if values['tolerance'] is not None:
+    print(f'step: {step_chosen}', flush=True)
 outcome, status = run_loop.run(steps, history, runner, begin, checkpoints)
 history.write_history()
 run.end(outcome)

@@ -3,9 +3,11 @@ from dataclasses import dataclass
 import math
 from typing import Any, Callable
 
+from yade_scripts import step_choice
 from yade_scripts.aggregates import bcca_radius
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings import grain_number, maximum_filling
+from yade_scripts.step_choice import AUTO
 
 # Velocity Verlet is stable at 0.4 t0 and blows up at 0.5 t0 on A24's scene, without drag (measured).
 STABLE_STEP = 0.4
@@ -16,6 +18,7 @@ MOST_GRAINS = 5_000_000
 MOST_BCCA_GRAINS = 100_000
 LARGEST_NECK = 0.7  # the largest of S17
 FUSED_THREADS = 2  # JKRWadaEngine's domains
+TOLERANCE, TOLERANCES = 1e-4, (1e-7, 1e-2)  # with stepFraction=auto: default, and what is allowed
 
 
 class ParameterError(ValueError):
@@ -24,7 +27,10 @@ class ParameterError(ValueError):
 
 @dataclass(frozen=True)
 class Field:
-    """One column of a table. kind: float, int or str; default None: worked out from the others."""
+    """One column of a table. kind: float, int or str; default None: worked out from the others.
+
+    word: a text that a number's column may hold as well.
+    """
     name: str
     kind: type
     default: Any
@@ -32,6 +38,7 @@ class Field:
     allowed: str
     accepts: Callable[[Any], bool]
     meaning: str
+    word: str = None
 
 
 def _one_of(names):
@@ -61,8 +68,12 @@ FIELDS = [
     Field('seed', int, 1, '', '>= 0', lambda n: n >= 0, 'of the random packings'),
     Field('duration', float, None, 's', '> 0', lambda x: x > 0,
           'time that is simulated (64.6 t0 per grain radius of R: 12.5 ns for ice)'),
-    Field('stepFraction', float, 0.1, 't0', f'> 0 and <= {STABLE_STEP}, less in dense packings and with drag',
-          lambda x: 0 < x <= STABLE_STEP, 'time step'),
+    Field('stepFraction', float, 0.1, 't0',
+          f'> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}',
+          lambda x: 0 < x <= STABLE_STEP, f'time step; {AUTO}: the longest that keeps to tolerance', word=AUTO),
+    Field('tolerance', float, None, 'K(0)', '{:g} to {:g}, with stepFraction=auto only'.format(*TOLERANCES),
+          lambda x: TOLERANCES[0] <= x <= TOLERANCES[1],
+          f'largest error of the ledger, with stepFraction={AUTO} ({TOLERANCE:g})'),
     Field('engine', str, 'fused', '', *_one_of(['fused', 'functors']),
           "JKRWadaEngine, or YADE's own loop (the reference, much slower)"),
     Field('threads', int, None, '', '>= 1', lambda n: n >= 1,
@@ -92,8 +103,9 @@ def parse(texts, description=None):
     """Parameters {name: value}, every field by its name, from texts {name: text or number}.
 
     Numbers may be written as arithmetic (10**0.5), text with or without quotes. radius and grains are both
-    filled in. duration and threads stay None until complete() unless they are given. Raises ParameterError
-    with one line that says what is wrong and what is allowed.
+    filled in, and tolerance if stepFraction is AUTO, otherwise it is None. duration and threads stay None until
+    complete() unless they are given, and stepFraction stays AUTO. Raises ParameterError with one line that says
+    what is wrong and what is allowed.
     """
     values = {field.name: field.default for field in FIELDS}
     for name, text in texts.items():
@@ -104,6 +116,7 @@ def parse(texts, description=None):
         raise ParameterError('radius and grains: both given; allowed: one of the two, the other follows from '
                              'filling')
     _fill_in_size(values)
+    _fill_in_tolerance(values)
     if values['out'] is None:
         values['out'] = 'runs/' + _file_name(description or _name_from(texts, values))
     return values
@@ -113,6 +126,8 @@ def complete(values, constants, threads):
     """The same, with what depends on the contact (the plugin's pairConstants) and on YADE's threads."""
     _require_sintered(values['neck'], constants)
     limit = step_limit(constants, _filling_as_stiff(values, constants))
+    if values['stepFraction'] == AUTO:
+        values = dict(values, stepFraction=_chosen_step(values, constants, limit))
     if values['stepFraction'] > limit:
         raise ParameterError(f'stepFraction = {values["stepFraction"]:g}: unstable at this filling, drag and neck; '
                              f'allowed: at most {limit:.3g} (t0)')
@@ -128,6 +143,13 @@ def complete(values, constants, threads):
     if values['duration'] is None:
         values['duration'] = DURATION_PER_RADIUS * values['radius'] * constants['timeUnit']
     return values
+
+
+def step_chosen(values, constants):
+    """How complete() came to values['stepFraction'], in one line."""
+    if values['tolerance'] is None:
+        return 'as given'
+    return step_choice.reason(values, constants, step_limit(constants, _filling_as_stiff(values, constants)))
 
 
 def _require_sintered(neck, constants):
@@ -148,9 +170,11 @@ def step_limit(constants, filling):
     and 0.5 t0 at filling 0.4, 0.4 and 0.45 at 0.6, 0.35 and 0.4 at 0.74. A grain moving against eight of
     twelve neighbours, each contact at 45 degrees to the motion: w^2 = 8 (k_n + k_s)/m with the drag 8 c/m,
     taken with the velocity extrapolated from the last two half steps: unstable from w^2 dt^2 + 4 (8 c/m) dt =
-    4 on; runs with T_vis = 6 ps blew up between 0.25 and 0.3 t0 at filling 0.74. Bonds vibrate likewise, with k_ss and k_st for k_n and k_s: at necks of
-    0.2, 0.5 and 0.7 noise broke them from 0.15, 0.17 and 0.18 t0 on at filling 0.4, the same in a planar packing
-    of filling 0.8, from 0.14, 0.15 and 0.16 at 0.7, and from 0.21, 0.23 and 0.24 in BCCA.
+    4 on; runs with T_vis = 6 ps blew up between 0.25 and 0.3 t0 at filling 0.74.
+
+    Bonds vibrate likewise, with k_ss and k_st for k_n and k_s. At necks of 0.2, 0.5 and 0.7 noise broke them from
+    0.15, 0.17 and 0.18 t0 on at filling 0.4 and in a planar packing of filling 0.8, from 0.14, 0.15 and 0.16 at
+    0.7, and from 0.21, 0.23 and 0.24 in BCCA.
     """
     mass, contact_radius = 2 * constants['reducedMass'], constants['equilibriumContactRadius']
     normal_stiffness = 1.2 * constants['pullOffForce'] / constants['equilibriumOverlap']  # A24 eq 38
@@ -179,10 +203,24 @@ def _filling_as_stiff(values, constants):
     full = maximum_filling(radius, overlap)
     if values['packing'] == 'bcca':
         return 0.5 * full
-    return 0.75 * full * values['filling'] / maximum_filling(radius, overlap, True) if values['planar'] else values['filling']
+    if values['planar']:
+        return 0.75 * full * values['filling'] / maximum_filling(radius, overlap, True)
+    return values['filling']
+
+
+def _chosen_step(values, constants, limit):
+    if values['packing'] != 'cpe' or values['planar'] or values['neck']:
+        raise ParameterError('stepFraction = auto: measured for cpe aggregates in space without necks only; allowed '
+                             'here: a number (t0)')
+    try:
+        return step_choice.choose(values, constants, limit)
+    except step_choice.ToleranceTooTight as problem:
+        raise ParameterError(str(problem)) from None
 
 
 def _value(field, text):
+    if field.word is not None and _text(text) == field.word:
+        return field.word
     value = _text(text) if field.kind is str else _number(field, text)
     if not field.accepts(value):
         raise ParameterError(f'{field.name} = {text}: not allowed; allowed: {field.allowed}{_unit(field)}')
@@ -209,6 +247,14 @@ def _number(field, text):
     if number is None or not math.isfinite(number) or (field.kind is int and number != int(number)):
         raise ParameterError(f'{field.name} = {text}: not {kind}; allowed: {field.allowed}{_unit(field)}')
     return field.kind(value)
+
+
+def _fill_in_tolerance(values):
+    if values['stepFraction'] == AUTO:
+        values['tolerance'] = TOLERANCE if values['tolerance'] is None else values['tolerance']
+    elif values['tolerance'] is not None:
+        raise ParameterError(f'tolerance = {values["tolerance"]:g}: given with stepFraction = '
+                             f'{values["stepFraction"]:g}; allowed: with stepFraction={AUTO} only')
 
 
 def _fill_in_size(values):

@@ -1,11 +1,14 @@
 """How long the rows of a study take: from runs that have ended, else from a measured piece of one."""
 from dataclasses import dataclass, field
+from functools import lru_cache
 import heapq
+import re
 from statistics import median
 
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings import maximum_filling
-from yade_scripts.parameters import DURATION_PER_RADIUS
+from yade_scripts.parameters import DURATION_PER_RADIUS, ParameterError, complete
+from yade_scripts.step_choice import AUTO, SHORTEST
 
 # Cost of a contact update grows with this power of the number of grains: 37, 34 and 28 million updates a second
 # at 6,400, 51,200 and 409,600 grains (tests/benchmarks/results/speed.md).
@@ -55,7 +58,7 @@ class Cost:
         duration = DURATION_PER_RADIUS * values['radius']
         if values['duration'] is not None:
             duration = values['duration'] / self.timeUnit[values['material']]
-        return 2 * values['grains'] * neighbours / 2 * duration / values['stepFraction']
+        return 2 * values['grains'] * neighbours / 2 * duration / step_of(values)
 
     def _from_measured(self, values):
         if self.measured is None:
@@ -63,6 +66,28 @@ class Cost:
         scene, rate, setup = self.measured
         time = self.size(values) / scene['grains']**CACHE_EXPONENT / rate
         return time + setup * values['grains'] / scene['grains']
+
+
+def step_of(values):
+    """stepFraction as a run will have it; AUTO is resolved from the theory's constants, without the plugin."""
+    if values['stepFraction'] != AUTO:
+        return values['stepFraction']
+    material, viscoelastic_time = MATERIALS[values['material']], values['viscoelasticTime']
+    try:
+        return complete(values, pair_constants(material, viscoelastic_time), values['threads'] or 1)['stepFraction']
+    except ParameterError:  # the run will say what is wrong
+        return SHORTEST
+
+
+@lru_cache
+def pair_constants(material, viscoelastic_time):
+    """Constants of a contact of two grains, by the names that the plugin gives them."""
+    from analysis import theory  # takes a moment, and only few studies need it
+    pair = theory.pair_constants(
+        theory.Material(young=material.young, poisson=material.poisson, density=material.density,
+                        surface_energy=material.surfaceEnergy, critical_rolling=material.criticalRolling,
+                        viscoelastic_time=viscoelastic_time), material.grainRadius)
+    return {re.sub('_(.)', lambda letter: letter[1].upper(), name): value for name, value in vars(pair).items()}
 
 
 def makespan(running, waiting, at_once):

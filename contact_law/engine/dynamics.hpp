@@ -119,7 +119,8 @@ public:
 	const BondConstants<double>& commonBond() const { return setting.commonBond; } // for BondList::get
 	std::array<long, bondModes>  brokenBonds() const; // so far, by mode
 	int                          bondCount() const;
-	const PairConstants<double>& commonConstants() const { return setting.common; } // for ContactList::get
+	const PairConstants<double>& commonConstants() const { return setting.common; } // of the first grain with its like
+	Contact contactOf(const ContactList& list, int lane) const { return setting.contactOf(list, lane); }
 	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, its first and second grain as given, normal force now)
 	{
 		eachPlace([&](const ContactList& list, int lane, int first, int second) {

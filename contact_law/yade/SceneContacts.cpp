@@ -104,7 +104,7 @@ std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dyn
 
 ContactNow SceneContacts::Place::now(const contact_law::Dynamics& dynamics) const
 {
-	return bonds ? dynamics.now(bonds->get(lane, dynamics.commonBond())) : dynamics.now(list->get(lane, dynamics.commonConstants()));
+	return bonds ? dynamics.now(bonds->get(lane, dynamics.commonBond())) : dynamics.now(dynamics.contactOf(*list, lane));
 }
 
 bool SceneContacts::inOrder(Scene& scene, const std::vector<Place>& places) const

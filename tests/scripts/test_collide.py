@@ -32,11 +32,12 @@ def test_run_folder_is_complete(run):
     assert set(about) == {'format', 'parameters', 'derived', 'versions', 'commit', 'seed', 'hardware',
                           'wallTime', 'outcome'}
     assert list(about['parameters']) == [field.name for field in FIELDS]
-    assert None not in about['parameters'].values()
+    assert [name for name, value in about['parameters'].items() if value is None] == ['tolerance']
+    assert about['derived']['stepChoice'] == 'as given'
     assert set(about['derived']) == {
         'young', 'poisson', 'surfaceEnergy', 'density', 'criticalRolling', 'viscoelasticTime',
         'grainRadius', 'grainMass', 'equilibriumContactRadius', 'equilibriumOverlap', 'pullOffOverlap',
-        'pullOffForce', 'timeUnit', 'timeStep', 'steps', 'aggregateRadius', 'grainsPerAggregate'}
+        'pullOffForce', 'timeUnit', 'timeStep', 'stepChoice', 'steps', 'aggregateRadius', 'grainsPerAggregate'}
     assert set(about['versions']) == {'yade', 'python', 'numpy', 'contact_law'}
     assert about['outcome'] == 'completed' and about['wallTime'] > 0 and about['seed'] == 1
 

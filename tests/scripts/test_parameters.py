@@ -24,7 +24,7 @@ def test_defaults_are_the_scene_of_the_demo():
     assert values['velocity'] == 10**0.5 and values['out'] == 'runs/collide-ice-f0.4-R20-v3.162-s1'
     complete = parameters.complete(values, ICE_PAIR, 1)
     assert complete['duration'] == pytest.approx(250e-9, rel=1e-3) and complete['threads'] == 1
-    assert None not in complete.values()
+    assert [name for name, value in complete.items() if value is None] == ['tolerance']
 
 
 @pytest.mark.parametrize('name, text, value', [
@@ -75,6 +75,10 @@ WRONG = [
     ({'seed': '1.5'}, 'seed = 1.5: not a whole number'),
     ({'duration': '0'}, 'duration = 0: not allowed; allowed: > 0 [s]'),
     ({'stepFraction': '0.5'}, 'stepFraction = 0.5: not allowed; allowed: > 0 and <= 0.4'),
+    ({'stepFraction': 'automatic'}, 'stepFraction = automatic: not a finite number; allowed: > 0 and <= 0.4, less'),
+    ({'velocity': 'auto'}, 'velocity = auto: not a finite number'),
+    ({'stepFraction': 'auto', 'tolerance': '0.1'}, 'tolerance = 0.1: not allowed; allowed: 1e-07 to 0.01'),
+    ({'tolerance': '1e-5'}, 'tolerance = 1e-05: given with stepFraction = 0.1; allowed: with stepFraction=auto only'),
     ({'threads': '0'}, 'threads = 0: not allowed'),
     ({'overwrite': 'yes'}, 'overwrite = yes: not a whole number; allowed: 0 or 1'),
     ({'out': ''}, 'out = : not allowed; allowed: a folder'),
