@@ -129,7 +129,8 @@ def complete(values, constants, threads):
     if values['stepFraction'] == AUTO:
         values = dict(values, stepFraction=_chosen_step(values, constants, limit))
     if values['stepFraction'] > limit:
-        raise ParameterError(f'stepFraction = {values["stepFraction"]:g}: unstable at this filling, drag and neck; '
+        what = 'neck, filling and drag' if values['neck'] else 'filling and drag'
+        raise ParameterError(f'stepFraction = {values["stepFraction"]:g}: unstable at this {what}; '
                              f'allowed: at most {limit:.3g} (t0)')
     if values['engine'] == 'fused':
         threads = values['threads'] or min(threads, FUSED_THREADS)

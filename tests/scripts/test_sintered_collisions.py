@@ -93,7 +93,7 @@ def test_a_killed_sintered_run_goes_on_to_the_same_bits(tmp_path):
 @pytest.mark.parametrize('wrong, message', [
     (('neck=0.123',), 'neck = 0.123: no thicker than a contact that is not sintered; allowed: 0 (not sintered), or above 0.1237 and at most 0.7'),
     (('neck=0.8',), 'neck = 0.8: not allowed; allowed: 0, or above that of a contact that is not sintered'),
-    (('neck=0.2', 'stepFraction=0.2'), 'stepFraction = 0.2: unstable at this filling, drag and neck; allowed: at most 0.119 (t0)'),
+    (('neck=0.2', 'stepFraction=0.2'), 'stepFraction = 0.2: unstable at this neck, filling and drag; allowed: at most 0.119 (t0)'),
     (('neck=0.4', 'stepFraction=auto'), 'stepFraction = auto: measured for cpe aggregates in space without necks only; allowed here: a number (t0)'),
     (('packing=bcca', 'filling=0.3'), 'filling = 0.3: given with packing = bcca; allowed: grains only'),
     (('planar=1', 'filling=0.95'), 'filling = 0.95: more than the lattice holds; allowed: at most 0.91'),
