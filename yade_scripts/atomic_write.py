@@ -2,6 +2,8 @@
 import os
 import tempfile
 
+UNFINISHED = '.unfinished'
+
 
 def write_atomically(path, write):
     """Call write(binary file) on a temporary file beside path, then rename it to path.
@@ -10,7 +12,7 @@ def write_atomically(path, write):
     Raises OSError when the folder can't be written.
     """
     folder, name = os.path.split(os.path.abspath(path))
-    handle, temporary = tempfile.mkstemp(prefix='.' + name + '.', dir=folder)
+    handle, temporary = tempfile.mkstemp(prefix='.' + name + '.', suffix=UNFINISHED, dir=folder)
     try:
         with os.fdopen(handle, 'wb') as file:
             write(file)
@@ -19,6 +21,13 @@ def write_atomically(path, write):
     except BaseException:
         os.unlink(temporary)
         raise
+
+
+def remove_unfinished(folder):
+    """Take away the temporary files that a writer killed in between has left in a folder."""
+    for name in os.listdir(folder):
+        if name.startswith('.') and name.endswith(UNFINISHED):
+            os.unlink(os.path.join(folder, name))
 
 
 def _umask():

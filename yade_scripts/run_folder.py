@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from yade_scripts import checkpoint
-from yade_scripts.atomic_write import write_atomically
+from yade_scripts.atomic_write import remove_unfinished, write_atomically
 
 FORMAT = 1
 CHANNELS = ('kinetic', 'normal', 'sliding', 'rolling', 'twisting',
@@ -39,6 +39,8 @@ class RunFolder:
         try:
             os.makedirs(self.states, exist_ok=True)
             self._lock = _locked(path)
+            for folder in (path, self.states):
+                remove_unfinished(folder)
             if resume and checkpoint.exists(path):
                 self.checkpoint = checkpoint.Checkpoint(path)
                 return

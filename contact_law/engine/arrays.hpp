@@ -1,6 +1,7 @@
 // What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the eight side by side.
 #pragma once
 #include "../kernel/contact_step.hpp"
+#include "periodic_cell.hpp"
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -79,12 +80,14 @@ struct ForcePass {
 	const PairConstants<double>* alike;
 	DragBlock*                   drags;    // null in scenes without drag
 	const PreviousVelocity*      previous; // likewise
+	const PeriodicCell*          cell;
 	int                          firstBlock, endBlock;
 	int                          addFirst, addSecond; // whether the first / second grain of each contact is this domain's
 	int                          trash;               // grain that takes what is not added
 	double                       dt;
 	Dissipation*                 dissipated; // what drag and slips took in this step is added here
 	long*                        slips;      // and their number here
+	Vec3<double>*                crossing;   // in periodic scenes: shift times force of contacts across the boundaries is added here
 	void*                        owner;
 	// contacts of a block (bits of `which`) that break or are pressed beyond the fit: history before the step, forces to be replaced
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
@@ -94,10 +97,10 @@ struct ForcePass {
 
 struct BondPass; // bond_list.hpp
 
-// One instruction set's compiled passes, by mechanisms (contact.hpp) and whether all pairs are alike.
+// One instruction set's compiled passes, by mechanisms (contact.hpp), whether all pairs are alike, and (forces) whether the scene is periodic.
 struct InstructionSet {
 	const char* name;
-	void (*forces[16][2])(const ForcePass&);
+	void (*forces[16][2][2])(const ForcePass&);
 	void (*energies[16][2])(const ForcePass&, StoredEnergy<double>&);
 	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared);

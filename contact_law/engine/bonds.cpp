@@ -4,11 +4,6 @@
 namespace contact_law {
 
 namespace {
-	void add(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
-	{
-		g.fx += force.x, g.fy += force.y, g.fz += force.z;
-		g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
-	}
 	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
 }
 
@@ -36,7 +31,8 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 {
 	BondList&                   list = bonds[sort];
 	const int                   k = lane % lanes, i = list.first(lane), j = list.second(lane);
-	const BondMotion            motion { motionOf(i, j), s.inverseInertia[i], s.inverseInertia[j] };
+	Image                       image; // none: bonds are in open space only
+	const BondMotion            motion { motionOf(i, j, image), s.inverseInertia[i], s.inverseInertia[j] };
 	const ContactMotion&        m = motion.contact;
 	const Bond                  bond      = list.get(lane, s.commonBond);
 	const BondConstants<double>& b        = bond.constants;
@@ -59,9 +55,9 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 	if (result.bonded) { // by rounding: it doesn't after all, and the forces of the pass stand
 		return;
 	}
-	book(r, m, sort);
-	if (sort != Second) ++broken[result.mode], add(s.grains[i], r.force, r.torque1);
-	if (sort != First) add(s.grains[j], -r.force, r.torque2);
+	book(r, m, image, sort);
+	if (sort != Second) ++broken[result.mode];
+	addAlone(sort, i, j, r, image);
 	write({ 0, 0, 0 }, forces.force, k);
 	write({ 0, 0, 0 }, forces.torque1, k);
 	write({ 0, 0, 0 }, forces.torque2, k);
@@ -81,7 +77,8 @@ void Domain::placeBonds()
 	for (int sort = 0; sort < 3; ++sort)
 		for (int index = 0; index < int(far[sort].size()); ++index) {
 			const Pair         p          = far[sort][index];
-			const Vec3<double> separation = motionOf(p.i, p.j).separation;
+			Image              image;
+			const Vec3<double> separation = motionOf(p.i, p.j, image).separation;
 			const double       reach      = s.grainRadius[p.i] + s.grainRadius[p.j];
 			if (dot(separation, separation) >= reach * reach) continue;
 			Bond bond { p.i, p.j, {}, 0, s.bondOf(p.i, p.j) };

@@ -40,7 +40,7 @@ ForcePass Domain::passFor(int sort)
 {
 	ContactList& list = contacts[sort];
 	const bool   books = sort != Second; // both domains of a border contact compute it; the first grain's books it
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), 0, list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation, books ? &events : &ignoredEvents, &eventCalls[sort], &Domain::eventsOf, nullptr };
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), &cell, 0, list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation, books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf, nullptr };
 }
 
 void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
@@ -49,12 +49,13 @@ void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
 	pass.firstBlock = firstBlock;
 	pass.endBlock   = endBlock;
 	if (behind) pass.batchDone = &Domain::moveBehind;
-	s.passes->forces[s.mechanisms][s.alike](pass);
+	s.passes->forces[s.mechanisms][s.alike][cell.on](pass);
 }
 
 void Domain::addFirstForces()
 {
 	sums.eventWork = 0;
+	if (cell.on) sums.boundary.arrive(cell, s.dt);
 	constraints.begin();
 	addForces(First, 0, contacts[First].blockCount(), false);
 	addForces(Second, 0, contacts[Second].blockCount(), false);
@@ -67,6 +68,7 @@ void Domain::addOtherForces(bool behind)
 {
 	if (behind) fastestSquared = 0, moved = begin;
 	addForces(Both, 0, sortedBlocks, behind);
+	if (cell.on) sums.boundary.complete(cell, s.dt);
 	constraints.withhold(s.grains.data(), s.dt, end);
 	if (behind) integrateUpTo(end);
 }
@@ -90,25 +92,49 @@ void Domain::integrateUpTo(int grain)
 	if (s.hasDrag())
 		for (int g = moved; g < grain; ++g)
 			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
+	if (s.convects()) convect(moved, grain);
 	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved, s.dt, fastestSquared);
 	if (!s.orientation.empty()) turnOrientations(s.grains.data() + moved, s.grains.data() + grain, s.orientation.data() + moved, s.dt);
 	moved = grain;
 }
 
-ContactMotion Domain::motionOf(int i, int j) const
+// The share of the convective acceleration in the kick to come, and its work: the impulse times the mean of the velocities before and after the kick.
+void Domain::convect(int first, int last)
 {
-	const Grain &a = s.grains[i], &b = s.grains[j];
-	const Vec3<double> separation = positionOf(a) - positionOf(b);
-	const double inverseMass = inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
-	return { separation, velocityOf(a) - velocityOf(b), spinOf(a), spinOf(b), s.dt, inverseMass };
+	for (int k = first; k < last; ++k) {
+		Grain&             g = s.grains[k];
+		const Vec3<double> before = velocityOf(g), gain = s.dt * Images<double>::times(s.convective, before);
+		const Vec3<double> after = before + gain + (s.dt * s.inverseMass[k]) * Vec3<double> { g.fx, g.fy, g.fz };
+		sums.meanField -= 0.5 / s.inverseMass[k] * dot(gain, before + after);
+		g.vx += gain.x, g.vy += gain.y, g.vz += gain.z;
+	}
 }
 
-void Domain::book(const ContactStepResult& r, const ContactMotion& m, int sort)
+ContactMotion Domain::motionOf(int i, int j, Image& image) const
+{
+	const Grain &a = s.grains[i], &b = s.grains[j];
+	Vec3<double> separation = positionOf(a) - positionOf(b);
+	image                   = nearestImage(cell, separation);
+	const double inverseMass = inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
+	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity };
+}
+
+void Domain::book(const ContactStepResult& r, const ContactMotion& m, const Image& image, int sort)
 {
 	if (sort == Second) return;
 	sums.dissipated += r.dissipated;
 	sums.eventWork += r.workBefore - 0.5 * contact_law::events::work(m, r.force, r.torque1, r.torque2);
+	if (cell.on) sums.boundary.addEarly(image.shift, r.force, r.forceBefore);
 	++events;
+}
+
+void Domain::addAlone(int sort, int i, int j, const ContactStepResult& r, const Image& image)
+{
+	if (sort != Second) {
+		add(s.grains[i], r.force, r.torque1);
+		if (cell.on) sums.boundary.add(image.shift, r.force);
+	}
+	if (sort != First) add(s.grains[j], -r.force, r.torque2);
 }
 
 void Domain::eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces)
@@ -123,7 +149,8 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	ContactList&           list = contacts[sort];
 	const int              k    = lane % lanes;
 	const int              i = list.first(lane), j = list.second(lane);
-	const ContactMotion    m = motionOf(i, j);
+	Image                  image;
+	const ContactMotion    m = motionOf(i, j, image);
 	const PairConstants<double> constants = s.constantsOf(i, j);
 	ContactHistory<double> h    = ContactList::history(old, k);
 
@@ -138,13 +165,13 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	before.twist    = h.twist;
 	if (s.hasDrag()) {
 		const PreviousVelocity &a = s.previous[i], &b = s.previous[j];
-		before.velocity = { a.x - b.x, a.y - b.y, a.z - b.z };
+		before.velocity = Vec3<double> { a.x - b.x, a.y - b.y, a.z - b.z } + image.velocityBefore;
 		before.drag     = list.drag(lane);
 	}
 
 	h.pointers                = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 	const ContactStepResult r = contactStepWith[s.mechanisms](constants, m, before, h);
-	book(r, m, sort);
+	book(r, m, image, sort);
 	write(r.force, forces.force, k);
 	write(r.torque1, forces.torque1, k);
 	write(r.torque2, forces.torque2, k);
@@ -154,8 +181,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 		return;
 	}
 	// this lane's kicks still go to its grains (scattered by index): add them here, and leave nothing for the dead lane's dummies
-	if (sort != Second) add(s.grains[i], r.force, r.torque1);
-	if (sort != First) add(s.grains[j], -r.force, r.torque2);
+	addAlone(sort, i, j, r, image);
 	write({ 0, 0, 0 }, forces.force, k);
 	write({ 0, 0, 0 }, forces.torque1, k);
 	write({ 0, 0, 0 }, forces.torque2, k);
@@ -182,16 +208,16 @@ void Domain::births()
 void Domain::birth(int sort, int index)
 {
 	const Pair          p = far[sort][index];
-	const ContactMotion m = motionOf(p.i, p.j);
+	Image               image;
+	const ContactMotion m = motionOf(p.i, p.j, image);
 	Contact             c { p.i, p.j, {}, s.constantsOf(p.i, p.j) };
 	const auto          r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
 	if (!r.touching) return;
 	c.drag                = r.now.drag;
 	c.overlap             = r.geometry.overlap;
 	touching[sort][index] = 1;
-	book(r, m, sort);
-	if (sort != Second) add(s.grains[p.i], r.force, r.torque1);
-	if (sort != First) add(s.grains[p.j], -r.force, r.torque2);
+	book(r, m, image, sort);
+	addAlone(sort, p.i, p.j, r, image);
 	contacts[sort].append(c);
 }
 
@@ -215,10 +241,14 @@ void Domain::findPairs(const Grid& grid)
 	for (int sort = 0; sort < 3; ++sort) {
 		touching[sort].assign(far[sort].size(), 0);
 		const ContactList& list = contacts[sort];
-		for (int lane = 0; lane < list.size(); ++lane) {
+		std::size_t        at   = 0;
+		for (int lane = 0; lane < list.size(); ++lane) { // pairs and contacts run along together as long as contacts are sorted
 			if (!list.alive(lane)) continue;
-			const int pair = pairIndex(sort, list.first(lane), list.second(lane));
-			if (pair >= 0) touching[sort][pair] = 1;
+			const Pair pair { list.first(lane), list.second(lane) };
+			if (at > 0 && !(far[sort][at - 1] < pair)) at = std::lower_bound(far[sort].begin(), far[sort].end(), pair) - far[sort].begin();
+			while (at < far[sort].size() && far[sort][at] < pair)
+				++at;
+			if (at < far[sort].size() && !(pair < far[sort][at])) touching[sort][at] = 1;
 		}
 		for (int lane = 0; lane < bonds[sort].size(); ++lane) {
 			const int pair = bonds[sort].alive(lane) ? pairIndex(sort, bonds[sort].first(lane), bonds[sort].second(lane)) : -1;
@@ -263,8 +293,9 @@ void Domain::findNearPairs()
 
 bool Domain::closerThan(int i, int j, double gap) const
 {
-	const Vec3<double> d     = positionOf(s.grains[i]) - positionOf(s.grains[j]);
-	const double       reach = s.radius[i] + s.radius[j] + gap;
+	Vec3<double> d = positionOf(s.grains[i]) - positionOf(s.grains[j]);
+	if (cell.on) nearestImage(cell, d);
+	const double reach = s.radius[i] + s.radius[j] + gap;
 	return dot(d, d) <= reach * reach;
 }
 
@@ -285,7 +316,9 @@ void Domain::placeOverlapping()
 	for (int sort = 0; sort < 3; ++sort)
 		for (const int index : near[sort]) {
 			const Pair          p = far[sort][index];
-			const ContactMotion m { positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]), { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
+			Vec3<double>        separation = positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]);
+			nearestImage(cell, separation);
+			const ContactMotion m { separation, { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
 			const double        overlap = s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation));
 			if (overlap <= 0) continue;
 			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j), 0, overlap });
@@ -312,6 +345,16 @@ double Domain::kineticEnergy() const
 		const Grain& p = s.grains[k];
 		sum += 0.5 / s.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz) + 0.5 / s.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
 		        + 0.5 * s.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
+	}
+	return sum;
+}
+
+double Domain::convectiveWork() const
+{
+	double sum = 0;
+	for (int k = begin; k < end && s.convects(); ++k) {
+		const Vec3<double> v = velocityOf(s.grains[k]);
+		sum += 0.5 * s.dt / s.inverseMass[k] * dot(v, Images<double>::times(s.convective, v));
 	}
 	return sum;
 }

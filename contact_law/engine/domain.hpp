@@ -27,9 +27,11 @@ struct Setting {
 	BondConstants<double>  commonBond {}; // likewise
 	unsigned               mechanisms = AllSprings;
 	double                 dt = 0, nearGap = 0, farGap = 0;
+	Vec3<double>           convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
 	const InstructionSet*  passes = nullptr;
 
 	bool                  hasDrag() const { return mechanisms & Drag; }
+	bool                  convects() const { return convective.x != 0 || convective.y != 0 || convective.z != 0; }
 	Contact               contactOf(const ContactList& list, int lane) const { return list.get(lane, constantsOf(list.first(lane), list.second(lane))); }
 	PairConstants<double> constantsOf(int i, int j) const
 	{
@@ -41,9 +43,11 @@ struct Setting {
 	}
 };
 
-struct StepSums { // since the start, and (workBefore) of the latest step's events only
+struct StepSums { // since the start, and (eventWork) of the latest step's events only
 	Dissipation dissipated;
 	double      eventWork = 0; // what events add to the kinetic energy now beyond half the kicks' work
+	BoundaryWork boundary;      // of a periodic cell
+	double       meanField = 0; // taken out of the kinetic energy by changes of the cell's velocity gradient and by the convective acceleration [J]
 };
 
 class Domain {
@@ -64,7 +68,8 @@ public:
 	void place(const Bond&);
 	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and findPairs()
 	StoredEnergy<double> energies();
-	double     kineticEnergy() const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add
+	double     kineticEnergy() const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add; in it no convective acceleration, but
+	double     convectiveWork() const; // this is half of what it does in the kick now
 
 	int                 begin, end;
 	double              fastestSquared = 0;
@@ -75,6 +80,7 @@ public:
 	BondList            bonds[3];         // likewise
 	std::array<long, bondModes> broken {}; // bonds so far, by mode; a border bond where its first grain lives
 	Constraints         constraints;
+	PeriodicCell        cell; // as it is at this domain's latest forces
 	int                 contactCount() const; // alive ones, bonds among them, a border contact counted where its first grain lives
 
 private:
@@ -91,6 +97,7 @@ private:
 	ForcePass     passFor(int sort);
 	void          addForces(int sort, int firstBlock, int endBlock, bool moveBehind);
 	static void   moveBehind(void* owner, int batch);
+	void          convect(int first, int last);
 	void          integrateUpTo(int grain);
 	static void   eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	void          eventOf(int sort, int lane, const ContactBlock& before, LaneForces& forces);
@@ -103,13 +110,15 @@ private:
 	void          addBondEnergies(StoredEnergy<double>&);
 	void          births();
 	void          birth(int sort, int farIndex);
-	ContactMotion motionOf(int i, int j) const;
-	void          book(const ContactStepResult&, const ContactMotion&, int sort);
+	ContactMotion motionOf(int i, int j, Image&) const;
+	void          book(const ContactStepResult&, const ContactMotion&, const Image&, int sort);
+	void          addAlone(int sort, int i, int j, const ContactStepResult&, const Image&); // kicks of a contact that no pass scatters
 	bool          owns(int grain) const { return grain >= begin && grain < end; }
 
 	Setting&          s;
 	int               dummy;
 	Dissipation       ignoredDissipation; // of border contacts that the other domain books
+	Vec3<double>      ignoredCrossing { 0, 0, 0 };
 	long              ignoredEvents = 0;
 	EventCall         eventCalls[3];
 	int               moved = 0; // grains from begin on that this step has moved already

@@ -32,6 +32,7 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	setting.neck          = options.neck;
 	setting.mechanisms    = options.mechanisms;
 	setting.dt            = options.dt;
+	setting.convective    = options.convective;
 	if (memory) recallOrder(*memory);
 	else orderGrains(grains);
 	loadGrains(grains);
@@ -45,7 +46,7 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	if (inherited && inherited->stepBehind) { // an ordinary step's end: events since the histories' moment are found as in any other
 		addForces();
 		for (auto& domain : domains)
-			domain->constraints.work = 0; // half of it would be missing
+			domain->constraints.work = 0, domain->sums.boundary.done *= 2; // half of it would be missing: of blocked grains it is left out, the boundaries' forces hardly change in a step
 		return;
 	}
 	const bool bonded = setting.neck > 0 && !inherited;
@@ -132,12 +133,15 @@ void Dynamics::set(int index, const GrainInput& now)
 	travelSinceFar = travelSinceNear = setting.farGap; // whatever the distance: look for neighbours anew
 }
 
-// The velocities through the given time with the forces as they are.
+// The velocities through the given time with the forces as they are; back in time, it undoes what it does.
 void Dynamics::kick(Grain& p, int k, double time) const
 {
-	const double m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
+	const double        m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
+	const Vec3<double>& c = setting.convective; // grows with the velocity before the kick
+	if (time > 0) p.vx *= 1 + time * c.x, p.vy *= 1 + time * c.y, p.vz *= 1 + time * c.z;
 	p.vx += m * p.fx, p.vy += m * p.fy, p.vz += m * p.fz;
 	p.wx += i * p.tx, p.wy += i * p.ty, p.wz += i * p.tz;
+	if (time < 0) p.vx /= 1 - time * c.x, p.vy /= 1 - time * c.y, p.vz /= 1 - time * c.z;
 }
 
 void Dynamics::makeDomains()
@@ -147,6 +151,8 @@ void Dynamics::makeDomains()
 	if (setting.hasDrag()) setting.previous.assign(count + 2 * domainCount, PreviousVelocity {});
 	for (int d = 0; d < domainCount; ++d)
 		domains.push_back(std::make_unique<Domain>(setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
+	for (auto& domain : domains)
+		domain->cell = options.cell;
 	for (int k = 0; k < count; ++k)
 		if (setting.blocked[k]) domainOf(k).constraints.block(setting.grains.data(), k, setting.blocked[k]);
 }
@@ -159,17 +165,34 @@ Domain& Dynamics::domainOf(int index)
 	return *domains[d];
 }
 
-void Dynamics::buildGrid()
+template <class Mine, class Wait> void Dynamics::buildGrid(bool firstThread, Mine&& mine, Wait&& wait)
 {
-	grid.build(setting.grains.data(), count, 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap);
+	const Grain* grains = setting.grains.data();
+	if (firstThread) grid.begin(int(domains.size()), count);
+	wait();
+	mine([&](Domain& domain, int d) { grid.measure(d, grains, domain.begin, domain.end); });
+	wait();
+	if (firstThread) grid.layOut(reach(), cell());
+	wait();
+	mine([&](Domain&, int d) { grid.countGrains(d, grains); });
+	wait();
+	mine([&](Domain&, int d) { grid.sum(d); });
+	wait();
+	mine([&](Domain&, int d) { grid.findStarts(d); });
+	wait();
+	mine([&](Domain&, int d) { grid.place(d); });
 }
 
 void Dynamics::refreshLists(bool farToo)
 {
 	if (farToo) {
-		buildGrid();
-		for (auto& domain : domains)
-			domain->findPairs(grid);
+		const auto each = [&](auto&& what) {
+			for (std::size_t d = 0; d < domains.size(); ++d)
+				what(*domains[d], int(d));
+		};
+		buildGrid(true, each, [] {});
+		setMostCells();
+		each([&](Domain& domain, int) { domain.findPairs(grid); });
 		travelSinceFar = 0;
 	} else {
 		for (auto& domain : domains)
@@ -216,39 +239,44 @@ double Dynamics::unstableStep() const
 }
 
 // One thread's share of a run; all threads take the same decisions from the same numbers. Returns the steps made.
-long Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
+long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier& barrier)
 {
 	const auto mine = [&](auto&& what) {
 		for (std::size_t d = thread; d < domains.size(); d += threads)
-			what(*domains[d]);
+			what(*domains[d], int(d));
 	};
+	const auto wait = [&] { barrier.wait(); };
+	const Vec3<double> rate = (1 / setting.dt) * growth;
 	double       sinceFar = travelSinceFar, sinceNear = travelSinceNear;
 	const double allowed = fastestAllowed();
-	mine([](Domain& domain) { domain.integrate(); });
+	mine([](Domain& domain, int) { domain.integrate(); });
 	for (long step = 1; step <= steps; ++step) {
 		barrier.wait();
 		double fastest = 0;
 		for (const auto& domain : domains)
 			fastest = std::max(fastest, domain->fastestSquared);
 		if (fastest > allowed) return step - 1;
-		const double travel = setting.dt * std::sqrt(3 * fastest); // of a component's square
+		mine([&](Domain& domain, int) { domain.cell.advance(sizeAtEnd - double(steps - step) * growth, rate); });
+		const Vec3<double> across = Images<double>::times(mostCells, growth); // an image moves with its cell
+		const double       travel = setting.dt * std::sqrt(3 * fastest) /* of a component's square */ + 0.5 * std::sqrt(dot(across, across));
 		sinceFar += travel;
 		sinceNear += travel;
 		if (2 * sinceNear > setting.nearGap) {
 			const bool farToo = 2 * sinceFar + setting.nearGap > setting.farGap;
 			if (farToo) {
-				if (thread == 0) buildGrid();
-				mine([](Domain& domain) { domain.sortContacts(); });
+				buildGrid(thread == 0, mine, wait);
+				if (thread == 0) setMostCells();
+				mine([](Domain& domain, int) { domain.sortContacts(); });
 				barrier.wait();
-				mine([this](Domain& domain) { domain.findPairs(grid); });
+				mine([this](Domain& domain, int) { domain.findPairs(grid); });
 				sinceFar = 0;
-			} else mine([](Domain& domain) { domain.findNearPairs(); });
+			} else mine([](Domain& domain, int) { domain.findNearPairs(); });
 			sinceNear = 0;
 			if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
 		}
-		mine([](Domain& domain) { domain.addFirstForces(); });
+		mine([](Domain& domain, int) { domain.addFirstForces(); });
 		barrier.wait();
-		mine([=](Domain& domain) { domain.addOtherForces(step < steps); });
+		mine([=](Domain& domain, int) { domain.addOtherForces(step < steps); });
 	}
 	if (thread == 0) {
 		travelSinceFar  = sinceFar;
@@ -257,14 +285,15 @@ long Dynamics::runShare(long steps, int thread, int threads, Barrier& barrier)
 	return steps;
 }
 
-long Dynamics::run(long steps)
+long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 {
 	const int threads = threadCount();
 	Barrier   barrier(threads);
 	long      made = steps;
+	const Vec3<double> from = cell().size, to = sizeAtEnd ? *sizeAtEnd : from, growth = (1. / double(steps)) * (to - from);
 #pragma omp parallel num_threads(threads)
 	{
-		const long here = runShare(steps, omp_get_thread_num(), threads, barrier);
+		const long here = runShare(steps, growth, to, omp_get_thread_num(), threads, barrier);
 		if (omp_get_thread_num() == 0) made = here;
 	}
 	contactUpdates += made * contactCount();
@@ -292,17 +321,19 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 Energies Dynamics::energies()
 {
 	std::vector<StoredEnergy<double>> stored(domains.size());
-	std::vector<double>               kinetic(domains.size());
+	std::vector<double>               kinetic(domains.size()), convective(domains.size());
 #pragma omp parallel for num_threads(threadCount())
 	for (std::size_t d = 0; d < domains.size(); ++d) {
 		stored[d]  = domains[d]->energies();
 		kinetic[d] = domains[d]->kineticEnergy();
+		convective[d] = domains[d]->convectiveWork();
 	}
 	Energies e;
 	e.dissipated = dissipated();
 	for (std::size_t d = 0; d < domains.size(); ++d) {
 		e.stored += stored[d];
-		e.kinetic += kinetic[d];
+		e.kinetic += kinetic[d] + convective[d];
+		e.boundaryWork += domains[d]->sums.boundary.done + domains[d]->sums.meanField - convective[d];
 		e.constraintWork += domains[d]->constraints.work;
 	}
 	return e;

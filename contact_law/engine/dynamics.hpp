@@ -24,6 +24,7 @@ struct ContactNow {
 	ContactGeometry<double> geometry;
 	ContactForces<double>   forces;
 	Vec3<double>            velocity; // of the first past the second through the last small step
+	Vec3<double>            shift;    // cells by which the first is shifted to be nearest to the second (periodic)
 	bool                    bonded = false;
 	BondConstants<double>   bond {}; // when it is; the geometry's overlap is then rest - distance
 	double                  rest = 0;
@@ -51,6 +52,7 @@ struct Energies {
 	StoredEnergy<double> stored { 0, 0, 0, 0 };
 	Dissipation dissipated;
 	double      constraintWork = 0; // done by contacts on blocked degrees of freedom, since the start
+	double      boundaryWork   = 0; // done against a periodic cell's boundaries and mean velocity field, since the start
 };
 
 class Dynamics {
@@ -62,6 +64,8 @@ public:
 		int      domains = 2, threads = 1;
 		std::string instructions; // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool        orientations = false; // whether to keep the grains' orientations up
+		PeriodicCell cell {};             // at the start's moment; off: open space
+		Vec3<double> convective { 0, 0, 0 }; // see setMeanField
 	};
 	// Grains that overlap touch from the start, with unstrained springs (with a neck: bonded), or as `inherited` has it; or all is as `memory` (of remember(), from the same grains in the
 	// same order) has it.
@@ -73,7 +77,18 @@ public:
 	double unstableStep() const;
 
 	// Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (trouble() then tells).
-	long run(long steps);
+	// In a periodic cell its size goes evenly from what it was to sizeAtEnd [m].
+	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
+
+	/* A periodic cell's mean velocity field x gradient: what is added to it now is added to every grain (by its unwrapped position), and from now on
+	 * `convective` (diagonal, 1/s) times their velocity accelerates grains. */
+	void setMeanField(const Vec3<double>& added, const Vec3<double>& convective);
+	Vec3<double> convective() const { return setting.convective; }
+	const PeriodicCell& cell() const { return domains[0]->cell; }
+	// What a periodic cell must hold twice along each axis: the largest distance of neighbours in the lists.
+	double reach() const { return 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap; }
+	double smallestRadius() const { return *std::min_element(setting.radius.begin(), setting.radius.end()); }
+
 	void setThreads(int threads) { options.threads = threads; }
 	int  threadCount() const { return std::max(1, std::min(options.threads, int(domains.size()))); }
 
@@ -156,9 +171,11 @@ private:
 	void recall(const std::vector<double>& memory);
 	void firstForces();
 	void addForces(); // of all domains, without moving
-	void buildGrid();
+	// mine(what) calls what(domain, its number) for a thread's domains, wait() lets the threads come together
+	template <class Mine, class Wait> void buildGrid(bool firstThread, Mine&&, Wait&&);
+	void setMostCells();
 	void refreshLists(bool farToo);
-	long runShare(long steps, int thread, int threads, Barrier&);
+	long runShare(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier&);
 	Domain& domainOf(int index);
 	double  fastestAllowed() const; // square of a velocity component
 
@@ -169,6 +186,7 @@ private:
 	std::vector<std::unique_ptr<Domain>> domains;
 	Grid                                 grid;
 	double                               travelSinceFar = 0, travelSinceNear = 0; // bound on how far any grain went
+	Vec3<double>                         mostCells { 0, 0, 0 };                   // that a shift to the nearest image can be, periodic
 };
 
 const InstructionSet& instructionSet(const std::string& name); // throws std::invalid_argument for one that is unknown or that this machine lacks

@@ -5,7 +5,7 @@ namespace contact_law {
 
 namespace {
 	Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
-	Vec3<double> separationOf(const Grain& a, const Grain& b) { return { a.x - b.x, a.y - b.y, a.z - b.z }; }
+	Vec3<double> separationOf(const Grain& a, const Grain& b) { return { a.x - b.x, a.y - b.y, a.z - b.z }; } // of the grains themselves, not their images
 
 	ContactHistory<double> swapped(const ContactHistory<double>& h) { return { { h.pointers.n2, h.pointers.n1 }, h.twist }; } // spin and normal both change sign
 }
@@ -26,6 +26,7 @@ ContactNow swapped(const ContactNow& c)
 	s.velocity                     = -c.velocity;
 	s.bond.radius1                 = c.bond.radius2;
 	s.bond.radius2                 = c.bond.radius1;
+	s.shift                        = -c.shift;
 	return s;
 }
 
@@ -49,7 +50,9 @@ void Dynamics::inherit(const Inherited& inherited)
 ContactNow Dynamics::now(const Contact& c) const
 {
 	const Grain &a = setting.grains[c.i], &b = setting.grains[c.j];
-	ContactNow   n { original[c.i], original[c.j], c.constants, c.history, geometryOf(separationOf(a, b), c.constants.radius1 + c.constants.radius2), {}, velocityOf(a) - velocityOf(b) };
+	Vec3<double> separation = separationOf(a, b);
+	const Image  image      = nearestImage(cell(), separation);
+	ContactNow   n { original[c.i], original[c.j], c.constants, c.history, geometryOf(separation, c.constants.radius1 + c.constants.radius2), {}, velocityOf(a) - velocityOf(b) + image.velocity, image.shift };
 	n.forces      = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
 	n.forces.drag = c.drag;
 	if (!(setting.mechanisms & Sliding)) n.forces.sliding = { 0, 0, 0 };
@@ -59,7 +62,7 @@ ContactNow Dynamics::now(const Contact& c) const
 ContactNow Dynamics::now(const Bond& b) const
 {
 	const Grain &a = setting.grains[b.i], &other = setting.grains[b.j];
-	ContactNow   n { original[b.i], original[b.j], setting.constantsOf(b.i, b.j), b.history, geometryOf(separationOf(a, other), b.rest), {}, velocityOf(a) - velocityOf(other), true, b.constants, b.rest };
+	ContactNow   n { original[b.i], original[b.j], setting.constantsOf(b.i, b.j), b.history, geometryOf(separationOf(a, other), b.rest), {}, velocityOf(a) - velocityOf(other), { 0, 0, 0 }, true, b.constants, b.rest };
 	n.forces = bondForces(b.constants, n.geometry, b.history);
 	return n;
 }
@@ -67,7 +70,9 @@ ContactNow Dynamics::now(const Bond& b) const
 double Dynamics::normalForce(const Contact& c) const
 {
 	const Grain &a = setting.grains[c.i], &b = setting.grains[c.j];
-	const auto   g = geometryOf(separationOf(a, b), c.constants.radius1 + c.constants.radius2);
+	Vec3<double> separation = separationOf(a, b);
+	nearestImage(cell(), separation);
+	const auto g = geometryOf(separation, c.constants.radius1 + c.constants.radius2);
 	return contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce + c.drag;
 }
 

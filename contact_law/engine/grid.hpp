@@ -1,74 +1,160 @@
-// Grains sorted into cubic cells, to find neighbours.
+// Grains sorted into cells, to find neighbours. Made in parts that threads share: each stretch of grains counts and places its own.
 #pragma once
 #include "arrays.hpp"
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace contact_law {
 
 class Grid {
 public:
-	// Cells of the given size around the first `count` grains; coarser where the box is so large that cells would be far more than grains.
-	void build(const Grain* grains, int count, double cellSize)
+	/* A grid is made by these five, each for all parts (stretches of grains by rising index) before the next, layOut once; the parts of one may run side by side.
+	 * In each cell members stand in the order of their indices, however many parts there are. */
+	void begin(int parts_, int count_)
 	{
-		double low[3] = { grains[0].x, grains[0].y, grains[0].z }, high[3] = { low[0], low[1], low[2] };
-		for (int g = 0; g < count; ++g) {
+		count = count_;
+		parts.resize(parts_);
+	}
+	void measure(int part, const Grain* grains, int first, int last)
+	{
+		Part& p = parts[part];
+		p.first = first, p.last = last;
+		for (int k = 0; k < 3; ++k)
+			p.low[k] = p.high[k] = (&grains[first].x)[k];
+		for (int g = first; g < last; ++g) {
 			const double* x = &grains[g].x;
 			for (int k = 0; k < 3; ++k) {
-				low[k]  = x[k] < low[k] ? x[k] : low[k];
-				high[k] = x[k] > high[k] ? x[k] : high[k];
+				p.low[k]  = std::min(p.low[k], x[k]);
+				p.high[k] = std::max(p.high[k], x[k]);
 			}
 		}
-		inverseSize = 1 / cellSize;
-		for (;;) {
+	}
+	// Cells of at least the given size around the grains, or filling the periodic cell; coarser where they would be far more than grains.
+	void layOut(double cellSize, const PeriodicCell& periodicCell)
+	{
+		double low[3], high[3];
+		for (int k = 0; k < 3; ++k) {
+			low[k] = parts[0].low[k], high[k] = parts[0].high[k];
+			for (const Part& p : parts)
+				low[k] = std::min(low[k], p.low[k]), high[k] = std::max(high[k], p.high[k]);
+			extent[k] = high[k] - low[k];
+		}
+		periodic                = periodicCell.on;
+		const double lengths[3] = { periodicCell.size.x, periodicCell.size.y, periodicCell.size.z };
+		for (double wanted = cellSize;; wanted *= 1.25) {
 			double cells = 1;
 			for (int k = 0; k < 3; ++k) {
-				origin[k] = low[k];
-				cells *= size[k] = int((high[k] - low[k]) * inverseSize) + 1;
+				length[k] = lengths[k];
+				origin[k] = periodic ? 0 : low[k];
+				size[k]   = periodic ? std::max(1, int(std::min(length[k] / wanted, 1e6))) : int(std::min((high[k] - low[k]) / wanted, 1e6)) + 1;
+				inverseSize[k] = periodic ? size[k] / length[k] : 1 / wanted;
+				cells *= size[k];
 			}
 			if (cells <= 64. * count + 4096) break;
-			inverseSize *= 0.8;
 		}
-		start.assign(std::size_t(size[0]) * size[1] * size[2] + 1, 0);
+		start.resize(cellCount() + 1);
 		cellOf.resize(count);
 		members.resize(count);
-		for (int g = 0; g < count; ++g)
-			++start[(cellOf[g] = cellAt(&grains[g].x)) + 1];
-		for (std::size_t c = 1; c < start.size(); ++c)
-			start[c] += start[c - 1];
-		std::vector<int> filled(start.begin(), start.end() - 1);
-		for (int g = 0; g < count; ++g)
-			members[filled[cellOf[g]]++] = g;
+	}
+	void countGrains(int part, const Grain* grains)
+	{
+		Part& p = parts[part];
+		p.next.assign(cellCount(), 0);
+		for (int g = p.first; g < p.last; ++g)
+			++p.next[cellOf[g] = cellAt(&grains[g].x)];
+	}
+	// A part sums up a share of the cells.
+	void sum(int part)
+	{
+		int total = 0;
+		for (const Part& p : parts)
+			for (std::size_t c = firstCell(part); c < firstCell(part + 1); ++c)
+				total += p.next[c];
+		parts[part].total = total;
+	}
+	void findStarts(int part)
+	{
+		int next = 0;
+		for (int before = 0; before < part; ++before)
+			next += parts[before].total;
+		for (std::size_t c = firstCell(part); c < firstCell(part + 1); ++c) {
+			start[c] = next;
+			for (Part& p : parts) {
+				const int here = p.next[c];
+				p.next[c]      = next;
+				next += here;
+			}
+		}
+		if (part + 1 == int(parts.size())) start[cellCount()] = count;
+	}
+	void place(int part)
+	{
+		Part& p = parts[part];
+		for (int g = p.first; g < p.last; ++g)
+			members[p.next[cellOf[g]]++] = g;
 	}
 
-	// Calls visit(grain) for every grain in the 27 cells around position x.
+	// Calls visit(grain) once for every grain in the 27 cells (or as many as there are) around position x.
 	template <class Visit> void around(const double* x, Visit&& visit) const
 	{
-		int at[3];
+		Span spans[3][2];
+		int  count[3];
 		for (int k = 0; k < 3; ++k)
-			at[k] = int((x[k] - origin[k]) * inverseSize);
-		for (int c = at[2] - 1; c <= at[2] + 1; ++c)
-			for (int b = at[1] - 1; b <= at[1] + 1; ++b) {
-				if (c < 0 || b < 0 || c >= size[2] || b >= size[1]) continue;
-				const int first = at[0] > 0 ? at[0] - 1 : 0, last = at[0] + 1 < size[0] ? at[0] + 1 : size[0] - 1;
-				const int row = (c * size[1] + b) * size[0];
-				for (int m = start[row + first]; m < start[row + last + 1]; ++m)
-					visit(members[m]);
-			}
+			count[k] = spansAround(k, cellAlong(k, x[k]), spans[k]);
+		for (int c = 0; c < count[2]; ++c)
+			for (int z = spans[2][c].first; z <= spans[2][c].last; ++z)
+				for (int b = 0; b < count[1]; ++b)
+					for (int y = spans[1][b].first; y <= spans[1][b].last; ++y)
+						for (int a = 0; a < count[0]; ++a) {
+							const std::size_t row = (std::size_t(z) * size[1] + y) * size[0];
+							for (int m = start[row + spans[0][a].first]; m < start[row + spans[0][a].last + 1]; ++m)
+								visit(members[m]);
+						}
 	}
+
+	// By how many cells' lengths the images of any two grains may be apart, each axis, until they have moved by more than a grain.
+	double mostCells(int axis) const { return extent[axis] / length[axis] + 1; }
 
 private:
-	int cellAt(const double* x) const
+	struct Span {
+		int first, last; // cells along an axis
+	};
+	struct Part {
+		int              first, last, total; // grains; and how many are in this part's share of the cells
+		double           low[3], high[3];
+		std::vector<int> next; // by cell: first how many grains, then where the next one goes
+	};
+
+	std::size_t cellCount() const { return std::size_t(size[0]) * size[1] * size[2]; }
+	std::size_t firstCell(int part) const { return cellCount() * part / parts.size(); }
+
+	int cellAlong(int k, double x) const
 	{
-		int at[3];
-		for (int k = 0; k < 3; ++k)
-			at[k] = int((x[k] - origin[k]) * inverseSize);
-		return (at[2] * size[1] + at[1]) * size[0] + at[0];
+		const double cells = x / length[k], at = periodic ? (cells - std::floor(cells)) * size[k] : (x - origin[k]) * inverseSize[k];
+		return std::max(0, std::min(int(at), size[k] - 1)); // also where a run has gone wrong and x is no number
+	}
+	int cellAt(const double* x) const { return (cellAlong(2, x[2]) * size[1] + cellAlong(1, x[1])) * size[0] + cellAlong(0, x[0]); }
+
+	int spansAround(int k, int at, Span spans[2]) const
+	{
+		const int first = at - 1, last = at + 1, end = size[k];
+		if (!periodic || end <= 3) {
+			spans[0] = periodic ? Span { 0, end - 1 } : Span { std::max(first, 0), std::min(last, end - 1) };
+			return 1;
+		}
+		spans[0] = { std::max(first, 0), std::min(last, end - 1) };
+		if (first >= 0 && last < end) return 1;
+		spans[1] = first < 0 ? Span { end - 1, end - 1 } : Span { 0, 0 };
+		return 2;
 	}
 
-	double           origin[3] {}, inverseSize = 1;
-	int              size[3] { 1, 1, 1 };
-	std::vector<int> start, members, cellOf;
+	std::vector<Part> parts;
+	double            origin[3] {}, inverseSize[3] { 1, 1, 1 }, length[3] { 1, 1, 1 }, extent[3] {};
+	int               size[3] { 1, 1, 1 }, count = 0;
+	bool              periodic = false;
+	std::vector<int>  start, members, cellOf;
 };
 
 } // namespace contact_law

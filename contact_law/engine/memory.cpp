@@ -17,6 +17,11 @@ namespace {
 			return from[at++];
 		}
 		int  integer() { return int(next()); }
+		Vec3<double> vector()
+		{
+			const double x = next(), y = next();
+			return { x, y, next() };
+		}
 		bool done() const { return at == from.size(); }
 
 	private:
@@ -50,6 +55,7 @@ namespace {
 		}
 	}
 
+	void remember(std::vector<double>& to, const Vec3<double>& v) { to.insert(to.end(), { v.x, v.y, v.z }); }
 	void remember(std::vector<double>& to, const Contact& c)
 	{
 		const Vec3<double>&p = c.history.pointers.n1, &q = c.history.pointers.n2;
@@ -62,6 +68,9 @@ std::vector<double> Dynamics::remember() const
 	std::vector<double> to { double(count) };
 	to.insert(to.end(), original.begin(), original.end());
 	to.insert(to.end(), { double(domains.size()), travelSinceFar, travelSinceNear, double(contactUpdates), double(farRebuilds), double(nearRebuilds) });
+	to.push_back(cell().on);
+	for (const Vec3<double>& v : { cell().size, cell().rate, cell().rateBefore, mostCells, setting.convective })
+		contact_law::remember(to, v);
 	for (int k = 0; k < count; ++k) {
 		const double* numbers = &setting.grains[k].x;
 		to.insert(to.end(), numbers, numbers + sizeof(Grain) / sizeof(double));
@@ -70,6 +79,10 @@ std::vector<double> Dynamics::remember() const
 	for (const auto& domain : domains) {
 		const Dissipation& d = domain->sums.dissipated;
 		to.insert(to.end(), { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork, double(domain->events), double(domain->sortedBlocks) });
+		const BoundaryWork& b = domain->sums.boundary;
+		to.insert(to.end(), { b.done, domain->sums.meanField });
+		contact_law::remember(to, b.kicks);
+		contact_law::remember(to, b.early);
 		to.insert(to.end(), { domain->constraints.work, double(domain->constraints.grains.size()) });
 		for (const Constrained& c : domain->constraints.grains)
 			to.insert(to.end(), { c.force.x, c.force.y, c.force.z, c.torque.x, c.torque.y, c.torque.z });
@@ -113,6 +126,12 @@ void Dynamics::recall(const std::vector<double>& memory)
 	contactUpdates  = long(from.next());
 	farRebuilds     = long(from.next());
 	nearRebuilds    = long(from.next());
+	PeriodicCell cell;
+	Vec3<double> most;
+	cell.on = from.next();
+	if (cell.on != options.cell.on) throw std::invalid_argument("O.periodic is another than in the checkpoint");
+	for (Vec3<double>* v : { &cell.size, &cell.rate, &cell.rateBefore, &most, &setting.convective })
+		*v = from.vector();
 	for (int k = 0; k < count; ++k) {
 		double* numbers = &setting.grains[k].x;
 		for (std::size_t n = 0; n < sizeof(Grain) / sizeof(double); ++n)
@@ -128,6 +147,11 @@ void Dynamics::recall(const std::vector<double>& memory)
 			*number = from.next();
 		domain->events = long(from.next());
 		domain->sortedBlocks = from.integer();
+		domain->cell = cell;
+		domain->sums.boundary.done = from.next();
+		domain->sums.meanField = from.next();
+		domain->sums.boundary.kicks = from.vector();
+		domain->sums.boundary.early = from.vector();
 		domain->constraints.work = from.next();
 		if (from.integer() != int(domain->constraints.grains.size())) throw std::invalid_argument("blockedDOFs of a body are others than in the checkpoint");
 		for (Constrained& c : domain->constraints.grains)
@@ -161,6 +185,7 @@ void Dynamics::recall(const std::vector<double>& memory)
 	refreshLists(true); // the pairs may be others than before, the contacts' order and the births to come are not
 	travelSinceFar  = sinceFar;
 	travelSinceNear = sinceNear;
+	mostCells       = most;
 }
 
 } // namespace contact_law

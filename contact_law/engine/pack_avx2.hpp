@@ -33,6 +33,7 @@ inline unsigned bitsOf(PackMask m) { return unsigned(_mm256_movemask_pd(m.lanes)
 inline bool     anyOf(PackMask m) { return bitsOf(m) != 0; }
 inline Pack     choose(PackMask m, Pack yes, Pack no) { return _mm256_blendv_pd(no.v, yes.v, m.lanes); }
 inline Pack     absolute(Pack a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.), a.v); }
+inline Pack     nearest(Pack a) { return _mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
 inline Pack     root(Pack x) { return _mm256_sqrt_pd(x.v); }
 inline Pack     inverseRoot(Pack x) { return Pack(1.) / root(x); }
 

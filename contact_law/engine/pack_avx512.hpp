@@ -33,6 +33,7 @@ inline unsigned bitsOf(PackMask m) { return m.bits; }
 inline bool     anyOf(PackMask m) { return m.bits != 0; }
 inline Pack     choose(PackMask m, Pack yes, Pack no) { return _mm512_mask_blend_pd(m.bits, no.v, yes.v); }
 inline Pack     absolute(Pack a) { return _mm512_abs_pd(a.v); }
+inline Pack     nearest(Pack a) { return _mm512_roundscale_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
 
 // 14 bits from the table, doubled twice by Newton's method: faster here than a square root and a division.
 inline Pack inverseRoot(Pack x)

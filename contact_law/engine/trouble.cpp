@@ -32,7 +32,8 @@ Dynamics::Trouble Dynamics::trouble(int given) const
 				const Contact c = setting.contactOf(list, lane);
 				// what pushed was the force where they were before they moved
 				const Grain &      a = setting.grains[c.i], &b = setting.grains[c.j];
-				const Vec3<double> d = separationOf(a, b) - setting.dt * (velocityOf(a) - velocityOf(b));
+				Vec3<double> d = separationOf(a, b) - setting.dt * (velocityOf(a) - velocityOf(b));
+				nearestImage(cell(), d);
 				const auto         g = geometryOf(d, c.constants.radius1 + c.constants.radius2);
 				const double       f = contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce;
 				if (t.other >= 0 && std::abs(f) <= std::abs(t.force)) continue;
@@ -58,8 +59,9 @@ Dynamics::Trouble Dynamics::hardest() const
 	Trouble t;
 	eachContact([&](const Contact& c, int first, int second, double force) {
 		if (t.grain >= 0 && std::abs(force) <= std::abs(t.force)) return;
-		const Vec3<double> d    = separationOf(setting.grains[c.i], setting.grains[c.j]);
-		const double       r1 = c.constants.radius1, r2 = c.constants.radius2;
+		Vec3<double> d = separationOf(setting.grains[c.i], setting.grains[c.j]);
+		nearestImage(cell(), d);
+		const double r1 = c.constants.radius1, r2 = c.constants.radius2;
 		t = { std::min(first, second), std::max(first, second), 0, (r1 + r2 - std::sqrt(dot(d, d))) / std::min(r1, r2), force };
 	});
 	eachBond([&](const Bond& b, int first, int second, double force) {
@@ -80,8 +82,9 @@ Dynamics::Trouble Dynamics::tooDeep() const
 			for (int lane = 0; lane < list.size(); ++lane) {
 				if (!list.alive(lane)) continue;
 				const int          i = list.first(lane), j = list.second(lane);
-				const Vec3<double> d     = separationOf(setting.grains[i], setting.grains[j]);
-				const double       least = std::max(setting.radius[i], setting.radius[j]);
+				Vec3<double> d = separationOf(setting.grains[i], setting.grains[j]);
+				nearestImage(cell(), d);
+				const double least = std::max(setting.radius[i], setting.radius[j]);
 				if (dot(d, d) >= least * least) continue;
 				const double overlap = (setting.radius[i] + setting.radius[j] - std::sqrt(dot(d, d))) / std::min(setting.radius[i], setting.radius[j]);
 				if (overlap <= t.overlap) continue;

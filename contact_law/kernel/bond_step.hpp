@@ -100,8 +100,10 @@ namespace bonds {
 			after.add(0.5, 0.5, r.geometry, r.now);
 			gone -= r.stored.normal + r.stored.sliding + r.stored.rolling + r.stored.twisting + r.dissipated.drag;
 		}
-		r.workBefore = events::work(m, ahead.force, ahead.torque1, ahead.torque2);
-		r.dissipated.bondBreaking[breaking.mode] = gone - r.workBefore + (after.squared(motion) - ahead.squared(motion)) * m.dt * m.dt / 2;
+		r.forceBefore = ahead.force;
+		r.workBefore  = events::work(m, ahead.force, ahead.torque1, ahead.torque2);
+		const double onBoth = r.workBefore + m.dt * dot(ahead.force, m.imageVelocity); // that on a periodic cell's boundaries too
+		r.dissipated.bondBreaking[breaking.mode] = gone - onBoth + (after.squared(motion) - ahead.squared(motion)) * m.dt * m.dt / 2;
 		r.force   = ahead.force + after.force;
 		r.torque1 = ahead.torque1 + after.torque1;
 		r.torque2 = ahead.torque2 + after.torque2;
@@ -139,6 +141,7 @@ inline BondStepResult bondStep(const BondConstants<double>& b, const PairConstan
 	r.force              = f.normalForce * g.normal + f.sliding;
 	r.torque1            = f.torque1;
 	r.torque2            = f.torque2;
+	r.forceBefore        = 0.5 * r.force;
 	r.workBefore         = 0.5 * events::work(m, r.force, r.torque1, r.torque2);
 	return result;
 }

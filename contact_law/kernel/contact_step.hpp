@@ -14,10 +14,11 @@ namespace contact_law {
 
 struct ContactMotion {
 	Vec3<double> separation;   // x1 - x2 now
-	Vec3<double> velocity;     // v1 - v2 through the step
+	Vec3<double> velocity;     // v1 - v2 through the step, of their images nearest to each other
 	Vec3<double> spin1, spin2; // angular velocities through the step
 	double       dt;
 	double       inverseMass;  // 1/m1 + 1/m2
+	Vec3<double> imageVelocity { 0, 0, 0 }; // of it, what is not the grains' own but the motion of a periodic cell's boundaries
 };
 
 // What the ledger and the drag need of the moment one step ago.
@@ -51,6 +52,7 @@ struct Dissipation {
 struct ContactStepResult {
 	bool                  touching = false, pointersMoved = false; // moved by a slip, or new
 	Vec3<double>          force { 0, 0, 0 }, torque1 { 0, 0, 0 }, torque2 { 0, 0, 0 }; // kicks over dt; minus `force` on grain 2
+	Vec3<double>          forceBefore { 0, 0, 0 }; // the part of `force` that belongs before this instant
 	double                workBefore = 0; // work of the part of the kicks that belongs before this instant: kinetic energy now minus half a step ago
 	ContactGeometry<double> geometry {};
 	ContactForces<double>   now {}; // the forces at this instant
@@ -59,9 +61,10 @@ struct ContactStepResult {
 };
 
 namespace events {
+	// on the grains
 	inline double work(const ContactMotion& m, const Vec3<double>& force, const Vec3<double>& torque1, const Vec3<double>& torque2)
 	{
-		return m.dt * (dot(force, m.velocity) + dot(torque1, m.spin1) + dot(torque2, m.spin2));
+		return m.dt * (dot(force, m.velocity - m.imageVelocity) + dot(torque1, m.spin1) + dot(torque2, m.spin2));
 	}
 
 	// The contact's memory at the moment it formed, `since` ago, carried to now.
@@ -90,7 +93,8 @@ namespace events {
 		r.force      = push * g.normal + (share - 0.5) * f.sliding;
 		r.torque1    = (share - 0.5) * f.torque1;
 		r.torque2    = (share - 0.5) * f.torque2;
-		r.workBefore = work(m, r.force, r.torque1, r.torque2);
+		r.forceBefore = r.force;
+		r.workBefore  = work(m, r.force, r.torque1, r.torque2);
 
 		// stored a step ago, and the work of the springs' half kick then and of their rest now
 		const auto released = [&](double k, const auto& start, const auto& now, auto product) {
@@ -160,6 +164,7 @@ inline ContactStepResult contactStep(const PairConstants<double>& c, const Conta
 	}
 
 	const Vec3<double> forceAhead = normalAhead * g.normal + aheadTangential * r.now.sliding;
+	r.forceBefore = forceAhead;
 	r.workBefore = events::work(m, forceAhead, aheadTangential * r.now.torque1, aheadTangential * r.now.torque2);
 	r.force      = forceAhead + after * ((r.now.normalForce + r.now.drag) * g.normal + r.now.sliding);
 	r.torque1    = (aheadTangential + after) * r.now.torque1;

@@ -11,5 +11,6 @@ inline double inverseRoot(double x) { return 1 / std::sqrt(x); }
 inline double choose(bool condition, double yes, double no) { return condition ? yes : no; }
 inline bool   anyOf(bool condition) { return condition; }
 inline double absolute(double x) { return std::fabs(x); }
+inline double nearest(double x) { return std::nearbyint(x); }
 
 } // namespace contact_law

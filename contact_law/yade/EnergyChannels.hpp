@@ -9,6 +9,7 @@ namespace yade {
 
 class EnergyChannels {
 public:
+	enum Extra { ConstraintWork, BoundaryWork, extraCount }; // channels only of scenes that have blocked degrees of freedom, or a periodic cell
 	enum Channel { Kinetic, Normal, Sliding, Rolling, Twisting, SlidingDissipation, RollingDissipation, TwistingDissipation, Connection, Disconnection, Drag, BondBreaking, count };
 
 	// Whether add() books a channel anew each step: energies held now are, losses add up. (YADE's ForceResetter is what empties those.)
@@ -24,6 +25,8 @@ public:
 				ids[channel] = -1;
 				scene.energy->add(0., names()[channel], ids[channel], perStep(channel));
 			}
+			boundaryId = -1;
+			if (scene.isPeriodic) scene.energy->add(0., extraNames()[BoundaryWork], boundaryId, false);
 			preparedAt = scene.iter;
 		}
 	}
@@ -33,7 +36,7 @@ public:
 	{
 		int kinetic = -1;
 		scene.energy->findId("kinetic", kinetic, false, false);
-		if (kinetic < 0) last.fill(0), lastConstraintWork = 0; // O.energy is new, or was cleared
+		if (kinetic < 0) last.fill(0), lastExtra.fill(0); // O.energy is new, or was cleared
 		preparedAt = -2;
 		prepare(scene);
 		for (int channel = 0; channel < count; ++channel)
@@ -50,12 +53,16 @@ public:
 		}
 		last.fill(0);
 	}
-	// Work against whatever holds grains with blocked degrees of freedom, since the start: a channel of its own, only in scenes that have them.
-	void setConstraintWork(Scene& scene, double work, bool known)
+	// Work since the start, against whatever holds grains with blocked degrees of freedom, or against a periodic cell's boundaries.
+	void setExtra(Scene& scene, Extra which, double work, bool known)
 	{
 		int id = -1;
-		if (!known && work != lastConstraintWork) scene.energy->add(work - lastConstraintWork, "constraintWork", id, false);
-		lastConstraintWork = work;
+		if (!known && work != lastExtra[which]) scene.energy->add(work - lastExtra[which], extraNames()[which], id, false);
+		lastExtra[which] = work;
+	}
+	void addBoundaryWork(Scene& scene, double work)
+	{
+		if (work != 0) scene.energy->add(work, "", boundaryId, false);
 	}
 	void add(Scene& scene, Channel channel, double energy)
 	{
@@ -63,6 +70,11 @@ public:
 	}
 
 private:
+	static const char* const* extraNames()
+	{
+		static const char* const all[extraCount] = { "constraintWork", "boundaryWork" };
+		return all;
+	}
 	static const char* const* names()
 	{
 		static const char* const all[count] = { "kinetic",           "normal",             "sliding",             "rolling",    "twisting",     "slidingDissipation",
@@ -72,7 +84,8 @@ private:
 
 	std::array<int, count>    ids {};
 	std::array<double, count> last {};
-	double                    lastConstraintWork = 0;
+	std::array<double, extraCount> lastExtra {};
+	int                       boundaryId = -1;
 	std::atomic<long>         preparedAt { -2 };
 };
 

@@ -176,16 +176,17 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	const State&                state1    = *(*scene->bodies)[interaction->getId1()]->state;
 	const State&                state2    = *(*scene->bodies)[interaction->getId2()]->state;
 
-	Vector3r separation = state1.pos - state2.pos, velocity = state1.vel - state2.vel;
+	Vector3r separation = state1.pos - state2.pos, velocity = state1.vel - state2.vel, imageVelocity = Vector3r::Zero();
 	if (scene->isPeriodic) {
 		const Vector3r cells = interaction->cellDist.cast<Real>();
 		separation -= scene->cell->hSize * cells;
-		velocity -= scene->cell->velGrad * (scene->cell->prevHSize * cells);
+		imageVelocity = -(scene->cell->velGrad * (scene->cell->prevHSize * cells));
+		velocity += imageVelocity;
 	}
 	const Vec3d  apart       = toKernel(separation);
 	const double inverseMass = contact_law::inverseMassAlong(apart, 1 / state1.mass, state1.blockedDOFs) + contact_law::inverseMassAlong(apart, 1 / state2.mass, state2.blockedDOFs);
 	const Real   dt          = phys.current ? 0 : scene->dt; // JKRWadaEngine has brought the contact here already
-	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass };
+	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass, toKernel(imageVelocity) };
 	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement), toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
@@ -199,7 +200,12 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	scene->forces.addForce(interaction->getId2(), -force);
 	scene->forces.addTorque(interaction->getId1(), fromKernel(r.torque1));
 	scene->forces.addTorque(interaction->getId2(), fromKernel(r.torque2));
-	if (scene->trackEnergy) book(r);
+	if (scene->trackEnergy) {
+		book(r);
+		// half of the kick a step ago, and what belongs before this instant; the forces of phys are still those on body 2 a step ago
+		const Vector3r kicks = (phys.touching ? -0.5 * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero())) + fromKernel(r.forceBefore);
+		if (scene->isPeriodic) channels.addBoundaryWork(*scene, dt * kicks.dot(imageVelocity));
+	}
 
 	phys.touching = r.touching;
 	if (!r.touching) return false;

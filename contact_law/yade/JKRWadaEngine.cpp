@@ -1,6 +1,7 @@
 #include "JKRWadaEngine.hpp"
 #include "JKRWada.hpp"
 #include "LedgerWatch.hpp"
+#include "SceneCell.hpp"
 #include "SceneContacts.hpp"
 #include "SceneGrains.hpp"
 #include <core/Body.hpp>
@@ -21,6 +22,7 @@ struct JKRWadaEngine::Run {
 	std::vector<shared_ptr<State>> states;       // of the bodies, to reach them quickly
 	bool                           orientations, constrained;
 	SceneContacts                  contacts;
+	SceneCell                      cell;
 	LedgerWatch                    watch {};
 	long                           unlooked = 0; // small steps since overlaps were looked through
 };
@@ -69,12 +71,12 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	return options;
 }
 
-void JKRWadaEngine::start()
+void JKRWadaEngine::start(bool inStep)
 {
 	if (!failure.empty()) refuseInEngine(failure);
-	if (scene->isPeriodic) refuseInEngine("periodic cells are not supported yet; use the functors");
 	if (subSteps < 1) refuseInEngine("subSteps = " + std::to_string(subSteps) + ", allowed: 1 or more");
 	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck)) refuseInEngine("neck = " + text(neck) + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
+	if (neck != 0 && scene->isPeriodic) refuseInEngine("neck = " + text(neck) + " in a periodic cell, allowed: 0; sintered bonds in periodic cells are the functors'");
 	requireAlone(*scene);
 	const SceneGrains now = readGrains(*scene);
 	if (now.grains.empty()) refuseInEngine("there are no bodies");
@@ -86,15 +88,21 @@ void JKRWadaEngine::start()
 	for (const auto& one : inherited.contacts)
 		if (one.bonded && neck == 0) refuseInEngine("O.interactions has sintered bonds, and neck is 0; allowed: the neck they were made with");
 	const bool                   inherits  = !continued && !inherited.contacts.empty();
+	SceneCell                    cell;
+	options.cell = cell.start(*scene, inStep, inherits && inherited.stepBehind, options.dt);
+	options.convective = SceneCell::convective(*scene);
 	current = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr, inherits ? &inherited : nullptr), now.grains, now.grains,
-	                                         now.states, orientations, false, contacts });
+	                                         now.states, orientations, false, contacts, cell });
 	smallStep = options.dt;
 	try {
+		const std::string tooSmall = SceneCell::tooSmall(options.cell, current->dynamics);
+		if (!tooSmall.empty()) refuseInEngine(tooSmall);
 		requireStable();
 	} catch (...) {
 		current.reset();
 		throw;
 	}
+	SceneCell::takeVelocityGradient(*scene, current->dynamics, !inStep);
 	if (scene->trackEnergy) {
 		if (continued) writeEnergies(current->dynamics.energies(), true);
 		else channels.takeOver(*scene);
@@ -130,11 +138,17 @@ void JKRWadaEngine::takeChanges()
 
 void JKRWadaEngine::action()
 {
-	if (!current) start();
+	if (!current) start(true);
 	else takeChanges();
+	current->cell.require(*scene, current->dynamics);
 	if (scene->dt / subSteps != smallStep) refuseInEngine("O.dt or subSteps changed after the start; make a new engine");
+	const std::string wrong = current->cell.wrong(*scene, current->dynamics, subSteps);
+	if (!wrong.empty()) fail(scene->time + scene->dt, wrong, "");
 	current->dynamics.setThreads(threads);
-	const long made = current->dynamics.run(subSteps);
+	const contact_law::Vec3<double> cellAtEnd = SceneCell::now(*scene);
+	const long made = current->dynamics.run(subSteps, scene->isPeriodic ? &cellAtEnd : nullptr);
+	current->cell.arrive(*scene);
+	SceneCell::takeVelocityGradient(*scene, current->dynamics, true);
 	current->dynamics.read(current->now);
 	contact_law::Energies energies;
 	if (scene->trackEnergy) energies = current->dynamics.energies();
@@ -173,9 +187,9 @@ void JKRWadaEngine::requireSound(long made, const contact_law::Energies* now)
 	                   + (hardest.grain < 0 ? ", and none touch any more" : ", the hardest contact is that of " + pairOf(hardest) + describe(hardest)));
 }
 
-void JKRWadaEngine::fail(Real time, const std::string& what)
+void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 {
-	failure = "the run went wrong at t = " + text(time) + " s: " + what + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s. A smaller step may help";
+	failure = "the run went wrong at t = " + text(time) + " s: " + what + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s" + advice;
 	current.reset();
 	refuseInEngine(failure);
 }
@@ -183,7 +197,12 @@ void JKRWadaEngine::fail(Real time, const std::string& what)
 void JKRWadaEngine::prepare()
 {
 	scene = Omega::instance().getScene().get();
-	if (!current) start();
+	if (!current) start(false);
+	else SceneCell::takeVelocityGradient(*scene, current->dynamics, true);
+	if (scene->isPeriodic) { // the mean velocity field is in the grains' velocities now
+		current->dynamics.read(current->now);
+		writeBodies();
+	}
 	if (exportInteractions) current->contacts.write(*scene, current->dynamics, true);
 	if (scene->trackEnergy) writeEnergies(current->dynamics.energies(), false);
 }
@@ -191,7 +210,7 @@ void JKRWadaEngine::prepare()
 void JKRWadaEngine::writeInteractions()
 {
 	scene = Omega::instance().getScene().get();
-	if (!current) start();
+	if (!current) start(false);
 	current->contacts.write(*scene, current->dynamics, true);
 }
 
@@ -227,7 +246,8 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 	const contact_law::Dissipation& d   = now.dissipated;
 	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() }, known);
 	current->constrained = current->constrained || current->dynamics.constrained();
-	if (current->constrained) channels.setConstraintWork(*scene, now.constraintWork, known);
+	if (current->constrained) channels.setExtra(*scene, EnergyChannels::ConstraintWork, now.constraintWork, known);
+	if (scene->isPeriodic) channels.setExtra(*scene, EnergyChannels::BoundaryWork, now.boundaryWork, known);
 }
 
 void JKRWadaEngine::preSave(JKRWadaEngine&) { memory = current ? current->dynamics.remember() : std::vector<Real>(); }

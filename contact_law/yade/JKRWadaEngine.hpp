@@ -19,11 +19,11 @@ class JKRWadaEngine : public GlobalEngine {
 
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
 
-	void start();
+	void start(bool inStep);
 	void requireStable() const;
 	void takeChanges();
 	void requireSound(long stepsMade, const contact_law::Energies*);
-	[[noreturn]] void fail(Real time, const std::string& what);
+	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();
 	void writeEnergies(const contact_law::Energies&, bool known);
 
@@ -45,6 +45,9 @@ public:
 		"and so is O.energy when O.trackEnergy. Contacts are in O.interactions only with exportInteractions or after writeInteractions(); contact_law.snapshot() has them always. "
 		"Contacts that O.interactions holds at the start, from the functors or from another engine's exportInteractions, are taken over with their springs; handOver() goes the other way. "
 		"Degrees of freedom that a body's state blocks keep their velocity, as with NewtonIntegrator; what contacts do against them is O.energy['constraintWork']. "
+		"Periodic cells may be boxes along the axes, deformed by a diagonal O.cell.velGrad: forces, neighbours and velocities are those of the nearest images, grains keep their unwrapped positions, "
+		"O.cell.homoDeform means what it means with NewtonIntegrator, and O.energy['boundaryWork'] is what the grains did against the moving boundaries (minus what those did on them). A velocity gradient set between two O.steps "
+		"holds from the second O.step on, or at once when prepare() is called. "
 		"A run that goes wrong stops with the body, the contact and the time in the message, and leaves O.bodies as they were before the step. "
 		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
 		((int, subSteps, 1, , "Small steps in one O.step."))

@@ -2,6 +2,7 @@
 #include "JKRWada.hpp"
 #include "JKRWadaEngine.hpp"
 #include <core/Body.hpp>
+#include <core/Cell.hpp>
 #include <core/Omega.hpp>
 #include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -104,6 +105,11 @@ boost::python::dict JKRWadaSnapshot::read() const
 	result["velocity"]             = bytes(grains.velocity);
 	result["angular_velocity"]     = bytes(grains.angularVelocity);
 	result["radius"]               = bytes(grains.radius);
+	if (scene.isPeriodic) {
+		std::vector<double> size;
+		append(size, scene.cell->hSize.diagonal());
+		result["cell_size"] = bytes(size);
+	}
 	result["contact_pairs"]        = bytes(pairs);
 	result["contact_normal_force"] = bytes(normalForce);
 	result["contact_bonded"]       = bytes(bonded);

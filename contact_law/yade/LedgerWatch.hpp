@@ -17,7 +17,7 @@ public:
 	{
 		const contact_law::Dissipation& d       = e.dissipated;
 		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() };
-		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork };
+		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork, e.boundaryWork };
 		double       lost = 0, sum = 0, scale = 0;
 		for (const double x : losses)
 			lost += x, sum += x, scale += std::abs(x);

@@ -34,6 +34,7 @@ namespace {
 		const State &state1 = stateOf(scene, c.first), &state2 = stateOf(scene, c.second);
 		auto&        geometry     = static_cast<ScGeom&>(*interaction.geom);
 		auto&        phys         = static_cast<JKRWadaPhys&>(*interaction.phys);
+	interaction.cellDist      = Vector3i(-int(c.shift.x), -int(c.shift.y), -int(c.shift.z)); // of body 2, not body 1
 		geometry.normal           = -fromKernel(c.geometry.normal); // YADE's points from body 1 to body 2
 		geometry.refR1            = radiusOf(scene, c.first); // YADE's geometry is that of the bodies, shrunk by sintering or not
 		geometry.refR2            = radiusOf(scene, c.second);

@@ -129,7 +129,7 @@ result["moved"] = (np.array(O.bodies[3].state.pos) - before) / O.dt
     ("O.engines += [NewtonIntegrator()]", "NewtonIntegrator is among O.engines too; this engine replaces it"),
     ("O.engines[0].subSteps = 0", "subSteps = 0, allowed: 1 or more"),
     ("O.engines[0].instructions = 'sse9'", "instructions = 'sse9', allowed here"),
-    ("O.periodic = True", "periodic cells are not supported yet"),
+    ("O.periodic = True; O.cell.hSize = Matrix3(1, 0.1, 0, 0, 1, 0, 0, 0, 1)", "O.cell.hSize has the element (0, 1) = 0.1"),
 ])
 def test_what_cannot_be_done_is_refused_in_one_line(yade, change, message):
     found = yade(SCENE + f"""

@@ -71,6 +71,16 @@ def test_a_killed_run_goes_on_to_the_same_bits(straight, killed, tmp_path):
     assert read_json(run, 'run.json')['outcome'] == 'completed'
 
 
+def test_what_a_killed_writer_left_goes(killed, tmp_path):
+    run = shutil.copytree(killed / 'run', tmp_path / 'run')
+    left = [run / '.history.npz.x.unfinished', run / 'states' / '.000003.npz.x.unfinished']
+    for path in left:
+        path.write_bytes(b'half')
+    done = collide(tmp_path, *RUN, 'out=run', 'resume=1')
+    assert done.returncode == 0, done.stderr
+    assert not any(path.exists() for path in left)
+
+
 def test_a_stopped_run_goes_on_to_the_same_bits(straight, tmp_path):
     """SIGTERM records one state more, where it stopped; that one goes when the run goes on."""
     assert stop_midway(tmp_path, [*RUN, OFTEN, 'out=run'], signal.SIGTERM).returncode == 143

@@ -10,6 +10,7 @@ class Cell : public Serializable {
 public:
 	Cell();
 	~Cell() override;
+	void integrateAndUpdate(Real dt); // deforms it by velGrad through dt [s]
 	YADE_INTERFACE_OVERRIDES_(Cell)
 
 private:
@@ -33,6 +34,8 @@ YADE_INTERFACE_AT_(Cell, hSize, 736)
 YADE_INTERFACE_AT_(Cell, prevHSize, 808)
 YADE_INTERFACE_AT_(Cell, velGrad, 880)
 YADE_INTERFACE_AT_(Cell, nextVelGrad, 952)
+YADE_INTERFACE_AT_(Cell, prevVelGrad, 1024)
 YADE_INTERFACE_AT_(Cell, homoDeform, 1096)
+YADE_INTERFACE_AT_(Cell, velGradChanged, 1100)
 
 } // namespace yade

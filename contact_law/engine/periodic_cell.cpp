@@ -1,0 +1,31 @@
+// What a periodic cell needs of a run beside its steps.
+#include "dynamics.hpp"
+
+namespace contact_law {
+
+void Dynamics::setMostCells()
+{
+	if (cell().on) mostCells = { grid.mostCells(0), grid.mostCells(1), grid.mostCells(2) };
+}
+
+void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& convective)
+{
+	const auto same = [](const Vec3<double>& a, const Vec3<double>& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+	if (same(added, { 0, 0, 0 }) && same(convective, setting.convective)) return;
+	for (auto& domain : domains)
+		domain->sums.meanField += domain->kineticEnergy();
+	for (int k = 0; k < count; ++k) {
+		Grain& p = setting.grains[k];
+		kick(p, k, 0.5 * setting.dt);
+		p.vx += added.x * p.x, p.vy += added.y * p.y, p.vz += added.z * p.z;
+	}
+	setting.convective = convective;
+	for (int k = 0; k < count; ++k)
+		kick(setting.grains[k], k, -0.5 * setting.dt);
+	for (auto& domain : domains) {
+		domain->sums.meanField -= domain->kineticEnergy();
+		domain->cell.rate = domain->cell.rate + Images<double>::times(added, domain->cell.size); // the images' velocities change with the grains'
+	}
+}
+
+} // namespace contact_law
