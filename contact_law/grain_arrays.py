@@ -7,7 +7,7 @@ def snapshot():
 
     Keys: time [s]; rows in the order of body ids: ids (N,), position (N, 3) [m], velocity (N, 3) [m/s], angular_velocity (N, 3) [rad/s],
     radius (N,) [m]; contacts: contact_pairs (M, 2) (row numbers), contact_normal_force (M,) [N] (elastic and viscous, positive when
-    repulsive), contact_bonded (M,) bool. In a periodic scene also cell_size (3,) [m], the box's; positions are unwrapped, and a contact is of
+    repulsive), contact_bonded (M,) bool (sintered bonds). In a periodic scene also cell_size (3,) [m], the box's; positions are unwrapped, and a contact is of
     the nearest images.
 
     Call it from a PyRunner that stands last among O.engines. NewtonIntegrator keeps velocities half a step apart from positions and
@@ -27,5 +27,5 @@ def snapshot():
         "radius": np.frombuffer(raw["radius"]).copy(),
         "contact_pairs": pairs,
         "contact_normal_force": np.frombuffer(raw["contact_normal_force"]).copy(),
-        "contact_bonded": np.zeros(len(pairs), dtype=bool),
+        "contact_bonded": np.frombuffer(raw["contact_bonded"], dtype=np.int32).astype(bool),
     }

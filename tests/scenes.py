@@ -21,10 +21,10 @@ def constants(material1, radius1, material2=None, radius2=None, damping=0):
     return functor.pairConstants(material1, radius1, material2 or material1, radius2 or radius1)
 
 
-def functor_engines(damping=0, verlet=0.0, **law):
+def functor_engines(damping=0, verlet=0.0, neck=0, **law):
     return [ForceResetter(),
             InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=verlet),
-            InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping)], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)]),
+            InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck)], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)]),
             NewtonIntegrator(damping=0)]
 
 

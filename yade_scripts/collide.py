@@ -15,7 +15,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
-from yade_scripts import arguments, packings, parameters, sampling
+from yade_scripts import aggregates, arguments, packings, parameters, sampling
 from yade_scripts.errors import one_line_errors
 from yade_scripts.materials import MATERIALS
 
@@ -37,10 +37,9 @@ with one_line_errors('collide.py'):
 
     # Two aggregates on their way to each other
     centres, velocities = zip(*scene.placements(values, material.grainRadius))
-    aggregates = [packings.moved(packings.cpe(values['filling'], aggregate_radius, material.grainRadius,
-                                              constants['equilibriumOverlap'], values['seed'], index), centre)
-                  for index, centre in enumerate(centres)]
-    packings.require_apart(*aggregates)
+    pair = [packings.moved(aggregates.make(values, material.grainRadius, constants['equilibriumOverlap'], index),
+                           centre) for index, centre in enumerate(centres)]
+    packings.require_apart(*pair)
     folder = run_folder.RunFolder(values['out'], values['overwrite'], values['resume'])
     saved = folder.checkpoint
     if saved:
@@ -49,12 +48,12 @@ with one_line_errors('collide.py'):
 # YADE's scene, and what is recorded of it
 time_step = values['stepFraction'] * constants['timeUnit']
 schedule = sampling.Schedule.of(values['duration'], time_step)
-history = recorder.Recorder(folder, schedule, scene.aggregate_of_grain(aggregates), aggregate_radius)
+history = recorder.Recorder(folder, schedule, scene.aggregate_of_grain(pair), aggregate_radius)
 if saved:
     history.go_on(saved.rows)
     steps, runner, begin = scene.go_on(values, schedule, saved)
 else:
-    scene.build(aggregates, velocities, scene.material_of(values, material), time_step)
+    scene.build(pair, velocities, scene.material_of(values, material), time_step, values['planar'])
     steps, runner, begin = scene.start(values, material.grainRadius, schedule, history)
 run = report.Report(folder, values, {**scene.derived(values, material, constants, schedule, time_step),
                                       'stepChoice': step_chosen}, start,

@@ -1,4 +1,4 @@
-"""Make close-packed and extracted aggregates and save them as .npz; needs no YADE.
+"""Make aggregates, close-packed and extracted (cpe) or by ballistic cluster-cluster aggregation (bcca), and save them as .npz; needs no YADE.
 
     python3 yade_scripts/make_packing.py a.npz b.npz filling=0.4 radius=20 material=ice seed=3
 
@@ -8,19 +8,18 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from yade_scripts import packings
+from yade_scripts import aggregates, packings
 from yade_scripts.arguments import from_arguments
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.parameters import ParameterError, parse
 
-TAKEN = ('packing', 'filling', 'radius', 'grains', 'material', 'seed')
+TAKEN = ('packing', 'filling', 'radius', 'grains', 'planar', 'material', 'seed')
 
 
 def make_packing(file, values, index):
     """Make aggregate number index, save it, print one line about it."""
     material = MATERIALS[values['material']]
-    packing = packings.cpe(values['filling'], values['radius'] * material.grainRadius, material.grainRadius,
-                           equilibrium_overlap(material), values['seed'], index)
+    packing = aggregates.make(values, material.grainRadius, equilibrium_overlap(material), index)
     packings.save(file, packing)
     coordination = 2 * len(packings.contacts(packing)) / packing.grains
     print(f'{file}: {packing.grains} grains, mean coordination number {coordination:.3f}')

@@ -12,7 +12,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
-from yade_scripts import arguments, packings, parameters
+from yade_scripts import aggregates, arguments, packings, parameters
 from yade_scripts.errors import one_line_errors
 from yade_scripts.materials import MATERIALS
 
@@ -27,14 +27,12 @@ with one_line_errors('measure_speed.py'):
     constants = scene.pair_constants(values, material)
     values = parameters.complete(values, constants, O.numThreads)
     centres, velocities = zip(*scene.placements(values, material.grainRadius))
-    aggregates = [packings.moved(packings.cpe(values['filling'], values['radius'] * material.grainRadius,
-                                              material.grainRadius, constants['equilibriumOverlap'],
-                                              values['seed'], index), centre)
-                  for index, centre in enumerate(centres)]
+    pair = [packings.moved(aggregates.make(values, material.grainRadius, constants['equilibriumOverlap'], index),
+                           centre) for index, centre in enumerate(centres)]
 
-scene.build(aggregates, velocities, scene.material_of(values, material),
-            STEPS * values['stepFraction'] * constants['timeUnit'])
-fused = JKRWadaEngine(subSteps=STEPS, threads=values['threads'])
+scene.build(pair, velocities, scene.material_of(values, material),
+            STEPS * values['stepFraction'] * constants['timeUnit'], values['planar'])
+fused = JKRWadaEngine(subSteps=STEPS, threads=values['threads'], neck=values['neck'])
 O.engines = [fused]
 fused.prepare()
 ready = time.process_time()

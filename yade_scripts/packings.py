@@ -3,7 +3,7 @@
 Needs numpy and scipy only. The recipe: a face-centred cubic lattice whose neighbours overlap by the
 equilibrium overlap (so that the start is force-free), a sphere whose centre is random within the lattice's
 unit cell, every grain whose centre lies outside dropped, grains removed at random until N = filling (R/r)^3
-are left, a random orientation.
+are left, a random orientation. Planar ones likewise: a hexagonal lattice, a circle, N = filling (R/r)^2.
 """
 from dataclasses import dataclass, field
 import json
@@ -36,14 +36,19 @@ class Packing:
         return len(self.radius)
 
 
-def maximum_filling(grain_radius, overlap):
-    """Filling factor of the whole lattice, pi/(3 sqrt 2) [2r/(2r-overlap)]^3 (A24 eq 40); lengths in m."""
+def maximum_filling(grain_radius, overlap, planar=False):
+    """Filling factor of the whole lattice, pi/(3 sqrt 2) [2r/(2r-overlap)]^3 (A24 eq 40); lengths in m.
+
+    planar: share of the area, pi/(2 sqrt 3) [2r/(2r-overlap)]^2.
+    """
+    if planar:
+        return pi / (2 * sqrt(3)) * (2 * grain_radius / (2 * grain_radius - overlap))**2
     return pi / (3 * sqrt(2)) * (2 * grain_radius / (2 * grain_radius - overlap))**3
 
 
-def grain_number(filling, relative_radius):
-    """N = filling (R/r)^3, rounded (A24 section 3); relative_radius = R/r."""
-    return round(filling * relative_radius**3)
+def grain_number(filling, relative_radius, planar=False):
+    """N = filling (R/r)^3, rounded (A24 section 3), or filling (R/r)^2 in a plane; relative_radius = R/r."""
+    return round(filling * relative_radius**(2 if planar else 3))
 
 
 def random_stream(seed, index):
@@ -51,30 +56,42 @@ def random_stream(seed, index):
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
 
 
-def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0):
-    """A close-packed and extracted aggregate around the origin (A24 section 3).
+def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=False):
+    """A close-packed and extracted aggregate around the origin (A24 section 3); planar: in the plane z = 0.
 
-    filling: N = filling (aggregate_radius/grain_radius)^3; aggregate_radius: of the sphere that holds all
-    centres [m]; grain_radius, overlap (of neighbours in the lattice) in m. The packing is a function of these
-    and (seed, index). Raises PackingError when the lattice doesn't hold that many grains.
+    filling: N = filling (aggregate_radius/grain_radius)^3, squared when planar; aggregate_radius: of the sphere
+    (circle) that holds all centres [m]; grain_radius, overlap (of neighbours in the lattice) in m. The packing is
+    a function of these and (seed, index). Raises PackingError when the lattice doesn't hold that many grains.
     """
-    limit = maximum_filling(grain_radius, overlap)
+    limit = maximum_filling(grain_radius, overlap, planar)
     if filling > limit:
         raise PackingError(f'filling = {filling:g}: more than the lattice holds; '
                            f'allowed: at most {limit:.4f} (A24 eq 40)')
-    wanted = grain_number(filling, aggregate_radius / grain_radius)
+    wanted = grain_number(filling, aggregate_radius / grain_radius, planar)
     stream = random_stream(seed, index)
-    sites = _lattice_in_sphere(2 * grain_radius - overlap, aggregate_radius, stream)
+    lattice = _lattice_in_circle if planar else _lattice_in_sphere
+    sites = lattice(2 * grain_radius - overlap, aggregate_radius, stream)
     if wanted > len(sites):
-        at_most = len(sites) * (grain_radius / aggregate_radius)**3
+        at_most = len(sites) * (grain_radius / aggregate_radius)**(2 if planar else 3)
         raise PackingError(f'filling = {filling:g}: asks for {wanted} grains, but the lattice has '
                            f'{len(sites)} in this sphere (seed {seed}, aggregate {index}); allowed here: '
                            f'at most {at_most:.4f}, for large spheres {limit:.4f} (A24 eq 40)')
     kept = np.sort(stream.choice(len(sites), wanted, replace=False, shuffle=False))
-    position = Rotation.random(random_state=stream).apply(sites[kept])
+    turn = Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * pi)]) if planar else Rotation.random(random_state=stream)
+    position = turn.apply(sites[kept]) * (1, 1, 0 if planar else 1)
     return Packing(position, np.full(wanted, float(grain_radius)), seed,
                    dict(packing='cpe', filling=filling, aggregateRadius=aggregate_radius,
-                        grainRadius=grain_radius, overlap=overlap, index=index))
+                        grainRadius=grain_radius, overlap=overlap, index=index,
+                        **({'planar': 1} if planar else {})))
+
+
+def _lattice_in_circle(spacing, circle_radius, stream):
+    """Sites (N,3), z = 0, of a hexagonal lattice in a circle, relative to its centre, which is random."""
+    steps = spacing * np.array([[1, 0, 0], [0.5, sqrt(3) / 2, 0]])
+    reach = ceil(2 / sqrt(3) * circle_radius / spacing) + 2
+    cells = np.stack(np.meshgrid(*2 * [np.arange(-reach, reach + 1)], indexing='ij'), axis=-1).reshape(-1, 2)
+    sites = (cells - stream.uniform(0, 1, 2)) @ steps
+    return sites[np.einsum('ij,ij->i', sites, sites) <= circle_radius**2]
 
 
 def _lattice_in_sphere(spacing, sphere_radius, stream):

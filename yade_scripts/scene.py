@@ -14,6 +14,8 @@ from yade.wrapper import (
 VERLET_DISTANCE = 0.1
 DERIVED_FROM_CONTACT = ('equilibriumContactRadius', 'equilibriumOverlap', 'pullOffOverlap', 'pullOffForce',
                         'timeUnit')
+DERIVED_FROM_BOND = ('shrunkRadius', 'neckRadius', 'neckLength', 'normalStiffness', 'slidingStiffness',
+                     'rollingStiffness', 'twistingStiffness', 'breakingEnergy')
 COLOURS = ((0.35, 0.60, 0.85), (0.90, 0.60, 0.25))
 
 
@@ -25,10 +27,18 @@ def material_of(values, material):
 
 
 def pair_constants(values, material):
-    """The plugin's constants (SI) of a contact between two grains of the run."""
-    plugin_material = material_of(values, material)
-    return Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(
-        plugin_material, material.grainRadius, plugin_material, material.grainRadius)
+    """The plugin's constants (SI) of a contact between two grains of the run, and of a bond under 'bond'.
+
+    The former are of grains that have not sintered, as packings and the time unit have them; 'bond' is None when
+    nothing is sintered, else the attributes of JKRWadaBond and shrunkRadius [m] of the grains.
+    """
+    grains = 2 * (material_of(values, material), material.grainRadius)
+    constants = {**Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(*grains), 'bond': None}
+    if values['neck']:
+        sintered = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=values['neck'])
+        constants['bond'] = {**sintered.bondConstants(*grains),
+                             'shrunkRadius': sintered.pairConstants(*grains)['radius1']}
+    return constants
 
 
 def placements(values, grain_radius):
@@ -47,8 +57,8 @@ def aggregate_of_grain(packings):
     return np.repeat(np.arange(len(packings)), [packing.grains for packing in packings])
 
 
-def build(packings, velocities, plugin_material, time_step):
-    """Make bodies of the packings, each with its velocity (3,) [m/s]."""
+def build(packings, velocities, plugin_material, time_step, planar=False):
+    """Make bodies of the packings, each with its velocity (3,) [m/s]; planar: that never leave their plane z = 0."""
     omega = Omega()
     plugin_material_id = omega.materials.append(plugin_material)
     for packing, velocity, colour in zip(packings, velocities, COLOURS):
@@ -56,6 +66,7 @@ def build(packings, velocities, plugin_material, time_step):
                   for centre, radius in zip(packing.position.tolist(), packing.radius.tolist())]
         for body in bodies:
             body.state.vel = velocity
+            body.state.blockedDOFs = 'zXY' if planar else ''
         omega.bodies.append(bodies)
     omega.dt = time_step
     omega.trackEnergy = True
@@ -70,10 +81,10 @@ def start(values, grain_radius, schedule, history):
     omega = Omega()
     runner = PyRunner(command='history.sample()', iterPeriod=schedule.interval, initRun=True)
     if values['engine'] == 'functors':
-        omega.engines = functor_engines(grain_radius, runner)
+        omega.engines = functor_engines(grain_radius, runner, values['neck'])
         return schedule.steps + 1, runner, lambda: None
     runner.iterPeriod = 1
-    fused = JKRWadaEngine(subSteps=schedule.interval, threads=values['threads'])
+    fused = JKRWadaEngine(subSteps=schedule.interval, threads=values['threads'], neck=values['neck'])
     omega.dt *= schedule.interval
     omega.engines = [fused, runner]
     return schedule.steps // schedule.interval, runner, lambda: (fused.prepare(), history.sample())
@@ -90,12 +101,12 @@ def go_on(values, schedule, saved):
     return schedule.steps // schedule.interval, runner, lambda: None
 
 
-def functor_engines(grain_radius, runner):
+def functor_engines(grain_radius, runner, neck=0.0):
     """YADE's own engines with the plugin's law; runner comes last, after a whole step."""
     return [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=VERLET_DISTANCE * grain_radius),
-        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_JKRMat_JKRMat_JKRWadaPhys()],
+        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=neck)],
                         [Law2_ScGeom_JKRWadaPhys_JKRWada()]),
         NewtonIntegrator(damping=0),
         runner,
@@ -111,6 +122,7 @@ def derived(values, material, constants, schedule, time_step):
         'grainRadius': material.grainRadius,
         'grainMass': 4 / 3 * pi * material.grainRadius**3 * material.density,
         **{name: constants[name] for name in DERIVED_FROM_CONTACT},
+        **({name: constants['bond'][name] for name in DERIVED_FROM_BOND} if constants['bond'] else {}),
         'timeStep': time_step, 'steps': schedule.steps,
         'aggregateRadius': values['radius'] * material.grainRadius, 'grainsPerAggregate': values['grains'],
     }

@@ -16,6 +16,7 @@ CACHE_EXPONENT = 0.07
 ALIKE = 1.3  # ratio of costs up to which ended runs count as equals, their median the estimate
 TELLING = 10.0  # s that an ended run must have taken to tell of others: shorter ones mostly start up
 NEIGHBOURS = 12  # of a site of the close-packed lattice
+PLANAR_NEIGHBOURS = 6
 
 
 @dataclass
@@ -49,13 +50,15 @@ class Cost:
         return self.contact_updates(values) * values['grains']**CACHE_EXPONENT
 
     def contact_updates(self, values):
-        """Steps times contacts; each grain has NEIGHBOURS/2 times the share of sites that is filled (A24 eq 39)."""
+        """Steps times contacts; each grain has NEIGHBOURS/2 times the share of sites that is filled (A24 eq 39), in BCCA one."""
         material = MATERIALS[values['material']]
-        share = values['filling'] / maximum_filling(material.grainRadius, equilibrium_overlap(material))
+        planar = bool(values['planar'])
+        share = values['filling'] / maximum_filling(material.grainRadius, equilibrium_overlap(material), planar)
+        neighbours = 2 if values['packing'] == 'bcca' else share * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
         duration = DURATION_PER_RADIUS * values['radius']
         if values['duration'] is not None:
             duration = values['duration'] / self.timeUnit[values['material']]
-        return 2 * values['grains'] * NEIGHBOURS / 2 * share * duration / step_of(values)
+        return 2 * values['grains'] * neighbours / 2 * duration / step_of(values)
 
     def _from_measured(self, values):
         if self.measured is None:

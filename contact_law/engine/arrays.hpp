@@ -95,6 +95,8 @@ struct ForcePass {
 	void (*batchDone)(void* owner, int batch);
 };
 
+struct BondPass; // bond_list.hpp
+
 // One instruction set's compiled passes, by mechanisms (contact.hpp), whether all pairs are alike, and (forces) whether the scene is periodic.
 struct InstructionSet {
 	const char* name;
@@ -102,6 +104,8 @@ struct InstructionSet {
 	void (*energies[16][2])(const ForcePass&, StoredEnergy<double>&);
 	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared);
+	void (*bondForces)(const BondPass&);
+	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
 };
 
 } // namespace contact_law

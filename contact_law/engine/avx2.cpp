@@ -49,8 +49,8 @@ namespace avx2 {
 }
 }
 
-#include "force_pass.hpp"
+#include "bond_pass.hpp"
 
 namespace contact_law {
-InstructionSet avx2Passes() { return Passes<avx2::Pack>::all("avx2", &avx2::integrate); }
+InstructionSet avx2Passes() { return BondPasses<avx2::Pack>::addTo(Passes<avx2::Pack>::all("avx2", &avx2::integrate)); }
 }

@@ -72,8 +72,8 @@ namespace avx512 {
 }
 }
 
-#include "force_pass.hpp"
+#include "bond_pass.hpp"
 
 namespace contact_law {
-InstructionSet avx512Passes() { return Passes<avx512::Pack>::all("avx512", &avx512::integrate); }
+InstructionSet avx512Passes() { return BondPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate)); }
 }

@@ -62,8 +62,10 @@ public:
 	}
 	void writeHistory(int lane, const ContactHistory<double>& h)
 	{
-		ContactBlock& b = blocks[lane / lanes];
-		const int     k = lane % lanes;
+		writeHistory(blocks[lane / lanes], lane % lanes, h);
+	}
+	static void writeHistory(ContactBlock& b, int k, const ContactHistory<double>& h)
+	{
 		const Vec3<double>&p = h.pointers.n1, &q = h.pointers.n2;
 		b.n1[0][k] = p.x, b.n1[1][k] = p.y, b.n1[2][k] = p.z;
 		b.n2[0][k] = q.x, b.n2[1][k] = q.y, b.n2[2][k] = q.z;

@@ -20,6 +20,7 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
         : begin(begin_)
         , end(end_)
         , contacts { { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ } }
+        , bonds { { setting.alike, dummy_ }, { setting.alike, dummy_ }, { setting.alike, dummy_ } }
         , s(setting)
         , dummy(dummy_)
 {
@@ -31,6 +32,8 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
 	s.grains[dummy].x     = distance;
 	for (ContactList& list : contacts)
 		list.setDeadConstants(s.common);
+	for (BondList& list : bonds)
+		list.setDead(s.commonBond, distance);
 }
 
 ForcePass Domain::passFor(int sort)
@@ -57,6 +60,7 @@ void Domain::addFirstForces()
 	addForces(First, 0, contacts[First].blockCount(), false);
 	addForces(Second, 0, contacts[Second].blockCount(), false);
 	addForces(Both, sortedBlocks, contacts[Both].blockCount(), false);
+	addBondForces();
 	births();
 }
 
@@ -246,6 +250,10 @@ void Domain::findPairs(const Grid& grid)
 				++at;
 			if (at < far[sort].size() && !(pair < far[sort][at])) touching[sort][at] = 1;
 		}
+		for (int lane = 0; lane < bonds[sort].size(); ++lane) {
+			const int pair = bonds[sort].alive(lane) ? pairIndex(sort, bonds[sort].first(lane), bonds[sort].second(lane)) : -1;
+			if (pair >= 0) touching[sort][pair] = 1;
+		}
 	}
 	findNearPairs();
 }
@@ -253,6 +261,8 @@ void Domain::findPairs(const Grid& grid)
 void Domain::sortContacts()
 {
 	for (ContactList& list : contacts)
+		list.sort();
+	for (BondList& list : bonds)
 		list.sort();
 	sortedBlocks = contacts[Both].blockCount();
 	findCompleted();
@@ -324,6 +334,7 @@ StoredEnergy<double> Domain::energies()
 		s.passes->energies[s.mechanisms][s.alike](passFor(sort), part);
 		total += part;
 	}
+	addBondEnergies(total);
 	return total;
 }
 
@@ -350,7 +361,7 @@ double Domain::convectiveWork() const
 
 int Domain::contactCount() const
 {
-	int count = 0;
+	int count = bonds[Both].aliveCount() + bonds[First].aliveCount();
 	for (int sort = Both; sort <= First; ++sort)
 		for (int lane = 0; lane < contacts[sort].size(); ++lane)
 			count += contacts[sort].alive(lane);

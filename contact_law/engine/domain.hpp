@@ -2,6 +2,7 @@
 // domains, each adding to its own grains only, so that results do not depend on how many threads the domains are dealt to.
 #pragma once
 #include "../kernel/contact_step.hpp"
+#include "bond_list.hpp"
 #include "constraints.hpp"
 #include "contact_list.hpp"
 #include "grid.hpp"
@@ -13,14 +14,17 @@ namespace contact_law {
 struct Setting {
 	Aligned<PreviousVelocity> previous; // in scenes with drag
 	Aligned<Grain>         grains; // then, for each domain, two dummies that dead lanes point to
-	std::vector<double>    inverseMass, inverseInertia, radius;
+	std::vector<double>    inverseMass, inverseInertia, radius; // radius: of the grain as contacts have it, shrunk where necks are
+	std::vector<double>    grainRadius; // before
 	std::vector<Material>  material; // kinds of material
 	std::vector<int>       kind;     // of each grain
 	std::vector<Orientation> orientation; // likewise; none where the scene doesn't ask for them
 	std::vector<unsigned>  blocked;  // likewise (kernel/blocked.hpp)
 	double                 linearDamping = 0;
+	double                 neck = 0; // radius of sintered bonds' necks over that of the grains; 0: none
 	bool                   alike = true;
 	PairConstants<double>  common {}; // of the first grain with itself; of every pair when they are alike
+	BondConstants<double>  commonBond {}; // likewise
 	unsigned               mechanisms = AllSprings;
 	double                 dt = 0, nearGap = 0, farGap = 0;
 	Vec3<double>           convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
@@ -31,7 +35,11 @@ struct Setting {
 	Contact               contactOf(const ContactList& list, int lane) const { return list.get(lane, constantsOf(list.first(lane), list.second(lane))); }
 	PairConstants<double> constantsOf(int i, int j) const
 	{
-		return alike ? common : derivePair(material[kind[i]], radius[i], material[kind[j]], radius[j], linearDamping);
+		return alike ? common : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);
+	}
+	BondConstants<double> bondOf(int i, int j) const
+	{
+		return alike ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], neck);
 	}
 };
 
@@ -56,6 +64,8 @@ public:
 	void sortContacts();     // into the order of pairs, without dead lanes
 	void findCompleted();    // where in the sorted contacts grains have had their last one
 	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
+	void placeBonds();       // between all grains that touched before they shrank
+	void place(const Bond&);
 	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and findPairs()
 	StoredEnergy<double> energies();
 	double     kineticEnergy() const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add; in it no convective acceleration, but
@@ -67,9 +77,11 @@ public:
 	StepSums            sums;
 	ContactList         contacts[3]; // both grains own; the first; the second
 	int                 sortedBlocks = 0; // of the contacts with both grains own
+	BondList            bonds[3];         // likewise
+	std::array<long, bondModes> broken {}; // bonds so far, by mode; a border bond where its first grain lives
 	Constraints         constraints;
 	PeriodicCell        cell; // as it is at this domain's latest forces
-	int                 contactCount() const; // alive ones, a border contact counted where its first grain lives
+	int                 contactCount() const; // alive ones, bonds among them, a border contact counted where its first grain lives
 
 private:
 	struct Pair {
@@ -91,6 +103,11 @@ private:
 	void          eventOf(int sort, int lane, const ContactBlock& before, LaneForces& forces);
 	bool          closerThan(int i, int j, double gap) const; // surfaces
 	int           pairIndex(int sort, int i, int j) const;    // among the far pairs, or -1
+	BondPass      bondPassFor(int sort);
+	void          addBondForces();
+	static void   breaksOf(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
+	void          breakOf(int sort, int lane, const BondBlock& before, LaneForces& forces);
+	void          addBondEnergies(StoredEnergy<double>&);
 	void          births();
 	void          birth(int sort, int farIndex);
 	ContactMotion motionOf(int i, int j, Image&) const;

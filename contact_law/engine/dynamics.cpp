@@ -29,6 +29,7 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	setting.passes        = &instructionSet(options.instructions);
 	setting.material      = materials;
 	setting.linearDamping = options.linearDamping;
+	setting.neck          = options.neck;
 	setting.mechanisms    = options.mechanisms;
 	setting.dt            = options.dt;
 	setting.convective    = options.convective;
@@ -48,8 +49,9 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 			domain->constraints.work = 0, domain->sums.boundary.done *= 2; // half of it would be missing: of blocked grains it is left out, the boundaries' forces hardly change in a step
 		return;
 	}
+	const bool bonded = setting.neck > 0 && !inherited;
 	for (auto& domain : domains)
-		domain->placeOverlapping();
+		bonded ? domain->placeBonds() : domain->placeOverlapping();
 	refreshLists(false);
 	for (auto& domain : domains)
 		domain->sortContacts();
@@ -77,15 +79,17 @@ void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
 
 void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 {
-	double smallest = grains[0].radius;
+	const double shrunk = neck::shrunkRadius(setting.neck);
+	double       smallest = shrunk * grains[0].radius;
 	indexHere.resize(count);
 	for (int k = 0; k < count; ++k) {
 		const GrainInput& g    = grains[original[k]];
 		indexHere[original[k]] = k;
-		smallest               = std::min(smallest, g.radius);
+		smallest               = std::min(smallest, shrunk * g.radius);
 		setting.grains.push_back(Grain {});
 		write(g, setting.grains.back());
-		setting.radius.push_back(g.radius);
+		setting.radius.push_back(shrunk * g.radius);
+		setting.grainRadius.push_back(g.radius);
 		setting.kind.push_back(g.kind);
 		setting.blocked.push_back(g.blocked);
 		if (options.orientations) setting.orientation.push_back(g.orientation);
@@ -94,7 +98,9 @@ void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 		setting.alike = setting.alike && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
 	}
 	const Material& m = setting.material[setting.kind[0]];
-	setting.common    = derivePair(m, setting.radius[0], m, setting.radius[0], setting.linearDamping);
+	const double    r = setting.grainRadius[0];
+	setting.common    = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
+	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.neck);
 	setting.nearGap   = 0.03 * smallest;
 	setting.farGap    = 0.8 * smallest;
 }
@@ -224,7 +230,8 @@ double Dynamics::unstableStep() const
 	std::set<std::pair<int, double>> seen;
 	for (int k = 0; k < count; ++k) {
 		if (!seen.emplace(setting.kind[k], setting.radius[k]).second) continue;
-		const PairConstants<double> c    = derivePair(setting.material[setting.kind[k]], setting.radius[k], setting.material[setting.kind[k]], setting.radius[k], setting.linearDamping);
+		const PairConstants<double> c    = setting.constantsOf(k, k);
+		if (bondCount()) least = std::min(least, 2 / fastestVibration(setting.bondOf(k, k), setting.inverseMass[k], setting.inverseInertia[k]));
 		const double                drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
 		least                            = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
 	}
@@ -302,7 +309,7 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 		GrainInput& g = grains[original[k]];
 		kick(p, k, 0.5 * setting.dt);
 		write(p, g);
-		g.radius = setting.radius[k];
+		g.radius = setting.grainRadius[k];
 		g.mass = 1 / setting.inverseMass[k], g.inertia = 1 / setting.inverseInertia[k];
 		g.kind = setting.kind[k];
 		g.blocked = setting.blocked[k];
@@ -322,14 +329,22 @@ Energies Dynamics::energies()
 		convective[d] = domains[d]->convectiveWork();
 	}
 	Energies e;
+	e.dissipated = dissipated();
 	for (std::size_t d = 0; d < domains.size(); ++d) {
 		e.stored += stored[d];
 		e.kinetic += kinetic[d] + convective[d];
 		e.boundaryWork += domains[d]->sums.boundary.done + domains[d]->sums.meanField - convective[d];
-		e.dissipated += domains[d]->sums.dissipated;
 		e.constraintWork += domains[d]->constraints.work;
 	}
 	return e;
+}
+
+Dissipation Dynamics::dissipated() const
+{
+	Dissipation total;
+	for (const auto& domain : domains)
+		total += domain->sums.dissipated;
+	return total;
 }
 
 int Dynamics::contactCount() const
@@ -337,6 +352,22 @@ int Dynamics::contactCount() const
 	int total = 0;
 	for (const auto& domain : domains)
 		total += domain->contactCount();
+	return total;
+}
+
+int Dynamics::bondCount() const
+{
+	int total = 0;
+	eachBondPlace([&](const BondList&, int, int, int) { ++total; });
+	return total;
+}
+
+std::array<long, bondModes> Dynamics::brokenBonds() const
+{
+	std::array<long, bondModes> total {};
+	for (const auto& domain : domains)
+		for (int mode = 0; mode < bondModes; ++mode)
+			total[mode] += domain->broken[mode];
 	return total;
 }
 

@@ -25,6 +25,9 @@ struct ContactNow {
 	ContactForces<double>   forces;
 	Vec3<double>            velocity; // of the first past the second through the last small step
 	Vec3<double>            shift;    // cells by which the first is shifted to be nearest to the second (periodic)
+	bool                    bonded = false;
+	BondConstants<double>   bond {}; // when it is; the geometry's overlap is then rest - distance
+	double                  rest = 0;
 };
 ContactNow swapped(const ContactNow&); // the same with its grains in the other order
 
@@ -34,6 +37,8 @@ struct Inherited {
 		int                    first, second; // grains as given
 		ContactHistory<double> history;       // laboratory frame
 		double                 overlap, drag; // at the moment of the history
+		bool                   bonded = false;
+		double                 rest = 0; // of a bond
 	};
 	std::vector<One> contacts;
 	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
@@ -54,6 +59,7 @@ class Dynamics {
 public:
 	struct Options {
 		double   dt = 0, linearDamping = 0;
+		double   neck = 0; // of sintered bonds over the grains' radius; 0: none
 		unsigned mechanisms = AllSprings;
 		int      domains = 2, threads = 1;
 		std::string instructions; // "avx512", "avx2", "portable"; empty: the best this machine has
@@ -61,13 +67,13 @@ public:
 		PeriodicCell cell {};             // at the start's moment; off: open space
 		Vec3<double> convective { 0, 0, 0 }; // see setMeanField
 	};
-	// Grains that overlap touch from the start, with unstrained springs or as `inherited` has it; or all is as `memory` (of remember(), from the same grains in the
+	// Grains that overlap touch from the start, with unstrained springs (with a neck: bonded), or as `inherited` has it; or all is as `memory` (of remember(), from the same grains in the
 	// same order) has it.
 	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options, const std::vector<double>* memory = nullptr,
 	         const Inherited* inherited = nullptr);
 
 	/* Steps from here on are unstable for every pair of like grains in the scene, in whatever packing [s]: half a time unit, at which collisions blow up
-	 * (measured; MODEL.md), or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. */
+	 * (measured; MODEL.md), m* over the drag coefficient, where drag overshoots with its velocity extrapolated, or 2 over the fastest vibration of a bonded pair. */
 	double unstableStep() const;
 
 	// Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (trouble() then tells).
@@ -97,6 +103,7 @@ public:
 	// Orientations are turned from those of this run, or, where it keeps none, from those given.
 	void     readAhead(std::vector<GrainInput>& grains) const;
 	Energies energies();
+	Dissipation dissipated() const; // since the start
 	bool     constrained() const; // whether any grain has a blocked degree of freedom
 	int      contactCount() const;
 	template <class Visit> void eachPlace(Visit&& visit) const // of every contact once: visit(list, lane, its first and its second grain as given)
@@ -108,6 +115,26 @@ public:
 					if (list.alive(lane)) visit(list, lane, original[list.first(lane)], original[list.second(lane)]);
 			}
 	}
+	template <class Visit> void eachBondPlace(Visit&& visit) const // likewise, of bonds: visit(list, lane, ...)
+	{
+		for (const auto& domain : domains)
+			for (int sort = 0; sort < 2; ++sort) {
+				const BondList& list = domain->bonds[sort];
+				for (int lane = 0; lane < list.size(); ++lane)
+					if (list.alive(lane)) visit(list, lane, original[list.first(lane)], original[list.second(lane)]);
+			}
+	}
+	template <class Visit> void eachBond(Visit&& visit) const // visit(Bond, its first and second grain as given, normal force now)
+	{
+		eachBondPlace([&](const BondList& list, int lane, int first, int second) {
+			const Bond b = list.get(lane, setting.commonBond);
+			visit(b, first, second, now(b).forces.normalForce);
+		});
+	}
+	const BondConstants<double>& commonBond() const { return setting.commonBond; } // for BondList::get
+	std::array<long, bondModes>  brokenBonds() const; // so far, by mode
+	int                          bondCount() const;
+	const PairConstants<double>& commonConstants() const { return setting.common; } // of the first grain with its like
 	Contact contactOf(const ContactList& list, int lane) const { return setting.contactOf(list, lane); }
 	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, its first and second grain as given, normal force now)
 	{
@@ -118,6 +145,7 @@ public:
 	}
 	double      normalForce(const Contact&) const; // elastic and viscous, positive when repulsive
 	ContactNow  now(const Contact&) const;
+	ContactNow  now(const Bond&) const;
 
 	// What went wrong: the grain that moves fastest (or the given one) and its contact that pushes or pulls hardest; both as given, -1: none.
 	struct Trouble {

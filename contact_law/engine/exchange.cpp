@@ -24,6 +24,8 @@ ContactNow swapped(const ContactNow& c)
 	s.forces.torque1               = c.forces.torque2;
 	s.forces.torque2               = c.forces.torque1;
 	s.velocity                     = -c.velocity;
+	s.bond.radius1                 = c.bond.radius2;
+	s.bond.radius2                 = c.bond.radius1;
 	s.shift                        = -c.shift;
 	return s;
 }
@@ -31,10 +33,10 @@ ContactNow swapped(const ContactNow& c)
 void Dynamics::inherit(const Inherited& inherited)
 {
 	for (const Inherited::One& one : inherited.contacts) {
-		const int     a = indexHere[one.first], b = indexHere[one.second];
-		const Contact c { std::min(a, b), std::max(a, b), a < b ? one.history : swapped(one.history), setting.constantsOf(std::min(a, b), std::max(a, b)), one.drag, one.overlap };
+		const int                    a = indexHere[one.first], b = indexHere[one.second], i = std::min(a, b), j = std::max(a, b);
+		const ContactHistory<double> history = a < b ? one.history : swapped(one.history);
 		for (auto& domain : domains)
-			domain->place(c);
+			one.bonded ? domain->place(Bond { i, j, history, one.rest, setting.bondOf(i, j) }) : domain->place(Contact { i, j, history, setting.constantsOf(i, j), one.drag, one.overlap });
 	}
 	for (auto& domain : domains)
 		domain->sortContacts();
@@ -54,6 +56,14 @@ ContactNow Dynamics::now(const Contact& c) const
 	n.forces      = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
 	n.forces.drag = c.drag;
 	if (!(setting.mechanisms & Sliding)) n.forces.sliding = { 0, 0, 0 };
+	return n;
+}
+
+ContactNow Dynamics::now(const Bond& b) const
+{
+	const Grain &a = setting.grains[b.i], &other = setting.grains[b.j];
+	ContactNow   n { original[b.i], original[b.j], setting.constantsOf(b.i, b.j), b.history, geometryOf(separationOf(a, other), b.rest), {}, velocityOf(a) - velocityOf(other), { 0, 0, 0 }, true, b.constants, b.rest };
+	n.forces = bondForces(b.constants, n.geometry, b.history);
 	return n;
 }
 

@@ -29,6 +29,32 @@ namespace {
 		std::size_t                at = 0;
 	};
 
+	void remember(std::vector<double>& to, const Bond& b)
+	{
+		const Vec3<double>&p = b.history.pointers.n1, &q = b.history.pointers.n2;
+		to.insert(to.end(), { double(b.i), double(b.j), p.x, p.y, p.z, q.x, q.y, q.z, b.history.twist, b.rest });
+	}
+
+	void recallBonds(Reader& from, Domain& domain, const Setting& setting)
+	{
+		for (BondList& list : domain.bonds) {
+			list.clear();
+			for (int lanes = from.integer(); lanes > 0; --lanes) {
+				if (!from.next()) {
+					list.appendDead();
+					continue;
+				}
+				Bond b {};
+				b.i = from.integer(), b.j = from.integer();
+				Pointers<double>& p = b.history.pointers;
+				for (double* number : { &p.n1.x, &p.n1.y, &p.n1.z, &p.n2.x, &p.n2.y, &p.n2.z, &b.history.twist, &b.rest })
+					*number = from.next();
+				b.constants = setting.bondOf(b.i, b.j);
+				list.append(b);
+			}
+		}
+	}
+
 	void remember(std::vector<double>& to, const Vec3<double>& v) { to.insert(to.end(), { v.x, v.y, v.z }); }
 	void remember(std::vector<double>& to, const Contact& c)
 	{
@@ -60,6 +86,15 @@ std::vector<double> Dynamics::remember() const
 		to.insert(to.end(), { domain->constraints.work, double(domain->constraints.grains.size()) });
 		for (const Constrained& c : domain->constraints.grains)
 			to.insert(to.end(), { c.force.x, c.force.y, c.force.z, c.torque.x, c.torque.y, c.torque.z });
+		to.insert(to.end(), d.bondBreaking.begin(), d.bondBreaking.end());
+		to.insert(to.end(), domain->broken.begin(), domain->broken.end());
+		for (const BondList& list : domain->bonds) {
+			to.push_back(list.size());
+			for (int lane = 0; lane < list.size(); ++lane) {
+				to.push_back(list.alive(lane));
+				if (list.alive(lane)) contact_law::remember(to, list.get(lane, setting.commonBond));
+			}
+		}
 		for (const ContactList& list : domain->contacts) {
 			to.push_back(list.size());
 			for (int lane = 0; lane < list.size(); ++lane) {
@@ -122,6 +157,11 @@ void Dynamics::recall(const std::vector<double>& memory)
 		for (Constrained& c : domain->constraints.grains)
 			for (double* number : { &c.force.x, &c.force.y, &c.force.z, &c.torque.x, &c.torque.y, &c.torque.z })
 				*number = from.next();
+		for (double& energy : d.bondBreaking)
+			energy = from.next();
+		for (long& number : domain->broken)
+			number = long(from.next());
+		recallBonds(from, *domain, setting);
 		for (ContactList& list : domain->contacts) {
 			list.clear();
 			for (int lanes = from.integer(); lanes > 0; --lanes) {

@@ -25,8 +25,8 @@ namespace portable {
 }
 }
 
-#include "force_pass.hpp"
+#include "bond_pass.hpp"
 
 namespace contact_law {
-InstructionSet portablePasses() { return Passes<portable::Pack>::all("portable", &portable::integrate); }
+InstructionSet portablePasses() { return BondPasses<portable::Pack>::addTo(Passes<portable::Pack>::all("portable", &portable::integrate)); }
 }

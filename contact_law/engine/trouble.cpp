@@ -41,6 +41,16 @@ Dynamics::Trouble Dynamics::trouble(int given) const
 				t.overlap = g.overlap / std::min(c.constants.radius1, c.constants.radius2);
 				t.force   = f;
 			}
+	eachBond([&](const Bond& b, int first, int second, double) {
+		if (b.i != worst && b.j != worst) return;
+		const Grain &      one = setting.grains[b.i], &two = setting.grains[b.j];
+		const Vec3<double> d = separationOf(one, two) - setting.dt * (velocityOf(one) - velocityOf(two));
+		const double       f = b.constants.normalStiffness * (b.rest - std::sqrt(dot(d, d)));
+		if (t.other >= 0 && std::abs(f) <= std::abs(t.force)) return;
+		t.other   = b.i == worst ? second : first;
+		t.overlap = (setting.radius[b.i] + setting.radius[b.j] - std::sqrt(dot(d, d))) / std::min(setting.radius[b.i], setting.radius[b.j]);
+		t.force   = f;
+	});
 	return t;
 }
 
@@ -52,6 +62,12 @@ Dynamics::Trouble Dynamics::hardest() const
 		Vec3<double> d = separationOf(setting.grains[c.i], setting.grains[c.j]);
 		nearestImage(cell(), d);
 		const double r1 = c.constants.radius1, r2 = c.constants.radius2;
+		t = { std::min(first, second), std::max(first, second), 0, (r1 + r2 - std::sqrt(dot(d, d))) / std::min(r1, r2), force };
+	});
+	eachBond([&](const Bond& b, int first, int second, double force) {
+		if (t.grain >= 0 && std::abs(force) <= std::abs(t.force)) return;
+		const Vec3<double> d = separationOf(setting.grains[b.i], setting.grains[b.j]);
+		const double       r1 = setting.radius[b.i], r2 = setting.radius[b.j];
 		t = { std::min(first, second), std::max(first, second), 0, (r1 + r2 - std::sqrt(dot(d, d))) / std::min(r1, r2), force };
 	});
 	return t;

@@ -56,10 +56,10 @@ inline void normalForces(const PairConstants<T>& c, const ContactGeometry<T>& g,
 	}
 }
 
-/* Sliding, rolling and twisting. Torques are written with n1 x n2 and n_i x n_c, which need no zeta:
+/* Sliding, rolling and twisting, with the radii and stiffnesses of c (PairConstants, or a bond's). Torques are written with n1 x n2 and n_i x n_c, which need no zeta:
  *   M_s1 = -r1 k_s n1 x zeta = r1 k_s (r2 n1 x n2 + z n1 x n_c),  M_r1 = -R^2 k_r n1 x n2,  z = zeta0.n_c  (A24 eqs A5-A8, any radii). */
-template <unsigned mechanisms, class T>
-inline void tangentialForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, ContactForces<T>& f)
+template <unsigned mechanisms, class Constants, class T>
+inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, ContactForces<T>& f)
 {
 	const Vec3<T>& n = g.normal;
 	if constexpr (bool(mechanisms & (Sliding | Rolling))) {

@@ -31,13 +31,20 @@ struct ContactBefore {
 	Vec3<double> velocity { 0, 0, 0 }; // v1 - v2 through the step before this one
 };
 
+enum BondMode { ByStretching, BySliding, ByRolling, ByTwisting, bondModes }; // by which a sintered bond breaks (bond_step.hpp)
+
 struct Dissipation {
 	double sliding = 0, rolling = 0, twisting = 0, connection = 0, disconnection = 0, drag = 0;
+	std::array<double, bondModes> bondBreaking {}; // by mode
+
+	double bonds() const { return bondBreaking[ByStretching] + bondBreaking[BySliding] + bondBreaking[ByRolling] + bondBreaking[ByTwisting]; }
 
 	Dissipation& operator+=(const Dissipation& d)
 	{
 		sliding += d.sliding, rolling += d.rolling, twisting += d.twisting;
 		connection += d.connection, disconnection += d.disconnection, drag += d.drag;
+		for (int mode = 0; mode < bondModes; ++mode)
+			bondBreaking[mode] += d.bondBreaking[mode];
 		return *this;
 	}
 };
@@ -124,6 +131,7 @@ inline ContactStepResult contactStep(const PairConstants<double>& c, const Conta
 		if constexpr (bool(mechanisms & Twisting)) history.twist += twisting::increment(g.normal, g.inverseDistance, m.velocity, spin, m.dt);
 		if (g.overlap < -c.pullOffOverlap) return events::lost<mechanisms>(c, m, g, before, history);
 	} else {
+		if (g.overlap < 0) return r; // grains that sintering has shrunk are seen before they touch
 		const Vec3<double> aStepAgo = m.separation - m.dt * m.velocity;
 		before.overlap              = sumOfRadii - std::sqrt(dot(aStepAgo, aStepAgo));
 		born                        = before.overlap <= 0 && g.overlap > before.overlap;

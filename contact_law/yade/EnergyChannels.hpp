@@ -10,7 +10,7 @@ namespace yade {
 class EnergyChannels {
 public:
 	enum Extra { ConstraintWork, BoundaryWork, extraCount }; // channels only of scenes that have blocked degrees of freedom, or a periodic cell
-	enum Channel { Kinetic, Normal, Sliding, Rolling, Twisting, SlidingDissipation, RollingDissipation, TwistingDissipation, Connection, Disconnection, Drag, count };
+	enum Channel { Kinetic, Normal, Sliding, Rolling, Twisting, SlidingDissipation, RollingDissipation, TwistingDissipation, Connection, Disconnection, Drag, BondBreaking, count };
 
 	// Whether add() books a channel anew each step: energies held now are, losses add up. (YADE's ForceResetter is what empties those.)
 	static bool perStep(int channel) { return channel <= Twisting; }
@@ -78,7 +78,7 @@ private:
 	static const char* const* names()
 	{
 		static const char* const all[count] = { "kinetic",           "normal",             "sliding",             "rolling",    "twisting",     "slidingDissipation",
-			                                "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag" };
+			                                "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag", "bondBreaking" };
 		return all;
 	}
 

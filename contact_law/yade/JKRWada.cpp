@@ -1,4 +1,5 @@
 #include "JKRWada.hpp"
+#include "../kernel/bond_step.hpp"
 #include "../kernel/blocked.hpp"
 #include <core/Body.hpp>
 #include <core/Cell.hpp>
@@ -13,7 +14,7 @@ using contact_law::ContactStepResult;
 using contact_law::PairConstants;
 using Vec3d = contact_law::Vec3<double>;
 
-YADE_PLUGIN((JKRMat)(JKRWadaConstants)(JKRWadaPhys)(Ip2_JKRMat_JKRMat_JKRWadaPhys)(Law2_ScGeom_JKRWadaPhys_JKRWada));
+YADE_PLUGIN((JKRMat)(JKRWadaConstants)(JKRWadaBond)(JKRWadaPhys)(Ip2_JKRMat_JKRMat_JKRWadaPhys)(Law2_ScGeom_JKRWadaPhys_JKRWada));
 
 CREATE_LOGGER(Ip2_JKRMat_JKRMat_JKRWadaPhys);
 CREATE_LOGGER(Law2_ScGeom_JKRWadaPhys_JKRWada);
@@ -27,6 +28,10 @@ namespace {
 		if (!fine) throw std::invalid_argument("JKRMat: " + std::string(name) + " = " + boost::lexical_cast<std::string>(value) + ", allowed: " + allowed);
 	}
 
+	void requireNeck(Real neck)
+	{
+		if (!(neck > 0 && neck <= contact_law::largestNeck)) throw std::invalid_argument("neck = " + boost::lexical_cast<std::string>(neck) + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
+	}
 	void requireRadius(Real radius) { require(radius > 0 && std::isfinite(radius), "radius of the grain", radius, "a positive number [m]"); }
 }
 
@@ -69,19 +74,23 @@ void JKRWadaConstants::set(const PairConstants<double>& c)
 	timeUnit                 = c.timeUnit;
 }
 
-shared_ptr<JKRWadaConstants> SharedConstants::of(const PairConstants<double>& derived)
+contact_law::BondConstants<double> JKRWadaBond::forKernel() const
 {
-	const auto                   same = [](const PairConstants<double>& a, const PairConstants<double>& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
-	shared_ptr<JKRWadaConstants> result;
-#pragma omp critical(SharedConstantsLatest)
-	{
-		if (!latest || !same(latest->forKernel(), derived)) {
-			latest = shared_ptr<JKRWadaConstants>(new JKRWadaConstants);
-			latest->set(derived);
-		}
-		result = latest;
-	}
-	return result;
+	return { radius1, radius2, reducedRadius, neckRadius, neckLength, normalStiffness, slidingStiffness, rollingStiffness, twistingStiffness, breakingEnergy };
+}
+
+void JKRWadaBond::set(const contact_law::BondConstants<double>& b)
+{
+	radius1           = b.radius1;
+	radius2           = b.radius2;
+	reducedRadius     = b.reducedRadius;
+	neckRadius        = b.neckRadius;
+	neckLength        = b.neckLength;
+	normalStiffness   = b.normalStiffness;
+	slidingStiffness  = b.slidingStiffness;
+	rollingStiffness  = b.rollingStiffness;
+	twistingStiffness = b.twistingStiffness;
+	breakingEnergy    = b.breakingEnergy;
 }
 
 void JKRWadaPhys::setConstants(const shared_ptr<JKRWadaConstants>& c)
@@ -89,6 +98,21 @@ void JKRWadaPhys::setConstants(const shared_ptr<JKRWadaConstants>& c)
 	constants = c;
 	kn        = 6 * c->pullOffForce / (5 * c->equilibriumOverlap); // A24 eq 38
 	ks        = c->slidingStiffness;
+}
+
+void JKRWadaPhys::setBond(const shared_ptr<JKRWadaBond>& b)
+{
+	bond   = b;
+	bonded = true;
+	kn     = b->normalStiffness;
+	ks     = b->slidingStiffness;
+}
+
+void JKRWadaPhys::endBond()
+{
+	bonded = false;
+	bond.reset();
+	setConstants(constants);
 }
 
 void JKRWadaPhys::set(const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_)
@@ -110,9 +134,12 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(const shared_ptr<Material>& material1, co
 	const auto& first    = *YADE_CAST<JKRMat*>(material1.get());
 	const auto& second   = *YADE_CAST<JKRMat*>(material2.get());
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
-	const auto  derived  = contact_law::derivePair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping);
+	if (neck != 0) requireNeck(neck);
+	const auto  derived  = contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping, neck);
 	const auto  phys     = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
 	phys->setConstants(constants.of(derived));
+	if (neck != 0 && scene->iter < bondsBefore)
+		phys->setBond(bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, neck)));
 	interaction->phys = phys;
 }
 
@@ -124,8 +151,22 @@ Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(const shared_ptr<JKRMat>& material1
 	requireRadius(radius1);
 	requireRadius(radius2);
 	JKRWadaConstants constants;
-	constants.set(contact_law::derivePair(material1->forKernel(), radius1, material2->forKernel(), radius2, linearDamping));
+	if (neck != 0) requireNeck(neck);
+	constants.set(contact_law::deriveShrunkPair(material1->forKernel(), radius1, material2->forKernel(), radius2, linearDamping, neck));
 	return constants.pyDict();
+}
+
+boost::python::dict
+Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
+{
+	material1->requireInRange();
+	material2->requireInRange();
+	requireRadius(radius1);
+	requireRadius(radius2);
+	requireNeck(neck);
+	JKRWadaBond bond;
+	bond.set(contact_law::deriveBond(material1->forKernel(), radius1, material2->forKernel(), radius2, neck));
+	return bond.pyDict();
 }
 
 bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& physics, Interaction* interaction)
@@ -151,7 +192,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 
 	const bool     drag       = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
 	const unsigned mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	const ContactStepResult r  = contact_law::contactStepWith[mechanisms](constants, motion, before, history);
+	const ContactStepResult r  = phys.bonded ? bondStep(phys, constants, motion, before, history, state1, state2, mechanisms)
+	                                         : contact_law::contactStepWith[mechanisms](constants, motion, before, history);
 
 	const Vector3r force = fromKernel(r.force);
 	scene->forces.addForce(interaction->getId1(), force);
@@ -176,6 +218,25 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	return true;
 }
 
+ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, const PairConstants<double>& constants, ContactMotion motion, const contact_law::ContactBefore& before,
+                                                            ContactHistory<double>& history, const State& state1, const State& state2, unsigned mechanisms)
+{
+	const bool made = !phys.touching; // this is its first step
+	if (made) {
+		phys.restDistance = contact_law::newBond(motion.separation, history);
+		motion.dt         = 0;
+	}
+	contact_law::BondStepResult r
+	        = contact_law::bondStepWith[mechanisms](phys.bond->forKernel(), constants, { motion, 1 / state1.inertia[0], 1 / state2.inertia[0] }, before, phys.restDistance, history);
+	r.contact.pointersMoved = r.contact.pointersMoved || made;
+	if (r.bonded) return r.contact;
+	phys.endBond();
+	int* const counters[] = { &brokenByStretching, &brokenBySliding, &brokenByRolling, &brokenByTwisting };
+#pragma omp atomic
+	++*counters[r.mode];
+	return r.contact;
+}
+
 void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
 {
 	using C = EnergyChannels;
@@ -192,6 +253,7 @@ void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
 	add(C::Connection, r.dissipated.connection);
 	add(C::Disconnection, r.dissipated.disconnection);
 	add(C::Drag, r.dissipated.drag);
+	add(C::BondBreaking, r.dissipated.bonds());
 }
 
 } // namespace yade

@@ -1,6 +1,7 @@
 // Cohesive elastic grains: the JKR normal force with the sliding, rolling and twisting springs of Wada et al. (2007), and viscous drag.
 // The formulas stand in ../kernel; MODEL.md lists them with their sources. These classes carry them into YADE.
 #pragma once
+#include "../kernel/bond.hpp"
 #include "../kernel/contact_step.hpp"
 #include "EnergyChannels.hpp"
 #include <core/Interaction.hpp>
@@ -63,17 +64,57 @@ public:
 };
 REGISTER_SERIALIZABLE(JKRWadaConstants);
 
-// Objects for contacts of the same kind: most scenes have one kind of pair.
-class SharedConstants {
-	shared_ptr<JKRWadaConstants> latest;
+class JKRWadaBond : public Serializable {
+public:
+	contact_law::BondConstants<double> forKernel() const;
+	void                               set(const contact_law::BondConstants<double>&);
+	virtual ~JKRWadaBond() {}
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaBond, Serializable,
+		"Constants of sintered bonds (Sirono & Ueno 2017), shared by all bonds of the same kind. Symbols and sources: contact_law/MODEL.md.",
+		((Real, radius1, 0, Attr::readonly, "Radius of the first grain before sintering [m]."))
+		((Real, radius2, 0, Attr::readonly, "Radius of the second grain before sintering [m]."))
+		((Real, reducedRadius, 0, Attr::readonly, "R = r1 r2/(r1+r2) of these [m]."))
+		((Real, neckRadius, 0, Attr::readonly, "a [m]."))
+		((Real, neckLength, 0, Attr::readonly, "d [m]."))
+		((Real, normalStiffness, 0, Attr::readonly, "k_ss [N/m]."))
+		((Real, slidingStiffness, 0, Attr::readonly, "k_st [N/m]."))
+		((Real, rollingStiffness, 0, Attr::readonly, "k_sr/R^2 [N/m], on the rolling displacement R(n1+n2)."))
+		((Real, twistingStiffness, 0, Attr::readonly, "k_sw [N m]."))
+		((Real, breakingEnergy, 0, Attr::readonly, "pi a^2 gamma [J]: the bond breaks when one mode holds it."))
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(JKRWadaBond);
+
+// Objects for contacts (bonds) of the same kind: most scenes have one kind of pair.
+template <class Object, class Derived> class SharedObject {
+	shared_ptr<Object> latest;
 
 public:
-	shared_ptr<JKRWadaConstants> of(const contact_law::PairConstants<double>&); // from any thread
+	shared_ptr<Object> of(const Derived& derived) // from any thread
+	{
+		const auto         same = [](const Derived& a, const Derived& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+		shared_ptr<Object> result;
+#pragma omp critical(SharedObjectLatest)
+		{
+			if (!latest || !same(latest->forKernel(), derived)) {
+				latest = shared_ptr<Object>(new Object);
+				latest->set(derived);
+			}
+			result = latest;
+		}
+		return result;
+	}
 };
+using SharedConstants = SharedObject<JKRWadaConstants, contact_law::PairConstants<double>>;
+using SharedBonds     = SharedObject<JKRWadaBond, contact_law::BondConstants<double>>;
 
 class JKRWadaPhys : public NormShearPhys {
 public:
 	void setConstants(const shared_ptr<JKRWadaConstants>&);
+	void setBond(const shared_ptr<JKRWadaBond>&);
+	void endBond();
 	// All but the pointers. velocity: of body 1 past body 2 through the last step.
 	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist, const Vector3r& velocity);
 	virtual ~JKRWadaPhys() {}
@@ -82,9 +123,12 @@ public:
 		"State of a JKR-Wada contact. normalForce (elastic and viscous) and shearForce act on the second body; kn is the slope of the JKR force at equilibrium, ks the sliding stiffness.",
 		((shared_ptr<JKRWadaConstants>, constants, , Attr::readonly, "Constants of this kind of pair."))
 		((bool, touching, false, Attr::readonly, "Whether the grains adhere to each other."))
+		((bool, bonded, false, Attr::readonly, "Whether this is a sintered bond, linear and elastic until it breaks, and not an ordinary contact."))
+		((shared_ptr<JKRWadaBond>, bond, , Attr::readonly, "Constants of this kind of bond; None when it is none. Those in constants are of the contact that may take its place."))
+		((Real, restDistance, 0, Attr::readonly, "Distance of the centres at which a bond was made [m]."))
 		((Vector3r, pointer1, Vector3r::Zero(), Attr::readonly, "Contact pointer of the first body, in the body's own frame: unit vector from its centre to the contact."))
 		((Vector3r, pointer2, Vector3r::Zero(), Attr::readonly, "Contact pointer of the second body, likewise."))
-		((Real, overlap, 0, Attr::readonly, "delta = r1 + r2 - distance of the centres [m]; negative when the neck is stretched."))
+		((Real, overlap, 0, Attr::readonly, "delta = r1 + r2 - distance of the centres [m], r1 and r2 as in constants; negative when the neck is stretched. Of a bond: restDistance - distance."))
 		((Vector3r, slidingDisplacement, Vector3r::Zero(), Attr::readonly, "zeta [m]."))
 		((Vector3r, rollingDisplacement, Vector3r::Zero(), Attr::readonly, "xi [m]."))
 		((Real, twist, 0, Attr::readonly, "phi [rad]."))
@@ -100,18 +144,25 @@ REGISTER_SERIALIZABLE(JKRWadaPhys);
 
 class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
+	SharedBonds     bonds;
 
 public:
 	void       go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction) override;
 	boost::python::dict pairConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
+	boost::python::dict bondConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
 	virtual ~Ip2_JKRMat_JKRMat_JKRWadaPhys() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_JKRMat_JKRMat_JKRWadaPhys, IPhysFunctor,
-		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains.",
-		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none.")),
+		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains. With a neck, grains that touch at the start are sintered (Sirono & Ueno 2017): a linear elastic bond holds them "
+		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by what they gave to two necks each.",
+		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
+		((Real, neck, 0, , "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
+		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
 		,
 		.def("pairConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
-			"Constants of a contact of two grains (materials, radii in m) as a dict with the attributes of JKRWadaConstants. ValueError when a radius or a material constant is out of range.")
+			"Constants of a contact of two grains (materials, radii in m) as a dict with the attributes of JKRWadaConstants. ValueError when a radius or a material constant is out of range. With a neck: of the shrunk grains (given are the radii before).")
+		.def("bondConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
+			"Constants of a bond of two grains (radii before sintering) as a dict with the attributes of JKRWadaBond. ValueError likewise, or when there is no neck.")
 	);
 	// clang-format on
 	FUNCTOR2D(JKRMat, JKRMat);
@@ -123,6 +174,8 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	EnergyChannels channels;
 
 	void book(const contact_law::ContactStepResult&);
+	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion, const contact_law::ContactBefore&,
+	                                        contact_law::ContactHistory<double>&, const State&, const State&, unsigned mechanisms);
 
 public:
 	bool go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction) override;
@@ -131,11 +184,15 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_JKRWadaPhys_JKRWada, LawFunctor,
 		"JKR normal force, Wada's sliding, rolling and twisting springs with their limits, and viscous drag, between grains of any radii and materials. "
 		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: stored ones (normal, sliding, rolling, twisting) "
-		"and what was lost since the start (slidingDissipation, rollingDissipation, twistingDissipation, connection, disconnection, drag). "
+		"and what was lost since the start (slidingDissipation, rollingDissipation, twistingDissipation, connection, disconnection, drag, bondBreaking). "
 		"O.energy['kinetic'] is brought from half a step ago, where NewtonIntegrator takes it, to the moment of the stored energies, so that the sum is constant. Use NewtonIntegrator(damping=0).",
 		((bool, sliding, true, , "Whether contacts resist sliding."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
+		((int, brokenByStretching, 0, Attr::readonly, "Sintered bonds that have broken because they were stretched or pressed."))
+		((int, brokenBySliding, 0, Attr::readonly, "Sintered bonds that have broken by sliding."))
+		((int, brokenByRolling, 0, Attr::readonly, "Sintered bonds that have broken by rolling."))
+		((int, brokenByTwisting, 0, Attr::readonly, "Sintered bonds that have broken by twisting."))
 	);
 	// clang-format on
 	FUNCTOR2D(ScGeom, JKRWadaPhys);

@@ -59,6 +59,7 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	Dynamics::Options options;
 	options.dt            = scene->dt / subSteps;
 	options.linearDamping = linearDamping;
+	options.neck          = neck;
 	options.domains       = domains;
 	options.threads       = threads;
 	options.instructions  = instructions;
@@ -74,6 +75,8 @@ void JKRWadaEngine::start(bool inStep)
 {
 	if (!failure.empty()) refuseInEngine(failure);
 	if (subSteps < 1) refuseInEngine("subSteps = " + std::to_string(subSteps) + ", allowed: 1 or more");
+	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck)) refuseInEngine("neck = " + text(neck) + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
+	if (neck != 0 && scene->isPeriodic) refuseInEngine("neck = " + text(neck) + " in a periodic cell, allowed: 0; sintered bonds in periodic cells are the functors'");
 	requireAlone(*scene);
 	const SceneGrains now = readGrains(*scene);
 	if (now.grains.empty()) refuseInEngine("there are no bodies");
@@ -82,6 +85,8 @@ void JKRWadaEngine::start(bool inStep)
 	if (continued) options.dt = smallStep;
 	SceneContacts                contacts;
 	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
+	for (const auto& one : inherited.contacts)
+		if (one.bonded && neck == 0) refuseInEngine("O.interactions has sintered bonds, and neck is 0; allowed: the neck they were made with");
 	const bool                   inherits  = !continued && !inherited.contacts.empty();
 	SceneCell                    cell;
 	options.cell = cell.start(*scene, inStep, inherits && inherited.stepBehind, options.dt);
@@ -174,7 +179,8 @@ void JKRWadaEngine::requireSound(long made, const contact_law::Energies* now)
 		trouble           = current->dynamics.tooDeep();
 	}
 	if (trouble.grain >= 0) fail(time, pairOf(trouble) + " overlap by " + rounded(trouble.overlap) + " of the smaller radius");
-	const std::string wrong = now ? current->watch.wrong(*now) : "";
+	const auto&       c     = current->dynamics.commonConstants();
+	const std::string wrong = now ? current->watch.wrong(*now, c.pullOffForce * c.pullOffOverlap) : "";
 	if (wrong.empty()) return;
 	const Dynamics::Trouble fastest = current->dynamics.trouble(), hardest = current->dynamics.hardest();
 	fail(time, wrong + "; body " + std::to_string(fastest.grain) + " is the fastest (" + rounded(fastest.speed) + " m/s)"
@@ -238,7 +244,7 @@ void JKRWadaEngine::writeBodies()
 void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 {
 	const contact_law::Dissipation& d   = now.dissipated;
-	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag }, known);
+	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() }, known);
 	current->constrained = current->constrained || current->dynamics.constrained();
 	if (current->constrained) channels.setExtra(*scene, EnergyChannels::ConstraintWork, now.constraintWork, known);
 	if (scene->isPeriodic) channels.setExtra(*scene, EnergyChannels::BoundaryWork, now.boundaryWork, known);
@@ -246,15 +252,17 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 
 void JKRWadaEngine::preSave(JKRWadaEngine&) { memory = current ? current->dynamics.remember() : std::vector<Real>(); }
 
-bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces) const
+bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const
 {
 	if (!current) return false;
-	current->dynamics.eachContact([&](const contact_law::Contact& contact, int first, int second, double normalForce) {
-		(void)contact;
+	const auto add = [&](int first, int second, double normalForce, bool isBond) {
 		pairs.push_back(first);
 		pairs.push_back(second);
 		normalForces.push_back(normalForce);
-	});
+		bonded.push_back(isBond);
+	};
+	current->dynamics.eachContact([&](const contact_law::Contact&, int first, int second, double force) { add(first, second, force, false); });
+	current->dynamics.eachBond([&](const contact_law::Bond&, int first, int second, double force) { add(first, second, force, true); });
 	return true;
 }
 
@@ -263,6 +271,14 @@ boost::python::dict JKRWadaEngine::statistics() const
 	boost::python::dict result;
 	if (!current) return result;
 	result["contacts"]       = current->dynamics.contactCount();
+	result["bonds"]          = current->dynamics.bondCount();
+	const auto                           broken = current->dynamics.brokenBonds();
+	const contact_law::Dissipation       lost   = current->dynamics.dissipated();
+	static const char* const             modes[contact_law::bondModes] = { "brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting" };
+	for (int mode = 0; mode < contact_law::bondModes; ++mode) {
+		result[modes[mode]]                         = broken[mode];
+		result[modes[mode] + std::string("Energy")] = lost.bondBreaking[mode];
+	}
 	result["contactUpdates"] = current->dynamics.contactUpdates;
 	result["events"]         = current->dynamics.events();
 	result["farRebuilds"]    = current->dynamics.farRebuilds;

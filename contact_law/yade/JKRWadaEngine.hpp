@@ -35,7 +35,7 @@ public:
 	void handOver();
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// Adds this engine's arrays to a snapshot (JKRWadaSnapshot); false before the first step.
-	bool                addContacts(std::vector<int>& pairs, std::vector<double>& normalForces) const;
+	bool                addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const;
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
 	// clang-format off
@@ -55,7 +55,9 @@ public:
 		((int, domains, 2, , "Shares the grains are divided into. Another number changes results by rounding."))
 		((std::string, instructions, "", , "Instruction set: 'avx512', 'avx2', 'portable', or '' for the best this machine has. Another one changes results by rounding."))
 		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
-		((bool, sliding, true, , "Whether contacts resist sliding."))
+		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that touch at the start are bonded, all others as shrunk as they "
+			"(:yref:`Ip2_JKRMat_JKRMat_JKRWadaPhys.neck`)."))
+		((bool, sliding, true, , "Whether contacts resist sliding (bonds always do; likewise below)."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
 		((bool, orientations, false, , "Whether to keep the bodies' orientations up (State.ori); otherwise they stay as they were."))
@@ -67,7 +69,7 @@ public:
 		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
 		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors go on from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
-		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, contactUpdates (lane updates so far), events (births, breaks, slips), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
+		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (births, breaks, slips), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;

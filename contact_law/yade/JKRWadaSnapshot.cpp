@@ -85,7 +85,8 @@ boost::python::dict JKRWadaSnapshot::read() const
 	const Grains        grains = readGrains(scene, fused);
 	std::vector<int>    pairs;
 	std::vector<double> normalForce;
-	const bool fromEngine = fused && fused->addContacts(pairs, normalForce);
+	std::vector<int>    bonded;
+	const bool fromEngine = fused && fused->addContacts(pairs, normalForce, bonded);
 	for (const auto& interaction : *scene.interactions) {
 		if (fromEngine) break;
 		if (!interaction->isReal()) continue;
@@ -95,6 +96,7 @@ boost::python::dict JKRWadaSnapshot::read() const
 		pairs.push_back(grains.rowOf[interaction->getId1()]);
 		pairs.push_back(grains.rowOf[interaction->getId2()]);
 		normalForce.push_back(phys->normalForce.dot(geometry->normal));
+		bonded.push_back(phys->bonded);
 	}
 	boost::python::dict result;
 	result["time"]                 = fromEngine && fused->inStep() ? scene.time + scene.dt : scene.time; // within a step the engine is at its end already
@@ -110,6 +112,7 @@ boost::python::dict JKRWadaSnapshot::read() const
 	}
 	result["contact_pairs"]        = bytes(pairs);
 	result["contact_normal_force"] = bytes(normalForce);
+	result["contact_bonded"]       = bytes(bonded);
 	return result;
 }
 

@@ -1,6 +1,7 @@
 // Notices from the energies that a run has gone wrong, while all numbers are finite still.
 #pragma once
 #include "../engine/dynamics.hpp"
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,11 +12,11 @@ public:
 	// Scripts may give energy to grains, or take it: the sum is another from the next energies on.
 	void forgetSum() { known = false; }
 
-	// Empty, or what is wrong with the energies after a step.
-	std::string wrong(const contact_law::Energies& e)
+	// Empty, or what is wrong with the energies after a step. contactEnergy: of one contact, F_c delta_c [J]; bonded grains at rest have none but rounding's.
+	std::string wrong(const contact_law::Energies& e, double contactEnergy)
 	{
 		const contact_law::Dissipation& d       = e.dissipated;
-		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag };
+		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() };
 		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork, e.boundaryWork };
 		double       lost = 0, sum = 0, scale = 0;
 		for (const double x : losses)
@@ -23,6 +24,7 @@ public:
 		for (const double x : stored)
 			sum += x, scale += std::abs(x);
 		if (!std::isfinite(scale)) return "the energies are not finite";
+		scale = std::max(scale, negligible * contactEnergy);
 		if (lost < lostBefore - lossRegained * scale) return "losses have given back " + text(lostBefore - lost) + " J, which no loss can: the step is too long";
 		lostBefore = std::max(lost, lostBefore);
 		if (!known) first = sum;
@@ -33,7 +35,7 @@ public:
 
 private:
 	// Ledgers of runs that are merely coarse (half a t0, 100 m/s) are off by a few per cent at most.
-	static constexpr double lossRegained = 0.1, sumChanged = 0.5;
+	static constexpr double lossRegained = 0.1, sumChanged = 0.5, negligible = 1e-9;
 
 	static std::string text(double number)
 	{

@@ -2,6 +2,7 @@
 #include "../kernel/turning.hpp"
 #include <core/Body.hpp>
 #include <core/State.hpp>
+#include <pkg/common/Sphere.hpp>
 #include <algorithm>
 
 namespace yade {
@@ -24,6 +25,8 @@ namespace {
 		bool operator<(const Ids& other) const { return low != other.low ? low < other.low : high < other.high; }
 	};
 
+	Real radiusOf(const Scene& scene, int id) { return static_cast<const Sphere&>(*(*scene.bodies)[id]->shape).radius; }
+
 	const State& stateOf(const Scene& scene, int id) { return *(*scene.bodies)[id]->state; }
 
 	void writeContact(const Scene& scene, const ContactNow& c, bool current, Interaction& interaction)
@@ -33,14 +36,16 @@ namespace {
 		auto&        phys         = static_cast<JKRWadaPhys&>(*interaction.phys);
 	interaction.cellDist      = Vector3i(-int(c.shift.x), -int(c.shift.y), -int(c.shift.z)); // of body 2, not body 1
 		geometry.normal           = -fromKernel(c.geometry.normal); // YADE's points from body 1 to body 2
-		geometry.refR1            = c.constants.radius1;
-		geometry.refR2            = c.constants.radius2;
-		geometry.penetrationDepth = c.geometry.overlap;
-		geometry.contactPoint     = state1.pos + (c.constants.radius1 - 0.5 * c.geometry.overlap) * geometry.normal;
+		geometry.refR1            = radiusOf(scene, c.first); // YADE's geometry is that of the bodies, shrunk by sintering or not
+		geometry.refR2            = radiusOf(scene, c.second);
+		geometry.penetrationDepth = c.geometry.overlap + (geometry.refR1 + geometry.refR2 - (c.bonded ? c.rest : c.constants.radius1 + c.constants.radius2));
+		geometry.contactPoint     = state1.pos + (geometry.refR1 - 0.5 * geometry.penetrationDepth) * geometry.normal;
 		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity));
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(c.history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(c.history.pointers.n2);
 		phys.current  = current;
+		if (phys.bonded && !c.bonded) phys.endBond();
+		phys.restDistance = c.rest;
 	}
 
 	/* The velocities through the step before the last: the last step's less what the contacts' forces added (but for impulses of births and breaks, which shows
@@ -77,7 +82,7 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 		const auto&  phys   = static_cast<const JKRWadaPhys&>(*interaction->phys);
 		const int    id1 = interaction->getId1(), id2 = interaction->getId2();
 		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
-		Inherited::One one { id1, id2, { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap, phys.dragForce };
+		Inherited::One one { id1, id2, { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap, phys.dragForce, phys.bonded, phys.restDistance };
 		if (!phys.current) { // the bodies have turned since
 			inherited.stepBehind    = true;
 			one.history.pointers.n1 = contact_law::turned(one.history.pointers.n1, -dt * toKernel(state1.angVel));
@@ -92,9 +97,15 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dynamics& dynamics)
 {
 	std::vector<Place> places;
-	dynamics.eachPlace([&](const contact_law::ContactList& list, int lane, int first, int second) { places.push_back({ std::min(first, second), std::max(first, second), &list, lane }); });
+	dynamics.eachPlace([&](const contact_law::ContactList& list, int lane, int first, int second) { places.push_back({ std::min(first, second), std::max(first, second), &list, nullptr, lane }); });
+	dynamics.eachBondPlace([&](const contact_law::BondList& list, int lane, int first, int second) { places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, lane }); });
 	std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.id1 != b.id1 ? a.id1 < b.id1 : a.id2 < b.id2; });
 	return places;
+}
+
+ContactNow SceneContacts::Place::now(const contact_law::Dynamics& dynamics) const
+{
+	return bonds ? dynamics.now(bonds->get(lane, dynamics.commonBond())) : dynamics.now(dynamics.contactOf(*list, lane));
 }
 
 bool SceneContacts::inOrder(Scene& scene, const std::vector<Place>& places) const
@@ -108,11 +119,12 @@ bool SceneContacts::inOrder(Scene& scene, const std::vector<Place>& places) cons
 	return true;
 }
 
-shared_ptr<Interaction> SceneContacts::made(const Scene& scene, int id1, int id2, const contact_law::PairConstants<double>& c)
+shared_ptr<Interaction> SceneContacts::made(const Scene& scene, const ContactNow& c, int id1, int id2)
 {
 	const shared_ptr<Interaction> interaction(new Interaction(id1, id2));
 	const shared_ptr<JKRWadaPhys> phys(new JKRWadaPhys);
-	phys->setConstants(constants.of(c));
+	phys->setConstants(constants.of(c.constants));
+	if (c.bonded) phys->setBond(bonds.of(c.bond));
 	interaction->geom         = shared_ptr<ScGeom>(new ScGeom);
 	interaction->phys         = phys;
 	interaction->iterBorn     = scene.iter;
@@ -143,13 +155,13 @@ void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, b
 {
 	const std::vector<Place> places = placesOf(dynamics);
 	const auto               now    = [&](size_t k, int id1) {
-                const ContactNow c = dynamics.now(dynamics.contactOf(*places[k].list, places[k].lane));
+                const ContactNow c = places[k].now(dynamics);
                 return c.first == id1 ? c : contact_law::swapped(c);
 	};
 	if (!inOrder(scene, places)) {
 		arrange(scene, places);
 		for (size_t k = 0; k < places.size(); ++k) {
-			if (!held[k]) held[k] = made(scene, places[k].id1, places[k].id2, now(k, places[k].id1).constants);
+			if (!held[k]) held[k] = made(scene, now(k, places[k].id1), places[k].id1, places[k].id2);
 			scene.interactions->insert(held[k]);
 		}
 	}

@@ -12,6 +12,7 @@ NAMES = (
     "radius1 radius2 reducedRadius reducedMass reducedYoung reducedShear equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce "
     "rollingStiffness slidingStiffness twistingStiffness criticalSliding criticalRolling criticalTwisting dragPerContactRadius linearDrag timeUnit inverseEquilibriumOverlap"
 ).split()
+BOND_NAMES = "radius1 radius2 reducedRadius neckRadius neckLength normalStiffness slidingStiffness rollingStiffness twistingStiffness breakingEnergy".split()
 ICE = (7e9, 0.25, 1000.0, 0.1, 0.8e-9, 0.0)
 SILICATE = (54e9, 0.17, 2650.0, 0.02, 2e-9, 0.0)
 VISCOUS = (3e9, 0.33, 1300.0, 0.05, 1.1e-9, 4e-12)
@@ -29,6 +30,7 @@ class Kernel:
     def __init__(self, library):
         self.library = library
         assert library.numberOfConstants() == len(NAMES)
+        assert library.numberOfBondConstants() == len(BOND_NAMES)
 
     def call(self, name, *arguments):
         converted = [
@@ -57,6 +59,21 @@ class Kernel:
         pointers = array([*n1, *n2])
         self.call("putBack", constants.array, array(normal), pointers, which, float(limit))
         return pointers[:3], pointers[3:]
+
+    def neck(self, beta):
+        out = np.empty(4)
+        self.call("neckGeometry", float(beta), out)
+        return SimpleNamespace(fillet=out[0], length=out[1], volume=out[2], shrunk_radius=out[3])
+
+    def bond_constants(self, beta, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7):
+        out = np.empty(len(BOND_NAMES))
+        self.call("bondConstants", array(material1), float(radius1), array(material2), float(radius2), float(beta), out)
+        return SimpleNamespace(array=out, **dict(zip(BOND_NAMES, out)))
+
+    def bond(self, constants, rest, separation, n1, n2, twist=0.0):
+        out = np.empty(14)
+        self.call("bondAt", constants.array, float(rest), array([*separation, *n1, *n2, twist]), out)
+        return SimpleNamespace(force=out[:3], torque1=out[3:6], torque2=out[6:9], energies=out[9:13], breaks=bool(out[13]))
 
     def turn(self, v, angle):
         out = np.empty(3)

@@ -1,5 +1,5 @@
 // The kernel's functions for Python (ctypes): plain arrays in, plain arrays out. Built by conftest.py.
-#include "../../contact_law/kernel/contact_step.hpp"
+#include "../../contact_law/kernel/bond_step.hpp"
 #include <cstring>
 
 using namespace contact_law;
@@ -12,6 +12,12 @@ namespace {
 		PairConstants<double> c;
 		std::memcpy(&c, p, sizeof c);
 		return c;
+	}
+	BondConstants<double> bondFrom(const double* p)
+	{
+		BondConstants<double> b;
+		std::memcpy(&b, p, sizeof b);
+		return b;
 	}
 	Material material(const double* p) { return { p[0], p[1], p[2], p[3], p[4], p[5] }; }
 }
@@ -59,6 +65,31 @@ void putBack(const double* constants, const double* normalVector, double* pointe
 	else p = rolledBack(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
 	write(pointers, p.n1);
 	write(pointers, p.n2);
+}
+
+int numberOfBondConstants() { return sizeof(BondConstants<double>) / sizeof(double); }
+
+// out: fillet radius, length, volume, radius of the shrunk grain, all relative to the grain
+void neckGeometry(double beta, double* out) { out[0] = neck::filletRadius(beta), out[1] = neck::length(beta), out[2] = neck::volume(beta), out[3] = neck::shrunkRadius(beta); }
+
+void bondConstants(const double* material1, double radius1, const double* material2, double radius2, double beta, double* out)
+{
+	const BondConstants<double> b = deriveBond(material(material1), radius1, material(material2), radius2, beta);
+	std::memcpy(out, &b, sizeof b);
+}
+
+// state: separation, n1, n2 (9 numbers), twist. out: force on 1, torque1, torque2, the four stored energies, whether it breaks.
+void bondAt(const double* constants, double rest, const double* state, double* out)
+{
+	const auto                    b = bondFrom(constants);
+	const ContactHistory<double>  h { { vector(state + 3), vector(state + 6) }, state[9] };
+	const ContactGeometry<double> g = geometryOf(vector(state), rest);
+	const ContactForces<double>   f = bondForces(b, g, h);
+	const StoredEnergy<double>    e = bondEnergy(b, g, f, h.twist);
+	write(out, f.normalForce * g.normal + f.sliding);
+	write(out, f.torque1);
+	write(out, f.torque2);
+	*out++ = e.normal, *out++ = e.sliding, *out++ = e.rolling, *out++ = e.twisting, *out++ = bondBreaks(b, e);
 }
 
 void turn(const double* v, const double* angle, double* out) { write(out, turned(vector(v), vector(angle))); }

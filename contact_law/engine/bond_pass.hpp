@@ -1,0 +1,107 @@
+// The pass over sintered bonds, for one pack type: included by each instruction set's file after force_pass.hpp. One sweep, since a linear bond needs little room.
+#pragma once
+#include "bond_list.hpp"
+#include "force_pass.hpp"
+
+namespace contact_law {
+
+template <class Pack> struct BondPasses {
+	using P = Passes<Pack>;
+	static constexpr int width = Pack::width;
+
+	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at)
+	{
+		BondConstants<Pack> to;
+		Pack*               field = reinterpret_cast<Pack*>(&to);
+		const double*       same  = reinterpret_cast<const double*>(pass.alike);
+		for (int k = 0; k < bondConstantCount; ++k)
+			field[k] = pass.constants ? Pack::load(pass.constants[index].field[k] + at) : Pack(same[k]);
+		return to;
+	}
+
+	struct Pair {
+		Vec3<Pack> separation, velocity, spin1, spin2;
+	};
+	static Pair gatherPair(const Grain* grains, const BondBlock& block, int at)
+	{
+		Pack a[9], b[9];
+		gather(grains, block.i + at, a);
+		gather(grains, block.j + at, b);
+		return { { a[0] - b[0], a[1] - b[1], a[2] - b[2] }, { a[3] - b[3], a[4] - b[4], a[5] - b[5] }, { a[6], a[7], a[8] }, { b[6], b[7], b[8] } };
+	}
+	static ContactHistory<Pack> historyOf(const BondBlock& block, int at) { return { { P::load(block.n1, at), P::load(block.n2, at) }, Pack::load(block.twist + at) }; }
+
+	// `width` bonds: carried through the step, their forces, and which of them break (bits).
+	static unsigned sweep(const BondPass& pass, int index, int at, BondBlock& before, LaneForces& out)
+	{
+		BondBlock&                  block = pass.blocks[index];
+		const BondConstants<Pack>   c     = constantsOf(pass, index, at);
+		const Pair                  pair  = gatherPair(pass.grains, block, at);
+		const ContactGeometry<Pack> g     = geometryOf(pair.separation, Pack::load(block.rest + at));
+		const ContactHistory<Pack>  old   = historyOf(block, at);
+		const Pack                  dt(pass.dt);
+		ContactHistory<Pack>        h { { turnedALittle(old.pointers.n1, dt * pair.spin1), turnedALittle(old.pointers.n2, dt * pair.spin2) },
+                                         old.twist + twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, dt) };
+		const ContactForces<Pack>   f     = bondForces(c, g, h);
+		const unsigned              broken = bitsOf(bondBreaks(c, bondEnergy(c, g, f, h.twist)));
+		P::store(f.normalForce * g.normal + f.sliding, out.force, at);
+		P::store(f.torque1, out.torque1, at);
+		P::store(f.torque2, out.torque2, at);
+		P::keep(old, before, at);
+		P::keep(h, block, at);
+		return broken << at;
+	}
+
+	[[gnu::flatten]] static void forces(const BondPass& pass)
+	{
+		int trash[lanes];
+		for (int& t : trash)
+			t = pass.trash;
+		for (int index = 0; index < pass.endBlock; ++index) {
+			LaneForces out;
+			BondBlock  before;
+			unsigned   broken = 0;
+			for (int at = 0; at < lanes; at += width)
+				broken |= sweep(pass, index, at, before, out);
+			const BondBlock& block = pass.blocks[index];
+			if (__builtin_expect(broken != 0, 0)) pass.breaks(pass.owner, index, broken, before, out);
+			const int* to1 = pass.addFirst ? block.i : trash;
+			const int* to2 = pass.addSecond ? block.j : trash;
+			for (int at = 0; at < lanes; at += width) {
+				const Vec3<Pack> f = P::load(out.force, at), t1 = P::load(out.torque1, at), t2 = P::load(out.torque2, at);
+				const Pack       onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z }, onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
+				scatterAdd(pass.grains, to1 + at, onFirst);
+				scatterAdd(pass.grains, to2 + at, onSecond);
+			}
+		}
+	}
+
+	[[gnu::flatten]] static void energies(const BondPass& pass, StoredEnergy<double>& sums)
+	{
+		StoredEnergy<Pack> total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
+		for (int index = 0; index < pass.endBlock; ++index)
+			for (int at = 0; at < lanes; at += width) {
+				const BondBlock&            block = pass.blocks[index];
+				const BondConstants<Pack>   c     = constantsOf(pass, index, at);
+				const ContactGeometry<Pack> g     = geometryOf(gatherPair(pass.grains, block, at).separation, Pack::load(block.rest + at));
+				const ContactHistory<Pack>  h     = historyOf(block, at);
+				const StoredEnergy<Pack>    e     = bondEnergy(c, g, bondForces(c, g, h), h.twist);
+				alignas(64) double          counts[lanes];
+				for (int lane = 0; lane < width; ++lane)
+					counts[lane] = block.i[at + lane] != pass.trash; // a dead lane's dummies
+				const Pack mine = Pack::load(counts);
+				total = { total.normal + mine * e.normal, total.sliding + mine * e.sliding, total.rolling + mine * e.rolling, total.twisting + mine * e.twisting };
+			}
+		sums = { P::sumOf(total.normal), P::sumOf(total.sliding), P::sumOf(total.rolling), P::sumOf(total.twisting) };
+	}
+
+	// An instruction set's passes with those over bonds.
+	static InstructionSet addTo(InstructionSet set)
+	{
+		set.bondForces   = &forces;
+		set.bondEnergies = &energies;
+		return set;
+	}
+};
+
+} // namespace contact_law

@@ -1,0 +1,106 @@
+// Sintered bonds of a domain: where they come from, their forces, and what is left when they break.
+#include "domain.hpp"
+
+namespace contact_law {
+
+namespace {
+	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
+}
+
+BondPass Domain::bondPassFor(int sort)
+{
+	BondList& list = bonds[sort];
+	return { s.grains.data(), list.data(), list.constantsData(), &s.commonBond, list.blockCount(), sort != Second, sort != First, dummy, s.dt, &eventCalls[sort], &Domain::breaksOf };
+}
+
+void Domain::addBondForces()
+{
+	for (int sort = 0; sort < 3; ++sort)
+		if (bonds[sort].blockCount()) s.passes->bondForces(bondPassFor(sort));
+}
+
+void Domain::breaksOf(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces)
+{
+	const EventCall& call = *static_cast<EventCall*>(owner);
+	for (int k = 0; k < lanes; ++k)
+		if (which & (1u << k)) call.domain->breakOf(call.sort, block * lanes + k, before, forces);
+}
+
+// A border bond is computed in both domains, from the same numbers to the same end.
+void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& forces)
+{
+	BondList&                   list = bonds[sort];
+	const int                   k = lane % lanes, i = list.first(lane), j = list.second(lane);
+	Image                       image; // none: bonds are in open space only
+	const BondMotion            motion { motionOf(i, j, image), s.inverseInertia[i], s.inverseInertia[j] };
+	const ContactMotion&        m = motion.contact;
+	const Bond                  bond      = list.get(lane, s.commonBond);
+	const BondConstants<double>& b        = bond.constants;
+	const PairConstants<double> constants = s.constantsOf(i, j);
+	ContactHistory<double>      h         = ContactList::history(old, k);
+
+	// the moment a step ago, as in eventOf()
+	const Vec3<double> then  = m.separation - m.dt * m.velocity;
+	const double       apart = std::sqrt(dot(then, then));
+	ContactBefore      before;
+	before.touching = true;
+	before.overlap  = bond.rest - apart;
+	before.sliding  = sliding::displacement(h.pointers, b.radius1, b.radius2, (1 / apart) * then);
+	before.rolling  = rolling::displacement(h.pointers, b.reducedRadius);
+	before.twist    = h.twist;
+	h.pointers      = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
+
+	const BondStepResult     result = bondStepWith[s.mechanisms](b, constants, motion, before, bond.rest, h);
+	const ContactStepResult& r      = result.contact;
+	if (result.bonded) { // by rounding: it doesn't after all, and the forces of the pass stand
+		return;
+	}
+	book(r, m, image, sort);
+	if (sort != Second) ++broken[result.mode];
+	addAlone(sort, i, j, r, image);
+	write({ 0, 0, 0 }, forces.force, k);
+	write({ 0, 0, 0 }, forces.torque1, k);
+	write({ 0, 0, 0 }, forces.torque2, k);
+	list.kill(lane);
+	if (r.touching) {
+		contacts[sort].append({ i, j, h, constants, r.now.drag, r.geometry.overlap });
+		return;
+	}
+	const int pair = pairIndex(sort, i, j);
+	if (pair < 0) return;
+	touching[sort][pair] = 0;
+	near[sort].push_back(pair);
+}
+
+void Domain::placeBonds()
+{
+	for (int sort = 0; sort < 3; ++sort)
+		for (int index = 0; index < int(far[sort].size()); ++index) {
+			const Pair         p          = far[sort][index];
+			Image              image;
+			const Vec3<double> separation = motionOf(p.i, p.j, image).separation;
+			const double       reach      = s.grainRadius[p.i] + s.grainRadius[p.j];
+			if (dot(separation, separation) >= reach * reach) continue;
+			Bond bond { p.i, p.j, {}, 0, s.bondOf(p.i, p.j) };
+			bond.rest = newBond(separation, bond.history);
+			bonds[sort].append(bond);
+			touching[sort][index] = 1;
+		}
+}
+
+void Domain::place(const Bond& b)
+{
+	if (owns(b.i) || owns(b.j)) bonds[owns(b.i) && owns(b.j) ? Both : owns(b.i) ? First : Second].append(b);
+}
+
+void Domain::addBondEnergies(StoredEnergy<double>& total)
+{
+	for (int sort = Both; sort <= First; ++sort) {
+		if (!bonds[sort].blockCount()) continue;
+		StoredEnergy<double> part { 0, 0, 0, 0 };
+		s.passes->bondEnergies(bondPassFor(sort), part);
+		total += part;
+	}
+}
+
+} // namespace contact_law

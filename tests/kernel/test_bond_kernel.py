@@ -1,0 +1,113 @@
+"""The kernel's sintered bonds against Sirono & Ueno (2017), numerical quadrature and finite differences."""
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+RADIUS = 1e-7
+
+
+def unit(v):
+    return np.asarray(v) / np.linalg.norm(v)
+
+
+@pytest.mark.parametrize("beta,shrunk", [(0.2, 0.9996), (0.3, 0.9977), (0.4, 0.9924), (0.5, 0.9806), (0.6, 0.9575), (0.7, 0.9158)])
+def test_neck_geometry_and_shrunk_radius(kernel, beta, shrunk):
+    """S17 eqs 1, 2; the neck's volume by quadrature of the fillet less the spheres; 0.91 of the radius at 0.7 is in S17's Fig. 4."""
+    neck = kernel.neck(beta)
+    x = beta**2 / (2 * (1 - beta))
+    half = x / (1 + x)
+    assert neck.fillet == pytest.approx(x, rel=1e-14) and neck.length == pytest.approx(2 * half, rel=1e-14)
+    fillet = quad(lambda z: np.pi * (beta + x - np.sqrt(x * x - z * z)) ** 2, -half, half, epsabs=1e-14)[0]
+    spheres = 2 * quad(lambda z: np.pi * (1 - (1 - z) ** 2), 0, half, epsabs=1e-14)[0]
+    assert neck.volume == pytest.approx((fillet - spheres) / (4 / 3 * np.pi), rel=1e-9)
+    assert neck.shrunk_radius == pytest.approx(shrunk, abs=6e-5)
+    assert neck.shrunk_radius**3 + 2 * neck.volume == pytest.approx(1, rel=1e-14)
+
+
+def test_no_neck_leaves_the_grain(kernel):
+    assert kernel.neck(0.0).shrunk_radius == 1
+
+
+def test_stiffnesses_and_breaking_energy_of_ice(kernel):
+    """S17 eqs 3-6 for ice of 0.1 um (E = 7 GPa, G = 2.8 GPa, gamma = 0.1 J/m^2) at beta = 0.5, worked out by hand."""
+    b = kernel.bond_constants(0.5)
+    a, d = 5e-8, 4e-8  # x = R/4, d = 2 R x/(R + x) = 0.4 R
+    assert b.neckRadius == pytest.approx(a) and b.neckLength == pytest.approx(d)
+    assert b.normalStiffness == pytest.approx(np.pi * a**2 * 7e9 / d)
+    assert b.slidingStiffness == pytest.approx(np.pi * a**2 * 2.8e9 / d)
+    assert b.rollingStiffness * b.reducedRadius**2 == pytest.approx(np.pi * a**4 * 7e9 / (4 * d))
+    assert b.twistingStiffness == pytest.approx(np.pi * a**4 * 2.8e9 / (2 * d))
+    assert b.breakingEnergy == pytest.approx(np.pi * a**2 * 0.1)
+
+
+def test_unlike_grains_are_symmetric_and_between_the_like_ones(kernel):
+    one = kernel.bond_constants(0.4, kernel.ice, 1e-7, kernel.silicate, 3e-7)
+    other = kernel.bond_constants(0.4, kernel.silicate, 3e-7, kernel.ice, 1e-7)
+    assert np.allclose(one.array[2:], other.array[2:], rtol=1e-14) and one.radius1 == other.radius2
+    ice, silicate = (kernel.bond_constants(0.4, m, 1.5e-7, m, 1.5e-7) for m in (kernel.ice, kernel.silicate))
+    assert ice.normalStiffness < one.normalStiffness < silicate.normalStiffness
+    assert one.neckRadius == pytest.approx(ice.neckRadius)  # R_g = 2 r1 r2/(r1 + r2)
+
+
+def states(seed, count):
+    random = np.random.default_rng(seed)
+    for _ in range(count):
+        axis = unit(random.normal(size=3))
+        n1, n2 = unit(-axis + 0.02 * random.normal(size=3)), unit(axis + 0.02 * random.normal(size=3))
+        yield axis, n1, n2, 0.02 * random.normal(), 1e-9 * random.normal()
+
+
+@pytest.mark.parametrize("radius2", [1e-7, 2.5e-7])
+def test_force_is_minus_the_gradient_of_the_energy_and_angular_momentum_is_conserved(kernel, radius2):
+    b = kernel.bond_constants(0.4, kernel.ice, RADIUS, kernel.ice, radius2)
+    rest = RADIUS + radius2 - 1e-9
+    for axis, n1, n2, twist, stretch in states(1, 20):
+        x = (rest + stretch) * axis
+        at = kernel.bond(b, rest, x, n1, n2, twist)
+
+        def energy(move=np.zeros(3), turn1=np.zeros(3), turn2=np.zeros(3)):
+            grown = twist + np.dot(turn1 - turn2, unit(x + move))
+            return kernel.bond(b, rest, x + move, kernel.turn(n1, turn1), kernel.turn(n2, turn2), grown).energies.sum()
+
+        force, torque = b.normalStiffness * 1e-9, b.slidingStiffness * RADIUS * 1e-9
+        for i in range(3):
+            e = np.eye(3)[i]
+            h, angle = 1e-13, 1e-6
+            assert -(energy(move=h * e) - energy(move=-h * e)) / (2 * h) == pytest.approx(at.force[i], abs=1e-6 * force)
+            assert -(energy(turn1=angle * e) - energy(turn1=-angle * e)) / (2 * angle) == pytest.approx(at.torque1[i], abs=1e-5 * torque)
+            assert -(energy(turn2=angle * e) - energy(turn2=-angle * e)) / (2 * angle) == pytest.approx(at.torque2[i], abs=1e-5 * torque)
+        rounding = 2.2e-16 * (b.slidingStiffness * np.dot(x, x) + np.linalg.norm(at.force) * np.linalg.norm(x))
+        assert np.linalg.norm(at.torque1 + at.torque2 + np.cross(x, at.force)) < 8 * rounding
+
+
+def modes(kernel, b, rest, size):
+    """A bond with one displacement of `size` times the critical one, for each mode: (separation, n1, n2, twist)."""
+    stretch, slide, roll, twist = (size * np.sqrt(2 * b.breakingEnergy / k)
+                                   for k in (b.normalStiffness, b.slidingStiffness, b.rollingStiffness, b.twistingStiffness))
+    x, y, z = np.eye(3)
+    slide_angle, roll_angle = np.arcsin(slide / (b.radius1 + b.radius2)), np.arcsin(roll / (2 * b.reducedRadius))
+    turned = lambda v, angle: kernel.turn(v, angle * z)
+    return {
+        "stretch": ((rest + stretch) * x, -x, x, 0.0), "press": ((rest - stretch) * x, -x, x, 0.0),
+        "slide": (rest * x, turned(-x, slide_angle), turned(x, slide_angle), 0.0),
+        "roll": (rest * x, turned(-x, roll_angle), turned(x, -roll_angle), 0.0),
+        "twist": (rest * x, -x, x, twist)}
+
+
+@pytest.mark.parametrize("mode", ["stretch", "press", "slide", "roll", "twist"])
+def test_each_mode_breaks_at_the_energy_of_the_surfaces(kernel, mode):
+    b = kernel.bond_constants(0.4)
+    rest = 1.99e-7
+    below, above = (kernel.bond(b, rest, *modes(kernel, b, rest, size)[mode]) for size in (1 - 1e-6, 1 + 1e-6))
+    assert not below.breaks and above.breaks
+    assert above.energies.sum() == pytest.approx(np.pi * (0.4 * RADIUS) ** 2 * 0.1, rel=3e-6)
+    assert np.count_nonzero(above.energies > 1e-6 * b.breakingEnergy) == 1
+
+
+def test_all_modes_together_break_it_no_sooner(kernel):
+    """S17: any one mode. Three modes at 0.9 of the energy each hold more than the surfaces cost, and the bond holds."""
+    b = kernel.bond_constants(0.4)
+    rest = 1.99e-7
+    one = {name: modes(kernel, b, rest, np.sqrt(0.9))[name] for name in ("stretch", "roll", "twist")}
+    at = kernel.bond(b, rest, one["stretch"][0], one["roll"][1], one["roll"][2], one["twist"][3])
+    assert at.energies.sum() > 2.6 * b.breakingEnergy and not at.breaks

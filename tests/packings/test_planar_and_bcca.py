@@ -1,0 +1,86 @@
+"""Planar packings, and aggregates by ballistic cluster-cluster aggregation (S17 section 4)."""
+import numpy as np
+import pytest
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from yade_scripts import aggregates, packings
+from yade_scripts.bcca import bcca, extent
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
+
+RADIUS = MATERIALS['ice'].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS['ice'])
+SPACING = 2 * RADIUS - OVERLAP
+
+
+def clusters(packing):
+    pairs = packings.contacts(packing)
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=2 * (packing.grains,))
+    return connected_components(graph, directed=False)[0]
+
+
+@pytest.mark.parametrize('filling, relative_radius, grains', [(0.6, 20, 240), (0.9, 25, 562), (0.3, 10, 30)])
+def test_planar_cpe_is_a_hexagonal_lattice_in_a_circle(filling, relative_radius, grains):
+    packing = packings.cpe(filling, relative_radius * RADIUS, RADIUS, OVERLAP, 3, planar=True)
+    assert packing.grains == grains == round(filling * relative_radius**2) and np.all(packing.position[:, 2] == 0)
+    assert np.linalg.norm(packing.position, axis=1).max() <= relative_radius * RADIUS * (1 + 1e-12)
+    nearest = cKDTree(packing.position).query(packing.position, 2)[0][:, 1]
+    assert nearest.min() == pytest.approx(SPACING, rel=1e-9)
+    pairs = packings.contacts(packing)
+    distance = np.linalg.norm(np.diff(packing.position[pairs], axis=1)[:, 0], axis=1)
+    assert np.allclose(distance, SPACING, rtol=1e-9) and np.bincount(pairs.ravel()).max() <= 6
+
+
+def test_planar_filling_has_the_limit_of_the_lattice():
+    assert packings.maximum_filling(1.0, 0.0, True) == pytest.approx(np.pi / (2 * np.sqrt(3)))
+    with pytest.raises(packings.PackingError, match='filling = 0.95: more than the lattice holds; allowed: at most 0.916'):
+        packings.cpe(0.95, 20 * RADIUS, RADIUS, OVERLAP, 1, planar=True)
+
+
+def test_mean_coordination_of_planar_packings():
+    """Six neighbours times the share of sites that is filled, on average over seeds; 4 standard errors, and the rim (some 4 per cent at R = 60)."""
+    filling = 0.5
+    found = [2 * len(packings.contacts(p)) / p.grains
+             for p in (packings.cpe(filling, 60 * RADIUS, RADIUS, OVERLAP, seed, planar=True) for seed in range(8))]
+    expected = 6 * filling / packings.maximum_filling(RADIUS, OVERLAP, True)
+    assert 0.95 * expected - 4 * np.std(found) / np.sqrt(8) < np.mean(found) < expected
+
+
+@pytest.mark.parametrize('planar', [False, True])
+@pytest.mark.parametrize('grains', [2, 7, 256])
+def test_bcca_is_one_cluster_whose_grains_touch_and_never_overlap_more(planar, grains):
+    packing = bcca(grains, RADIUS, OVERLAP, 5, planar=planar)
+    assert packing.grains == grains and clusters(packing) == 1
+    assert np.allclose(packing.position.mean(axis=0), 0, atol=1e-9 * RADIUS)
+    nearest = cKDTree(packing.position).query(packing.position, 2)[0][:, 1]
+    assert np.allclose(nearest.min(), SPACING, rtol=1e-9) and np.all(nearest < SPACING * (1 + 1e-9))
+    assert len(packings.contacts(packing)) >= grains - 1
+    if planar:
+        assert np.all(packing.position[:, 2] == 0)
+
+
+def test_bcca_is_a_function_of_seed_and_index():
+    one = bcca(64, RADIUS, OVERLAP, 1).position
+    assert np.array_equal(one, bcca(64, RADIUS, OVERLAP, 1).position)
+    assert not np.array_equal(one, bcca(64, RADIUS, OVERLAP, 2).position)
+    assert not np.array_equal(one, bcca(64, RADIUS, OVERLAP, 1, index=1).position)
+
+
+@pytest.mark.parametrize('planar, dimension', [(True, 1.5), (False, 1.9)])
+def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, dimension):
+    """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991). Mean of the logarithm over 12 aggregates at 64 and 1024
+    grains; within 4 standard errors and 0.15 (small clusters)."""
+    size = lambda grains: [np.log(np.sqrt((bcca(grains, 1.0, 0.0, seed, planar=planar).position**2).sum(axis=1).mean()))
+                           for seed in range(12)]
+    small, large = size(64), size(1024)
+    slope = (np.mean(large) - np.mean(small)) / np.log(16)
+    error = np.hypot(np.std(small), np.std(large)) / np.sqrt(12) / np.log(16)
+    assert abs(slope - 1 / dimension) < 4 * error + 0.15 / dimension**2, (1 / slope, error)
+
+
+def test_radius_of_a_bcca_run_holds_both_aggregates():
+    values = dict(packing='bcca', grains=100, seed=4, planar=1)
+    radius = aggregates.bcca_radius(100, OVERLAP / RADIUS, 4, 1)
+    reach = [extent(aggregates.make(values, RADIUS, OVERLAP, index)) / RADIUS for index in (0, 1)]
+    assert max(reach) == pytest.approx(radius, rel=1e-9)
