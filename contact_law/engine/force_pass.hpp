@@ -15,9 +15,23 @@ struct alignas(64) BatchBuffer {
 	double     spin1[3][lanes], spin2[3][lanes];
 	double     normal[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
 	double     drag[lanes], overlap[lanes]; // in scenes with drag
-	double     shift[3][lanes];             // in periodic scenes
 	unsigned   events, slips; // lanes (bits) that need scalar treatment; that slip
 	LaneForces out;
+};
+
+// What a pass knows of the periodic cell: nothing in open space.
+template <class Pack, bool periodic> struct Crossing {
+	explicit Crossing(const ForcePass&) {}
+};
+template <class Pack> struct Crossing<Pack, true> {
+	const Images<Pack> images;
+	alignas(64) double shift[batchSize][3][lanes]; // cells by which the first grain is shifted to be nearest to the second
+	Vec3<Pack>         kicks { Pack(0.), Pack(0.), Pack(0.) }; // sum of shift times force
+
+	explicit Crossing(const ForcePass& pass)
+	        : images(*pass.cell)
+	{
+	}
 };
 
 template <class Pack> struct Passes {
@@ -52,34 +66,32 @@ template <class Pack> struct Passes {
 
 	struct Pair {
 		Vec3<Pack> separation, velocity, spin1, spin2;
-		Vec3<Pack> shift; // in periodic scenes
 	};
-	template <bool periodic> static Pair gatherPair(const ForcePass& pass, const Images<Pack>& images, const ContactBlock& block, int at)
+	static Pair gatherPair(const Grain* grains, const ContactBlock& block, int at)
 	{
 		Pack a[9], b[9];
-		gather(pass.grains, block.i + at, a);
-		gather(pass.grains, block.j + at, b);
-		Pair pair { { a[0] - b[0], a[1] - b[1], a[2] - b[2] }, { a[3] - b[3], a[4] - b[4], a[5] - b[5] }, { a[6], a[7], a[8] }, { b[6], b[7], b[8] }, {} };
-		if constexpr (periodic) {
-			pair.shift      = images.shift(pair.separation);
-			pair.separation = pair.separation + images.distance(pair.shift);
-			pair.velocity   = pair.velocity + images.velocity(pair.shift);
-		}
-		return pair;
+		gather(grains, block.i + at, a);
+		gather(grains, block.j + at, b);
+		return { { a[0] - b[0], a[1] - b[1], a[2] - b[2] }, { a[3] - b[3], a[4] - b[4], a[5] - b[5] }, { a[6], a[7], a[8] }, { b[6], b[7], b[8] } };
+	}
+	// Its nearest images; returns the shift.
+	static Vec3<Pack> toImages(const Images<Pack>& images, Pair& pair)
+	{
+		const Vec3<Pack> shift = images.shift(pair.separation);
+		pair.separation        = pair.separation + images.distance(shift);
+		pair.velocity          = pair.velocity + images.velocity(shift);
+		return shift;
 	}
 
 	// v1 - v2 now, extrapolated from the two steps before (MODEL.md, drag).
-	template <bool periodic> static Vec3<Pack> velocityNow(const ForcePass& pass, const Images<Pack>& images, const ContactBlock& block, const Pair& pair, int at)
+	static Vec3<Pack> velocityNow(const PreviousVelocity* previous, const ContactBlock& block, const Vec3<Pack>& velocity, int at)
 	{
-		const PreviousVelocity* previous = pass.previous;
 		alignas(64) double before[3][lanes];
 		for (int k = at; k < at + width; ++k) {
 			const PreviousVelocity &a = previous[block.i[k]], &b = previous[block.j[k]];
 			before[0][k] = a.x - b.x, before[1][k] = a.y - b.y, before[2][k] = a.z - b.z;
 		}
-		Vec3<Pack> velocityBefore = load(before, at);
-		if constexpr (periodic) velocityBefore = velocityBefore + images.velocityBefore(pair.shift);
-		return pair.velocity + Pack(0.5) * (pair.velocity - velocityBefore);
+		return velocity + Pack(0.5) * (velocity - load(before, at));
 	}
 
 	/* Grains and blocks that later batches need are fetched a few at a time between the blocks of this one: asked for at once they would wait for each
@@ -106,22 +118,23 @@ template <class Pack> struct Passes {
 
 	// First sweep: where `width` contacts stand, their normal forces, and how far they twisted.
 	template <unsigned mechanisms, bool periodic>
-	static void sweepNormal(const ForcePass& pass, const Images<Pack>& images, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, int at)
+	static void sweepNormal(const ForcePass& pass, Crossing<Pack, periodic>& crossing, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, int at)
 	{
-		const Pair                  pair = gatherPair<periodic>(pass, images, pass.blocks[index], at);
+		Pair                        pair = gatherPair(pass.grains, pass.blocks[index], at);
+		if constexpr (periodic) store(toImages(crossing.images, pair), crossing.shift[(index - pass.firstBlock) % batchSize], at);
 		const ContactGeometry<Pack> g    = geometryOf(pair.separation, c.radius1 + c.radius2);
 		const Pack                  inUnits = g.overlap * c.inverseEquilibriumOverlap;
 		const typename Pack::Mask   care    = (inUnits < Pack(-normal::pullOffOverlap)) | (Pack(largestFittedOverlap) < inUnits);
 		ContactForces<Pack>         f;
 		Vec3<Pack>                  velocity {};
-		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow<periodic>(pass, images, pass.blocks[index], pair, at);
+		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, pass.blocks[index], pair.velocity, at);
+		if constexpr (periodic && bool(mechanisms & Drag)) velocity = velocity - Pack(0.5) * crossing.images.velocityBefore(load(crossing.shift[(index - pass.firstBlock) % batchSize], at));
 		normalForces<mechanisms>(c, g, velocity, f);
 		Pack radial = f.normalForce;
 		if constexpr (bool(mechanisms & Drag)) radial = radial + f.drag;
 
 		if constexpr (bool(mechanisms & Twisting))
 			twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, Pack(pass.dt)).store(buffer.twistIncrement + at);
-		if constexpr (periodic) store(pair.shift, buffer.shift, at);
 		store(pair.spin1, buffer.spin1, at);
 		store(pair.spin2, buffer.spin2, at);
 		store(g.normal, buffer.normal, at);
@@ -172,12 +185,13 @@ template <class Pack> struct Passes {
 
 	// Lanes that slip, again: their displacements put back, the forces that follow, and what it took.
 	template <unsigned mechanisms, bool periodic>
-	static void sweepSlips(const ForcePass& pass, const Images<Pack>& images, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, const ContactBlock& before, int at, Slip<Pack>& lost)
+	static void sweepSlips(const ForcePass& pass, const Crossing<Pack, periodic>& crossing, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, const ContactBlock& before, int at, Slip<Pack>& lost)
 	{
 		const unsigned slipping = buffer.slips >> at & allLanes;
 		if (!slipping) return;
 		ContactBlock&               block = pass.blocks[index];
-		const Pair                  pair  = gatherPair<periodic>(pass, images, block, at);
+		Pair                        pair  = gatherPair(pass.grains, block, at);
+		if constexpr (periodic) toImages(crossing.images, pair);
 		const Vec3<Pack>            then  = pair.separation - Pack(pass.dt) * pair.velocity;
 		const Pointers<Pack>        old { load(before.n1, at), load(before.n2, at) };
 		const Vec3<Pack>            none { Pack(0.), Pack(0.), Pack(0.) };
@@ -234,8 +248,7 @@ template <class Pack> struct Passes {
 		const PairConstants<Pack> same = spread(*pass.alike);
 		Pack                      dragWork(0.);
 		Slip<Pack>                lost { Pack(0.), Pack(0.), Pack(0.), {} };
-		const Images<Pack>        images(periodic ? *pass.cell : PeriodicCell {});
-		Vec3<Pack>                crossing { Pack(0.), Pack(0.), Pack(0.) };
+		Crossing<Pack, periodic>  crossing(pass);
 		int                       trash[lanes];
 		for (int& t : trash)
 			t = pass.trash;
@@ -247,7 +260,7 @@ template <class Pack> struct Passes {
 				fetchGrains(pass, first + b + grainsAhead);
 				buffers[b].events = buffers[b].slips = 0;
 				for (int at = 0; at < lanes; at += width)
-					sweepNormal<mechanisms, periodic>(pass, images, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], at);
+					sweepNormal<mechanisms, periodic>(pass, crossing, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], at);
 			}
 			for (int b = 0; b < count; ++b) {
 				fetchBlock<alike>(pass, first + b + blocksAhead);
@@ -257,7 +270,7 @@ template <class Pack> struct Passes {
 					sweepTangential<mechanisms>(pass, c(at), first + b, buffers[b], before, at, dragWork);
 				if (__builtin_expect(buffers[b].slips != 0, 0))
 					for (int at = 0; at < lanes; at += width)
-						sweepSlips<mechanisms, periodic>(pass, images, c(at), first + b, buffers[b], before, at, lost);
+						sweepSlips<mechanisms, periodic>(pass, crossing, c(at), first + b, buffers[b], before, at, lost);
 				if (__builtin_expect(buffers[b].events != 0, 0)) pass.events(pass.owner, first + b, buffers[b].events, before, buffers[b].out);
 			}
 			for (int b = 0; b < count; ++b) {
@@ -265,7 +278,7 @@ template <class Pack> struct Passes {
 				const int* to2 = pass.addSecond ? blocks[b].j : trash;
 				for (int at = 0; at < lanes; at += width) {
 					const Vec3<Pack> f = load(buffers[b].out.force, at), t1 = load(buffers[b].out.torque1, at), t2 = load(buffers[b].out.torque2, at);
-					if constexpr (periodic) crossing = crossing + Images<Pack>::times(load(buffers[b].shift, at), f);
+					if constexpr (periodic) crossing.kicks = crossing.kicks + Images<Pack>::times(load(crossing.shift[b], at), f);
 					const Pack       onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z }, onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
 					scatterAdd(pass.grains, to1 + at, onFirst);
 					scatterAdd(pass.grains, to2 + at, onSecond);
@@ -277,7 +290,7 @@ template <class Pack> struct Passes {
 		pass.dissipated->rolling += sumOf(lost.rolling);
 		pass.dissipated->twisting += sumOf(lost.twisting);
 		pass.dissipated->drag += sumOf(dragWork);
-		if constexpr (periodic) *pass.crossing = *pass.crossing + Vec3<double> { sumOf(crossing.x), sumOf(crossing.y), sumOf(crossing.z) };
+		if constexpr (periodic) *pass.crossing = *pass.crossing + Vec3<double> { sumOf(crossing.kicks.x), sumOf(crossing.kicks.y), sumOf(crossing.kicks.z) };
 	}
 
 	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void energies(const ForcePass& pass, StoredEnergy<double>& sums)
@@ -289,7 +302,9 @@ template <class Pack> struct Passes {
 			ContactBlock& block = pass.blocks[b];
 			for (int at = 0; at < lanes; at += width) {
 				const PairConstants<Pack>   c = constants(pass, same, b, at, std::bool_constant<alike>());
-				const ContactGeometry<Pack> g = geometryOf(gatherPair<true>(pass, images, block, at).separation, c.radius1 + c.radius2);
+				Pair                        pair = gatherPair(pass.grains, block, at);
+				toImages(images, pair);
+				const ContactGeometry<Pack> g = geometryOf(pair.separation, c.radius1 + c.radius2);
 				const ContactHistory<Pack>  h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 				const StoredEnergy<Pack>    e = storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
 				alignas(64) double          counts[lanes];

@@ -69,7 +69,7 @@ std::vector<double> Dynamics::remember() const
 	to.insert(to.end(), original.begin(), original.end());
 	to.insert(to.end(), { double(domains.size()), travelSinceFar, travelSinceNear, double(contactUpdates), double(farRebuilds), double(nearRebuilds) });
 	to.push_back(cell().on);
-	for (const Vec3<double>& v : { cell().size, cell().rate, cell().rateBefore, mostCells, setting.convective })
+	for (const Vec3<double>& v : { cell().size, cell().inverse, cell().rate, cell().rateBefore, mostCells, setting.convective })
 		contact_law::remember(to, v);
 	for (int k = 0; k < count; ++k) {
 		const double* numbers = &setting.grains[k].x;
@@ -130,7 +130,7 @@ void Dynamics::recall(const std::vector<double>& memory)
 	Vec3<double> most;
 	cell.on = from.next();
 	if (cell.on != options.cell.on) throw std::invalid_argument("O.periodic is another than in the checkpoint");
-	for (Vec3<double>* v : { &cell.size, &cell.rate, &cell.rateBefore, &most, &setting.convective })
+	for (Vec3<double>* v : { &cell.size, &cell.inverse, &cell.rate, &cell.rateBefore, &most, &setting.convective })
 		*v = from.vector();
 	for (int k = 0; k < count; ++k) {
 		double* numbers = &setting.grains[k].x;

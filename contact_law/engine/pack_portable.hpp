@@ -32,7 +32,7 @@ inline unsigned bitsOf(PackMask m) { return m.is; }
 inline bool     anyOf(PackMask m) { return m.is; }
 inline Pack     choose(PackMask m, Pack yes, Pack no) { return m.is ? yes : no; }
 inline Pack     absolute(Pack a) { return std::fabs(a.v); }
-inline Pack     nearest(Pack a) { return std::nearbyint(a.v); }
+inline Pack     nearest(Pack a) { return contact_law::nearest(a.v); }
 inline Pack     root(Pack x) { return std::sqrt(x.v); }
 inline Pack     inverseRoot(Pack x) { return 1 / std::sqrt(x.v); }
 

@@ -1,19 +1,29 @@
 // A rectangular periodic cell along the axes, of changing size: nearest images, and what its moving boundaries do to the grains' energy.
 #pragma once
+#include "../kernel/number.hpp"
 #include "../kernel/vector3.hpp"
-#include <cmath>
 
 namespace contact_law {
 
 // Grains keep the positions that their motion gives them, in whatever copy of the cell; no contact remembers a shift.
 struct PeriodicCell {
 	bool         on = false;
-	Vec3<double> size { 0, 0, 0 };                         // now [m]
+	Vec3<double> size { 0, 0, 0 }, inverse { 0, 0, 0 };    // now [m], [1/m]; zero in open space, where nothing is shifted
 	Vec3<double> rate { 0, 0, 0 }, rateBefore { 0, 0, 0 }; // d(size)/dt through the last step, and through the one before it [m/s]
 
+	static PeriodicCell box(const Vec3<double>& size, const Vec3<double>& rate) // that has gone at this rate before too
+	{
+		PeriodicCell cell;
+		cell.on = true;
+		cell.advance(size, rate);
+		cell.advance(size, rate);
+		return cell;
+	}
 	void advance(const Vec3<double>& newSize, const Vec3<double>& newRate)
 	{
+		if (!on) return;
 		size       = newSize;
+		inverse    = { 1 / size.x, 1 / size.y, 1 / size.z };
 		rateBefore = rate;
 		rate       = newRate;
 	}
@@ -26,7 +36,7 @@ template <class T> struct Images {
 	Vec3<T> size, inverse, rate, rateBefore;
 	explicit Images(const PeriodicCell& c)
 	        : size(spread(c.size))
-	        , inverse(c.on ? Vec3<T> { T(1 / c.size.x), T(1 / c.size.y), T(1 / c.size.z) } : spread({ 0, 0, 0 }))
+	        , inverse(spread(c.inverse))
 	        , rate(spread(c.rate))
 	        , rateBefore(spread(c.rateBefore))
 	{

@@ -54,7 +54,7 @@ PeriodicCell SceneCell::start(Scene& scene, bool inStep, bool stepBehind, Real d
 	size = diagonal(inStep ? cell.prevHSize : cell.hSize);
 	for (const Real length : { size.x, size.y, size.z })
 		if (!(length > 0)) refuseInEngine("O.cell.hSize is " + text(size) + " m, allowed: above 0");
-	return { true, size, rate, rate };
+	return PeriodicCell::box(size, rate);
 }
 
 void SceneCell::require(const Scene& scene, const Dynamics& dynamics) const
@@ -75,7 +75,7 @@ std::string SceneCell::tooSmall(const PeriodicCell& cell, const Dynamics& dynami
 std::string SceneCell::wrong(const Scene& scene, const Dynamics& dynamics, int steps) const
 {
 	if (!scene.isPeriodic) return "";
-	const PeriodicCell cell { true, now(scene), {}, {} };
+	const PeriodicCell cell = PeriodicCell::box(now(scene), {});
 	const Vec3d        change = cell.size - size;
 	const Real  most   = 0.5 * dynamics.smallestRadius() * steps;
 	for (const Real way : { change.x, change.y, change.z })
