@@ -160,3 +160,27 @@ try: functor({neck}).pairConstants(ice(), 1e-7, ice(), 1e-7)
 except ValueError as error: result["message"] = str(error)
 """)
     assert "neck = " in found["message"] and "allowed: 0 (no bonds), or up to 0.7" in found["message"]
+
+
+def test_bonds_across_the_boundary_of_a_periodic_cell(yade):
+    """Functors: a row of three bonded grains that closes on itself through the boundary of a resting cell, vibrates and breaks. Root mean square of the
+    ledger's closure over eight rows; second order gives 16."""
+    found = yade(PAIR + """
+def row(step, seed):
+    new_scene(step * constants(ice(), 1e-7)["timeUnit"], neck=0.3)
+    O.periodic = True
+    O.cell.setBox(3 * 1.99e-7, 8e-7, 8e-7)
+    random = np.random.default_rng(seed)
+    for k in range(3): grain((1.99e-7 * (k + 0.5), 4e-7, 4e-7), 1e-7, ice(), 15 * random.normal(size=3), 1e8 * random.normal(size=3))
+    O.run(1, True)
+    bonds, first, kinetic, worst = O.interactions.countReal(), total_energy(), energies()["kinetic"], 0
+    for _ in range(int(20 / step)):
+        O.step()
+        worst = max(worst, abs(total_energy() - first) / kinetic)
+    return bonds, sum(broken()), worst
+for step in (0.08, 0.02): result[step] = [row(step, seed) for seed in range(8)]
+""")
+    coarse, fine = (np.sqrt(np.mean([worst**2 for _, _, worst in rows])) for rows in found.values())
+    assert all(bonds == 3 for rows in found.values() for bonds, _, _ in rows)
+    assert sum(broke for _, broke, _ in found["0.02"]) > 8
+    assert coarse < 2e-2 and coarse / fine > 9, (coarse, fine)
