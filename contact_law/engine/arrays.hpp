@@ -34,6 +34,11 @@ struct alignas(64) Grain {
 	double fx, fy, fz, tx, ty, tz; // force [N] and torque [N m] on the grain now
 };
 
+inline Vec3<double> positionOf(const Grain& g) { return { g.x, g.y, g.z }; }
+inline Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
+inline Vec3<double> spinOf(const Grain& g) { return { g.wx, g.wy, g.wz }; }
+inline Vec3<double> separationOf(const Grain& a, const Grain& b) { return positionOf(a) - positionOf(b); } // of the grains themselves, not their images
+
 constexpr int lanes = 8; // contacts in a block
 
 // Blocks handled together, so that what stands between gathering, computing and scattering stays in the first-level cache.

@@ -19,16 +19,6 @@ template <class Pack> struct BondPasses {
 		return to;
 	}
 
-	struct Pair {
-		Vec3<Pack> separation, velocity, spin1, spin2;
-	};
-	static Pair gatherPair(const Grain* grains, const BondBlock& block, int at)
-	{
-		Pack a[9], b[9];
-		gather(grains, block.i + at, a);
-		gather(grains, block.j + at, b);
-		return { { a[0] - b[0], a[1] - b[1], a[2] - b[2] }, { a[3] - b[3], a[4] - b[4], a[5] - b[5] }, { a[6], a[7], a[8] }, { b[6], b[7], b[8] } };
-	}
 	static ContactHistory<Pack> historyOf(const BondBlock& block, int at) { return { { P::load(block.n1, at), P::load(block.n2, at) }, Pack::load(block.twist + at) }; }
 
 	// `width` bonds: carried through the step, their forces, and which of them break (bits).
@@ -36,7 +26,7 @@ template <class Pack> struct BondPasses {
 	{
 		BondBlock&                  block = pass.blocks[index];
 		const BondConstants<Pack>   c     = constantsOf(pass, index, at);
-		const Pair                  pair  = gatherPair(pass.grains, block, at);
+		const auto                  pair  = P::gatherPair(pass.grains, block, at);
 		const ContactGeometry<Pack> g     = geometryOf(pair.separation, Pack::load(block.rest + at));
 		const ContactHistory<Pack>  old   = historyOf(block, at);
 		const Pack                  dt(pass.dt);
@@ -83,7 +73,7 @@ template <class Pack> struct BondPasses {
 			for (int at = 0; at < lanes; at += width) {
 				const BondBlock&            block = pass.blocks[index];
 				const BondConstants<Pack>   c     = constantsOf(pass, index, at);
-				const ContactGeometry<Pack> g     = geometryOf(gatherPair(pass.grains, block, at).separation, Pack::load(block.rest + at));
+				const ContactGeometry<Pack> g     = geometryOf(P::gatherPair(pass.grains, block, at).separation, Pack::load(block.rest + at));
 				const ContactHistory<Pack>  h     = historyOf(block, at);
 				const StoredEnergy<Pack>    e     = bondEnergy(c, g, bondForces(c, g, h), h.twist);
 				alignas(64) double          counts[lanes];

@@ -4,9 +4,6 @@
 namespace contact_law {
 
 namespace {
-	Vec3<double> positionOf(const Grain& g) { return { g.x, g.y, g.z }; }
-	Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
-	Vec3<double> spinOf(const Grain& g) { return { g.wx, g.wy, g.wz }; }
 
 	void add(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
 	{

@@ -4,8 +4,6 @@
 namespace contact_law {
 
 namespace {
-	Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
-	Vec3<double> separationOf(const Grain& a, const Grain& b) { return { a.x - b.x, a.y - b.y, a.z - b.z }; } // of the grains themselves, not their images
 
 	ContactHistory<double> swapped(const ContactHistory<double>& h) { return { { h.pointers.n2, h.pointers.n1 }, h.twist }; } // spin and normal both change sign
 }

@@ -67,7 +67,7 @@ template <class Pack> struct Passes {
 	struct Pair {
 		Vec3<Pack> separation, velocity, spin1, spin2;
 	};
-	static Pair gatherPair(const Grain* grains, const ContactBlock& block, int at)
+	template <class Block> static Pair gatherPair(const Grain* grains, const Block& block, int at)
 	{
 		Pack a[9], b[9];
 		gather(grains, block.i + at, a);

@@ -3,11 +3,6 @@
 
 namespace contact_law {
 
-namespace {
-	Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
-	Vec3<double> separationOf(const Grain& a, const Grain& b) { return { a.x - b.x, a.y - b.y, a.z - b.z }; }
-}
-
 // In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
 double Dynamics::fastestAllowed() const
 {
