@@ -86,7 +86,7 @@ def test_constants_for_estimates_are_the_plugins(yade):
 from yade_scripts import scene
 from yade_scripts.materials import MATERIALS
 for name, drag in parameters["cases"]:
-    result[name + str(drag)] = dict(scene.pair_constants({"viscoelasticTime": drag, "material": name}, MATERIALS[name]))
+    result[name + str(drag)] = dict(scene.pair_constants({"viscoelasticTime": drag, "material": name, "neck": 0}, MATERIALS[name]))
 """, {'cases': cases})
     for name, drag in cases:
         ours = study_cost.pair_constants(MATERIALS[name], drag)
