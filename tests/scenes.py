@@ -100,3 +100,13 @@ def fused_engine(**options):
 
 def positions():
     return np.array([b.state.pos for b in O.bodies])
+
+
+def record(n):
+    """Positions (n, bodies, 3) and energies after each of n steps."""
+    tracks, sums = [], []
+    for _ in range(n):
+        O.step()
+        tracks.append(positions())
+        sums.append(energies())
+    return np.array(tracks), sums

@@ -26,13 +26,6 @@ def test_engine_and_functors_agree_step_by_step(yade, kind):
     """27 bonded grains break up: bonds of every mode, births, slips. Rounding grows as trajectories part."""
     found = yade(SCENE + """
 kind = parameters["kind"]
-def record(n):
-    tracks, sums = [], []
-    for _ in range(n):
-        O.step()
-        tracks.append(positions())
-        sums.append(energies())
-    return np.array(tracks), sums
 start(kind)
 functors, functor_energies = record(301)
 result["functors"] = broken(law())

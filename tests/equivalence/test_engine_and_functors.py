@@ -18,13 +18,6 @@ def test_engine_and_functors_agree_step_by_step(yade, kind):
     """27 grains fly together: births, slips, breaks. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
     found = yade(SCENE + """
 kind = parameters["kind"]
-def record(n):
-    tracks, sums = [], []
-    for _ in range(n):
-        O.step()
-        tracks.append(positions())
-        sums.append(energies())
-    return np.array(tracks), sums
 start(kind)
 functors, functor_energies = record(401)
 start(kind)
