@@ -39,16 +39,8 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 	const PairConstants<double> constants = s.constantsOf(i, j);
 	ContactHistory<double>      h         = ContactList::history(old, k);
 
-	// the moment a step ago, as in eventOf()
-	const Vec3<double> then  = m.separation - m.dt * m.velocity;
-	const double       apart = std::sqrt(dot(then, then));
-	ContactBefore      before;
-	before.touching = true;
-	before.overlap  = bond.rest - apart;
-	before.sliding  = sliding::displacement(h.pointers, b.radius1, b.radius2, (1 / apart) * then);
-	before.rolling  = rolling::displacement(h.pointers, b.reducedRadius);
-	before.twist    = h.twist;
-	h.pointers      = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
+	const ContactBefore before = aStepAgo(b, bond.rest, m, h);
+	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 
 	const BondStepResult     result = bondStepWith[s.mechanisms](b, constants, motion, before, bond.rest, h);
 	const ContactStepResult& r      = result.contact;

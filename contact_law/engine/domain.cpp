@@ -151,15 +151,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	const PairConstants<double> constants = s.constantsOf(i, j);
 	ContactHistory<double> h    = ContactList::history(old, k);
 
-	// the moment a step ago, from where it was: positions moved by velocity * dt, and the pointers had not turned yet
-	const Vec3<double>  then = m.separation - m.dt * m.velocity;
-	const double        apart = std::sqrt(dot(then, then));
-	ContactBefore       before;
-	before.touching = true;
-	before.overlap  = constants.radius1 + constants.radius2 - apart;
-	before.sliding  = sliding::displacement(h.pointers, constants.radius1, constants.radius2, (1 / apart) * then);
-	before.rolling  = rolling::displacement(h.pointers, constants.reducedRadius);
-	before.twist    = h.twist;
+	ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, m, h);
 	if (s.hasDrag()) {
 		const PreviousVelocity &a = s.previous[i], &b = s.previous[j];
 		before.velocity = Vec3<double> { a.x - b.x, a.y - b.y, a.z - b.z } + image.velocityBefore;

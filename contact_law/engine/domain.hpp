@@ -50,6 +50,21 @@ struct StepSums { // since the start, and (eventWork) of the latest step's event
 	double       meanField = 0; // taken out of the kinetic energy by changes of the cell's velocity gradient and by the convective acceleration [J]
 };
 
+/* The moment a step ago of a pair whose springs rest at a distance `rest`, from where it was: positions moved by velocity * dt, and the pointers of `h`
+ * had not turned yet. Constants: of a contact or of a bond. */
+template <class Constants> ContactBefore aStepAgo(const Constants& c, double rest, const ContactMotion& m, const ContactHistory<double>& h)
+{
+	const Vec3<double> then  = m.separation - m.dt * m.velocity;
+	const double       apart = std::sqrt(dot(then, then));
+	ContactBefore      before;
+	before.touching = true;
+	before.overlap  = rest - apart;
+	before.sliding  = sliding::displacement(h.pointers, c.radius1, c.radius2, (1 / apart) * then);
+	before.rolling  = rolling::displacement(h.pointers, c.reducedRadius);
+	before.twist    = h.twist;
+	return before;
+}
+
 class Domain {
 public:
 	Domain(Setting& setting, int begin, int end, int dummy);
