@@ -2,6 +2,8 @@
 #pragma once
 #include "../kernel/contact_step.hpp"
 #include "periodic_cell.hpp"
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -100,6 +102,35 @@ struct ForcePass {
 	void (*batchDone)(void* owner, int batch);
 };
 
+// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(). Lanes beyond the third: room for a register.
+struct alignas(64) VelocityRange {
+	double least[lanes], most[lanes];
+
+	VelocityRange() { clear(); }
+	void clear()
+	{
+		for (int k = 0; k < lanes; ++k)
+			least[k] = 1e300, most[k] = -1e300;
+	}
+	void join(const VelocityRange& other)
+	{
+		for (int k = 0; k < 3; ++k)
+			least[k] = std::min(least[k], other.least[k]), most[k] = std::max(most[k], other.most[k]);
+	}
+	double diagonal() const
+	{
+		const Vec3<double> d { most[0] - least[0], most[1] - least[1], most[2] - least[2] };
+		return std::sqrt(dot(d, d));
+	}
+	double fastestComponent() const
+	{
+		double fastest = 0;
+		for (int k = 0; k < 3; ++k)
+			fastest = std::max({ fastest, -least[k], most[k] });
+		return fastest;
+	}
+};
+
 struct BondPass; // bond_list.hpp
 
 // One instruction set's compiled passes, by mechanisms (contact.hpp), whether all pairs are alike, and (forces) whether the scene is periodic.
@@ -108,7 +139,7 @@ struct InstructionSet {
 	void (*forces[16][2][2])(const ForcePass&);
 	void (*energies[16][2])(const ForcePass&, StoredEnergy<double>&);
 	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
-	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared);
+	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
 	void (*bondForces)(const BondPass&);
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
 };

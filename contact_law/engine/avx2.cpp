@@ -42,9 +42,9 @@ namespace avx2 {
 		}
 	}
 
-	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared)
+	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 	{
-		integrateOneByOne<Pack>(begin, end, inverseMass, inverseInertia, dt, fastestSquared);
+		integrateOneByOne<Pack>(begin, end, inverseMass, inverseInertia, dt, range);
 	}
 }
 }

@@ -49,11 +49,11 @@ namespace avx512 {
 		}
 	}
 
-	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared)
+	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 	{
 		const __m512i toVelocity = _mm512_set_epi64(6, 5, 4, 3, 2, 0, 0, 0); // line 2 is wz, -, f, t; velocities and wx, wy stand at 3 .. 7 of line 1
 		const __m512d step       = _mm512_set1_pd(dt);
-		__m512d       fastest    = _mm512_set1_pd(fastestSquared);
+		__m512d       least = _mm512_load_pd(range.least), most = _mm512_load_pd(range.most);
 		for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {
 			const __m512d second = _mm512_load_pd(&g->wz);
 			const __m512d m = _mm512_set1_pd(*inverseMass * dt), i = _mm512_set1_pd(*inverseInertia * dt);
@@ -65,9 +65,11 @@ namespace avx512 {
 			// wz += tz dt/I, and forces to zero
 			const __m512d wz = _mm512_fmadd_pd(_mm512_permutexvar_pd(_mm512_set1_epi64(7), second), i, second);
 			_mm512_store_pd(&g->wz, _mm512_maskz_mov_pd(0x01, wz));
-			fastest = _mm512_max_pd(fastest, _mm512_mul_pd(moved, moved));
+			least = _mm512_min_pd(least, moved);
+			most  = _mm512_max_pd(most, moved);
 		}
-		fastestSquared = _mm512_reduce_max_pd(fastest);
+		_mm512_store_pd(range.least, least);
+		_mm512_store_pd(range.most, most);
 	}
 }
 }

@@ -63,7 +63,7 @@ void Domain::addFirstForces()
 
 void Domain::addOtherForces(bool behind)
 {
-	if (behind) fastestSquared = 0, moved = begin;
+	if (behind) velocities.clear(), moved = begin;
 	addForces(Both, 0, sortedBlocks, behind);
 	if (cell.on) sums.boundary.complete(cell, s.dt);
 	constraints.withhold(s.grains.data(), s.dt, end);
@@ -80,7 +80,7 @@ void Domain::moveBehind(void* owner, int batch)
 
 void Domain::integrate()
 {
-	fastestSquared = 0, moved = begin;
+	velocities.clear(), moved = begin;
 	integrateUpTo(end);
 }
 
@@ -90,7 +90,7 @@ void Domain::integrateUpTo(int grain)
 		for (int g = moved; g < grain; ++g)
 			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
 	if (s.convects()) convect(moved, grain);
-	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved, s.dt, fastestSquared);
+	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved, s.dt, velocities);
 	if (!s.orientation.empty()) turnOrientations(s.grains.data() + moved, s.grains.data() + grain, s.orientation.data() + moved, s.dt);
 	moved = grain;
 }
@@ -210,7 +210,7 @@ void Domain::birth(int sort, int index)
 	contacts[sort].append(c);
 }
 
-void Domain::findPairs(const Grid& grid)
+void Domain::findPairs(const Grid& grid, double nearGap)
 {
 	const Grain* grains = s.grains.data();
 	for (auto& list : far)
@@ -244,7 +244,7 @@ void Domain::findPairs(const Grid& grid)
 			if (pair >= 0) touching[sort][pair] = 1;
 		}
 	}
-	findNearPairs();
+	findNearPairs(nearGap);
 }
 
 void Domain::sortContacts()
@@ -271,12 +271,12 @@ void Domain::findCompleted()
 	}
 }
 
-void Domain::findNearPairs()
+void Domain::findNearPairs(double nearGap)
 {
 	for (int sort = 0; sort < 3; ++sort) {
 		near[sort].clear();
 		for (int index = 0; index < int(far[sort].size()); ++index)
-			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, s.nearGap)) near[sort].push_back(index);
+			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, nearGap)) near[sort].push_back(index);
 	}
 }
 

@@ -26,7 +26,7 @@ struct Setting {
 	PairConstants<double>  common {}; // of the first grain with itself; of every pair when they are alike
 	BondConstants<double>  commonBond {}; // likewise
 	unsigned               mechanisms = AllSprings;
-	double                 dt = 0, nearGap = 0, farGap = 0;
+	double                 dt = 0, farGap = 0, smallestRadius = 0;
 	Vec3<double>           convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
 	const InstructionSet*  passes = nullptr;
 
@@ -74,8 +74,8 @@ public:
 	void addFirstForces();
 	void addOtherForces(bool moveBehind);
 	void integrate(); // own grains, all of them
-	void findPairs(const Grid&); // neighbours, far and near
-	void findNearPairs();
+	void findPairs(const Grid&, double nearGap); // neighbours, far and near
+	void findNearPairs(double nearGap);
 	void sortContacts();     // into the order of pairs, without dead lanes
 	void findCompleted();    // where in the sorted contacts grains have had their last one
 	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
@@ -87,7 +87,7 @@ public:
 	double     convectiveWork() const; // this is half of what it does in the kick now
 
 	int                 begin, end;
-	double              fastestSquared = 0;
+	VelocityRange       velocities; // of own grains through the latest drift
 	long                events = 0;
 	StepSums            sums;
 	ContactList         contacts[3]; // both grains own; the first; the second

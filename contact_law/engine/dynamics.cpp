@@ -8,6 +8,8 @@
 namespace contact_law {
 
 namespace {
+	constexpr double stepsOfNearPairs = 16; // that lists of near pairs should last where grains are fast (measured)
+
 	// Interleaved bits of three cell numbers: grains close in this order are close in space.
 	std::uint64_t spread(std::uint64_t x)
 	{
@@ -91,7 +93,8 @@ void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
 void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 {
 	const double shrunk = neck::shrunkRadius(setting.neck);
-	double       smallest = shrunk * grains[0].radius;
+	double&      smallest = setting.smallestRadius;
+	smallest              = shrunk * grains[0].radius;
 	indexHere.resize(count);
 	for (int k = 0; k < count; ++k) {
 		const GrainInput& g    = grains[original[k]];
@@ -112,7 +115,7 @@ void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 	const double    r = setting.grainRadius[0];
 	setting.common    = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
 	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.neck);
-	setting.nearGap   = 0.03 * smallest;
+	nearGap           = nearGapFor(0);
 	setting.farGap    = 0.8 * smallest;
 }
 
@@ -203,11 +206,11 @@ void Dynamics::refreshLists(bool farToo)
 		};
 		buildGrid(true, each, [] {});
 		setMostCells();
-		each([&](Domain& domain, int) { domain.findPairs(grid); });
+		each([&](Domain& domain, int) { domain.findPairs(grid, nearGap); });
 		travelSinceFar = 0;
 	} else {
 		for (auto& domain : domains)
-			domain->findNearPairs();
+			domain->findNearPairs(nearGap);
 	}
 	travelSinceNear = 0;
 }
@@ -258,30 +261,29 @@ long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<doubl
 	};
 	const auto wait = [&] { barrier.wait(); };
 	const Vec3<double> rate = (1 / setting.dt) * growth;
-	double       sinceFar = travelSinceFar, sinceNear = travelSinceNear;
+	double       sinceFar = travelSinceFar, sinceNear = travelSinceNear, gap = nearGap;
 	const double allowed = fastestAllowed();
 	mine([](Domain& domain, int) { domain.integrate(); });
 	for (long step = 1; step <= steps; ++step) {
 		barrier.wait();
-		double fastest = 0;
-		for (const auto& domain : domains)
-			fastest = std::max(fastest, domain->fastestSquared);
-		if (fastest > allowed) return step - 1;
+		const VelocityRange range = velocities();
+		if (range.fastestComponent() > allowed) return step - 1;
 		mine([&](Domain& domain, int) { domain.cell.advance(sizeAtEnd - double(steps - step) * growth, rate); });
 		const Vec3<double> across = Images<double>::times(mostCells, growth); // an image moves with its cell
-		const double       travel = setting.dt * std::sqrt(3 * fastest) /* of a component's square */ + 0.5 * std::sqrt(dot(across, across));
-		sinceFar += travel;
-		sinceNear += travel;
-		if (2 * sinceNear > setting.nearGap) {
-			const bool farToo = 2 * sinceFar + setting.nearGap > setting.farGap;
+		const double       approach = setting.dt * range.diagonal() + std::sqrt(dot(across, across));
+		sinceFar += approach;
+		sinceNear += approach;
+		if (sinceNear > gap) {
+			gap               = nearGapFor(approach);
+			const bool farToo = sinceFar + gap > setting.farGap;
 			if (farToo) {
 				buildGrid(thread == 0, mine, wait);
 				if (thread == 0) setMostCells();
 				mine([](Domain& domain, int) { domain.sortContacts(); });
 				barrier.wait();
-				mine([this](Domain& domain, int) { domain.findPairs(grid); });
+				mine([&](Domain& domain, int) { domain.findPairs(grid, gap); });
 				sinceFar = 0;
-			} else mine([](Domain& domain, int) { domain.findNearPairs(); });
+			} else mine([&](Domain& domain, int) { domain.findNearPairs(gap); });
 			sinceNear = 0;
 			if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
 		}
@@ -292,8 +294,25 @@ long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<doubl
 	if (thread == 0) {
 		travelSinceFar  = sinceFar;
 		travelSinceNear = sinceNear;
+		nearGap         = gap;
 	}
 	return steps;
+}
+
+VelocityRange Dynamics::velocities() const
+{
+	VelocityRange all;
+	for (const auto& domain : domains)
+		all.join(domain->velocities);
+	return all;
+}
+
+/* Looking through the near pairs, each step, and finding them among the far ones, each time the grains may have come closer by the gap, should cost about
+ * the same; given: by how much they may in a step. */
+double Dynamics::nearGapFor(double approach) const
+{
+	const double r = smallestRadius();
+	return std::max(0.03 * r, std::min(stepsOfNearPairs * approach, 0.25 * r));
 }
 
 long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)

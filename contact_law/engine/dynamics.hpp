@@ -87,7 +87,7 @@ public:
 	const PeriodicCell& cell() const { return domains[0]->cell; }
 	// What a periodic cell must hold twice along each axis: the largest distance of neighbours in the lists.
 	double reach() const { return 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap; }
-	double smallestRadius() const { return *std::min_element(setting.radius.begin(), setting.radius.end()); }
+	double smallestRadius() const { return setting.smallestRadius; }
 
 	void setThreads(int threads) { options.threads = threads; }
 	int  threadCount() const { return std::max(1, std::min(options.threads, int(domains.size()))); }
@@ -177,7 +177,9 @@ private:
 	void refreshLists(bool farToo);
 	long runShare(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier&);
 	Domain& domainOf(int index);
-	double  fastestAllowed() const; // square of a velocity component
+	double  fastestAllowed() const; // velocity component
+	VelocityRange velocities() const; // of all grains through the latest drift
+	double  nearGapFor(double approach) const;
 
 	Options                              options;
 	Setting                              setting;
@@ -185,7 +187,8 @@ private:
 	std::vector<int>                     original, indexHere; // index given, by index here; and the other way round
 	std::vector<std::unique_ptr<Domain>> domains;
 	Grid                                 grid;
-	double                               travelSinceFar = 0, travelSinceNear = 0; // bound on how far any grain went
+	double                               travelSinceFar = 0, travelSinceNear = 0; // bounds on how far any two grains have come closer
+	double                               nearGap = 0;                             // up to which untouching pairs are in the near lists
 	Vec3<double>                         mostCells { 0, 0, 0 };                   // that a shift to the nearest image can be, periodic
 };
 

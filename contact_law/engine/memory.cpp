@@ -67,7 +67,7 @@ std::vector<double> Dynamics::remember() const
 {
 	std::vector<double> to { double(count) };
 	to.insert(to.end(), original.begin(), original.end());
-	to.insert(to.end(), { double(domains.size()), travelSinceFar, travelSinceNear, double(contactUpdates), double(farRebuilds), double(nearRebuilds) });
+	to.insert(to.end(), { double(domains.size()), travelSinceFar, travelSinceNear, nearGap, double(contactUpdates), double(farRebuilds), double(nearRebuilds) });
 	to.push_back(cell().on);
 	for (const Vec3<double>& v : { cell().size, cell().inverse, cell().rate, cell().rateBefore, mostCells, setting.convective })
 		contact_law::remember(to, v);
@@ -123,6 +123,7 @@ void Dynamics::recall(const std::vector<double>& memory)
 	if (from.integer() != int(domains.size())) throw std::invalid_argument("the checkpoint holds another number of domains than the engine");
 	travelSinceFar  = from.next();
 	travelSinceNear = from.next();
+	nearGap         = from.next();
 	contactUpdates  = long(from.next());
 	farRebuilds     = long(from.next());
 	nearRebuilds    = long(from.next());

@@ -18,9 +18,9 @@ namespace portable {
 		g.fx += values[0].v, g.fy += values[1].v, g.fz += values[2].v, g.tx += values[3].v, g.ty += values[4].v, g.tz += values[5].v;
 	}
 
-	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, double& fastestSquared)
+	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 	{
-		integrateOneByOne<Pack>(begin, end, inverseMass, inverseInertia, dt, fastestSquared);
+		integrateOneByOne<Pack>(begin, end, inverseMass, inverseInertia, dt, range);
 	}
 }
 }

@@ -6,8 +6,7 @@ namespace contact_law {
 // In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
 double Dynamics::fastestAllowed() const
 {
-	const double way = 0.5 * *std::min_element(setting.radius.begin(), setting.radius.end()) / setting.dt;
-	return way * way;
+	return 0.5 * smallestRadius() / setting.dt;
 }
 
 Dynamics::Trouble Dynamics::trouble(int given) const
