@@ -1,4 +1,7 @@
-"""Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path)."""
+"""Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path).
+
+Tests of what a step refuses call O.step(): O.run now and then loses, on a busy machine, what its thread threw.
+"""
 import numpy as np
 from yade import utils
 from yade.wrapper import *

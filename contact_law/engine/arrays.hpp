@@ -131,7 +131,8 @@ struct alignas(64) VelocityRange {
 	}
 };
 
-struct BondPass; // bond_list.hpp
+struct BondPass;        // bond_list.hpp
+struct NeighbourSearch; // grid.hpp
 
 // One instruction set's compiled passes, by mechanisms (contact.hpp), whether all pairs are alike, and (forces) whether the scene is periodic.
 struct InstructionSet {
@@ -142,6 +143,7 @@ struct InstructionSet {
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
 	void (*bondForces)(const BondPass&);
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
+	int (*closeMembers[2])(const NeighbourSearch&, int* found); // by whether the scene is periodic (neighbour_search.hpp)
 };
 
 } // namespace contact_law

@@ -75,7 +75,8 @@ namespace avx512 {
 }
 
 #include "bond_pass.hpp"
+#include "neighbour_search.hpp"
 
 namespace contact_law {
-InstructionSet avx512Passes() { return BondPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate)); }
+InstructionSet avx512Passes() { return NeighbourPasses<avx512::Pack>::addTo(BondPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate))); }
 }

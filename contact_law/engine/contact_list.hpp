@@ -90,7 +90,9 @@ public:
 		std::vector<Key> order;
 		for (int lane = 0; lane < used; ++lane)
 			if (alive(lane)) order.push_back({ first(lane), second(lane), lane });
-		std::sort(order.begin(), order.end());
+		const auto added = std::is_sorted_until(order.begin(), order.end()); // those before stand as the last sorting left them
+		std::sort(added, order.end());
+		std::inplace_merge(order.begin(), added, order.end());
 		const ContactList before = *this;
 		clear();
 		for (const Key& key : order) {

@@ -212,19 +212,17 @@ void Domain::birth(int sort, int index)
 
 void Domain::findPairs(const Grid& grid, double nearGap)
 {
-	const Grain* grains = s.grains.data();
 	for (auto& list : far)
 		list.clear();
 	std::vector<int> found;
 	for (int i = begin; i < end; ++i) {
-		found.clear();
-		grid.around(&grains[i].x, [&](int j) {
-			if (j == i || (j < i && owns(j))) return;
-			if (closerThan(i, j, s.farGap)) found.push_back(j);
-		});
-		std::sort(found.begin(), found.end());
-		for (const int j : found)
-			far[owns(j) ? Both : i < j ? First : Second].push_back(i < j ? Pair { i, j } : Pair { j, i });
+		const NeighbourSearch search = grid.search(&s.grains[i].x, s.radius[i], s.farGap, cell);
+		found.resize(std::max(found.size(), std::size_t(search.most())));
+		int*                  last   = found.data() + s.passes->closeMembers[cell.on](search, found.data());
+		last                         = std::remove_if(found.data(), last, [&](int j) { return j == i || (j < i && owns(j)); });
+		std::sort(found.data(), last);
+		for (const int* j = found.data(); j < last; ++j)
+			far[owns(*j) ? Both : i < *j ? First : Second].push_back(i < *j ? Pair { i, *j } : Pair { *j, i });
 	}
 	std::sort(far[Second].begin(), far[Second].end());
 	for (int sort = 0; sort < 3; ++sort) {

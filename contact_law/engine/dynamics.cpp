@@ -194,7 +194,7 @@ template <class Mine, class Wait> void Dynamics::buildGrid(bool firstThread, Min
 	wait();
 	mine([&](Domain&, int d) { grid.findStarts(d); });
 	wait();
-	mine([&](Domain&, int d) { grid.place(d); });
+	mine([&](Domain&, int d) { grid.place(d, grains, setting.radius.data()); });
 }
 
 void Dynamics::refreshLists(bool farToo)

@@ -329,7 +329,7 @@ template <class Pack> struct Passes {
 
 	static InstructionSet all(const char* name, decltype(InstructionSet::integrate) integrate)
 	{
-		InstructionSet set { name, {}, {}, &sumOfProduct, integrate, nullptr, nullptr };
+		InstructionSet set { name, {}, {}, &sumOfProduct, integrate, nullptr, nullptr, {} };
 		fill<0>(set);
 		return set;
 	}

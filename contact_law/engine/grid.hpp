@@ -8,6 +8,32 @@
 
 namespace contact_law {
 
+// Grains of a grid, those of a cell side by side, and cells of a row likewise.
+struct GridMembers {
+	const double *x, *y, *z, *radius;
+	const int*    grain;
+};
+struct GridRow {
+	int first, last; // members, the last one not among them
+};
+// A grain at a position, and the rows of members around it.
+struct NeighbourSearch {
+	GridMembers         members;
+	const PeriodicCell* cell;
+	double              radius, gap; // between surfaces
+	const double*       position;
+	GridRow             rows[18]; // 27 cells in 9 rows, each of one or two parts
+	int                 rowCount;
+
+	int most() const // members to look at
+	{
+		int sum = 0;
+		for (int k = 0; k < rowCount; ++k)
+			sum += rows[k].last - rows[k].first;
+		return sum;
+	}
+};
+
 class Grid {
 public:
 	/* A grid is made by these five, each for all parts (stretches of grains by rising index) before the next, layOut once; the parts of one may run side by side.
@@ -57,6 +83,8 @@ public:
 		start.resize(cellCount() + 1);
 		cellOf.resize(count);
 		members.resize(count);
+		for (auto* numbers : { &x, &y, &z, &radius })
+			numbers->resize((count + lanes - 1) / lanes * lanes);
 	}
 	void countGrains(int part, const Grain* grains)
 	{
@@ -89,29 +117,33 @@ public:
 		}
 		if (part + 1 == int(parts.size())) start[cellCount()] = count;
 	}
-	void place(int part)
+	void place(int part, const Grain* grains, const double* radii)
 	{
 		Part& p = parts[part];
-		for (int g = p.first; g < p.last; ++g)
-			members[p.next[cellOf[g]]++] = g;
+		for (int g = p.first; g < p.last; ++g) {
+			const int at = p.next[cellOf[g]]++;
+			members[at] = g, radius[at] = radii[g];
+			x[at] = grains[g].x, y[at] = grains[g].y, z[at] = grains[g].z;
+		}
 	}
 
-	// Calls visit(grain) once for every grain in the 27 cells (or as many as there are) around position x.
-	template <class Visit> void around(const double* x, Visit&& visit) const
+	// A search for neighbours of a grain, each of which it meets once, in the 27 cells (or as many as there are) around it.
+	NeighbourSearch search(const double* position, double ownRadius, double gap, const PeriodicCell& cell) const
 	{
-		Span spans[3][2];
-		int  count[3];
+		NeighbourSearch s { { x.data(), y.data(), z.data(), radius.data(), members.data() }, &cell, ownRadius, gap, position, {}, 0 };
+		Span            spans[3][2];
+		int             parts[3];
 		for (int k = 0; k < 3; ++k)
-			count[k] = spansAround(k, cellAlong(k, x[k]), spans[k]);
-		for (int c = 0; c < count[2]; ++c)
-			for (int z = spans[2][c].first; z <= spans[2][c].last; ++z)
-				for (int b = 0; b < count[1]; ++b)
-					for (int y = spans[1][b].first; y <= spans[1][b].last; ++y)
-						for (int a = 0; a < count[0]; ++a) {
-							const std::size_t row = (std::size_t(z) * size[1] + y) * size[0];
-							for (int m = start[row + spans[0][a].first]; m < start[row + spans[0][a].last + 1]; ++m)
-								visit(members[m]);
+			parts[k] = spansAround(k, cellAlong(k, position[k]), spans[k]);
+		for (int c = 0; c < parts[2]; ++c)
+			for (int high = spans[2][c].first; high <= spans[2][c].last; ++high)
+				for (int b = 0; b < parts[1]; ++b)
+					for (int middle = spans[1][b].first; middle <= spans[1][b].last; ++middle)
+						for (int a = 0; a < parts[0]; ++a) {
+							const std::size_t row = (std::size_t(high) * size[1] + middle) * size[0];
+							s.rows[s.rowCount++]  = { start[row + spans[0][a].first], start[row + spans[0][a].last + 1] };
 						}
+		return s;
 	}
 
 	// By how many cells' lengths the images of any two grains may be apart, each axis, until they have moved by more than a grain.
@@ -155,6 +187,7 @@ private:
 	int               size[3] { 1, 1, 1 }, count = 0;
 	bool              periodic = false;
 	std::vector<int>  start, members, cellOf;
+	Aligned<double>   x, y, z, radius; // of the members
 };
 
 } // namespace contact_law

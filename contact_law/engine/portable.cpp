@@ -26,7 +26,8 @@ namespace portable {
 }
 
 #include "bond_pass.hpp"
+#include "neighbour_search.hpp"
 
 namespace contact_law {
-InstructionSet portablePasses() { return BondPasses<portable::Pack>::addTo(Passes<portable::Pack>::all("portable", &portable::integrate)); }
+InstructionSet portablePasses() { return NeighbourPasses<portable::Pack>::addTo(BondPasses<portable::Pack>::addTo(Passes<portable::Pack>::all("portable", &portable::integrate))); }
 }

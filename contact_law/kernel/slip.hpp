@@ -4,11 +4,12 @@
 
 namespace contact_law {
 
-/* Renormalising a pointer after a move along the unit vector e takes back (n.e)^2 of it (Wada et al. 2007): move that much further. */
-template <class T> inline Vec3<T> movedPointer(const Vec3<T>& pointer, const T& move, const Vec3<T>& e)
+/* A pointer moved along the unit vector e by move/radius. Renormalising takes back (n.e)^2 of a move (Wada et al. 2007): it goes that much further;
+ * both are done at once, and without a division. */
+template <class T> inline Vec3<T> movedPointer(const Vec3<T>& pointer, const T& move, const T& radius, const Vec3<T>& e)
 {
 	const T       along = dot(pointer, e);
-	const Vec3<T> moved = pointer + (move / (T(1.) - along * along)) * e;
+	const Vec3<T> moved = (radius * (T(1.) - along * along)) * pointer + move * e;
 	return inverseRoot(dot(moved, moved)) * moved;
 }
 
@@ -16,18 +17,18 @@ template <class T> inline Vec3<T> movedPointer(const Vec3<T>& pointer, const T& 
  * both pointers move oppositely by the excess over r1 + r2 (Wada's +-excess/(2 r) for equal radii; MODEL.md on unlike ones). */
 template <class T> inline Pointers<T> slidBack(const Pointers<T>& p, const T& r1, const T& r2, const Vec3<T>& zeta, const T& limit)
 {
-	const T       length = root(dot(zeta, zeta)), move = (length - limit) / (r1 + r2);
-	const Vec3<T> e      = (T(1.) / length) * zeta;
-	return { movedPointer(p.n1, -move, e), movedPointer(p.n2, move, e) };
+	const T       squared = dot(zeta, zeta), inverse = inverseRoot(squared), excess = squared * inverse - limit;
+	const Vec3<T> e       = inverse * zeta;
+	return { movedPointer(p.n1, -excess, r1 + r2, e), movedPointer(p.n2, excess, r1 + r2, e) };
 }
 
 /* The pointers with the rolling displacement xi back on its limit and the sliding one as it is: each pointer moves by -excess/r_i
  * (Wada's -excess/(2R) for equal radii). */
 template <class T> inline Pointers<T> rolledBack(const Pointers<T>& p, const T& r1, const T& r2, const Vec3<T>& xi, const T& limit)
 {
-	const T       length = root(dot(xi, xi)), excess = length - limit;
-	const Vec3<T> e      = (T(1.) / length) * xi;
-	return { movedPointer(p.n1, -excess / r1, e), movedPointer(p.n2, -excess / r2, e) };
+	const T       squared = dot(xi, xi), inverse = inverseRoot(squared), excess = squared * inverse - limit;
+	const Vec3<T> e       = inverse * xi;
+	return { movedPointer(p.n1, -excess, r1, e), movedPointer(p.n2, -excess, r2, e) };
 }
 
 /* The energy that a slip takes in one step of a kick-drift-kick integrator. The kicks use the forces before the step (displacement

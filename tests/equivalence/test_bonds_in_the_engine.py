@@ -135,7 +135,7 @@ start(count=8)
 fused()
 {change}
 try:
-    O.run(1, True)
+    O.step()
     result["message"] = ""
 except Exception as error:
     result["message"] = str(error)

@@ -130,8 +130,7 @@ start("like", count=8)
 fused_engine()
 {change}
 try:
-    for attempt in range(3):  # on a busy machine O.run now and then loses what its thread threw
-        O.run(1, True)
+    O.step()
     result["message"] = ""
 except Exception as error:
     result["message"] = str(error)

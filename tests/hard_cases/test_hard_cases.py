@@ -63,7 +63,8 @@ grain((0, 0, 0), 1e-7, ice())
 grain((5e-7, 0, 0), 1e-7, ice())
 grain((5e-7, 0, 0), 1e-7, ice())
 try:
-    O.run(10, True)
+    for _ in range(10):
+        O.step()
     result["message"] = ""
 except RuntimeError as error:
     result["message"] = str(error)
@@ -148,7 +149,7 @@ start(parameters["step"])
 for x in (0, 2.1e-7):
     grain((x, 0, 0), 1e-7, ice(viscoelasticTime=parameters["T"]))
 try:
-    O.run(1, True)
+    O.step()
     result["message"] = ""
 except RuntimeError as error:
     result["message"] = str(error)
@@ -163,8 +164,7 @@ start(1.0)
 for x, v in ((0, 0), (2.005e-7, -5)):
     grain((x, 0, 0), 1e-7, ice(viscoelasticTime=100e-12), (v, 0, 0))
 try:
-    for attempt in range(3):  # on a busy machine O.run now and then loses what its thread threw
-        O.run(1, True)
+    O.step()
 except RuntimeError as error:
     limit = float(str(error).split("below ")[1].split(" s")[0])
 O.engines = [JKRWadaEngine()]
