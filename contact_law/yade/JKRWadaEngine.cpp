@@ -25,6 +25,16 @@ struct JKRWadaEngine::Run {
 	SceneCell                      cell;
 	LedgerWatch                    watch {};
 	long                           unlooked = 0; // small steps since overlaps were looked through
+
+	// Whether it is so for every body; asked by all threads, since reading every body takes about a small step.
+	template <class Is> bool all(const Is& is) const
+	{
+		bool so = true;
+#pragma omp parallel for num_threads(dynamics.threadCount()) reduction(&& : so)
+		for (std::size_t k = 0; k < written.size(); ++k)
+			so = so && is(k);
+		return so;
+	}
 };
 
 namespace {
@@ -126,8 +136,10 @@ void JKRWadaEngine::takeChanges()
 {
 	if (scene->bodies->size() != current->written.size()) refuseInEngine("bodies were added or erased after the start; make a new engine");
 	if (orientations != current->orientations) refuseInEngine("orientations was changed after the start; make a new engine");
+	const auto same = [this](std::size_t k) { return sameMotion(*current->states[k], current->written[k], orientations); };
+	if (current->all(same)) return;
 	for (std::size_t k = 0; k < current->written.size(); ++k) {
-		if (sameMotion(*current->states[k], current->written[k], orientations)) continue;
+		if (same(k)) continue;
 		const GrainInput now = grainOf(*current->states[k]);
 		if (!finite(now)) refuseInEngine("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
 		current->dynamics.set(int(k), now);
@@ -165,8 +177,10 @@ void JKRWadaEngine::requireSound(long made, const contact_law::Energies* now)
 {
 	Dynamics::Trouble trouble;
 	if (made < subSteps) trouble = current->dynamics.trouble();
-	for (std::size_t k = 0; trouble.grain < 0 && k < current->now.size(); ++k)
-		if (!finite(current->now[k])) trouble = current->dynamics.trouble(int(k));
+	const auto isFinite = [this](std::size_t k) { return finite(current->now[k]); };
+	const bool allFinite = current->all(isFinite);
+	for (std::size_t k = 0; !allFinite && trouble.grain < 0 && k < current->now.size(); ++k)
+		if (!isFinite(k)) trouble = current->dynamics.trouble(int(k));
 	const Real time = scene->time + std::min(made + 1, long(subSteps)) * smallStep;
 	if (trouble.grain >= 0) {
 		const std::string grain = "body " + std::to_string(trouble.grain);
