@@ -221,6 +221,7 @@ void Domain::findPairs(const Grid& grid, double nearGap)
 		int*                  last   = found.data() + s.passes->closeMembers[cell.on](search, found.data());
 		last                         = std::remove_if(found.data(), last, [&](int j) { return j == i || (j < i && owns(j)); });
 		std::sort(found.data(), last);
+		last = std::unique(found.data(), last);
 		for (const int* j = found.data(); j < last; ++j)
 			far[owns(*j) ? Both : i < *j ? First : Second].push_back(i < *j ? Pair { i, *j } : Pair { *j, i });
 	}

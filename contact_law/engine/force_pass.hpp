@@ -13,7 +13,7 @@ constexpr int grainsAhead = 2 * batchSize, blocksAhead = 4 * batchSize;
 
 struct alignas(64) BatchBuffer {
 	double     spin1[3][lanes], spin2[3][lanes];
-	double     normal[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
+	double     normal[3][lanes], velocity[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
 	double     drag[lanes], overlap[lanes]; // in scenes with drag
 	unsigned   events, slips; // lanes (bits) that need scalar treatment; that slip
 	LaneForces out;
@@ -138,6 +138,7 @@ template <class Pack> struct Passes {
 		store(pair.spin1, buffer.spin1, at);
 		store(pair.spin2, buffer.spin2, at);
 		store(g.normal, buffer.normal, at);
+		store(pair.velocity, buffer.velocity, at);
 		g.inverseDistance.store(buffer.inverseDistance + at);
 		radial.store(buffer.normalForce + at);
 		buffer.events |= bitsOf(care) << at;
@@ -184,23 +185,21 @@ template <class Pack> struct Passes {
 	}
 
 	// Lanes that slip, again: their displacements put back, the forces that follow, and what it took.
-	template <unsigned mechanisms, bool periodic>
-	static void sweepSlips(const ForcePass& pass, const Crossing<Pack, periodic>& crossing, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, const ContactBlock& before, int at, Slip<Pack>& lost)
+	template <unsigned mechanisms>
+	static void sweepSlips(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, const ContactBlock& before, int at, Slip<Pack>& lost)
 	{
 		const unsigned slipping = buffer.slips >> at & allLanes;
 		if (!slipping) return;
 		ContactBlock&               block = pass.blocks[index];
-		Pair                        pair  = gatherPair(pass.grains, block, at);
-		if constexpr (periodic) toImages(crossing.images, pair);
-		const Vec3<Pack>            then  = pair.separation - Pack(pass.dt) * pair.velocity;
+		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
+		const Vec3<Pack>            velocity = load(buffer.velocity, at), then = g.normal - (Pack(pass.dt) * g.inverseDistance) * velocity; // over the distance now
 		const Pointers<Pack>        old { load(before.n1, at), load(before.n2, at) };
 		const Vec3<Pack>            none { Pack(0.), Pack(0.), Pack(0.) };
 		const Displacements<Pack>   aStepAgo { sliding::displacement(old, c.radius1, c.radius2, inverseRoot(dot(then, then)) * then), rolling::displacement(old, c.reducedRadius),
 			Pack::load(before.twist + at) };
-		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
 		ContactHistory<Pack>        h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 		ContactForces<Pack>         f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
-		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, { normalRate(g.normal, g.inverseDistance, pair.velocity), pair.spin1, pair.spin2, Pack(pass.dt) }, h);
+		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, { normalRate(g.normal, g.inverseDistance, velocity), load(buffer.spin1, at), load(buffer.spin2, at), Pack(pass.dt) }, h);
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
 		keep(h, block, at);
@@ -270,7 +269,7 @@ template <class Pack> struct Passes {
 					sweepTangential<mechanisms>(pass, c(at), first + b, buffers[b], before, at, dragWork);
 				if (__builtin_expect(buffers[b].slips != 0, 0))
 					for (int at = 0; at < lanes; at += width)
-						sweepSlips<mechanisms, periodic>(pass, crossing, c(at), first + b, buffers[b], before, at, lost);
+						sweepSlips<mechanisms>(pass, c(at), first + b, buffers[b], before, at, lost);
 				if (__builtin_expect(buffers[b].events != 0, 0)) pass.events(pass.owner, first + b, buffers[b].events, before, buffers[b].out);
 			}
 			for (int b = 0; b < count; ++b) {

@@ -1,4 +1,6 @@
-// Grains sorted into cells, to find neighbours. Made in parts that threads share: each stretch of grains counts and places its own.
+/* Grains sorted into cells, to find neighbours. Made in parts that threads share: each stretch of grains counts and places its own.
+ * Where the cells around all grains would be far more than grains (fragments apart), cells share places in a table of some four places a grain: neighbours are then
+ * looked for among a few strangers too, and may be met twice. */
 #pragma once
 #include "arrays.hpp"
 #include <algorithm>
@@ -22,7 +24,7 @@ struct NeighbourSearch {
 	const PeriodicCell* cell;
 	double              radius, gap; // between surfaces
 	const double*       position;
-	GridRow             rows[18]; // 27 cells in 9 rows, each of one or two parts
+	GridRow             rows[36]; // 27 cells in 9 rows, each of one or two parts, each of which the table's end may cut in two
 	int                 rowCount;
 
 	int most() const // members to look at
@@ -57,7 +59,7 @@ public:
 			}
 		}
 	}
-	// Cells of at least the given size around the grains, or filling the periodic cell; coarser where they would be far more than grains.
+	// Cells of at least the given size around the grains, or filling the periodic cell.
 	void layOut(double cellSize, const PeriodicCell& periodicCell)
 	{
 		double low[3], high[3];
@@ -69,19 +71,22 @@ public:
 		}
 		periodic                = periodicCell.on;
 		const double lengths[3] = { periodicCell.size.x, periodicCell.size.y, periodicCell.size.z };
-		for (double wanted = cellSize;; wanted *= 1.25) {
-			double cells = 1;
-			for (int k = 0; k < 3; ++k) {
-				length[k] = lengths[k];
-				origin[k] = periodic ? 0 : low[k];
-				size[k]   = periodic ? std::max(1, int(std::min(length[k] / wanted, 1e6))) : int(std::min((high[k] - low[k]) / wanted, 1e6)) + 1;
-				inverseSize[k] = periodic ? size[k] / length[k] : 1 / wanted;
-				cells *= size[k];
-			}
-			if (cells <= 64. * count + 4096) break;
+		double cells = 1;
+		for (int k = 0; k < 3; ++k) {
+			length[k] = lengths[k];
+			origin[k] = periodic ? 0 : low[k];
+			size[k]   = periodic ? std::max(1, int(std::min(length[k] / cellSize, 1e6))) : int(std::min((high[k] - low[k]) / cellSize, 1e6)) + 1;
+			inverseSize[k] = periodic ? size[k] / length[k] : 1 / cellSize;
+			cells *= size[k];
 		}
-		start.resize(cellCount() + 1);
-		cellOf.resize(count);
+		const bool own = cells <= 4. * count + 64; // a place for each cell
+		places         = 64;
+		while (places < (own ? cells : 4. * count))
+			places *= 2;
+		stride[0] = own ? size[0] : 73856093; // or primes, which put rows of cells anywhere
+		stride[1] = own ? size[0] * size[1] : 19349663;
+		start.resize(places + 1);
+		placeOf.resize(count);
 		members.resize(count);
 		for (auto* numbers : { &x, &y, &z, &radius })
 			numbers->resize((count + lanes - 1) / lanes * lanes);
@@ -89,16 +94,16 @@ public:
 	void countGrains(int part, const Grain* grains)
 	{
 		Part& p = parts[part];
-		p.next.assign(cellCount(), 0);
+		p.next.assign(places, 0);
 		for (int g = p.first; g < p.last; ++g)
-			++p.next[cellOf[g] = cellAt(&grains[g].x)];
+			++p.next[placeOf[g] = placeAt(&grains[g].x)];
 	}
-	// A part sums up a share of the cells.
+	// A part sums up a share of the places.
 	void sum(int part)
 	{
 		int total = 0;
 		for (const Part& p : parts)
-			for (std::size_t c = firstCell(part); c < firstCell(part + 1); ++c)
+			for (unsigned c = firstPlace(part); c < firstPlace(part + 1); ++c)
 				total += p.next[c];
 		parts[part].total = total;
 	}
@@ -107,7 +112,7 @@ public:
 		int next = 0;
 		for (int before = 0; before < part; ++before)
 			next += parts[before].total;
-		for (std::size_t c = firstCell(part); c < firstCell(part + 1); ++c) {
+		for (unsigned c = firstPlace(part); c < firstPlace(part + 1); ++c) {
 			start[c] = next;
 			for (Part& p : parts) {
 				const int here = p.next[c];
@@ -115,19 +120,19 @@ public:
 				next += here;
 			}
 		}
-		if (part + 1 == int(parts.size())) start[cellCount()] = count;
+		if (part + 1 == int(parts.size())) start[places] = count;
 	}
 	void place(int part, const Grain* grains, const double* radii)
 	{
 		Part& p = parts[part];
 		for (int g = p.first; g < p.last; ++g) {
-			const int at = p.next[cellOf[g]]++;
+			const int at = p.next[placeOf[g]]++;
 			members[at] = g, radius[at] = radii[g];
 			x[at] = grains[g].x, y[at] = grains[g].y, z[at] = grains[g].z;
 		}
 	}
 
-	// A search for neighbours of a grain, each of which it meets once, in the 27 cells (or as many as there are) around it.
+	// A search for neighbours of a grain in the 27 cells (or as many as there are) around it.
 	NeighbourSearch search(const double* position, double ownRadius, double gap, const PeriodicCell& cell) const
 	{
 		NeighbourSearch s { { x.data(), y.data(), z.data(), radius.data(), members.data() }, &cell, ownRadius, gap, position, {}, 0 };
@@ -139,10 +144,8 @@ public:
 			for (int high = spans[2][c].first; high <= spans[2][c].last; ++high)
 				for (int b = 0; b < parts[1]; ++b)
 					for (int middle = spans[1][b].first; middle <= spans[1][b].last; ++middle)
-						for (int a = 0; a < parts[0]; ++a) {
-							const std::size_t row = (std::size_t(high) * size[1] + middle) * size[0];
-							s.rows[s.rowCount++]  = { start[row + spans[0][a].first], start[row + spans[0][a].last + 1] };
-						}
+						for (int a = 0; a < parts[0]; ++a)
+							addRow(s, placeOfCell(spans[0][a].first, middle, high), spans[0][a].last - spans[0][a].first + 1);
 		return s;
 	}
 
@@ -154,20 +157,26 @@ private:
 		int first, last; // cells along an axis
 	};
 	struct Part {
-		int              first, last, total; // grains; and how many are in this part's share of the cells
+		int              first, last, total; // grains; and how many are in this part's share of the places
 		double           low[3], high[3];
-		std::vector<int> next; // by cell: first how many grains, then where the next one goes
+		std::vector<int> next; // by place: first how many grains, then where the next one goes
 	};
 
-	std::size_t cellCount() const { return std::size_t(size[0]) * size[1] * size[2]; }
-	std::size_t firstCell(int part) const { return cellCount() * part / parts.size(); }
+	unsigned firstPlace(int part) const { return unsigned(std::size_t(places) * part / parts.size()); }
+	unsigned placeOfCell(int a, int b, int c) const { return (unsigned(a) + unsigned(b) * stride[0] + unsigned(c) * stride[1]) & (places - 1); }
+	void     addRow(NeighbourSearch& s, unsigned place, unsigned cells) const
+	{
+		const unsigned end   = std::min(place + cells, places), rest = place + cells - end;
+		s.rows[s.rowCount++] = { start[place], start[end] };
+		if (rest > 0) s.rows[s.rowCount++] = { start[0], start[rest] };
+	}
 
 	int cellAlong(int k, double x) const
 	{
 		const double cells = x / length[k], at = periodic ? (cells - std::floor(cells)) * size[k] : (x - origin[k]) * inverseSize[k];
 		return std::max(0, std::min(int(at), size[k] - 1)); // also where a run has gone wrong and x is no number
 	}
-	int cellAt(const double* x) const { return (cellAlong(2, x[2]) * size[1] + cellAlong(1, x[1])) * size[0] + cellAlong(0, x[0]); }
+	unsigned placeAt(const double* x) const { return placeOfCell(cellAlong(0, x[0]), cellAlong(1, x[1]), cellAlong(2, x[2])); }
 
 	int spansAround(int k, int at, Span spans[2]) const
 	{
@@ -185,8 +194,10 @@ private:
 	std::vector<Part> parts;
 	double            origin[3] {}, inverseSize[3] { 1, 1, 1 }, length[3] { 1, 1, 1 }, extent[3] {};
 	int               size[3] { 1, 1, 1 }, count = 0;
+	unsigned          places = 1, stride[2] { 1, 1 }; // places: a power of two
 	bool              periodic = false;
-	std::vector<int>  start, members, cellOf;
+	std::vector<int>  start, members;
+	std::vector<unsigned> placeOf; // of each grain
 	Aligned<double>   x, y, z, radius; // of the members
 };
 

@@ -39,6 +39,24 @@ result["lost"] = engine_energies[-1]
     assert max(found["energies"]) < 1e-9, found["energies"]
 
 
+def test_grains_far_apart_meet_their_neighbours(yade):
+    """Stragglers 10^5 radii away, many more cells apart than there are grains: those of the crowd find each other as they do without them."""
+    found = yade(SCENE + """
+def end(fused):
+    start("like")
+    for k in range(6):
+        grain(1e-2 * np.eye(3)[k % 3] * (1 if k < 3 else -0.7), 1e-7, ice(), velocity=(0, 0, 20))
+    if fused: fused_engine()
+    O.run(300 + (not fused), True) # functors: O.energy belongs to the positions before the step
+    return energies(), O.engines[0].statistics() if fused else {}
+(functors, _), (engine, statistics) = end(False), end(True)
+result["difference"] = max(abs(functors[name] - engine[name]) for name in CHANNELS) / engine["kinetic"]
+result["statistics"] = {k: v for k, v in statistics.items() if k in ("events", "farRebuilds")}
+""")
+    assert found["statistics"]["events"] > 50 and found["statistics"]["farRebuilds"] > 0, found
+    assert found["difference"] < 1e-9, found
+
+
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_same_bits_on_one_and_two_threads_and_on_every_run(yade, kind):
     found = yade(SCENE + """
