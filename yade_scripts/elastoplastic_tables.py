@@ -22,6 +22,8 @@ DESK_SIZES = {(0.4, 40): 20, (0.3, 40): 20, (0.4, 50): 8, (0.3, 50): 8, (0.4, 60
 DESK_VELOCITIES = 6
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
 SLOW = (0, 2)
+# The slowest at R = 40 are followed for twice the default duration, when more of them have stuck or parted.
+FOLLOWED = {(40, i): '1e-6' for i in range(3)}  # {(radius, i): duration [s]}
 FIRST = 2  # seeds of each of these that come before any third
 
 
@@ -45,20 +47,23 @@ def full():
     return sorted(rows, key=lambda row: (row[3] > FIRST, row[1], row[3]))
 
 
-def rows(scenes, folder, step):
-    """A table's rows, with run folders FOLDER/fFILLING-RRADIUS-iI-sSEED."""
+def rows(scenes, folder, step, durations):
+    """A table's rows, with run folders FOLDER/fFILLING-RRADIUS-iI-sSEED; durations: {(radius, i): text} of
+    those that have another than the default."""
     found = []
     for filling, radius, i, seed in scenes:
         name = f'f{filling:g}-R{radius:g}-i{i}-s{seed}'
         found.append({'description': name, 'filling': filling, 'radius': radius, 'velocity': f'10**(0.1*{i})',
                       'seed': seed, 'stepFraction': step, 'threads': 1, 'out': f'{folder}/{name}'})
+        if (radius, i) in durations:
+            found[-1]['duration'] = durations[radius, i]
     return found
 
 
 def write_tables(folder):
     """Write elastoplastic-desk.table and elastoplastic-full.table into a folder."""
-    table.write(os.path.join(folder, 'elastoplastic-desk.table'), rows(desk(), 'runs/elastoplastic', FASTEST_STEP))
-    table.write(os.path.join(folder, 'elastoplastic-full.table'), rows(full(), 'runs/elastoplastic-full', 0.1))
+    table.write(os.path.join(folder, 'elastoplastic-desk.table'), rows(desk(), 'runs/elastoplastic', FASTEST_STEP, FOLLOWED))
+    table.write(os.path.join(folder, 'elastoplastic-full.table'), rows(full(), 'runs/elastoplastic-full', 0.1, {}))
 
 
 if __name__ == '__main__':

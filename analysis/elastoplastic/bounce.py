@@ -6,6 +6,7 @@ import numpy as np
 
 from ..channels import CHANNELS
 from ..collision_outcome import STICKING
+from .measure import UNDECIDED
 
 CONFIDENCE = 0.95
 _Z = 1.959963984540054      # of a normal distribution, two-sided
@@ -17,7 +18,8 @@ class Bounce:
     """One parameter set: filling, radius [grain radii], velocity [m/s], seeds; compression and parting: by
     channel (mean, error) of its change in shares of K(0), from the start to t_max and from there to the end;
     bulk (mean, error): share of K(0) left in the motion of the halves; restitution (mean, low, high; 0 for
-    sticking) and sticking (share, low, high) with 95 % intervals; None where one seed allows no interval."""
+    sticking) and sticking (share, low, high) of the runs that are decided, with 95 % intervals; None where one
+    seed allows no interval, or none is decided."""
     filling: float
     radius: float
     velocity: float
@@ -43,13 +45,14 @@ def _bounce(rows):
     first = rows[0]
     compression = {c: _mean([r.shares_at_maximum[c] - (c == "kinetic") for r in rows]) for c in CHANNELS}
     parting = {c: _mean([r.shares_at_end[c] - r.shares_at_maximum[c] for r in rows]) for c in CHANNELS}
-    stuck = sum(row.outcome == STICKING for row in rows)
+    decided = [row for row in rows if row.outcome != UNDECIDED]
+    stuck = sum(row.outcome == STICKING for row in decided)
     kinds = [row.outcome for row in rows]
     return Bounce(
         filling=first.filling, radius=first.radius / first.grain_radius, velocity=first.velocity, seeds=len(rows),
         compression=compression, parting=parting, bulk=_mean([row.bulk for row in rows]),
-        restitution=restitution_interval([row.restitution for row in rows]),
-        sticking=(stuck / len(rows), *wilson(stuck, len(rows))),
+        restitution=restitution_interval([row.restitution for row in decided]),
+        sticking=(stuck / len(decided), *wilson(stuck, len(decided))) if decided else (None, None, None),
         outcomes={kind: kinds.count(kind) for kind in sorted(set(kinds))})
 
 
@@ -70,11 +73,13 @@ def wilson(successes, trials, z=_Z):
 
 def restitution_interval(values):
     """(mean, low, high) of the coefficient of restitution: percentile bootstrap over the seeds, the
-    deviations stretched by [n/(n-1)]^(1/2) for few seeds, not below 0; (mean, None, None) for one seed."""
+    deviations stretched by [n/(n-1)]^(1/2) for few seeds, not below 0; (mean, None, None) for one seed, None
+    for none."""
     values = np.asarray(values, dtype=float)
-    mean, n = values.mean(), len(values)
+    n = len(values)
     if n < 2:
-        return float(mean), None, None
+        return (float(values[0]) if n else None), None, None
+    mean = values.mean()
     draws = np.random.default_rng(_RANDOM_SEED).integers(0, n, size=(_RESAMPLES, n))
     means = mean + (values[draws].mean(axis=1) - mean) * np.sqrt(n / (n - 1.0))
     low, high = np.percentile(means, [50.0 * (1.0 - CONFIDENCE), 50.0 * (1.0 + CONFIDENCE)])

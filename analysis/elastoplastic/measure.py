@@ -6,13 +6,17 @@ from typing import Mapping
 import numpy as np
 
 from ..channels import CHANNELS
-from ..collision_outcome import collision_outcome
+from ..collision_outcome import STICKING, collision_outcome
 from ..compression import compression_length, maximum_compression
 from ..ledger import closure, initial_kinetic_energy, shares
 from ..run_folder import RunFolderError, read_arrays
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.
 SKIN = 2.0              # grain radii
+
+# Of a run that ends in one piece while its halves still part, at more than this share of the largest speed of
+# their return: a sixteenth of that kinetic energy is left, which may yet part them.
+UNDECIDED, STILL_PARTING = "undecided", 0.25
 
 
 class NoCompression(RunFolderError):
@@ -26,7 +30,7 @@ class Row:
     of the first compression; exceeded: whether d grows beyond it later; label_d_max: d_max with each
     aggregate's own grains in place of A24's x > 0 and x < 0; shares: by channel, the change since the start
     over K(0) at t_max and at the end (kinetic: what is left); bulk: (v/v_col)^2 at the end, the kinetic share
-    of the motion of the halves; coordination of all grains and of those inside, at the start."""
+    of the motion of the halves; outcome: as collision_outcome's, or UNDECIDED; coordination of all grains and of those inside, at the start."""
     path: Path
     filling: float
     radius: float
@@ -79,12 +83,21 @@ def measure(run):
         d_max=maximum.length, d_max_error=maximum.length_error, exceeded=again,
         t_max=maximum.time, t_max_error=maximum.time_error,
         label_d_max=maximum.length + _label_difference(run, maximum.time, radius),
-        outcome=outcome.kind, restitution=outcome.restitution,
+        outcome=UNDECIDED if outcome.kind == STICKING and still_parting(history["v"]) else outcome.kind,
+        restitution=outcome.restitution,
         shares_at_maximum={c: float(np.interp(maximum.time, history["time"], parts[c])) for c in CHANNELS},
         shares_at_end={c: float(parts[c][-1]) for c in CHANNELS},
         bulk=float(np.nan_to_num(history["v"][-1] / velocity) ** 2),
         coordination=2.0 * len(start.contact_pairs) / len(start.radius),
         inner_coordination=_inner_coordination(start, radius, grain_radius), closure=closure(history))
+
+
+def still_parting(v):
+    """Whether halves with the mutual velocity v (N,) [m/s], positive while they approach (A24 eq 12), part at the
+    end at more than STILL_PARTING of the largest speed at which they ever did."""
+    v = np.asarray(v, dtype=float)
+    v = v[np.isfinite(v)]
+    return bool(v.size and v.min() < 0 and v[-1] < STILL_PARTING * v.min())
 
 
 def first_compression(time, d, v):

@@ -3,6 +3,7 @@ import math
 
 from ..channels import CHANNELS, LABELS
 from .comparison import compare
+from .measure import STILL_PARTING, UNDECIDED
 from .points import RESAMPLES
 from .provenance import provenance_lines
 
@@ -19,6 +20,8 @@ LEGEND = (
     "sigma_plastic and E*: least squares over delta_max and tau_max at all velocities, weight 1/s^2 of a run, s the "
     "standard deviation over the seeds of its point, smoothed over velocity.",
 )
+UNDECIDED_MEANS = (f"{UNDECIDED}, and not counted: in one piece at the end, but parting at more than {STILL_PARTING:g} of "
+                   "the largest speed of the return; a longer duration decides")
 
 
 def missing(study):
@@ -42,7 +45,7 @@ def text(study, origin):
         for row, note in zip(rows, [""] + [line.note for line in lines]):
             cells = [row[0].ljust(widths[0])] + [c.rjust(w) for c, w in zip(row[1:], widths[1:])]
             parts.append("  " + "  ".join(cells).rstrip() + (f"   [{note}]" if note else ""))
-    parts += ["", *LEGEND, *missing(study), "", "outcomes (95 % intervals)"]
+    parts += ["", *LEGEND, *missing(study), "", f"outcomes (95 % intervals; {UNDECIDED_MEANS})"]
     parts += _plain(outcome_rows(study))
     parts += ["", "energy: change in per cent of K(0), from the start to t_max | from t_max to the end"]
     parts += _plain(energy_rows(study, _SHORT))
@@ -58,7 +61,7 @@ def markdown(study, origin, notes=(), figures=()):
         parts += _table([HEADS + ("note",)] + [_cells(line) + (line.note,) for line in lines])
     parts += [""] + [f"- {line}" for line in LEGEND]
     parts += ["", "## How collisions end", "", "Mean and 95 % interval: bootstrap for the restitution (0 for "
-              "sticking), Wilson's for the sticking probability.", "", *_table(outcome_rows(study))]
+              "sticking), Wilson's for the sticking probability; " + UNDECIDED_MEANS + ".", "", *_table(outcome_rows(study))]
     parts += ["", "## Where the energy goes", "", "Change of each channel in per cent of K(0), from the start to "
               "t_max | from t_max to the end; mean over the seeds.", "", *_table(energy_rows(study))]
     for name, caption in figures:
@@ -98,6 +101,8 @@ def energy_rows(study, names=LABELS):
 
 def _interval(triple):
     mean, low, high = triple
+    if mean is None:
+        return "-"
     return f"{mean:.3f}" if low is None else f"{mean:.3f} ({low:.3f} to {high:.3f})"
 
 

@@ -40,17 +40,21 @@ def line_of(moduli=MODULI, v=V):
     return {"c1": ratio / 2.0, "c2": offset * (2.0 - ratio / 2.0), "offset": offset, "ratio": ratio}
 
 
-def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, ended=True, stretch=1.0,
-             **parameters):
+def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, settles=True, ended=True,
+             stretch=1.0, **parameters):
     """Write a run folder of two aggregates of two grains each that move as Andrews's spheres of radius `size`
     [grain radii] would, with compressions and times larger by the factor `stretch`, and d too large by
-    `shift` [grain radii] throughout."""
+    `shift` [grain radii] throughout. With `sticks` they stay in contact, and unless `settles` is False come to
+    rest by the end."""
     spheres = Spheres(reduced_radius(size * RADIUS, OFFSET), filling * DENSITY, *MODULI)
     course = motion(velocity, spheres)
     contact = 2.0 * (RADIUS - OFFSET) / velocity
     time = np.linspace(0.0, contact + 2.0 * course.time_of_parting, 401)
     d = stretch * course.compression((time - contact) / stretch) - 2.0 * OFFSET + shift * RADIUS
     v = course.velocity((time - contact) / stretch)
+    if sticks and settles:
+        parted = contact + stretch * course.time_of_parting
+        v = v * np.clip((time[-1] - time) / (time[-1] - parted), 0.0, 1.0)
     history = {name: np.zeros(time.size) for name in CHANNELS}
     energy = 1e-15 * velocity ** 2
     history["kinetic"] = energy * (v / velocity) ** 2

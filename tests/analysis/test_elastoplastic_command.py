@@ -81,7 +81,19 @@ def test_rows_points_and_ledger(answer):
     for point in answer["bounces"]:
         assert point["sticking"][0] == 0.25 and point["sticking"][1] < 0.25 < point["sticking"][2]
         assert point["compression"]["kinetic"][0] == pytest.approx(-1.0, abs=1e-3)
-        assert point["restitution"][0] == pytest.approx(0.75 * point["bulk"][0] ** 0.5, rel=0.01)
+        assert point["restitution"][0] == pytest.approx((0.75 * point["bulk"][0]) ** 0.5, rel=0.01)
+
+
+def test_runs_that_still_part_at_the_end_are_undecided(tmp_path):
+    for seed in (1, 2, 3):
+        made_run(tmp_path / f"s{seed}", 80.0, 10**0.5, seed, 0.0, sticks=True, settles=seed != 3)
+    (point,) = json.loads(analyse("--json", *tmp_path.iterdir()).stdout)["bounces"]
+    assert point["outcomes"] == {"sticking": 2, "undecided": 1} and point["sticking"][0] == 1.0
+    for path in tmp_path.iterdir():
+        if path.name != "s3":
+            shutil.rmtree(path)
+    (point,) = json.loads(analyse("--json", *tmp_path.iterdir()).stdout)["bounces"]
+    assert point["outcomes"] == {"undecided": 1} and point["sticking"][0] is None and point["restitution"][0] is None
 
 
 def test_text_names_everything(runs):
