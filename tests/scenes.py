@@ -1,7 +1,4 @@
-"""Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path).
-
-Tests of what a step refuses call O.step(): O.run now and then loses, on a busy machine, what its thread threw.
-"""
+"""Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path)."""
 import numpy as np
 from yade import utils
 from yade.wrapper import *
@@ -99,6 +96,16 @@ def converging(count, seed, materials, radii, speed=5.0, spin=2e7):
 
 def fused_engine(**options):
     O.engines = [JKRWadaEngine(**options)]
+
+
+def refusal(steps=1):
+    """What one of so many O.steps is refused with, or ''. (O.run now and then loses, on a busy machine, what its thread threw.)"""
+    try:
+        for _ in range(steps):
+            O.step()
+    except (RuntimeError, ValueError) as error:
+        return str(error)
+    return ""
 
 
 def positions():

@@ -22,6 +22,15 @@ PHYSICS = {
     "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential history, rolling epsd2; no twisting, no energy ledger.",
 }
 
+RUN_AND_COUNT = """timestep {step}
+fix move all nve/sphere
+compute touching all contact/atom
+compute touch all reduce sum c_touching
+thermo_style custom step atoms c_touch
+thermo_modify norm no
+thermo {steps}
+run {steps}
+"""
 LAMMPS_INPUT = """units lj
 atom_style sphere
 boundary f f f
@@ -33,15 +42,7 @@ pair_style granular
 pair_coeff * * jkr {young} 0 {poisson} {surface_energy} tangential mindlin NULL 0 {friction} rolling sds {rolling_stiffness} 0 {rolling_friction} twisting marshall damping velocity
 neighbor {skin} bin
 neigh_modify delay 0 every 1 check yes
-timestep {step}
-fix move all nve/sphere
-compute touching all contact/atom
-compute touch all reduce sum c_touching
-thermo_style custom step atoms c_touch
-thermo_modify norm no
-thermo {steps}
-run {steps}
-"""
+""" + RUN_AND_COUNT
 LIGGGHTS_INPUT = """units si
 atom_style granular
 boundary f f f
@@ -61,15 +62,7 @@ fix m6 all property/global coefficientRollingFriction peratomtypepair 1 {rolling
 fix m7 all property/global coefficientRollingViscousDamping peratomtypepair 1 0.0
 pair_style gran model hertz tangential history cohesion sjkr2 rolling_friction epsd2
 pair_coeff * *
-timestep {step}
-fix move all nve/sphere
-compute touching all contact/atom
-compute touch all reduce sum c_touching
-thermo_style custom step atoms c_touch
-thermo_modify norm no
-thermo {steps}
-run {steps}
-"""
+""" + RUN_AND_COUNT
 PROGRAMS = {"lammps": ("lmp", LAMMPS_INPUT), "liggghts": ("liggghts", LIGGGHTS_INPUT)}
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 

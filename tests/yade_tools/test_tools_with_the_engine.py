@@ -58,10 +58,7 @@ def test_engines_that_would_move_the_grains_twice_are_refused(yade, other):
     found = yade(SCENE + f"""
 start()
 O.engines += [{other}]
-try:
-    O.step()
-except RuntimeError as error:
-    result["message"] = str(error)
+result["message"] = refusal()
 O.engines[1].dead = True
 O.step()
 result["steps"] = O.iter
