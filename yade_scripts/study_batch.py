@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import time
+from contextlib import suppress
 
 from yade_scripts import run_folder, table
 from yade_scripts.parameters import parse
@@ -97,6 +98,9 @@ class Batch:
         left = folder.file('left.table')
         table.write(left, [{'description': row.name, **row.cells, 'out': row.values['out'], 'resume': 1,
                             '!THREADS': row.values['threads'] or 1} for row in rows])
+        for row in rows:  # an earlier failure would still be one to --status until the row's turn comes
+            with suppress(FileNotFoundError):
+                os.remove(folder.log(row))
         self._output = open(folder.file('yade-batch.out'), 'w')
         command = batch_command(left, folder.file('@.log'), ['-j', str(jobs), '--nice', NICE])
         # Jobs inherit the study's lock: it is free again when the last of them is gone, whatever becomes of this.

@@ -384,8 +384,9 @@ Dissipation Dynamics::dissipated() const
 int Dynamics::contactCount() const
 {
 	int total = 0;
-	for (const auto& domain : domains)
-		total += domain->contactCount();
+#pragma omp parallel for num_threads(threadCount()) reduction(+ : total)
+	for (std::size_t d = 0; d < domains.size(); ++d)
+		total += domains[d]->contactCount();
 	return total;
 }
 

@@ -167,6 +167,7 @@ private:
 	static void write(const GrainInput&, Grain&);
 	static void write(const Grain&, GrainInput&);
 	void        kick(Grain&, int index, double time) const;
+	Trouble tooDeep(const Domain&) const;
 	void makeDomains();
 	void recall(const std::vector<double>& memory);
 	void firstForces();

@@ -69,22 +69,30 @@ Dynamics::Trouble Dynamics::hardest() const
 
 Dynamics::Trouble Dynamics::tooDeep() const
 {
+	std::vector<Trouble> worst(domains.size());
+#pragma omp parallel for num_threads(threadCount())
+	for (std::size_t d = 0; d < domains.size(); ++d)
+		worst[d] = tooDeep(*domains[d]);
+	return *std::max_element(worst.begin(), worst.end(), [](const Trouble& a, const Trouble& b) { return a.overlap < b.overlap; });
+}
+
+Dynamics::Trouble Dynamics::tooDeep(const Domain& domain) const
+{
 	Trouble t;
-	for (const auto& domain : domains)
-		for (int sort = 0; sort < 2; ++sort) {
-			const ContactList& list = domain->contacts[sort];
-			for (int lane = 0; lane < list.size(); ++lane) {
-				if (!list.alive(lane)) continue;
-				const int          i = list.first(lane), j = list.second(lane);
-				Vec3<double> d = separationOf(setting.grains[i], setting.grains[j]);
-				nearestImage(cell(), d);
-				const double least = std::max(setting.radius[i], setting.radius[j]);
-				if (dot(d, d) >= least * least) continue;
-				const double overlap = (setting.radius[i] + setting.radius[j] - std::sqrt(dot(d, d))) / std::min(setting.radius[i], setting.radius[j]);
-				if (overlap <= t.overlap) continue;
-				t = { std::min(original[i], original[j]), std::max(original[i], original[j]), 0, overlap, 0 };
-			}
+	for (int sort = 0; sort < 2; ++sort) {
+		const ContactList& list = domain.contacts[sort];
+		for (int lane = 0; lane < list.size(); ++lane) {
+			if (!list.alive(lane)) continue;
+			const int    i = list.first(lane), j = list.second(lane);
+			Vec3<double> d = separationOf(setting.grains[i], setting.grains[j]);
+			nearestImage(cell(), d);
+			const double least = std::max(setting.radius[i], setting.radius[j]);
+			if (dot(d, d) >= least * least) continue;
+			const double overlap = (setting.radius[i] + setting.radius[j] - std::sqrt(dot(d, d))) / std::min(setting.radius[i], setting.radius[j]);
+			if (overlap <= t.overlap) continue;
+			t = { std::min(original[i], original[j]), std::max(original[i], original[j]), 0, overlap, 0 };
 		}
+	}
 	return t;
 }
 

@@ -68,7 +68,7 @@ def draw_collision(axis, collision):
         rates = np.array([part[f"rate{threads}"] for part in collision["parts"]]) / 1e6
         axis.stairs(rates, ends, color=COLOURS["engine"], linestyle=style["linestyle"], label=f"{threads} core{'s' * (threads > 1)}")
         axis.axhline(0.75 * collision["before"][threads] / 1e6, color="0.6", linewidth=0.8, linestyle=style["linestyle"],
-                     label="75 % of the speed before" if threads == 1 else None)
+                     label="75 % of that at the usual speed" if threads == 1 else None)
     axis.set(xlabel="time [ns]", ylabel="million contact updates a second", title=f"through a collision, R = {collision['radius']:g} r, {collision['speed']:g} m/s", ylim=(0, 1.15e-6 * max(part[f"rate{threads}"] for part in collision["parts"] for threads in THREADS)))
     axis.grid(alpha=0.25)
     axis.legend(loc="lower left", fontsize=8)

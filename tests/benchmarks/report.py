@@ -107,7 +107,7 @@ def memory(measured):
 
 def collision(found):
     lines = ["| until [ns] | contacts | pieces | events so far | one core | two cores |", "|---:|---:|---:|---:|---:|---:|"]
-    lines.append(f"| before | | | | {found['before'][1] / 1e6:.1f} | {found['before'][2] / 1e6:.1f} |")
+    lines.append(f"| at the usual speed | | | | {found['before'][1] / 1e6:.1f} | {found['before'][2] / 1e6:.1f} |")
     lines += [f"| {part['until'] * 1e9:.0f} | {part['contacts']} | {part['pieces']} | {part['events']} | {part['rate1'] / 1e6:.1f} | {part['rate2'] / 1e6:.1f} |" for part in found["parts"]]
     return section(f"Through a collision (R = {found['radius']:g}, {found['speed']:g} m/s; one and two cores take turns)", lines)
 

@@ -71,7 +71,7 @@ def through_collision(collision):
     found = []
     for threads in (1, 2):
         rates = [part[f"rate{threads}"] / collision["before"][threads] for part in collision["parts"]]
-        found.append(Target(f"slowest part of a collision at {collision['speed']:g} m/s, R = {collision['radius']:g} (range: all parts) / before it, {cores(threads)}", 0.75, Spread(min(rates), min(rates), max(rates))))
+        found.append(Target(f"slowest part of a collision at {collision['speed']:g} m/s, R = {collision['radius']:g} (range: all parts) / the same grains at the usual speed, {cores(threads)}", 0.75, Spread(min(rates), min(rates), max(rates))))
     return found
 
 

@@ -123,9 +123,13 @@ def test_an_ended_run_with_other_parameters_fails_its_row(first_call, tmp_path):
 
 def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
     write_table(tmp_path, 'tiny.table', 'killed', 'ends')
+    old = tmp_path / 'runs' / 'logs' / 'tiny' / 'ends.log'  # of an earlier failure
+    old.parent.mkdir(parents=True)
+    old.write_text('status  : 1 (FAILED)\nfinished: long ago\n')
     process = start(tmp_path, 'tiny.table', '-j', '1')
     run = tmp_path / 'runs' / 'tiny' / 'killed'
     wait_for(lambda: (run / 'checkpoint' / 'recorder.npz').exists())
+    assert not old.exists()
     busy = study(tmp_path, 'tiny.table')
     assert busy.returncode == 2 and 'this study is being run by another process' in busy.stderr
     process.send_signal(signal.SIGTERM)
