@@ -18,8 +18,9 @@ class Bounce:
     """One parameter set: filling, radius [grain radii], velocity [m/s], seeds; compression and parting: by
     channel (mean, error) of its change in shares of K(0), from the start to t_max and from there to the end;
     bulk (mean, error): share of K(0) left in the motion of the halves; restitution (mean, low, high; 0 for
-    sticking) and sticking (share, low, high) of the runs that are decided, with 95 % intervals; None where one
-    seed allows no interval, or none is decided."""
+    sticking) and sticking (share, low, high), of the runs that are decided, with 95 % intervals; that of sticking
+    counts the undecided both ways, since they are not a fair choice. None where one seed allows no interval, or
+    none is decided."""
     filling: float
     radius: float
     velocity: float
@@ -52,7 +53,8 @@ def _bounce(rows):
         filling=first.filling, radius=first.radius / first.grain_radius, velocity=first.velocity, seeds=len(rows),
         compression=compression, parting=parting, bulk=_mean([row.bulk for row in rows]),
         restitution=restitution_interval([row.restitution for row in decided]),
-        sticking=(stuck / len(decided), *wilson(stuck, len(decided))) if decided else (None, None, None),
+        sticking=(stuck / len(decided) if decided else None, wilson(stuck, len(rows))[0],
+                  wilson(stuck + len(rows) - len(decided), len(rows))[1]),
         outcomes={kind: kinds.count(kind) for kind in sorted(set(kinds))})
 
 

@@ -20,8 +20,9 @@ LEGEND = (
     "sigma_plastic and E*: least squares over delta_max and tau_max at all velocities, weight 1/s^2 of a run, s the "
     "standard deviation over the seeds of its point, smoothed over velocity.",
 )
-UNDECIDED_MEANS = (f"{UNDECIDED}, and not counted: in one piece at the end, but parting at more than {STILL_PARTING:g} of "
-                   "the largest speed of the return; a longer duration decides")
+UNDECIDED_MEANS = (f"{UNDECIDED}: in one piece at the end, but parting at more than {STILL_PARTING:g} of the largest speed "
+                   "of the return; not counted, but by the interval of the sticking probability both ways; a longer duration "
+                   "decides")
 
 
 def missing(study):
@@ -102,7 +103,7 @@ def energy_rows(study, names=LABELS):
 def _interval(triple):
     mean, low, high = triple
     if mean is None:
-        return "-"
+        return "-" if low is None else f"- ({low:.3f} to {high:.3f})"
     return f"{mean:.3f}" if low is None else f"{mean:.3f} ({low:.3f} to {high:.3f})"
 
 

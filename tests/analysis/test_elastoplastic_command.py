@@ -10,6 +10,7 @@ import pytest
 from made_collisions import MODULI, line_of, made_run
 from written_runs import RADIUS
 
+from analysis.elastoplastic.bounce import wilson
 from analysis.elastoplastic.measure import first_compression
 from analysis.elastoplastic.report import LEGEND
 
@@ -88,12 +89,14 @@ def test_runs_that_still_part_at_the_end_are_undecided(tmp_path):
     for seed in (1, 2, 3):
         made_run(tmp_path / f"s{seed}", 80.0, 10**0.5, seed, 0.0, sticks=True, settles=seed != 3)
     (point,) = json.loads(analyse("--json", *tmp_path.iterdir()).stdout)["bounces"]
-    assert point["outcomes"] == {"sticking": 2, "undecided": 1} and point["sticking"][0] == 1.0
+    assert point["outcomes"] == {"sticking": 2, "undecided": 1}
+    assert point["sticking"] == [1.0, wilson(2, 3)[0], 1.0]
     for path in tmp_path.iterdir():
         if path.name != "s3":
             shutil.rmtree(path)
     (point,) = json.loads(analyse("--json", *tmp_path.iterdir()).stdout)["bounces"]
-    assert point["outcomes"] == {"undecided": 1} and point["sticking"][0] is None and point["restitution"][0] is None
+    assert point["outcomes"] == {"undecided": 1} and point["restitution"][0] is None
+    assert point["sticking"] == [None, 0.0, 1.0]
 
 
 def test_text_names_everything(runs):

@@ -23,13 +23,13 @@ class Task:
 def engine(settings, radius, threads, kind="alike", instructions=""):
     labels = {"code": "engine", "kind": kind, "radius": radius, "threads": threads, "instructions": instructions or "best"}
     request = {"do": "fused", "seconds": settings.seconds, "threads": threads, "instructions": instructions}
-    return Task(labels, ("jkr-wada", kind, radius, 1), request, settings.seconds + 0.3 + 8e-6 * 0.8 * radius**3)
+    return Task(labels, ("jkr-wada", kind, radius, 1), request, 4 / 3 * settings.seconds + 0.3 + 8e-6 * 0.8 * radius**3)
 
 
 def loop(settings, law, radius, threads):
     """YADE's own loop with this repository's law (functors) or with the stock one."""
     labels = {"code": {"jkr-wada": "functors", "stock": "stock"}[law], "kind": "alike", "radius": radius, "threads": threads, "instructions": ""}
-    return Task(labels, (law, "alike", radius, threads), {"do": "loop", "seconds": settings.loop_seconds}, settings.loop_seconds + 0.5)
+    return Task(labels, (law, "alike", radius, threads), {"do": "loop", "seconds": settings.loop_seconds}, 4 / 3 * settings.loop_seconds + 0.5)
 
 
 def peer(settings, code, cores):
