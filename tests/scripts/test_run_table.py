@@ -5,6 +5,7 @@ import subprocess
 import pytest
 
 from running import PYTHON, RUN_TABLE, TOP, environment, read_json
+from yade_scripts import table
 from yade_scripts.parameters import parse
 from yade_scripts.run_folder import closing_line, read_closing_line
 
@@ -51,11 +52,5 @@ def test_closing_line_is_read_back(outcome):
 @pytest.mark.parametrize('name', sorted(os.listdir(os.path.join(TOP, 'yade_scripts', 'studies'))))
 def test_studies_hold_valid_rows(name):
     """Every cell of every study is a parameter that parse() takes."""
-    with open(os.path.join(TOP, 'yade_scripts', 'studies', name)) as file:
-        rows = [line.split('#')[0].split() for line in file if line.split('#')[0].strip()]
-    header, previous = rows[0], {}
-    for cells in rows[1:]:
-        assert len(cells) == len(header)
-        row = {column: previous.get(column) if cell == '=' else cell for column, cell in zip(header, cells)}
-        parse({column: cell for column, cell in row.items() if column != 'description' and column[0] != '!'})
-        previous = row
+    for row in table.read(os.path.join(TOP, 'yade_scripts', 'studies', name)):
+        parse({column: cell for column, cell in row.cells.items() if column[0] != '!'})
