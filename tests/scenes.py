@@ -112,6 +112,18 @@ def positions():
     return np.array([b.state.pos for b in O.bodies])
 
 
+def differences_of_instruction_sets(run):
+    """{name: largest difference of a position from that of the portable passes [1e-7 m]} of the sets that this machine has, after run(instructions)."""
+    def end(instructions):
+        try:
+            run(instructions)
+        except RuntimeError:
+            return None
+        return positions()
+    reference = end("portable")
+    return {name: float(np.abs(x - reference).max() / 1e-7) for name in ("avx2", "avx512") for x in [end(name)] if x is not None}
+
+
 def record(n):
     """Positions (n, bodies, 3) and energies after each of n steps."""
     tracks, sums = [], []

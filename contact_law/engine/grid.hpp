@@ -38,7 +38,7 @@ struct NeighbourSearch {
 
 class Grid {
 public:
-	/* A grid is made by these five, each for all parts (stretches of grains by rising index) before the next, layOut once; the parts of one may run side by side.
+	/* A grid is made by these, each for all parts (stretches of grains by rising index) before the next, begin and layOut once; the parts of one may run side by side.
 	 * In each cell members stand in the order of their indices, however many parts there are. */
 	void begin(int parts_, int count_)
 	{

@@ -29,10 +29,26 @@ namespace {
 		std::size_t                at = 0;
 	};
 
+	// A contact or a bond: its grains and its history.
+	template <class Pair> void rememberPair(std::vector<double>& to, const Pair& pair)
+	{
+		const Vec3<double>&p = pair.history.pointers.n1, &q = pair.history.pointers.n2;
+		to.insert(to.end(), { double(pair.i), double(pair.j), p.x, p.y, p.z, q.x, q.y, q.z, pair.history.twist });
+	}
+	template <class Pair> Pair recallPair(Reader& from)
+	{
+		Pair pair {};
+		pair.i = from.integer(), pair.j = from.integer();
+		pair.history.pointers.n1 = from.vector();
+		pair.history.pointers.n2 = from.vector();
+		pair.history.twist       = from.next();
+		return pair;
+	}
+
 	void remember(std::vector<double>& to, const Bond& b)
 	{
-		const Vec3<double>&p = b.history.pointers.n1, &q = b.history.pointers.n2;
-		to.insert(to.end(), { double(b.i), double(b.j), p.x, p.y, p.z, q.x, q.y, q.z, b.history.twist, b.rest });
+		rememberPair(to, b);
+		to.push_back(b.rest);
 	}
 
 	void recallBonds(Reader& from, Domain& domain, const Setting& setting)
@@ -44,11 +60,8 @@ namespace {
 					list.appendDead();
 					continue;
 				}
-				Bond b {};
-				b.i = from.integer(), b.j = from.integer();
-				Pointers<double>& p = b.history.pointers;
-				for (double* number : { &p.n1.x, &p.n1.y, &p.n1.z, &p.n2.x, &p.n2.y, &p.n2.z, &b.history.twist, &b.rest })
-					*number = from.next();
+				Bond b      = recallPair<Bond>(from);
+				b.rest      = from.next();
 				b.constants = setting.bondOf(b.i, b.j);
 				list.append(b);
 			}
@@ -58,8 +71,8 @@ namespace {
 	void remember(std::vector<double>& to, const Vec3<double>& v) { to.insert(to.end(), { v.x, v.y, v.z }); }
 	void remember(std::vector<double>& to, const Contact& c)
 	{
-		const Vec3<double>&p = c.history.pointers.n1, &q = c.history.pointers.n2;
-		to.insert(to.end(), { double(c.i), double(c.j), p.x, p.y, p.z, q.x, q.y, q.z, c.history.twist, c.drag, c.overlap });
+		rememberPair(to, c);
+		to.insert(to.end(), { c.drag, c.overlap });
 	}
 }
 
@@ -170,11 +183,9 @@ void Dynamics::recall(const std::vector<double>& memory)
 					list.appendDead();
 					continue;
 				}
-				Contact c {};
-				c.i = from.integer(), c.j = from.integer();
-				Pointers<double>& p = c.history.pointers;
-				for (double* number : { &p.n1.x, &p.n1.y, &p.n1.z, &p.n2.x, &p.n2.y, &p.n2.z, &c.history.twist, &c.drag, &c.overlap })
-					*number = from.next();
+				Contact c   = recallPair<Contact>(from);
+				c.drag      = from.next();
+				c.overlap   = from.next();
 				c.constants = setting.constantsOf(c.i, c.j);
 				list.append(c);
 			}

@@ -75,16 +75,11 @@ result["events"] = runs[0][2]
 
 def test_instruction_sets_agree_to_rounding(yade):
     found = yade(SCENE + """
-def end(instructions):
+def run(instructions):
     start("like", count=27)
-    try:
-        fused_engine(instructions=instructions)
-        O.run(200, True)
-    except RuntimeError:
-        return None
-    return positions()
-reference = end("portable")
-result["differences"] = {name: float(np.abs(x - reference).max() / 1e-7) for name in ("avx2", "avx512") for x in [end(name)] if x is not None}
+    fused_engine(instructions=instructions)
+    O.run(200, True)
+result["differences"] = differences_of_instruction_sets(run)
 """)
     for name, difference in found["differences"].items():
         assert difference < 1e-11, name
