@@ -6,6 +6,7 @@
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
 #             Stop it at will; called again it goes on. make study-status tells from another shell how far it is.
 # make test   builds what is needed and passes the tests
+# make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
 #
@@ -26,6 +27,8 @@ PLUGIN         := $(OVERLAY)/libcontact_law.so
 OBJECTS_FOLDER := build/objects
 
 YADE_VERSION ?= 2023.02a
+
+PYTHON := /usr/bin/python3
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-matplotlib python3-pytest
@@ -130,8 +133,6 @@ build/overlay: Makefile
 
 # ---- running it ----
 
-PYTHON := /usr/bin/python3
-
 .PHONY: demo test
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
@@ -172,6 +173,28 @@ bench: all
 bench-peers:
 	@for package in lammps liggghts openmpi-bin; do \
 		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make bench-peers: make bench will go without $$package" >&2; done
+
+# ---- formatting ----
+
+# Of one version on every machine: another version of a formatter wants another format.
+LINT := build/lint/bin
+FORMATTED := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null | grep -v contact_radius_coefficients)
+
+.PHONY: lint format
+$(LINT)/installed: Makefile
+	@$(MAKE) --no-print-directory deps PACKAGES=python3-venv
+	@$(PYTHON) -m venv build/lint
+	@$(LINT)/pip -q install --disable-pip-version-check ruff==0.6.9 clang-format==14.0.6
+	@touch $@
+
+lint: $(LINT)/installed
+	@$(LINT)/ruff format --quiet --check . || { echo "make lint: not formatted: $$($(LINT)/ruff format --check . 2>/dev/null | sed -n 's/^Would reformat: //p' | tr '\n' ' '); make format" >&2; exit 1; }
+	@$(LINT)/ruff check --quiet .
+	@for file in $(FORMATTED); do $(LINT)/clang-format $$file | cmp -s - $$file || { echo "make lint: $$file is not formatted; make format" >&2; exit 1; }; done
+
+format: $(LINT)/installed
+	@$(LINT)/ruff format --quiet . && $(LINT)/ruff check --quiet --fix .
+	@$(LINT)/clang-format -i $(FORMATTED)
 
 # ---- what must be installed ----
 

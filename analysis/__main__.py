@@ -1,5 +1,6 @@
 """Command line: python3 -m analysis summary RUN... [--json], figures RUN [--out DIR], and elastoplastic RUNS...
 [--figures FOLDER] [--json]."""
+
 import argparse
 import json
 import os
@@ -35,12 +36,9 @@ def _parser():
     summary = commands.add_parser(
         "summary",
         help="print compression, outcome and energies of runs",
-        description="Print compression (A24 eqs 10-13), outcome, restitution and the energy "
-        "channels of each run.",
+        description="Print compression (A24 eqs 10-13), outcome, restitution and the energy " "channels of each run.",
     )
-    summary.add_argument(
-        "runs", nargs="+", metavar="RUN", help="run folder (holds run.json, history.npz, states/)"
-    )
+    summary.add_argument("runs", nargs="+", metavar="RUN", help="run folder (holds run.json, history.npz, states/)")
     summary.add_argument(
         "--json",
         action="store_true",
@@ -89,6 +87,7 @@ def _summary(options):
 def _figures(options):
     # matplotlib is slow to load, and `summary` does without it.
     from .figures import draw_all
+
     try:
         run = open_run(options.run)
         for file in draw_all(run, options.out or run.path / "figures"):

@@ -34,6 +34,7 @@ class Outcome:
     velocity), mass_fractions (f1, f2), largest_fragment [grains, all counted], growth_efficiency (A22 eq 28,
     all grains, the target being the aggregate with more grains), fragments (their number) and excluded_grains
     (not counted in the fractions)."""
+
     kind: str
     restitution: float
     mass_fractions: tuple

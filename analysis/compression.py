@@ -4,6 +4,7 @@ eqs 10-13).
 As defined, v = +dd/dt (positive while the aggregates approach), but only between crossings: d jumps a little
 whenever a grain passes through x = 0, because the averages over x > 0 and x < 0 then change their members.
 """
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ class Maximum:
     """Largest compression: length d_max [m] at time t_max [s], their errors (see maximum_compression), and
     whether it is a maximum inside the record (False: at its first or last sample, so that d_max is only a
     bound)."""
+
     length: float
     time: float
     length_error: float
@@ -63,8 +65,7 @@ def maximum_compression(time, d, v):
     time, d, v = (np.asarray(a, dtype=float) for a in (time, d, v))
     if not (time.ndim == 1 and time.shape == d.shape == v.shape and time.size):
         raise ValueError(
-            "time, d and v must be one-dimensional and equally long, they are "
-            f"{time.shape}, {d.shape}, {v.shape}"
+            "time, d and v must be one-dimensional and equally long, they are " f"{time.shape}, {d.shape}, {v.shape}"
         )
     known = np.isfinite(d) & np.isfinite(v)
     if not known.any():
@@ -74,16 +75,14 @@ def maximum_compression(time, d, v):
     if k == 0 or k == time.size - 1:
         step = np.diff(time).max() if time.size > 1 else np.inf
         return Maximum(d[k], time[k], abs(v[k]) * step if time.size > 1 else np.inf, step, False)
-    tops = [_hermite_top(time[i:i + 2], d[i:i + 2], v[i:i + 2]) for i in (k - 1, k)]
+    tops = [_hermite_top(time[i : i + 2], d[i : i + 2], v[i : i + 2]) for i in (k - 1, k)]
     d_max, t_max = max(tops)
-    vertex_d, vertex_t = _parabola_vertex(time[k - 1:k + 2], d[k - 1:k + 2])
+    vertex_d, vertex_t = _parabola_vertex(time[k - 1 : k + 2], d[k - 1 : k + 2])
     near = slice(k - 1, k + 2)
     mismatch = np.abs(np.diff(d[near]) - 0.5 * (v[near][1:] + v[near][:-1]) * np.diff(time[near])).max()
     crossings = _falls_through_zero(time, v)
     to_crossing = np.abs(crossings - t_max).min() if crossings.size else np.diff(time[near]).max()
-    return Maximum(
-        d_max, t_max, max(abs(d_max - vertex_d), mismatch), max(abs(t_max - vertex_t), to_crossing), True
-    )
+    return Maximum(d_max, t_max, max(abs(d_max - vertex_d), mismatch), max(abs(t_max - vertex_t), to_crossing), True)
 
 
 def _hermite_top(t, d, v):
@@ -94,9 +93,7 @@ def _hermite_top(t, d, v):
     # d0 + m0 s + b s^2 + a s^3 on 0 <= s <= 1
     a, b = m0 + m1 - 2.0 * rise, 3.0 * rise - 2.0 * m0 - m1
     candidates = [0.0, 1.0]
-    candidates += [
-        s.real for s in np.roots([3.0 * a, 2.0 * b, m0]) if abs(s.imag) < 1e-12 and 0.0 < s.real < 1.0
-    ]
+    candidates += [s.real for s in np.roots([3.0 * a, 2.0 * b, m0]) if abs(s.imag) < 1e-12 and 0.0 < s.real < 1.0]
     return max((d[0] + s * (m0 + s * (b + s * a)), t[0] + s * h) for s in candidates)
 
 

@@ -1,4 +1,5 @@
 """Fragments: grains connected by contacts, and what became of two aggregates' mass."""
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -8,9 +9,7 @@ def fragment_labels(grains, contact_pairs):
     """Fragment number (N,) int of each of N = `grains` grains, joined by contact_pairs (M,2) int. Number 0
     has the most grains, and so on; equally large ones are in the order of their first grain."""
     pairs = np.asarray(contact_pairs, dtype=np.intp).reshape(-1, 2)
-    graph = coo_matrix(
-        (np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains)
-    )
+    graph = coo_matrix((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains))
     _, labels = connected_components(graph, directed=False)
     _, first, sizes = np.unique(labels, return_index=True, return_counts=True)
     rank = np.empty(len(sizes), dtype=np.intp)

@@ -1,4 +1,5 @@
 """The energy ledger: the channels [J] of a history, their sum, and how well it stays constant."""
+
 import numpy as np
 
 from .channels import CHANNELS
@@ -38,6 +39,4 @@ def shares(history):
     unit = initial_kinetic_energy(history)
     if not unit > 0:
         return None
-    return {
-        name: (history[name] - (0.0 if name == "kinetic" else history[name][0])) / unit for name in CHANNELS
-    }
+    return {name: (history[name] - (0.0 if name == "kinetic" else history[name][0])) / unit for name in CHANNELS}

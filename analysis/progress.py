@@ -1,4 +1,5 @@
 """A count of what is done with the time left, on a terminal only."""
+
 import sys
 import time
 

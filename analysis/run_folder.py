@@ -2,6 +2,7 @@
 
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is
 wrong with it."""
+
 import json
 import re
 import zipfile
@@ -33,6 +34,7 @@ class State:
     radius (N,) [m], aggregate (N,) int (0 or 1), contact_pairs (M,2) int (rows of the grains),
     contact_normal_force (M,) [N] (positive = repulsive), contact_bonded (M,) bool. The arrays are
     read-only."""
+
     time: float
     position: np.ndarray
     velocity: np.ndarray
@@ -79,6 +81,7 @@ class RunFolder:
     """One run: path, parameters (as in the run's table), derived (constants, SI), record (all of run.json),
     history (arrays (T,) by name: time [s], the channels [J], d [m], v [m/s], contacts, contacts_between; d
     and v are NaN while all grains are on one side), states, ended (came to its end)."""
+
     path: Path
     parameters: Mapping
     derived: Mapping
@@ -108,15 +111,20 @@ def open_run(path):
     """RunFolder at `path`; RunFolderError when it is no run folder, has no history yet, or is damaged.
 
     A run that has not ended can be read as far as it came (`ended` is False then).
-   """
+    """
     path = Path(path)
     if not path.is_dir():
         raise RunFolderError(f"{path}: " + ("is not a folder" if path.exists() else "no such run folder"))
     record = _read_record(path / "run.json")
-    return RunFolder(path=path, parameters=MappingProxyType(record["parameters"]),
-                     derived=MappingProxyType(record["derived"]), record=MappingProxyType(record),
-                     history=MappingProxyType(_read_history(path / "history.npz")),
-                     states=StateSequence(_state_files(path / "states")), ended=(path / "ended").is_file())
+    return RunFolder(
+        path=path,
+        parameters=MappingProxyType(record["parameters"]),
+        derived=MappingProxyType(record["derived"]),
+        record=MappingProxyType(record),
+        history=MappingProxyType(_read_history(path / "history.npz")),
+        states=StateSequence(_state_files(path / "states")),
+        ended=(path / "ended").is_file(),
+    )
 
 
 def _read_record(file):
@@ -129,8 +137,10 @@ def _read_record(file):
     except ValueError as error:
         raise RunFolderError(f"{file}: not valid JSON: {error}") from None
     if not isinstance(record, dict) or "format" not in record:
-        raise RunFolderError(f"{file}: not the record of a run: no 'format' (another program's file, or "
-                             "a run that has only just begun)")
+        raise RunFolderError(
+            f"{file}: not the record of a run: no 'format' (another program's file, or "
+            "a run that has only just begun)"
+        )
     if record["format"] != FORMAT:
         raise RunFolderError(f"{file}: format is {record['format']!r}, this analysis reads format {FORMAT}")
     for key in ("parameters", "derived"):
@@ -149,18 +159,20 @@ def _read_history(file):
     history = read_arrays(file, HISTORY_ARRAYS)
     shape = history["time"].shape
     if len(shape) != 1 or shape[0] == 0:
-        raise RunFolderError(
-            f"{file}: 'time' must be a non-empty one-dimensional array, its shape is {shape}"
-        )
+        raise RunFolderError(f"{file}: 'time' must be a non-empty one-dimensional array, its shape is {shape}")
     for name, array in history.items():
         _require_shape(file, name, array, shape)
         # d and v (A24 eqs 10-13) have no value while all grains are on one side of x = 0.
         if name not in ("d", "v") and not np.all(np.isfinite(array)):
-            raise RunFolderError(f"{file}: '{name}' holds a value that is not finite, first at index "
-                                 f"{int(np.argmin(np.isfinite(array)))}")
+            raise RunFolderError(
+                f"{file}: '{name}' holds a value that is not finite, first at index "
+                f"{int(np.argmin(np.isfinite(array)))}"
+            )
     if np.any(np.diff(history["time"]) <= 0):
-        raise RunFolderError(f"{file}: 'time' does not increase everywhere, first at index "
-                             f"{int(np.argmax(np.diff(history['time']) <= 0)) + 1}")
+        raise RunFolderError(
+            f"{file}: 'time' does not increase everywhere, first at index "
+            f"{int(np.argmax(np.diff(history['time']) <= 0)) + 1}"
+        )
     return history
 
 
@@ -179,8 +191,12 @@ def read_state(file):
     grains, contacts = arrays["radius"].size, arrays["contact_normal_force"].size
     for name in ("position", "velocity", "angular_velocity"):
         _require_shape(file, name, arrays[name], (grains, 3))
-    for name, size in (("radius", grains), ("aggregate", grains), ("contact_normal_force", contacts),
-                       ("contact_bonded", contacts)):
+    for name, size in (
+        ("radius", grains),
+        ("aggregate", grains),
+        ("contact_normal_force", contacts),
+        ("contact_bonded", contacts),
+    ):
         _require_shape(file, name, arrays[name], (size,))
     _require_shape(file, "contact_pairs", arrays["contact_pairs"], (contacts, 2))
     _require_contents(file, arrays, grains)

@@ -1,4 +1,5 @@
 """What a run says in a few numbers, as a dict (for JSON) and as a table (for people)."""
+
 import textwrap
 
 import numpy as np
@@ -108,9 +109,7 @@ def _measures(run, numbers):
     yield "largest fragment", f"{numbers['largest_fragment']} grains of {grains}, {fragments} fragments"
     yield "growth efficiency", f"{numbers['growth_efficiency']:.4g}"
     closed = numbers["energy_closure"]
-    yield "energy closure", (
-        "undefined: no kinetic energy at the start" if closed is None else f"{closed:.3g} of K(0)"
-    )
+    yield "energy closure", ("undefined: no kinetic energy at the start" if closed is None else f"{closed:.3g} of K(0)")
 
 
 def _d_max(numbers, grain_radius):

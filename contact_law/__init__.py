@@ -11,7 +11,7 @@ import ctypes
 import os
 import sys
 
-from .grain_arrays import snapshot
+from .grain_arrays import snapshot  # noqa: F401 (of the package)
 
 __version__ = "0.1.0"
 
@@ -70,7 +70,9 @@ def _rebuild_dispatchers(yade):
         new.updateAttrs({name: value for name, value in engine.dict().items() if name not in dispatchers})
         return new
 
-    if any(type(engine).__name__ in ("InteractionLoop", "IPhysDispatcher", "LawDispatcher") for engine in yade.O.engines):
+    if any(
+        type(engine).__name__ in ("InteractionLoop", "IPhysDispatcher", "LawDispatcher") for engine in yade.O.engines
+    ):
         yade.O.engines = [renewed(engine) for engine in yade.O.engines]
     yade.utils.defaultEngines = [renewed(engine) for engine in yade.utils.defaultEngines]
 

@@ -1,4 +1,5 @@
 """The grains and contacts of the running scene as numpy arrays."""
+
 import numpy as np
 
 
@@ -16,7 +17,9 @@ def snapshot():
     from yade.wrapper import JKRWadaSnapshot
 
     raw = JKRWadaSnapshot().read()
-    vectors = {name: np.frombuffer(raw[name]).reshape(-1, 3).copy() for name in ("position", "velocity", "angular_velocity")}
+    vectors = {
+        name: np.frombuffer(raw[name]).reshape(-1, 3).copy() for name in ("position", "velocity", "angular_velocity")
+    }
     pairs = np.frombuffer(raw["contact_pairs"], dtype=np.int32).reshape(-1, 2).copy()
     cell = {"cell_size": np.frombuffer(raw["cell_size"]).copy()} if "cell_size" in raw else {}
     return {

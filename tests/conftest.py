@@ -1,4 +1,5 @@
 """Shared by all tests: the repository's top on sys.path, and YADE runs in a process of their own."""
+
 import json
 import os
 import subprocess
@@ -33,7 +34,14 @@ def run_yade(script, parameters=None, threads=1, timeout=300, environment=None):
             + f"\nopen({str(answer)!r}, 'w').write(json.dumps(result, default=lambda x: x.tolist()))\n"
         )
         command = ["yade", "-n", "-x", f"-j{threads}", str(path)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=folder, env={**os.environ, **(environment or {})})
+        done = subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            timeout=timeout,
+            cwd=folder,
+            env={**os.environ, **(environment or {})},
+        )
         if done.returncode or not answer.exists():
             raise YadeFailed(f"status {done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
         return json.loads(answer.read_text())

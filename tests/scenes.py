@@ -1,10 +1,13 @@
 """Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path)."""
+
 import numpy as np
 from yade import utils
 from yade.wrapper import *
 
-CHANNELS = ("kinetic normal sliding rolling twisting slidingDissipation rollingDissipation twistingDissipation "
-            "connection disconnection drag bondBreaking").split()
+CHANNELS = (
+    "kinetic normal sliding rolling twisting slidingDissipation rollingDissipation twistingDissipation "
+    "connection disconnection drag bondBreaking"
+).split()
 LOST = CHANNELS[5:]
 
 
@@ -13,7 +16,9 @@ def ice(**other):
 
 
 def soft(**other):
-    return JKRMat(**{**dict(young=3e9, poisson=0.33, density=1300, surfaceEnergy=0.05, criticalRolling=1.1e-9), **other})
+    return JKRMat(
+        **{**dict(young=3e9, poisson=0.33, density=1300, surfaceEnergy=0.05, criticalRolling=1.1e-9), **other}
+    )
 
 
 def constants(material1, radius1, material2=None, radius2=None, damping=0):
@@ -22,10 +27,16 @@ def constants(material1, radius1, material2=None, radius2=None, damping=0):
 
 
 def functor_engines(damping=0, verlet=0.0, neck=0, **law):
-    return [ForceResetter(),
-            InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=verlet),
-            InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck)], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)]),
-            NewtonIntegrator(damping=0)]
+    return [
+        ForceResetter(),
+        InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=verlet),
+        InteractionLoop(
+            [Ig2_Sphere_Sphere_ScGeom()],
+            [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck)],
+            [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)],
+        ),
+        NewtonIntegrator(damping=0),
+    ]
 
 
 def new_scene(dt, **options):
@@ -37,7 +48,11 @@ def new_scene(dt, **options):
 def grain(position, radius, material, velocity=(0, 0, 0), spin=(0, 0, 0), blocked=""):
     """Append a sphere; returns its id."""
     body = utils.sphere([float(x) for x in position], float(radius), material=material)
-    body.state.vel, body.state.angVel, body.state.blockedDOFs = [float(x) for x in velocity], [float(x) for x in spin], blocked
+    body.state.vel, body.state.angVel, body.state.blockedDOFs = (
+        [float(x) for x in velocity],
+        [float(x) for x in spin],
+        blocked,
+    )
     return O.bodies.append(body)
 
 
@@ -87,11 +102,19 @@ def converging(count, seed, materials, radii, speed=5.0, spin=2e7):
     """Grains on a loose lattice (no contacts), all flying towards the middle with some spread, and spinning."""
     random = np.random.default_rng(seed)
     side = int(np.ceil(count ** (1 / 3)))
-    sites = [np.array([a, b, c]) - (side - 1) / 2 for a in range(side) for b in range(side) for c in range(side)][:count]
+    sites = [np.array([a, b, c]) - (side - 1) / 2 for a in range(side) for b in range(side) for c in range(side)][
+        :count
+    ]
     for k, site in enumerate(sites):
         radius = radii[k % len(radii)]
         x = 2.02 * max(radii) * (site + 0.004 * random.normal(size=3))
-        grain(x, radius, materials[k % len(materials)], -speed * site + 0.2 * speed * random.normal(size=3), spin * random.normal(size=3))
+        grain(
+            x,
+            radius,
+            materials[k % len(materials)],
+            -speed * site + 0.2 * speed * random.normal(size=3),
+            spin * random.normal(size=3),
+        )
 
 
 def fused_engine(**options):
@@ -114,14 +137,21 @@ def positions():
 
 def differences_of_instruction_sets(run):
     """{name: largest difference of a position from that of the portable passes [1e-7 m]} of the sets that this machine has, after run(instructions)."""
+
     def end(instructions):
         try:
             run(instructions)
         except RuntimeError:
             return None
         return positions()
+
     reference = end("portable")
-    return {name: float(np.abs(x - reference).max() / 1e-7) for name in ("avx2", "avx512") for x in [end(name)] if x is not None}
+    return {
+        name: float(np.abs(x - reference).max() / 1e-7)
+        for name in ("avx2", "avx512")
+        for x in [end(name)]
+        if x is not None
+    }
 
 
 def record(n):

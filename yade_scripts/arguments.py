@@ -1,4 +1,5 @@
 """Where a script's parameters come from: name=value arguments, and the row of a table."""
+
 import os
 
 from yade_scripts.parameters import ParameterError
@@ -8,11 +9,11 @@ def from_arguments(arguments):
     """{name: text} of arguments such as velocity=10 seed=3; raises ParameterError for anything else."""
     texts = {}
     for argument in arguments:
-        name, equals, text = argument.partition('=')
+        name, equals, text = argument.partition("=")
         if not equals or not name:
             raise ParameterError(f"argument '{argument}': not understood; allowed: name=value, or --help")
         if name in texts:
-            raise ParameterError(f'{name}: given twice; allowed: once')
+            raise ParameterError(f"{name}: given twice; allowed: once")
         texts[name] = text
     return texts
 
@@ -24,7 +25,7 @@ def gather(arguments):
     table=FILE:LINE.
     """
     texts = from_arguments(arguments)
-    row = texts.pop('table', None) or os.environ.get('YADE_BATCH')
+    row = texts.pop("table", None) or os.environ.get("YADE_BATCH")
     if not row:
         return texts, None
     columns, description = read_row(row)
@@ -38,15 +39,17 @@ def read_row(row):
     yade-batch's own. (That function makes variables of unchecked values, and takes text in quotes only.)
     """
     from yade.utils import TableParamReader
-    file, _, line = row.rpartition(':')
+
+    file, _, line = row.rpartition(":")
     try:
         rows = TableParamReader(file).paramDict()
     except (OSError, IndexError, RuntimeError, UnicodeDecodeError) as error:
-        reason = 'a row has fewer cells than the header' if isinstance(error, IndexError) else error
-        raise ParameterError(f'table {row}: {reason}; allowed: a table with a line of names '
-                             'and rows of values') from None
+        reason = "a row has fewer cells than the header" if isinstance(error, IndexError) else error
+        raise ParameterError(
+            f"table {row}: {reason}; allowed: a table with a line of names " "and rows of values"
+        ) from None
     if not line.isdigit() or int(line) not in rows:
         raise ParameterError(f'table {row}: no such row; allowed lines: {", ".join(map(str, sorted(rows)))}')
     columns = dict(rows[int(line)])
-    description = columns.pop('description')
-    return {name: text for name, text in columns.items() if name[0] != '!' and text != '*'}, description
+    description = columns.pop("description")
+    return {name: text for name, text in columns.items() if name[0] != "!" and text != "*"}, description

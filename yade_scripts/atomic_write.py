@@ -1,8 +1,9 @@
 """Files that are either whole or not there."""
+
 import os
 import tempfile
 
-UNFINISHED = '.unfinished'
+UNFINISHED = ".unfinished"
 
 
 def write_atomically(path, write):
@@ -12,9 +13,9 @@ def write_atomically(path, write):
     Raises OSError when the folder can't be written.
     """
     folder, name = os.path.split(os.path.abspath(path))
-    handle, temporary = tempfile.mkstemp(prefix='.' + name + '.', suffix=UNFINISHED, dir=folder)
+    handle, temporary = tempfile.mkstemp(prefix="." + name + ".", suffix=UNFINISHED, dir=folder)
     try:
-        with os.fdopen(handle, 'wb') as file:
+        with os.fdopen(handle, "wb") as file:
             write(file)
         os.chmod(temporary, 0o666 & ~_umask())  # mkstemp makes files that only their owner can read
         os.replace(temporary, path)
@@ -26,7 +27,7 @@ def write_atomically(path, write):
 def remove_unfinished(folder):
     """Take away the temporary files that a writer killed in between has left in a folder."""
     for name in os.listdir(folder):
-        if name.startswith('.') and name.endswith(UNFINISHED):
+        if name.startswith(".") and name.endswith(UNFINISHED):
             os.unlink(os.path.join(folder, name))
 
 

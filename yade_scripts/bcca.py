@@ -4,6 +4,7 @@ Needs numpy and scipy only. The recipe: two clusters of equal size and random or
 straight line, without turning, and stop where their first grains touch; from single grains to the aggregate.
 S17 doesn't give the impact parameter: here it is uniform over the cross-section in which clusters can meet.
 """
+
 import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
@@ -19,9 +20,12 @@ def bcca(grains, grain_radius, overlap, seed, index=0, planar=False):
     """
     stream = random_stream(seed, index)
     position = _cluster(grains, 2 * grain_radius - overlap, stream, planar)
-    return Packing(position, np.full(grains, float(grain_radius)), seed,
-                   dict(packing='bcca', grains=grains, grainRadius=grain_radius, overlap=overlap, index=index,
-                        planar=int(planar)))
+    return Packing(
+        position,
+        np.full(grains, float(grain_radius)),
+        seed,
+        dict(packing="bcca", grains=grains, grainRadius=grain_radius, overlap=overlap, index=index, planar=int(planar)),
+    )
 
 
 def extent(packing):
@@ -32,8 +36,9 @@ def extent(packing):
 def _cluster(grains, reach, stream, planar):
     if grains == 1:
         return np.zeros((1, 3))
-    halves = [_turned(_cluster(size, reach, stream, planar), stream, planar)
-              for size in (grains - grains // 2, grains // 2)]
+    halves = [
+        _turned(_cluster(size, reach, stream, planar), stream, planar) for size in (grains - grains // 2, grains // 2)
+    ]
     joined = np.concatenate([halves[0], _met(*halves, reach, stream, planar)])
     return joined - joined.mean(axis=0)
 
@@ -55,7 +60,7 @@ def _met(target, projectile, reach, stream, planar):
         if np.linalg.norm(offset) > limit:
             continue
         moved = projectile + offset
-        near = tree.sparse_distance_matrix(cKDTree(moved[:, across]), reach, output_type='coo_matrix')
+        near = tree.sparse_distance_matrix(cKDTree(moved[:, across]), reach, output_type="coo_matrix")
         if near.nnz:
             stops = target[near.row, 0] - moved[near.col, 0] + np.sqrt(reach**2 - near.data**2)
             return moved + (stops.max(), 0, 0)

@@ -5,6 +5,7 @@ recorder.npz (the history so far, and whose checkpoint this is). recorder.npz na
 and is written after it, so that at any moment there is one whole checkpoint, or none. The fused engine goes
 on to the same bits; YADE's own loop may add up forces in another order after loading, so to rounding.
 """
+
 import json
 import os
 import shutil
@@ -16,7 +17,7 @@ import numpy as np
 from yade_scripts.agreement import difference
 from yade_scripts.atomic_write import write_atomically
 
-FOLDER, RECORDER = 'checkpoint', 'recorder.npz'
+FOLDER, RECORDER = "checkpoint", "recorder.npz"
 
 
 class CheckpointError(RuntimeError):
@@ -45,37 +46,41 @@ class Checkpoint:
         self.folder = os.path.join(run_folder, FOLDER)
         try:
             with np.load(os.path.join(self.folder, RECORDER)) as file:
-                self.rows, about = file['rows'], json.loads(str(file['about']))
-            self.run, self.wallTime = about['run'], about['wallTime']
-            self.scene = os.path.join(self.folder, about['scene'])
+                self.rows, about = file["rows"], json.loads(str(file["about"]))
+            self.run, self.wallTime = about["run"], about["wallTime"]
+            self.scene = os.path.join(self.folder, about["scene"])
             os.stat(self.scene)
         except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
-            raise CheckpointError(f'{self.folder}: not a checkpoint ({" ".join(str(error).split())}); '
-                                  'allowed: take that folder away to start the run again') from None
+            raise CheckpointError(
+                f'{self.folder}: not a checkpoint ({" ".join(str(error).split())}); '
+                'allowed: take that folder away to start the run again'
+            ) from None
 
     def require_agreement(self, values, made_with):
         """Raise CheckpointError unless it is of a run with these parameters, and was written by this software.
 
         made_with: as report.made_with() gives it. The layout of what YADE saves belongs to one build.
         """
-        for name, version in (('YADE', 'yade'), ('contact_law', 'contact_law')):
-            written, present = self.run['versions'][version], made_with['versions'][version]
+        for name, version in (("YADE", "yade"), ("contact_law", "contact_law")):
+            written, present = self.run["versions"][version], made_with["versions"][version]
             if written != present:
-                self._refuse(f'written by {name} {written}, not {present}')
-        if self.run['commit'] != made_with['commit']:
+                self._refuse(f"written by {name} {written}, not {present}")
+        if self.run["commit"] != made_with["commit"]:
             self._refuse(f'written by the plugin of commit {self.run["commit"]}, not {made_with["commit"]}')
         differs = difference(values, self.run)
         if differs:
-            self._refuse(f'of a run with {differs}')
+            self._refuse(f"of a run with {differs}")
 
     def load_scene(self):
         """Put the saved scene in the place of YADE's present one."""
         from yade.wrapper import Omega
+
         Omega().load(self.scene)
 
     def _refuse(self, reason):
-        raise CheckpointError(f'{self.folder}: {reason}; allowed: the same, or take that folder away to start '
-                              'the run again')
+        raise CheckpointError(
+            f"{self.folder}: {reason}; allowed: the same, or take that folder away to start " "the run again"
+        )
 
 
 class Writer:
@@ -97,13 +102,15 @@ class Writer:
     def save(self):
         """Write a checkpoint; the one before is there until the new one is whole."""
         from yade.wrapper import Omega
+
         omega = Omega()
-        scene = f'scene-{omega.iter}.yade'
+        scene = f"scene-{omega.iter}.yade"
         os.makedirs(self.folder, exist_ok=True)
         omega.save(os.path.join(self.folder, scene), True)
-        about = json.dumps({'run': self.run, 'wallTime': self.wall_time(), 'scene': scene})
-        write_atomically(os.path.join(self.folder, RECORDER),
-                         lambda file: np.savez(file, rows=self.recorder.rows(), about=about))
+        about = json.dumps({"run": self.run, "wallTime": self.wall_time(), "scene": scene})
+        write_atomically(
+            os.path.join(self.folder, RECORDER), lambda file: np.savez(file, rows=self.recorder.rows(), about=about)
+        )
         for name in os.listdir(self.folder):
             if name not in (scene, RECORDER):
                 os.unlink(os.path.join(self.folder, name))

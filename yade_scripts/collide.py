@@ -10,6 +10,7 @@ Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (on
 was run), 1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder
 that can be read, with a checkpoint; a killed run leaves its last one. resume=1 goes on from there.
 """
+
 import os
 import sys
 import time
@@ -20,49 +21,55 @@ from yade_scripts.errors import one_line_errors
 from yade_scripts.materials import MATERIALS
 
 start = time.monotonic()
-if '--help' in sys.argv[1:]:
-    print(__doc__ + '\n' + parameters.help_text())
+if "--help" in sys.argv[1:]:
+    print(__doc__ + "\n" + parameters.help_text())
     sys.exit(0)
 
-with one_line_errors('collide.py'):
+with one_line_errors("collide.py"):
     values = parameters.parse(*arguments.gather(sys.argv[1:]))
     from yade_scripts import checkpoint, recorder, report, run_folder, run_loop, scene  # these need the plugin
 
     # What is made of what
-    material = MATERIALS[values['material']]
+    material = MATERIALS[values["material"]]
     constants = scene.pair_constants(values, material)
     values = parameters.complete(values, constants, O.numThreads)
     step_chosen = parameters.step_chosen(values, constants)
-    aggregate_radius = values['radius'] * material.grainRadius
+    aggregate_radius = values["radius"] * material.grainRadius
 
     # Two aggregates on their way to each other
     centres, velocities = zip(*scene.placements(values, material.grainRadius))
-    pair = [packings.moved(aggregates.make(values, material.grainRadius, constants['equilibriumOverlap'], index),
-                           centre) for index, centre in enumerate(centres)]
+    pair = [
+        packings.moved(aggregates.make(values, material.grainRadius, constants["equilibriumOverlap"], index), centre)
+        for index, centre in enumerate(centres)
+    ]
     packings.require_apart(*pair)
-    folder = run_folder.RunFolder(values['out'], values['overwrite'], values['resume'])
+    folder = run_folder.RunFolder(values["out"], values["overwrite"], values["resume"])
     saved = folder.checkpoint
     if saved:
         saved.require_agreement(values, report.made_with())
 
 # YADE's scene, and what is recorded of it
-time_step = values['stepFraction'] * constants['timeUnit']
-schedule = sampling.Schedule.of(values['duration'], time_step)
+time_step = values["stepFraction"] * constants["timeUnit"]
+schedule = sampling.Schedule.of(values["duration"], time_step)
 history = recorder.Recorder(folder, schedule, scene.aggregate_of_grain(pair), aggregate_radius)
 if saved:
     history.go_on(saved.rows)
     steps, runner, begin = scene.go_on(values, schedule, saved)
 else:
-    scene.build(pair, velocities, scene.material_of(values, material), time_step, values['planar'])
+    scene.build(pair, velocities, scene.material_of(values, material), time_step, values["planar"])
     steps, runner, begin = scene.start(values, material.grainRadius, schedule, history)
-run = report.Report(folder, values, {**scene.derived(values, material, constants, schedule, time_step),
-                                      'stepChoice': step_chosen}, start,
-                    saved.wallTime if saved else 0.0)
-checkpoints = checkpoint.Writer(folder.path, run.run, history, run.wall_time, values['checkpointInterval'])
+run = report.Report(
+    folder,
+    values,
+    {**scene.derived(values, material, constants, schedule, time_step), "stepChoice": step_chosen},
+    start,
+    saved.wallTime if saved else 0.0,
+)
+checkpoints = checkpoint.Writer(folder.path, run.run, history, run.wall_time, values["checkpointInterval"])
 
 # The run
-if values['tolerance'] is not None:
-    print(f'step: {step_chosen}', flush=True)
+if values["tolerance"] is not None:
+    print(f"step: {step_chosen}", flush=True)
 outcome, status = run_loop.run(steps, history, runner, begin, checkpoints)
 history.write_history()
 run.end(outcome)

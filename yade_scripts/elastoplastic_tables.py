@@ -4,6 +4,7 @@ full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every scene, 
 selection for two hours on two cores, at twice that step. Rows are in the order in which they are
 worth having: small scenes first, and every figure gets its first points early.
 """
+
 import os
 import sys
 
@@ -12,29 +13,49 @@ sys.path.insert(0, os.path.dirname(HERE))
 from yade_scripts import table
 
 FASTEST_STEP = 0.2  # t0; the ledger closes to 1e-4 of the kinetic energy
-REFERENCE = 5       # i of the velocity 10^0.5 m/s at which sizes are compared (Figs 5 to 7)
+REFERENCE = 5  # i of the velocity 10^0.5 m/s at which sizes are compared (Figs 5 to 7)
 VELOCITIES = range(8)
 
 # {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow
 # collisions of larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
-DESK_SIZES = {(0.4, 40): 20, (0.3, 40): 20, (0.4, 50): 8, (0.3, 50): 8, (0.4, 60): 8, (0.3, 60): 8,
-              (0.4, 80): 3, (0.3, 80): 3}
+DESK_SIZES = {
+    (0.4, 40): 20,
+    (0.3, 40): 20,
+    (0.4, 50): 8,
+    (0.3, 50): 8,
+    (0.4, 60): 8,
+    (0.3, 60): 8,
+    (0.4, 80): 3,
+    (0.3, 80): 3,
+}
 DESK_VELOCITIES = 6
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
 SLOW = (0, 2)
 # The slowest at R = 40 are followed for twice the default duration, when more of them have stuck or parted.
-FOLLOWED = {(40, i): '1e-6' for i in range(3)}  # {(radius, i): duration [s]}
+FOLLOWED = {(40, i): "1e-6" for i in range(3)}  # {(radius, i): duration [s]}
 FIRST = 2  # seeds of each of these that come before any third
 
 
 def desk():
     """[(filling, radius, i, seed)] of the small study."""
-    sizes = [(filling, radius, REFERENCE, seed) for (filling, radius), seeds in DESK_SIZES.items()
-             for seed in range(1, seeds + 1)]
-    velocities = [(filling, 40, i, seed) for seed in range(1, DESK_VELOCITIES + 1) for filling in (0.4, 0.3)
-                  for i in VELOCITIES if i != REFERENCE]
-    slow = [(filling, radius, i, seed) for (filling, radius), seeds in DESK_SLOW.items() for i in SLOW
-            for seed in range(1, seeds + 1)]
+    sizes = [
+        (filling, radius, REFERENCE, seed)
+        for (filling, radius), seeds in DESK_SIZES.items()
+        for seed in range(1, seeds + 1)
+    ]
+    velocities = [
+        (filling, 40, i, seed)
+        for seed in range(1, DESK_VELOCITIES + 1)
+        for filling in (0.4, 0.3)
+        for i in VELOCITIES
+        if i != REFERENCE
+    ]
+    slow = [
+        (filling, radius, i, seed)
+        for (filling, radius), seeds in DESK_SLOW.items()
+        for i in SLOW
+        for seed in range(1, seeds + 1)
+    ]
     return sorted(sizes + velocities + slow, key=lambda row: (row[3] > FIRST, row[1], row[3]))
 
 
@@ -52,19 +73,31 @@ def rows(scenes, folder, step, durations):
     those that have another than the default."""
     found = []
     for filling, radius, i, seed in scenes:
-        name = f'f{filling:g}-R{radius:g}-i{i}-s{seed}'
-        found.append({'description': name, 'filling': filling, 'radius': radius, 'velocity': f'10**(0.1*{i})',
-                      'seed': seed, 'stepFraction': step, 'threads': 1, 'out': f'{folder}/{name}'})
+        name = f"f{filling:g}-R{radius:g}-i{i}-s{seed}"
+        found.append(
+            {
+                "description": name,
+                "filling": filling,
+                "radius": radius,
+                "velocity": f"10**(0.1*{i})",
+                "seed": seed,
+                "stepFraction": step,
+                "threads": 1,
+                "out": f"{folder}/{name}",
+            }
+        )
         if (radius, i) in durations:
-            found[-1]['duration'] = durations[radius, i]
+            found[-1]["duration"] = durations[radius, i]
     return found
 
 
 def write_tables(folder):
     """Write elastoplastic-desk.table and elastoplastic-full.table into a folder."""
-    table.write(os.path.join(folder, 'elastoplastic-desk.table'), rows(desk(), 'runs/elastoplastic', FASTEST_STEP, FOLLOWED))
-    table.write(os.path.join(folder, 'elastoplastic-full.table'), rows(full(), 'runs/elastoplastic-full', 0.1, {}))
+    table.write(
+        os.path.join(folder, "elastoplastic-desk.table"), rows(desk(), "runs/elastoplastic", FASTEST_STEP, FOLLOWED)
+    )
+    table.write(os.path.join(folder, "elastoplastic-full.table"), rows(full(), "runs/elastoplastic-full", 0.1, {}))
 
 
-if __name__ == '__main__':
-    write_tables(os.path.join(HERE, 'studies'))
+if __name__ == "__main__":
+    write_tables(os.path.join(HERE, "studies"))

@@ -1,6 +1,7 @@
 """Wrong input ends a script with one line on stderr and exit status 2."""
-from contextlib import contextmanager
+
 import sys
+from contextlib import contextmanager
 
 from yade_scripts.checkpoint import CheckpointError
 from yade_scripts.packings import PackingError

@@ -4,6 +4,7 @@
 
 The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py.
 """
+
 import os
 import sys
 
@@ -13,24 +14,24 @@ from yade_scripts.arguments import from_arguments
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.parameters import ParameterError, parse
 
-TAKEN = ('packing', 'filling', 'radius', 'grains', 'planar', 'material', 'seed')
+TAKEN = ("packing", "filling", "radius", "grains", "planar", "material", "seed")
 
 
 def make_packing(file, values, index):
     """Make aggregate number index, save it, print one line about it."""
-    material = MATERIALS[values['material']]
+    material = MATERIALS[values["material"]]
     packing = aggregates.make(values, material.grainRadius, equilibrium_overlap(material), index)
     packings.save(file, packing)
     coordination = 2 * len(packings.contacts(packing)) / packing.grains
-    print(f'{file}: {packing.grains} grains, mean coordination number {coordination:.3f}')
+    print(f"{file}: {packing.grains} grains, mean coordination number {coordination:.3f}")
 
 
 def main(arguments):
-    files = [argument for argument in arguments if '=' not in argument]
-    if '--help' in arguments or not 1 <= len(files) <= 2:
-        print(__doc__ + '\nparameters: ' + ', '.join(TAKEN))
-        return 0 if '--help' in arguments else 2
-    texts = from_arguments(argument for argument in arguments if '=' in argument)
+    files = [argument for argument in arguments if "=" not in argument]
+    if "--help" in arguments or not 1 <= len(files) <= 2:
+        print(__doc__ + "\nparameters: " + ", ".join(TAKEN))
+        return 0 if "--help" in arguments else 2
+    texts = from_arguments(argument for argument in arguments if "=" in argument)
     for name in texts:
         if name not in TAKEN:
             raise ParameterError(f'{name}: no parameter of a packing; allowed: {", ".join(TAKEN)}')
@@ -39,8 +40,8 @@ def main(arguments):
     return 0
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
     except (ParameterError, packings.PackingError, OSError) as error:
-        sys.exit(f'make_packing.py: {error}')
+        sys.exit(f"make_packing.py: {error}")

@@ -1,4 +1,5 @@
 """A progress bar with the time left, on a terminal only."""
+
 import sys
 import time
 
@@ -25,15 +26,16 @@ class Progress:
     def close(self):
         """Leave the line to whatever is written next."""
         if self.shown:
-            self.stream.write('\r\033[K')
+            self.stream.write("\r\033[K")
             self.stream.flush()
 
     def _draw(self, done, elapsed):
         filled = int(self.width * done / self.total)
         new = done - self.already
-        left = duration_text(elapsed / new * (self.total - done)) if new > 0 else '?'
-        self.stream.write(f'\r\033[K[{"#" * filled}{"." * (self.width - filled)}] '
-                          f'{100 * done / self.total:5.1f} %  {left} left')
+        left = duration_text(elapsed / new * (self.total - done)) if new > 0 else "?"
+        self.stream.write(
+            f'\r\033[K[{"#" * filled}{"." * (self.width - filled)}] ' f'{100 * done / self.total:5.1f} %  {left} left'
+        )
         self.stream.flush()
 
 
@@ -41,4 +43,4 @@ def duration_text(seconds):
     """1:02:03 or 2:03 for a number of seconds."""
     minutes, seconds = divmod(int(round(seconds)), 60)
     hours, minutes = divmod(minutes, 60)
-    return f'{hours}:{minutes:02d}:{seconds:02d}' if hours else f'{minutes}:{seconds:02d}'
+    return f"{hours}:{minutes:02d}:{seconds:02d}" if hours else f"{minutes}:{seconds:02d}"

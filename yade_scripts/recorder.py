@@ -1,10 +1,11 @@
 """Samples a running collision into its run folder."""
+
 import time
 
-import contact_law
 import numpy as np
 from yade.wrapper import Omega
 
+import contact_law
 from yade_scripts.run_folder import CHANNELS, SERIES, STATE
 from yade_scripts.sampling import compression_and_velocity
 
@@ -56,7 +57,7 @@ class Recorder:
     def write_history(self):
         """Write all samples so far."""
         series = dict(zip(SERIES, self.rows().T))
-        for name in ('contacts', 'contacts_between'):
+        for name in ("contacts", "contacts_between"):
             series[name] = series[name].astype(int)
         self.folder.write_history(series)
 
@@ -66,12 +67,13 @@ class Recorder:
         energies = [energies.get(channel, 0.0) for channel in CHANNELS]  # none of it so far: no entry
         self._require_sane(state, energies)
         compression, velocity = compression_and_velocity(
-            state['position'][:, 0], state['velocity'][:, 0], self.aggregate_radius)
-        pairs = self.aggregate[state['contact_pairs']]
+            state["position"][:, 0], state["velocity"][:, 0], self.aggregate_radius
+        )
+        pairs = self.aggregate[state["contact_pairs"]]
         between = np.count_nonzero(pairs[:, 0] != pairs[:, 1])
-        state['aggregate'] = self.aggregate
+        state["aggregate"] = self.aggregate
         number = len(self._rows)
-        self._rows.append((state['time'], *energies, compression, velocity, len(pairs), between))
+        self._rows.append((state["time"], *energies, compression, velocity, len(pairs), between))
         self._last_good = state
         if self.ending or number in self.schedule.states:
             self._write_state(state)
@@ -89,28 +91,32 @@ class Recorder:
         when = f'at {state["time"]:.4g} s'
         for channel, energy in zip(CHANNELS, energies):
             if not np.isfinite(energy):
-                raise RunFailed(f'energy {channel} is {energy} {when}')
-        finite = np.isfinite(state['position']).all(axis=1)
+                raise RunFailed(f"energy {channel} is {energy} {when}")
+        finite = np.isfinite(state["position"]).all(axis=1)
         if not finite.all():
             raise RunFailed(f'body {state["ids"][~finite][0]} has no finite position {when}')
-        start = self._rows[0][1:1 + len(CHANNELS)] if self._rows else energies
+        start = self._rows[0][1 : 1 + len(CHANNELS)] if self._rows else energies
         more, scale = sum(energies) - sum(start), sum(map(abs, start))
         if abs(more) > 0.1 * scale:
-            raise RunFailed(f'energy is not conserved ({more:.3g} J more than at the start, of {scale:.3g} J) '
-                            f'{when}: the step is too long{suspects(state)}')
+            raise RunFailed(
+                f"energy is not conserved ({more:.3g} J more than at the start, of {scale:.3g} J) "
+                f"{when}: the step is too long{suspects(state)}"
+            )
 
 
 def suspects(state):
     """What to look at in a state gone wrong: its fastest body and the contact that overlaps most, as a clause."""
-    speed = np.linalg.norm(state['velocity'], axis=1)
+    speed = np.linalg.norm(state["velocity"], axis=1)
     fastest = np.argmax(speed)
     text = f'; body {state["ids"][fastest]} is the fastest ({speed[fastest]:.4g} m/s)'
-    first, second = state['contact_pairs'].T
+    first, second = state["contact_pairs"].T
     if not len(first):
-        return text + ', and none touch any more'
-    radius, position = state['radius'], state['position']
+        return text + ", and none touch any more"
+    radius, position = state["radius"], state["position"]
     apart = np.linalg.norm(position[first] - position[second], axis=1)
     overlap = (radius[first] + radius[second] - apart) / np.minimum(radius[first], radius[second])
     deepest = np.argmax(overlap)
-    return (f'{text}, the deepest contact is that of body {state["ids"][first[deepest]]} and body '
-            f'{state["ids"][second[deepest]]} (overlap {overlap[deepest]:.4g} of the smaller radius)')
+    return (
+        f'{text}, the deepest contact is that of body {state["ids"][first[deepest]]} and body '
+        f'{state["ids"][second[deepest]]} (overlap {overlap[deepest]:.4g} of the smaller radius)'
+    )

@@ -1,21 +1,28 @@
 """run.json from the start of a run to its end, and the line that says how it ended."""
+
 import os
 import sys
 import time
 
-import contact_law
 import numpy as np
 import yade.config
 
+import contact_law
 from yade_scripts import checkpoint
 from yade_scripts.run_folder import closing_line, hardware
 
 
 def made_with():
     """What run.json says of the software: its versions, and the plugin's commit."""
-    return {'versions': {'yade': yade.config.version, 'python': sys.version.split()[0],
-                         'numpy': np.__version__, 'contact_law': contact_law.__version__},
-            'commit': contact_law.commit}
+    return {
+        "versions": {
+            "yade": yade.config.version,
+            "python": sys.version.split()[0],
+            "numpy": np.__version__,
+            "contact_law": contact_law.__version__,
+        },
+        "commit": contact_law.commit,
+    }
 
 
 class Report:
@@ -27,10 +34,13 @@ class Report:
     def __init__(self, folder, values, derived, start, earlier=0.0):
         self.folder, self.start = folder, start - earlier
         self.run = {
-            'parameters': values, 'derived': derived, **made_with(),
-            'seed': values['seed'], 'hardware': hardware(),
+            "parameters": values,
+            "derived": derived,
+            **made_with(),
+            "seed": values["seed"],
+            "hardware": hardware(),
         }
-        self._write('running')
+        self._write("running")
 
     def wall_time(self):
         """Seconds that the run has taken, those before interruptions included."""
@@ -39,12 +49,12 @@ class Report:
     def end(self, outcome):
         """Write the outcome and, if the run came to its planned end, the mark of that; print one line."""
         self._write(outcome)
-        if outcome == 'completed':
+        if outcome == "completed":
             self.folder.write_ended()
             checkpoint.remove(self.folder.path)
-        if outcome.startswith('failed'):
-            sys.stderr.write(f'{os.path.basename(sys.argv[0])}: {outcome}\n')
+        if outcome.startswith("failed"):
+            sys.stderr.write(f"{os.path.basename(sys.argv[0])}: {outcome}\n")
         print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
 
     def _write(self, outcome):
-        self.folder.write_run({**self.run, 'wallTime': self.wall_time(), 'outcome': outcome})
+        self.folder.write_run({**self.run, "wallTime": self.wall_time(), "outcome": outcome})

@@ -1,4 +1,5 @@
 """Steps a scene to its end, or to where it is stopped or fails."""
+
 from yade.wrapper import Omega
 
 from yade_scripts.progress import Progress
@@ -20,22 +21,22 @@ def run(steps, recorder, runner, begin, checkpoints):
             omega.step()
             progress.update(step)
             if recorder.error:
-                return f'failed: {one_line(recorder.error)}', 1
+                return f"failed: {one_line(recorder.error)}", 1
             checkpoints.save_if_due()
             if stop.received and step < steps:
                 checkpoints.save()
                 recorder.ending, runner.iterPeriod = True, 1
                 omega.step()
-                return 'interrupted', 128 + stop.received
+                return "interrupted", 128 + stop.received
     except (RuntimeError, OSError) as error:  # from an engine, or a checkpoint that can't be written
         recorder.write_last_good()
-        return f'failed: {one_line(error)}', 1
+        return f"failed: {one_line(error)}", 1
     finally:
         progress.close()
         stop.restore()
-    return 'completed', 0
+    return "completed", 0
 
 
 def one_line(error):
     """What an exception says, on one line."""
-    return ' '.join(str(error).split()) or type(error).__name__
+    return " ".join(str(error).split()) or type(error).__name__

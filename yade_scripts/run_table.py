@@ -5,6 +5,7 @@
 Logs go to runs/logs/. Exit status: 0 when every row's run came to its planned end, otherwise 1, with one line
 on stderr for each row that did not.
 """
+
 import os
 import re
 import shutil
@@ -15,72 +16,82 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from yade_scripts.run_folder import read_closing_line
 
-LOGS = os.path.join('runs', 'logs')
+LOGS = os.path.join("runs", "logs")
 
 
 def batch_command(table, log, options=()):
     """yade-batch's command line; log: a path in which % stands for a row's line and @ for its description."""
-    return ['yade-batch', '--disable-pynotify', '--plot-update', '0',
-            '--executable', shutil.which('yade') or 'yade', '--log', log,
-            *options, table, os.path.join(HERE, 'collide.py')]
+    return [
+        "yade-batch",
+        "--disable-pynotify",
+        "--plot-update",
+        "0",
+        "--executable",
+        shutil.which("yade") or "yade",
+        "--log",
+        log,
+        *options,
+        table,
+        os.path.join(HERE, "collide.py"),
+    ]
 
 
 def run_batch(table, options):
     """Run yade-batch, its output passed on; returns what it printed. Raises OSError when it isn't there."""
     name = os.path.splitext(os.path.basename(table))[0]
     os.makedirs(LOGS, exist_ok=True)
-    command = batch_command(table, os.path.join(LOGS, f'{name}.%.@.log'), options)
+    command = batch_command(table, os.path.join(LOGS, f"{name}.%.@.log"), options)
     lines = []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as batch:
         for line in batch.stdout:
-            print(line, end='', flush=True)
+            print(line, end="", flush=True)
             lines.append(line)
-    return batch.returncode, ''.join(lines)
+    return batch.returncode, "".join(lines)
 
 
 def log_files(output):
     """The logs of all jobs, from what yade-batch printed (a job that failed to start has one too)."""
-    found = re.search(r'^Log files: (.*)$', output, re.MULTILINE)
-    return found.group(1).split(' ') if found and found.group(1) else []
+    found = re.search(r"^Log files: (.*)$", output, re.MULTILINE)
+    return found.group(1).split(" ") if found and found.group(1) else []
 
 
 def failure(log_file):
     """One line that says what went wrong with the run of a log, or None when it came to its planned end."""
     try:
-        with open(log_file, errors='replace') as file:
+        with open(log_file, errors="replace") as file:
             log = file.read()
     except OSError as error:
-        return f'{log_file}: {error.strerror}'
+        return f"{log_file}: {error.strerror}"
     closing = read_closing_line(log)
     if closing is None:
-        message = re.findall(r'^collide\.py: .*$', log, re.MULTILINE)
+        message = re.findall(r"^collide\.py: .*$", log, re.MULTILINE)
         return f'{log_file}: {message[-1] if message else "the script did not come to its end"}'
     folder, outcome = closing
-    if outcome != 'completed' or not os.path.exists(os.path.join(folder, 'ended')):
-        return f'{log_file}: {folder}: {outcome}'
+    if outcome != "completed" or not os.path.exists(os.path.join(folder, "ended")):
+        return f"{log_file}: {folder}: {outcome}"
     return None
 
 
 def main(arguments):
-    if not arguments or arguments[0].startswith('-'):
+    if not arguments or arguments[0].startswith("-"):
         print(__doc__)
-        return 0 if '--help' in arguments else 2
+        return 0 if "--help" in arguments else 2
     table, *options = arguments
     if not os.path.isfile(table):
-        sys.exit(f'run_table.py: {table}: no such table')
+        sys.exit(f"run_table.py: {table}: no such table")
     try:
         status, output = run_batch(table, options)
     except OSError as error:
-        sys.exit(f'run_table.py: yade-batch: {error.strerror}')
+        sys.exit(f"run_table.py: yade-batch: {error.strerror}")
     logs = log_files(output)
     failures = [text for text in map(failure, logs) if text]
     if status or not logs:
-        failures.append(f'yade-batch: exit status {status}, {len(logs)} rows')
+        failures.append(f"yade-batch: exit status {status}, {len(logs)} rows")
     for text in failures:
-        sys.stderr.write(f'run_table.py: {text}\n')
-    print(f'{len(logs)} rows, {len(failures)} failures')
+        sys.stderr.write(f"run_table.py: {text}\n")
+    print(f"{len(logs)} rows, {len(failures)} failures")
     return 1 if failures else 0
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     sys.exit(main(sys.argv[1:]))

@@ -1,4 +1,5 @@
 """When a run is sampled, and A24's measures of a sample."""
+
 from dataclasses import dataclass
 from math import ceil
 
@@ -8,6 +9,7 @@ import numpy as np
 @dataclass(frozen=True)
 class Schedule:
     """Steps of the run; a sample every `interval` of them and at both ends; which samples become states."""
+
     steps: int
     interval: int
     states: frozenset

@@ -19,9 +19,10 @@ scatter, step_choice.csv the data: 50 to 86,400 grains in an aggregate, fillings
 silicate, T_vis up to 6 ps). The typical error is a quarter of it. Filling and drag are left out: with drag errors are
 somewhat smaller.
 """
+
 import math
 
-AUTO = 'auto'
+AUTO = "auto"
 EVENTS, DECAY, SPEED = 0.056, 0.36, 0.0101
 SHORTEST = 0.01  # t0: below, rather another tolerance
 
@@ -37,20 +38,22 @@ def choose(values, constants, limit):
     parameters.step_limit. Raises ToleranceTooTight when the step would be shorter than SHORTEST.
     """
     events, speed = coefficients(*energies(values, constants))
-    step = math.sqrt(values['tolerance'] / (events + speed))
+    step = math.sqrt(values["tolerance"] / (events + speed))
     if step < SHORTEST:
         least = _rounded((events + speed) * SHORTEST**2, math.ceil)
-        raise ToleranceTooTight(f'tolerance = {values["tolerance"]:g}: would take a step of {step:.2g} t0 at '
-                                f'{values["velocity"]:.3g} m/s; allowed: at least {least:g} K(0) in this scene, '
-                                f'for {SHORTEST:g} t0, or stepFraction as a number')
+        raise ToleranceTooTight(
+            f'tolerance = {values["tolerance"]:g}: would take a step of {step:.2g} t0 at '
+            f'{values["velocity"]:.3g} m/s; allowed: at least {least:g} K(0) in this scene, '
+            f'for {SHORTEST:g} t0, or stepFraction as a number'
+        )
     return min(limit, _rounded(step, math.floor))
 
 
 def energies(values, constants):
     """(K(0), the same for a grain), both over F_c delta_c."""
-    contact = constants['pullOffForce'] * constants['pullOffOverlap']
-    grain = constants['reducedMass'] * (values['velocity'] / 2)**2 / contact  # a grain's mass is 2 m*
-    return 2 * values['grains'] * grain, grain
+    contact = constants["pullOffForce"] * constants["pullOffOverlap"]
+    grain = constants["reducedMass"] * (values["velocity"] / 2) ** 2 / contact  # a grain's mass is 2 m*
+    return 2 * values["grains"] * grain, grain
 
 
 def coefficients(kinetic, of_grain, events=EVENTS, decay=DECAY, speed=SPEED):
@@ -58,24 +61,26 @@ def coefficients(kinetic, of_grain, events=EVENTS, decay=DECAY, speed=SPEED):
 
     kinetic, of_grain: as energies() gives them, numbers or arrays.
     """
-    return events * (1 + 1 / kinetic)**0.5 * kinetic**-decay, speed * of_grain / (1 + of_grain)**0.8
+    return events * (1 + 1 / kinetic) ** 0.5 * kinetic**-decay, speed * of_grain / (1 + of_grain) ** 0.8
 
 
 def reason(values, constants, limit):
     """Which step complete() chose and why, in one line."""
     events, speed = coefficients(*energies(values, constants))
-    step = values['stepFraction']
-    drag = f'T_vis = {values["viscoelasticTime"] * 1e12:.3g} ps' if values['viscoelasticTime'] else 'no drag'
+    step = values["stepFraction"]
+    drag = f'T_vis = {values["viscoelasticTime"] * 1e12:.3g} ps' if values["viscoelasticTime"] else "no drag"
     if step == limit:
-        why = f'set by the limit of stability, where {(events + speed) * step**2:.1g} is expected'
+        why = f"set by the limit of stability, where {(events + speed) * step**2:.1g} is expected"
     else:
-        source = "contacts' births and breaks" if events > speed else 'the speed of the impact'
-        why = f'set by {source}; limit of stability {limit:.3g} t0'
-    return (f'{step:.3g} t0 for a ledger error of at most {values["tolerance"]:g} K(0) in 95 % of runs, '
-            f'{2 * values["grains"]} grains at {values["velocity"]:.3g} m/s, {drag} ({why})')
+        source = "contacts' births and breaks" if events > speed else "the speed of the impact"
+        why = f"set by {source}; limit of stability {limit:.3g} t0"
+    return (
+        f'{step:.3g} t0 for a ledger error of at most {values["tolerance"]:g} K(0) in 95 % of runs, '
+        f'{2 * values["grains"]} grains at {values["velocity"]:.3g} m/s, {drag} ({why})'
+    )
 
 
 def _rounded(x, direction):
     """x at two significant digits, by math.floor or math.ceil."""
-    unit = 10.0**(math.floor(math.log10(x)) - 1)
-    return float(f'{direction(round(x / unit, 9)) * unit:.2g}')
+    unit = 10.0 ** (math.floor(math.log10(x)) - 1)
+    return float(f"{direction(round(x / unit, 9)) * unit:.2g}")

@@ -1,4 +1,5 @@
 """Ctrl-C and SIGTERM as a wish to stop, to be granted at a good moment."""
+
 import signal
 
 

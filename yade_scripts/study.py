@@ -11,6 +11,7 @@ a checkpoint. Logs, and the table of the rows that were left, are in runs/logs/N
 Exit status: 0 when every row has ended, 1 when a row failed (one line on stderr for each; the others have run),
 2 for a table that can't be used, 128 and the signal's number when stopped.
 """
+
 import argparse
 import os
 import signal
@@ -21,10 +22,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from yade_scripts import study_rows, study_view
 from yade_scripts.progress import duration_text
+from yade_scripts.stop_signals import StopSignals
 from yade_scripts.study_batch import Batch, StudyBusy, StudyFolder
 from yade_scripts.study_rows import DONE, FAILED, RUNNING
 from yade_scripts.study_screen import Screen
-from yade_scripts.stop_signals import StopSignals
 from yade_scripts.table import TableError
 
 POLL = 1.0  # s
@@ -33,13 +34,19 @@ STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('table', metavar='TABLE')
-    parser.add_argument('-j', '--jobs', type=int, default=os.cpu_count(), metavar='JOBS',
-                        help='threads at once (default: one for each core, %(default)s)')
-    parser.add_argument('--status', action='store_true', help='print what has become of each row, and run nothing')
+    parser.add_argument("table", metavar="TABLE")
+    parser.add_argument(
+        "-j",
+        "--jobs",
+        type=int,
+        default=os.cpu_count(),
+        metavar="JOBS",
+        help="threads at once (default: one for each core, %(default)s)",
+    )
+    parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
     options = parser.parse_args(arguments)
     if options.jobs < 1:
-        parser.error(f'-j = {options.jobs}: not allowed; allowed: 1 or more')
+        parser.error(f"-j = {options.jobs}: not allowed; allowed: 1 or more")
     return options
 
 
@@ -76,10 +83,13 @@ class Study:
         cost = self.folder.cost(self.rows, states)
         seconds = study_view.total_left(states, cost, self.rows, self.jobs)
         again = sum(state.progress > 0 for state in states if state.kind not in (DONE, FAILED))
-        estimate = 'unknown' if seconds is None else duration_text(seconds)
-        print(f'{self.name}: {len(self.rows)} rows, {len(self.rows) - len(left)} done or failed, {len(left)} to run'
-              f'{f", {again} of them from checkpoints" if again else ""}; estimated time {estimate} with '
-              f'{self.jobs} at once ({self.folder.basis(self.rows, states)})', flush=True)
+        estimate = "unknown" if seconds is None else duration_text(seconds)
+        print(
+            f'{self.name}: {len(self.rows)} rows, {len(self.rows) - len(left)} done or failed, {len(left)} to run'
+            f'{f", {again} of them from checkpoints" if again else ""}; estimated time {estimate} with '
+            f'{self.jobs} at once ({self.folder.basis(self.rows, states)})',
+            flush=True,
+        )
 
 
 def run(study, stop):
@@ -87,8 +97,11 @@ def run(study, stop):
     tried, screen = set(), Screen()
     while not stop.received:
         states = study.states()
-        left = [row for row, state in zip(study.rows, states)
-                if state.kind not in (DONE, FAILED, RUNNING) and row.name not in tried]
+        left = [
+            row
+            for row, state in zip(study.rows, states)
+            if state.kind not in (DONE, FAILED, RUNNING) and row.name not in tried
+        ]
         if left:
             tried |= {row.name for row in left}
             _run_batch(study, left, screen, stop)
@@ -105,7 +118,7 @@ def _run_batch(study, left, screen, stop):
             _wait(study, screen, stop)
         if stop.received:
             screen.close()
-            print('stopping; the runs write their checkpoints', file=sys.stderr, flush=True)
+            print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
             batch.stop()
 
 
@@ -122,14 +135,19 @@ def close(study, stop):
     states = study.states()
     failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
     for row, state in failures:
-        print(f'study.py: {row.name}: {state.note}', file=sys.stderr)
+        print(f"study.py: {row.name}: {state.note}", file=sys.stderr)
     missing = [row.name for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
     if missing and not stop.received:
-        print(f'study.py: {missing[0]} and {len(missing) - 1} others did not run: see '
-              f'{study.folder.file("yade-batch.out")}', file=sys.stderr)
+        print(
+            f'study.py: {missing[0]} and {len(missing) - 1} others did not run: see '
+            f'{study.folder.file("yade-batch.out")}',
+            file=sys.stderr,
+        )
     done = sum(state.kind == DONE for state in states)
-    print(f'{study.name}: {len(states)} rows, {done} done, {len(failures)} failed'
-          + (f', {len(states) - done - len(failures)} left' if stop.received else ''))
+    print(
+        f"{study.name}: {len(states)} rows, {done} done, {len(failures)} failed"
+        + (f", {len(states) - done - len(failures)} left" if stop.received else "")
+    )
     if stop.received:
         return 128 + stop.received
     return 0 if done == len(states) else 1
@@ -144,22 +162,22 @@ def main(arguments):
             return 0
         study.folder.lock()
     except (TableError, StudyBusy, OSError) as error:
-        print(f'study.py: {error}', file=sys.stderr)
+        print(f"study.py: {error}", file=sys.stderr)
         return 2
     study.since = time.time()
     stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup
     for row in study.rows:
         if row.error:
-            print(f'study.py: {row.name}: {row.error}; the other rows are run', file=sys.stderr, flush=True)
+            print(f"study.py: {row.name}: {row.error}; the other rows are run", file=sys.stderr, flush=True)
     study.announce()
     try:
         run(study, stop)
     except FileNotFoundError as error:
-        print(f'study.py: {error.filename}: {error.strerror}', file=sys.stderr)
+        print(f"study.py: {error.filename}: {error.strerror}", file=sys.stderr)
         return 1
     stop.restore()
     return close(study, stop)
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     sys.exit(main(sys.argv[1:]))

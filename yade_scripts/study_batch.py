@@ -1,4 +1,5 @@
 """A study's folder for logs, its yade-batch, and what is measured for the estimate."""
+
 import fcntl
 import json
 import os
@@ -8,13 +9,12 @@ import time
 from contextlib import suppress
 
 from yade_scripts import run_folder, table
-from yade_scripts.parameters import parse
 from yade_scripts.run_table import HERE, LOGS, batch_command
 from yade_scripts.study_cost import TELLING, Cost
 from yade_scripts.study_rows import DONE, run_of
 
 MEASURING = 300  # s, at most
-NICE = '10'      # as yade-batch runs its jobs
+NICE = "10"  # as yade-batch runs its jobs
 
 
 class StudyBusy(RuntimeError):
@@ -33,7 +33,7 @@ class StudyFolder:
         return os.path.join(self.path, name)
 
     def log(self, row):
-        return self.file(f'{row.name}.log')
+        return self.file(f"{row.name}.log")
 
     def lock(self):
         """Take the study for this process and its jobs; raises StudyBusy when another has it."""
@@ -42,52 +42,57 @@ class StudyFolder:
         try:
             fcntl.flock(self.held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise StudyBusy(f'{self.path}: this study is being run by another process, or its last jobs still '
-                            'are; allowed: one at a time (--status shows how far it is)') from None
+            raise StudyBusy(
+                f"{self.path}: this study is being run by another process, or its last jobs still "
+                "are; allowed: one at a time (--status shows how far it is)"
+            ) from None
 
     def cost(self, rows, states):
         """Cost from the rows that have ended, and from what was measured."""
-        ended = [(row.values, state.seconds) for row, state in zip(rows, states)
-                 if state.kind == DONE and state.seconds]
+        ended = [
+            (row.values, state.seconds) for row, state in zip(rows, states) if state.kind == DONE and state.seconds
+        ]
         for values, _ in ended:
-            if values['material'] not in self._timeUnit:
-                self._timeUnit[values['material']] = run_of(values['out'])['derived']['timeUnit']
+            if values["material"] not in self._timeUnit:
+                self._timeUnit[values["material"]] = run_of(values["out"])["derived"]["timeUnit"]
         try:
-            with open(self.file('speed.json')) as file:
+            with open(self.file("speed.json")) as file:
                 speed = json.load(file)
         except (OSError, ValueError):
             return Cost(self._timeUnit, None, ended)
-        measured = speed['scene'], speed['contactUpdatesPerSecond'], speed['setup']
-        return Cost({**speed['timeUnit'], **self._timeUnit}, measured, ended)
+        measured = speed["scene"], speed["contactUpdatesPerSecond"], speed["setup"]
+        return Cost({**speed["timeUnit"], **self._timeUnit}, measured, ended)
 
     def measure(self, row, rows, states, at_once):
         """Time a piece of a row's collision, at_once of them together, unless runs have ended to judge by."""
         if any(state.kind == DONE and (state.seconds or 0) >= TELLING for state in states):
             return
-        scene = [f'{name}={text}' for name, text in row.cells.items() if name[0] != '!']
-        command = ['nice', '-n', NICE, 'yade', '-n', '-x', os.path.join(HERE, 'measure_speed.py'), *scene]
-        environment = {name: value for name, value in os.environ.items() if name != 'YADE_BATCH'}
-        together = max(1, at_once // (row.values['threads'] or 1))
-        pieces = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                                   env=environment) for _ in range(together)]
+        scene = [f"{name}={text}" for name, text in row.cells.items() if name[0] != "!"]
+        command = ["nice", "-n", NICE, "yade", "-n", "-x", os.path.join(HERE, "measure_speed.py"), *scene]
+        environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
+        together = max(1, at_once // (row.values["threads"] or 1))
+        pieces = [
+            subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
+            for _ in range(together)
+        ]
         try:
             found = [json.loads(piece.communicate(timeout=MEASURING)[0].splitlines()[-1]) for piece in pieces]
         except (subprocess.TimeoutExpired, ValueError, IndexError):  # a row that fails says so when it is run
             for piece in pieces:
                 piece.kill()
             return
-        slowest = min(found, key=lambda piece: piece['contactUpdatesPerSecond'])
-        run_folder.write_json(self.file('speed.json'), {**slowest, 'scene': row.values})
+        slowest = min(found, key=lambda piece: piece["contactUpdatesPerSecond"])
+        run_folder.write_json(self.file("speed.json"), {**slowest, "scene": row.values})
 
     def basis(self, rows, states):
         """What the estimate rests on, in words."""
         cost = self.cost(rows, states)
         telling = sum(time >= TELLING for _, time in cost.ended)
         if telling:
-            return f'from {telling} runs that have ended'
+            return f"from {telling} runs that have ended"
         if cost.measured:
-            return f'measured: {cost.measured[1] / 1e6:.1f} million contact updates/s of each at first'
-        return 'nothing could be measured'
+            return f"measured: {cost.measured[1] / 1e6:.1f} million contact updates/s of each at first"
+        return "nothing could be measured"
 
 
 class Batch:
@@ -95,17 +100,34 @@ class Batch:
 
     def __init__(self, folder, rows, jobs):
         self.rows = rows
-        left = folder.file('left.table')
-        table.write(left, [{'description': row.name, **row.cells, 'out': row.values['out'], 'resume': 1,
-                            '!THREADS': row.values['threads'] or 1} for row in rows])
+        left = folder.file("left.table")
+        table.write(
+            left,
+            [
+                {
+                    "description": row.name,
+                    **row.cells,
+                    "out": row.values["out"],
+                    "resume": 1,
+                    "!THREADS": row.values["threads"] or 1,
+                }
+                for row in rows
+            ],
+        )
         for row in rows:  # an earlier failure would still be one to --status until the row's turn comes
             with suppress(FileNotFoundError):
                 os.remove(folder.log(row))
-        self._output = open(folder.file('yade-batch.out'), 'w')
-        command = batch_command(left, folder.file('@.log'), ['-j', str(jobs), '--nice', NICE])
+        self._output = open(folder.file("yade-batch.out"), "w")
+        command = batch_command(left, folder.file("@.log"), ["-j", str(jobs), "--nice", NICE])
         # Jobs inherit the study's lock: it is free again when the last of them is gone, whatever becomes of this.
-        self._process = subprocess.Popen(command, stdout=self._output, stderr=subprocess.STDOUT,
-                                         stdin=subprocess.DEVNULL, start_new_session=True, pass_fds=[folder.held])
+        self._process = subprocess.Popen(
+            command,
+            stdout=self._output,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
+            pass_fds=[folder.held],
+        )
 
     def __enter__(self):
         return self
@@ -123,5 +145,5 @@ class Batch:
         except ProcessLookupError:
             pass
         self._process.wait()
-        while any(run_folder.being_written(row.values['out']) for row in self.rows):
+        while any(run_folder.being_written(row.values["out"]) for row in self.rows):
             time.sleep(0.1)

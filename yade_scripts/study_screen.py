@@ -1,4 +1,5 @@
 """A text that is drawn again in the same place of a terminal."""
+
 import shutil
 import sys
 
@@ -14,9 +15,9 @@ class Screen:
         if not self.shown:
             return
         size = shutil.get_terminal_size()
-        lines = [line[:size.columns - 1] for line in text.splitlines()[:size.lines - 1]]
+        lines = [line[: size.columns - 1] for line in text.splitlines()[: size.lines - 1]]
         self._erase()
-        self.stream.write('\n'.join(lines) + '\n')
+        self.stream.write("\n".join(lines) + "\n")
         self.stream.flush()
         self._lines = len(lines)
 
@@ -29,4 +30,4 @@ class Screen:
 
     def _erase(self):
         if self._lines:
-            self.stream.write(f'\033[{self._lines}A\033[J')
+            self.stream.write(f"\033[{self._lines}A\033[J")

@@ -1,4 +1,5 @@
 """What a study looks like as text."""
+
 from yade_scripts.progress import duration_text
 from yade_scripts.study_cost import makespan
 from yade_scripts.study_rows import DONE, FAILED, RUNNING, WAITING
@@ -9,9 +10,10 @@ SHOWN = 15  # lines of a live table
 
 def headline(name, states, cost, rows, at_once):
     """One line: how many rows are done, running, waiting, failed, and the time left."""
-    counts = ', '.join(f'{sum(state.kind == kind for state in states)} {kind}'
-                       for kind in (DONE, RUNNING, WAITING, FAILED))
-    return f'{name}: {counts}{_left(total_left(states, cost, rows, at_once))}'
+    counts = ", ".join(
+        f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, WAITING, FAILED)
+    )
+    return f"{name}: {counts}{_left(total_left(states, cost, rows, at_once))}"
 
 
 def total_left(states, cost, rows, at_once):
@@ -20,8 +22,11 @@ def total_left(states, cost, rows, at_once):
     open_rows = [time for time, state in zip(left, states) if state.kind in (RUNNING, WAITING)]
     if None in open_rows:
         return None
-    return makespan([time for time, state in zip(left, states) if state.kind == RUNNING],
-                    [time for time, state in zip(left, states) if state.kind == WAITING], at_once)
+    return makespan(
+        [time for time, state in zip(left, states) if state.kind == RUNNING],
+        [time for time, state in zip(left, states) if state.kind == WAITING],
+        at_once,
+    )
 
 
 def seconds_left(state, cost, row):
@@ -36,33 +41,36 @@ def seconds_left(state, cost, row):
 
 def line(row, state, cost):
     """One row of the table."""
-    text = f'  {state.kind:8s} {row.name:24s}'
+    text = f"  {state.kind:8s} {row.name:24s}"
     if state.kind == FAILED:
-        return f'{text} {state.note}'
+        return f"{text} {state.note}"
     if state.kind == DONE:
-        return f'{text} {duration_text(state.seconds or 0):>8s}'
+        return f"{text} {duration_text(state.seconds or 0):>8s}"
     filled = int(WIDTH * state.progress)
-    bar = f' [{"#" * filled}{"." * (WIDTH - filled)}] {100 * state.progress:5.1f} %' if state.kind == RUNNING else ''
+    bar = f' [{"#" * filled}{"." * (WIDTH - filled)}] {100 * state.progress:5.1f} %' if state.kind == RUNNING else ""
     left = seconds_left(state, cost, row)
-    note = f'  {state.note}' if state.note else ''
-    return text + bar + ('' if left is None else f' {duration_text(left):>8s} left') + note
+    note = f"  {state.note}" if state.note else ""
+    return text + bar + ("" if left is None else f" {duration_text(left):>8s} left") + note
 
 
 def full_table(name, rows, states, cost, at_once):
     """Every row, and the headline below."""
-    return '\n'.join([line(row, state, cost) for row, state in zip(rows, states)]
-                     + [headline(name, states, cost, rows, at_once)])
+    return "\n".join(
+        [line(row, state, cost) for row, state in zip(rows, states)] + [headline(name, states, cost, rows, at_once)]
+    )
 
 
 def live_table(name, rows, states, cost, at_once):
     """What runs, what failed, and what comes next, in no more than SHOWN lines, below the headline."""
     order = (RUNNING, FAILED, WAITING)
-    chosen = sorted((pair for pair in zip(rows, states) if pair[1].kind in order),
-                    key=lambda pair: order.index(pair[1].kind))
-    more = [f'  and {len(chosen) - SHOWN} more: --status shows all'] if len(chosen) > SHOWN else []
-    return '\n'.join([headline(name, states, cost, rows, at_once)]
-                     + [line(row, state, cost) for row, state in chosen[:SHOWN]] + more)
+    chosen = sorted(
+        (pair for pair in zip(rows, states) if pair[1].kind in order), key=lambda pair: order.index(pair[1].kind)
+    )
+    more = [f"  and {len(chosen) - SHOWN} more: --status shows all"] if len(chosen) > SHOWN else []
+    return "\n".join(
+        [headline(name, states, cost, rows, at_once)] + [line(row, state, cost) for row, state in chosen[:SHOWN]] + more
+    )
 
 
 def _left(seconds):
-    return '' if seconds is None else f'; {duration_text(seconds)} left'
+    return "" if seconds is None else f"; {duration_text(seconds)} left"

@@ -1,6 +1,7 @@
 """yade-batch's tables read and written without YADE, by the rules of its TableParamReader."""
-from dataclasses import dataclass
+
 import re
+from dataclasses import dataclass
 
 from yade_scripts.atomic_write import write_atomically
 
@@ -12,6 +13,7 @@ class TableError(ValueError):
 @dataclass(frozen=True)
 class Row:
     """One line of a table: its number from 1, its description, {column: text} of what it gives."""
+
     line: int
     description: str
     cells: dict
@@ -25,27 +27,29 @@ def read(path):
     """
     try:
         with open(path) as file:
-            lines = [re.sub(r'\s*#.*', '', line).split() for line in file]
+            lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
     except (OSError, UnicodeDecodeError) as error:
         raise TableError(f'{path}: {getattr(error, "strerror", error)}; allowed: a table of parameters') from None
     used = [(number, cells) for number, cells in enumerate(lines, 1) if cells]
     if len(used) < 2:
-        raise TableError(f'{path}: no rows; allowed: a line of names, then rows of values')
+        raise TableError(f"{path}: no rows; allowed: a line of names, then rows of values")
     header = used[0][1]
-    marked = [name for name in header if name.endswith('!')] or header
+    marked = [name for name in header if name.endswith("!")] or header
     rows, above = [], {}
     for number, cells in used[1:]:
         if len(cells) != len(header):
-            raise TableError(f'{path}: line {number} has {len(cells)} cells; allowed: {len(header)}, one for each '
-                             'name')
-        above = {name: above.get(name, '=') if cell == '=' else cell for name, cell in zip(header, cells)}
-        if '=' in above.values():
-            raise TableError(f'{path}: line {number}: = has no row above; allowed: a value')
-        plain = {name.rstrip('!'): cell for name, cell in above.items() if cell != '*'}
-        description = plain.pop('description', None) or ','.join(
-            f'{name.rstrip("!")}={above[name]}' for name in marked).replace("'", '').replace('"', '')
-        if 'description' not in header and any(row.description == description for row in rows):
-            description += f'__line={number}__'
+            raise TableError(
+                f"{path}: line {number} has {len(cells)} cells; allowed: {len(header)}, one for each " "name"
+            )
+        above = {name: above.get(name, "=") if cell == "=" else cell for name, cell in zip(header, cells)}
+        if "=" in above.values():
+            raise TableError(f"{path}: line {number}: = has no row above; allowed: a value")
+        plain = {name.rstrip("!"): cell for name, cell in above.items() if cell != "*"}
+        description = plain.pop("description", None) or ",".join(
+            f'{name.rstrip("!")}={above[name]}' for name in marked
+        ).replace("'", "").replace('"', "")
+        if "description" not in header and any(row.description == description for row in rows):
+            description += f"__line={number}__"
         rows.append(Row(number, description, plain))
     return rows
 
@@ -53,8 +57,7 @@ def read(path):
 def write(path, rows):
     """Write [{column: text}] as a table, * where a row has no such column."""
     columns = list(dict.fromkeys(name for row in rows for name in row))
-    cells = [columns] + [[str(row.get(name, '*')) for name in columns] for row in rows]
+    cells = [columns] + [[str(row.get(name, "*")) for name in columns] for row in rows]
     widths = [max(map(len, column)) for column in zip(*cells)]
-    text = ''.join('  '.join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() + '\n'
-                   for line in cells)
+    text = "".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() + "\n" for line in cells)
     write_atomically(path, lambda file: file.write(text.encode()))

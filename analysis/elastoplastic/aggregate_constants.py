@@ -1,5 +1,6 @@
 """What aggregates are said to be like: elastic constants (A24 section 5.1), strength and coordination number
 of other preparations (section 5.2). Lengths in m, stresses in Pa."""
+
 from math import pi, sqrt
 
 import numpy as np
@@ -33,16 +34,16 @@ def contact_stiffness(pull_off_force, overlap):
 def bulk_modulus(filling, coordination, grain_radius, overlap, pull_off_force):
     """K_agg [Pa] for a mean coordination number Z: eqs 36-38. With Z = cpe_coordination it is eq 41."""
     shrink = (2.0 * grain_radius - overlap) / (2.0 * grain_radius)
-    pressure_per_force = coordination * filling / (4.0 * pi * grain_radius ** 2) * shrink
+    pressure_per_force = coordination * filling / (4.0 * pi * grain_radius**2) * shrink
     return (2.0 * grain_radius - overlap) / 3.0 * pressure_per_force * contact_stiffness(pull_off_force, overlap)
 
 
 def poisson_ratio(young, modulus):
     """nu_agg from E* and K_agg [Pa]: the root of eq 42 between -1 and 1/2."""
     e = np.asarray(young) / modulus
-    return (3.0 - np.sqrt(9.0 - 6.0 * e + 4.0 * e ** 2)) / (2.0 * e)
+    return (3.0 - np.sqrt(9.0 - 6.0 * e + 4.0 * e**2)) / (2.0 * e)
 
 
 def reduced_young(poisson, modulus):
     """E* [Pa] from nu_agg and K_agg: eq 42."""
-    return 1.5 * (1.0 - 2.0 * poisson) / (1.0 - poisson ** 2) * modulus
+    return 1.5 * (1.0 - 2.0 * poisson) / (1.0 - poisson**2) * modulus

@@ -14,6 +14,7 @@ force is continuous at delta_c and at delta_max; eqs 30-33 are the limits of eqs
 - After B21 the stress is cut at sigma_inner only inside a_max, so that a collision that stayed elastic
   (delta_max <= delta_c) has delta_return = 0, not B24's negative value, and B23 becomes B15.
 """
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,7 @@ from scipy.special import hyp2f1
 class Spheres:
     """R* [m], density rho [kg/m^3], yield stress sigma [Pa] and E* [Pa]: floats, or arrays that broadcast.
     sigma = inf is Hertz's elastic sphere, E* = inf the rigid-plastic one."""
+
     reduced_radius: float
     density: float
     yield_stress: float
@@ -66,8 +68,12 @@ def compression_work(delta, spheres):
     critical = critical_compression(spheres)
     elastic = 8.0 / 15.0 * spheres.young * np.sqrt(spheres.reduced_radius) * np.minimum(delta, critical) ** 2.5
     with np.errstate(invalid="ignore"):
-        plastic = np.pi * spheres.reduced_radius * spheres.yield_stress * (
-            critical ** 2 / 10.0 - critical * delta / 3.0 + delta ** 2 / 2.0)
+        plastic = (
+            np.pi
+            * spheres.reduced_radius
+            * spheres.yield_stress
+            * (critical**2 / 10.0 - critical * delta / 3.0 + delta**2 / 2.0)
+        )
     return np.where(delta <= critical, elastic, plastic)
 
 
@@ -76,22 +82,22 @@ def returned_work(delta, largest, spheres):
     4/3 E* R*^(1/2) [2/5 y^(5/2) + delta_return y^(3/2)] with y = delta - delta_return."""
     apart = return_compression(spheres, largest)
     y = np.maximum(np.asarray(delta, dtype=float) - apart, 0.0)
-    return 4.0 / 3.0 * spheres.young * np.sqrt(spheres.reduced_radius) * (0.4 * y ** 2.5 + apart * y ** 1.5)
+    return 4.0 / 3.0 * spheres.young * np.sqrt(spheres.reduced_radius) * (0.4 * y**2.5 + apart * y**1.5)
 
 
 def initial_kinetic_energy(velocity, spheres):
     """K_ini [J] of the relative motion at velocity [m/s]: eq 29."""
-    return 8.0 * np.pi / 3.0 * spheres.density * velocity ** 2 * spheres.reduced_radius ** 3
+    return 8.0 * np.pi / 3.0 * spheres.density * velocity**2 * spheres.reduced_radius**3
 
 
 def reduced_mass(spheres):
     """Mass [kg] of the relative motion: K_ini = 1/2 m v^2 with eq 29."""
-    return 16.0 * np.pi / 3.0 * spheres.density * spheres.reduced_radius ** 3
+    return 16.0 * np.pi / 3.0 * spheres.density * spheres.reduced_radius**3
 
 
 def elastic_compression(velocity, spheres):
     """delta_max [m] of spheres that never yield: eq 30."""
-    return (5.0 * np.pi * spheres.density / spheres.young) ** 0.4 * velocity ** 0.8 * spheres.reduced_radius
+    return (5.0 * np.pi * spheres.density / spheres.young) ** 0.4 * velocity**0.8 * spheres.reduced_radius
 
 
 def plastic_compression(velocity, spheres):
@@ -114,7 +120,7 @@ def largest_compression(velocity, spheres):
     critical = critical_compression(spheres)
     rigid = plastic_compression(velocity, spheres)
     with np.errstate(invalid="ignore"):
-        plastic = critical / 3.0 + np.sqrt(np.maximum(rigid ** 2 - 4.0 / 45.0 * critical ** 2, 0.0))
+        plastic = critical / 3.0 + np.sqrt(np.maximum(rigid**2 - 4.0 / 45.0 * critical**2, 0.0))
     return np.where(_stays_elastic(critical, rigid), elastic_compression(velocity, spheres), plastic)
 
 
@@ -128,9 +134,9 @@ def time_of_largest_compression(velocity, spheres):
     elastic = _stays_elastic(critical, rigid)
     # In what follows the plastic case alone.
     critical, rigid = np.where(elastic, 0.0, critical), np.where(elastic, 1.0, rigid)
-    share = 8.0 / 15.0 * critical ** 2 / rigid ** 2
+    share = 8.0 / 15.0 * critical**2 / rigid**2
     until_yield = critical / velocity * hyp2f1(0.5, 0.4, 1.4, np.minimum(share, 1.0))
-    amplitude = np.sqrt(np.maximum(rigid ** 2 - 4.0 / 45.0 * critical ** 2, 0.0))
+    amplitude = np.sqrt(np.maximum(rigid**2 - 4.0 / 45.0 * critical**2, 0.0))
     angle = np.arccos(np.minimum(2.0 / 3.0 * critical / amplitude, 1.0))
     return np.where(elastic, elastic_time(velocity, spheres), until_yield + angle * rigid / velocity)
 
@@ -143,7 +149,7 @@ def restitution(velocity, spheres):
     elastic = _stays_elastic(critical, rigid)
     critical, rigid = np.where(elastic, 0.0, critical), np.where(elastic, 1.0, rigid)
     apart = largest_compression(velocity, spheres) - critical
-    square = 4.0 / 3.0 * (0.4 * critical ** 2 + apart * critical) / rigid ** 2
+    square = 4.0 / 3.0 * (0.4 * critical**2 + apart * critical) / rigid**2
     return np.where(elastic, 1.0, np.sqrt(square))
 
 
@@ -152,4 +158,4 @@ _HERTZ = float(hyp2f1(0.5, 0.4, 1.4, 1.0))
 
 def _stays_elastic(critical, rigid):
     """Whether K_ini is used up at delta_crit or before: 8/15 (delta_crit/delta_max of eq 31)^2 >= 1."""
-    return 8.0 * critical ** 2 >= 15.0 * rigid ** 2
+    return 8.0 * critical**2 >= 15.0 * rigid**2

@@ -1,15 +1,25 @@
 """The motion of Andrews's spheres: compression and velocity against time, through the return phase (A24 Fig.
 12)."""
+
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from .andrews import (compression_force, compression_work, critical_compression, initial_kinetic_energy,
-                      largest_compression, reduced_mass, restitution, return_compression, return_force,
-                      returned_work)
+from .andrews import (
+    compression_force,
+    compression_work,
+    critical_compression,
+    initial_kinetic_energy,
+    largest_compression,
+    reduced_mass,
+    restitution,
+    return_compression,
+    return_force,
+    returned_work,
+)
 
-_CELLS = 200            # of each phase; halving them changes the times by less than 1e-9 of tau_max
+_CELLS = 200  # of each phase; halving them changes the times by less than 1e-9 of tau_max
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -17,6 +27,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 class Motion:
     """compression(t) [m] and velocity(t) [m/s] (positive while it grows) of two spheres that touch at t = 0
     [s]; largest [m] at time_of_largest [s]; they part at time_of_parting [s] with the restitution."""
+
     largest: float
     time_of_largest: float
     time_of_parting: float
@@ -29,8 +40,7 @@ class Motion:
         """delta (T,) [m] at times (T,) [s], before contact and after parting too (there on straight
         lines)."""
         time = np.asarray(time, dtype=float)
-        after = self._spline(self.time_of_parting) - self.restitution * self._velocity * (
-            time - self.time_of_parting)
+        after = self._spline(self.time_of_parting) - self.restitution * self._velocity * (time - self.time_of_parting)
         inside = self._spline(np.clip(time, 0.0, self.time_of_parting))
         return np.where(time < 0, self._velocity * time, np.where(time > self.time_of_parting, after, inside))
 
@@ -63,13 +73,21 @@ def motion(velocity, spheres):
     back = _nodes(largest, (largest, apart))
     returning = _times(back, largest, parting)
     time = np.concatenate([tau - approaching[::-1], tau + returning[1:]])
-    delta = np.concatenate([(largest - down ** 2)[::-1], (largest - back ** 2)[1:]])
-    speed = np.concatenate([approach(largest - down ** 2)[::-1], -parting(largest - back ** 2)[1:]])
+    delta = np.concatenate([(largest - down**2)[::-1], (largest - back**2)[1:]])
+    speed = np.concatenate([approach(largest - down**2)[::-1], -parting(largest - back**2)[1:]])
     speed[len(down) - 1] = 0.0
-    force = np.concatenate([compression_force((largest - down ** 2)[::-1], spheres),
-                            return_force((largest - back ** 2)[1:], largest, spheres)])
-    return Motion(largest, float(tau), float(time[-1]), float(restitution(velocity, spheres)), float(velocity),
-                  CubicHermiteSpline(time, delta, speed), CubicHermiteSpline(time, speed, -force / mass))
+    force = np.concatenate(
+        [compression_force((largest - down**2)[::-1], spheres), return_force((largest - back**2)[1:], largest, spheres)]
+    )
+    return Motion(
+        largest,
+        float(tau),
+        float(time[-1]),
+        float(restitution(velocity, spheres)),
+        float(velocity),
+        CubicHermiteSpline(time, delta, speed),
+        CubicHermiteSpline(time, speed, -force / mass),
+    )
 
 
 def _nodes(largest, stops):
@@ -83,4 +101,4 @@ def _times(s, largest, speed):
     """Time (n,) [s] from delta_max to each node s (n,), by Gauss's rule in each cell."""
     half, middle = 0.5 * np.diff(s), 0.5 * (s[1:] + s[:-1])
     inner = middle[:, None] + half[:, None] * _NODES
-    return np.concatenate([[0.0], np.cumsum(half * ((2.0 * inner / speed(largest - inner ** 2)) @ _WEIGHTS))])
+    return np.concatenate([[0.0], np.cumsum(half * ((2.0 * inner / speed(largest - inner**2)) @ _WEIGHTS))])

@@ -1,4 +1,5 @@
 """The normal stress in the contact of Andrews's model, of which its forces are integrals (A24 B13-B22)."""
+
 import numpy as np
 
 from .andrews import return_compression
@@ -7,7 +8,7 @@ from .andrews import return_compression
 def elastic_stress(delta, distance, spheres):
     """Hertz's stress [Pa] at a distance [m] from the centre of the contact: B14; 0 outside a = (R*
     delta)^(1/2)."""
-    inside = np.maximum(1.0 - distance ** 2 / (spheres.reduced_radius * delta), 0.0)
+    inside = np.maximum(1.0 - distance**2 / (spheres.reduced_radius * delta), 0.0)
     return 2.0 * spheres.young * np.sqrt(delta) / (np.pi * np.sqrt(spheres.reduced_radius)) * np.sqrt(inside)
 
 

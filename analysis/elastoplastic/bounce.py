@@ -1,5 +1,6 @@
 """What becomes of a collision's energy before and after the largest compression, and how it ends: restitution
 and sticking probability with confidence intervals (what A24 section 5.3 asks for)."""
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from ..collision_outcome import STICKING
 from .measure import UNDECIDED
 
 CONFIDENCE = 0.95
-_Z = 1.959963984540054      # of a normal distribution, two-sided
+_Z = 1.959963984540054  # of a normal distribution, two-sided
 _RESAMPLES, _RANDOM_SEED = 2000, 20240513
 
 
@@ -21,6 +22,7 @@ class Bounce:
     sticking) and sticking (share, low, high), of the runs that are decided, with 95 % intervals; that of sticking
     counts the undecided both ways, since they are not a fair choice. None where one seed allows no interval, or
     none is decided."""
+
     filling: float
     radius: float
     velocity: float
@@ -50,12 +52,21 @@ def _bounce(rows):
     stuck = sum(row.outcome == STICKING for row in decided)
     kinds = [row.outcome for row in rows]
     return Bounce(
-        filling=first.filling, radius=first.radius / first.grain_radius, velocity=first.velocity, seeds=len(rows),
-        compression=compression, parting=parting, bulk=_mean([row.bulk for row in rows]),
+        filling=first.filling,
+        radius=first.radius / first.grain_radius,
+        velocity=first.velocity,
+        seeds=len(rows),
+        compression=compression,
+        parting=parting,
+        bulk=_mean([row.bulk for row in rows]),
         restitution=restitution_interval([row.restitution for row in decided]),
-        sticking=(stuck / len(decided) if decided else None, wilson(stuck, len(rows))[0],
-                  wilson(stuck + len(rows) - len(decided), len(rows))[1]),
-        outcomes={kind: kinds.count(kind) for kind in sorted(set(kinds))})
+        sticking=(
+            stuck / len(decided) if decided else None,
+            wilson(stuck, len(rows))[0],
+            wilson(stuck + len(rows) - len(decided), len(rows))[1],
+        ),
+        outcomes={kind: kinds.count(kind) for kind in sorted(set(kinds))},
+    )
 
 
 def _mean(values):

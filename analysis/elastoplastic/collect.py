@@ -1,5 +1,6 @@
 """From the paths of a command line to the run folders of A24's scene that have ended, with a note on each
 other."""
+
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +16,7 @@ _SIZES = ("filling", "radius", "velocity", "seed")
 class Collection:
     """runs (RunFolder, ended, of A24's scene, one of each parameter set), notes (str, one a run left out for
     a good reason) and problems (str, one a path or run that could not be read)."""
+
     runs: tuple
     notes: tuple
     problems: tuple

@@ -1,4 +1,5 @@
 """python3 -m analysis elastoplastic RUNS... [--figures FOLDER] [--json]"""
+
 import json
 import sys
 from pathlib import Path
@@ -23,12 +24,17 @@ def add_parser(commands):
         "numbers beside the paper's, and say where the energy goes and how collisions end. Runs that have not ended "
         "or are of another scene are left out with a note on stderr.",
     )
-    parser.add_argument("runs", nargs="+", metavar="RUNS",
-                        help="run folder, or folder that holds run folders (one or two levels below)")
-    parser.add_argument("--figures", metavar="FOLDER",
-                        help="write comparison.md, comparison.json and the figures there; made if it is missing")
-    parser.add_argument("--json", action="store_true",
-                        help="print JSON (SI units unless a unit is named) instead of text")
+    parser.add_argument(
+        "runs", nargs="+", metavar="RUNS", help="run folder, or folder that holds run folders (one or two levels below)"
+    )
+    parser.add_argument(
+        "--figures",
+        metavar="FOLDER",
+        help="write comparison.md, comparison.json and the figures there; made if it is missing",
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="print JSON (SI units unless a unit is named) instead of text"
+    )
     parser.set_defaults(command=run)
 
 
@@ -67,14 +73,17 @@ def run(options):
 
 def _summary(notes, problems):
     """What the kept files say of runs left out, without this machine's paths."""
-    counts = ((len(notes), "left out (not ended, of another scene, or without a compression)"),
-              (len(problems), "not readable"))
+    counts = (
+        (len(notes), "left out (not ended, of another scene, or without a compression)"),
+        (len(problems), "not readable"),
+    )
     return [f"{number} runs {what}" for number, what in counts if number]
 
 
 def _write(folder, study, origin, notes):
     # matplotlib is slow to load, and the numbers do without it.
     from .figures import FIGURES, draw
+
     folder.mkdir(parents=True, exist_ok=True)
     drawn = []
     for name in progress(list(FIGURES), "drawing"):
@@ -83,4 +92,5 @@ def _write(folder, study, origin, notes):
             drawn.append((f"{name}.png", caption))
     (folder / "comparison.md").write_text(markdown(study, origin, notes, drawn), encoding="utf-8")
     (folder / "comparison.json").write_text(
-        json.dumps(data(study, origin, notes), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        json.dumps(data(study, origin, notes), indent=1, allow_nan=False) + "\n", encoding="utf-8"
+    )

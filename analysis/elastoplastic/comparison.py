@@ -1,4 +1,5 @@
 """Our numbers beside the paper's, as lines of a table."""
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,7 @@ PAPER_MODULI_RADII, PAPER_VELOCITIES = (40, 80), tuple(10.0 ** (0.1 * i) for i i
 class Line:
     """quantity, unit ('' for numbers), ours with its standard error (None: no error), paper (None: it gives
     none), paper_error: estimated (PAPER_RADII; None: none), note."""
+
     quantity: str
     unit: str
     ours: float
@@ -83,20 +85,31 @@ def _size_lines(results):
     fit, lines = results.size_fit, []
     expected = _paper_errors(results)
     c1, c2 = (paper.line(results.filling) or (None, None)) if _is_papers(results) else (None, None)
-    printed = {"c1": c1, "c2": c2, "offset": paper.OFFSET.get(results.filling) if c1 else None,
-               "ratio": paper.RATIO.get(results.filling) if c1 else None}
+    printed = {
+        "c1": c1,
+        "c2": c2,
+        "offset": paper.OFFSET.get(results.filling) if c1 else None,
+        "ratio": paper.RATIO.get(results.filling) if c1 else None,
+    }
     names = {"c1": ("c1", ""), "c2": ("c2", ""), "offset": ("delta_offset", "r"), "ratio": ("delta_max/R*", "")}
     back = "paper's value from its eqs 20, 21 with eqs 18, 19 backwards"
     for name, (quantity, unit) in names.items():
         note = back if printed[name] is not None and results.filling != 0.4 and name in ("c1", "c2") else ""
         if name == "c1":
             note = f"{fit.runs} runs, R = {_list(fit.radii)}" + ("; " + note if note else "")
-        lines.append(Line(quantity, unit, fit.values[name], fit.errors[name], printed[name], expected.get(name),
-                          note))
+        lines.append(Line(quantity, unit, fit.values[name], fit.errors[name], printed[name], expected.get(name), note))
     for definition, other in list(results.size_fits.items())[1:]:
         for name in ("offset", "ratio"):
-            lines.append(Line(f"{names[name][0]}, d_max {definition}", names[name][1], other.values[name],
-                              other.errors[name], printed[name], expected.get(name)))
+            lines.append(
+                Line(
+                    f"{names[name][0]}, d_max {definition}",
+                    names[name][1],
+                    other.values[name],
+                    other.errors[name],
+                    printed[name],
+                    expected.get(name),
+                )
+            )
     return lines
 
 
@@ -110,24 +123,30 @@ def _d_max_lines(study, results):
         error = _line_error(radius, results, expected)
         fix = results.corrections[k]
         name = f"d_max, R = {radius:g}"
-        lines.append(Line(name, "r", fix.mean, fix.error, theirs, error,
-                          f"{fix.seeds} seeds; paper's value: its line"))
+        lines.append(Line(name, "r", fix.mean, fix.error, theirs, error, f"{fix.seeds} seeds; paper's value: its line"))
         if fix.corrected is not None:
             by = "of these seeds" if fix.own_slope else "of all points of this filling"
-            note = (f"slope on the offset {fix.slope:.2f} +- {fix.slope_error:.2f} ({by}), mean offset "
-                    f"{fix.mean_offset:+.3f} r")
-            lines.append(Line(name + ", read off at d(0) = -2 r", "r", fix.corrected, fix.corrected_error, theirs,
-                              error, note))
+            note = (
+                f"slope on the offset {fix.slope:.2f} +- {fix.slope_error:.2f} ({by}), mean offset "
+                f"{fix.mean_offset:+.3f} r"
+            )
+            lines.append(
+                Line(name + ", read off at d(0) = -2 r", "r", fix.corrected, fix.corrected_error, theirs, error, note)
+            )
         lines.append(Line(name + ", less d(0) + 2 r", "r", fix.shifted, fix.shifted_error, theirs, error))
         own = [r.label_d_max / unit for r in study.rows if _belongs(r, results, points, k)]
-        lines.append(Line(name + ", by each aggregate's own grains", "r", float(np.mean(own)), _error(own), theirs,
-                          error))
+        lines.append(
+            Line(name + ", by each aggregate's own grains", "r", float(np.mean(own)), _error(own), theirs, error)
+        )
     return lines
 
 
 def _belongs(row, results, points, k):
-    return (round(row.filling, 6) == results.filling and abs(row.radius / points.radius[k] - 1.0) < 1e-6
-            and abs(row.velocity / points.velocity[k] - 1.0) < 1e-6)
+    return (
+        round(row.filling, 6) == results.filling
+        and abs(row.radius / points.radius[k] - 1.0) < 1e-6
+        and abs(row.velocity / points.velocity[k] - 1.0) < 1e-6
+    )
 
 
 def _line_error(radius, results, expected):
@@ -150,21 +169,37 @@ def _moduli_lines(study, results):
     for name, fit in results.velocity_fits.items():
         if fit.reason:
             continue
-        note = (f"{fit.runs} runs, R = {_list(fit.radii)}; delta_offset = {fit.offset / study.grain_radius:.3f} r "
-                f"({fit.offset_source}); chi^2 = {fit.chi_square:.1f} at {fit.freedom} degrees of freedom")
+        note = (
+            f"{fit.runs} runs, R = {_list(fit.radii)}; delta_offset = {fit.offset / study.grain_radius:.3f} r "
+            f"({fit.offset_source}); chi^2 = {fit.chi_square:.1f} at {fit.freedom} degrees of freedom"
+        )
         if fit.correlation is not None:
             note += f"; correlation of the two {fit.correlation:.2f}"
         for i, quantity in enumerate(("sigma_plastic", "E*")):
             notes = (note if i == 0 and not name else "", _unbounded(fit, i))
-            lines.append(Line(quantity + (f", {name}" if name else ""), "MPa", fit.values[i] / MEGA,
-                              _scaled(fit.errors[i]), _scaled(theirs[i]), _scaled(expected[i]),
-                              "; ".join(filter(None, notes))))
+            lines.append(
+                Line(
+                    quantity + (f", {name}" if name else ""),
+                    "MPa",
+                    fit.values[i] / MEGA,
+                    _scaled(fit.errors[i]),
+                    _scaled(theirs[i]),
+                    _scaled(expected[i]),
+                    "; ".join(filter(None, notes)),
+                )
+            )
     fit = results.velocity_fit
     lines += _curve_lines(study, results)
     radius = reduced_radius(max(fit.radii) * study.grain_radius, fit.offset)
     spheres = Spheres(radius, results.filling * study.grain_density, *fit.values)
-    lines.append(Line(f"restitution of Andrews's model at {paper.VELOCITY:.4g} m/s", "",
-                      float(restitution(paper.VELOCITY, spheres)), note="measured: the table of outcomes"))
+    lines.append(
+        Line(
+            f"restitution of Andrews's model at {paper.VELOCITY:.4g} m/s",
+            "",
+            float(restitution(paper.VELOCITY, spheres)),
+            note="measured: the table of outcomes",
+        )
+    )
     return lines
 
 
@@ -175,8 +210,11 @@ def _paper_moduli_errors(study, results):
         return None, None
     points = results.points.chosen(fitted_sizes(results.points))
     radius, velocity = (a.ravel() for a in np.meshgrid(PAPER_MODULI_RADII, PAPER_VELOCITIES))
-    errors = [np.exp(np.polyval(np.polyfit(np.log(points.velocity), np.log(scatter), 1), np.log(velocity)))
-              / np.sqrt(paper.SEEDS) for scatter in (points.d_scatter, points.t_scatter)]
+    errors = [
+        np.exp(np.polyval(np.polyfit(np.log(points.velocity), np.log(scatter), 1), np.log(velocity)))
+        / np.sqrt(paper.SEEDS)
+        for scatter in (points.d_scatter, points.t_scatter)
+    ]
     half = reduced_radius(radius, paper.OFFSET[results.filling]) * study.grain_radius
     moduli = paper.YIELD_STRESS[results.filling], paper.YOUNG[results.filling]
     return tuple(moduli_errors_of_design(moduli, velocity, half, results.filling * study.grain_density, *errors))
@@ -188,8 +226,12 @@ def _unbounded(fit, i):
         return ""
     least = np.quantile(fit.resamples[:, i], 0.05, method="nearest") / MEGA
     return f"{('nothing yields', 'nothing is elastic')[i]} in {share:.0%} of the resamples: " + (
-        "a long upper tail" if fit.errors[i] is not None else
-        f"no upper bound, {least:.3g} MPa or more at 95 %" if np.isfinite(least) else "no bound")
+        "a long upper tail"
+        if fit.errors[i] is not None
+        else f"no upper bound, {least:.3g} MPa or more at 95 %"
+        if np.isfinite(least)
+        else "no bound"
+    )
 
 
 def _curve_lines(study, results):
@@ -200,17 +242,28 @@ def _curve_lines(study, results):
 
     def ends(ratio):
         sigma, _, elastic_from, young = degenerate_curve(ratio, velocity, density, 2)
-        return np.array([16.0 / 3.0 * density * velocity ** 2 / ratio ** 2, elastic_from, young]) / MEGA
+        return np.array([16.0 / 3.0 * density * velocity**2 / ratio**2, elastic_from, young]) / MEGA
 
     theirs = (paper.LEAST_YIELD_STRESS, paper.ELASTIC_FROM, paper.YOUNG_IF_ELASTIC)
     known = results.filling == 0.4 and _is_papers(results)
-    names = ("least sigma_plastic (rigid plastic, eq 31)", "sigma_plastic from which nothing yields",
-             "E* if nothing yields (eq 30)")
+    names = (
+        "least sigma_plastic (rigid plastic, eq 31)",
+        "sigma_plastic from which nothing yields",
+        "E* if nothing yields (eq 30)",
+    )
     ours = ends(results.size_fit.ratio)
     slope = (ends(results.size_fit.ratio * 1.001) - ours) / (0.001 * results.size_fit.ratio)
     error = results.size_fit.errors["ratio"]
-    return [Line(name, "MPa", float(ours[i]), None if error is None else float(abs(slope[i]) * error),
-                 theirs[i] / MEGA if known else None) for i, name in enumerate(names)]
+    return [
+        Line(
+            name,
+            "MPa",
+            float(ours[i]),
+            None if error is None else float(abs(slope[i]) * error),
+            theirs[i] / MEGA if known else None,
+        )
+        for i, name in enumerate(names)
+    ]
 
 
 def _constant_lines(study, results):
@@ -219,15 +272,34 @@ def _constant_lines(study, results):
     z, z_error = results.coordination
     measured = bulk_modulus(results.filling, z, r, overlap, force)
     lines = [
-        Line("K_agg (eq 41)", "MPa", results.bulk_modulus / MEGA, None, paper.BULK_MODULUS / MEGA if here else None,
-             note="closed form, no error"),
-        Line("K_agg with the measured Z", "MPa", measured / MEGA,
-             None if z_error is None else measured * z_error / z / MEGA, paper.BULK_MODULUS / MEGA if here else None),
+        Line(
+            "K_agg (eq 41)",
+            "MPa",
+            results.bulk_modulus / MEGA,
+            None,
+            paper.BULK_MODULUS / MEGA if here else None,
+            note="closed form, no error",
+        ),
+        Line(
+            "K_agg with the measured Z",
+            "MPa",
+            measured / MEGA,
+            None if z_error is None else measured * z_error / z / MEGA,
+            paper.BULK_MODULUS / MEGA if here else None,
+        ),
     ]
     if results.poisson[0] is not None:
         lines.append(Line("nu_agg (eq 42)", "", *results.poisson, paper.POISSON_RATIO if here else None))
-    lines.append(Line("coordination number inside", "", z, z_error,
-                      float(cpe_coordination(results.filling, r, overlap)), note="paper's value: eq 39"))
+    lines.append(
+        Line(
+            "coordination number inside",
+            "",
+            z,
+            z_error,
+            float(cpe_coordination(results.filling, r, overlap)),
+            note="paper's value: eq 39",
+        )
+    )
     return lines
 
 

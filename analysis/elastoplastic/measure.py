@@ -1,4 +1,5 @@
 """One row of numbers for each collision: what the fits, tables and figures are made of."""
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Mapping
@@ -12,7 +13,7 @@ from ..ledger import closure, initial_kinetic_energy, shares
 from ..run_folder import RunFolderError, read_arrays
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.
-SKIN = 2.0              # grain radii
+SKIN = 2.0  # grain radii
 
 # Of a run that ends in one piece while its halves still part, at more than this share of the largest speed of
 # their return: a sixteenth of that kinetic energy is left, which may yet part them.
@@ -31,6 +32,7 @@ class Row:
     aggregate's own grains in place of A24's x > 0 and x < 0; shares: by channel, the change since the start
     over K(0) at t_max and at the end (kinetic: what is left); bulk: (v/v_col)^2 at the end, the kinetic share
     of the motion of the halves; outcome: as collision_outcome's, or UNDECIDED; coordination of all grains and of those inside, at the start."""
+
     path: Path
     filling: float
     radius: float
@@ -76,12 +78,21 @@ def measure(run):
     parts = shares(history)
     velocity = float(run.parameters["velocity"])
     return Row(
-        path=run.path, filling=float(run.parameters["filling"]), radius=radius, velocity=velocity,
-        seed=int(run.parameters["seed"]), grain_radius=grain_radius, grain_density=constants[0],
-        pull_off_force=constants[1], overlap=constants[2],
+        path=run.path,
+        filling=float(run.parameters["filling"]),
+        radius=radius,
+        velocity=velocity,
+        seed=int(run.parameters["seed"]),
+        grain_radius=grain_radius,
+        grain_density=constants[0],
+        pull_off_force=constants[1],
+        overlap=constants[2],
         offset=float(history["d"][0]) + 2.0 * grain_radius,
-        d_max=maximum.length, d_max_error=maximum.length_error, exceeded=again,
-        t_max=maximum.time, t_max_error=maximum.time_error,
+        d_max=maximum.length,
+        d_max_error=maximum.length_error,
+        exceeded=again,
+        t_max=maximum.time,
+        t_max_error=maximum.time_error,
         label_d_max=maximum.length + _label_difference(run, maximum.time, radius),
         outcome=UNDECIDED if outcome.kind == STICKING and still_parting(history["v"]) else outcome.kind,
         restitution=outcome.restitution,
@@ -89,7 +100,9 @@ def measure(run):
         shares_at_end={c: float(parts[c][-1]) for c in CHANNELS},
         bulk=float(np.nan_to_num(history["v"][-1] / velocity) ** 2),
         coordination=2.0 * len(start.contact_pairs) / len(start.radius),
-        inner_coordination=_inner_coordination(start, radius, grain_radius), closure=closure(history))
+        inner_coordination=_inner_coordination(start, radius, grain_radius),
+        closure=closure(history),
+    )
 
 
 def still_parting(v):
@@ -130,7 +143,7 @@ def _label_difference(run, time, radius):
         arrays = read_arrays(run.states.files[k], ("position", "aggregate"))
         x = arrays["position"][:, 0]
         differences.append(label_length(x, arrays["aggregate"], radius) - compression_length(x, radius))
-    return float(np.interp(time, times[[max(after - 1, 0), after]][-len(differences):], differences))
+    return float(np.interp(time, times[[max(after - 1, 0), after]][-len(differences) :], differences))
 
 
 def _inner_coordination(start, radius, grain_radius):

@@ -1,15 +1,23 @@
 """Least squares for the yield stress and E* of Andrews's model, of many sets of data at once."""
+
 import numpy as np
 
-from .andrews import (Spheres, elastic_compression, elastic_time, largest_compression, plastic_compression,
-                      plastic_time, time_of_largest_compression)
+from .andrews import (
+    Spheres,
+    elastic_compression,
+    elastic_time,
+    largest_compression,
+    plastic_compression,
+    plastic_time,
+    time_of_largest_compression,
+)
 
 # sigma and E* where the search begins, in rho v^2 (A24's are at 1,100 and 7,900).
 _GRID = (np.geomspace(10.0, 3e4, 45), np.geomspace(50.0, 1e7, 55))
-_CHUNK = 50             # sets of data compared with the grid at a time, for the memory
+_CHUNK = 50  # sets of data compared with the grid at a time, for the memory
 _STEPS = 60
-_DIFFERENCE = 1e-6      # of ln sigma and ln E* in the derivatives
-_ENOUGH = 1e-7          # change of ln sigma and ln E* at which the search ends
+_DIFFERENCE = 1e-6  # of ln sigma and ln E* in the derivatives
+_ENOUGH = 1e-7  # change of ln sigma and ln E* at which the search ends
 # A limit of the model is taken where its chi square is no higher than that of the best finite moduli by more:
 # towards it chi square is flat, so that the search stops anywhere.
 _NO_WORSE = 2e-3
@@ -32,8 +40,9 @@ class ModuliSearch:
         radii [m] (B, K), with errors (K,). sigma is inf where spheres that never yield fit as well, E* inf
         where rigid ones do."""
         radius = np.concatenate([radius, radius], axis=1)
-        error = np.concatenate([np.broadcast_to(delta_error, self.velocity.shape),
-                                np.broadcast_to(tau_error, self.velocity.shape)])
+        error = np.concatenate(
+            [np.broadcast_to(delta_error, self.velocity.shape), np.broadcast_to(tau_error, self.velocity.shape)]
+        )
         data, scale = np.concatenate([delta, tau], axis=1) / error, radius / error
         x = self._on_the_grid(data, scale)
         x, chi_square = self._refined(x, data, scale)
@@ -41,7 +50,7 @@ class ModuliSearch:
         for i, (power, shape) in enumerate(self._limits()):
             # In the limit the model is a power of the one modulus that is left, so that the fit is linear.
             model = shape * scale
-            factor = np.sum(model * data, axis=1) / np.sum(model ** 2, axis=1)
+            factor = np.sum(model * data, axis=1) / np.sum(model**2, axis=1)
             limit = np.sum((factor[:, None] * model - data) ** 2, axis=1)
             take = (limit <= chi_square + _NO_WORSE) & (factor > 0)
             moduli[take, i] = np.inf
@@ -64,7 +73,7 @@ class ModuliSearch:
     def _on_the_grid(self, data, scale):
         starts = []
         for k in range(0, len(data), _CHUNK):
-            difference = self._on_grid * scale[k:k + _CHUNK, None] - data[k:k + _CHUNK, None]
+            difference = self._on_grid * scale[k : k + _CHUNK, None] - data[k : k + _CHUNK, None]
             starts.append(np.argmin(np.einsum("bgk,bgk->bg", difference, difference), axis=1))
         return self._grid[np.concatenate(starts)]
 
@@ -77,7 +86,7 @@ class ModuliSearch:
 
         damping = np.full(len(x), 1e-3)
         rest = residuals(x)
-        chi_square = np.sum(rest ** 2, axis=1)
+        chi_square = np.sum(rest**2, axis=1)
         for _ in range(_STEPS):
             slope = np.stack([residuals(x + _DIFFERENCE * unit) - rest for unit in np.eye(2)], axis=2) / _DIFFERENCE
             normal = np.einsum("bki,bkj->bij", slope, slope)
@@ -86,7 +95,7 @@ class ModuliSearch:
             step = -np.linalg.solve(damped, np.einsum("bki,bk->bi", slope, rest)[:, :, None])[:, :, 0]
             new = np.clip(x + np.clip(step, -1.0, 1.0), low, high)
             new_rest = residuals(new)
-            new_chi_square = np.sum(new_rest ** 2, axis=1)
+            new_chi_square = np.sum(new_rest**2, axis=1)
             better = new_chi_square < chi_square
             moved = np.where(better, np.abs(new - x).max(axis=1), 0.0)
             x, rest = np.where(better[:, None], new, x), np.where(better[:, None], new_rest, rest)

@@ -1,11 +1,12 @@
 """The numbers that A24 gives. It states no errors; like ours its points are means over seeds (ten of
 each)."""
+
 from math import sqrt
 from types import MappingProxyType
 
-VELOCITY = sqrt(10.0)       # 10^0.5 m/s, printed as 3.2 m/s
+VELOCITY = sqrt(10.0)  # 10^0.5 m/s, printed as 3.2 m/s
 SEEDS = 10
-C1, C2 = 5.66e-2, 0.527     # eq 14, filling 0.4
+C1, C2 = 5.66e-2, 0.527  # eq 14, filling 0.4
 
 # By filling: delta_offset [grain radii] (eqs 18, 20), delta_max/R* at VELOCITY (19, 21), yield stress and E* [Pa]
 # (34, 35).

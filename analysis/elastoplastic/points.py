@@ -4,6 +4,7 @@ A seed is one pair of aggregates; at other velocities (same filling and radius) 
 such points are not independent. The bootstrap therefore draws one weight for each pair and uses it at all
 velocities (Rubin's Bayesian bootstrap: Dirichlet weights), and stretches the deviations from the mean by
 [(n+1)/(n-1)]^(1/2), without which the errors of few seeds come out too small."""
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ class Points:
     [m], t_max [s] (K,) means, or (B, K) for B resamples; d_scatter, t_scatter (K,): standard deviations of
     one run, smoothed (smoothed_scatter; nan where no point of that size has two seeds), raw_d_scatter,
     raw_t_scatter: each point's own (nan for one seed); samples (K,) tuples of (d (n,), t (n,))."""
+
     filling: np.ndarray
     radius: np.ndarray
     velocity: np.ndarray
@@ -38,10 +40,20 @@ class Points:
     def chosen(self, mask):
         """Points of the mask (K,)."""
         index = np.flatnonzero(mask)
-        return Points(self.filling[index], self.radius[index], self.velocity[index], self.number[index],
-                      tuple(self.seeds[i] for i in index), tuple(self.samples[i] for i in index),
-                      self.d_max[..., index], self.t_max[..., index], self.d_scatter[index],
-                      self.t_scatter[index], self.raw_d_scatter[index], self.raw_t_scatter[index])
+        return Points(
+            self.filling[index],
+            self.radius[index],
+            self.velocity[index],
+            self.number[index],
+            tuple(self.seeds[i] for i in index),
+            tuple(self.samples[i] for i in index),
+            self.d_max[..., index],
+            self.t_max[..., index],
+            self.d_scatter[index],
+            self.t_scatter[index],
+            self.raw_d_scatter[index],
+            self.raw_t_scatter[index],
+        )
 
     @property
     def groups(self):
@@ -57,8 +69,9 @@ def points_of(rows, d_max=lambda row: row.d_max):
         sets.setdefault(key, []).append(row)
     members = [sorted(sets[key], key=lambda row: row.seed) for key in sorted(sets)]
     samples = tuple((np.array([d_max(r) for r in m]), np.array([r.t_max for r in m])) for m in members)
-    filling, radius, velocity = (np.array([getattr(m[0], name) for m in members], dtype=float)
-                                 for name in ("filling", "radius", "velocity"))
+    filling, radius, velocity = (
+        np.array([getattr(m[0], name) for m in members], dtype=float) for name in ("filling", "radius", "velocity")
+    )
     return make_points(filling, radius, velocity, samples, tuple(tuple(r.seed for r in m) for m in members))
 
 
@@ -66,8 +79,7 @@ def make_points(filling, radius, velocity, samples, seeds):
     """Points from arrays (K,), samples ((d (n,), t (n,)) a point) and seeds (a tuple of n a point)."""
     number = np.array([len(d) for d, _ in samples])
     d_max, t_max = (np.array([sample[i].mean() for sample in samples]) for i in (0, 1))
-    raw = [np.array([sample[i].std(ddof=1) if len(sample[i]) > 1 else np.nan for sample in samples])
-           for i in (0, 1)]
+    raw = [np.array([sample[i].std(ddof=1) if len(sample[i]) > 1 else np.nan for sample in samples]) for i in (0, 1)]
     points = Points(filling, radius, velocity, number, seeds, samples, d_max, t_max, *raw, *raw)
     smooth = [np.full(len(number), np.nan) for _ in raw]
     for group in range(points.groups.max() + 1 if len(points) else 0):

@@ -1,4 +1,5 @@
 """Where runs come from: commits, machines, steps and cost, as their run.json says."""
+
 from collections import Counter
 
 
@@ -20,8 +21,12 @@ def provenance(runs):
 def provenance_lines(origin):
     """The same as lines of text."""
     yield f"{origin['runs']} runs, {origin['steps']} steps, {origin['hours']:g} h of run time"
-    for key, text in (("commits", "commit"), ("machines", "machine"), ("versions", "versions"),
-                      ("stepFractions", "step [t0]")):
+    for key, text in (
+        ("commits", "commit"),
+        ("machines", "machine"),
+        ("versions", "versions"),
+        ("stepFractions", "step [t0]"),
+    ):
         yield f"{text}: " + "; ".join(f"{name} ({number} runs)" for name, number in origin[key].items())
 
 

@@ -1,4 +1,5 @@
 """The comparison as text, as Markdown and as JSON."""
+
 import math
 
 from ..channels import CHANNELS, LABELS
@@ -9,8 +10,14 @@ from .provenance import provenance_lines
 
 HEADS = ("quantity", "ours", "error", "paper", "diff", "diff*")
 # A terminal is no wider than 160.
-_SHORT = {**{c: c for c in CHANNELS}, "slidingDissipation": "slid. diss.", "rollingDissipation": "roll. diss.",
-          "twistingDissipation": "twist. diss.", "disconnection": "disconn.", "bondBreaking": "bonds"}
+_SHORT = {
+    **{c: c for c in CHANNELS},
+    "slidingDissipation": "slid. diss.",
+    "rollingDissipation": "roll. diss.",
+    "twistingDissipation": "twist. diss.",
+    "disconnection": "disconn.",
+    "bondBreaking": "bonds",
+}
 LEGEND = (
     f"error: standard error from the scatter of the seeds (bootstrap, {RESAMPLES} resamples of the pairs of "
     "aggregates).",
@@ -20,9 +27,11 @@ LEGEND = (
     "sigma_plastic and E*: least squares over delta_max and tau_max at all velocities, weight 1/s^2 of a run, s the "
     "standard deviation over the seeds of its point, smoothed over velocity.",
 )
-UNDECIDED_MEANS = (f"{UNDECIDED}: in one piece at the end, but parting at more than {STILL_PARTING:g} of the largest speed "
-                   "of the return; not counted, but by the interval of the sticking probability both ways; a longer duration "
-                   "decides")
+UNDECIDED_MEANS = (
+    f"{UNDECIDED}: in one piece at the end, but parting at more than {STILL_PARTING:g} of the largest speed "
+    "of the return; not counted, but by the interval of the sticking probability both ways; a longer duration "
+    "decides"
+)
 
 
 def missing(study):
@@ -61,10 +70,24 @@ def markdown(study, origin, notes=(), figures=()):
         parts += ["", f"## {heading[0].upper()}{heading[1:]}", ""]
         parts += _table([HEADS + ("note",)] + [_cells(line) + (line.note,) for line in lines])
     parts += [""] + [f"- {line}" for line in LEGEND]
-    parts += ["", "## How collisions end", "", "Mean and 95 % interval: bootstrap for the restitution (0 for "
-              "sticking), Wilson's for the sticking probability; " + UNDECIDED_MEANS + ".", "", *_table(outcome_rows(study))]
-    parts += ["", "## Where the energy goes", "", "Change of each channel in per cent of K(0), from the start to "
-              "t_max | from t_max to the end; mean over the seeds.", "", *_table(energy_rows(study))]
+    parts += [
+        "",
+        "## How collisions end",
+        "",
+        "Mean and 95 % interval: bootstrap for the restitution (0 for "
+        "sticking), Wilson's for the sticking probability; " + UNDECIDED_MEANS + ".",
+        "",
+        *_table(outcome_rows(study)),
+    ]
+    parts += [
+        "",
+        "## Where the energy goes",
+        "",
+        "Change of each channel in per cent of K(0), from the start to "
+        "t_max | from t_max to the end; mean over the seeds.",
+        "",
+        *_table(energy_rows(study)),
+    ]
     for name, caption in figures:
         parts += ["", f"![{caption}]({name})", "", caption]
     return "\n".join(parts) + "\n"
@@ -72,22 +95,45 @@ def markdown(study, origin, notes=(), figures=()):
 
 def data(study, origin, notes=()):
     """The same for JSON (dict; null for what does not exist)."""
-    sections = [{"heading": heading, "lines": [_line_data(line) for line in lines]}
-                for heading, lines in compare(study)]
+    sections = [
+        {"heading": heading, "lines": [_line_data(line) for line in lines]} for heading, lines in compare(study)
+    ]
     rows = [{key: _plain_value(getattr(row, key)) for key in row.__dataclass_fields__} for row in study.rows]
     points = [{key: _plain_value(getattr(b, key)) for key in b.__dataclass_fields__} for b in study.bounces]
-    return {"provenance": origin, "notes": list(notes), "missing": list(missing(study)), "comparison": sections,
-            "bounces": points, "runs": rows}
+    return {
+        "provenance": origin,
+        "notes": list(notes),
+        "missing": list(missing(study)),
+        "comparison": sections,
+        "bounces": points,
+        "runs": rows,
+    }
 
 
 def outcome_rows(study):
     """Cells (tuples of str), the first row the heads: restitution and sticking probability of each point."""
-    yield ("filling", "R [r]", "v [m/s]", "seeds", "restitution", "sticking probability", "outcomes",
-           "bulk K at the end")
+    yield (
+        "filling",
+        "R [r]",
+        "v [m/s]",
+        "seeds",
+        "restitution",
+        "sticking probability",
+        "outcomes",
+        "bulk K at the end",
+    )
     for b in study.bounces:
         kinds = ", ".join(f"{number} {kind}" for kind, number in b.outcomes.items())
-        yield (f"{b.filling:g}", f"{b.radius:g}", f"{b.velocity:.4g}", str(b.seeds), _interval(b.restitution),
-               _interval(b.sticking), kinds, f"{100 * b.bulk[0]:.2g} %")
+        yield (
+            f"{b.filling:g}",
+            f"{b.radius:g}",
+            f"{b.velocity:.4g}",
+            str(b.seeds),
+            _interval(b.restitution),
+            _interval(b.sticking),
+            kinds,
+            f"{100 * b.bulk[0]:.2g} %",
+        )
 
 
 def energy_rows(study, names=LABELS):
@@ -109,8 +155,14 @@ def _interval(triple):
 
 def _cells(line):
     name = line.quantity + (f" [{line.unit}]" if line.unit else "")
-    return (name, _number(line.ours, line.error), _error(line.error), _number(line.paper), _sigma(line.difference),
-            _sigma(line.combined_difference))
+    return (
+        name,
+        _number(line.ours, line.error),
+        _error(line.error),
+        _number(line.paper),
+        _sigma(line.difference),
+        _sigma(line.combined_difference),
+    )
 
 
 def _number(value, error=None):
@@ -155,4 +207,4 @@ def _plain_value(value):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):
         return None
-    return value if isinstance(value, (int, float, bool, str, type(None))) else value.name   # a run's folder
+    return value if isinstance(value, (int, float, bool, str, type(None))) else value.name  # a run's folder

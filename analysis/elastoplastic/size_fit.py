@@ -1,4 +1,5 @@
 """The straight line of d_max against the aggregates' radius, and what follows from it (A24 eqs 14-21)."""
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ class SizeFit:
     ratio = delta_max/R*. radii (sizes fitted [grain radii]), runs (their number); errors by name, None
     without scatter; resamples: {name: (B,)}. Values are None where `reason` says why nothing could be
     fitted."""
+
     filling: float
     velocity: float
     radii: tuple
@@ -66,15 +68,31 @@ def fit_sizes(points, resampled_d_max, grain_radius, velocity):
     radius, number = points.radius[at] / grain_radius, points.number[at]
     filling = float(points.filling[0])
     if len(radius) < 2:
-        reason = (f"only one size, R = {radius[0]:g} r, has runs at filling {filling:g} and {velocity:.3g} m/s: "
-                  "a line needs two")
-        return SizeFit(filling, float(velocity), tuple(radius), int(number.sum()), dict.fromkeys(NAMES),
-                       dict.fromkeys(NAMES), {}, reason)
+        reason = (
+            f"only one size, R = {radius[0]:g} r, has runs at filling {filling:g} and {velocity:.3g} m/s: "
+            "a line needs two"
+        )
+        return SizeFit(
+            filling,
+            float(velocity),
+            tuple(radius),
+            int(number.sum()),
+            dict.fromkeys(NAMES),
+            dict.fromkeys(NAMES),
+            {},
+            reason,
+        )
     values = _derived(*fit_line(radius, points.d_max[at] / grain_radius, number))
     samples = _derived(*fit_line(radius, resampled_d_max[:, at] / grain_radius, number))
-    return SizeFit(filling, float(velocity), tuple(radius), int(number.sum()),
-                   {name: float(value) for name, value in values.items()},
-                   {name: standard_error(sample) for name, sample in samples.items()}, samples)
+    return SizeFit(
+        filling,
+        float(velocity),
+        tuple(radius),
+        int(number.sum()),
+        {name: float(value) for name, value in values.items()},
+        {name: standard_error(sample) for name, sample in samples.items()},
+        samples,
+    )
 
 
 def _derived(c1, c2):
@@ -86,9 +104,9 @@ def errors_of_design(scatter, radii, seeds, c1, c2):
     when one run scatters by `scatter` [grain radii]; to first order around (c1, c2)."""
     radii = np.asarray(radii, dtype=float)
     spread = seeds * np.sum((radii - radii.mean()) ** 2)
-    variance1 = scatter ** 2 / spread
-    variance2 = scatter ** 2 / (seeds * radii.size) + variance1 * radii.mean() ** 2
+    variance1 = scatter**2 / spread
+    variance2 = scatter**2 / (seeds * radii.size) + variance1 * radii.mean() ** 2
     both = variance1 * radii.mean()
     by_c1, by_c2 = c2 / (2.0 - c1) ** 2, 1.0 / (2.0 - c1)
-    offset = by_c1 ** 2 * variance1 + by_c2 ** 2 * variance2 + 2.0 * by_c1 * by_c2 * both
-    return {"c1": variance1 ** 0.5, "c2": variance2 ** 0.5, "offset": offset ** 0.5, "ratio": 2.0 * variance1 ** 0.5}
+    offset = by_c1**2 * variance1 + by_c2**2 * variance2 + 2.0 * by_c1 * by_c2 * both
+    return {"c1": variance1**0.5, "c2": variance2**0.5, "offset": offset**0.5, "ratio": 2.0 * variance1**0.5}

@@ -4,6 +4,7 @@ A24 places the centres of the spheres at -+(R + r), so that d should start at -2
 off by chance, and d(0) + 2 r is known for every run. As a control variate it takes that part of the scatter
 away: d_max is regressed on it and read off at zero (where a mere shift of the zero of d gives a slope of
 1)."""
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ class Correction:
     """d_max of one point: seeds, mean with error as defined, mean_offset, slope with error (own or common to
     its filling: own_slope), corrected (at offset zero) with error, shifted = mean of d_max - offset with
     error. Lengths in the unit given; errors None where the seeds don't suffice."""
+
     seeds: int
     mean: float
     error: float
@@ -58,8 +60,19 @@ def correct(offset, d_max, slope_of_filling=(None, None)):
             # The slope took one of the degrees of freedom, if it is this point's own.
             variance = rest.var(ddof=2 if own else 1)
             corrected_error = float(np.sqrt(variance / n + (offset.mean() * slope_error) ** 2))
-    return Correction(n, float(d_max.mean()), _error(d_max), float(offset.mean()), slope, slope_error, own,
-                      corrected, corrected_error, float(shifted.mean()), _error(shifted))
+    return Correction(
+        n,
+        float(d_max.mean()),
+        _error(d_max),
+        float(offset.mean()),
+        slope,
+        slope_error,
+        own,
+        corrected,
+        corrected_error,
+        float(shifted.mean()),
+        _error(shifted),
+    )
 
 
 def _error(values):

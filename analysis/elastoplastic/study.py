@@ -1,4 +1,5 @@
 """All results of a set of runs."""
+
 from dataclasses import dataclass
 from typing import Mapping
 
@@ -27,6 +28,7 @@ class Filling:
     comes first), slope (of d_max on the start's offset, its error), corrections ({index of point: Correction}
     in grain radii), coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson
     (value, error), grain_radius [m]."""
+
     filling: float
     points: Points
     resamples: tuple
@@ -54,6 +56,7 @@ class Filling:
 class Study:
     """rows (measure.Row), by_filling ({filling: Filling}), bounces (list of bounce.Bounce), grain_radius [m],
     grain_density [kg/m^3], overlap [m], pull_off_force [N]."""
+
     rows: tuple
     by_filling: Mapping
     bounces: tuple
@@ -67,10 +70,18 @@ def make_study(rows):
     """Study of rows (measure.Row), at least one; all of one material."""
     first = rows[0]
     fillings = sorted({round(row.filling, 6) for row in rows}, reverse=True)
-    by_filling = {filling: _filling(filling, [r for r in rows if round(r.filling, 6) == filling])
-                  for filling in fillings}
-    return Study(tuple(rows), by_filling, tuple(bounces(rows)), first.grain_radius, first.grain_density,
-                 first.overlap, first.pull_off_force)
+    by_filling = {
+        filling: _filling(filling, [r for r in rows if round(r.filling, 6) == filling]) for filling in fillings
+    }
+    return Study(
+        tuple(rows),
+        by_filling,
+        tuple(bounces(rows)),
+        first.grain_radius,
+        first.grain_density,
+        first.overlap,
+        first.pull_off_force,
+    )
 
 
 def _filling(filling, rows):
@@ -85,18 +96,33 @@ def _filling(filling, rows):
             own_points, own_draws = points, draws
     offset, offset_draws, source = _offset(filling, next(iter(size_fits.values())), r)
     offsets = offset, offset_draws, source
-    fits = {"": _velocity_fit(own_points, own_draws, *offsets, first),
-            "weights unsmoothed": _velocity_fit(own_points, own_draws, *offsets, first, raw=True)}
+    fits = {
+        "": _velocity_fit(own_points, own_draws, *offsets, first),
+        "weights unsmoothed": _velocity_fit(own_points, own_draws, *offsets, first, raw=True),
+    }
     if filling in paper.OFFSET and next(iter(size_fits.values())).reason is None:
         theirs = paper.OFFSET[filling] * r
         fits["A24's delta_offset"] = _velocity_fit(own_points, own_draws, theirs, theirs, "A24's", first)
     slope, corrections = _corrections(own_points, rows)
     inner = np.array([row.inner_coordination for row in rows])
-    modulus = float(bulk_modulus(filling, cpe_coordination(filling, r, first.overlap), r, first.overlap,
-                                 first.pull_off_force))
-    return Filling(filling, own_points, own_draws, size_fits, offset, source, fits, slope, corrections,
-                   (float(inner.mean()), float(inner.std(ddof=1) / np.sqrt(len(inner))) if len(inner) > 1 else None),
-                   modulus, _poisson(fits[""], modulus), r)
+    modulus = float(
+        bulk_modulus(filling, cpe_coordination(filling, r, first.overlap), r, first.overlap, first.pull_off_force)
+    )
+    return Filling(
+        filling,
+        own_points,
+        own_draws,
+        size_fits,
+        offset,
+        source,
+        fits,
+        slope,
+        corrections,
+        (float(inner.mean()), float(inner.std(ddof=1) / np.sqrt(len(inner))) if len(inner) > 1 else None),
+        modulus,
+        _poisson(fits[""], modulus),
+        r,
+    )
 
 
 def _offset(filling, fit, grain_radius):
@@ -112,8 +138,9 @@ def _offset(filling, fit, grain_radius):
 def _velocity_fit(points, draws, offset, offset_draws, source, row, raw=False):
     if offset is None:
         filling = float(points.filling[0])
-        return VelocityFit(filling, reason=f"no delta_offset at filling {filling:g}: neither two sizes, nor one of "
-                                           "A24's")
+        return VelocityFit(
+            filling, reason=f"no delta_offset at filling {filling:g}: neither two sizes, nor one of " "A24's"
+        )
     return fit_velocities(points, draws, offset, offset_draws, source, row.grain_radius, row.grain_density, raw)
 
 

@@ -4,6 +4,7 @@ Weighted least squares over all runs of a filling at the sizes that have several
 run is 1/s^2, with s the standard deviation of d_max (of t_max) over the seeds of its point, smoothed over the
 velocities of that size (points.smoothed_scatter); `raw` takes each point's own s instead, where it has three
 seeds or more."""
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,7 @@ class VelocityFit:
     chi_square of the points' means with its degrees of freedom; radii [grain radii] and number of runs that
     were fitted; offset (delta_offset) [m] used, and where it is from; unbounded: the share of resamples in
     which a modulus is inf. All None where `reason` says why nothing was fitted."""
+
     filling: float
     values: tuple = (None, None)
     errors: tuple = (None, None)
@@ -61,14 +63,18 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
     mask = fitted_sizes(points)
     if not mask.any():
         most = np.unique(points.radius, return_counts=True)[1].max()
-        return VelocityFit(filling, reason=f"no size at filling {filling:g} has {FEWEST_VELOCITIES} velocities "
-                                           f"(at most {most})")
+        return VelocityFit(
+            filling, reason=f"no size at filling {filling:g} has {FEWEST_VELOCITIES} velocities " f"(at most {most})"
+        )
     used = points.chosen(mask)
-    scatter = [_scatter(used, own, smooth, raw) for own, smooth in
-               ((used.raw_d_scatter, used.d_scatter), (used.raw_t_scatter, used.t_scatter))]
+    scatter = [
+        _scatter(used, own, smooth, raw)
+        for own, smooth in ((used.raw_d_scatter, used.d_scatter), (used.raw_t_scatter, used.t_scatter))
+    ]
     if not np.all(np.isfinite(scatter) & (np.array(scatter) > 0)):
-        return VelocityFit(filling, reason=f"a size at filling {filling:g} has no point with two seeds: no "
-                                           "scatter, so no weights")
+        return VelocityFit(
+            filling, reason=f"a size at filling {filling:g} has no point with two seeds: no " "scatter, so no weights"
+        )
     errors = [s / np.sqrt(used.number) for s in scatter]
     search = ModuliSearch(used.velocity, filling * grain_density)
 
@@ -81,11 +87,19 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
     ends, _ = fit(resampled[0][:, mask], resampled[1][:, mask], shifts[:, None])
     sane = ends[np.all(np.isfinite(ends), axis=1)]
     return VelocityFit(
-        filling=filling, values=tuple(map(float, moduli)), resamples=ends, chi_square=float(chi_square),
-        errors=tuple(percentile_error(ends[:, i]) for i in (0, 1)), freedom=2 * len(used) - 2,
+        filling=filling,
+        values=tuple(map(float, moduli)),
+        resamples=ends,
+        chi_square=float(chi_square),
+        errors=tuple(percentile_error(ends[:, i]) for i in (0, 1)),
+        freedom=2 * len(used) - 2,
         correlation=float(np.corrcoef(np.log(sane.T))[0, 1]) if len(sane) > 2 else None,
-        radii=tuple(np.unique(used.radius) / grain_radius), runs=int(used.number.sum()), offset=float(offset),
-        offset_source=source, unbounded=1.0 - len(sane) / len(ends))
+        radii=tuple(np.unique(used.radius) / grain_radius),
+        runs=int(used.number.sum()),
+        offset=float(offset),
+        offset_source=source,
+        unbounded=1.0 - len(sane) / len(ends),
+    )
 
 
 def _scatter(points, own, smooth, raw):
@@ -96,10 +110,13 @@ def moduli_errors_of_design(moduli, velocity, radius, density, d_error, t_error)
     """Standard errors [Pa] of (sigma, E*) that a weighted fit has to first order when the means d_max [m] and t_max
     [s] (K,) at velocities [m/s] and reduced radii [m] (K,) have the errors d_error, t_error (K,), independent of
     each other."""
+
     def model(log_moduli):
         spheres = Spheres(radius, density, *np.exp(log_moduli))
-        return np.concatenate([largest_compression(velocity, spheres) / d_error,
-                               time_of_largest_compression(velocity, spheres) / t_error])
+        return np.concatenate(
+            [largest_compression(velocity, spheres) / d_error, time_of_largest_compression(velocity, spheres) / t_error]
+        )
+
     x, step = np.log(moduli), 1e-5
     slope = np.stack([(model(x + step * unit) - model(x - step * unit)) / (2.0 * step) for unit in np.eye(2)], axis=1)
     return np.asarray(moduli) * np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
@@ -109,11 +126,11 @@ def degenerate_curve(ratio, velocity, density, samples=300):
     """(sigma, E*) [Pa] (samples,) of all elastoplastic pairs with delta_max/R* = ratio at velocity [m/s], and
     sigma_elastic from which nothing yields, with E* of eq 30: A24 Fig. 10. sigma goes from the rigid-plastic
     limit (where E* = inf, left out) to sigma_elastic."""
-    young = 5.0 * np.pi * density * velocity ** 2 / ratio ** 2.5
+    young = 5.0 * np.pi * density * velocity**2 / ratio**2.5
     elastic_from = 2.0 * young / np.pi * np.sqrt(ratio)
-    least = 16.0 / 3.0 * density * velocity ** 2 / ratio ** 2
+    least = 16.0 / 3.0 * density * velocity**2 / ratio**2
     sigma = least + (elastic_from - least) * np.linspace(0.0, 1.0, samples + 1)[1:] ** 2
     # 28 with 27 and 29 is a square equation in delta_crit/R*; the smaller root is the one below delta_max.
-    rest = 0.5 * ratio ** 2 * (1.0 - least / sigma)
-    critical = (ratio / 3.0 - np.sqrt(np.maximum(ratio ** 2 / 9.0 - 0.4 * rest, 0.0))) / 0.2
+    rest = 0.5 * ratio**2 * (1.0 - least / sigma)
+    critical = (ratio / 3.0 - np.sqrt(np.maximum(ratio**2 / 9.0 - 0.4 * rest, 0.0))) / 0.2
     return sigma, np.pi * sigma / (2.0 * np.sqrt(critical)), float(elastic_from), float(young)

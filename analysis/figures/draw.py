@@ -1,4 +1,5 @@
 """All figures of a run."""
+
 from pathlib import Path
 
 from .energy import energy_figure

@@ -1,4 +1,5 @@
 """Where the energy goes: the channels stacked against time, in shares of the initial kinetic energy."""
+
 import numpy as np
 
 from ..channels import CHANNELS, LABELS
@@ -43,9 +44,7 @@ def _stack(axes, time, parts, names):
         for name in names:
             height = sign * np.maximum(sign * parts[name], 0.0)
             label = f"{LABELS[name]}  {_percent(name, parts[name][-1])}" if sign > 0 else None
-            axes.fill_between(
-                time, base, base + height, color=CHANNEL_COLOURS[name], linewidth=0, label=label
-            )
+            axes.fill_between(time, base, base + height, color=CHANNEL_COLOURS[name], linewidth=0, label=label)
             base = base + height
 
 
@@ -81,7 +80,7 @@ def _draw_error(axes, time, history):
     error = closure_history(history)
     largest = closure(history)
     exponent = int(np.floor(np.log10(largest))) if largest > 0 else 0
-    axes.plot(time, error / 10.0 ** exponent, color="black", linewidth=1.2)
+    axes.plot(time, error / 10.0**exponent, color="black", linewidth=1.2)
     axes.axhline(0.0, color="0.6", linewidth=0.7)
     axes.set_ylabel("sum $-$ 1" + (f"\n[$10^{{{exponent}}}$]" if exponent else ""))
     axes.set_xlabel("time $t$  [ns]")

@@ -1,5 +1,6 @@
 """Normal forces at the contacts in a slab around the collision axis, around the largest compression: A24 Fig.
 13."""
+
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
@@ -7,9 +8,9 @@ from matplotlib.lines import Line2D
 from ..compression import maximum_compression
 from .style import NANO, new_figure, run_title, styled
 
-_STRONG = 0.2           # of F_c, A24 Fig. 13
-_HALF_SLAB = 2.0        # in grain radii: thin enough to see single chains, thick enough to hold them
-_TIMES = (5 / 6, 1.0, 7 / 6, 4 / 3)   # of t_max: A24 shows 250, 300, 350 and 400 ns beside a t_max of 300 ns
+_STRONG = 0.2  # of F_c, A24 Fig. 13
+_HALF_SLAB = 2.0  # in grain radii: thin enough to see single chains, thick enough to hold them
+_TIMES = (5 / 6, 1.0, 7 / 6, 4 / 3)  # of t_max: A24 shows 250, 300, 350 and 400 ns beside a t_max of 300 ns
 _KINDS = (("other", "#8f8f8f", 0.5), ("tension", "#00e5ff", 1.3), ("compression", "#ff2bd6", 1.3))
 _TEXT = {
     "compression": "compression, $F > 0.2\\,F_c$",
@@ -23,7 +24,7 @@ def forces_figure(run):
     """Figure of the contacts as lines between grain centres at up to four states around the largest
     compression, for grains with |z| <= 2 grain radii: magenta F > 0.2 F_c, cyan F < -0.2 F_c, grey others
     (A24 Fig. 13). RunFolderError if there is no state."""
-    run.start   # says so when there is no state
+    run.start  # says so when there is no state
     unit = run.derived["grainRadius"]
     states = [run.states[i] for i in _chosen_states(run)]
     window = _window(states, unit)
@@ -33,7 +34,7 @@ def forces_figure(run):
     height = panel * (window[3] - window[2]) / (window[1] - window[0])
     figure = new_figure(panel * columns + 0.6, (height + 0.5) * rows + 0.9, constrained_layout=True)
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for place in axes.flat[len(states):]:
+    for place in axes.flat[len(states) :]:
         place.remove()
     for place, state in zip(axes.flat, states):
         _draw(place, state, unit, run.derived["pullOffForce"], window)
@@ -96,9 +97,7 @@ def _draw(axes, state, unit, pull_off_force, window):
 
 def _legend(figure, run):
     """Below the panels, in a strip that the layout leaves free."""
-    handles = [
-        Line2D([], [], color=colour, linewidth=2.5, label=_TEXT[kind]) for kind, colour, _ in reversed(_KINDS)
-    ]
+    handles = [Line2D([], [], color=colour, linewidth=2.5, label=_TEXT[kind]) for kind, colour, _ in reversed(_KINDS)]
     strip = 0.35 / figure.get_figheight()
     figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
     figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False)

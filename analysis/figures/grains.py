@@ -1,5 +1,6 @@
 """Snapshots of the grains, coloured by aggregate: the half behind the plane z = 0, as A24 Fig. 3 but cut
 open."""
+
 import numpy as np
 
 from ..compression import maximum_compression
@@ -8,9 +9,7 @@ from .style import AGGREGATE_COLOURS, NANO, new_figure, run_title, styled
 
 # More pixels than this across would only cost time: the figure is about 1,300 wide.
 _PIXELS_ACROSS = 1500
-_LARGEST_VIEW = (
-    2.0  # half height of the view in aggregate sizes: fragments that flew farther are left outside
-)
+_LARGEST_VIEW = 2.0  # half height of the view in aggregate sizes: fragments that flew farther are left outside
 
 
 @styled
@@ -18,7 +17,7 @@ def grains_figure(run):
     """Figure of the grains at the start, at the largest compression and at the end (those of them that are
     different states), cut along the plane z = 0 through the collision axis, to one scale in grain radii.
     RunFolderError if there is no state."""
-    run.start   # says so when there is no state
+    run.start  # says so when there is no state
     unit = run.derived["grainRadius"]
     chosen = _chosen_states(run)
     states = [run.states[i] for i in chosen]

@@ -1,4 +1,5 @@
 """Compression length and mutual velocity against time, as A24 Fig. 4."""
+
 import numpy as np
 
 from ..compression import maximum_compression
@@ -13,9 +14,7 @@ def motion_figure(run):
     history, grain_radius = run.history, run.derived["grainRadius"]
     maximum = maximum_compression(history["time"], history["d"], history["v"])
     if maximum is None:
-        raise RunFolderError(
-            f"{run.path / 'history.npz'}: d and v have no value at any time: all grains on one side"
-        )
+        raise RunFolderError(f"{run.path / 'history.npz'}: d and v have no value at any time: all grains on one side")
     time = history["time"] * NANO
     figure = new_figure(7.0, 6.6, constrained_layout=True)
     upper, lower = figure.subplots(2, 1, sharex=True)

@@ -1,5 +1,6 @@
 """Spheres seen along -z, painted into a pixel image with a depth buffer: the cost is pixels times spheres,
 not objects."""
+
 import numpy as np
 
 _LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
@@ -32,7 +33,7 @@ def _covered(position, radius, origin, size, pixel):
     for j in range(-reach, reach + 1):
         for i in range(-reach, reach + 1):
             c, r = central[0] + i, central[1] + j
-            left = squared - ((c + 0.5 - column) ** 2 + (r + 0.5 - row) ** 2) * pixel ** 2
+            left = squared - ((c + 0.5 - column) ** 2 + (r + 0.5 - row) ** 2) * pixel**2
             rows = np.flatnonzero((left > 0) & (c >= 0) & (c < size[0]) & (r >= 0) & (r < size[1]))
             yield rows, r[rows] * size[0] + c[rows], position[rows, 2] + np.sqrt(left[rows])
 

@@ -1,4 +1,5 @@
 """Common look of the figures: sizes, fonts, and one colour for each energy channel and aggregate."""
+
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -38,9 +39,11 @@ AGGREGATE_COLOURS = ((0.92, 0.60, 0.18), (0.24, 0.52, 0.82))
 
 def styled(make):
     """Decorator: make(...) -> Figure under this module's settings."""
+
     def figure_of(*arguments, **options):
         with rc_context(_SETTINGS):
             return make(*arguments, **options)
+
     figure_of.__name__, figure_of.__doc__ = make.__name__, make.__doc__
     return figure_of
 

@@ -3,8 +3,16 @@ code.
 
 A22 = Arakawa et al. 2022 (viscous dissipation), A24 = Arakawa et al. 2024 (elastoplastic collisions), K13 =
 Kataoka et al. 2013."""
-from .jkr import (contact_radius_root, normalised_energy, normalised_force, normalised_stiffness,
-                  contact_radius, normal_energy, normal_force)
+
+from .jkr import (
+    contact_radius,
+    contact_radius_root,
+    normal_energy,
+    normal_force,
+    normalised_energy,
+    normalised_force,
+    normalised_stiffness,
+)
 from .pair_constants import (
     ICE,
     SILICATE,

@@ -9,6 +9,7 @@ u - u_c,
 
 exactly: no term is negative, so the root w is found to the last digits even where D(u) is flat.
 """
+
 from decimal import Decimal, localcontext
 
 import numpy as np
@@ -39,7 +40,7 @@ def _distance_from_pull_off(normalised_overlap):
 
 def _root_from_distance(distance):
     """u for D + (9/16)^(1/3) = distance >= 0 (NaN below), any shape."""
-    c2, c3, c4 = 18.0 * U_PULL_OFF ** 2, 12.0 * U_PULL_OFF, 3.0
+    c2, c3, c4 = 18.0 * U_PULL_OFF**2, 12.0 * U_PULL_OFF, 3.0
     with np.errstate(invalid="ignore"):
         s = np.sqrt(distance)
     # s = w (c2 + c3 w + c4 w^2)^(1/2) is convex and rises: Newton's steps from above come down to the root
@@ -61,7 +62,7 @@ def normalised_force(normalised_overlap):
     """F_E/F_c (positive = repulsive) for D = delta/delta0 (any shape); 0 where the grains are apart. A22 eq
     5."""
     u = contact_radius_root(normalised_overlap)
-    return np.where(np.isnan(u), 0.0, 4.0 * u ** 3 * (u - 1.0) * (u * u + u + 1.0))[()]
+    return np.where(np.isnan(u), 0.0, 4.0 * u**3 * (u - 1.0) * (u * u + u + 1.0))[()]
 
 
 def normalised_energy(normalised_overlap):
@@ -74,9 +75,9 @@ def normalised_stiffness(normalised_overlap):
     """d(F_E/F_c)/dD for D = delta/delta0 (any shape): (24 u^5 - 12 u^2)/(12 u^3 - 2), infinite at the
     pull-off, 0 apart."""
     u = contact_radius_root(normalised_overlap)
-    slope = 2.0 * (6.0 * u ** 3 - 1.0)
+    slope = 2.0 * (6.0 * u**3 - 1.0)
     with np.errstate(divide="ignore"):
-        return np.where(np.isnan(u), 0.0, 12.0 * u * u * (2.0 * u ** 3 - 1.0) / np.maximum(slope, 0.0))[()]
+        return np.where(np.isnan(u), 0.0, 12.0 * u * u * (2.0 * u**3 - 1.0) / np.maximum(slope, 0.0))[()]
 
 
 def contact_radius(overlap, pair):
@@ -93,5 +94,6 @@ def normal_force(overlap, pair):
 
 def normal_energy(overlap, pair):
     """JKR potential U_n [J] for an overlap [m] (any shape), 0 where the grains are apart. A22 eq 8."""
-    return pair.pull_off_force * pair.pull_off_overlap * normalised_energy(
-        np.asarray(overlap) / pair.equilibrium_overlap)
+    return (
+        pair.pull_off_force * pair.pull_off_overlap * normalised_energy(np.asarray(overlap) / pair.equilibrium_overlap)
+    )

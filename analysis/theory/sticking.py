@@ -3,6 +3,7 @@
 Units inside: overlap in delta0, velocity in (F_c delta0/m*)^(1/2), time in (m* delta0/F_c)^(1/2). The overlap
 is counted from the pull-off, h = delta/delta0 + (9/16)^(1/3), where the force has its square-root branch
 point."""
+
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
 
@@ -11,10 +12,10 @@ from scipy.integrate import solve_ivp
 
 from .jkr import ENERGY_SCALE, PULL_OFF_OVERLAP, _root_from_distance
 
-ENERGY_AT_PULL_OFF = 4.0 / 45.0                        # U_n(-delta_c)/(F_c delta_c), A22 eq 10
-ENERGY_AT_CONTACT = -8.0 / 15.0 * 2.0 ** (2.0 / 3.0)   # U_n(0)/(F_c delta_c), A22 eq 9
+ENERGY_AT_PULL_OFF = 4.0 / 45.0  # U_n(-delta_c)/(F_c delta_c), A22 eq 10
+ENERGY_AT_CONTACT = -8.0 / 15.0 * 2.0 ** (2.0 / 3.0)  # U_n(0)/(F_c delta_c), A22 eq 9
 _TOLERANCES = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
-_LONGEST = 1e4          # in time units: far longer than any collision, a guard against an endless integration
+_LONGEST = 1e4  # in time units: far longer than any collision, a guard against an endless integration
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class PairCollision:
     """Outcome of a head-on collision: sticks, rebound_velocity [m/s] (0 when it sticks), restitution (rebound
     over impact velocity), duration [s] from first contact to separation (infinite when it sticks),
     largest_overlap [m]."""
+
     sticks: bool
     rebound_velocity: float
     restitution: float
@@ -42,7 +44,7 @@ class _PairMotion:
 
     def forces(self, h, rate):
         u = float(_root_from_distance(max(h, 0.0)))
-        return 4.0 * u ** 3 * (u ** 3 - 1.0), (self.contact_drag * u * u + self.linear_drag) * rate
+        return 4.0 * u**3 * (u**3 - 1.0), (self.contact_drag * u * u + self.linear_drag) * rate
 
     def forward(self, _, state):
         elastic, drag = self.forces(*state)
@@ -56,7 +58,7 @@ class _PairMotion:
     def energy_above_pull_off(h, rate):
         """Kinetic energy plus U_n minus U_n(-delta_c), in units of F_c delta0."""
         u = float(_root_from_distance(max(h, 0.0)))
-        potential = ENERGY_SCALE * u ** 4 * (0.8 * u ** 6 - 4.0 / 3.0 * u ** 3 + 1.0 / 3.0)
+        potential = ENERGY_SCALE * u**4 * (0.8 * u**6 - 4.0 / 3.0 * u**3 + 1.0 / 3.0)
         return 0.5 * rate * rate + PULL_OFF_OVERLAP * (potential - ENERGY_AT_PULL_OFF)
 
 
@@ -78,9 +80,7 @@ def sticking_velocity(pair):
 
     first_contact = _event(lambda _, state: state[0] - PULL_OFF_OVERLAP)
     runs_away = _event(lambda _, state: state[0] - 1e8, direction=0)
-    path = solve_ivp(
-        motion.backward, (0.0, _LONGEST), (0.0, 0.0), events=(first_contact, runs_away), **_TOLERANCES
-    )
+    path = solve_ivp(motion.backward, (0.0, _LONGEST), (0.0, 0.0), events=(first_contact, runs_away), **_TOLERANCES)
     return path.y_events[0][0][1] * motion.velocity if len(path.t_events[0]) else inf
 
 
@@ -121,9 +121,7 @@ def collide_pair(velocity, pair):
         path = solve_ivp(motion.forward, (0.0, _LONGEST), top, events=(separation, captured), **_TOLERANCES)
         if len(path.t_events[0]):
             rebound = -path.y[1, -1] * motion.velocity
-            return PairCollision(
-                False, rebound, rebound / velocity, (time_in + path.t[-1]) * motion.time, largest
-            )
+            return PairCollision(False, rebound, rebound / velocity, (time_in + path.t[-1]) * motion.time, largest)
     return PairCollision(True, 0.0, 0.0, inf, largest)
 
 
@@ -132,7 +130,7 @@ def pair_motion(velocity, pair, times):
     eq 30).
 
     velocity [m/s] > 0 is the relative velocity at first contact; after a separation both are NaN.
-   """
+    """
     motion, start = _start(velocity, pair)
     times = np.asarray(times, dtype=float) / motion.time
     separation = _event(lambda _, state: state[0])
@@ -146,5 +144,7 @@ def pair_motion(velocity, pair, times):
     )
     h, rate = path.sol(np.minimum(times, path.t[-1]))
     apart = times > path.t[-1]
-    return (np.where(apart, np.nan, (h - PULL_OFF_OVERLAP) * motion.length),
-            np.where(apart, np.nan, rate * motion.velocity))
+    return (
+        np.where(apart, np.nan, (h - PULL_OFF_OVERLAP) * motion.length),
+        np.where(apart, np.nan, rate * motion.velocity),
+    )

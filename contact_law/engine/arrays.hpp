@@ -39,7 +39,10 @@ struct alignas(64) Grain {
 inline Vec3<double> positionOf(const Grain& g) { return { g.x, g.y, g.z }; }
 inline Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
 inline Vec3<double> spinOf(const Grain& g) { return { g.wx, g.wy, g.wz }; }
-inline Vec3<double> separationOf(const Grain& a, const Grain& b) { return positionOf(a) - positionOf(b); } // of the grains themselves, not their images
+inline Vec3<double> separationOf(const Grain& a, const Grain& b)
+{
+	return positionOf(a) - positionOf(b);
+} // of the grains themselves, not their images
 
 constexpr int lanes = 8; // contacts in a block
 
@@ -49,17 +52,17 @@ constexpr int batchSize = 4;
 struct alignas(64) ContactBlock {
 	double n1[3][lanes], n2[3][lanes]; // contact pointers, laboratory frame
 	double twist[lanes];
-	int    i[lanes], j[lanes]; // grains; a dead lane points to the domain's two dummies
+	int i[lanes], j[lanes]; // grains; a dead lane points to the domain's two dummies
 };
 
 /* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces take, since reading them is what such scenes are
  * slower for; the rest are derived anew where they are wanted. The last three are for drag. */
 template <class T>
-constexpr T PairConstants<T>::*keptConstants[] = { &PairConstants<T>::radius1,          &PairConstants<T>::radius2,           &PairConstants<T>::reducedRadius,
-	                                           &PairConstants<T>::inverseEquilibriumOverlap, &PairConstants<T>::pullOffForce,  &PairConstants<T>::rollingStiffness,
-	                                           &PairConstants<T>::slidingStiffness, &PairConstants<T>::twistingStiffness, &PairConstants<T>::criticalSliding,
-	                                           &PairConstants<T>::criticalRolling,  &PairConstants<T>::equilibriumContactRadius, &PairConstants<T>::dragPerContactRadius,
-	                                           &PairConstants<T>::linearDrag };
+constexpr T PairConstants<T>::*keptConstants[] = { &PairConstants<T>::radius1, &PairConstants<T>::radius2, &PairConstants<T>::reducedRadius,
+	&PairConstants<T>::inverseEquilibriumOverlap, &PairConstants<T>::pullOffForce, &PairConstants<T>::rollingStiffness,
+	&PairConstants<T>::slidingStiffness, &PairConstants<T>::twistingStiffness, &PairConstants<T>::criticalSliding,
+	&PairConstants<T>::criticalRolling, &PairConstants<T>::equilibriumContactRadius, &PairConstants<T>::dragPerContactRadius,
+	&PairConstants<T>::linearDrag };
 constexpr int keptCount = sizeof(keptConstants<double>) / sizeof(keptConstants<double>[0]);
 struct alignas(64) ConstantsBlock {
 	double field[keptCount][lanes];
@@ -81,21 +84,21 @@ struct alignas(64) LaneForces {
 
 // What one pass over a domain's contacts needs.
 struct ForcePass {
-	Grain*                       grains;
-	ContactBlock*                blocks;
-	const ConstantsBlock*        constants; // null when all pairs are alike
+	Grain* grains;
+	ContactBlock* blocks;
+	const ConstantsBlock* constants; // null when all pairs are alike
 	const PairConstants<double>* alike;
-	DragBlock*                   drags;    // null in scenes without drag
-	const PreviousVelocity*      previous; // likewise
-	const PeriodicCell*          cell;
-	int                          firstBlock, endBlock;
-	int                          addFirst, addSecond; // whether the first / second grain of each contact is this domain's
-	int                          trash;               // grain that takes what is not added
-	double                       dt;
-	Dissipation*                 dissipated; // what drag and slips took in this step is added here
-	long*                        slips;      // and their number here
-	Vec3<double>*                crossing;   // in periodic scenes: shift times force of contacts across the boundaries is added here
-	void*                        owner;
+	DragBlock* drags;                 // null in scenes without drag
+	const PreviousVelocity* previous; // likewise
+	const PeriodicCell* cell;
+	int firstBlock, endBlock;
+	int addFirst, addSecond; // whether the first / second grain of each contact is this domain's
+	int trash;               // grain that takes what is not added
+	double dt;
+	Dissipation* dissipated; // what drag and slips took in this step is added here
+	long* slips;             // and their number here
+	Vec3<double>* crossing;  // in periodic scenes: shift times force of contacts across the boundaries is added here
+	void* owner;
 	// contacts of a block (bits of `which`) that break or are pressed beyond the fit: history before the step, forces to be replaced
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
@@ -139,7 +142,8 @@ struct InstructionSet {
 	const char* name;
 	void (*forces[16][2][2])(const ForcePass&);
 	void (*energies[16][2])(const ForcePass&, StoredEnergy<double>&);
-	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
+	double (*sumOfProduct)(
+	        double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
 	void (*bondForces)(const BondPass&);
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);

@@ -31,7 +31,7 @@ namespace avx2 {
 
 	static inline void scatterAdd(Grain* grains, const int* index, const Pack values[6])
 	{
-		__m256d low[4]  = { _mm256_setzero_pd(), _mm256_setzero_pd(), values[0].v, values[1].v };
+		__m256d low[4] = { _mm256_setzero_pd(), _mm256_setzero_pd(), values[0].v, values[1].v };
 		__m256d high[4] = { values[2].v, values[3].v, values[4].v, values[5].v };
 		transpose(low);
 		transpose(high);
@@ -42,7 +42,8 @@ namespace avx2 {
 		}
 	}
 
-	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
+	static void integrate(
+	        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 	{
 		integrateOneByOne<Pack>(begin, end, inverseMass, inverseInertia, dt, range);
 	}
@@ -53,5 +54,8 @@ namespace avx2 {
 #include "neighbour_search.hpp"
 
 namespace contact_law {
-InstructionSet avx2Passes() { return NeighbourPasses<avx2::Pack>::addTo(BondPasses<avx2::Pack>::addTo(Passes<avx2::Pack>::all("avx2", &avx2::integrate))); }
+InstructionSet avx2Passes()
+{
+	return NeighbourPasses<avx2::Pack>::addTo(BondPasses<avx2::Pack>::addTo(Passes<avx2::Pack>::all("avx2", &avx2::integrate)));
+}
 }

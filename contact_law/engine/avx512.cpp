@@ -10,18 +10,18 @@ namespace avx512 {
 	{
 		__m512d a[8], b[8];
 		for (int k = 0; k < 8; k += 2) {
-			a[k]     = _mm512_unpacklo_pd(r[k], r[k + 1]);
+			a[k] = _mm512_unpacklo_pd(r[k], r[k + 1]);
 			a[k + 1] = _mm512_unpackhi_pd(r[k], r[k + 1]);
 		}
 		for (int k = 0; k < 2; ++k) { // pairs of rows: 0-3 and 4-7
-			const __m512d *p = a + 4 * k;
-			b[4 * k]     = _mm512_shuffle_f64x2(p[0], p[2], 0x88);
+			const __m512d* p = a + 4 * k;
+			b[4 * k] = _mm512_shuffle_f64x2(p[0], p[2], 0x88);
 			b[4 * k + 1] = _mm512_shuffle_f64x2(p[1], p[3], 0x88);
 			b[4 * k + 2] = _mm512_shuffle_f64x2(p[0], p[2], 0xdd);
 			b[4 * k + 3] = _mm512_shuffle_f64x2(p[1], p[3], 0xdd);
 		}
 		for (int k = 0; k < 4; ++k) {
-			r[k]     = _mm512_shuffle_f64x2(b[k], b[4 + k], 0x88);
+			r[k] = _mm512_shuffle_f64x2(b[k], b[4 + k], 0x88);
 			r[4 + k] = _mm512_shuffle_f64x2(b[k], b[4 + k], 0xdd);
 		}
 		// columns come out as 0 1 2 3 | 4 5 6 7 with lanes in the order of rows
@@ -36,12 +36,13 @@ namespace avx512 {
 		for (int k = 0; k < 8; ++k)
 			out[k] = r[k];
 		const __m256i rows = _mm256_slli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(index)), 4);
-		out[8]             = _mm512_i32gather_pd(rows, &grains[0].wz, 8);
+		out[8] = _mm512_i32gather_pd(rows, &grains[0].wz, 8);
 	}
 
 	static inline void scatterAdd(Grain* grains, const int* index, const Pack values[6])
 	{
-		__m512d r[8] = { _mm512_setzero_pd(), _mm512_setzero_pd(), values[0].v, values[1].v, values[2].v, values[3].v, values[4].v, values[5].v };
+		__m512d r[8] = { _mm512_setzero_pd(), _mm512_setzero_pd(), values[0].v, values[1].v, values[2].v, values[3].v, values[4].v,
+			values[5].v };
 		transpose(r);
 		for (int lane = 0; lane < 8; ++lane) {
 			double* line = &grains[index[lane]].wz;
@@ -49,24 +50,28 @@ namespace avx512 {
 		}
 	}
 
-	static void integrate(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
+	static void integrate(
+	        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 	{
-		const __m512i toVelocity = _mm512_set_epi64(6, 5, 4, 3, 2, 0, 0, 0); // line 2 is wz, -, f, t; velocities and wx, wy stand at 3 .. 7 of line 1
-		const __m512d step       = _mm512_set1_pd(dt);
-		__m512d       least = _mm512_load_pd(range.least), most = _mm512_load_pd(range.most);
+		const __m512i toVelocity =
+		        _mm512_set_epi64(6, 5, 4, 3, 2, 0, 0, 0); // line 2 is wz, -, f, t; velocities and wx, wy stand at 3 .. 7 of line 1
+		const __m512d step = _mm512_set1_pd(dt);
+		__m512d least = _mm512_load_pd(range.least), most = _mm512_load_pd(range.most);
 		for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {
 			const __m512d second = _mm512_load_pd(&g->wz);
 			const __m512d m = _mm512_set1_pd(*inverseMass * dt), i = _mm512_set1_pd(*inverseInertia * dt);
-			__m512d       first = _mm512_load_pd(&g->x);
-			first               = _mm512_mask3_fmadd_pd(_mm512_permutexvar_pd(toVelocity, second), _mm512_mask_blend_pd(0xc0, m, i), first, 0xf8);
-			const __m512d moved = _mm512_maskz_permutexvar_pd(0x07, _mm512_set_epi64(0, 0, 0, 0, 0, 5, 4, 3), first); // velocities under the positions
-			first               = _mm512_mask3_fmadd_pd(moved, step, first, 0x07);
+			__m512d first = _mm512_load_pd(&g->x);
+			first = _mm512_mask3_fmadd_pd(
+			        _mm512_permutexvar_pd(toVelocity, second), _mm512_mask_blend_pd(0xc0, m, i), first, 0xf8);
+			const __m512d moved = _mm512_maskz_permutexvar_pd(
+			        0x07, _mm512_set_epi64(0, 0, 0, 0, 0, 5, 4, 3), first); // velocities under the positions
+			first = _mm512_mask3_fmadd_pd(moved, step, first, 0x07);
 			_mm512_store_pd(&g->x, first);
 			// wz += tz dt/I, and forces to zero
 			const __m512d wz = _mm512_fmadd_pd(_mm512_permutexvar_pd(_mm512_set1_epi64(7), second), i, second);
 			_mm512_store_pd(&g->wz, _mm512_maskz_mov_pd(0x01, wz));
 			least = _mm512_min_pd(least, moved);
-			most  = _mm512_max_pd(most, moved);
+			most = _mm512_max_pd(most, moved);
 		}
 		_mm512_store_pd(range.least, least);
 		_mm512_store_pd(range.most, most);
@@ -78,5 +83,9 @@ namespace avx512 {
 #include "neighbour_search.hpp"
 
 namespace contact_law {
-InstructionSet avx512Passes() { return NeighbourPasses<avx512::Pack>::addTo(BondPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate))); }
+InstructionSet avx512Passes()
+{
+	return NeighbourPasses<avx512::Pack>::addTo(
+	        BondPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate)));
+}
 }

@@ -22,7 +22,8 @@ public:
 		if (arrived.fetch_add(1, std::memory_order_acq_rel) == threads - 1) {
 			arrived.store(0, std::memory_order_relaxed);
 			rounds.store(round + 1, std::memory_order_seq_cst);
-			if (sleepers.load(std::memory_order_seq_cst) > 0) syscall(SYS_futex, &rounds, FUTEX_WAKE_PRIVATE, INT_MAX, nullptr, nullptr, 0);
+			if (sleepers.load(std::memory_order_seq_cst) > 0)
+				syscall(SYS_futex, &rounds, FUTEX_WAKE_PRIVATE, INT_MAX, nullptr, nullptr, 0);
 			return;
 		}
 		for (int spins = 0; spins < 2000; ++spins) {
@@ -36,7 +37,7 @@ public:
 	}
 
 private:
-	const int                    threads;
+	const int threads;
 	alignas(64) std::atomic<int> arrived { 0 };
 	alignas(64) std::atomic<int> rounds { 0 };
 	alignas(64) std::atomic<int> sleepers { 0 };

@@ -15,22 +15,22 @@ struct alignas(64) BondConstantsBlock {
 };
 
 struct Bond { // one lane, taken out
-	int                    i, j;
+	int i, j;
 	ContactHistory<double> history;
-	double                 rest;
-	BondConstants<double>  constants;
+	double rest;
+	BondConstants<double> constants;
 };
 
 // What one pass over a domain's bonds needs; as ForcePass.
 struct BondPass {
-	Grain*                       grains;
-	BondBlock*                   blocks;
-	const BondConstantsBlock*    constants; // null when all pairs are alike
+	Grain* grains;
+	BondBlock* blocks;
+	const BondConstantsBlock* constants; // null when all pairs are alike
 	const BondConstants<double>* alike;
-	int                          endBlock;
-	int                          addFirst, addSecond, trash;
-	double                       dt;
-	void*                        owner;
+	int endBlock;
+	int addFirst, addSecond, trash;
+	double dt;
+	void* owner;
 	// bonds of a block (bits of `which`) that break: history before the step, forces to be replaced
 	void (*breaks)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
 };
@@ -42,15 +42,18 @@ public:
 	        , dummy(dummy_)
 	{
 	}
-	int        size() const { return used; } // lanes, dead ones among them
-	int        blockCount() const { return int(blocks.size()); }
+	int size() const { return used; } // lanes, dead ones among them
+	int blockCount() const { return int(blocks.size()); }
 	BondBlock* data() { return blocks.data(); }
 	const BondConstantsBlock* constantsData() const { return alike ? nullptr : constants.data(); }
-	int        first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
-	int        second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
-	bool       alive(int lane) const { return first(lane) != dummy; }
+	int first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
+	int second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
+	bool alive(int lane) const { return first(lane) != dummy; }
 	// of lanes that are none: the two dummies and their distance
-	void setDead(const BondConstants<double>& c, double distance) { dead = { dummy, dummy + 1, { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }, distance, c }; }
+	void setDead(const BondConstants<double>& c, double distance)
+	{
+		dead = { dummy, dummy + 1, { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }, distance, c };
+	}
 
 	void append(const Bond& bond)
 	{
@@ -66,11 +69,11 @@ public:
 	Bond get(int lane, const BondConstants<double>& common) const
 	{
 		const BondBlock& b = blocks[lane / lanes];
-		const int        k = lane % lanes;
+		const int k = lane % lanes;
 		return { b.i[k], b.j[k], ContactList::history(b, k), b.rest[k], alike ? common : readConstants(lane) };
 	}
 	void writeHistory(int lane, const ContactHistory<double>& h) { ContactList::writeHistory(blocks[lane / lanes], lane % lanes, h); }
-	int  aliveCount() const
+	int aliveCount() const
 	{
 		int count = 0;
 		for (int lane = 0; lane < used; ++lane)
@@ -106,10 +109,10 @@ private:
 	void set(int lane, const Bond& bond)
 	{
 		BondBlock& b = blocks[lane / lanes];
-		const int  k = lane % lanes;
-		b.i[k]       = bond.i;
-		b.j[k]       = bond.j;
-		b.rest[k]    = bond.rest;
+		const int k = lane % lanes;
+		b.i[k] = bond.i;
+		b.j[k] = bond.j;
+		b.rest[k] = bond.rest;
 		writeHistory(lane, bond.history);
 		if (alike) return;
 		const double* from = reinterpret_cast<const double*>(&bond.constants);
@@ -119,16 +122,16 @@ private:
 	BondConstants<double> readConstants(int lane) const
 	{
 		BondConstants<double> c;
-		double*               to = reinterpret_cast<double*>(&c);
+		double* to = reinterpret_cast<double*>(&c);
 		for (int n = 0; n < bondConstantCount; ++n)
 			to[n] = constants[lane / lanes].field[n][lane % lanes];
 		return c;
 	}
-	Aligned<BondBlock>          blocks;
+	Aligned<BondBlock> blocks;
 	Aligned<BondConstantsBlock> constants;
-	Bond                        dead {};
-	bool                        alike;
-	int                         dummy, used = 0;
+	Bond dead {};
+	bool alike;
+	int dummy, used = 0;
 };
 
 } // namespace contact_law

@@ -12,28 +12,32 @@ template <class Pack> struct BondPasses {
 	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at)
 	{
 		BondConstants<Pack> to;
-		Pack*               field = reinterpret_cast<Pack*>(&to);
-		const double*       same  = reinterpret_cast<const double*>(pass.alike);
+		Pack* field = reinterpret_cast<Pack*>(&to);
+		const double* same = reinterpret_cast<const double*>(pass.alike);
 		for (int k = 0; k < bondConstantCount; ++k)
 			field[k] = pass.constants ? Pack::load(pass.constants[index].field[k] + at) : Pack(same[k]);
 		return to;
 	}
 
-	static ContactHistory<Pack> historyOf(const BondBlock& block, int at) { return { { P::load(block.n1, at), P::load(block.n2, at) }, Pack::load(block.twist + at) }; }
+	static ContactHistory<Pack> historyOf(const BondBlock& block, int at)
+	{
+		return { { P::load(block.n1, at), P::load(block.n2, at) }, Pack::load(block.twist + at) };
+	}
 
 	// `width` bonds: carried through the step, their forces, and which of them break (bits).
 	static unsigned sweep(const BondPass& pass, int index, int at, BondBlock& before, LaneForces& out)
 	{
-		BondBlock&                  block = pass.blocks[index];
-		const BondConstants<Pack>   c     = constantsOf(pass, index, at);
-		const auto                  pair  = P::gatherPair(pass.grains, block, at);
-		const ContactGeometry<Pack> g     = geometryOf(pair.separation, Pack::load(block.rest + at));
-		const ContactHistory<Pack>  old   = historyOf(block, at);
-		const Pack                  dt(pass.dt);
-		ContactHistory<Pack>        h { { turnedALittle(old.pointers.n1, dt * pair.spin1), turnedALittle(old.pointers.n2, dt * pair.spin2) },
-                                         old.twist + twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, dt) };
-		const ContactForces<Pack>   f     = bondForces(c, g, h);
-		const unsigned              broken = bitsOf(bondBreaks(c, bondEnergy(c, g, f, h.twist)));
+		BondBlock& block = pass.blocks[index];
+		const BondConstants<Pack> c = constantsOf(pass, index, at);
+		const auto pair = P::gatherPair(pass.grains, block, at);
+		const ContactGeometry<Pack> g = geometryOf(pair.separation, Pack::load(block.rest + at));
+		const ContactHistory<Pack> old = historyOf(block, at);
+		const Pack dt(pass.dt);
+		ContactHistory<Pack> h { { turnedALittle(old.pointers.n1, dt * pair.spin1),
+			                         turnedALittle(old.pointers.n2, dt * pair.spin2) },
+			old.twist + twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, dt) };
+		const ContactForces<Pack> f = bondForces(c, g, h);
+		const unsigned broken = bitsOf(bondBreaks(c, bondEnergy(c, g, f, h.twist)));
 		P::store(f.normalForce * g.normal + f.sliding, out.force, at);
 		P::store(f.torque1, out.torque1, at);
 		P::store(f.torque2, out.torque2, at);
@@ -49,8 +53,8 @@ template <class Pack> struct BondPasses {
 			t = pass.trash;
 		for (int index = 0; index < pass.endBlock; ++index) {
 			LaneForces out;
-			BondBlock  before;
-			unsigned   broken = 0;
+			BondBlock before;
+			unsigned broken = 0;
 			for (int at = 0; at < lanes; at += width)
 				broken |= sweep(pass, index, at, before, out);
 			const BondBlock& block = pass.blocks[index];
@@ -59,7 +63,8 @@ template <class Pack> struct BondPasses {
 			const int* to2 = pass.addSecond ? block.j : trash;
 			for (int at = 0; at < lanes; at += width) {
 				const Vec3<Pack> f = P::load(out.force, at), t1 = P::load(out.torque1, at), t2 = P::load(out.torque2, at);
-				const Pack       onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z }, onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
+				const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z },
+				        onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
 				scatterAdd(pass.grains, to1 + at, onFirst);
 				scatterAdd(pass.grains, to2 + at, onSecond);
 			}
@@ -71,16 +76,18 @@ template <class Pack> struct BondPasses {
 		StoredEnergy<Pack> total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
 		for (int index = 0; index < pass.endBlock; ++index)
 			for (int at = 0; at < lanes; at += width) {
-				const BondBlock&            block = pass.blocks[index];
-				const BondConstants<Pack>   c     = constantsOf(pass, index, at);
-				const ContactGeometry<Pack> g     = geometryOf(P::gatherPair(pass.grains, block, at).separation, Pack::load(block.rest + at));
-				const ContactHistory<Pack>  h     = historyOf(block, at);
-				const StoredEnergy<Pack>    e     = bondEnergy(c, g, bondForces(c, g, h), h.twist);
-				alignas(64) double          counts[lanes];
+				const BondBlock& block = pass.blocks[index];
+				const BondConstants<Pack> c = constantsOf(pass, index, at);
+				const ContactGeometry<Pack> g =
+				        geometryOf(P::gatherPair(pass.grains, block, at).separation, Pack::load(block.rest + at));
+				const ContactHistory<Pack> h = historyOf(block, at);
+				const StoredEnergy<Pack> e = bondEnergy(c, g, bondForces(c, g, h), h.twist);
+				alignas(64) double counts[lanes];
 				for (int lane = 0; lane < width; ++lane)
 					counts[lane] = block.i[at + lane] != pass.trash; // a dead lane's dummies
 				const Pack mine = Pack::load(counts);
-				total = { total.normal + mine * e.normal, total.sliding + mine * e.sliding, total.rolling + mine * e.rolling, total.twisting + mine * e.twisting };
+				total = { total.normal + mine * e.normal, total.sliding + mine * e.sliding,
+					total.rolling + mine * e.rolling, total.twisting + mine * e.twisting };
 			}
 		sums = { P::sumOf(total.normal), P::sumOf(total.sliding), P::sumOf(total.rolling), P::sumOf(total.twisting) };
 	}
@@ -88,7 +95,7 @@ template <class Pack> struct BondPasses {
 	// An instruction set's passes with those over bonds.
 	static InstructionSet addTo(InstructionSet set)
 	{
-		set.bondForces   = &forces;
+		set.bondForces = &forces;
 		set.bondEnergies = &energies;
 		return set;
 	}

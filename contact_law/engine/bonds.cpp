@@ -10,7 +10,8 @@ namespace {
 BondPass Domain::bondPassFor(int sort)
 {
 	BondList& list = bonds[sort];
-	return { s.grains.data(), list.data(), list.constantsData(), &s.commonBond, list.blockCount(), sort != Second, sort != First, dummy, s.dt, &eventCalls[sort], &Domain::breaksOf };
+	return { s.grains.data(), list.data(), list.constantsData(), &s.commonBond, list.blockCount(), sort != Second, sort != First, dummy,
+		s.dt, &eventCalls[sort], &Domain::breaksOf };
 }
 
 void Domain::addBondForces()
@@ -29,21 +30,21 @@ void Domain::breaksOf(void* owner, int block, unsigned which, const BondBlock& b
 // A border bond is computed in both domains, from the same numbers to the same end.
 void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& forces)
 {
-	BondList&                   list = bonds[sort];
-	const int                   k = lane % lanes, i = list.first(lane), j = list.second(lane);
-	Image                       image; // none: bonds are in open space only
-	const BondMotion            motion { motionOf(i, j, image), s.inverseInertia[i], s.inverseInertia[j] };
-	const ContactMotion&        m = motion.contact;
-	const Bond                  bond      = list.get(lane, s.commonBond);
-	const BondConstants<double>& b        = bond.constants;
+	BondList& list = bonds[sort];
+	const int k = lane % lanes, i = list.first(lane), j = list.second(lane);
+	Image image; // none: bonds are in open space only
+	const BondMotion motion { motionOf(i, j, image), s.inverseInertia[i], s.inverseInertia[j] };
+	const ContactMotion& m = motion.contact;
+	const Bond bond = list.get(lane, s.commonBond);
+	const BondConstants<double>& b = bond.constants;
 	const PairConstants<double> constants = s.constantsOf(i, j);
-	ContactHistory<double>      h         = ContactList::history(old, k);
+	ContactHistory<double> h = ContactList::history(old, k);
 
 	const ContactBefore before = aStepAgo(b, bond.rest, m, h);
 	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 
-	const BondStepResult     result = bondStepWith[s.mechanisms](b, constants, motion, before, bond.rest, h);
-	const ContactStepResult& r      = result.contact;
+	const BondStepResult result = bondStepWith[s.mechanisms](b, constants, motion, before, bond.rest, h);
+	const ContactStepResult& r = result.contact;
 	if (result.bonded) { // by rounding: it doesn't after all, and the forces of the pass stand
 		return;
 	}
@@ -68,10 +69,10 @@ void Domain::placeBonds()
 {
 	for (int sort = 0; sort < 3; ++sort)
 		for (int index = 0; index < int(far[sort].size()); ++index) {
-			const Pair         p          = far[sort][index];
-			Image              image;
+			const Pair p = far[sort][index];
+			Image image;
 			const Vec3<double> separation = motionOf(p.i, p.j, image).separation;
-			const double       reach      = s.grainRadius[p.i] + s.grainRadius[p.j];
+			const double reach = s.grainRadius[p.i] + s.grainRadius[p.j];
 			if (dot(separation, separation) >= reach * reach) continue;
 			Bond bond { p.i, p.j, {}, 0, s.bondOf(p.i, p.j) };
 			bond.rest = newBond(separation, bond.history);

@@ -7,8 +7,8 @@
 namespace contact_law {
 
 struct Constrained {
-	int          grain;
-	unsigned     blocked;                             // bits, blocked.hpp
+	int grain;
+	unsigned blocked;                                   // bits, blocked.hpp
 	Vec3<double> force { 0, 0, 0 }, torque { 0, 0, 0 }; // withheld now
 };
 
@@ -16,7 +16,7 @@ struct Constrained {
 class Constraints {
 public:
 	std::vector<Constrained> grains; // by rising index
-	double                   work = 0; // that contacts did against whatever holds the grains or moves them at their given velocity [J]
+	double work = 0;                 // that contacts did against whatever holds the grains or moves them at their given velocity [J]
 
 	void begin() { next = 0; } // a step's forces, of which grains will have all
 
@@ -26,14 +26,17 @@ public:
 	void withhold(Grain* all, double dt, int end)
 	{
 		double sum = work; // grain by grain, so that it doesn't depend on where `end` stood
-		auto   at  = grains.begin() + next;
+		auto at = grains.begin() + next;
 		for (; at != grains.end() && at->grain < end; ++at) {
-			Constrained&       c     = *at;
-			Grain&             g     = all[c.grain];
-			const Vec3<double> force = blockedForce({ g.fx, g.fy, g.fz }, c.blocked), torque = blockedTorque({ g.tx, g.ty, g.tz }, c.blocked);
-			sum += 0.5 * dt * (dot(c.force + force, Vec3<double> { g.vx, g.vy, g.vz }) + dot(c.torque + torque, Vec3<double> { g.wx, g.wy, g.wz }));
+			Constrained& c = *at;
+			Grain& g = all[c.grain];
+			const Vec3<double> force = blockedForce({ g.fx, g.fy, g.fz }, c.blocked),
+			                   torque = blockedTorque({ g.tx, g.ty, g.tz }, c.blocked);
+			sum += 0.5 * dt
+			        * (dot(c.force + force, Vec3<double> { g.vx, g.vy, g.vz })
+			                + dot(c.torque + torque, Vec3<double> { g.wx, g.wy, g.wz }));
 			add(g, -force, -torque);
-			c.force  = force;
+			c.force = force;
 			c.torque = torque;
 		}
 		work = sum;
@@ -49,9 +52,9 @@ public:
 			at = grains.erase(at);
 		}
 		if (!blocked) return;
-		Grain&      g = all[grain];
+		Grain& g = all[grain];
 		Constrained c { grain, blocked };
-		c.force  = blockedForce({ g.fx, g.fy, g.fz }, blocked);
+		c.force = blockedForce({ g.fx, g.fy, g.fz }, blocked);
 		c.torque = blockedTorque({ g.tx, g.ty, g.tz }, blocked);
 		add(g, -c.force, -c.torque);
 		grains.insert(at, c);

@@ -7,10 +7,10 @@
 namespace contact_law {
 
 struct Contact { // one lane, taken out
-	int                    i, j;
+	int i, j;
 	ContactHistory<double> history;
-	PairConstants<double>  constants;
-	double                 drag = 0, overlap = 0; // a step ago; only in scenes with drag
+	PairConstants<double> constants;
+	double drag = 0, overlap = 0; // a step ago; only in scenes with drag
 };
 
 class ContactList {
@@ -21,12 +21,12 @@ public:
 	        , dummy(dummy_)
 	{
 	}
-	int            size() const { return used; } // lanes, dead ones among them
-	int            blockCount() const { return int(blocks.size()); }
-	ContactBlock*  data() { return blocks.data(); }
+	int size() const { return used; } // lanes, dead ones among them
+	int blockCount() const { return int(blocks.size()); }
+	ContactBlock* data() { return blocks.data(); }
 	ConstantsBlock* constantsData() { return alike ? nullptr : constants.data(); }
 
-	DragBlock*      dragData() { return hasDrag ? drags.data() : nullptr; }
+	DragBlock* dragData() { return hasDrag ? drags.data() : nullptr; }
 
 	void append(const Contact& contact)
 	{
@@ -41,15 +41,15 @@ public:
 		if (!alike) writeConstants(lane, deadConstants);
 		if (hasDrag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
 	}
-	int  first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
-	int  second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
+	int first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
+	int second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
 	Contact get(int lane, const PairConstants<double>& pairConstants) const
 	{
 		const ContactBlock& b = blocks[lane / lanes];
-		const int           k = lane % lanes;
-		Contact             c { b.i[k], b.j[k], history(b, k), pairConstants };
+		const int k = lane % lanes;
+		Contact c { b.i[k], b.j[k], history(b, k), pairConstants };
 		if (hasDrag) c.drag = drag(lane), c.overlap = drags[lane / lanes].overlap[k];
 		return c;
 	}
@@ -57,13 +57,10 @@ public:
 	void writeDrag(int lane, double force, double overlap)
 	{
 		if (!hasDrag) return;
-		drags[lane / lanes].drag[lane % lanes]    = force;
+		drags[lane / lanes].drag[lane % lanes] = force;
 		drags[lane / lanes].overlap[lane % lanes] = overlap;
 	}
-	void writeHistory(int lane, const ContactHistory<double>& h)
-	{
-		writeHistory(blocks[lane / lanes], lane % lanes, h);
-	}
+	void writeHistory(int lane, const ContactHistory<double>& h) { writeHistory(blocks[lane / lanes], lane % lanes, h); }
 	static void writeHistory(ContactBlock& b, int k, const ContactHistory<double>& h)
 	{
 		const Vec3<double>&p = h.pointers.n1, &q = h.pointers.n2;
@@ -84,7 +81,7 @@ public:
 	void sort()
 	{
 		struct Key {
-			int  i, j, lane;
+			int i, j, lane;
 			bool operator<(const Key& other) const { return i != other.i ? i < other.i : j < other.j; }
 		};
 		std::vector<Key> order;
@@ -143,12 +140,12 @@ private:
 		for (int k = 0; k < keptCount; ++k)
 			constants[lane / lanes].field[k][lane % lanes] = c.*keptConstants<double>[k];
 	}
-	Aligned<ContactBlock>   blocks;
+	Aligned<ContactBlock> blocks;
 	Aligned<ConstantsBlock> constants;
-	Aligned<DragBlock>      drags;
-	PairConstants<double>   deadConstants {};
-	bool                    alike, hasDrag;
-	int                     dummy, used = 0;
+	Aligned<DragBlock> drags;
+	PairConstants<double> deadConstants {};
+	bool alike, hasDrag;
+	int dummy, used = 0;
 };
 
 } // namespace contact_law

@@ -16,7 +16,8 @@ namespace {
 Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
         : begin(begin_)
         , end(end_)
-        , contacts { { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ } }
+        , contacts { { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ },
+	        { setting.alike, setting.hasDrag(), dummy_ } }
         , bonds { { setting.alike, dummy_ }, { setting.alike, dummy_ }, { setting.alike, dummy_ } }
         , s(setting)
         , dummy(dummy_)
@@ -24,9 +25,9 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
 	for (int sort = 0; sort < 3; ++sort)
 		eventCalls[sort] = { this, sort };
 	const double distance = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
-	s.grains[dummy]       = Grain {};
-	s.grains[dummy + 1]   = Grain {};
-	s.grains[dummy].x     = distance;
+	s.grains[dummy] = Grain {};
+	s.grains[dummy + 1] = Grain {};
+	s.grains[dummy].x = distance;
 	for (ContactList& list : contacts)
 		list.setDeadConstants(s.common);
 	for (BondList& list : bonds)
@@ -36,15 +37,18 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
 ForcePass Domain::passFor(int sort)
 {
 	ContactList& list = contacts[sort];
-	const bool   books = sort != Second; // both domains of a border contact compute it; the first grain's books it
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), &cell, 0, list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation, books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf, nullptr };
+	const bool books = sort != Second; // both domains of a border contact compute it; the first grain's books it
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), &cell, 0,
+		list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation,
+		books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf,
+		nullptr };
 }
 
 void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
 {
-	ForcePass pass  = passFor(sort);
+	ForcePass pass = passFor(sort);
 	pass.firstBlock = firstBlock;
-	pass.endBlock   = endBlock;
+	pass.endBlock = endBlock;
 	if (behind) pass.batchDone = &Domain::moveBehind;
 	s.passes->forces[s.mechanisms][s.alike][cell.on](pass);
 }
@@ -90,7 +94,8 @@ void Domain::integrateUpTo(int grain)
 		for (int g = moved; g < grain; ++g)
 			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
 	if (s.convects()) convect(moved, grain);
-	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved, s.dt, velocities);
+	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved,
+	        s.dt, velocities);
 	if (!s.orientation.empty()) turnOrientations(s.grains.data() + moved, s.grains.data() + grain, s.orientation.data() + moved, s.dt);
 	moved = grain;
 }
@@ -99,7 +104,7 @@ void Domain::integrateUpTo(int grain)
 void Domain::convect(int first, int last)
 {
 	for (int k = first; k < last; ++k) {
-		Grain&             g = s.grains[k];
+		Grain& g = s.grains[k];
 		const Vec3<double> before = velocityOf(g), gain = s.dt * Images<double>::times(s.convective, before);
 		const Vec3<double> after = before + gain + (s.dt * s.inverseMass[k]) * Vec3<double> { g.fx, g.fy, g.fz };
 		sums.meanField -= 0.5 / s.inverseMass[k] * dot(gain, before + after);
@@ -111,8 +116,9 @@ ContactMotion Domain::motionOf(int i, int j, Image& image) const
 {
 	const Grain &a = s.grains[i], &b = s.grains[j];
 	Vec3<double> separation = positionOf(a) - positionOf(b);
-	image                   = nearestImage(cell, separation);
-	const double inverseMass = inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
+	image = nearestImage(cell, separation);
+	const double inverseMass =
+	        inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
 	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity };
 }
 
@@ -143,22 +149,22 @@ void Domain::eventsOf(void* owner, int block, unsigned which, const ContactBlock
 
 void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& forces)
 {
-	ContactList&           list = contacts[sort];
-	const int              k    = lane % lanes;
-	const int              i = list.first(lane), j = list.second(lane);
-	Image                  image;
-	const ContactMotion    m = motionOf(i, j, image);
+	ContactList& list = contacts[sort];
+	const int k = lane % lanes;
+	const int i = list.first(lane), j = list.second(lane);
+	Image image;
+	const ContactMotion m = motionOf(i, j, image);
 	const PairConstants<double> constants = s.constantsOf(i, j);
-	ContactHistory<double> h    = ContactList::history(old, k);
+	ContactHistory<double> h = ContactList::history(old, k);
 
 	ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, m, h);
 	if (s.hasDrag()) {
 		const PreviousVelocity &a = s.previous[i], &b = s.previous[j];
 		before.velocity = Vec3<double> { a.x - b.x, a.y - b.y, a.z - b.z } + image.velocityBefore;
-		before.drag     = list.drag(lane);
+		before.drag = list.drag(lane);
 	}
 
-	h.pointers                = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
+	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 	const ContactStepResult r = contactStepWith[s.mechanisms](constants, m, before, h);
 	book(r, m, image, sort);
 	write(r.force, forces.force, k);
@@ -196,14 +202,14 @@ void Domain::births()
 
 void Domain::birth(int sort, int index)
 {
-	const Pair          p = far[sort][index];
-	Image               image;
+	const Pair p = far[sort][index];
+	Image image;
 	const ContactMotion m = motionOf(p.i, p.j, image);
-	Contact             c { p.i, p.j, {}, s.constantsOf(p.i, p.j) };
-	const auto          r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
+	Contact c { p.i, p.j, {}, s.constantsOf(p.i, p.j) };
+	const auto r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
 	if (!r.touching) return;
-	c.drag                = r.now.drag;
-	c.overlap             = r.geometry.overlap;
+	c.drag = r.now.drag;
+	c.overlap = r.geometry.overlap;
 	touching[sort][index] = 1;
 	book(r, m, image, sort);
 	addAlone(sort, p.i, p.j, r, image);
@@ -218,8 +224,8 @@ void Domain::findPairs(const Grid& grid, double nearGap)
 	for (int i = begin; i < end; ++i) {
 		const NeighbourSearch search = grid.search(&s.grains[i].x, s.radius[i], s.farGap, cell);
 		found.resize(std::max(found.size(), std::size_t(search.most())));
-		int*                  last   = found.data() + s.passes->closeMembers[cell.on](search, found.data());
-		last                         = std::remove_if(found.data(), last, [&](int j) { return j == i || (j < i && owns(j)); });
+		int* last = found.data() + s.passes->closeMembers[cell.on](search, found.data());
+		last = std::remove_if(found.data(), last, [&](int j) { return j == i || (j < i && owns(j)); });
 		std::sort(found.data(), last);
 		last = std::unique(found.data(), last);
 		for (const int* j = found.data(); j < last; ++j)
@@ -229,11 +235,12 @@ void Domain::findPairs(const Grid& grid, double nearGap)
 	for (int sort = 0; sort < 3; ++sort) {
 		touching[sort].assign(far[sort].size(), 0);
 		const ContactList& list = contacts[sort];
-		std::size_t        at   = 0;
+		std::size_t at = 0;
 		for (int lane = 0; lane < list.size(); ++lane) { // pairs and contacts run along together as long as contacts are sorted
 			if (!list.alive(lane)) continue;
 			const Pair pair { list.first(lane), list.second(lane) };
-			if (at > 0 && !(far[sort][at - 1] < pair)) at = std::lower_bound(far[sort].begin(), far[sort].end(), pair) - far[sort].begin();
+			if (at > 0 && !(far[sort][at - 1] < pair))
+				at = std::lower_bound(far[sort].begin(), far[sort].end(), pair) - far[sort].begin();
 			while (at < far[sort].size() && far[sort][at] < pair)
 				++at;
 			if (at < far[sort].size() && !(pair < far[sort][at])) touching[sort][at] = 1;
@@ -264,7 +271,7 @@ void Domain::findCompleted()
 	int next = end;
 	for (int batch = int(completed.size()) - 1; batch >= 0; --batch) {
 		completed[batch] = next;
-		const int last   = std::min((batch + 1) * batchSize, sortedBlocks) * lanes;
+		const int last = std::min((batch + 1) * batchSize, sortedBlocks) * lanes;
 		for (int lane = last - 1; lane >= batch * batchSize * lanes; --lane)
 			if (list.alive(lane)) next = list.first(lane);
 	}
@@ -275,7 +282,8 @@ void Domain::findNearPairs(double nearGap)
 	for (int sort = 0; sort < 3; ++sort) {
 		near[sort].clear();
 		for (int index = 0; index < int(far[sort].size()); ++index)
-			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, nearGap)) near[sort].push_back(index);
+			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, nearGap))
+				near[sort].push_back(index);
 	}
 }
 
@@ -303,11 +311,11 @@ void Domain::placeOverlapping()
 {
 	for (int sort = 0; sort < 3; ++sort)
 		for (const int index : near[sort]) {
-			const Pair          p = far[sort][index];
-			Vec3<double>        separation = positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]);
+			const Pair p = far[sort][index];
+			Vec3<double> separation = positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]);
 			nearestImage(cell, separation);
 			const ContactMotion m { separation, { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
-			const double        overlap = s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation));
+			const double overlap = s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation));
 			if (overlap <= 0) continue;
 			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j), 0, overlap });
 			touching[sort][index] = 1;
@@ -331,7 +339,8 @@ double Domain::kineticEnergy() const
 	double sum = sums.eventWork;
 	for (int k = begin; k < end; ++k) {
 		const Grain& p = s.grains[k];
-		sum += 0.5 / s.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz) + 0.5 / s.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
+		sum += 0.5 / s.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz)
+		        + 0.5 / s.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
 		        + 0.5 * s.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
 	}
 	return sum;

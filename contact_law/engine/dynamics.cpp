@@ -10,21 +10,23 @@ namespace {
 	constexpr double stepsOfNearPairs = 16; // that lists of near pairs should last where grains are fast (measured)
 }
 
-Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_, const std::vector<double>* memory,
-                   const Inherited* inherited)
+Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_,
+        const std::vector<double>* memory, const Inherited* inherited)
         : options(options_)
         , count(int(grains.size()))
 {
 	if (grains.empty()) throw std::invalid_argument("no grains: at least one sphere is needed");
-	setting.passes        = &instructionSet(options.instructions);
-	setting.material      = materials;
+	setting.passes = &instructionSet(options.instructions);
+	setting.material = materials;
 	setting.linearDamping = options.linearDamping;
-	setting.neck          = options.neck;
-	setting.mechanisms    = options.mechanisms;
-	setting.dt            = options.dt;
-	setting.convective    = options.convective;
-	if (memory) recallOrder(*memory);
-	else orderGrains(grains);
+	setting.neck = options.neck;
+	setting.mechanisms = options.mechanisms;
+	setting.dt = options.dt;
+	setting.convective = options.convective;
+	if (memory)
+		recallOrder(*memory);
+	else
+		orderGrains(grains);
 	loadGrains(grains);
 	makeDomains();
 	if (memory) {
@@ -36,7 +38,9 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	if (inherited && inherited->stepBehind) { // an ordinary step's end: events since the histories' moment are found as in any other
 		addForces();
 		for (auto& domain : domains)
-			domain->constraints.work = 0, domain->sums.boundary.done *= 2; // half of it would be missing: of blocked grains it is left out, the boundaries' forces hardly change in a step
+			domain->constraints.work = 0,
+			domain->sums.boundary.done *=
+			        2; // half of it would be missing: of blocked grains it is left out, the boundaries' forces hardly change in a step
 		return;
 	}
 	const bool bonded = setting.neck > 0 && !inherited;
@@ -51,13 +55,13 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 {
 	const double shrunk = neck::shrunkRadius(setting.neck);
-	double&      smallest = setting.smallestRadius;
-	smallest              = shrunk * grains[0].radius;
+	double& smallest = setting.smallestRadius;
+	smallest = shrunk * grains[0].radius;
 	indexHere.resize(count);
 	for (int k = 0; k < count; ++k) {
-		const GrainInput& g    = grains[original[k]];
+		const GrainInput& g = grains[original[k]];
 		indexHere[original[k]] = k;
-		smallest               = std::min(smallest, shrunk * g.radius);
+		smallest = std::min(smallest, shrunk * g.radius);
 		setting.grains.push_back(Grain {});
 		write(g, setting.grains.back());
 		setting.radius.push_back(shrunk * g.radius);
@@ -70,11 +74,11 @@ void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 		setting.alike = setting.alike && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
 	}
 	const Material& m = setting.material[setting.kind[0]];
-	const double    r = setting.grainRadius[0];
-	setting.common    = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
+	const double r = setting.grainRadius[0];
+	setting.common = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
 	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.neck);
-	nearGap           = nearGapFor(0);
-	setting.farGap    = 0.8 * smallest;
+	nearGap = nearGapFor(0);
+	setting.farGap = 0.8 * smallest;
 }
 
 void Dynamics::write(const GrainInput& g, Grain& grain)
@@ -94,7 +98,7 @@ void Dynamics::write(const Grain& grain, GrainInput& g)
 void Dynamics::set(int index, const GrainInput& now)
 {
 	const int k = indexHere[index];
-	Grain&    p = setting.grains[k];
+	Grain& p = setting.grains[k];
 	if (now.blocked != setting.blocked[k]) {
 		domainOf(k).constraints.block(setting.grains.data(), k, now.blocked);
 		setting.blocked[k] = now.blocked;
@@ -108,7 +112,7 @@ void Dynamics::set(int index, const GrainInput& now)
 // The velocities through the given time with the forces as they are; back in time, it undoes what it does.
 void Dynamics::kick(Grain& p, int k, double time) const
 {
-	const double        m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
+	const double m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
 	const Vec3<double>& c = setting.convective; // grows with the velocity before the kick
 	if (time > 0) p.vx *= 1 + time * c.x, p.vy *= 1 + time * c.y, p.vz *= 1 + time * c.z;
 	p.vx += m * p.fx, p.vy += m * p.fy, p.vz += m * p.fz;
@@ -122,7 +126,8 @@ void Dynamics::makeDomains()
 	setting.grains.resize(count + 2 * domainCount);
 	if (setting.hasDrag()) setting.previous.assign(count + 2 * domainCount, PreviousVelocity {});
 	for (int d = 0; d < domainCount; ++d)
-		domains.push_back(std::make_unique<Domain>(setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
+		domains.push_back(std::make_unique<Domain>(
+		        setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
 	for (auto& domain : domains)
 		domain->cell = options.cell;
 	for (int k = 0; k < count; ++k)
@@ -178,7 +183,7 @@ void Dynamics::refreshLists(bool farToo)
 void Dynamics::firstForces()
 {
 	const double dt = setting.dt;
-	setting.dt      = 0;
+	setting.dt = 0;
 	if (setting.hasDrag())
 		for (int g = 0; g < count; ++g)
 			setting.previous[g] = { setting.grains[g].vx, setting.grains[g].vy, setting.grains[g].vz, 0 };
@@ -198,14 +203,16 @@ void Dynamics::addForces()
 
 double Dynamics::unstableStep() const
 {
-	double                           least = 1e300;
+	double least = 1e300;
 	std::set<std::pair<int, double>> seen;
 	for (int k = 0; k < count; ++k) {
 		if (!seen.emplace(setting.kind[k], setting.radius[k]).second) continue;
-		const PairConstants<double> c    = setting.constantsOf(k, k);
-		if (bondCount()) least = std::min(least, 2 / fastestVibration(setting.bondOf(k, k), setting.inverseMass[k], setting.inverseInertia[k]));
-		const double                drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
-		least                            = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
+		const PairConstants<double> c = setting.constantsOf(k, k);
+		if (bondCount())
+			least = std::min(
+			        least, 2 / fastestVibration(setting.bondOf(k, k), setting.inverseMass[k], setting.inverseInertia[k]));
+		const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
+		least = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
 	}
 	return least;
 }
@@ -219,7 +226,7 @@ long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<doubl
 	};
 	const auto wait = [&] { barrier.wait(); };
 	const Vec3<double> rate = (1 / setting.dt) * growth;
-	double       sinceFar = travelSinceFar, sinceNear = travelSinceNear, gap = nearGap;
+	double sinceFar = travelSinceFar, sinceNear = travelSinceNear, gap = nearGap;
 	const double allowed = fastestAllowed();
 	mine([](Domain& domain, int) { domain.integrate(); });
 	for (long step = 1; step <= steps; ++step) {
@@ -228,11 +235,11 @@ long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<doubl
 		if (range.fastestComponent() > allowed) return step - 1;
 		mine([&](Domain& domain, int) { domain.cell.advance(sizeAtEnd - double(steps - step) * growth, rate); });
 		const Vec3<double> across = Images<double>::times(mostCells, growth); // an image moves with its cell
-		const double       approach = setting.dt * range.diagonal() + std::sqrt(dot(across, across));
+		const double approach = setting.dt * range.diagonal() + std::sqrt(dot(across, across));
 		sinceFar += approach;
 		sinceNear += approach;
 		if (sinceNear > gap) {
-			gap               = nearGapFor(approach);
+			gap = nearGapFor(approach);
 			const bool farToo = sinceFar + gap > setting.farGap;
 			if (farToo) {
 				buildGrid(thread == 0, mine, wait);
@@ -241,7 +248,8 @@ long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<doubl
 				barrier.wait();
 				mine([&](Domain& domain, int) { domain.findPairs(grid, gap); });
 				sinceFar = 0;
-			} else mine([&](Domain& domain, int) { domain.findNearPairs(gap); });
+			} else
+				mine([&](Domain& domain, int) { domain.findNearPairs(gap); });
 			sinceNear = 0;
 			if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
 		}
@@ -250,9 +258,9 @@ long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<doubl
 		mine([=](Domain& domain, int) { domain.addOtherForces(step < steps); });
 	}
 	if (thread == 0) {
-		travelSinceFar  = sinceFar;
+		travelSinceFar = sinceFar;
 		travelSinceNear = sinceNear;
-		nearGap         = gap;
+		nearGap = gap;
 	}
 	return steps;
 }
@@ -276,8 +284,8 @@ double Dynamics::nearGapFor(double approach) const
 long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 {
 	const int threads = threadCount();
-	Barrier   barrier(threads);
-	long      made = steps;
+	Barrier barrier(threads);
+	long made = steps;
 	const Vec3<double> from = cell().size, to = sizeAtEnd ? *sizeAtEnd : from, growth = (1. / double(steps)) * (to - from);
 #pragma omp parallel num_threads(threads)
 	{
@@ -297,7 +305,7 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 		const char* coming = reinterpret_cast<const char*>(&grains[original[std::min(k + 16, count - 1)]]);
 		__builtin_prefetch(coming, 1);
 		__builtin_prefetch(coming + 64, 1);
-		Grain       p = setting.grains[k];
+		Grain p = setting.grains[k];
 		GrainInput& g = grains[original[k]];
 		kick(p, k, 0.5 * setting.dt);
 		write(p, g);
@@ -313,10 +321,10 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 Energies Dynamics::energies()
 {
 	std::vector<StoredEnergy<double>> stored(domains.size());
-	std::vector<double>               kinetic(domains.size()), convective(domains.size());
+	std::vector<double> kinetic(domains.size()), convective(domains.size());
 #pragma omp parallel for num_threads(threadCount())
 	for (std::size_t d = 0; d < domains.size(); ++d) {
-		stored[d]  = domains[d]->energies();
+		stored[d] = domains[d]->energies();
 		kinetic[d] = domains[d]->kineticEnergy();
 		convective[d] = domains[d]->convectiveWork();
 	}

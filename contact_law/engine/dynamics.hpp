@@ -11,66 +11,66 @@ namespace contact_law {
 struct GrainInput {
 	double position[3], velocity[3], angularVelocity[3]; // all at the start's moment
 	double radius, mass, inertia;
-	int    kind; // index of its material
-	unsigned    blocked     = 0;              // degrees of freedom (kernel/blocked.hpp)
+	int kind;                                 // index of its material
+	unsigned blocked = 0;                     // degrees of freedom (kernel/blocked.hpp)
 	Orientation orientation = { 1, 0, 0, 0 }; // kept up only with Options::orientations
 };
 
 // A contact as it is now, its grains as they were given.
 struct ContactNow {
-	int                     first, second;
-	PairConstants<double>   constants;
-	ContactHistory<double>  history; // laboratory frame
+	int first, second;
+	PairConstants<double> constants;
+	ContactHistory<double> history; // laboratory frame
 	ContactGeometry<double> geometry;
-	ContactForces<double>   forces;
-	Vec3<double>            velocity; // of the first past the second through the last small step
-	Vec3<double>            shift;    // cells by which the first is shifted to be nearest to the second (periodic)
-	bool                    bonded = false;
-	BondConstants<double>   bond {}; // when it is; the geometry's overlap is then rest - distance
-	double                  rest = 0;
+	ContactForces<double> forces;
+	Vec3<double> velocity; // of the first past the second through the last small step
+	Vec3<double> shift;    // cells by which the first is shifted to be nearest to the second (periodic)
+	bool bonded = false;
+	BondConstants<double> bond {}; // when it is; the geometry's overlap is then rest - distance
+	double rest = 0;
 };
 ContactNow swapped(const ContactNow&); // the same with its grains in the other order
 
 // Contacts that grains have when a run starts, in place of unstrained springs where they overlap.
 struct Inherited {
 	struct One {
-		int                    first, second; // grains as given
-		ContactHistory<double> history;       // laboratory frame
-		double                 overlap, drag; // at the moment of the history
-		bool                   bonded = false;
-		double                 rest = 0; // of a bond
+		int first, second;              // grains as given
+		ContactHistory<double> history; // laboratory frame
+		double overlap, drag;           // at the moment of the history
+		bool bonded = false;
+		double rest = 0; // of a bond
 	};
 	std::vector<One> contacts;
 	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
 	 * scenes with drag `previous`, the velocities another step before. Otherwise all is of one moment. */
-	bool                      stepBehind = false;
+	bool stepBehind = false;
 	std::vector<Vec3<double>> previous;
 };
 
 struct Energies {
-	double      kinetic = 0; // 1/2 m v(-dt/2) v(+dt/2): what a leapfrog conserves together with the stored energies (MODEL.md)
+	double kinetic = 0; // 1/2 m v(-dt/2) v(+dt/2): what a leapfrog conserves together with the stored energies (MODEL.md)
 	StoredEnergy<double> stored { 0, 0, 0, 0 };
 	Dissipation dissipated;
-	double      constraintWork = 0; // done by contacts on blocked degrees of freedom, since the start
-	double      boundaryWork   = 0; // done against a periodic cell's boundaries and mean velocity field, since the start
+	double constraintWork = 0; // done by contacts on blocked degrees of freedom, since the start
+	double boundaryWork = 0;   // done against a periodic cell's boundaries and mean velocity field, since the start
 };
 
 class Dynamics {
 public:
 	struct Options {
-		double   dt = 0, linearDamping = 0;
-		double   neck = 0; // of sintered bonds over the grains' radius; 0: none
+		double dt = 0, linearDamping = 0;
+		double neck = 0; // of sintered bonds over the grains' radius; 0: none
 		unsigned mechanisms = AllSprings;
-		int      domains = 2, threads = 1;
-		std::string instructions; // "avx512", "avx2", "portable"; empty: the best this machine has
-		bool        orientations = false; // whether to keep the grains' orientations up
-		PeriodicCell cell {};             // at the start's moment; off: open space
+		int domains = 2, threads = 1;
+		std::string instructions;            // "avx512", "avx2", "portable"; empty: the best this machine has
+		bool orientations = false;           // whether to keep the grains' orientations up
+		PeriodicCell cell {};                // at the start's moment; off: open space
 		Vec3<double> convective { 0, 0, 0 }; // see setMeanField
 	};
 	// Grains that overlap touch from the start, with unstrained springs (with a neck: bonded), or as `inherited` has it; or all is as `memory` (of remember(), from the same grains in the
 	// same order) has it.
-	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options, const std::vector<double>* memory = nullptr,
-	         const Inherited* inherited = nullptr);
+	Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options,
+	        const std::vector<double>* memory = nullptr, const Inherited* inherited = nullptr);
 
 	/* Steps from here on are unstable for every pair of like grains in the scene, in whatever packing [s]: half a time unit, at which collisions blow up
 	 * (measured; MODEL.md), m* over the drag coefficient, where drag overshoots with its velocity extrapolated, or 2 over the fastest vibration of a bonded pair. */
@@ -90,7 +90,7 @@ public:
 	double smallestRadius() const { return setting.smallestRadius; }
 
 	void setThreads(int threads) { options.threads = threads; }
-	int  threadCount() const { return std::max(1, std::min(options.threads, int(domains.size()))); }
+	int threadCount() const { return std::max(1, std::min(options.threads, int(domains.size()))); }
 
 	std::vector<double> remember() const;
 
@@ -98,15 +98,16 @@ public:
 	void set(int grain, const GrainInput& now);
 
 	// The state now; grains in the order they were given.
-	void     read(std::vector<GrainInput>& grains) const;
+	void read(std::vector<GrainInput>& grains) const;
 	// As YADE's loop leaves grains after a step: moved on by a small step, velocities of half a step before that, contacts as they are now.
 	// Orientations are turned from those of this run, or, where it keeps none, from those given.
-	void     readAhead(std::vector<GrainInput>& grains) const;
+	void readAhead(std::vector<GrainInput>& grains) const;
 	Energies energies();
 	Dissipation dissipated() const; // since the start
-	bool     constrained() const; // whether any grain has a blocked degree of freedom
-	int      contactCount() const;
-	template <class Visit> void eachPlace(Visit&& visit) const // of every contact once: visit(list, lane, its first and its second grain as given)
+	bool constrained() const;       // whether any grain has a blocked degree of freedom
+	int contactCount() const;
+	template <class Visit>
+	void eachPlace(Visit&& visit) const // of every contact once: visit(list, lane, its first and its second grain as given)
 	{
 		for (const auto& domain : domains)
 			for (int sort = 0; sort < 2; ++sort) {
@@ -132,24 +133,25 @@ public:
 		});
 	}
 	const BondConstants<double>& commonBond() const { return setting.commonBond; } // for BondList::get
-	std::array<long, bondModes>  brokenBonds() const; // so far, by mode
-	int                          bondCount() const;
+	std::array<long, bondModes> brokenBonds() const;                               // so far, by mode
+	int bondCount() const;
 	const PairConstants<double>& commonConstants() const { return setting.common; } // of the first grain with its like
 	Contact contactOf(const ContactList& list, int lane) const { return setting.contactOf(list, lane); }
-	template <class Visit> void eachContact(Visit&& visit) const // visit(Contact, its first and second grain as given, normal force now)
+	template <class Visit>
+	void eachContact(Visit&& visit) const // visit(Contact, its first and second grain as given, normal force now)
 	{
 		eachPlace([&](const ContactList& list, int lane, int first, int second) {
 			const Contact c = setting.contactOf(list, lane);
 			visit(c, first, second, normalForce(c));
 		});
 	}
-	double      normalForce(const Contact&) const; // elastic and viscous, positive when repulsive
-	ContactNow  now(const Contact&) const;
-	ContactNow  now(const Bond&) const;
+	double normalForce(const Contact&) const; // elastic and viscous, positive when repulsive
+	ContactNow now(const Contact&) const;
+	ContactNow now(const Bond&) const;
 
 	// What went wrong: the grain that moves fastest (or the given one) and its contact that pushes or pulls hardest; both as given, -1: none.
 	struct Trouble {
-		int    grain = -1, other = -1;
+		int grain = -1, other = -1;
 		double speed = 0, overlap = 0, force = 0; // overlap over the smaller radius; force along the normal [N]
 	};
 	Trouble trouble(int grain = -1) const;
@@ -157,16 +159,16 @@ public:
 	// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are not looked up. Grain -1: none does.
 	Trouble tooDeep() const;
 	const char* instructions() const { return setting.passes->name; }
-	long        contactUpdates = 0, farRebuilds = 0, nearRebuilds = 0, events() const;
+	long contactUpdates = 0, farRebuilds = 0, nearRebuilds = 0, events() const;
 
 private:
-	void        orderGrains(const std::vector<GrainInput>&);
-	void        recallOrder(const std::vector<double>& memory);
-	void        loadGrains(const std::vector<GrainInput>&);
-	void        inherit(const Inherited&);
+	void orderGrains(const std::vector<GrainInput>&);
+	void recallOrder(const std::vector<double>& memory);
+	void loadGrains(const std::vector<GrainInput>&);
+	void inherit(const Inherited&);
 	static void write(const GrainInput&, Grain&);
 	static void write(const Grain&, GrainInput&);
-	void        kick(Grain&, int index, double time) const;
+	void kick(Grain&, int index, double time) const;
 	Trouble tooDeep(const Domain&) const;
 	void makeDomains();
 	void recall(const std::vector<double>& memory);
@@ -178,21 +180,22 @@ private:
 	void refreshLists(bool farToo);
 	long runShare(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier&);
 	Domain& domainOf(int index);
-	double  fastestAllowed() const; // velocity component
+	double fastestAllowed() const;    // velocity component
 	VelocityRange velocities() const; // of all grains through the latest drift
-	double  nearGapFor(double approach) const;
+	double nearGapFor(double approach) const;
 
-	Options                              options;
-	Setting                              setting;
-	int                                  count = 0;
-	std::vector<int>                     original, indexHere; // index given, by index here; and the other way round
+	Options options;
+	Setting setting;
+	int count = 0;
+	std::vector<int> original, indexHere; // index given, by index here; and the other way round
 	std::vector<std::unique_ptr<Domain>> domains;
-	Grid                                 grid;
-	double                               travelSinceFar = 0, travelSinceNear = 0; // bounds on how far any two grains have come closer
-	double                               nearGap = 0;                             // up to which untouching pairs are in the near lists
-	Vec3<double>                         mostCells { 0, 0, 0 };                   // that a shift to the nearest image can be, periodic
+	Grid grid;
+	double travelSinceFar = 0, travelSinceNear = 0; // bounds on how far any two grains have come closer
+	double nearGap = 0;                             // up to which untouching pairs are in the near lists
+	Vec3<double> mostCells { 0, 0, 0 };             // that a shift to the nearest image can be, periodic
 };
 
-const InstructionSet& instructionSet(const std::string& name); // throws std::invalid_argument for one that is unknown or that this machine lacks
+const InstructionSet& instructionSet(
+        const std::string& name); // throws std::invalid_argument for one that is unknown or that this machine lacks
 
 } // namespace contact_law

@@ -12,10 +12,10 @@ namespace contact_law {
 constexpr int grainsAhead = 2 * batchSize, blocksAhead = 4 * batchSize;
 
 struct alignas(64) BatchBuffer {
-	double     spin1[3][lanes], spin2[3][lanes];
-	double     normal[3][lanes], velocity[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
-	double     drag[lanes], overlap[lanes]; // in scenes with drag
-	unsigned   events, slips; // lanes (bits) that need scalar treatment; that slip
+	double spin1[3][lanes], spin2[3][lanes];
+	double normal[3][lanes], velocity[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
+	double drag[lanes], overlap[lanes]; // in scenes with drag
+	unsigned events, slips;             // lanes (bits) that need scalar treatment; that slip
 	LaneForces out;
 };
 
@@ -25,8 +25,8 @@ template <class Pack, bool periodic> struct Crossing {
 };
 template <class Pack> struct Crossing<Pack, true> {
 	const Images<Pack> images;
-	alignas(64) double shift[batchSize][3][lanes]; // cells by which the first grain is shifted to be nearest to the second
-	Vec3<Pack>         kicks { Pack(0.), Pack(0.), Pack(0.) }; // sum of shift times force
+	alignas(64) double shift[batchSize][3][lanes];     // cells by which the first grain is shifted to be nearest to the second
+	Vec3<Pack> kicks { Pack(0.), Pack(0.), Pack(0.) }; // sum of shift times force
 
 	explicit Crossing(const ForcePass& pass)
 	        : images(*pass.cell)
@@ -37,8 +37,11 @@ template <class Pack> struct Crossing<Pack, true> {
 template <class Pack> struct Passes {
 	static constexpr int width = Pack::width;
 
-	static Vec3<Pack> load(const double (*from)[lanes], int at) { return { Pack::load(from[0] + at), Pack::load(from[1] + at), Pack::load(from[2] + at) }; }
-	static void       store(const Vec3<Pack>& v, double (*to)[lanes], int at)
+	static Vec3<Pack> load(const double (*from)[lanes], int at)
+	{
+		return { Pack::load(from[0] + at), Pack::load(from[1] + at), Pack::load(from[2] + at) };
+	}
+	static void store(const Vec3<Pack>& v, double (*to)[lanes], int at)
 	{
 		v.x.store(to[0] + at);
 		v.y.store(to[1] + at);
@@ -47,9 +50,9 @@ template <class Pack> struct Passes {
 
 	static PairConstants<Pack> spread(const PairConstants<double>& c)
 	{
-		const double*       from = reinterpret_cast<const double*>(&c);
+		const double* from = reinterpret_cast<const double*>(&c);
 		PairConstants<Pack> to;
-		Pack*               field = reinterpret_cast<Pack*>(&to);
+		Pack* field = reinterpret_cast<Pack*>(&to);
 		for (std::size_t k = 0; k < sizeof c / sizeof(double); ++k)
 			field[k] = Pack(from[k]);
 		return to;
@@ -59,7 +62,7 @@ template <class Pack> struct Passes {
 	{
 		PairConstants<Pack> to {};
 		((to.*keptConstants<Pack>[k] = Pack::load(c.field[k] + at)), ...);
-		to.pullOffOverlap   = Pack(normal::pullOffOverlap) / to.inverseEquilibriumOverlap;
+		to.pullOffOverlap = Pack(normal::pullOffOverlap) / to.inverseEquilibriumOverlap;
 		to.criticalTwisting = Pack(criticalTwistingAngle);
 		return to;
 	}
@@ -72,14 +75,15 @@ template <class Pack> struct Passes {
 		Pack a[9], b[9];
 		gather(grains, block.i + at, a);
 		gather(grains, block.j + at, b);
-		return { { a[0] - b[0], a[1] - b[1], a[2] - b[2] }, { a[3] - b[3], a[4] - b[4], a[5] - b[5] }, { a[6], a[7], a[8] }, { b[6], b[7], b[8] } };
+		return { { a[0] - b[0], a[1] - b[1], a[2] - b[2] }, { a[3] - b[3], a[4] - b[4], a[5] - b[5] }, { a[6], a[7], a[8] },
+			{ b[6], b[7], b[8] } };
 	}
 	// Its nearest images; returns the shift.
 	static Vec3<Pack> toImages(const Images<Pack>& images, Pair& pair)
 	{
 		const Vec3<Pack> shift = images.shift(pair.separation);
-		pair.separation        = pair.separation + images.distance(shift);
-		pair.velocity          = pair.velocity + images.velocity(shift);
+		pair.separation = pair.separation + images.distance(shift);
+		pair.velocity = pair.velocity + images.velocity(shift);
 		return shift;
 	}
 
@@ -118,23 +122,28 @@ template <class Pack> struct Passes {
 
 	// First sweep: where `width` contacts stand, their normal forces, and how far they twisted.
 	template <unsigned mechanisms, bool periodic>
-	static void sweepNormal(const ForcePass& pass, Crossing<Pack, periodic>& crossing, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, int at)
+	static void sweepNormal(const ForcePass& pass, Crossing<Pack, periodic>& crossing, const PairConstants<Pack>& c, int index,
+	        BatchBuffer& buffer, int at)
 	{
-		Pair                        pair = gatherPair(pass.grains, pass.blocks[index], at);
+		Pair pair = gatherPair(pass.grains, pass.blocks[index], at);
 		if constexpr (periodic) store(toImages(crossing.images, pair), crossing.shift[(index - pass.firstBlock) % batchSize], at);
-		const ContactGeometry<Pack> g    = geometryOf(pair.separation, c.radius1 + c.radius2);
-		const Pack                  inUnits = g.overlap * c.inverseEquilibriumOverlap;
-		const typename Pack::Mask   care    = (inUnits < Pack(-normal::pullOffOverlap)) | (Pack(largestFittedOverlap) < inUnits);
-		ContactForces<Pack>         f;
-		Vec3<Pack>                  velocity {};
+		const ContactGeometry<Pack> g = geometryOf(pair.separation, c.radius1 + c.radius2);
+		const Pack inUnits = g.overlap * c.inverseEquilibriumOverlap;
+		const typename Pack::Mask care = (inUnits < Pack(-normal::pullOffOverlap)) | (Pack(largestFittedOverlap) < inUnits);
+		ContactForces<Pack> f;
+		Vec3<Pack> velocity {};
 		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, pass.blocks[index], pair.velocity, at);
-		if constexpr (periodic && bool(mechanisms & Drag)) velocity = velocity - Pack(0.5) * crossing.images.velocityBefore(load(crossing.shift[(index - pass.firstBlock) % batchSize], at));
+		if constexpr (periodic && bool(mechanisms & Drag))
+			velocity = velocity
+			        - Pack(0.5)
+			                * crossing.images.velocityBefore(load(crossing.shift[(index - pass.firstBlock) % batchSize], at));
 		normalForces<mechanisms>(c, g, velocity, f);
 		Pack radial = f.normalForce;
 		if constexpr (bool(mechanisms & Drag)) radial = radial + f.drag;
 
 		if constexpr (bool(mechanisms & Twisting))
-			twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, Pack(pass.dt)).store(buffer.twistIncrement + at);
+			twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, Pack(pass.dt))
+			        .store(buffer.twistIncrement + at);
 		store(pair.spin1, buffer.spin1, at);
 		store(pair.spin2, buffer.spin2, at);
 		store(g.normal, buffer.normal, at);
@@ -150,25 +159,29 @@ template <class Pack> struct Passes {
 
 	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before` keeps the history before the step.
 	template <unsigned mechanisms>
-	static void sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, ContactBlock& before, int at, Pack& dragWork)
+	static void sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer,
+	        ContactBlock& before, int at, Pack& dragWork)
 	{
-		ContactBlock&              block = pass.blocks[index];
-		const Pack                 dt(pass.dt);
-		const Vec3<Pack>           none { Pack(0.), Pack(0.), Pack(0.) };
-		ContactGeometry<Pack>      g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
+		ContactBlock& block = pass.blocks[index];
+		const Pack dt(pass.dt);
+		const Vec3<Pack> none { Pack(0.), Pack(0.), Pack(0.) };
+		ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
 		const ContactHistory<Pack> old { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
-		ContactHistory<Pack>       h    = old;
-		typename Pack::Mask        care = Pack(1.) < Pack(0.);
+		ContactHistory<Pack> h = old;
+		typename Pack::Mask care = Pack(1.) < Pack(0.);
 		if constexpr (bool(mechanisms & (Sliding | Rolling)))
-			h.pointers = { turnedALittle(h.pointers.n1, dt * load(buffer.spin1, at)), turnedALittle(h.pointers.n2, dt * load(buffer.spin2, at)) };
+			h.pointers = { turnedALittle(h.pointers.n1, dt * load(buffer.spin1, at)),
+				turnedALittle(h.pointers.n2, dt * load(buffer.spin2, at)) };
 		if constexpr (bool(mechanisms & Twisting)) {
 			h.twist = h.twist + Pack::load(buffer.twistIncrement + at);
-			care    = care | (c.criticalTwisting < absolute(h.twist));
+			care = care | (c.criticalTwisting < absolute(h.twist));
 		}
 		ContactForces<Pack> f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
 		tangentialForces<mechanisms>(c, g, h, f);
-		if constexpr (bool(mechanisms & Sliding)) care = care | (c.criticalSliding * c.criticalSliding < dot(f.slidingDisplacement, f.slidingDisplacement));
-		if constexpr (bool(mechanisms & Rolling)) care = care | (c.criticalRolling * c.criticalRolling < dot(f.rollingDisplacement, f.rollingDisplacement));
+		if constexpr (bool(mechanisms & Sliding))
+			care = care | (c.criticalSliding * c.criticalSliding < dot(f.slidingDisplacement, f.slidingDisplacement));
+		if constexpr (bool(mechanisms & Rolling))
+			care = care | (c.criticalRolling * c.criticalRolling < dot(f.rollingDisplacement, f.rollingDisplacement));
 		storeForces(g, f, buffer, at);
 		const unsigned events = buffer.events >> at & allLanes, slips = bitsOf(care) & ~events;
 		if constexpr (bool(mechanisms & Drag)) keepDrag(pass.drags[index], buffer, events, at, dragWork);
@@ -186,27 +199,32 @@ template <class Pack> struct Passes {
 
 	// Lanes that slip, again: their displacements put back, the forces that follow, and what it took.
 	template <unsigned mechanisms>
-	static void sweepSlips(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, const ContactBlock& before, int at, Slip<Pack>& lost)
+	static void sweepSlips(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer,
+	        const ContactBlock& before, int at, Slip<Pack>& lost)
 	{
 		const unsigned slipping = buffer.slips >> at & allLanes;
 		if (!slipping) return;
-		ContactBlock&               block = pass.blocks[index];
+		ContactBlock& block = pass.blocks[index];
 		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
-		const Vec3<Pack>            velocity = load(buffer.velocity, at), then = g.normal - (Pack(pass.dt) * g.inverseDistance) * velocity; // over the distance now
-		const Pointers<Pack>        old { load(before.n1, at), load(before.n2, at) };
-		const Vec3<Pack>            none { Pack(0.), Pack(0.), Pack(0.) };
-		const Displacements<Pack>   aStepAgo { sliding::displacement(old, c.radius1, c.radius2, inverseRoot(dot(then, then)) * then), rolling::displacement(old, c.reducedRadius),
-			Pack::load(before.twist + at) };
-		ContactHistory<Pack>        h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
-		ContactForces<Pack>         f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
-		const Slip<Pack>            slipped = slip<mechanisms>(c, g.normal, aStepAgo, { normalRate(g.normal, g.inverseDistance, velocity), load(buffer.spin1, at), load(buffer.spin2, at), Pack(pass.dt) }, h);
+		const Vec3<Pack> velocity = load(buffer.velocity, at),
+		                 then = g.normal - (Pack(pass.dt) * g.inverseDistance) * velocity; // over the distance now
+		const Pointers<Pack> old { load(before.n1, at), load(before.n2, at) };
+		const Vec3<Pack> none { Pack(0.), Pack(0.), Pack(0.) };
+		const Displacements<Pack> aStepAgo { sliding::displacement(old, c.radius1, c.radius2, inverseRoot(dot(then, then)) * then),
+			rolling::displacement(old, c.reducedRadius), Pack::load(before.twist + at) };
+		ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
+		ContactForces<Pack> f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
+		const Slip<Pack> slipped = slip<mechanisms>(c, g.normal, aStepAgo,
+		        { normalRate(g.normal, g.inverseDistance, velocity), load(buffer.spin1, at), load(buffer.spin2, at),
+		                Pack(pass.dt) },
+		        h);
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
 		keep(h, block, at);
 		const typename Pack::Mask those = maskOf(slipping);
-		lost.sliding                    = lost.sliding + choose(those, slipped.sliding, Pack(0.));
-		lost.rolling                    = lost.rolling + choose(those, slipped.rolling, Pack(0.));
-		lost.twisting                   = lost.twisting + choose(those, slipped.twisting, Pack(0.));
+		lost.sliding = lost.sliding + choose(those, slipped.sliding, Pack(0.));
+		lost.rolling = lost.rolling + choose(those, slipped.rolling, Pack(0.));
+		lost.twisting = lost.twisting + choose(those, slipped.twisting, Pack(0.));
 		*pass.slips += __builtin_popcount(slipping);
 	}
 
@@ -223,10 +241,10 @@ template <class Pack> struct Passes {
 	// Events keep the step before, which they need.
 	static void keepDrag(DragBlock& d, const BatchBuffer& now, unsigned events, int at, Pack& dragWork)
 	{
-		const auto plain         = maskOf(~events);
-		const Pack dragBefore    = Pack::load(d.drag + at), overlapBefore = Pack::load(d.overlap + at);
-		const Pack drag          = Pack::load(now.drag + at), overlap = Pack::load(now.overlap + at);
-		dragWork                 = dragWork + choose(plain, Pack(0.5) * (dragBefore + drag) * (overlap - overlapBefore), Pack(0.));
+		const auto plain = maskOf(~events);
+		const Pack dragBefore = Pack::load(d.drag + at), overlapBefore = Pack::load(d.overlap + at);
+		const Pack drag = Pack::load(now.drag + at), overlap = Pack::load(now.overlap + at);
+		dragWork = dragWork + choose(plain, Pack(0.5) * (dragBefore + drag) * (overlap - overlapBefore), Pack(0.));
 		choose(plain, drag, dragBefore).store(d.drag + at);
 		choose(plain, overlap, overlapBefore).store(d.overlap + at);
 	}
@@ -238,17 +256,23 @@ template <class Pack> struct Passes {
 		h.twist.store(block.twist + at);
 	}
 
-	static const PairConstants<Pack>& constants(const ForcePass&, const PairConstants<Pack>& same, int, int, std::true_type) { return same; }
-	static PairConstants<Pack>        constants(const ForcePass& pass, const PairConstants<Pack>&, int index, int at, std::false_type) { return load(pass.constants[index], at); }
+	static const PairConstants<Pack>& constants(const ForcePass&, const PairConstants<Pack>& same, int, int, std::true_type)
+	{
+		return same;
+	}
+	static PairConstants<Pack> constants(const ForcePass& pass, const PairConstants<Pack>&, int index, int at, std::false_type)
+	{
+		return load(pass.constants[index], at);
+	}
 
 	template <unsigned mechanisms, bool alike, bool periodic> [[gnu::flatten]] static void forces(const ForcePass& pass)
 	{
-		BatchBuffer               buffers[batchSize];
+		BatchBuffer buffers[batchSize];
 		const PairConstants<Pack> same = spread(*pass.alike);
-		Pack                      dragWork(0.);
-		Slip<Pack>                lost { Pack(0.), Pack(0.), Pack(0.), {} };
-		Crossing<Pack, periodic>  crossing(pass);
-		int                       trash[lanes];
+		Pack dragWork(0.);
+		Slip<Pack> lost { Pack(0.), Pack(0.), Pack(0.), {} };
+		Crossing<Pack, periodic> crossing(pass);
+		int trash[lanes];
 		for (int& t : trash)
 			t = pass.trash;
 
@@ -259,26 +283,34 @@ template <class Pack> struct Passes {
 				fetchGrains(pass, first + b + grainsAhead);
 				buffers[b].events = buffers[b].slips = 0;
 				for (int at = 0; at < lanes; at += width)
-					sweepNormal<mechanisms, periodic>(pass, crossing, constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b], at);
+					sweepNormal<mechanisms, periodic>(pass, crossing,
+					        constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b],
+					        at);
 			}
 			for (int b = 0; b < count; ++b) {
 				fetchBlock<alike>(pass, first + b + blocksAhead);
 				ContactBlock before;
-				const auto   c = [&](int at) -> decltype(auto) { return constants(pass, same, first + b, at, std::bool_constant<alike>()); };
+				const auto c = [&](int at) -> decltype(auto) {
+					return constants(pass, same, first + b, at, std::bool_constant<alike>());
+				};
 				for (int at = 0; at < lanes; at += width)
 					sweepTangential<mechanisms>(pass, c(at), first + b, buffers[b], before, at, dragWork);
 				if (__builtin_expect(buffers[b].slips != 0, 0))
 					for (int at = 0; at < lanes; at += width)
 						sweepSlips<mechanisms>(pass, c(at), first + b, buffers[b], before, at, lost);
-				if (__builtin_expect(buffers[b].events != 0, 0)) pass.events(pass.owner, first + b, buffers[b].events, before, buffers[b].out);
+				if (__builtin_expect(buffers[b].events != 0, 0))
+					pass.events(pass.owner, first + b, buffers[b].events, before, buffers[b].out);
 			}
 			for (int b = 0; b < count; ++b) {
 				const int* to1 = pass.addFirst ? blocks[b].i : trash;
 				const int* to2 = pass.addSecond ? blocks[b].j : trash;
 				for (int at = 0; at < lanes; at += width) {
-					const Vec3<Pack> f = load(buffers[b].out.force, at), t1 = load(buffers[b].out.torque1, at), t2 = load(buffers[b].out.torque2, at);
-					if constexpr (periodic) crossing.kicks = crossing.kicks + Images<Pack>::times(load(crossing.shift[b], at), f);
-					const Pack       onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z }, onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
+					const Vec3<Pack> f = load(buffers[b].out.force, at), t1 = load(buffers[b].out.torque1, at),
+					                 t2 = load(buffers[b].out.torque2, at);
+					if constexpr (periodic)
+						crossing.kicks = crossing.kicks + Images<Pack>::times(load(crossing.shift[b], at), f);
+					const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z },
+					        onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
 					scatterAdd(pass.grains, to1 + at, onFirst);
 					scatterAdd(pass.grains, to2 + at, onSecond);
 				}
@@ -289,28 +321,32 @@ template <class Pack> struct Passes {
 		pass.dissipated->rolling += sumOf(lost.rolling);
 		pass.dissipated->twisting += sumOf(lost.twisting);
 		pass.dissipated->drag += sumOf(dragWork);
-		if constexpr (periodic) *pass.crossing = *pass.crossing + Vec3<double> { sumOf(crossing.kicks.x), sumOf(crossing.kicks.y), sumOf(crossing.kicks.z) };
+		if constexpr (periodic)
+			*pass.crossing =
+			        *pass.crossing + Vec3<double> { sumOf(crossing.kicks.x), sumOf(crossing.kicks.y), sumOf(crossing.kicks.z) };
 	}
 
 	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void energies(const ForcePass& pass, StoredEnergy<double>& sums)
 	{
 		const PairConstants<Pack> same = spread(*pass.alike);
-		const Images<Pack>        images(*pass.cell); // once a step at most: open scenes have their images here too, without a shift
-		StoredEnergy<Pack>        total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
+		const Images<Pack> images(*pass.cell); // once a step at most: open scenes have their images here too, without a shift
+		StoredEnergy<Pack> total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
 		for (int b = pass.firstBlock; b < pass.endBlock; ++b) {
 			ContactBlock& block = pass.blocks[b];
 			for (int at = 0; at < lanes; at += width) {
-				const PairConstants<Pack>   c = constants(pass, same, b, at, std::bool_constant<alike>());
-				Pair                        pair = gatherPair(pass.grains, block, at);
+				const PairConstants<Pack> c = constants(pass, same, b, at, std::bool_constant<alike>());
+				Pair pair = gatherPair(pass.grains, block, at);
 				toImages(images, pair);
 				const ContactGeometry<Pack> g = geometryOf(pair.separation, c.radius1 + c.radius2);
-				const ContactHistory<Pack>  h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
-				const StoredEnergy<Pack>    e = storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
-				alignas(64) double          counts[lanes];
+				const ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
+				const StoredEnergy<Pack> e =
+				        storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
+				alignas(64) double counts[lanes];
 				for (int lane = 0; lane < width; ++lane)
 					counts[lane] = block.i[at + lane] != pass.trash; // a dead lane's dummies
 				const Pack mine = Pack::load(counts);
-				total = { total.normal + mine * e.normal, total.sliding + mine * e.sliding, total.rolling + mine * e.rolling, total.twisting + mine * e.twisting };
+				total = { total.normal + mine * e.normal, total.sliding + mine * e.sliding,
+					total.rolling + mine * e.rolling, total.twisting + mine * e.twisting };
 			}
 		}
 		sums = { sumOf(total.normal), sumOf(total.sliding), sumOf(total.rolling), sumOf(total.twisting) };
@@ -339,8 +375,8 @@ private:
 	template <unsigned mechanisms, bool alike> static void fill(InstructionSet& set)
 	{
 		set.forces[mechanisms][alike][false] = &forces<mechanisms, alike, false>;
-		set.forces[mechanisms][alike][true]  = &forces<mechanisms, alike, true>;
-		set.energies[mechanisms][alike]      = &energies<mechanisms, alike>;
+		set.forces[mechanisms][alike][true] = &forces<mechanisms, alike, true>;
+		set.energies[mechanisms][alike] = &energies<mechanisms, alike>;
 	}
 	template <unsigned mechanisms> static void fill(InstructionSet& set)
 	{

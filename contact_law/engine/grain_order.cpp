@@ -28,7 +28,7 @@ void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
 	for (const auto& g : grains) {
 		smallest = std::min(smallest, g.radius);
 		for (int k = 0; k < 3; ++k) {
-			low[k]  = std::min(low[k], g.position[k]);
+			low[k] = std::min(low[k], g.position[k]);
 			high[k] = std::max(high[k], g.position[k]);
 		}
 	}
@@ -36,7 +36,7 @@ void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
 	std::uint64_t cells = 1;
 	while (cells < (1u << 21) && double(cells) * 2.5 * smallest < longest)
 		cells *= 2;
-	const double               cellsPerLength = longest > 0 ? double(cells) / longest : 0;
+	const double cellsPerLength = longest > 0 ? double(cells) / longest : 0;
 	std::vector<std::uint64_t> keys(count);
 	for (int g = 0; g < count; ++g) {
 		keys[g] = 0;

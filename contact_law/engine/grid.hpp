@@ -13,19 +13,19 @@ namespace contact_law {
 // Grains of a grid, those of a cell side by side, and cells of a row likewise.
 struct GridMembers {
 	const double *x, *y, *z, *radius;
-	const int*    grain;
+	const int* grain;
 };
 struct GridRow {
 	int first, last; // members, the last one not among them
 };
 // A grain at a position, and the rows of members around it.
 struct NeighbourSearch {
-	GridMembers         members;
+	GridMembers members;
 	const PeriodicCell* cell;
-	double              radius, gap; // between surfaces
-	const double*       position;
-	GridRow             rows[36]; // 27 cells in 9 rows, each of one or two parts, each of which the table's end may cut in two
-	int                 rowCount;
+	double radius, gap; // between surfaces
+	const double* position;
+	GridRow rows[36]; // 27 cells in 9 rows, each of one or two parts, each of which the table's end may cut in two
+	int rowCount;
 
 	int most() const // members to look at
 	{
@@ -54,7 +54,7 @@ public:
 		for (int g = first; g < last; ++g) {
 			const double* x = &grains[g].x;
 			for (int k = 0; k < 3; ++k) {
-				p.low[k]  = std::min(p.low[k], x[k]);
+				p.low[k] = std::min(p.low[k], x[k]);
 				p.high[k] = std::max(p.high[k], x[k]);
 			}
 		}
@@ -69,18 +69,19 @@ public:
 				low[k] = std::min(low[k], p.low[k]), high[k] = std::max(high[k], p.high[k]);
 			extent[k] = high[k] - low[k];
 		}
-		periodic                = periodicCell.on;
+		periodic = periodicCell.on;
 		const double lengths[3] = { periodicCell.size.x, periodicCell.size.y, periodicCell.size.z };
 		double cells = 1;
 		for (int k = 0; k < 3; ++k) {
 			length[k] = lengths[k];
 			origin[k] = periodic ? 0 : low[k];
-			size[k]   = periodic ? std::max(1, int(std::min(length[k] / cellSize, 1e6))) : int(std::min((high[k] - low[k]) / cellSize, 1e6)) + 1;
+			size[k] = periodic ? std::max(1, int(std::min(length[k] / cellSize, 1e6)))
+			                   : int(std::min((high[k] - low[k]) / cellSize, 1e6)) + 1;
 			inverseSize[k] = periodic ? size[k] / length[k] : 1 / cellSize;
 			cells *= size[k];
 		}
 		const bool own = cells <= 4. * count + 64; // a place for each cell
-		places         = 64;
+		places = 64;
 		while (places < (own ? cells : 4. * count))
 			places *= 2;
 		stride[0] = own ? size[0] : 73856093; // or primes, which put rows of cells anywhere
@@ -116,7 +117,7 @@ public:
 			start[c] = next;
 			for (Part& p : parts) {
 				const int here = p.next[c];
-				p.next[c]      = next;
+				p.next[c] = next;
 				next += here;
 			}
 		}
@@ -135,9 +136,10 @@ public:
 	// A search for neighbours of a grain in the 27 cells (or as many as there are) around it.
 	NeighbourSearch search(const double* position, double ownRadius, double gap, const PeriodicCell& cell) const
 	{
-		NeighbourSearch s { { x.data(), y.data(), z.data(), radius.data(), members.data() }, &cell, ownRadius, gap, position, {}, 0 };
-		Span            spans[3][2];
-		int             parts[3];
+		NeighbourSearch s { { x.data(), y.data(), z.data(), radius.data(), members.data() }, &cell, ownRadius, gap, position, {},
+			0 };
+		Span spans[3][2];
+		int parts[3];
 		for (int k = 0; k < 3; ++k)
 			parts[k] = spansAround(k, cellAlong(k, position[k]), spans[k]);
 		for (int c = 0; c < parts[2]; ++c)
@@ -145,7 +147,8 @@ public:
 				for (int b = 0; b < parts[1]; ++b)
 					for (int middle = spans[1][b].first; middle <= spans[1][b].last; ++middle)
 						for (int a = 0; a < parts[0]; ++a)
-							addRow(s, placeOfCell(spans[0][a].first, middle, high), spans[0][a].last - spans[0][a].first + 1);
+							addRow(s, placeOfCell(spans[0][a].first, middle, high),
+							        spans[0][a].last - spans[0][a].first + 1);
 		return s;
 	}
 
@@ -157,23 +160,27 @@ private:
 		int first, last; // cells along an axis
 	};
 	struct Part {
-		int              first, last, total; // grains; and how many are in this part's share of the places
-		double           low[3], high[3];
+		int first, last, total; // grains; and how many are in this part's share of the places
+		double low[3], high[3];
 		std::vector<int> next; // by place: first how many grains, then where the next one goes
 	};
 
 	unsigned firstPlace(int part) const { return unsigned(std::size_t(places) * part / parts.size()); }
-	unsigned placeOfCell(int a, int b, int c) const { return (unsigned(a) + unsigned(b) * stride[0] + unsigned(c) * stride[1]) & (places - 1); }
-	void     addRow(NeighbourSearch& s, unsigned place, unsigned cells) const
+	unsigned placeOfCell(int a, int b, int c) const
 	{
-		const unsigned end   = std::min(place + cells, places), rest = place + cells - end;
+		return (unsigned(a) + unsigned(b) * stride[0] + unsigned(c) * stride[1]) & (places - 1);
+	}
+	void addRow(NeighbourSearch& s, unsigned place, unsigned cells) const
+	{
+		const unsigned end = std::min(place + cells, places), rest = place + cells - end;
 		s.rows[s.rowCount++] = { start[place], start[end] };
 		if (rest > 0) s.rows[s.rowCount++] = { start[0], start[rest] };
 	}
 
 	int cellAlong(int k, double x) const
 	{
-		const double cells = x / length[k], at = periodic ? (cells - std::floor(cells)) * size[k] : (x - origin[k]) * inverseSize[k];
+		const double cells = x / length[k],
+		             at = periodic ? (cells - std::floor(cells)) * size[k] : (x - origin[k]) * inverseSize[k];
 		return std::max(0, std::min(int(at), size[k] - 1)); // also where a run has gone wrong and x is no number
 	}
 	unsigned placeAt(const double* x) const { return placeOfCell(cellAlong(0, x[0]), cellAlong(1, x[1]), cellAlong(2, x[2])); }
@@ -192,13 +199,13 @@ private:
 	}
 
 	std::vector<Part> parts;
-	double            origin[3] {}, inverseSize[3] { 1, 1, 1 }, length[3] { 1, 1, 1 }, extent[3] {};
-	int               size[3] { 1, 1, 1 }, count = 0;
-	unsigned          places = 1, stride[2] { 1, 1 }; // places: a power of two
-	bool              periodic = false;
-	std::vector<int>  start, members;
-	std::vector<unsigned> placeOf; // of each grain
-	Aligned<double>   x, y, z, radius; // of the members
+	double origin[3] {}, inverseSize[3] { 1, 1, 1 }, length[3] { 1, 1, 1 }, extent[3] {};
+	int size[3] { 1, 1, 1 }, count = 0;
+	unsigned places = 1, stride[2] { 1, 1 }; // places: a power of two
+	bool periodic = false;
+	std::vector<int> start, members;
+	std::vector<unsigned> placeOf;   // of each grain
+	Aligned<double> x, y, z, radius; // of the members
 };
 
 } // namespace contact_law

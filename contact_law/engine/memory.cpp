@@ -13,10 +13,12 @@ namespace {
 		}
 		double next()
 		{
-			if (at == from.size()) throw std::invalid_argument("the checkpoint of the grains is shorter than it should be: it was not written by this version");
+			if (at == from.size())
+				throw std::invalid_argument(
+				        "the checkpoint of the grains is shorter than it should be: it was not written by this version");
 			return from[at++];
 		}
-		int  integer() { return int(next()); }
+		int integer() { return int(next()); }
 		Vec3<double> vector()
 		{
 			const double x = next(), y = next();
@@ -26,7 +28,7 @@ namespace {
 
 	private:
 		const std::vector<double>& from;
-		std::size_t                at = 0;
+		std::size_t at = 0;
 	};
 
 	// A contact or a bond: its grains and its history.
@@ -41,7 +43,7 @@ namespace {
 		pair.i = from.integer(), pair.j = from.integer();
 		pair.history.pointers.n1 = from.vector();
 		pair.history.pointers.n2 = from.vector();
-		pair.history.twist       = from.next();
+		pair.history.twist = from.next();
 		return pair;
 	}
 
@@ -60,8 +62,8 @@ namespace {
 					list.appendDead();
 					continue;
 				}
-				Bond b      = recallPair<Bond>(from);
-				b.rest      = from.next();
+				Bond b = recallPair<Bond>(from);
+				b.rest = from.next();
 				b.constants = setting.bondOf(b.i, b.j);
 				list.append(b);
 			}
@@ -80,7 +82,9 @@ std::vector<double> Dynamics::remember() const
 {
 	std::vector<double> to { double(count) };
 	to.insert(to.end(), original.begin(), original.end());
-	to.insert(to.end(), { double(domains.size()), travelSinceFar, travelSinceNear, nearGap, double(contactUpdates), double(farRebuilds), double(nearRebuilds) });
+	to.insert(to.end(),
+	        { double(domains.size()), travelSinceFar, travelSinceNear, nearGap, double(contactUpdates), double(farRebuilds),
+	                double(nearRebuilds) });
 	to.push_back(cell().on);
 	for (const Vec3<double>& v : { cell().size, cell().inverse, cell().rate, cell().rateBefore, mostCells, setting.convective })
 		contact_law::remember(to, v);
@@ -91,7 +95,9 @@ std::vector<double> Dynamics::remember() const
 	}
 	for (const auto& domain : domains) {
 		const Dissipation& d = domain->sums.dissipated;
-		to.insert(to.end(), { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork, double(domain->events), double(domain->sortedBlocks) });
+		to.insert(to.end(),
+		        { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork,
+		                double(domain->events), double(domain->sortedBlocks) });
 		const BoundaryWork& b = domain->sums.boundary;
 		to.insert(to.end(), { b.done, domain->sums.meanField });
 		contact_law::remember(to, b.kicks);
@@ -133,13 +139,14 @@ void Dynamics::recall(const std::vector<double>& memory)
 	Reader from(memory);
 	for (int skip = 0; skip <= count; ++skip)
 		from.next(); // recallOrder has read these
-	if (from.integer() != int(domains.size())) throw std::invalid_argument("the checkpoint holds another number of domains than the engine");
-	travelSinceFar  = from.next();
+	if (from.integer() != int(domains.size()))
+		throw std::invalid_argument("the checkpoint holds another number of domains than the engine");
+	travelSinceFar = from.next();
 	travelSinceNear = from.next();
-	nearGap         = from.next();
-	contactUpdates  = long(from.next());
-	farRebuilds     = long(from.next());
-	nearRebuilds    = long(from.next());
+	nearGap = from.next();
+	contactUpdates = long(from.next());
+	farRebuilds = long(from.next());
+	nearRebuilds = long(from.next());
 	PeriodicCell cell;
 	Vec3<double> most;
 	cell.on = from.next();
@@ -156,8 +163,9 @@ void Dynamics::recall(const std::vector<double>& memory)
 		}
 	}
 	for (auto& domain : domains) {
-		Dissipation& d  = domain->sums.dissipated;
-		for (double* number : { &d.sliding, &d.rolling, &d.twisting, &d.connection, &d.disconnection, &d.drag, &domain->sums.eventWork })
+		Dissipation& d = domain->sums.dissipated;
+		for (double* number :
+		        { &d.sliding, &d.rolling, &d.twisting, &d.connection, &d.disconnection, &d.drag, &domain->sums.eventWork })
 			*number = from.next();
 		domain->events = long(from.next());
 		domain->sortedBlocks = from.integer();
@@ -167,7 +175,8 @@ void Dynamics::recall(const std::vector<double>& memory)
 		domain->sums.boundary.kicks = from.vector();
 		domain->sums.boundary.early = from.vector();
 		domain->constraints.work = from.next();
-		if (from.integer() != int(domain->constraints.grains.size())) throw std::invalid_argument("blockedDOFs of a body are others than in the checkpoint");
+		if (from.integer() != int(domain->constraints.grains.size()))
+			throw std::invalid_argument("blockedDOFs of a body are others than in the checkpoint");
 		for (Constrained& c : domain->constraints.grains)
 			for (double* number : { &c.force.x, &c.force.y, &c.force.z, &c.torque.x, &c.torque.y, &c.torque.z })
 				*number = from.next();
@@ -183,21 +192,22 @@ void Dynamics::recall(const std::vector<double>& memory)
 					list.appendDead();
 					continue;
 				}
-				Contact c   = recallPair<Contact>(from);
-				c.drag      = from.next();
-				c.overlap   = from.next();
+				Contact c = recallPair<Contact>(from);
+				c.drag = from.next();
+				c.overlap = from.next();
 				c.constants = setting.constantsOf(c.i, c.j);
 				list.append(c);
 			}
 		}
 		domain->findCompleted();
 	}
-	if (!from.done()) throw std::invalid_argument("the checkpoint of the grains is longer than it should be: it was not written by this version");
+	if (!from.done())
+		throw std::invalid_argument("the checkpoint of the grains is longer than it should be: it was not written by this version");
 	const double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
 	refreshLists(true); // the pairs may be others than before, the contacts' order and the births to come are not
-	travelSinceFar  = sinceFar;
+	travelSinceFar = sinceFar;
 	travelSinceNear = sinceNear;
-	mostCells       = most;
+	mostCells = most;
 }
 
 } // namespace contact_law

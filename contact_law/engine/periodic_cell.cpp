@@ -24,7 +24,8 @@ void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& conve
 		kick(setting.grains[k], k, -0.5 * setting.dt);
 	for (auto& domain : domains) {
 		domain->sums.meanField -= domain->kineticEnergy();
-		domain->cell.rate = domain->cell.rate + Images<double>::times(added, domain->cell.size); // the images' velocities change with the grains'
+		domain->cell.rate = domain->cell.rate
+		        + Images<double>::times(added, domain->cell.size); // the images' velocities change with the grains'
 	}
 }
 

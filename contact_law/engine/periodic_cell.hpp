@@ -7,7 +7,7 @@ namespace contact_law {
 
 // Grains keep the positions that their motion gives them, in whatever copy of the cell; no contact remembers a shift.
 struct PeriodicCell {
-	bool         on = false;
+	bool on = false;
 	Vec3<double> size { 0, 0, 0 }, inverse { 0, 0, 0 };    // now [m], [1/m]; zero in open space, where nothing is shifted
 	Vec3<double> rate { 0, 0, 0 }, rateBefore { 0, 0, 0 }; // d(size)/dt through the last step, and through the one before it [m/s]
 
@@ -22,13 +22,16 @@ struct PeriodicCell {
 	void advance(const Vec3<double>& newSize, const Vec3<double>& newRate)
 	{
 		if (!on) return;
-		size       = newSize;
-		inverse    = { 1 / size.x, 1 / size.y, 1 / size.z };
+		size = newSize;
+		inverse = { 1 / size.x, 1 / size.y, 1 / size.z };
 		rateBefore = rate;
-		rate       = newRate;
+		rate = newRate;
 	}
 	// Every pair's distance is that of its nearest images, and no grain meets two images of another, in cells of at least twice the reach of a pair.
-	bool holds(double reach) const { return size.x >= 2 * reach && size.y >= 2 * reach && size.z >= 2 * reach && std::isfinite(size.x + size.y + size.z); }
+	bool holds(double reach) const
+	{
+		return size.x >= 2 * reach && size.y >= 2 * reach && size.z >= 2 * reach && std::isfinite(size.x + size.y + size.z);
+	}
 };
 
 // The cell as a number type of the kernel needs it; an open scene's makes no shift.
@@ -65,8 +68,8 @@ inline Image nearestImage(const PeriodicCell& cell, Vec3<double>& separation)
 {
 	if (!cell.on) return {};
 	const Images<double> images(cell);
-	const Vec3<double>   s = images.shift(separation);
-	separation             = separation + images.distance(s);
+	const Vec3<double> s = images.shift(separation);
+	separation = separation + images.distance(s);
 	return { s, images.velocity(s), images.velocityBefore(s) };
 }
 
@@ -76,10 +79,13 @@ class BoundaryWork {
 public:
 	Vec3<double> kicks { 0, 0, 0 }; // sum over the contacts now of shift times force
 	Vec3<double> early { 0, 0, 0 }; // of it what belongs before this instant beyond the half
-	double       done = 0;          // up to now, against the boundaries [J]
+	double done = 0;                // up to now, against the boundaries [J]
 
 	void add(const Vec3<double>& shift, const Vec3<double>& kick) { kicks = kicks + Images<double>::times(shift, kick); }
-	void addEarly(const Vec3<double>& shift, const Vec3<double>& kick, const Vec3<double>& before) { early = early + Images<double>::times(shift, before - 0.5 * kick); }
+	void addEarly(const Vec3<double>& shift, const Vec3<double>& kick, const Vec3<double>& before)
+	{
+		early = early + Images<double>::times(shift, before - 0.5 * kick);
+	}
 	// The cell has come to a new instant: what is left of the kicks before it.
 	void arrive(const PeriodicCell& cell, double dt)
 	{

@@ -6,7 +6,8 @@ namespace contact_law {
 
 // v += F dt/m, w += T dt/I, x += v dt, forces to zero; the range grows by the velocities.
 template <class Pack>
-inline void integrateOneByOne(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
+inline void integrateOneByOne(
+        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 {
 	VelocityRange met = range;
 	for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {

@@ -4,15 +4,12 @@
 namespace contact_law {
 
 // In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
-double Dynamics::fastestAllowed() const
-{
-	return 0.5 * smallestRadius() / setting.dt;
-}
+double Dynamics::fastestAllowed() const { return 0.5 * smallestRadius() / setting.dt; }
 
 Dynamics::Trouble Dynamics::trouble(int given) const
 {
 	const auto squared = [&](int k) { return dot(velocityOf(setting.grains[k]), velocityOf(setting.grains[k])); };
-	int        worst   = given >= 0 ? indexHere[given] : 0;
+	int worst = given >= 0 ? indexHere[given] : 0;
 	for (int k = 0; given < 0 && k < count; ++k)
 		if (squared(k) > squared(worst)) worst = k;
 	Trouble t;
@@ -25,25 +22,26 @@ Dynamics::Trouble Dynamics::trouble(int given) const
 				if (list.first(lane) != worst && list.second(lane) != worst) continue;
 				const Contact c = setting.contactOf(list, lane);
 				// what pushed was the force where they were before they moved
-				const Grain &      a = setting.grains[c.i], &b = setting.grains[c.j];
+				const Grain &a = setting.grains[c.i], &b = setting.grains[c.j];
 				Vec3<double> d = separationOf(a, b) - setting.dt * (velocityOf(a) - velocityOf(b));
 				nearestImage(cell(), d);
-				const auto         g = geometryOf(d, c.constants.radius1 + c.constants.radius2);
-				const double       f = contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce;
+				const auto g = geometryOf(d, c.constants.radius1 + c.constants.radius2);
+				const double f = contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce;
 				if (t.other >= 0 && std::abs(f) <= std::abs(t.force)) continue;
-				t.other   = original[c.i == worst ? c.j : c.i];
+				t.other = original[c.i == worst ? c.j : c.i];
 				t.overlap = g.overlap / std::min(c.constants.radius1, c.constants.radius2);
-				t.force   = f;
+				t.force = f;
 			}
 	eachBond([&](const Bond& b, int first, int second, double) {
 		if (b.i != worst && b.j != worst) return;
-		const Grain &      one = setting.grains[b.i], &two = setting.grains[b.j];
+		const Grain &one = setting.grains[b.i], &two = setting.grains[b.j];
 		const Vec3<double> d = separationOf(one, two) - setting.dt * (velocityOf(one) - velocityOf(two));
-		const double       f = b.constants.normalStiffness * (b.rest - std::sqrt(dot(d, d)));
+		const double f = b.constants.normalStiffness * (b.rest - std::sqrt(dot(d, d)));
 		if (t.other >= 0 && std::abs(f) <= std::abs(t.force)) return;
-		t.other   = b.i == worst ? second : first;
-		t.overlap = (setting.radius[b.i] + setting.radius[b.j] - std::sqrt(dot(d, d))) / std::min(setting.radius[b.i], setting.radius[b.j]);
-		t.force   = f;
+		t.other = b.i == worst ? second : first;
+		t.overlap = (setting.radius[b.i] + setting.radius[b.j] - std::sqrt(dot(d, d)))
+		        / std::min(setting.radius[b.i], setting.radius[b.j]);
+		t.force = f;
 	});
 	return t;
 }
@@ -61,7 +59,7 @@ Dynamics::Trouble Dynamics::hardest() const
 	eachBond([&](const Bond& b, int first, int second, double force) {
 		if (t.grain >= 0 && std::abs(force) <= std::abs(t.force)) return;
 		const Vec3<double> d = separationOf(setting.grains[b.i], setting.grains[b.j]);
-		const double       r1 = setting.radius[b.i], r2 = setting.radius[b.j];
+		const double r1 = setting.radius[b.i], r2 = setting.radius[b.j];
 		t = { std::min(first, second), std::max(first, second), 0, (r1 + r2 - std::sqrt(dot(d, d))) / std::min(r1, r2), force };
 	});
 	return t;
@@ -83,12 +81,13 @@ Dynamics::Trouble Dynamics::tooDeep(const Domain& domain) const
 		const ContactList& list = domain.contacts[sort];
 		for (int lane = 0; lane < list.size(); ++lane) {
 			if (!list.alive(lane)) continue;
-			const int    i = list.first(lane), j = list.second(lane);
+			const int i = list.first(lane), j = list.second(lane);
 			Vec3<double> d = separationOf(setting.grains[i], setting.grains[j]);
 			nearestImage(cell(), d);
 			const double least = std::max(setting.radius[i], setting.radius[j]);
 			if (dot(d, d) >= least * least) continue;
-			const double overlap = (setting.radius[i] + setting.radius[j] - std::sqrt(dot(d, d))) / std::min(setting.radius[i], setting.radius[j]);
+			const double overlap = (setting.radius[i] + setting.radius[j] - std::sqrt(dot(d, d)))
+			        / std::min(setting.radius[i], setting.radius[j]);
 			if (overlap <= t.overlap) continue;
 			t = { std::min(original[i], original[j]), std::max(original[i], original[j]), 0, overlap, 0 };
 		}

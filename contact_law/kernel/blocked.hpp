@@ -5,7 +5,10 @@
 namespace contact_law {
 
 // The components whose bits (1, 2, 4) are set; the others zero.
-inline Vec3<double> componentsOf(const Vec3<double>& v, unsigned bits) { return { bits & 1 ? v.x : 0, bits & 2 ? v.y : 0, bits & 4 ? v.z : 0 }; }
+inline Vec3<double> componentsOf(const Vec3<double>& v, unsigned bits)
+{
+	return { bits & 1 ? v.x : 0, bits & 2 ? v.y : 0, bits & 4 ? v.z : 0 };
+}
 
 inline Vec3<double> blockedForce(const Vec3<double>& force, unsigned blocked) { return componentsOf(force, blocked & 7); }
 inline Vec3<double> blockedTorque(const Vec3<double>& torque, unsigned blocked) { return componentsOf(torque, blocked >> 3 & 7); }

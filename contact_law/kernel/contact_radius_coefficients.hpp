@@ -3,9 +3,10 @@
 
 namespace contact_law {
 
-constexpr double largestFittedOverlap = 4; // in units of the equilibrium overlap
+constexpr double largestFittedOverlap = 4;         // in units of the equilibrium overlap
 constexpr double fittedScale = 0.9104574503644945; // t = fittedScale * y - 1
-constexpr double contactRadiusCoefficients[23] = { // of 1, t, t^2, ...
+constexpr double contactRadiusCoefficients[23] = {
+	// of 1, t, t^2, ...
 	0.9295726463451909,
 	0.3158457918720127,
 	-0.04519761207508414,

@@ -6,9 +6,10 @@ y = (delta/delta0 + (9/16)^(1/3))^(1/2); it is interpolated there at Chebyshev n
 written in powers of t = 2y/y_max - 1. Run it (no arguments) to write the header anew; the tests compare the
 result with roots found another way.
 """
+
+import math
 from decimal import Decimal, getcontext
 from pathlib import Path
-import math
 
 getcontext().prec = 60
 DEGREE = 22
@@ -34,7 +35,7 @@ def root(y):
     overlap = y * y - PULL_OFF
     u = SIXTH_ROOT + y / (Decimal(18).sqrt() * SIXTH_ROOT)
     for _ in range(200):
-        step = (3 * u ** 4 - 2 * u - overlap) / (12 * u ** 3 - 2)
+        step = (3 * u**4 - 2 * u - overlap) / (12 * u**3 - 2)
         u -= step
         if abs(step) < Decimal(10) ** -50:
             return u

@@ -7,72 +7,72 @@
 namespace contact_law {
 namespace normal {
 
-constexpr double pullOffOverlap = 0.8254818122236567; // (9/16)^(1/3) = delta_c/delta0
+	constexpr double pullOffOverlap = 0.8254818122236567; // (9/16)^(1/3) = delta_c/delta0
 
-// overlap/delta0 for a given u
-template <class T> inline T overlap(const T& u) { return T(3.) * (u * u) * (u * u) - T(2.) * u; }
+	// overlap/delta0 for a given u
+	template <class T> inline T overlap(const T& u) { return T(3.) * (u * u) * (u * u) - T(2.) * u; }
 
-// c[0] + c[1] t + ... + c[22] t^22 as four polynomials in t^4 side by side: a quarter of the waiting of Horner's one chain.
-template <class T> inline T polynomial(const double (&c)[23], const T& t)
-{
-	const T square = t * t, fourth = square * square;
-	T       part[4] = { T(c[20]), T(c[21]), T(c[22]), T(c[19]) };
-	for (int first = 16; first >= 0; first -= 4) {
-		for (int k = 0; k < 3; ++k)
-			part[k] = part[k] * fourth + T(c[first + k]);
-		if (first > 0) part[3] = part[3] * fourth + T(c[first - 1]);
+	// c[0] + c[1] t + ... + c[22] t^22 as four polynomials in t^4 side by side: a quarter of the waiting of Horner's one chain.
+	template <class T> inline T polynomial(const double (&c)[23], const T& t)
+	{
+		const T square = t * t, fourth = square * square;
+		T part[4] = { T(c[20]), T(c[21]), T(c[22]), T(c[19]) };
+		for (int first = 16; first >= 0; first -= 4) {
+			for (int k = 0; k < 3; ++k)
+				part[k] = part[k] * fourth + T(c[first + k]);
+			if (first > 0) part[3] = part[3] * fourth + T(c[first - 1]);
+		}
+		return part[0] + part[1] * t + (part[2] + part[3] * t) * square;
 	}
-	return part[0] + part[1] * t + (part[2] + part[3] * t) * square;
-}
 
-/* u for a given overlap/delta0 >= -(9/16)^(1/3), on the branch u >= 6^(-1/3): a polynomial in
+	/* u for a given overlap/delta0 >= -(9/16)^(1/3), on the branch u >= 6^(-1/3): a polynomial in
  * y = (overlap/delta0 + (9/16)^(1/3))^(1/2), in which the branch point at pull-off is smooth; beyond the fitted range Newton's method. */
-template <class T> inline T rootOfContactRadius(const T& overlap)
-{
-	const T shifted = choose(overlap < T(largestFittedOverlap), overlap, T(largestFittedOverlap)) + T(pullOffOverlap);
-	const T t       = T(fittedScale) * root(choose(T(0.) < shifted, shifted, T(0.))) - T(1.);
-	T       u       = polynomial(contactRadiusCoefficients, t);
-	const auto beyond = T(largestFittedOverlap) < overlap;
-	if (anyOf(beyond)) {
-		T far = root(root(overlap * T(1. / 3.) + T(1.)));
-		for (int iteration = 0; iteration < 6; ++iteration)
-			far = far - (normal::overlap(far) - overlap) / (T(12.) * far * far * far - T(2.));
-		u = choose(beyond, far, u);
+	template <class T> inline T rootOfContactRadius(const T& overlap)
+	{
+		const T shifted = choose(overlap < T(largestFittedOverlap), overlap, T(largestFittedOverlap)) + T(pullOffOverlap);
+		const T t = T(fittedScale) * root(choose(T(0.) < shifted, shifted, T(0.))) - T(1.);
+		T u = polynomial(contactRadiusCoefficients, t);
+		const auto beyond = T(largestFittedOverlap) < overlap;
+		if (anyOf(beyond)) {
+			T far = root(root(overlap * T(1. / 3.) + T(1.)));
+			for (int iteration = 0; iteration < 6; ++iteration)
+				far = far - (normal::overlap(far) - overlap) / (T(12.) * far * far * far - T(2.));
+			u = choose(beyond, far, u);
+		}
+		return u;
 	}
-	return u;
-}
 
-// force/F_c, positive when repulsive (A22 eq 5)
-template <class T> inline T force(const T& u)
-{
-	const T cube = u * u * u;
-	return T(4.) * cube * (cube - T(1.));
-}
+	// force/F_c, positive when repulsive (A22 eq 5)
+	template <class T> inline T force(const T& u)
+	{
+		const T cube = u * u * u;
+		return T(4.) * cube * (cube - T(1.));
+	}
 
-// stored energy/(F_c delta_c), zero for separated grains (A22 eq 8)
-template <class T> inline T energy(const T& u)
-{
-	const T square = u * u, cube = square * u, fourth = square * square;
-	return T(4. * 1.8171205928321397) * fourth * (T(0.8) * cube * cube - T(4. / 3.) * cube + T(1. / 3.));
-}
+	// stored energy/(F_c delta_c), zero for separated grains (A22 eq 8)
+	template <class T> inline T energy(const T& u)
+	{
+		const T square = u * u, cube = square * u, fourth = square * square;
+		return T(4. * 1.8171205928321397) * fourth * (T(0.8) * cube * cube - T(4. / 3.) * cube + T(1. / 3.));
+	}
 
-constexpr double energyAtConnection = -0.8466138943830397; // -(8/15) 2^(2/3), A22 eq 9
-constexpr double energyAtPullOff    = 4. / 45.;             // A22 eq 10
+	constexpr double energyAtConnection = -0.8466138943830397; // -(8/15) 2^(2/3), A22 eq 9
+	constexpr double energyAtPullOff = 4. / 45.;               // A22 eq 10
 
-/* Just before pull-off the force is F(-delta_c) + pullOffSlope F_c (x/delta0)^(1/2), x = overlap + delta_c. A sum over steps h that ends at x = share * h
+	/* Just before pull-off the force is F(-delta_c) + pullOffSlope F_c (x/delta0)^(1/2), x = overlap + delta_c. A sum over steps h that ends at x = share * h
  * (trapezoidal rule) misses the integral of x^(1/2) by h^(3/2) times the value returned here, whatever the steps before
  * (Euler-Maclaurin at a branch point; Hurwitz's zeta(-1/2, share) is summed over its first terms). */
-constexpr double pullOffSlope = -1.0376956216346809; // -8 u/18^(1/2) at u = 6^(-1/3)
-inline double    sumMinusIntegralAtPullOff(double share)
-{
-	constexpr int terms = 8;
-	double        zeta  = 0;
-	for (int k = 0; k < terms; ++k)
-		zeta += std::sqrt(share + k);
-	const double rest = share + terms, squareRoot = std::sqrt(rest);
-	zeta += squareRoot * (0.5 - 2. / 3. * rest) - 1 / (24 * squareRoot) + 1 / (1920 * squareRoot * rest * rest);
-	return zeta + std::sqrt(share) * (2. / 3. * share - 0.5);
-}
+	constexpr double pullOffSlope = -1.0376956216346809; // -8 u/18^(1/2) at u = 6^(-1/3)
+	inline double sumMinusIntegralAtPullOff(double share)
+	{
+		constexpr int terms = 8;
+		double zeta = 0;
+		for (int k = 0; k < terms; ++k)
+			zeta += std::sqrt(share + k);
+		const double rest = share + terms, squareRoot = std::sqrt(rest);
+		zeta += squareRoot * (0.5 - 2. / 3. * rest) - 1 / (24 * squareRoot) + 1 / (1920 * squareRoot * rest * rest);
+		return zeta + std::sqrt(share) * (2. / 3. * share - 0.5);
+	}
 
 } // namespace normal
 } // namespace contact_law

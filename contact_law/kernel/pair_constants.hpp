@@ -18,24 +18,24 @@ struct Material {
 };
 
 template <class T> struct PairConstants {
-	T radius1, radius2;         // [m]
-	T reducedRadius;            // R = r1 r2/(r1 + r2) [m]
-	T reducedMass;              // m* [kg]
-	T reducedYoung;             // E* [Pa]
-	T reducedShear;             // G* [Pa]
-	T equilibriumContactRadius; // a0 [m]
-	T equilibriumOverlap;       // delta0 [m]
-	T pullOffOverlap;           // delta_c [m]: a contact ends when the overlap falls below -delta_c
-	T pullOffForce;             // F_c [N]
-	T rollingStiffness;         // k_r [N/m]
-	T slidingStiffness;         // k_s [N/m]
-	T twistingStiffness;        // k_t [N m]
-	T criticalSliding;          // zeta_crit [m]
-	T criticalRolling;          // xi_crit [m]
-	T criticalTwisting;         // phi_crit
-	T dragPerContactRadius;     // 2 T_vis E*/nu^2 [N s/m^2]
-	T linearDrag;               // k_n m0/t0 [N s/m]
-	T timeUnit;                 // t0 [s]
+	T radius1, radius2;          // [m]
+	T reducedRadius;             // R = r1 r2/(r1 + r2) [m]
+	T reducedMass;               // m* [kg]
+	T reducedYoung;              // E* [Pa]
+	T reducedShear;              // G* [Pa]
+	T equilibriumContactRadius;  // a0 [m]
+	T equilibriumOverlap;        // delta0 [m]
+	T pullOffOverlap;            // delta_c [m]: a contact ends when the overlap falls below -delta_c
+	T pullOffForce;              // F_c [N]
+	T rollingStiffness;          // k_r [N/m]
+	T slidingStiffness;          // k_s [N/m]
+	T twistingStiffness;         // k_t [N m]
+	T criticalSliding;           // zeta_crit [m]
+	T criticalRolling;           // xi_crit [m]
+	T criticalTwisting;          // phi_crit
+	T dragPerContactRadius;      // 2 T_vis E*/nu^2 [N s/m^2]
+	T linearDrag;                // k_n m0/t0 [N s/m]
+	T timeUnit;                  // t0 [s]
 	T inverseEquilibriumOverlap; // 1/delta0 [1/m], because a division is dear
 };
 
@@ -43,43 +43,44 @@ template <class T> struct PairConstants {
  * 1/G' = sum 1/G. The sliding limit is the force G' a0^2/(2 pi), which is (2 - nu) a0/(16 pi) over k_s for equal materials
  * (A22 eqs 18, 19). The rest is a rule: geometric mean of the surface energies, arithmetic mean of xi_crit and of the
  * viscous coefficient T_vis/nu^2. A time unit for two unlike grains is that of equal ones of radius 2R and mass 2m*. */
-inline PairConstants<double> derivePair(const Material& material1, double radius1, const Material& material2, double radius2, double linearDamping = 0)
+inline PairConstants<double> derivePair(
+        const Material& material1, double radius1, const Material& material2, double radius2, double linearDamping = 0)
 {
 	const Material &m1 = material1, &m2 = material2;
-	const double    G1 = m1.young / (2 * (1 + m1.poisson)), G2 = m2.young / (2 * (1 + m2.poisson));
-	const double    twistingShear = 1 / (1 / G1 + 1 / G2); // G'
-	const double    gamma         = std::sqrt(m1.surfaceEnergy) * std::sqrt(m2.surfaceEnergy);
-	const double    mass1         = 4 * pi / 3 * m1.density * radius1 * radius1 * radius1;
-	const double    mass2         = 4 * pi / 3 * m2.density * radius2 * radius2 * radius2;
-	const auto      viscous       = [](const Material& m) { return m.viscoelasticTime > 0 ? m.viscoelasticTime / (m.poisson * m.poisson) : 0.; };
-	const double    viscosity     = (viscous(m1) + viscous(m2)) / 2;
+	const double G1 = m1.young / (2 * (1 + m1.poisson)), G2 = m2.young / (2 * (1 + m2.poisson));
+	const double twistingShear = 1 / (1 / G1 + 1 / G2); // G'
+	const double gamma = std::sqrt(m1.surfaceEnergy) * std::sqrt(m2.surfaceEnergy);
+	const double mass1 = 4 * pi / 3 * m1.density * radius1 * radius1 * radius1;
+	const double mass2 = 4 * pi / 3 * m2.density * radius2 * radius2 * radius2;
+	const auto viscous = [](const Material& m) { return m.viscoelasticTime > 0 ? m.viscoelasticTime / (m.poisson * m.poisson) : 0.; };
+	const double viscosity = (viscous(m1) + viscous(m2)) / 2;
 
 	PairConstants<double> c;
-	c.radius1       = radius1;
-	c.radius2       = radius2;
+	c.radius1 = radius1;
+	c.radius2 = radius2;
 	c.reducedRadius = radius1 * radius2 / (radius1 + radius2);
-	c.reducedMass   = mass1 * mass2 / (mass1 + mass2);
-	c.reducedYoung  = 1 / ((1 - m1.poisson * m1.poisson) / m1.young + (1 - m2.poisson * m2.poisson) / m2.young);
-	c.reducedShear  = 1 / ((2 - m1.poisson) / G1 + (2 - m2.poisson) / G2);
+	c.reducedMass = mass1 * mass2 / (mass1 + mass2);
+	c.reducedYoung = 1 / ((1 - m1.poisson * m1.poisson) / m1.young + (1 - m2.poisson * m2.poisson) / m2.young);
+	c.reducedShear = 1 / ((2 - m1.poisson) / G1 + (2 - m2.poisson) / G2);
 
 	const double R = c.reducedRadius;
 	c.equilibriumContactRadius = std::cbrt(9 * pi * gamma * R * R / c.reducedYoung); // A22 (1)
-	const double a0            = c.equilibriumContactRadius;
-	c.equilibriumOverlap       = a0 * a0 / (3 * R);
-	c.pullOffOverlap           = std::cbrt(9. / 16.) * c.equilibriumOverlap;     // A22 (3)
-	c.pullOffForce             = 3 * pi * gamma * R;                             // A22 (6)
-	c.rollingStiffness         = 4 * c.pullOffForce / R;                         // A22 (14)
-	c.slidingStiffness         = 8 * a0 * c.reducedShear;                        // A22 (18)
-	c.twistingStiffness        = 16. / 3. * twistingShear * a0 * a0 * a0;        // A22 (23)
-	c.criticalSliding          = twistingShear / c.reducedShear * a0 / (16 * pi); // A22 (19)
-	c.criticalRolling          = (m1.criticalRolling + m2.criticalRolling) / 2;
-	c.criticalTwisting         = criticalTwistingAngle;
-	c.dragPerContactRadius     = 2 * viscosity * c.reducedYoung;    // A22 (7)
+	const double a0 = c.equilibriumContactRadius;
+	c.equilibriumOverlap = a0 * a0 / (3 * R);
+	c.pullOffOverlap = std::cbrt(9. / 16.) * c.equilibriumOverlap;       // A22 (3)
+	c.pullOffForce = 3 * pi * gamma * R;                                 // A22 (6)
+	c.rollingStiffness = 4 * c.pullOffForce / R;                         // A22 (14)
+	c.slidingStiffness = 8 * a0 * c.reducedShear;                        // A22 (18)
+	c.twistingStiffness = 16. / 3. * twistingShear * a0 * a0 * a0;       // A22 (23)
+	c.criticalSliding = twistingShear / c.reducedShear * a0 / (16 * pi); // A22 (19)
+	c.criticalRolling = (m1.criticalRolling + m2.criticalRolling) / 2;
+	c.criticalTwisting = criticalTwistingAngle;
+	c.dragPerContactRadius = 2 * viscosity * c.reducedYoung; // A22 (7)
 
 	const double mass = 2 * c.reducedMass, radius = 2 * R;
 	const double density = mass / (4 * pi / 3 * radius * radius * radius);
 	// K13 (2) with E* for E (see MODEL.md)
-	c.timeUnit   = 0.95 * std::sqrt(density) * std::pow(radius, 7. / 6.) / (std::cbrt(c.reducedYoung) * std::pow(gamma, 1. / 6.));
+	c.timeUnit = 0.95 * std::sqrt(density) * std::pow(radius, 7. / 6.) / (std::cbrt(c.reducedYoung) * std::pow(gamma, 1. / 6.));
 	c.linearDrag = linearDamping * mass / c.timeUnit; // K13 (4)
 	c.inverseEquilibriumOverlap = 1 / c.equilibriumOverlap;
 	return c;

@@ -20,7 +20,8 @@ namespace sliding {
 	}
 	// Part of d(zeta)/dt across the normal n while the grains spin and the normal turns at normalRate; linear in the pointers.
 	template <class T>
-	inline Vec3<T> rate(const Pointers<T>& p, const T& r1, const T& r2, const Vec3<T>& n, const Vec3<T>& normalRate, const Vec3<T>& spin1, const Vec3<T>& spin2)
+	inline Vec3<T> rate(const Pointers<T>& p, const T& r1, const T& r2, const Vec3<T>& n, const Vec3<T>& normalRate,
+	        const Vec3<T>& spin1, const Vec3<T>& spin2)
 	{
 		return r1 * cross(spin1, p.n1) - r2 * cross(spin2, p.n2) - dot(separation(p, r1, r2), n) * normalRate;
 	}
@@ -28,7 +29,10 @@ namespace sliding {
 
 namespace rolling {
 	// xi = R (n1 + n2) (A24 eq A2)
-	template <class T> inline Vec3<T> displacement(const Pointers<T>& p, const T& reducedRadius) { return reducedRadius * (p.n1 + p.n2); }
+	template <class T> inline Vec3<T> displacement(const Pointers<T>& p, const T& reducedRadius)
+	{
+		return reducedRadius * (p.n1 + p.n2);
+	}
 	template <class T> inline Vec3<T> rate(const Pointers<T>& p, const T& reducedRadius, const Vec3<T>& spin1, const Vec3<T>& spin2)
 	{
 		return reducedRadius * (cross(spin1, p.n1) + cross(spin2, p.n2));

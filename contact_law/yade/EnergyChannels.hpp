@@ -9,8 +9,26 @@ namespace yade {
 
 class EnergyChannels {
 public:
-	enum Extra { ConstraintWork, BoundaryWork, extraCount }; // channels only of scenes that have blocked degrees of freedom, or a periodic cell
-	enum Channel { Kinetic, Normal, Sliding, Rolling, Twisting, SlidingDissipation, RollingDissipation, TwistingDissipation, Connection, Disconnection, Drag, BondBreaking, count };
+	enum Extra {
+		ConstraintWork,
+		BoundaryWork,
+		extraCount
+	}; // channels only of scenes that have blocked degrees of freedom, or a periodic cell
+	enum Channel {
+		Kinetic,
+		Normal,
+		Sliding,
+		Rolling,
+		Twisting,
+		SlidingDissipation,
+		RollingDissipation,
+		TwistingDissipation,
+		Connection,
+		Disconnection,
+		Drag,
+		BondBreaking,
+		count
+	};
 
 	// Whether add() books a channel anew each step: energies held now are, losses add up. (YADE's ForceResetter is what empties those.)
 	static bool perStep(int channel) { return channel <= Twisting; }
@@ -40,7 +58,8 @@ public:
 		preparedAt = -2;
 		prepare(scene);
 		for (int channel = 0; channel < count; ++channel)
-			if (!known && values[channel] != last[channel]) scene.energy->add(values[channel] - last[channel], "", ids[channel], perStep(channel));
+			if (!known && values[channel] != last[channel])
+				scene.energy->add(values[channel] - last[channel], "", ids[channel], perStep(channel));
 		last = values;
 	}
 	// For an engine that starts in a scene where others booked before: what they lost stays booked, what they had stored is stored here from now on.
@@ -77,16 +96,16 @@ private:
 	}
 	static const char* const* names()
 	{
-		static const char* const all[count] = { "kinetic",           "normal",             "sliding",             "rolling",    "twisting",     "slidingDissipation",
-			                                "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag", "bondBreaking" };
+		static const char* const all[count] = { "kinetic", "normal", "sliding", "rolling", "twisting", "slidingDissipation",
+			"rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag", "bondBreaking" };
 		return all;
 	}
 
-	std::array<int, count>    ids {};
+	std::array<int, count> ids {};
 	std::array<double, count> last {};
 	std::array<double, extraCount> lastExtra {};
-	int                       boundaryId = -1;
-	std::atomic<long>         preparedAt { -2 };
+	int boundaryId = -1;
+	std::atomic<long> preparedAt { -2 };
 };
 
 } // namespace yade

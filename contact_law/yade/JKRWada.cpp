@@ -20,92 +20,103 @@ CREATE_LOGGER(Ip2_JKRMat_JKRMat_JKRWadaPhys);
 CREATE_LOGGER(Law2_ScGeom_JKRWadaPhys_JKRWada);
 
 namespace {
-	Vec3d    toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
+	Vec3d toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 	Vector3r fromKernel(const Vec3d& v) { return Vector3r(v.x, v.y, v.z); }
 
 	void require(bool fine, const char* name, Real value, const char* allowed)
 	{
-		if (!fine) throw std::invalid_argument("JKRMat: " + std::string(name) + " = " + boost::lexical_cast<std::string>(value) + ", allowed: " + allowed);
+		if (!fine)
+			throw std::invalid_argument(
+			        "JKRMat: " + std::string(name) + " = " + boost::lexical_cast<std::string>(value) + ", allowed: " + allowed);
 	}
 
 	void requireNeck(Real neck)
 	{
-		if (!(neck > 0 && neck <= contact_law::largestNeck)) throw std::invalid_argument("neck = " + boost::lexical_cast<std::string>(neck) + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
+		if (!(neck > 0 && neck <= contact_law::largestNeck))
+			throw std::invalid_argument("neck = " + boost::lexical_cast<std::string>(neck)
+			        + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
 	}
-	void requireRadius(Real radius) { require(radius > 0 && std::isfinite(radius), "radius of the grain", radius, "a positive number [m]"); }
+	void requireRadius(Real radius)
+	{
+		require(radius > 0 && std::isfinite(radius), "radius of the grain", radius, "a positive number [m]");
+	}
 }
 
 void JKRMat::requireInRange() const
 {
 	require(young > 0 && std::isfinite(young), "young", young, "a positive number [Pa]");
-	require(poisson >= 0 && poisson <= 0.5 && (poisson > 0 || viscoelasticTime == 0), "poisson", poisson, "0 to 0.5, and above 0 with drag");
+	require(poisson >= 0 && poisson <= 0.5 && (poisson > 0 || viscoelasticTime == 0), "poisson", poisson,
+	        "0 to 0.5, and above 0 with drag");
 	require(density > 0 && std::isfinite(density), "density", density, "a positive number [kg/m^3]");
 	require(surfaceEnergy > 0 && std::isfinite(surfaceEnergy), "surfaceEnergy", surfaceEnergy, "a positive number [J/m^2]");
 	require(criticalRolling > 0 && std::isfinite(criticalRolling), "criticalRolling", criticalRolling, "a positive number [m]");
-	require(viscoelasticTime >= 0 && std::isfinite(viscoelasticTime), "viscoelasticTime", viscoelasticTime, "0 or a positive number [s]");
+	require(viscoelasticTime >= 0 && std::isfinite(viscoelasticTime), "viscoelasticTime", viscoelasticTime,
+	        "0 or a positive number [s]");
 }
 
 PairConstants<double> JKRWadaConstants::forKernel() const
 {
-	return { radius1,          radius2,          reducedRadius,     reducedMass,     reducedYoung,    reducedShear,     equilibriumContactRadius, equilibriumOverlap, pullOffOverlap, pullOffForce,
-		 rollingStiffness, slidingStiffness, twistingStiffness, criticalSliding, criticalRolling, criticalTwisting, dragPerContactRadius,     linearDrag,         timeUnit, 1 / equilibriumOverlap };
+	return { radius1, radius2, reducedRadius, reducedMass, reducedYoung, reducedShear, equilibriumContactRadius, equilibriumOverlap,
+		pullOffOverlap, pullOffForce, rollingStiffness, slidingStiffness, twistingStiffness, criticalSliding, criticalRolling,
+		criticalTwisting, dragPerContactRadius, linearDrag, timeUnit, 1 / equilibriumOverlap };
 }
 
 void JKRWadaConstants::set(const PairConstants<double>& c)
 {
-	radius1                  = c.radius1;
-	radius2                  = c.radius2;
-	reducedRadius            = c.reducedRadius;
-	reducedMass              = c.reducedMass;
-	reducedYoung             = c.reducedYoung;
-	reducedShear             = c.reducedShear;
+	radius1 = c.radius1;
+	radius2 = c.radius2;
+	reducedRadius = c.reducedRadius;
+	reducedMass = c.reducedMass;
+	reducedYoung = c.reducedYoung;
+	reducedShear = c.reducedShear;
 	equilibriumContactRadius = c.equilibriumContactRadius;
-	equilibriumOverlap       = c.equilibriumOverlap;
-	pullOffOverlap           = c.pullOffOverlap;
-	pullOffForce             = c.pullOffForce;
-	rollingStiffness         = c.rollingStiffness;
-	slidingStiffness         = c.slidingStiffness;
-	twistingStiffness        = c.twistingStiffness;
-	criticalSliding          = c.criticalSliding;
-	criticalRolling          = c.criticalRolling;
-	criticalTwisting         = c.criticalTwisting;
-	dragPerContactRadius     = c.dragPerContactRadius;
-	linearDrag               = c.linearDrag;
-	timeUnit                 = c.timeUnit;
+	equilibriumOverlap = c.equilibriumOverlap;
+	pullOffOverlap = c.pullOffOverlap;
+	pullOffForce = c.pullOffForce;
+	rollingStiffness = c.rollingStiffness;
+	slidingStiffness = c.slidingStiffness;
+	twistingStiffness = c.twistingStiffness;
+	criticalSliding = c.criticalSliding;
+	criticalRolling = c.criticalRolling;
+	criticalTwisting = c.criticalTwisting;
+	dragPerContactRadius = c.dragPerContactRadius;
+	linearDrag = c.linearDrag;
+	timeUnit = c.timeUnit;
 }
 
 contact_law::BondConstants<double> JKRWadaBond::forKernel() const
 {
-	return { radius1, radius2, reducedRadius, neckRadius, neckLength, normalStiffness, slidingStiffness, rollingStiffness, twistingStiffness, breakingEnergy };
+	return { radius1, radius2, reducedRadius, neckRadius, neckLength, normalStiffness, slidingStiffness, rollingStiffness,
+		twistingStiffness, breakingEnergy };
 }
 
 void JKRWadaBond::set(const contact_law::BondConstants<double>& b)
 {
-	radius1           = b.radius1;
-	radius2           = b.radius2;
-	reducedRadius     = b.reducedRadius;
-	neckRadius        = b.neckRadius;
-	neckLength        = b.neckLength;
-	normalStiffness   = b.normalStiffness;
-	slidingStiffness  = b.slidingStiffness;
-	rollingStiffness  = b.rollingStiffness;
+	radius1 = b.radius1;
+	radius2 = b.radius2;
+	reducedRadius = b.reducedRadius;
+	neckRadius = b.neckRadius;
+	neckLength = b.neckLength;
+	normalStiffness = b.normalStiffness;
+	slidingStiffness = b.slidingStiffness;
+	rollingStiffness = b.rollingStiffness;
 	twistingStiffness = b.twistingStiffness;
-	breakingEnergy    = b.breakingEnergy;
+	breakingEnergy = b.breakingEnergy;
 }
 
 void JKRWadaPhys::setConstants(const shared_ptr<JKRWadaConstants>& c)
 {
 	constants = c;
-	kn        = 6 * c->pullOffForce / (5 * c->equilibriumOverlap); // A24 eq 38
-	ks        = c->slidingStiffness;
+	kn = 6 * c->pullOffForce / (5 * c->equilibriumOverlap); // A24 eq 38
+	ks = c->slidingStiffness;
 }
 
 void JKRWadaPhys::setBond(const shared_ptr<JKRWadaBond>& b)
 {
-	bond   = b;
+	bond = b;
 	bonded = true;
-	kn     = b->normalStiffness;
-	ks     = b->slidingStiffness;
+	kn = b->normalStiffness;
+	ks = b->slidingStiffness;
 }
 
 void JKRWadaPhys::endBond()
@@ -115,36 +126,40 @@ void JKRWadaPhys::endBond()
 	setConstants(constants);
 }
 
-void JKRWadaPhys::set(const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_)
+void JKRWadaPhys::set(
+        const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_)
 {
-	touching            = true;
-	overlap             = g.overlap;
+	touching = true;
+	overlap = g.overlap;
 	slidingDisplacement = fromKernel(f.slidingDisplacement);
 	rollingDisplacement = fromKernel(f.rollingDisplacement);
-	twist               = twist_;
-	dragForce           = f.drag;
-	velocity            = velocity_;
-	normalForce         = -(f.normalForce + f.drag) * fromKernel(g.normal);
-	shearForce          = -fromKernel(f.sliding);
+	twist = twist_;
+	dragForce = f.drag;
+	velocity = velocity_;
+	normalForce = -(f.normalForce + f.drag) * fromKernel(g.normal);
+	shearForce = -fromKernel(f.sliding);
 }
 
-void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
+        const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
 {
 	if (interaction->phys) return;
-	const auto& first    = *YADE_CAST<JKRMat*>(material1.get());
-	const auto& second   = *YADE_CAST<JKRMat*>(material2.get());
+	const auto& first = *YADE_CAST<JKRMat*>(material1.get());
+	const auto& second = *YADE_CAST<JKRMat*>(material2.get());
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
 	if (neck != 0) requireNeck(neck);
-	const auto  derived  = contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping, neck);
-	const auto  phys     = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
+	const auto derived =
+	        contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping, neck);
+	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
 	phys->setConstants(constants.of(derived));
 	if (neck != 0 && scene->iter < bondsBefore)
-		phys->setBond(bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, neck)));
+		phys->setBond(
+		        bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, neck)));
 	interaction->phys = phys;
 }
 
-boost::python::dict
-Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
+boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(
+        const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
 {
 	material1->requireInRange();
 	material2->requireInRange();
@@ -156,8 +171,8 @@ Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(const shared_ptr<JKRMat>& material1
 	return constants.pyDict();
 }
 
-boost::python::dict
-Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
+boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(
+        const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
 {
 	material1->requireInRange();
 	material2->requireInRange();
@@ -171,10 +186,10 @@ Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(const shared_ptr<JKRMat>& material1
 
 bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& physics, Interaction* interaction)
 {
-	JKRWadaPhys&                phys      = *YADE_CAST<JKRWadaPhys*>(physics.get());
+	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
 	const PairConstants<double> constants = phys.constants->forKernel();
-	const State&                state1    = *(*scene->bodies)[interaction->getId1()]->state;
-	const State&                state2    = *(*scene->bodies)[interaction->getId2()]->state;
+	const State& state1 = *(*scene->bodies)[interaction->getId1()]->state;
+	const State& state2 = *(*scene->bodies)[interaction->getId2()]->state;
 
 	Vector3r separation = state1.pos - state2.pos, velocity = state1.vel - state2.vel, imageVelocity = Vector3r::Zero();
 	if (scene->isPeriodic) {
@@ -183,17 +198,20 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 		imageVelocity = -(scene->cell->velGrad * (scene->cell->prevHSize * cells));
 		velocity += imageVelocity;
 	}
-	const Vec3d  apart       = toKernel(separation);
-	const double inverseMass = contact_law::inverseMassAlong(apart, 1 / state1.mass, state1.blockedDOFs) + contact_law::inverseMassAlong(apart, 1 / state2.mass, state2.blockedDOFs);
-	const Real   dt          = phys.current ? 0 : scene->dt; // JKRWadaEngine has brought the contact here already
-	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass, toKernel(imageVelocity) };
-	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement), toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
+	const Vec3d apart = toKernel(separation);
+	const double inverseMass = contact_law::inverseMassAlong(apart, 1 / state1.mass, state1.blockedDOFs)
+	        + contact_law::inverseMassAlong(apart, 1 / state2.mass, state2.blockedDOFs);
+	const Real dt = phys.current ? 0 : scene->dt; // JKRWadaEngine has brought the contact here already
+	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass,
+		toKernel(imageVelocity) };
+	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement),
+		toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
-	const bool     drag       = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
+	const bool drag = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
 	const unsigned mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	const ContactStepResult r  = phys.bonded ? bondStep(phys, constants, motion, before, history, state1, state2, mechanisms)
-	                                         : contact_law::contactStepWith[mechanisms](constants, motion, before, history);
+	const ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, state1, state2, mechanisms)
+	                                        : contact_law::contactStepWith[mechanisms](constants, motion, before, history);
 
 	const Vector3r force = fromKernel(r.force);
 	scene->forces.addForce(interaction->getId1(), force);
@@ -203,7 +221,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	if (scene->trackEnergy) {
 		book(r);
 		// half of the kick a step ago, and what belongs before this instant; the forces of phys are still those on body 2 a step ago
-		const Vector3r kicks = (phys.touching ? -0.5 * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero())) + fromKernel(r.forceBefore);
+		const Vector3r kicks = (phys.touching ? -0.5 * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero()))
+		        + fromKernel(r.forceBefore);
 		if (scene->isPeriodic) channels.addBoundaryWork(*scene, dt * kicks.dot(imageVelocity));
 	}
 
@@ -218,16 +237,17 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	return true;
 }
 
-ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, const PairConstants<double>& constants, ContactMotion motion, const contact_law::ContactBefore& before,
-                                                            ContactHistory<double>& history, const State& state1, const State& state2, unsigned mechanisms)
+ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, const PairConstants<double>& constants, ContactMotion motion,
+        const contact_law::ContactBefore& before, ContactHistory<double>& history, const State& state1, const State& state2,
+        unsigned mechanisms)
 {
 	const bool made = !phys.touching; // this is its first step
 	if (made) {
 		phys.restDistance = contact_law::newBond(motion.separation, history);
-		motion.dt         = 0;
+		motion.dt = 0;
 	}
-	contact_law::BondStepResult r
-	        = contact_law::bondStepWith[mechanisms](phys.bond->forKernel(), constants, { motion, 1 / state1.inertia[0], 1 / state2.inertia[0] }, before, phys.restDistance, history);
+	contact_law::BondStepResult r = contact_law::bondStepWith[mechanisms](phys.bond->forKernel(), constants,
+	        { motion, 1 / state1.inertia[0], 1 / state2.inertia[0] }, before, phys.restDistance, history);
 	r.contact.pointersMoved = r.contact.pointersMoved || made;
 	if (r.bonded) return r.contact;
 	phys.endBond();

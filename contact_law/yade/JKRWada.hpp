@@ -35,7 +35,7 @@ REGISTER_SERIALIZABLE(JKRMat);
 class JKRWadaConstants : public Serializable {
 public:
 	contact_law::PairConstants<double> forKernel() const;
-	void                               set(const contact_law::PairConstants<double>&);
+	void set(const contact_law::PairConstants<double>&);
 	virtual ~JKRWadaConstants() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaConstants, Serializable,
@@ -67,7 +67,7 @@ REGISTER_SERIALIZABLE(JKRWadaConstants);
 class JKRWadaBond : public Serializable {
 public:
 	contact_law::BondConstants<double> forKernel() const;
-	void                               set(const contact_law::BondConstants<double>&);
+	void set(const contact_law::BondConstants<double>&);
 	virtual ~JKRWadaBond() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaBond, Serializable,
@@ -94,7 +94,7 @@ template <class Object, class Derived> class SharedObject {
 public:
 	shared_ptr<Object> of(const Derived& derived) // from any thread
 	{
-		const auto         same = [](const Derived& a, const Derived& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+		const auto same = [](const Derived& a, const Derived& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
 		shared_ptr<Object> result;
 #pragma omp critical(SharedObjectLatest)
 		{
@@ -108,7 +108,7 @@ public:
 	}
 };
 using SharedConstants = SharedObject<JKRWadaConstants, contact_law::PairConstants<double>>;
-using SharedBonds     = SharedObject<JKRWadaBond, contact_law::BondConstants<double>>;
+using SharedBonds = SharedObject<JKRWadaBond, contact_law::BondConstants<double>>;
 
 class JKRWadaPhys : public NormShearPhys {
 public:
@@ -116,7 +116,8 @@ public:
 	void setBond(const shared_ptr<JKRWadaBond>&);
 	void endBond();
 	// All but the pointers. velocity: of body 1 past body 2 through the last step.
-	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist, const Vector3r& velocity);
+	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist,
+	        const Vector3r& velocity);
 	virtual ~JKRWadaPhys() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRWadaPhys, NormShearPhys,
@@ -144,12 +145,15 @@ REGISTER_SERIALIZABLE(JKRWadaPhys);
 
 class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
-	SharedBonds     bonds;
+	SharedBonds bonds;
 
 public:
-	void       go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction) override;
-	boost::python::dict pairConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
-	boost::python::dict bondConstants(const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
+	void go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
+	        const shared_ptr<Interaction>& interaction) override;
+	boost::python::dict pairConstants(
+	        const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
+	boost::python::dict bondConstants(
+	        const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
 	virtual ~Ip2_JKRMat_JKRMat_JKRWadaPhys() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_JKRMat_JKRMat_JKRWadaPhys, IPhysFunctor,
@@ -174,8 +178,8 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	EnergyChannels channels;
 
 	void book(const contact_law::ContactStepResult&);
-	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion, const contact_law::ContactBefore&,
-	                                        contact_law::ContactHistory<double>&, const State&, const State&, unsigned mechanisms);
+	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion,
+	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, const State&, const State&, unsigned mechanisms);
 
 public:
 	bool go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction) override;

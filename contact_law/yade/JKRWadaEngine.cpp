@@ -17,14 +17,14 @@ YADE_PLUGIN((JKRWadaEngine));
 CREATE_LOGGER(JKRWadaEngine);
 
 struct JKRWadaEngine::Run {
-	Dynamics                       dynamics;
-	std::vector<GrainInput>        written, now; // the grains as the bodies were left; as they are after a step
-	std::vector<shared_ptr<State>> states;       // of the bodies, to reach them quickly
-	bool                           orientations, constrained;
-	SceneContacts                  contacts;
-	SceneCell                      cell;
-	LedgerWatch                    watch {};
-	long                           unlooked = 0; // small steps since overlaps were looked through
+	Dynamics dynamics;
+	std::vector<GrainInput> written, now;  // the grains as the bodies were left; as they are after a step
+	std::vector<shared_ptr<State>> states; // of the bodies, to reach them quickly
+	bool orientations, constrained;
+	SceneContacts contacts;
+	SceneCell cell;
+	LedgerWatch watch {};
+	long unlooked = 0; // small steps since overlaps were looked through
 
 	// Whether it is so for every body; asked by all threads, since reading every body takes about a small step.
 	template <class Is> bool all(const Is& is) const
@@ -48,8 +48,14 @@ namespace {
 		return digits;
 	}
 
-	std::string pairOf(const Dynamics::Trouble& t) { return "body " + std::to_string(t.grain) + " and body " + std::to_string(t.other); }
-	std::string describe(const Dynamics::Trouble& t) { return " (overlap " + rounded(t.overlap) + " of the smaller radius, normal force " + rounded(t.force) + " N)"; }
+	std::string pairOf(const Dynamics::Trouble& t)
+	{
+		return "body " + std::to_string(t.grain) + " and body " + std::to_string(t.other);
+	}
+	std::string describe(const Dynamics::Trouble& t)
+	{
+		return " (overlap " + rounded(t.overlap) + " of the smaller radius, normal force " + rounded(t.force) + " N)";
+	}
 	std::string hardestContact(const Dynamics::Trouble& t)
 	{
 		if (t.other < 0) return "; it touches no other";
@@ -60,21 +66,22 @@ namespace {
 	{
 		for (const auto& engine : scene.engines)
 			for (const char* other : { "NewtonIntegrator", "InteractionLoop" })
-				if (!engine->dead && engine->getClassName() == other) refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
+				if (!engine->dead && engine->getClassName() == other)
+					refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
 	}
 }
 
 contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
 {
 	Dynamics::Options options;
-	options.dt            = scene->dt / subSteps;
+	options.dt = scene->dt / subSteps;
 	options.linearDamping = linearDamping;
-	options.neck          = neck;
-	options.domains       = domains;
-	options.threads       = threads;
-	options.instructions  = instructions;
-	options.orientations  = orientations;
-	bool drag             = linearDamping > 0;
+	options.neck = neck;
+	options.domains = domains;
+	options.threads = threads;
+	options.instructions = instructions;
+	options.orientations = orientations;
+	bool drag = linearDamping > 0;
 	for (const auto& material : materials)
 		drag = drag || material.viscoelasticTime > 0;
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
@@ -85,24 +92,29 @@ void JKRWadaEngine::start(bool inStep)
 {
 	if (!failure.empty()) refuseInEngine(failure);
 	if (subSteps < 1) refuseInEngine("subSteps = " + std::to_string(subSteps) + ", allowed: 1 or more");
-	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck)) refuseInEngine("neck = " + text(neck) + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
-	if (neck != 0 && scene->isPeriodic) refuseInEngine("neck = " + text(neck) + " in a periodic cell, allowed: 0; sintered bonds in periodic cells are the functors'");
+	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
+		refuseInEngine("neck = " + text(neck) + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
+	if (neck != 0 && scene->isPeriodic)
+		refuseInEngine(
+		        "neck = " + text(neck) + " in a periodic cell, allowed: 0; sintered bonds in periodic cells are the functors'");
 	requireAlone(*scene);
 	const SceneGrains now = readGrains(*scene);
 	if (now.grains.empty()) refuseInEngine("there are no bodies");
 	Dynamics::Options options = optionsFor(now.materials);
-	const bool        continued = !memory.empty();
+	const bool continued = !memory.empty();
 	if (continued) options.dt = smallStep;
-	SceneContacts                contacts;
+	SceneContacts contacts;
 	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
 	for (const auto& one : inherited.contacts)
-		if (one.bonded && neck == 0) refuseInEngine("O.interactions has sintered bonds, and neck is 0; allowed: the neck they were made with");
-	const bool                   inherits  = !continued && !inherited.contacts.empty();
-	SceneCell                    cell;
+		if (one.bonded && neck == 0)
+			refuseInEngine("O.interactions has sintered bonds, and neck is 0; allowed: the neck they were made with");
+	const bool inherits = !continued && !inherited.contacts.empty();
+	SceneCell cell;
 	options.cell = cell.start(*scene, inStep, inherits && inherited.stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);
-	current = std::shared_ptr<Run>(new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr, inherits ? &inherited : nullptr), now.grains, now.grains,
-	                                         now.states, orientations, false, contacts, cell });
+	current = std::shared_ptr<Run>(
+	        new Run { Dynamics(now.grains, now.materials, options, continued ? &memory : nullptr, inherits ? &inherited : nullptr),
+	                now.grains, now.grains, now.states, orientations, false, contacts, cell });
 	smallStep = options.dt;
 	try {
 		const std::string tooSmall = SceneCell::tooSmall(options.cell, current->dynamics);
@@ -114,8 +126,10 @@ void JKRWadaEngine::start(bool inStep)
 	}
 	SceneCell::takeVelocityGradient(*scene, current->dynamics, !inStep);
 	if (scene->trackEnergy) {
-		if (continued) writeEnergies(current->dynamics.energies(), true);
-		else channels.takeOver(*scene);
+		if (continued)
+			writeEnergies(current->dynamics.energies(), true);
+		else
+			channels.takeOver(*scene);
 	}
 	memory.clear();
 }
@@ -125,23 +139,26 @@ void JKRWadaEngine::requireStable() const
 	const double unstable = current->dynamics.unstableStep();
 	if (!(smallStep > 0 && smallStep < unstable))
 		refuseInEngine("the small step O.dt/subSteps is " + text(smallStep) + " s, allowed: above 0 and below " + text(unstable)
-		               + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
+		        + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
 	const Dynamics::Trouble deep = current->dynamics.tooDeep();
 	if (deep.grain >= 0)
-		refuseInEngine(pairOf(deep) + " overlap by " + rounded(deep.overlap) + " of the smaller radius at the start, allowed: at most 1");
+		refuseInEngine(
+		        pairOf(deep) + " overlap by " + rounded(deep.overlap) + " of the smaller radius at the start, allowed: at most 1");
 }
 
 // Bodies that a script moved, pushed or blocked since the last step.
 void JKRWadaEngine::takeChanges()
 {
-	if (scene->bodies->size() != current->written.size()) refuseInEngine("bodies were added or erased after the start; make a new engine");
+	if (scene->bodies->size() != current->written.size())
+		refuseInEngine("bodies were added or erased after the start; make a new engine");
 	if (orientations != current->orientations) refuseInEngine("orientations was changed after the start; make a new engine");
 	const auto same = [this](std::size_t k) { return sameMotion(*current->states[k], current->written[k], orientations); };
 	if (current->all(same)) return;
 	for (std::size_t k = 0; k < current->written.size(); ++k) {
 		if (same(k)) continue;
 		const GrainInput now = grainOf(*current->states[k]);
-		if (!finite(now)) refuseInEngine("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
+		if (!finite(now))
+			refuseInEngine("body " + std::to_string(k) + " was given a position or velocity that is not a finite number");
 		current->dynamics.set(int(k), now);
 		current->watch.forgetSum();
 		current->unlooked = stepsBetweenLooks;
@@ -150,8 +167,10 @@ void JKRWadaEngine::takeChanges()
 
 void JKRWadaEngine::action()
 {
-	if (!current) start(true);
-	else takeChanges();
+	if (!current)
+		start(true);
+	else
+		takeChanges();
 	current->cell.require(*scene, current->dynamics);
 	if (scene->dt / subSteps != smallStep) refuseInEngine("O.dt or subSteps changed after the start; make a new engine");
 	const std::string wrong = current->cell.wrong(*scene, current->dynamics, subSteps);
@@ -166,8 +185,10 @@ void JKRWadaEngine::action()
 	if (scene->trackEnergy) energies = current->dynamics.energies();
 	requireSound(made, scene->trackEnergy ? &energies : nullptr);
 	writeBodies();
-	if (exportInteractions) current->contacts.write(*scene, current->dynamics, true);
-	else current->contacts.withdraw(*scene);
+	if (exportInteractions)
+		current->contacts.write(*scene, current->dynamics, true);
+	else
+		current->contacts.withdraw(*scene);
 	if (scene->trackEnergy) writeEnergies(energies, false);
 	actedAt = scene->iter;
 }
@@ -184,26 +205,32 @@ void JKRWadaEngine::requireSound(long made, const contact_law::Energies* now)
 	const Real time = scene->time + std::min(made + 1, long(subSteps)) * smallStep;
 	if (trouble.grain >= 0) {
 		const std::string grain = "body " + std::to_string(trouble.grain);
-		if (!std::isfinite(trouble.speed)) fail(time, grain + " has no finite position or velocity any more" + hardestContact(trouble));
-		fail(time, grain + " moves at " + rounded(trouble.speed) + " m/s, more than half the smallest radius in a small step" + hardestContact(trouble));
+		if (!std::isfinite(trouble.speed))
+			fail(time, grain + " has no finite position or velocity any more" + hardestContact(trouble));
+		fail(time,
+		        grain + " moves at " + rounded(trouble.speed) + " m/s, more than half the smallest radius in a small step"
+		                + hardestContact(trouble));
 	}
 	current->unlooked += made;
 	if (current->unlooked >= stepsBetweenLooks) {
 		current->unlooked = 0;
-		trouble           = current->dynamics.tooDeep();
+		trouble = current->dynamics.tooDeep();
 	}
 	if (trouble.grain >= 0) fail(time, pairOf(trouble) + " overlap by " + rounded(trouble.overlap) + " of the smaller radius");
-	const auto&       c     = current->dynamics.commonConstants();
+	const auto& c = current->dynamics.commonConstants();
 	const std::string wrong = now ? current->watch.wrong(*now, c.pullOffForce * c.pullOffOverlap) : "";
 	if (wrong.empty()) return;
 	const Dynamics::Trouble fastest = current->dynamics.trouble(), hardest = current->dynamics.hardest();
-	fail(time, wrong + "; body " + std::to_string(fastest.grain) + " is the fastest (" + rounded(fastest.speed) + " m/s)"
-	                   + (hardest.grain < 0 ? ", and none touch any more" : ", the hardest contact is that of " + pairOf(hardest) + describe(hardest)));
+	fail(time,
+	        wrong + "; body " + std::to_string(fastest.grain) + " is the fastest (" + rounded(fastest.speed) + " m/s)"
+	                + (hardest.grain < 0 ? ", and none touch any more"
+	                                     : ", the hardest contact is that of " + pairOf(hardest) + describe(hardest)));
 }
 
 void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 {
-	failure = "the run went wrong at t = " + text(time) + " s: " + what + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s" + advice;
+	failure = "the run went wrong at t = " + text(time) + " s: " + what
+	        + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s" + advice;
 	current.reset();
 	refuseInEngine(failure);
 }
@@ -211,8 +238,10 @@ void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 void JKRWadaEngine::prepare()
 {
 	scene = Omega::instance().getScene().get();
-	if (!current) start(false);
-	else SceneCell::takeVelocityGradient(*scene, current->dynamics, true);
+	if (!current)
+		start(false);
+	else
+		SceneCell::takeVelocityGradient(*scene, current->dynamics, true);
 	if (scene->isPeriodic) { // the mean velocity field is in the grains' velocities now
 		current->dynamics.read(current->now);
 		writeBodies();
@@ -257,8 +286,11 @@ void JKRWadaEngine::writeBodies()
 
 void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 {
-	const contact_law::Dissipation& d   = now.dissipated;
-	channels.set(*scene, { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() }, known);
+	const contact_law::Dissipation& d = now.dissipated;
+	channels.set(*scene,
+	        { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling,
+	                d.twisting, d.connection, d.disconnection, d.drag, d.bonds() },
+	        known);
 	current->constrained = current->constrained || current->dynamics.constrained();
 	if (current->constrained) channels.setExtra(*scene, EnergyChannels::ConstraintWork, now.constraintWork, known);
 	if (scene->isPeriodic) channels.setExtra(*scene, EnergyChannels::BoundaryWork, now.boundaryWork, known);
@@ -275,7 +307,8 @@ bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& no
 		normalForces.push_back(normalForce);
 		bonded.push_back(isBond);
 	};
-	current->dynamics.eachContact([&](const contact_law::Contact&, int first, int second, double force) { add(first, second, force, false); });
+	current->dynamics.eachContact(
+	        [&](const contact_law::Contact&, int first, int second, double force) { add(first, second, force, false); });
 	current->dynamics.eachBond([&](const contact_law::Bond&, int first, int second, double force) { add(first, second, force, true); });
 	return true;
 }
@@ -284,20 +317,21 @@ boost::python::dict JKRWadaEngine::statistics() const
 {
 	boost::python::dict result;
 	if (!current) return result;
-	result["contacts"]       = current->dynamics.contactCount();
-	result["bonds"]          = current->dynamics.bondCount();
-	const auto                           broken = current->dynamics.brokenBonds();
-	const contact_law::Dissipation       lost   = current->dynamics.dissipated();
-	static const char* const             modes[contact_law::bondModes] = { "brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting" };
+	result["contacts"] = current->dynamics.contactCount();
+	result["bonds"] = current->dynamics.bondCount();
+	const auto broken = current->dynamics.brokenBonds();
+	const contact_law::Dissipation lost = current->dynamics.dissipated();
+	static const char* const modes[contact_law::bondModes] = { "brokenByStretching", "brokenBySliding", "brokenByRolling",
+		"brokenByTwisting" };
 	for (int mode = 0; mode < contact_law::bondModes; ++mode) {
-		result[modes[mode]]                         = broken[mode];
+		result[modes[mode]] = broken[mode];
 		result[modes[mode] + std::string("Energy")] = lost.bondBreaking[mode];
 	}
 	result["contactUpdates"] = current->dynamics.contactUpdates;
-	result["events"]         = current->dynamics.events();
-	result["farRebuilds"]    = current->dynamics.farRebuilds;
-	result["nearRebuilds"]   = current->dynamics.nearRebuilds;
-	result["instructions"]   = current->dynamics.instructions();
+	result["events"] = current->dynamics.events();
+	result["farRebuilds"] = current->dynamics.farRebuilds;
+	result["nearRebuilds"] = current->dynamics.nearRebuilds;
+	result["instructions"] = current->dynamics.instructions();
 	return result;
 }
 

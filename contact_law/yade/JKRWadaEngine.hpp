@@ -12,10 +12,10 @@ namespace yade {
 class JKRWadaEngine : public GlobalEngine {
 	struct Run; // the arrays, made at the first step
 	std::shared_ptr<Run> current;
-	EnergyChannels       channels;
+	EnergyChannels channels;
 
-	long                 actedAt = -1; // iteration
-	std::string          failure;      // why the run cannot go on
+	long actedAt = -1;   // iteration
+	std::string failure; // why the run cannot go on
 
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
 
@@ -35,7 +35,7 @@ public:
 	void handOver();
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// Adds this engine's arrays to a snapshot (JKRWadaSnapshot); false before the first step.
-	bool                addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const;
+	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const;
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
 	// clang-format off

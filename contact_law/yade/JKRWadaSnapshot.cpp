@@ -15,12 +15,13 @@ YADE_PLUGIN((JKRWadaSnapshot));
 namespace {
 	struct Grains {
 		std::vector<double> position, velocity, angularVelocity, radius;
-		std::vector<int>    ids, rowOf; // rowOf: by body id, -1 where the body is no sphere
+		std::vector<int> ids, rowOf; // rowOf: by body id, -1 where the body is no sphere
 	};
 
 	template <class T> boost::python::object bytes(const std::vector<T>& values)
 	{
-		return boost::python::object(boost::python::handle<>(PyBytes_FromStringAndSize(reinterpret_cast<const char*>(values.data()), Py_ssize_t(values.size() * sizeof(T)))));
+		return boost::python::object(boost::python::handle<>(
+		        PyBytes_FromStringAndSize(reinterpret_cast<const char*>(values.data()), Py_ssize_t(values.size() * sizeof(T)))));
 	}
 
 	void append(std::vector<double>& to, const Vector3r& v)
@@ -33,9 +34,9 @@ namespace {
 	// JKRWadaEngine leaves everything at one moment, and so needs nothing of this.
 	void appendAtTimeOfForces(Grains& grains, const Body& body, Scene& scene)
 	{
-		const State&   state = *body.state;
+		const State& state = *body.state;
 		const Vector3r force = scene.forces.getForce(body.getId()), torque = scene.forces.getTorque(body.getId());
-		Vector3r       velocity = state.vel, spin = state.angVel;
+		Vector3r velocity = state.vel, spin = state.angVel;
 		for (int i = 0; i < 3; ++i) {
 			if (!(state.blockedDOFs & (1u << i))) velocity[i] -= scene.dt / 2 * force[i] / state.mass;
 			if (!(state.blockedDOFs & (8u << i))) spin[i] -= scene.dt / 2 * torque[i] / state.inertia[i];
@@ -71,8 +72,10 @@ namespace {
 			grains.rowOf[body->getId()] = int(grains.radius.size());
 			grains.ids.push_back(body->getId());
 			grains.radius.push_back(sphere->radius);
-			if (asItIs) appendAsItIs(grains, *body);
-			else appendAtTimeOfForces(grains, *body, scene);
+			if (asItIs)
+				appendAsItIs(grains, *body);
+			else
+				appendAtTimeOfForces(grains, *body, scene);
 		}
 		return grains;
 	}
@@ -80,17 +83,17 @@ namespace {
 
 boost::python::dict JKRWadaSnapshot::read() const
 {
-	Scene&              scene  = *Omega::instance().getScene();
-	const auto*         fused  = fusedEngine(scene);
-	const Grains        grains = readGrains(scene, fused);
-	std::vector<int>    pairs;
+	Scene& scene = *Omega::instance().getScene();
+	const auto* fused = fusedEngine(scene);
+	const Grains grains = readGrains(scene, fused);
+	std::vector<int> pairs;
 	std::vector<double> normalForce;
-	std::vector<int>    bonded;
+	std::vector<int> bonded;
 	const bool fromEngine = fused && fused->addContacts(pairs, normalForce, bonded);
 	for (const auto& interaction : *scene.interactions) {
 		if (fromEngine) break;
 		if (!interaction->isReal()) continue;
-		const auto* phys     = dynamic_cast<const JKRWadaPhys*>(interaction->phys.get());
+		const auto* phys = dynamic_cast<const JKRWadaPhys*>(interaction->phys.get());
 		const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
 		if (!phys || !geometry || !phys->touching) continue;
 		pairs.push_back(grains.rowOf[interaction->getId1()]);
@@ -99,20 +102,21 @@ boost::python::dict JKRWadaSnapshot::read() const
 		bonded.push_back(phys->bonded);
 	}
 	boost::python::dict result;
-	result["time"]                 = fromEngine && fused->inStep() ? scene.time + scene.dt : scene.time; // within a step the engine is at its end already
-	result["ids"]                  = bytes(grains.ids);
-	result["position"]             = bytes(grains.position);
-	result["velocity"]             = bytes(grains.velocity);
-	result["angular_velocity"]     = bytes(grains.angularVelocity);
-	result["radius"]               = bytes(grains.radius);
+	result["time"] =
+	        fromEngine && fused->inStep() ? scene.time + scene.dt : scene.time; // within a step the engine is at its end already
+	result["ids"] = bytes(grains.ids);
+	result["position"] = bytes(grains.position);
+	result["velocity"] = bytes(grains.velocity);
+	result["angular_velocity"] = bytes(grains.angularVelocity);
+	result["radius"] = bytes(grains.radius);
 	if (scene.isPeriodic) {
 		std::vector<double> size;
 		append(size, scene.cell->hSize.diagonal());
 		result["cell_size"] = bytes(size);
 	}
-	result["contact_pairs"]        = bytes(pairs);
+	result["contact_pairs"] = bytes(pairs);
 	result["contact_normal_force"] = bytes(normalForce);
-	result["contact_bonded"]       = bytes(bonded);
+	result["contact_bonded"] = bytes(bonded);
 	return result;
 }
 

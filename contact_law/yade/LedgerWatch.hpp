@@ -15,21 +15,25 @@ public:
 	// Empty, or what is wrong with the energies after a step. contactEnergy: of one contact, F_c delta_c [J]; bonded grains at rest have none but rounding's.
 	std::string wrong(const contact_law::Energies& e, double contactEnergy)
 	{
-		const contact_law::Dissipation& d       = e.dissipated;
+		const contact_law::Dissipation& d = e.dissipated;
 		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() };
-		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork, e.boundaryWork };
-		double       lost = 0, sum = 0, scale = 0;
+		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork,
+			e.boundaryWork };
+		double lost = 0, sum = 0, scale = 0;
 		for (const double x : losses)
 			lost += x, sum += x, scale += std::abs(x);
 		for (const double x : stored)
 			sum += x, scale += std::abs(x);
 		if (!std::isfinite(scale)) return "the energies are not finite";
 		scale = std::max(scale, negligible * contactEnergy);
-		if (lost < lostBefore - lossRegained * scale) return "losses have given back " + text(lostBefore - lost) + " J, which no loss can: the step is too long";
+		if (lost < lostBefore - lossRegained * scale)
+			return "losses have given back " + text(lostBefore - lost) + " J, which no loss can: the step is too long";
 		lostBefore = std::max(lost, lostBefore);
 		if (!known) first = sum;
 		known = true;
-		if (std::abs(sum - first) > sumChanged * scale) return "energy is not conserved (" + text(sum - first) + " J more than before, of " + text(scale) + " J): the step is too long";
+		if (std::abs(sum - first) > sumChanged * scale)
+			return "energy is not conserved (" + text(sum - first) + " J more than before, of " + text(scale)
+			        + " J): the step is too long";
 		return "";
 	}
 
@@ -44,7 +48,7 @@ private:
 		return digits;
 	}
 
-	bool   known = false;
+	bool known = false;
 	double first = 0, lostBefore = 0;
 };
 

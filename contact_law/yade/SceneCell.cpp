@@ -10,14 +10,16 @@ using Vec3d = contact_law::Vec3<double>;
 
 namespace {
 	Vec3d diagonal(const Matrix3r& m) { return { m(0, 0), m(1, 1), m(2, 2) }; }
-	bool  same(const Vec3d& a, const Vec3d& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+	bool same(const Vec3d& a, const Vec3d& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 	void requireDiagonal(const Matrix3r& m, const char* name, const char* what)
 	{
 		for (int i = 0; i < 3; ++i)
 			for (int j = 0; j < 3; ++j)
 				if (!std::isfinite(m(i, j)) || (i != j && m(i, j) != 0))
-					refuseInEngine(std::string("O.cell.") + name + " has the element (" + std::to_string(i) + ", " + std::to_string(j) + ") = " + boost::lexical_cast<std::string>(m(i, j)) + ", allowed: " + what);
+					refuseInEngine(std::string("O.cell.") + name + " has the element (" + std::to_string(i) + ", "
+					        + std::to_string(j) + ") = " + boost::lexical_cast<std::string>(m(i, j))
+					        + ", allowed: " + what);
 	}
 
 	void requireBox(const Cell& cell)
@@ -38,7 +40,10 @@ namespace {
 
 Vec3d SceneCell::now(const Scene& scene) { return scene.isPeriodic ? diagonal(scene.cell->hSize) : Vec3d { 0, 0, 0 }; }
 
-Vec3d SceneCell::convective(const Scene& scene) { return scene.isPeriodic && scene.cell->homoDeform == 2 ? diagonal(scene.cell->velGrad) : Vec3d { 0, 0, 0 }; }
+Vec3d SceneCell::convective(const Scene& scene)
+{
+	return scene.isPeriodic && scene.cell->homoDeform == 2 ? diagonal(scene.cell->velGrad) : Vec3d { 0, 0, 0 };
+}
 
 PeriodicCell SceneCell::start(Scene& scene, bool inStep, bool stepBehind, Real dt)
 {
@@ -46,7 +51,7 @@ PeriodicCell SceneCell::start(Scene& scene, bool inStep, bool stepBehind, Real d
 	Cell& cell = *scene.cell;
 	requireBox(cell);
 	const Matrix3r before = inStep ? cell.prevHSize : cell.hSize;
-	const Vec3d    rate   = diagonal(cell.velGrad * before);
+	const Vec3d rate = diagonal(cell.velGrad * before);
 	if (stepBehind) {
 		cell.integrateAndUpdate(dt);
 		if (inStep) cell.prevHSize = before + dt * cell.velGrad * before;
@@ -63,23 +68,28 @@ void SceneCell::require(const Scene& scene, const Dynamics& dynamics) const
 	if (!scene.isPeriodic) return;
 	requireBox(*scene.cell);
 	const Vec3d was = diagonal(scene.cell->prevHSize);
-	if (!same(was, size)) refuseInEngine("O.cell was given another size " + text(was) + " m by a script, after the start with " + text(size) + " m; change O.cell.velGrad, or make a new engine");
+	if (!same(was, size))
+		refuseInEngine("O.cell was given another size " + text(was) + " m by a script, after the start with " + text(size)
+		        + " m; change O.cell.velGrad, or make a new engine");
 }
 
 std::string SceneCell::tooSmall(const PeriodicCell& cell, const Dynamics& dynamics)
 {
 	if (!cell.on || cell.holds(dynamics.reach())) return "";
-	return "the periodic cell of " + text(cell.size) + " m is too small, allowed: at least " + text(2 * dynamics.reach()) + " m along each axis, twice the reach of a pair of grains";
+	return "the periodic cell of " + text(cell.size) + " m is too small, allowed: at least " + text(2 * dynamics.reach())
+	        + " m along each axis, twice the reach of a pair of grains";
 }
 
 std::string SceneCell::wrong(const Scene& scene, const Dynamics& dynamics, int steps) const
 {
 	if (!scene.isPeriodic) return "";
 	const PeriodicCell cell = PeriodicCell::box(now(scene), {});
-	const Vec3d        change = cell.size - size;
-	const Real  most   = 0.5 * dynamics.smallestRadius() * steps;
+	const Vec3d change = cell.size - size;
+	const Real most = 0.5 * dynamics.smallestRadius() * steps;
 	for (const Real way : { change.x, change.y, change.z })
-		if (!(std::abs(way) <= most)) return "the periodic cell changes to " + text(cell.size) + " m, by more than half the smallest radius in a small step";
+		if (!(std::abs(way) <= most))
+			return "the periodic cell changes to " + text(cell.size)
+			        + " m, by more than half the smallest radius in a small step";
 	return tooSmall(cell, dynamics);
 }
 
@@ -88,9 +98,9 @@ void SceneCell::takeVelocityGradient(Scene& scene, Dynamics& dynamics, bool want
 	if (!scene.isPeriodic) return;
 	Cell& cell = *scene.cell;
 	if (wanted && (cell.velGradChanged || cell.nextVelGrad != Matrix3r::Zero())) {
-		cell.velGrad        = cell.nextVelGrad;
+		cell.velGrad = cell.nextVelGrad;
 		cell.velGradChanged = false;
-		cell.nextVelGrad    = Matrix3r::Zero();
+		cell.nextVelGrad = Matrix3r::Zero();
 	}
 	const Vec3d gradient = diagonal(cell.velGrad), none { 0, 0, 0 };
 	dynamics.setMeanField(cell.homoDeform ? gradient - diagonal(cell.prevVelGrad) : none, convective(scene));

@@ -17,13 +17,14 @@ public:
 	// Empty, or why the grains cannot go in so many small steps to the cell as it is now.
 	std::string wrong(const Scene&, const contact_law::Dynamics&, int steps) const;
 	static std::string tooSmall(const contact_law::PeriodicCell&, const contact_law::Dynamics&); // likewise, of its size only
-	void        arrive(const Scene& scene) { size = now(scene); }
+	void arrive(const Scene& scene) { size = now(scene); }
 
 	// The velocity gradient that a script wants becomes the present one, as NewtonIntegrator does it; grains get its change when Cell.homoDeform says so.
 	static void takeVelocityGradient(Scene&, contact_law::Dynamics&, bool wanted);
 
 	static contact_law::Vec3<double> now(const Scene&);
-	static contact_law::Vec3<double> convective(const Scene&); // diagonal of the gradient whose convective acceleration grains have [1/s]
+	static contact_law::Vec3<double> convective(
+	        const Scene&); // diagonal of the gradient whose convective acceleration grains have [1/s]
 
 private:
 	contact_law::Vec3<double> size { 0, 0, 0 }; // that the engine's run has reached [m]

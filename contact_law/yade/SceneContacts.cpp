@@ -12,7 +12,7 @@ using contact_law::Inherited;
 using Vec3d = contact_law::Vec3<double>;
 
 namespace {
-	Vec3d    toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
+	Vec3d toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 	Vector3r fromKernel(const Vec3d& v) { return Vector3r(v.x, v.y, v.z); }
 
 	struct Ids {
@@ -32,18 +32,19 @@ namespace {
 	void writeContact(const Scene& scene, const ContactNow& c, bool current, Interaction& interaction)
 	{
 		const State &state1 = stateOf(scene, c.first), &state2 = stateOf(scene, c.second);
-		auto&        geometry     = static_cast<ScGeom&>(*interaction.geom);
-		auto&        phys         = static_cast<JKRWadaPhys&>(*interaction.phys);
-	interaction.cellDist      = Vector3i(-int(c.shift.x), -int(c.shift.y), -int(c.shift.z)); // of body 2, not body 1
-		geometry.normal           = -fromKernel(c.geometry.normal); // YADE's points from body 1 to body 2
-		geometry.refR1            = radiusOf(scene, c.first); // YADE's geometry is that of the bodies, shrunk by sintering or not
-		geometry.refR2            = radiusOf(scene, c.second);
-		geometry.penetrationDepth = c.geometry.overlap + (geometry.refR1 + geometry.refR2 - (c.bonded ? c.rest : c.constants.radius1 + c.constants.radius2));
-		geometry.contactPoint     = state1.pos + (geometry.refR1 - 0.5 * geometry.penetrationDepth) * geometry.normal;
+		auto& geometry = static_cast<ScGeom&>(*interaction.geom);
+		auto& phys = static_cast<JKRWadaPhys&>(*interaction.phys);
+		interaction.cellDist = Vector3i(-int(c.shift.x), -int(c.shift.y), -int(c.shift.z)); // of body 2, not body 1
+		geometry.normal = -fromKernel(c.geometry.normal);                                   // YADE's points from body 1 to body 2
+		geometry.refR1 = radiusOf(scene, c.first); // YADE's geometry is that of the bodies, shrunk by sintering or not
+		geometry.refR2 = radiusOf(scene, c.second);
+		geometry.penetrationDepth = c.geometry.overlap
+		        + (geometry.refR1 + geometry.refR2 - (c.bonded ? c.rest : c.constants.radius1 + c.constants.radius2));
+		geometry.contactPoint = state1.pos + (geometry.refR1 - 0.5 * geometry.penetrationDepth) * geometry.normal;
 		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity));
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(c.history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(c.history.pointers.n2);
-		phys.current  = current;
+		phys.current = current;
 		if (phys.bonded && !c.bonded) phys.endBond();
 		phys.restDistance = c.rest;
 	}
@@ -54,15 +55,15 @@ namespace {
 	{
 		std::vector<Vec3d> forces(scene.bodies->size(), Vec3d { 0, 0, 0 });
 		for (const auto& i : contacts) {
-			const auto& phys  = static_cast<const JKRWadaPhys&>(*i->phys);
+			const auto& phys = static_cast<const JKRWadaPhys&>(*i->phys);
 			const Vec3d force = toKernel(phys.normalForce + phys.shearForce); // on body 2
 			forces[i->getId1()] = forces[i->getId1()] - force;
 			forces[i->getId2()] = forces[i->getId2()] + force;
 		}
 		for (size_t id = 0; id < forces.size(); ++id) {
 			const State& s = stateOf(scene, int(id));
-			const Vec3d  push = contact_law::componentsOf(forces[id], ~s.blockedDOFs & 7);
-			forces[id]        = toKernel(s.vel) - (dt / s.mass) * push;
+			const Vec3d push = contact_law::componentsOf(forces[id], ~s.blockedDOFs & 7);
+			forces[id] = toKernel(s.vel) - (dt / s.mass) * push;
 		}
 		return forces;
 	}
@@ -79,12 +80,14 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 	}
 	std::sort(held.begin(), held.end(), [](const auto& a, const auto& b) { return Ids(*a) < Ids(*b); });
 	for (const auto& interaction : held) {
-		const auto&  phys   = static_cast<const JKRWadaPhys&>(*interaction->phys);
-		const int    id1 = interaction->getId1(), id2 = interaction->getId2();
+		const auto& phys = static_cast<const JKRWadaPhys&>(*interaction->phys);
+		const int id1 = interaction->getId1(), id2 = interaction->getId2();
 		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
-		Inherited::One one { id1, id2, { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap, phys.dragForce, phys.bonded, phys.restDistance };
+		Inherited::One one { id1, id2,
+			{ { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap,
+			phys.dragForce, phys.bonded, phys.restDistance };
 		if (!phys.current) { // the bodies have turned since
-			inherited.stepBehind    = true;
+			inherited.stepBehind = true;
 			one.history.pointers.n1 = contact_law::turned(one.history.pointers.n1, -dt * toKernel(state1.angVel));
 			one.history.pointers.n2 = contact_law::turned(one.history.pointers.n2, -dt * toKernel(state2.angVel));
 		}
@@ -97,9 +100,14 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dynamics& dynamics)
 {
 	std::vector<Place> places;
-	dynamics.eachPlace([&](const contact_law::ContactList& list, int lane, int first, int second) { places.push_back({ std::min(first, second), std::max(first, second), &list, nullptr, lane }); });
-	dynamics.eachBondPlace([&](const contact_law::BondList& list, int lane, int first, int second) { places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, lane }); });
-	std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.id1 != b.id1 ? a.id1 < b.id1 : a.id2 < b.id2; });
+	dynamics.eachPlace([&](const contact_law::ContactList& list, int lane, int first, int second) {
+		places.push_back({ std::min(first, second), std::max(first, second), &list, nullptr, lane });
+	});
+	dynamics.eachBondPlace([&](const contact_law::BondList& list, int lane, int first, int second) {
+		places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, lane });
+	});
+	std::sort(places.begin(), places.end(),
+	        [](const Place& a, const Place& b) { return a.id1 != b.id1 ? a.id1 < b.id1 : a.id2 < b.id2; });
 	return places;
 }
 
@@ -125,9 +133,9 @@ shared_ptr<Interaction> SceneContacts::made(const Scene& scene, const ContactNow
 	const shared_ptr<JKRWadaPhys> phys(new JKRWadaPhys);
 	phys->setConstants(constants.of(c.constants));
 	if (c.bonded) phys->setBond(bonds.of(c.bond));
-	interaction->geom         = shared_ptr<ScGeom>(new ScGeom);
-	interaction->phys         = phys;
-	interaction->iterBorn     = scene.iter;
+	interaction->geom = shared_ptr<ScGeom>(new ScGeom);
+	interaction->phys = phys;
+	interaction->iterBorn = scene.iter;
 	interaction->iterMadeReal = scene.iter;
 	return interaction;
 }
@@ -144,8 +152,10 @@ void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
 		};
 		while (known != held.end() && before(**known))
 			++known;
-		if (known != held.end() && Ids(**known).low == place.id1 && Ids(**known).high == place.id2) now.push_back(*known);
-		else now.push_back(nullptr);
+		if (known != held.end() && Ids(**known).low == place.id1 && Ids(**known).high == place.id2)
+			now.push_back(*known);
+		else
+			now.push_back(nullptr);
 	}
 	scene.interactions->clear();
 	held.swap(now);
@@ -154,9 +164,9 @@ void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
 void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, bool current)
 {
 	const std::vector<Place> places = placesOf(dynamics);
-	const auto               now    = [&](size_t k, int id1) {
-                const ContactNow c = places[k].now(dynamics);
-                return c.first == id1 ? c : contact_law::swapped(c);
+	const auto now = [&](size_t k, int id1) {
+		const ContactNow c = places[k].now(dynamics);
+		return c.first == id1 ? c : contact_law::swapped(c);
 	};
 	if (!inOrder(scene, places)) {
 		arrange(scene, places);

@@ -21,20 +21,20 @@ public:
 
 private:
 	struct Place { // of a contact in the engine, bodies in rising order
-		int                             id1, id2;
+		int id1, id2;
 		const contact_law::ContactList* list; // null for a bond
-		const contact_law::BondList*    bonds;
-		int                             lane;
-		contact_law::ContactNow         now(const contact_law::Dynamics&) const;
+		const contact_law::BondList* bonds;
+		int lane;
+		contact_law::ContactNow now(const contact_law::Dynamics&) const;
 	};
 	static std::vector<Place> placesOf(const contact_law::Dynamics&);
-	bool                      inOrder(Scene&, const std::vector<Place>&) const;
-	void                      arrange(Scene&, const std::vector<Place>&);
-	shared_ptr<Interaction>   made(const Scene&, const contact_law::ContactNow&, int id1, int id2);
+	bool inOrder(Scene&, const std::vector<Place>&) const;
+	void arrange(Scene&, const std::vector<Place>&);
+	shared_ptr<Interaction> made(const Scene&, const contact_law::ContactNow&, int id1, int id2);
 
 	std::vector<shared_ptr<Interaction>> held; // in O.interactions, by this engine, sorted
-	SharedConstants                      constants;
-	SharedBonds                          bonds;
+	SharedConstants constants;
+	SharedBonds bonds;
 };
 
 } // namespace yade

@@ -15,7 +15,7 @@ namespace {
 		for (int k = 0; k < 3; ++k)
 			to[k] = from[k];
 	}
-	bool     same(const Vector3r& x, const double (&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; }
+	bool same(const Vector3r& x, const double (&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; }
 	Vector3r eigen(const double (&x)[3]) { return Vector3r(x[0], x[1], x[2]); }
 }
 
@@ -25,9 +25,9 @@ GrainInput grainOf(const State& s)
 	copy(s.pos, g.position);
 	copy(s.vel, g.velocity);
 	copy(s.angVel, g.angularVelocity);
-	g.mass        = s.mass;
-	g.inertia     = s.inertia[0];
-	g.blocked     = s.blockedDOFs;
+	g.mass = s.mass;
+	g.inertia = s.inertia[0];
+	g.blocked = s.blockedDOFs;
 	g.orientation = { s.ori.w(), s.ori.x(), s.ori.y(), s.ori.z() };
 	return g;
 }
@@ -41,8 +41,8 @@ bool sameMotion(const State& s, const GrainInput& g, bool orientations)
 
 void write(const GrainInput& g, State& s, bool orientations)
 {
-	s.pos    = eigen(g.position);
-	s.vel    = eigen(g.velocity);
+	s.pos = eigen(g.position);
+	s.vel = eigen(g.velocity);
 	s.angVel = eigen(g.angularVelocity);
 	if (orientations) s.ori = Quaternionr(g.orientation.w, g.orientation.x, g.orientation.y, g.orientation.z);
 }
@@ -55,21 +55,22 @@ bool finite(const GrainInput& g)
 
 SceneGrains readGrains(const Scene& scene)
 {
-	SceneGrains                result;
+	SceneGrains result;
 	std::vector<const JKRMat*> kinds;
 	for (size_t id = 0; id < scene.bodies->size(); ++id) {
-		const auto&       body = (*scene.bodies)[id];
-		const std::string who  = "body " + std::to_string(id);
+		const auto& body = (*scene.bodies)[id];
+		const std::string who = "body " + std::to_string(id);
 		if (!body) refuseInEngine(who + " was erased: erased bodies are not supported, make the scene without them");
-		const auto* sphere   = dynamic_cast<const Sphere*>(body->shape.get());
+		const auto* sphere = dynamic_cast<const Sphere*>(body->shape.get());
 		const auto* material = dynamic_cast<const JKRMat*>(body->material.get());
 		if (!sphere || !material) refuseInEngine(who + " is not a sphere of JKRMat; this engine moves nothing else");
 		GrainInput g = grainOf(*body->state);
-		g.radius     = sphere->radius;
+		g.radius = sphere->radius;
 		if (!finite(g)) refuseInEngine(who + " has a position or velocity that is not a finite number");
-		if (!(g.radius > 0) || !(g.mass > 0) || !(g.inertia > 0)) refuseInEngine(who + ": radius, mass and moment of inertia must be positive");
+		if (!(g.radius > 0) || !(g.mass > 0) || !(g.inertia > 0))
+			refuseInEngine(who + ": radius, mass and moment of inertia must be positive");
 		const auto known = std::find(kinds.begin(), kinds.end(), material);
-		g.kind           = int(known - kinds.begin());
+		g.kind = int(known - kinds.begin());
 		if (known == kinds.end()) {
 			material->requireInRange();
 			kinds.push_back(material);

@@ -12,8 +12,8 @@ namespace yade {
 
 struct SceneGrains { // in the order of the ids
 	std::vector<contact_law::GrainInput> grains;
-	std::vector<contact_law::Material>   materials;
-	std::vector<shared_ptr<State>>       states;
+	std::vector<contact_law::Material> materials;
+	std::vector<shared_ptr<State>> states;
 };
 
 // Throws std::runtime_error for a body that the engine cannot move.
@@ -21,7 +21,7 @@ SceneGrains readGrains(const Scene&);
 
 // Position, velocities, mass, blocked degrees of freedom and orientation of a body.
 contact_law::GrainInput grainOf(const State&);
-bool                    finite(const contact_law::GrainInput&);
+bool finite(const contact_law::GrainInput&);
 
 // Whether nobody has touched the body since it was written.
 bool sameMotion(const State&, const contact_law::GrainInput&, bool orientations);

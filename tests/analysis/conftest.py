@@ -1,5 +1,6 @@
 """Run folders for the tests of the analysis: two grains from theory, and two small clusters integrated on the
 spot."""
+
 import sys
 from pathlib import Path
 
@@ -10,7 +11,7 @@ for folder in (TOP, Path(__file__).resolve().parent):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-from small_collision import collide_clusters, cluster  # noqa: E402
+from small_collision import cluster, collide_clusters  # noqa: E402
 from written_runs import pair_run, write_run  # noqa: E402
 
 

@@ -1,5 +1,6 @@
 """Made-up collisions of elastoplastic aggregates with known answers: points for the fits, and whole run
 folders."""
+
 import numpy as np
 from written_runs import RADIUS, record, state_arrays, write_run
 
@@ -10,7 +11,7 @@ from analysis.elastoplastic.points import make_points
 from analysis.elastoplastic.velocity_fit import reduced_radius
 
 MODULI, OFFSET, FILLING, DENSITY = (2.0e6, 20e6), 0.25 * RADIUS, 0.4, 1000.0
-V = 10 ** 0.5
+V = 10**0.5
 
 
 def made_points(random, seeds, radii=(40.0, 60.0, 80.0), velocities=(V,), scatter=0.2, moduli=MODULI):
@@ -40,8 +41,19 @@ def line_of(moduli=MODULI, v=V):
     return {"c1": ratio / 2.0, "c2": offset * (2.0 - ratio / 2.0), "offset": offset, "ratio": ratio}
 
 
-def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, settles=True, ended=True,
-             stretch=1.0, **parameters):
+def made_run(
+    path,
+    size,
+    velocity,
+    seed,
+    shift,
+    filling=FILLING,
+    sticks=False,
+    settles=True,
+    ended=True,
+    stretch=1.0,
+    **parameters,
+):
     """Write a run folder of two aggregates of two grains each that move as Andrews's spheres of radius `size`
     [grain radii] would, with compressions and times larger by the factor `stretch`, and d too large by
     `shift` [grain radii] throughout. With `sticks` they stay in contact, and unless `settles` is False come to
@@ -56,14 +68,23 @@ def made_run(path, size, velocity, seed, shift, filling=FILLING, sticks=False, s
         parted = contact + stretch * course.time_of_parting
         v = v * np.clip((time[-1] - time) / (time[-1] - parted), 0.0, 1.0)
     history = {name: np.zeros(time.size) for name in CHANNELS}
-    energy = 1e-15 * velocity ** 2
+    energy = 1e-15 * velocity**2
     history["kinetic"] = energy * (v / velocity) ** 2
     history["slidingDissipation"] = energy - history["kinetic"]
     touching = (time > contact) & (sticks | (time < contact + stretch * course.time_of_parting))
     history.update(time=time, d=d, v=v, contacts=2 + touching, contacts_between=touching.astype(int))
     states = [_state(time[k], d[k], v[k], size, bool(touching[k])) for k in range(0, 401, 50)]
-    values = {"packing": "cpe", "material": "ice", "filling": filling, "radius": size, "velocity": velocity,
-              "seed": seed, "impact": 0.0, "stepFraction": 0.1, **parameters}
+    values = {
+        "packing": "cpe",
+        "material": "ice",
+        "filling": filling,
+        "radius": size,
+        "velocity": velocity,
+        "seed": seed,
+        "impact": 0.0,
+        "stepFraction": 0.1,
+        **parameters,
+    }
     return write_run(path, record(size * RADIUS, values), history, states, ended)
 
 

@@ -1,15 +1,15 @@
 """A throw-away integration of two clusters with JKR normal forces and drag only: test data that obeys the
 contact law."""
+
 import numpy as np
 from scipy.spatial import cKDTree
+from written_runs import MASS, PAIR, RADIUS, record, state_arrays
 
 from analysis.channels import CHANNELS
 from analysis.compression import compression_length, mutual_velocity
 from analysis.theory import normalised_energy, normalised_force
 
-from written_runs import MASS, PAIR, RADIUS, record, state_arrays
-
-DRAG = 2e-9             # [N s/m] at every contact, so that the clusters don't ring for long
+DRAG = 2e-9  # [N s/m] at every contact, so that the clusters don't ring for long
 _CONTACT, _SEPARATION = 2.0 * RADIUS, 2.0 * RADIUS + PAIR.pull_off_overlap
 
 
@@ -23,7 +23,7 @@ def cluster(radius, filling=None, seed=0):
     centres = cells[cells.sum(axis=1) % 2 == 0] * spacing / np.sqrt(2.0) - random.uniform(-1.0, 1.0, 3)
     centres = centres[np.linalg.norm(centres, axis=1) <= radius]
     if filling is not None:
-        centres = centres[random.permutation(len(centres))[:int(filling * radius ** 3)]]
+        centres = centres[random.permutation(len(centres))[: int(filling * radius**3)]]
     turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
     return centres @ turn * RADIUS
 
@@ -75,17 +75,16 @@ class _Motion:
     def _forces(self):
         i, j = self.pairs.T
         rate = -np.einsum("ij,ij->i", self.v[i] - self.v[j], self.normal)
-        elastic = PAIR.pull_off_force * normalised_force(
-            (_CONTACT - self.distance) / PAIR.equilibrium_overlap
-        )
+        elastic = PAIR.pull_off_force * normalised_force((_CONTACT - self.distance) / PAIR.equilibrium_overlap)
         return np.where(self.touching, elastic, 0.0), np.where(self.touching, rate, 0.0)
 
     def _acceleration(self):
         pull = (self.force + DRAG * self.rate)[:, None] * self.normal / MASS
         a = np.zeros_like(self.x)
         for k in range(3):
-            a[:, k] = (np.bincount(self.pairs[:, 0], pull[:, k], len(a))
-                       - np.bincount(self.pairs[:, 1], pull[:, k], len(a)))
+            a[:, k] = np.bincount(self.pairs[:, 0], pull[:, k], len(a)) - np.bincount(
+                self.pairs[:, 1], pull[:, k], len(a)
+            )
         return a
 
     def step(self):
@@ -98,7 +97,7 @@ class _Motion:
         self._events()
         self.force, self.rate = self._forces()
         self.v = self.v + 0.5 * self.dt * self._acceleration()
-        self.lost["drag"] += DRAG * np.sum(self.rate ** 2) * self.dt
+        self.lost["drag"] += DRAG * np.sum(self.rate**2) * self.dt
 
     def _events(self):
         born = ~self.touching & (self.distance <= _CONTACT)
@@ -113,13 +112,17 @@ class _Motion:
 
     def sample(self, time):
         i, j = self.pairs[self.touching].T
-        return {**dict.fromkeys(CHANNELS, 0.0), "time": time, "kinetic": 0.5 * MASS * np.sum(self.v ** 2),
-                "normal": self._energy().sum(), **self.lost,
-                "d": compression_length(self.x[:, 0], self.radius),
-                "v": mutual_velocity(self.x[:, 0], self.v[:, 0]), "contacts": len(i),
-                "contacts_between": int(np.sum(self.aggregate[i] != self.aggregate[j]))}
+        return {
+            **dict.fromkeys(CHANNELS, 0.0),
+            "time": time,
+            "kinetic": 0.5 * MASS * np.sum(self.v**2),
+            "normal": self._energy().sum(),
+            **self.lost,
+            "d": compression_length(self.x[:, 0], self.radius),
+            "v": mutual_velocity(self.x[:, 0], self.v[:, 0]),
+            "contacts": len(i),
+            "contacts_between": int(np.sum(self.aggregate[i] != self.aggregate[j])),
+        }
 
     def state(self, time):
-        return state_arrays(
-            time, self.x, self.v, self.aggregate, self.pairs[self.touching], self.force[self.touching]
-        )
+        return state_arrays(time, self.x, self.v, self.aggregate, self.pairs[self.touching], self.force[self.touching])

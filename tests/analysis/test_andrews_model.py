@@ -1,4 +1,5 @@
 """Andrews's model against a numerical integration of its motion, its stresses, its limits and A24's numbers."""
+
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
@@ -6,15 +7,24 @@ from scipy.integrate import quad, solve_ivp
 from analysis.elastoplastic import andrews
 from analysis.elastoplastic.andrews import Spheres
 from analysis.elastoplastic.andrews_motion import motion
-from analysis.elastoplastic.andrews_stress import (compression_stress, contact_force, elastic_stress, plastic_radius,
-                                                   return_stress)
+from analysis.elastoplastic.andrews_stress import (
+    compression_stress,
+    contact_force,
+    elastic_stress,
+    plastic_radius,
+    return_stress,
+)
 from analysis.elastoplastic.velocity_fit import degenerate_curve
 
-V = 10 ** 0.5
+V = 10**0.5
 PAPER = Spheres(0.5 * 80.271e-7, 400.0, 2.25e6, 15.7e6)
 # Mostly plastic, as the paper's, just beyond yield, and elastic throughout.
-CASES = {"plastic": Spheres(2e-6, 400.0, 1.7e6, 80e6), "paper": PAPER,
-         "yielding": Spheres(4e-6, 400.0, 3.2e6, 15.7e6), "elastic": Spheres(4e-6, 300.0, 9e6, 5e6)}
+CASES = {
+    "plastic": Spheres(2e-6, 400.0, 1.7e6, 80e6),
+    "paper": PAPER,
+    "yielding": Spheres(4e-6, 400.0, 3.2e6, 15.7e6),
+    "elastic": Spheres(4e-6, 300.0, 9e6, 5e6),
+}
 
 
 @pytest.fixture(params=CASES, ids=str)
@@ -29,7 +39,7 @@ def integrate(spheres):
     def until_largest(t, y):
         return [y[1], -andrews.compression_force(y[0] * scale, spheres) / (mass * scale)]
 
-    stop = lambda t, y: y[1]        # noqa: E731
+    stop = lambda t, y: y[1]  # noqa: E731
     stop.terminal, stop.direction = True, -1
     options = {"rtol": 1e-11, "atol": 1e-13 * V / scale, "method": "DOP853"}
     down = solve_ivp(until_largest, (0, 1e-5), [0.0, V / scale], events=stop, max_step=2e-9, **options)
@@ -39,7 +49,7 @@ def integrate(spheres):
         return [y[1], -andrews.return_force(y[0] * scale, largest * scale, spheres) / (mass * scale)]
 
     apart = andrews.return_compression(spheres, largest * scale) / scale
-    out = lambda t, y: y[0] - apart     # noqa: E731
+    out = lambda t, y: y[0] - apart  # noqa: E731
     out.terminal, out.direction = True, -1
     back = solve_ivp(until_parting, (tau, tau + 1e-5), [largest, 0.0], events=out, max_step=2e-9, **options)
     return tau, largest * scale, back.t[-1], -back.y[1, -1] * scale / V
@@ -63,11 +73,12 @@ def test_motion_obeys_the_force_and_its_phases_join(spheres):
     # v is the rate of delta, and m dv/dt the force, by central differences.
     assert np.abs((delta[2:] - delta[:-2]) / (2 * step) - v[1:-1]).max() < 2e-3 * V
     returning = t > course.time_of_largest
-    force = np.where(returning, andrews.return_force(delta, course.largest, spheres),
-                     andrews.compression_force(delta, spheres))
+    force = np.where(
+        returning, andrews.return_force(delta, course.largest, spheres), andrews.compression_force(delta, spheres)
+    )
     force = np.where(t > course.time_of_parting, 0.0, force)
     rate = andrews.reduced_mass(spheres) * (v[2:] - v[:-2]) / (2 * step)
-    away = np.abs(t[1:-1] - course.time_of_parting) > 10 * step     # there the force falls like a square root
+    away = np.abs(t[1:-1] - course.time_of_parting) > 10 * step  # there the force falls like a square root
     assert np.abs(rate + force[1:-1])[away].max() < 0.02 * force.max()
     assert v[-1] == pytest.approx(-float(andrews.restitution(V, spheres)) * V, rel=1e-6)
     assert course.compression(-1e-8) == pytest.approx(-V * 1e-8)
@@ -81,18 +92,23 @@ def test_force_and_work_are_continuous_and_work_is_the_integral_of_the_force():
             below, above = (function(critical * (1 + e), spheres) for e in (-1e-9, 1e-9))
             assert above == pytest.approx(below, rel=1e-8)
         assert andrews.return_force(largest, largest, spheres) == pytest.approx(
-            float(andrews.compression_force(largest, spheres)), rel=1e-12)
+            float(andrews.compression_force(largest, spheres)), rel=1e-12
+        )
         work = quad(lambda d: andrews.compression_force(d, spheres), 0, largest, points=[critical], epsrel=1e-11)[0]
         assert andrews.compression_work(largest, spheres) == pytest.approx(work, rel=1e-9)
-        assert work == pytest.approx(andrews.initial_kinetic_energy(V, spheres), rel=1e-9)     # eq 28
-        back = quad(lambda d: andrews.return_force(d, largest, spheres),
-                    andrews.return_compression(spheres, largest), largest, epsrel=1e-11)[0]
+        assert work == pytest.approx(andrews.initial_kinetic_energy(V, spheres), rel=1e-9)  # eq 28
+        back = quad(
+            lambda d: andrews.return_force(d, largest, spheres),
+            andrews.return_compression(spheres, largest),
+            largest,
+            epsrel=1e-11,
+        )[0]
         assert andrews.returned_work(largest, largest, spheres) == pytest.approx(back, rel=1e-8)
 
 
 def test_forces_are_integrals_of_the_stresses():
     largest, critical = 0.113 * PAPER.reduced_radius, andrews.critical_compression(PAPER)
-    assert elastic_stress(critical, 0.0, PAPER) == pytest.approx(PAPER.yield_stress, rel=1e-12)     # B17
+    assert elastic_stress(critical, 0.0, PAPER) == pytest.approx(PAPER.yield_stress, rel=1e-12)  # B17
     assert compression_stress(largest, plastic_radius(largest, PAPER), PAPER) == pytest.approx(PAPER.yield_stress)
     for delta in (0.5 * critical, critical, largest):
         force = contact_force(lambda a: compression_stress(delta, a, PAPER), delta, PAPER)
@@ -107,11 +123,13 @@ def test_limits_are_reached():
     elastic, rigid = Spheres(4e-6, 400.0, np.inf, 14.6e6), Spheres(4e-6, 400.0, 1.67e6, np.inf)
     assert andrews.largest_compression(V, elastic) == pytest.approx(andrews.elastic_compression(V, elastic))
     assert andrews.time_of_largest_compression(V, elastic) == pytest.approx(
-        1.4716 * andrews.elastic_compression(V, elastic) / V, rel=1e-4)
+        1.4716 * andrews.elastic_compression(V, elastic) / V, rel=1e-4
+    )
     assert andrews.restitution(V, elastic) == 1.0
     assert andrews.largest_compression(V, rigid) == pytest.approx(andrews.plastic_compression(V, rigid))
     assert andrews.time_of_largest_compression(V, rigid) == pytest.approx(
-        2 * np.pi / 3 ** 0.5 * (400 / 1.67e6) ** 0.5 * 4e-6)        # eq 33
+        2 * np.pi / 3**0.5 * (400 / 1.67e6) ** 0.5 * 4e-6
+    )  # eq 33
     assert andrews.restitution(V, rigid) == 0.0
     near = Spheres(4e-6, 400.0, 1.67e6, 1e12)
     assert andrews.largest_compression(V, near) == pytest.approx(andrews.largest_compression(V, rigid), rel=1e-6)
@@ -125,8 +143,7 @@ def test_units_scale_as_they_must():
             assert function(v, large) == pytest.approx(factor * function(v, PAPER))
         assert andrews.restitution(v, large) == pytest.approx(andrews.restitution(v, PAPER))
         # Pressures in units of rho v^2.
-        stiff = Spheres(PAPER.reduced_radius, PAPER.density, factor ** 2 * PAPER.yield_stress,
-                        factor ** 2 * PAPER.young)
+        stiff = Spheres(PAPER.reduced_radius, PAPER.density, factor**2 * PAPER.yield_stress, factor**2 * PAPER.young)
         assert andrews.largest_compression(factor * v, stiff) == pytest.approx(andrews.largest_compression(v, PAPER))
 
 

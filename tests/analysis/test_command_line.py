@@ -1,4 +1,5 @@
 """python3 -m analysis as a user runs it."""
+
 import json
 import shutil
 import subprocess
@@ -25,9 +26,7 @@ def test_json_of_one_run_is_an_object(pair_folder):
     done = analyse("summary", "--json", path)
     numbers = json.loads(done.stdout)
     assert done.returncode == 0 and done.stderr == "" and KEYS <= set(numbers)
-    assert (
-        numbers["run"] == str(path) and numbers["outcome"] == "bouncing" and numbers["largest_fragment"] == 1
-    )
+    assert numbers["run"] == str(path) and numbers["outcome"] == "bouncing" and numbers["largest_fragment"] == 1
     assert numbers["restitution"] == pytest.approx(collision.restitution, rel=1e-9)
     assert numbers["d_max"] == pytest.approx(collision.largest_overlap - 2e-7, rel=1e-6)
     assert 0.3 < numbers["t_max"] / collision.duration < 0.5
@@ -70,11 +69,7 @@ def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folde
 
 def test_a_broken_run_alone_prints_nothing_else(tmp_path):
     done = analyse("summary", "--json", tmp_path)
-    assert (
-        (done.returncode, done.stdout) == (2, "")
-        and done.stderr.count("\n") == 1
-        and "run.json" in done.stderr
-    )
+    assert (done.returncode, done.stdout) == (2, "") and done.stderr.count("\n") == 1 and "run.json" in done.stderr
 
 
 def test_an_unfinished_run_says_so(pair_folder, tmp_path):

@@ -1,4 +1,5 @@
 """d, v and the largest compression (A24 eqs 10-13)."""
+
 import numpy as np
 import pytest
 
@@ -15,10 +16,8 @@ def test_d_and_v_of_three_grains():
 def test_v_is_the_rate_of_d():
     random = np.random.default_rng(1)
     x, speed = random.normal(size=500), random.normal(size=500)
-    step = 0.5 * np.abs(x / speed).min()    # no grain crosses x = 0
-    rate = (compression_length(x + step * speed, 3.0) - compression_length(x - step * speed, 3.0)) / (
-        2 * step
-    )
+    step = 0.5 * np.abs(x / speed).min()  # no grain crosses x = 0
+    rate = (compression_length(x + step * speed, 3.0) - compression_length(x - step * speed, 3.0)) / (2 * step)
     assert mutual_velocity(x, speed) == pytest.approx(rate, abs=1e-10)
 
 
@@ -100,6 +99,4 @@ def test_pair_is_compressed_as_theory_says(pair_folder):
     run = open_run(path)
     maximum = maximum_compression(run.history["time"], run.history["d"], run.history["v"])
     # d counts from R_agg = 0: two grains that just touch are at -2 r.
-    assert maximum.length + 2 * run.derived["grainRadius"] == pytest.approx(
-        collision.largest_overlap, rel=1e-6
-    )
+    assert maximum.length + 2 * run.derived["grainRadius"] == pytest.approx(collision.largest_overlap, rel=1e-6)

@@ -1,5 +1,6 @@
 """python3 -m analysis elastoplastic as a user runs it: on made-up run folders, and on small real
 collisions."""
+
 import json
 import shutil
 import subprocess
@@ -20,8 +21,12 @@ NUMBERS = {"c1": "c1", "c2": "c2", "offset": "delta_offset", "ratio": "delta_max
 
 
 def analyse(*arguments):
-    return subprocess.run(["/usr/bin/python3", "-W", "error::RuntimeWarning", "-m", "analysis", "elastoplastic",
-                           *map(str, arguments)], cwd=TOP, capture_output=True, text=True)
+    return subprocess.run(
+        ["/usr/bin/python3", "-W", "error::RuntimeWarning", "-m", "analysis", "elastoplastic", *map(str, arguments)],
+        cwd=TOP,
+        capture_output=True,
+        text=True,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -31,11 +36,17 @@ def runs(tmp_path_factory):
     mean."""
     folder, random = tmp_path_factory.mktemp("elastoplastic"), np.random.default_rng(21)
     for size in (40.0, 60.0, 80.0):
-        for velocity in VELOCITIES if size == 80.0 else [10 ** 0.5]:
+        for velocity in VELOCITIES if size == 80.0 else [10**0.5]:
             for seed, stretch in enumerate((1.02, 0.98, 1.01, 0.99), start=1):
-                made_run(folder / "table" / f"R{size:g}-v{velocity:.3f}-s{seed}", size, velocity, seed,
-                         0.1 * random.normal(),
-                         sticks=seed == 1, stretch=stretch)
+                made_run(
+                    folder / "table" / f"R{size:g}-v{velocity:.3f}-s{seed}",
+                    size,
+                    velocity,
+                    seed,
+                    0.1 * random.normal(),
+                    sticks=seed == 1,
+                    stretch=stretch,
+                )
     return folder
 
 
@@ -52,8 +63,12 @@ def answer(runs, gallery):
 
 
 def lines(answer, heading):
-    return {line["quantity"]: line for section in answer["comparison"] if heading in section["heading"]
-            for line in section["lines"]}
+    return {
+        line["quantity"]: line
+        for section in answer["comparison"]
+        if heading in section["heading"]
+        for line in section["lines"]
+    }
 
 
 def test_the_truth_is_recovered_within_the_stated_errors(answer):
@@ -77,8 +92,9 @@ def test_rows_points_and_ledger(answer):
         assert row["closure"] < 1e-12 and "/" not in row["path"] and not row["exceeded"]
         assert row["label_d_max"] == pytest.approx(row["d_max"]) and row["coordination"] == 1.0
         assert sum(row["shares_at_end"].values()) == pytest.approx(1.0)
-        assert (row["outcome"], row["restitution"] == 0.0) == (("sticking", True) if row["seed"] == 1 else
-                                                              ("bouncing", False))
+        assert (row["outcome"], row["restitution"] == 0.0) == (
+            ("sticking", True) if row["seed"] == 1 else ("bouncing", False)
+        )
     for point in answer["bounces"]:
         assert point["sticking"][0] == 0.25 and point["sticking"][1] < 0.25 < point["sticking"][2]
         assert point["compression"]["kinetic"][0] == pytest.approx(-1.0, abs=1e-3)
@@ -102,17 +118,38 @@ def test_runs_that_still_part_at_the_end_are_undecided(tmp_path):
 def test_text_names_everything(runs):
     done = analyse(*(runs / "table").glob("R80*-s[12]"))
     assert done.returncode == 0 and done.stderr == "", done.stderr
-    for text in (*LEGEND, "8 runs", "sigma_plastic [MPa]", "sticking probability", "slid. diss.",
-                 "not fitted: only one size, R = 80 r", "delta_offset = 0.271 r (A24's, for want of sizes here)"):
+    for text in (
+        *LEGEND,
+        "8 runs",
+        "sigma_plastic [MPa]",
+        "sticking probability",
+        "slid. diss.",
+        "not fitted: only one size, R = 80 r",
+        "delta_offset = 0.271 r (A24's, for want of sizes here)",
+    ):
         assert text in done.stdout
     assert max(map(len, done.stdout.splitlines())) < 250
 
 
 def test_gallery(runs, gallery, answer):
     drawn = {file.name for file in gallery.glob("*.png")}
-    assert drawn == {f"{name}.png" for name in (
-        "fig04_motion", "fig05_size", "fig07_time", "fig08_velocity", "fig10_moduli", "fig11_strength", "fig12_andrews",
-        "fig13_forces", "outcome", "energy_velocity", "energy_size", "start_offset")}
+    assert drawn == {
+        f"{name}.png"
+        for name in (
+            "fig04_motion",
+            "fig05_size",
+            "fig07_time",
+            "fig08_velocity",
+            "fig10_moduli",
+            "fig11_strength",
+            "fig12_andrews",
+            "fig13_forces",
+            "outcome",
+            "energy_velocity",
+            "energy_size",
+            "start_offset",
+        )
+    }
     assert all((gallery / name).read_bytes().startswith(b"\x89PNG") for name in drawn)
     page = (gallery / "comparison.md").read_text()
     assert all(f"({name})" in page for name in drawn) and str(runs) not in page
@@ -132,7 +169,8 @@ def test_what_does_not_belong_is_left_out_with_a_note(runs, tmp_path):
         assert text in done.stderr
     answer = json.loads(done.stdout)
     assert [row["path"] for row in answer["runs"]] == ["good"] and answer["notes"] == [
-        "3 runs left out (not ended, of another scene, or without a compression)"]
+        "3 runs left out (not ended, of another scene, or without a compression)"
+    ]
     assert ["only one size" in answer["missing"][0], "has 3 velocities" in answer["missing"][1]] == [True, True]
 
 
@@ -202,8 +240,22 @@ def test_small_real_collisions(tmp_path):
     lack."""
     for size, seed in ((5, 1), (5, 2), (7, 1)):
         out = tmp_path / "runs" / f"R{size}-s{seed}"
-        subprocess.run(["yade", "-n", "-x", TOP / "yade_scripts" / "collide.py", f"radius={size}", f"seed={seed}",
-                        "velocity=20", "filling=0.35", "duration=60e-9", f"out={out}"], capture_output=True, check=True)
+        subprocess.run(
+            [
+                "yade",
+                "-n",
+                "-x",
+                TOP / "yade_scripts" / "collide.py",
+                f"radius={size}",
+                f"seed={seed}",
+                "velocity=20",
+                "filling=0.35",
+                "duration=60e-9",
+                f"out={out}",
+            ],
+            capture_output=True,
+            check=True,
+        )
     broken = shutil.copytree(tmp_path / "runs" / "R7-s1", tmp_path / "runs" / "R7-s2")
     shutil.rmtree(broken / "states")
     (broken / "run.json").write_text((broken / "run.json").read_text().replace('"seed": 1', '"seed": 2'))
@@ -216,5 +268,6 @@ def test_small_real_collisions(tmp_path):
     for row in answer["runs"]:
         assert row["closure"] < 1e-3 and row["grain_radius"] == RADIUS and 2 < row["inner_coordination"] < 12
         assert abs(sum(row["shares_at_maximum"].values()) - 1) < 1e-3
-    assert any("no size at filling 0.35 has 3 velocities" in line or "no delta_offset" in line
-               for line in answer["missing"])
+    assert any(
+        "no size at filling 0.35 has 3 velocities" in line or "no delta_offset" in line for line in answer["missing"]
+    )

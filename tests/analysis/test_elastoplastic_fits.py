@@ -1,6 +1,7 @@
 """Fits on made-up collisions: the truth is recovered, and the stated errors are those that the results have.
 
 Random seeds are fixed; a statistical bound says how often it would fail for other seeds."""
+
 import numpy as np
 import pytest
 from made_collisions import MODULI, OFFSET, V, line_of, made_points
@@ -8,8 +9,15 @@ from scipy.optimize import least_squares
 from written_runs import RADIUS
 
 from analysis.elastoplastic import paper
-from analysis.elastoplastic.andrews import (Spheres, elastic_compression, elastic_time, largest_compression,
-                                            plastic_compression, plastic_time, time_of_largest_compression)
+from analysis.elastoplastic.andrews import (
+    Spheres,
+    elastic_compression,
+    elastic_time,
+    largest_compression,
+    plastic_compression,
+    plastic_time,
+    time_of_largest_compression,
+)
 from analysis.elastoplastic.bounce import restitution_interval, wilson
 from analysis.elastoplastic.moduli_search import ModuliSearch
 from analysis.elastoplastic.points import make_points, resampled, smoothed_scatter
@@ -87,7 +95,7 @@ def test_moduli_are_recovered_within_their_errors():
         pulls.append((np.array(fit.values) - MODULI) / fit.errors)
         chi_square.append(fit.chi_square / fit.freedom)
     pulls = np.array(pulls)
-    assert np.all(np.abs(np.sqrt(np.mean(pulls ** 2, axis=0)) - 1.2) < 0.5)
+    assert np.all(np.abs(np.sqrt(np.mean(pulls**2, axis=0)) - 1.2) < 0.5)
     assert np.all(np.abs(np.mean(np.abs(pulls) < 1, axis=0) - 0.65) < 0.29)
     assert 0.6 < np.mean(chi_square) < 1.6 and fit.freedom == 30
 
@@ -130,8 +138,13 @@ def test_search_agrees_with_scipys():
 
     def residuals(x, k):
         spheres = Spheres(radius, 400.0, *np.exp(x))
-        return np.concatenate([(largest_compression(v, spheres) - delta[k]) / 5e-9,
-                               (time_of_largest_compression(v, spheres) - tau[k]) / 3e-9])
+        return np.concatenate(
+            [
+                (largest_compression(v, spheres) - delta[k]) / 5e-9,
+                (time_of_largest_compression(v, spheres) - tau[k]) / 3e-9,
+            ]
+        )
+
     for k in range(10):
         end = least_squares(residuals, np.log(MODULI), args=(k,), method="lm", xtol=1e-12, ftol=1e-12)
         assert chi_square[k] <= 2 * end.cost * (1 + 1e-6) + 1e-6
@@ -161,8 +174,7 @@ def test_smoothed_scatter_follows_a_power_without_bias():
     """s ~ v^-1 from three seeds at eight velocities, 400 times: the mean logarithm is right to 3.3 standard
     errors."""
     random, v = np.random.default_rng(11), np.array(VELOCITIES)
-    found = [smoothed_scatter(v, random.normal(size=(3, 8)).std(axis=0, ddof=1) / v, np.full(8, 3))
-             for _ in range(400)]
+    found = [smoothed_scatter(v, random.normal(size=(3, 8)).std(axis=0, ddof=1) / v, np.full(8, 3)) for _ in range(400)]
     logs = np.log(found)
     assert np.all(np.abs(logs.mean(axis=0) + np.log(v)) < 3.3 * logs.std(axis=0) / 20)
 
@@ -186,8 +198,10 @@ def test_errors_of_the_moduli_of_a_design_are_those_of_its_fits():
     radius, v = (a.ravel() for a in np.meshgrid([2e-6, 4e-6], VELOCITIES))
     truth = Spheres(radius, 400.0, *MODULI)
     errors = 3e-9, 1e-9 / v
-    data = [model(v, truth) + error * random.normal(size=(400, 16))
-            for model, error in zip((largest_compression, time_of_largest_compression), errors)]
+    data = [
+        model(v, truth) + error * random.normal(size=(400, 16))
+        for model, error in zip((largest_compression, time_of_largest_compression), errors)
+    ]
     found, chi_square = ModuliSearch(v, 400.0).best(*data, *errors, np.tile(radius, (400, 1)))
     assert found.std(axis=0) == pytest.approx(moduli_errors_of_design(MODULI, v, radius, 400.0, *errors), rel=0.15)
     assert chi_square.mean() == pytest.approx(30, abs=3.3 * (60 / 400) ** 0.5)
@@ -203,8 +217,8 @@ def test_control_variate_takes_the_offsets_scatter_away():
         corrected.append(fix.corrected)
         plain.append(fix.mean)
         errors.append(fix.corrected_error)
-        assert fix.own_slope and fix.shifted == pytest.approx(2.0, abs=4.5 * 0.3 / 10 ** 0.5)
-    assert np.mean(corrected) == pytest.approx(2.0, abs=3.3 * np.std(corrected) / 500 ** 0.5)
+        assert fix.own_slope and fix.shifted == pytest.approx(2.0, abs=4.5 * 0.3 / 10**0.5)
+    assert np.mean(corrected) == pytest.approx(2.0, abs=3.3 * np.std(corrected) / 500**0.5)
     assert np.std(corrected) == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=0.15)
     assert np.std(corrected) < 0.5 * np.std(plain)
 

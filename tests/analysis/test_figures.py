@@ -1,4 +1,5 @@
 """What the figures show, read back from their artists and pixels."""
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
@@ -70,11 +71,7 @@ def test_force_lines_are_the_contacts_of_the_slab(run):
 
 def test_grains_are_shown_at_start_maximum_and_end(run):
     titles = [axes.get_title(loc="left") for axes in grains_figure(run).axes]
-    assert (
-        titles[0] == "$t$ = 0.0 ns"
-        and titles[-1] == f"$t$ = {run.last.time * 1e9:.1f} ns"
-        and 2 <= len(titles) <= 3
-    )
+    assert titles[0] == "$t$ = 0.0 ns" and titles[-1] == f"$t$ = {run.last.time * 1e9:.1f} ns" and 2 <= len(titles) <= 3
 
 
 def test_nearer_sphere_hides_the_farther_one():
@@ -87,14 +84,10 @@ def test_nearer_sphere_hides_the_farther_one():
 
 
 def test_painted_area_is_that_of_a_disc():
-    image = paint_spheres(
-        np.zeros((1, 3)), np.ones(1), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.02
-    )
-    assert np.sum(image[..., 1] == 0.0) * 0.02 ** 2 == pytest.approx(np.pi, rel=0.01)
+    image = paint_spheres(np.zeros((1, 3)), np.ones(1), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.02)
+    assert np.sum(image[..., 1] == 0.0) * 0.02**2 == pytest.approx(np.pi, rel=0.01)
 
 
 def test_a_grain_smaller_than_a_pixel_is_seen():
-    image = paint_spheres(
-        np.zeros((1, 3)), np.full(1, 0.01), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.5
-    )
+    image = paint_spheres(np.zeros((1, 3)), np.full(1, 0.01), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.5)
     assert np.any(image[..., 1] == 0.0)

@@ -1,13 +1,18 @@
 """Fragments, outcomes and restitution, by hand and by brute force."""
+
 import numpy as np
 import pytest
+from written_runs import state_arrays
 
 from analysis.collision_outcome import classify, collision_outcome, restitution
-from analysis.fragments import (belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes,
-                                growth_efficiency)
+from analysis.fragments import (
+    belongs_to_an_aggregate,
+    fragment_labels,
+    fragment_masses,
+    fragment_sizes,
+    growth_efficiency,
+)
 from analysis.run_folder import State
-
-from written_runs import state_arrays
 
 
 def _labels_by_flooding(grains, pairs):
@@ -128,9 +133,7 @@ def test_a_grain_that_was_alone_does_not_spoil_sticking():
     velocity = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], 20, axis=0)
     # Grains 16 to 19, a fifth of aggregate 0, lie about singly from the start.
     start = _state(velocity, _chain(0, 16) + _chain(20, 20), 20)
-    outcome = collision_outcome(
-        start, _state(np.zeros((40, 3)), _chain(0, 16) + _chain(20, 20) + [[15, 20]], 20)
-    )
+    outcome = collision_outcome(start, _state(np.zeros((40, 3)), _chain(0, 16) + _chain(20, 20) + [[15, 20]], 20))
     assert outcome.kind == "sticking" and outcome.excluded_grains == 4 and outcome.mass_fractions[0] == 1.0
 
 

@@ -1,4 +1,5 @@
 """The ledger's sum, closure and shares."""
+
 import numpy as np
 import pytest
 
@@ -17,9 +18,24 @@ def _history(**changed):
 
 
 def test_channels_are_those_of_the_run_folder_in_order():
-    assert CHANNELS == STORED + DISSIPATED == (
-        "kinetic", "normal", "sliding", "rolling", "twisting", "slidingDissipation", "rollingDissipation",
-        "twistingDissipation", "connection", "disconnection", "drag", "bondBreaking")
+    assert (
+        CHANNELS
+        == STORED + DISSIPATED
+        == (
+            "kinetic",
+            "normal",
+            "sliding",
+            "rolling",
+            "twisting",
+            "slidingDissipation",
+            "rollingDissipation",
+            "twistingDissipation",
+            "connection",
+            "disconnection",
+            "drag",
+            "bondBreaking",
+        )
+    )
     assert set(LABELS) == set(CHANNEL_COLOURS) == set(CHANNELS)
     assert len(set(CHANNEL_COLOURS.values())) == len(CHANNELS)
 

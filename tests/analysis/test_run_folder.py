@@ -1,4 +1,5 @@
 """Reading run folders: whole, unfinished, damaged and foreign ones."""
+
 import json
 import shutil
 
@@ -32,11 +33,7 @@ def test_a_whole_run(folder):
     assert run.start.time == 0.0 and run.last.time == run.history["time"][-1]
     assert run.states.times == pytest.approx([state.time for state in run.states])
     assert run.states.nearest(run.last.time * 0.99) == 2
-    assert (
-        run.last.position.shape == (2, 3)
-        and len(run.start.contact_pairs) == 1
-        and len(run.last.contact_pairs) == 0
-    )
+    assert run.last.position.shape == (2, 3) and len(run.start.contact_pairs) == 1 and len(run.last.contact_pairs) == 0
 
 
 def test_nothing_read_can_be_changed(folder):
@@ -71,7 +68,7 @@ def test_d_and_v_may_have_no_value(folder):
 
 
 def _halve(file):
-    file.write_bytes(file.read_bytes()[:file.stat().st_size // 2])
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
 
 
 def _flip(file):
@@ -182,7 +179,7 @@ STATE_DAMAGE = {
             aggregate=np.zeros(0, int),
             contact_pairs=np.zeros((0, 2), int),
             contact_normal_force=np.zeros(0),
-            contact_bonded=np.zeros(0, bool)
+            contact_bonded=np.zeros(0, bool),
         ),
         "holds no grain",
     ),

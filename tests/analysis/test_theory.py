@@ -1,4 +1,5 @@
 """The theory against the papers' numbers, and against slower ways to the same values."""
+
 from dataclasses import replace
 from decimal import Decimal, getcontext
 from math import inf, pi
@@ -14,10 +15,19 @@ from analysis.theory.jkr import PULL_OFF_OVERLAP
 ICE = theory.pair_constants(theory.ICE, 1e-7)
 
 
-@pytest.mark.parametrize("name, printed, digits", [
-    ("unit", 4.0e-17, 2), ("break", 6.1e-17, 2), ("roll_critical", 1.2e-18, 2), ("roll", 4.7e-16, 2),
-    ("slide_critical", 7.3e-18, 2), ("twist_critical", 2.8e-18, 2), ("twist", 4.4e-16, 2),
-    ("slide", 5.4e-15, 2)])     # the product of eq 21; printed is pi times it
+@pytest.mark.parametrize(
+    "name, printed, digits",
+    [
+        ("unit", 4.0e-17, 2),
+        ("break", 6.1e-17, 2),
+        ("roll_critical", 1.2e-18, 2),
+        ("roll", 4.7e-16, 2),
+        ("slide_critical", 7.3e-18, 2),
+        ("twist_critical", 2.8e-18, 2),
+        ("twist", 4.4e-16, 2),
+        ("slide", 5.4e-15, 2),
+    ],
+)  # the product of eq 21; printed is pi times it
 def test_energies_of_a22_table_2(name, printed, digits):
     assert float(f"{theory.interaction_energies(ICE)[name]:.{digits - 1}e}") == printed
 
@@ -56,27 +66,26 @@ def test_rolling_energy_of_ice_as_k13_section_3_1():
 
 
 def test_unlike_pair_follows_the_rules():
-    one, other = replace(theory.ICE, viscoelastic_time=1e-12), replace(
-        theory.SILICATE, viscoelastic_time=5e-12
-    )
+    one, other = replace(theory.ICE, viscoelastic_time=1e-12), replace(theory.SILICATE, viscoelastic_time=5e-12)
     pair = theory.pair_constants(one, 1e-7, other, 3e-7)
     assert pair.reduced_radius == pytest.approx(0.75e-7)
-    young = 1 / ((1 - 0.25 ** 2) / 7e9 + (1 - 0.17 ** 2) / 54e9)
+    young = 1 / ((1 - 0.25**2) / 7e9 + (1 - 0.17**2) / 54e9)
     assert pair.reduced_young == pytest.approx(young)
     assert pair.pull_off_force == pytest.approx(3 * pi * (0.1 * 0.02) ** 0.5 * 0.75e-7)
     assert pair.critical_rolling == pytest.approx(1.4e-9)
-    assert pair.drag_per_contact_radius == pytest.approx(young * (1e-12 / 0.25 ** 2 + 5e-12 / 0.17 ** 2))
+    assert pair.drag_per_contact_radius == pytest.approx(young * (1e-12 / 0.25**2 + 5e-12 / 0.17**2))
     shear = [7e9 / 2.5, 54e9 / 2.34]
     assert pair.reduced_shear == pytest.approx(1 / (1.75 / shear[0] + 1.83 / shear[1]))
     # k_s zeta_crit = 8 a0 G* (G'/G*) a0/(16 pi)
     twisting = 1 / (1 / shear[0] + 1 / shear[1])
     assert pair.sliding_stiffness * pair.critical_sliding == pytest.approx(
-        twisting * pair.equilibrium_contact_radius ** 2 / (2 * pi))
+        twisting * pair.equilibrium_contact_radius**2 / (2 * pi)
+    )
 
 
 def test_linear_damping_of_k13_equation_4():
     pair = theory.pair_constants(theory.ICE, 1e-7, linear_damping=0.01)
-    grain_mass = 4 / 3 * pi * 1000 * 1e-7 ** 3
+    grain_mass = 4 / 3 * pi * 1000 * 1e-7**3
     assert pair.linear_drag == pytest.approx(0.01 * grain_mass / 1.9365e-10, rel=1e-4)
     assert theory.sticking_velocity(pair) > theory.sticking_velocity_without_drag(pair)
 
@@ -98,7 +107,7 @@ def _root_in_many_digits(overlap):
     low, high = 1 / Decimal(6) ** (Decimal(1) / 3), Decimal(10)
     for _ in range(180):
         middle = (low + high) / 2
-        if 3 * middle ** 4 - 2 * middle < target:
+        if 3 * middle**4 - 2 * middle < target:
             low = middle
         else:
             high = middle
@@ -110,14 +119,12 @@ def _root_in_many_digits(overlap):
 )
 def test_contact_radius_to_the_last_digits(above_pull_off):
     overlap = -PULL_OFF_OVERLAP + above_pull_off
-    assert theory.contact_radius_root(overlap) == pytest.approx(
-        _root_in_many_digits(overlap), rel=1e-15, abs=0
-    )
+    assert theory.contact_radius_root(overlap) == pytest.approx(_root_in_many_digits(overlap), rel=1e-15, abs=0)
 
 
 def test_contact_radius_against_brentq():
     for overlap in np.linspace(-0.8, 20.0, 50):
-        root = brentq(lambda u: 3 * u ** 4 - 2 * u - overlap, 6 ** (-1 / 3), 5.0, xtol=1e-15, rtol=1e-14)
+        root = brentq(lambda u: 3 * u**4 - 2 * u - overlap, 6 ** (-1 / 3), 5.0, xtol=1e-15, rtol=1e-14)
         assert theory.contact_radius_root(overlap) == pytest.approx(root, rel=1e-13)
 
 
@@ -126,31 +133,20 @@ def test_force_and_energy_at_the_papers_points():
     unit = ICE.pull_off_force * delta_c
     assert theory.normal_force(-delta_c, ICE) == pytest.approx(-5 / 9 * ICE.pull_off_force, rel=1e-7)
     # The strongest pull, F_c, is at u^3 = 1/2, before the pull-off.
-    assert theory.normal_force((3 * 2 ** (-4 / 3) - 2 ** (2 / 3)) * delta0, ICE) == pytest.approx(
-        -ICE.pull_off_force
-    )
-    assert theory.normal_force(np.linspace(-1, 1, 10001) * delta_c, ICE).min() >= -ICE.pull_off_force * (
-        1 + 1e-15
-    )
+    assert theory.normal_force((3 * 2 ** (-4 / 3) - 2 ** (2 / 3)) * delta0, ICE) == pytest.approx(-ICE.pull_off_force)
+    assert theory.normal_force(np.linspace(-1, 1, 10001) * delta_c, ICE).min() >= -ICE.pull_off_force * (1 + 1e-15)
     assert abs(theory.normal_force(delta0, ICE)) < 1e-14 * ICE.pull_off_force
     assert theory.normal_force(0.0, ICE) == pytest.approx(-8 / 9 * ICE.pull_off_force, rel=1e-14)
-    assert theory.normal_energy(0.0, ICE) == pytest.approx(
-        -8 / 15 * 2 ** (2 / 3) * unit, rel=1e-14
-    )  # A22 eq 9
+    assert theory.normal_energy(0.0, ICE) == pytest.approx(-8 / 15 * 2 ** (2 / 3) * unit, rel=1e-14)  # A22 eq 9
     assert theory.normal_energy(-delta_c, ICE) == pytest.approx(4 / 45 * unit, rel=1e-7)  # A22 eq 10
-    assert theory.normal_energy(delta0, ICE) == pytest.approx(
-        -0.8 * 6 ** (1 / 3) * unit, rel=1e-14
-    )  # A22 eq 11
+    assert theory.normal_energy(delta0, ICE) == pytest.approx(-0.8 * 6 ** (1 / 3) * unit, rel=1e-14)  # A22 eq 11
     assert theory.contact_radius(delta0, ICE) == pytest.approx(ICE.equilibrium_contact_radius, rel=1e-15)
 
 
 def test_separated_grains_do_not_interact():
     beyond = -1.0001 * ICE.pull_off_overlap
     assert (
-        theory.normal_force(beyond, ICE)
-        == theory.normal_energy(beyond, ICE)
-        == theory.contact_radius(beyond, ICE)
-        == 0
+        theory.normal_force(beyond, ICE) == theory.normal_energy(beyond, ICE) == theory.contact_radius(beyond, ICE) == 0
     )
     assert np.isnan(theory.contact_radius_root(-0.8255))
 
@@ -171,9 +167,7 @@ def test_stiffness_is_the_slope_of_the_force():
 
 def test_sticking_velocity_of_ice_grains():
     assert theory.sticking_velocity_without_drag(ICE) == pytest.approx(5.95, abs=0.005)
-    assert theory.sticking_velocity(ICE) == pytest.approx(
-        theory.sticking_velocity_without_drag(ICE), rel=1e-10
-    )
+    assert theory.sticking_velocity(ICE) == pytest.approx(theory.sticking_velocity_without_drag(ICE), rel=1e-10)
 
 
 @pytest.mark.parametrize("picoseconds", [1, 3, 6])
@@ -185,18 +179,16 @@ def test_sticking_velocity_with_drag_parts_sticking_from_bouncing(picoseconds):
     assert not theory.collide_pair(threshold * (1 + 1e-7), pair).sticks
 
 
-def test_sticking_velocity_at_6_ps_is_about_ten_times_that_without_drag():   # A22 footnote 2 and Fig. 5
+def test_sticking_velocity_at_6_ps_is_about_ten_times_that_without_drag():  # A22 footnote 2 and Fig. 5
     pair = theory.pair_constants(replace(theory.ICE, viscoelastic_time=6e-12), 1e-7)
-    assert theory.sticking_velocity(pair) / theory.sticking_velocity_without_drag(pair) == pytest.approx(
-        10, rel=0.15
-    )
+    assert theory.sticking_velocity(pair) / theory.sticking_velocity_without_drag(pair) == pytest.approx(10, rel=0.15)
 
 
-def test_rebound_with_drag_against_the_equation_as_printed():   # A22 eqs 4, 7, 30, in SI units
+def test_rebound_with_drag_against_the_equation_as_printed():  # A22 eqs 4, 7, 30, in SI units
     pair = theory.pair_constants(replace(theory.ICE, viscoelastic_time=3e-12), 1e-7)
 
     def motion(_, state):
-        drag = 2 * 3e-12 * pair.reduced_young / 0.25 ** 2 * theory.contact_radius(state[0], pair) * state[1]
+        drag = 2 * 3e-12 * pair.reduced_young / 0.25**2 * theory.contact_radius(state[0], pair) * state[1]
         return state[1], -(theory.normal_force(state[0], pair) + drag) / pair.reduced_mass
 
     def separation(_, state):
@@ -218,7 +210,7 @@ def test_overdamped_pair_always_sticks():
 def test_elastic_rebound_obeys_the_energy_balance():
     velocity, threshold = 8.0, theory.sticking_velocity_without_drag(ICE)
     collision = theory.collide_pair(velocity, ICE)
-    assert collision.rebound_velocity == pytest.approx((velocity ** 2 - threshold ** 2) ** 0.5, rel=1e-9)
+    assert collision.rebound_velocity == pytest.approx((velocity**2 - threshold**2) ** 0.5, rel=1e-9)
 
 
 def test_motion_of_a_pair_ends_in_the_same_rebound():

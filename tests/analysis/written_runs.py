@@ -1,4 +1,5 @@
 """Run folders written for tests, in the format that the collision script writes."""
+
 import json
 from math import pi
 
@@ -9,7 +10,7 @@ from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair
 
 RADIUS = 1e-7
 PAIR = pair_constants(ICE, RADIUS)
-MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS ** 3
+MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS**3
 
 
 def record(aggregate_radius, parameters=None):
@@ -62,11 +63,17 @@ def state_arrays(time, position, velocity, aggregate, pairs=(), force=None):
     """A state's dict; position, velocity (N,3), aggregate (N,), pairs (M,2), force (M,)."""
     position = np.asarray(position, dtype=float)
     pairs = np.asarray(pairs, dtype=int).reshape(-1, 2)
-    return {"time": time, "position": position, "velocity": np.asarray(velocity, dtype=float),
-            "angular_velocity": np.zeros_like(position), "radius": np.full(len(position), RADIUS),
-            "aggregate": np.asarray(aggregate, dtype=int), "contact_pairs": pairs,
-            "contact_normal_force": np.zeros(len(pairs)) if force is None else np.asarray(force, dtype=float),
-            "contact_bonded": np.zeros(len(pairs), dtype=bool)}
+    return {
+        "time": time,
+        "position": position,
+        "velocity": np.asarray(velocity, dtype=float),
+        "angular_velocity": np.zeros_like(position),
+        "radius": np.full(len(position), RADIUS),
+        "aggregate": np.asarray(aggregate, dtype=int),
+        "contact_pairs": pairs,
+        "contact_normal_force": np.zeros(len(pairs)) if force is None else np.asarray(force, dtype=float),
+        "contact_bonded": np.zeros(len(pairs), dtype=bool),
+    }
 
 
 def pair_run(path, velocity=8.0, samples=201):
@@ -80,7 +87,7 @@ def pair_run(path, velocity=8.0, samples=201):
     overlap = np.where(apart, -PAIR.pull_off_overlap - collision.rebound_velocity * after, overlap)
     rate = np.where(apart, -collision.rebound_velocity, rate)
     history = {name: np.zeros(samples) for name in CHANNELS}
-    history["kinetic"] = 0.5 * PAIR.reduced_mass * rate ** 2
+    history["kinetic"] = 0.5 * PAIR.reduced_mass * rate**2
     history["normal"] = np.where(apart, 0.0, normal_energy(overlap, PAIR))
     history["connection"] = np.full(samples, -normal_energy(0.0, PAIR))
     # The contact exists from the first sample on: what it took is part of the start.
@@ -94,5 +101,11 @@ def pair_run(path, velocity=8.0, samples=201):
 
 def _pair_state(time, overlap, rate, touching):
     x = RADIUS - 0.5 * overlap
-    return state_arrays(time, [[-x, 0, 0], [x, 0, 0]], [[rate / 2, 0, 0], [-rate / 2, 0, 0]], [0, 1],
-                        [[0, 1]] if touching else [], [normal_force(overlap, PAIR)] if touching else [])
+    return state_arrays(
+        time,
+        [[-x, 0, 0], [x, 0, 0]],
+        [[rate / 2, 0, 0], [-rate / 2, 0, 0]],
+        [0, 1],
+        [[0, 1]] if touching else [],
+        [normal_force(overlap, PAIR)] if touching else [],
+    )

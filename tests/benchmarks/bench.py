@@ -5,6 +5,7 @@
 Writes bench.json (everything measured), bench.md (tables, and whether each target is reached) and figures, all with the commit and the machine.
 --quick measures less, in some three minutes, and writes to build/bench; --tiny only shows that it works.
 """
+
 import argparse
 import dataclasses
 import json
@@ -21,6 +22,7 @@ import report  # noqa: E402
 import settings  # noqa: E402
 import speed  # noqa: E402
 import whole_collision  # noqa: E402
+
 from yade_scripts.progress import Progress, duration_text  # noqa: E402
 
 PARTS = {"speed": speed, "collision": whole_collision, "error": errors}
@@ -30,7 +32,9 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--quick", action="store_const", dest="size", const="quick", help="a shortened version")
-    size.add_argument("--tiny", action="store_const", dest="size", const="tiny", help="as little as shows that it works")
+    size.add_argument(
+        "--tiny", action="store_const", dest="size", const="tiny", help="as little as shows that it works"
+    )
     parser.add_argument("--only", default=",".join(PARTS), help="parts to measure: " + ",".join(PARTS))
     parser.add_argument("--out", type=Path, help="folder for the results")
     given = parser.parse_args()
@@ -61,8 +65,12 @@ def main():
     for code, reason in missing.items():
         print(f"bench: without {code}: {reason}", flush=True)
     done = Done(total)
-    found = {"machine": machine(), "settings": dataclasses.asdict(how), "missing": missing,
-             "versions": {code: peers.version(code) for code in peers.PROGRAMS if code not in missing}}
+    found = {
+        "machine": machine(),
+        "settings": dataclasses.asdict(how),
+        "missing": missing,
+        "versions": {code: peers.version(code) for code in peers.PROGRAMS if code not in missing},
+    }
     for name in given.only:
         found[name] = PARTS[name].measure(how, done)
     done.progress.close()

@@ -8,6 +8,7 @@ materials  the same packing, every other grain (at random) softer: E = 3 GPa, nu
 radii      ice in a rock-salt lattice: grains of 0.1 um on the sites of CPE, grains 0.41 times as large in the gaps between them, every neighbour at
            its equilibrium overlap, the same share of sites removed at random
 """
+
 from dataclasses import dataclass, replace
 from math import sqrt
 
@@ -27,6 +28,7 @@ SEED = 1
 @dataclass(frozen=True)
 class Scene:
     """position, velocity (N,3) [m, m/s]; radius (N,) [m]; material (N,) index into materials; time step [s]."""
+
     position: np.ndarray
     velocity: np.ndarray
     radius: np.ndarray
@@ -45,12 +47,18 @@ def make(kind, aggregate_radius, speed=SPEED):
     aggregates = [pack(aggregate_radius, index) for index in (0, 1)]
     reach = (aggregate_radius + 1) * GRAIN_RADIUS
     position = np.concatenate([a.position + (side * reach, 0, 0) for a, side in zip(aggregates, (-1, 1))])
-    velocity = np.concatenate([np.tile([-side * speed / 2, 0, 0], (a.grains, 1)) for a, side in zip(aggregates, (-1, 1))])
+    velocity = np.concatenate(
+        [np.tile([-side * speed / 2, 0, 0], (a.grains, 1)) for a, side in zip(aggregates, (-1, 1))]
+    )
     radius = np.concatenate([a.radius for a in aggregates])
     scene = Scene(position, velocity, radius, np.zeros(len(radius), int), (ICE,), 0)
     if kind == "materials":
-        scene = replace(scene, material=np.random.default_rng(SEED).integers(2, size=scene.grains), materials=(ICE, SOFT))
-    return replace(scene, step=STEP * min(pair_constants(m, r).time_unit for m in scene.materials for r in np.unique(radius)))
+        scene = replace(
+            scene, material=np.random.default_rng(SEED).integers(2, size=scene.grains), materials=(ICE, SOFT)
+        )
+    return replace(
+        scene, step=STEP * min(pair_constants(m, r).time_unit for m in scene.materials for r in np.unique(radius))
+    )
 
 
 def close_packing(aggregate_radius, index):
@@ -68,7 +76,9 @@ def rock_salt(aggregate_radius, index):
     reach = np.arange(-int(outside / spacing) - 2, int(outside / spacing) + 3)
     site = np.stack(np.meshgrid(reach, reach, reach, indexing="ij"), axis=-1).reshape(-1, 3)
     position = site * spacing - random.uniform(0, 2 * spacing, 3)
-    kept = (np.linalg.norm(position, axis=1) < outside) & (random.random(len(site)) < FILLING / packings.maximum_filling(GRAIN_RADIUS, overlap))
+    kept = (np.linalg.norm(position, axis=1) < outside) & (
+        random.random(len(site)) < FILLING / packings.maximum_filling(GRAIN_RADIUS, overlap)
+    )
     radius = np.where(site.sum(axis=1) % 2 == 0, GRAIN_RADIUS, small)
     return packings.Packing(position[kept], radius[kept], SEED)
 

@@ -3,6 +3,7 @@
 Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that mean SI or reduced units.
 Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What differs is in PHYSICS. One material and one size only.
 """
+
 import os
 import re
 import resource
@@ -31,7 +32,8 @@ thermo_modify norm no
 thermo {steps}
 run {steps}
 """
-LAMMPS_INPUT = """units lj
+LAMMPS_INPUT = (
+    """units lj
 atom_style sphere
 boundary f f f
 newton off
@@ -42,8 +44,11 @@ pair_style granular
 pair_coeff * * jkr {young} 0 {poisson} {surface_energy} tangential mindlin NULL 0 {friction} rolling sds {rolling_stiffness} 0 {rolling_friction} twisting marshall damping velocity
 neighbor {skin} bin
 neigh_modify delay 0 every 1 check yes
-""" + RUN_AND_COUNT
-LIGGGHTS_INPUT = """units si
+"""
+    + RUN_AND_COUNT
+)
+LIGGGHTS_INPUT = (
+    """units si
 atom_style granular
 boundary f f f
 newton off
@@ -62,7 +67,9 @@ fix m6 all property/global coefficientRollingFriction peratomtypepair 1 {rolling
 fix m7 all property/global coefficientRollingViscousDamping peratomtypepair 1 0.0
 pair_style gran model hertz tangential history cohesion sjkr2 rolling_friction epsd2
 pair_coeff * *
-""" + RUN_AND_COUNT
+"""
+    + RUN_AND_COUNT
+)
 PROGRAMS = {"lammps": ("lmp", LAMMPS_INPUT), "liggghts": ("liggghts", LIGGGHTS_INPUT)}
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 
@@ -105,7 +112,9 @@ def measure(code, scene, steps, cores=1):
     program, text = PROGRAMS[code]
     with tempfile.TemporaryDirectory() as folder:
         write_grains(Path(folder) / "grains.data", scene)
-        (Path(folder) / "input").write_text(text.format(steps=steps, skin=SKIN, processors=f"processors {cores} 1 1", **scaled_constants(scene)))
+        (Path(folder) / "input").write_text(
+            text.format(steps=steps, skin=SKIN, processors=f"processors {cores} 1 1", **scaled_constants(scene))
+        )
         command = [program, "-in", "input", "-log", "none"]
         if cores > 1:
             command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores)] + command
@@ -115,11 +124,20 @@ def measure(code, scene, steps, cores=1):
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
     if done.returncode or not loop:
         raise PeerFailed(f"{' '.join(command)} failed:\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
-    counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)  # grains and contacts (twice, once from each grain)
+    counted = re.findall(
+        r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M
+    )  # grains and contacts (twice, once from each grain)
     if len(counted) < 2 or int(counted[-1][0]) != scene.grains:
         raise PeerFailed(f"{program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
     contacts, seconds = sum(float(count) for _, count in counted) / 2 / len(counted), float(loop.group(1))
-    return {"contacts": contacts, "grains": scene.grains, "steps": steps, "seconds": seconds, "rate": contacts * steps / seconds, "share": share}
+    return {
+        "contacts": contacts,
+        "grains": scene.grains,
+        "steps": steps,
+        "seconds": seconds,
+        "rate": contacts * steps / seconds,
+        "share": share,
+    }
 
 
 def processor_seconds():
@@ -137,9 +155,16 @@ def scaled_constants(scene):
     # of the pull that balances Hertz at the equilibrium overlap d: 4/3 E* R^1/2 d^3/2 = k 4 pi R d
     cohesion = pair.reduced_young * (pair.equilibrium_overlap / pair.reduced_radius) ** 0.5 / (3 * pi)
     at_no_load = 2 * pair.pull_off_force  # LAMMPS's critical normal force then
-    return {"young": material.young / pressure, "poisson": material.poisson, "surface_energy": material.surface_energy / spring,
-            "friction": pair.sliding_stiffness * pair.critical_sliding / at_no_load, "rolling_stiffness": pair.rolling_stiffness / spring,
-            "rolling_friction": pair.rolling_stiffness * pair.critical_rolling / at_no_load, "cohesion": cohesion / pressure, "step": scene.step / TIME}
+    return {
+        "young": material.young / pressure,
+        "poisson": material.poisson,
+        "surface_energy": material.surface_energy / spring,
+        "friction": pair.sliding_stiffness * pair.critical_sliding / at_no_load,
+        "rolling_stiffness": pair.rolling_stiffness / spring,
+        "rolling_friction": pair.rolling_stiffness * pair.critical_rolling / at_no_load,
+        "cohesion": cohesion / pressure,
+        "step": scene.step / TIME,
+    }
 
 
 def write_grains(path, scene):
@@ -151,6 +176,10 @@ def write_grains(path, scene):
         file.write(f"grains\n\n{scene.grains} atoms\n1 atom types\n\n")
         file.writelines(f"{-edge} {edge} {axis}lo {axis}hi\n" for axis in "xyz")
         file.write("\nAtoms\n\n")
-        file.writelines(f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((scene.position / r).tolist(), 1))
+        file.writelines(
+            f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((scene.position / r).tolist(), 1)
+        )
         file.write("\nVelocities\n\n")
-        file.writelines(f"{k} {x!r} {y!r} {z!r} 0 0 0\n" for k, (x, y, z) in enumerate((scene.velocity * TIME / r).tolist(), 1))
+        file.writelines(
+            f"{k} {x!r} {y!r} {z!r} 0 0 0\n" for k, (x, y, z) in enumerate((scene.velocity * TIME / r).tolist(), 1)
+        )

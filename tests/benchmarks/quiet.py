@@ -1,4 +1,5 @@
 """Is the machine quiet enough to measure speed?"""
+
 import os
 import time
 

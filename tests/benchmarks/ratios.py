@@ -1,4 +1,5 @@
 """Rates and ratios out of the results of speed.measure()."""
+
 import statistics
 from dataclasses import dataclass
 
@@ -8,6 +9,7 @@ INSTRUCTIONS = {"engine": "best"}  # of the codes that have a choice, what is me
 @dataclass(frozen=True)
 class Spread:
     """Median, least and most of the rounds."""
+
     median: float
     least: float
     most: float
@@ -32,7 +34,13 @@ class Speeds:
         self.results, self.reference = results, reference
 
     def find(self, code, threads=1, radius=None, kind="alike", instructions=None):
-        wanted = {"code": code, "threads": threads, "radius": self.reference if radius is None else radius, "kind": kind, "instructions": instructions or INSTRUCTIONS.get(code, "")}
+        wanted = {
+            "code": code,
+            "threads": threads,
+            "radius": self.reference if radius is None else radius,
+            "kind": kind,
+            "instructions": instructions or INSTRUCTIONS.get(code, ""),
+        }
         return [result for result in self.results if all(result[name] == value for name, value in wanted.items())]
 
     def rate(self, *code, **labels):

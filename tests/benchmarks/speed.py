@@ -1,4 +1,5 @@
 """Contact updates a second of every code, in rounds: each round measures all of them once, so that ratios are taken between neighbours in time."""
+
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 
@@ -14,6 +15,7 @@ UNLIKE = ("materials", "radii")
 @dataclass(frozen=True)
 class Task:
     """One measurement: labels of its result; which YADE to ask (law, kind, radius, its -j), None for a peer; the request; seconds it takes about."""
+
     labels: dict
     process: tuple
     request: dict
@@ -21,31 +23,67 @@ class Task:
 
 
 def engine(settings, radius, threads, kind="alike", instructions=""):
-    labels = {"code": "engine", "kind": kind, "radius": radius, "threads": threads, "instructions": instructions or "best"}
+    labels = {
+        "code": "engine",
+        "kind": kind,
+        "radius": radius,
+        "threads": threads,
+        "instructions": instructions or "best",
+    }
     request = {"do": "fused", "seconds": settings.seconds, "threads": threads, "instructions": instructions}
     return Task(labels, ("jkr-wada", kind, radius, 1), request, 4 / 3 * settings.seconds + 0.3 + 8e-6 * 0.8 * radius**3)
 
 
 def loop(settings, law, radius, threads):
     """YADE's own loop with this repository's law (functors) or with the stock one."""
-    labels = {"code": {"jkr-wada": "functors", "stock": "stock"}[law], "kind": "alike", "radius": radius, "threads": threads, "instructions": ""}
-    return Task(labels, (law, "alike", radius, threads), {"do": "loop", "seconds": settings.loop_seconds}, 4 / 3 * settings.loop_seconds + 0.5)
+    labels = {
+        "code": {"jkr-wada": "functors", "stock": "stock"}[law],
+        "kind": "alike",
+        "radius": radius,
+        "threads": threads,
+        "instructions": "",
+    }
+    return Task(
+        labels,
+        (law, "alike", radius, threads),
+        {"do": "loop", "seconds": settings.loop_seconds},
+        4 / 3 * settings.loop_seconds + 0.5,
+    )
 
 
 def peer(settings, code, cores):
     labels = {"code": code, "kind": "alike", "radius": settings.reference, "threads": cores, "instructions": ""}
-    return Task(labels, None, {"steps": settings.peer_steps, "cores": cores}, 1 + settings.peer_steps * 0.8 * settings.reference**3 * 3 / 7e6)
+    return Task(
+        labels,
+        None,
+        {"steps": settings.peer_steps, "cores": cores},
+        1 + settings.peer_steps * 0.8 * settings.reference**3 * 3 / 7e6,
+    )
 
 
 def tasks_of_a_round(settings):
     """The tasks, in the order in which a round measures them: what is compared stands together."""
     others = [radius for radius in settings.radii if radius != settings.reference]
     loops = [(law, threads) for law in ("jkr-wada", "stock") for threads in (1, 2)]
-    codes = [[loop(settings, "stock", settings.reference, cores)] + [peer(settings, code, cores) for code in peers.PROGRAMS if not peers.missing(code) and cores in peers.core_counts()]
-             for cores in (1, 2)]
+    codes = [
+        [loop(settings, "stock", settings.reference, cores)]
+        + [
+            peer(settings, code, cores)
+            for code in peers.PROGRAMS
+            if not peers.missing(code) and cores in peers.core_counts()
+        ]
+        for cores in (1, 2)
+    ]
     tasks = [engine(settings, radius, threads) for radius in others for threads in (1, 2)]
-    tasks += [engine(settings, radius, 1, instructions=name) for radius in settings.instruction_radii for name in SLOWER_SETS]
-    tasks += [loop(settings, law, radius, threads) for radius in settings.loop_radii if radius != settings.reference for law, threads in loops]
+    tasks += [
+        engine(settings, radius, 1, instructions=name) for radius in settings.instruction_radii for name in SLOWER_SETS
+    ]
+    tasks += [
+        loop(settings, law, radius, threads)
+        for radius in settings.loop_radii
+        if radius != settings.reference
+        for law, threads in loops
+    ]
     tasks += [loop(settings, "jkr-wada", settings.reference, threads) for threads in (1, 2)]
     tasks += codes[1]
     tasks += [engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("alike",) for threads in (2, 1)]
@@ -88,9 +126,15 @@ def measure(settings, done):
             for task in tasks:
                 answer = take(task, started, peers_scene, failed)
                 if answer:
-                    results.append({**answer, **task.labels, "round": turn, "instructions_used": answer.get("instructions", "")})
+                    results.append(
+                        {**answer, **task.labels, "round": turn, "instructions_used": answer.get("instructions", "")}
+                    )
                 done(task.seconds)
-        memory = {radius: started["jkr-wada", "alike", radius, 1].ask("memory") for radius in settings.radii if radius >= settings.reference}
+        memory = {
+            radius: started["jkr-wada", "alike", radius, 1].ask("memory")
+            for radius in settings.radii
+            if radius >= settings.reference
+        }
     return {"results": results, "memory": memory, "others": others, "failed": failed}
 
 

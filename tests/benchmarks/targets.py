@@ -1,13 +1,15 @@
 """What the engine is to reach, and whether it did."""
+
 from dataclasses import dataclass
 
-from ratios import Spread, Speeds, by_processor_time
+from ratios import Speeds, Spread, by_processor_time
 from speed import UNLIKE
 
 
 @dataclass(frozen=True)
 class Target:
     """what is compared; the bound; Spread that was measured or None; whether more is better; the same by processor time, where that makes sense."""
+
     what: str
     bound: float
     found: Spread
@@ -21,7 +23,13 @@ class Target:
         reached = self.found.median >= self.bound if self.at_least else self.found.median < self.bound
         every = (self.found.least >= self.bound) if self.at_least else (self.found.most < self.bound)
         aside = f"; by processor time {self.by_processor.text(2)}" if self.by_processor else ""
-        verdict = "**reached**" if reached and every else "reached by the median, not in every round" if reached else "not reached"
+        verdict = (
+            "**reached**"
+            if reached and every
+            else "reached by the median, not in every round"
+            if reached
+            else "not reached"
+        )
         return f"| {self.what} | {bound} | {self.found.text(0 if self.bound >= 100 else 2)}{aside} | {verdict} |"
 
 
@@ -45,12 +53,24 @@ def engine(threads=1, **labels):
 def compared(speeds, what, bound, first, second):
     """Target of the ratio of two codes, each a dict of labels; by processor time too where both used one core."""
     alone = first.get("threads", 1) == second.get("threads", 1) == 1
-    return Target(what, bound, speeds.ratio(first, second), by_processor=speeds.ratio(first, second, by_processor_time) if alone else None)
+    return Target(
+        what,
+        bound,
+        speeds.ratio(first, second),
+        by_processor=speeds.ratio(first, second, by_processor_time) if alone else None,
+    )
 
 
 def against_others(speeds):
-    bounds = {"stock": ("YADE's own loop with its stock cohesive law", 27), "lammps": ("LAMMPS", 10), "liggghts": ("LIGGGHTS", 5)}
-    result = [compared(speeds, f"one core / {name}, one core", bound, engine(), {"code": code}) for code, (name, bound) in bounds.items()]
+    bounds = {
+        "stock": ("YADE's own loop with its stock cohesive law", 27),
+        "lammps": ("LAMMPS", 10),
+        "liggghts": ("LIGGGHTS", 5),
+    }
+    result = [
+        compared(speeds, f"one core / {name}, one core", bound, engine(), {"code": code})
+        for code, (name, bound) in bounds.items()
+    ]
     return result + [compared(speeds, "two cores / one core", 1.9, engine(2), engine())]
 
 
@@ -71,18 +91,35 @@ def through_collision(collision):
     found = []
     for threads in (1, 2):
         rates = [part[f"rate{threads}"] / collision["before"][threads] for part in collision["parts"]]
-        found.append(Target(f"slowest part of a collision at {collision['speed']:g} m/s, R = {collision['radius']:g} (range: all parts) / the same grains at the usual speed, {cores(threads)}", 0.75, Spread(min(rates), min(rates), max(rates))))
+        found.append(
+            Target(
+                f"slowest part of a collision at {collision['speed']:g} m/s, R = {collision['radius']:g} (range: all parts) / the same grains at the usual speed, {cores(threads)}",
+                0.75,
+                Spread(min(rates), min(rates), max(rates)),
+            )
+        )
     return found
 
 
 def unlike(speeds):
     names = {"materials": "two materials", "radii": "two sizes of grain"}
-    return [compared(speeds, f"{names[kind]} / like grains, {cores(threads)}", 0.5, engine(threads, kind=kind), engine(threads)) for kind in UNLIKE for threads in (1, 2)]
+    return [
+        compared(
+            speeds, f"{names[kind]} / like grains, {cores(threads)}", 0.5, engine(threads, kind=kind), engine(threads)
+        )
+        for kind in UNLIKE
+        for threads in (1, 2)
+    ]
 
 
 def memory(measured):
     """The largest over the sizes."""
-    return Target("memory, bytes a contact (range: all sizes from the reference up)", 1000, most_of([m["bytes"] / m["contacts"] for m in measured.values()]), at_least=False)
+    return Target(
+        "memory, bytes a contact (range: all sizes from the reference up)",
+        1000,
+        most_of([m["bytes"] / m["contacts"] for m in measured.values()]),
+        at_least=False,
+    )
 
 
 def most_of(values):

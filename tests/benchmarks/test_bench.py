@@ -1,18 +1,18 @@
 """The bench works: everything measured once, as little as possible; what is not installed is said and left out."""
+
 import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
-import pytest
-
 import errors
 import measured_scenes
+import numpy as np
 import peers
+import pytest
 import speed
-from ratios import Spread, Speeds
+from ratios import Speeds, Spread
 from settings import FULL, TINY
 from targets import Target
 
@@ -20,7 +20,13 @@ HERE = Path(__file__).resolve().parent
 
 
 def bench(*arguments, **environment):
-    return subprocess.run([sys.executable, str(HERE / "bench.py"), *map(str, arguments)], capture_output=True, text=True, env={**os.environ, **environment}, timeout=120)
+    return subprocess.run(
+        [sys.executable, str(HERE / "bench.py"), *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, **environment},
+        timeout=120,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -41,13 +47,23 @@ def test_measures_everything_and_says_what_it_goes_without(tiny):
         assert f"{program} is not installed (make bench-peers installs it)" in printed
     found = json.loads((folder / "bench.json").read_text())
     measured = {(r["code"], r["kind"], r["threads"]) for r in found["speed"]["results"]}
-    assert measured == {(code, "alike", n) for code in ("engine", "functors", "stock") for n in (1, 2)} | {("engine", kind, n) for kind in ("materials", "radii") for n in (1, 2)}
+    assert measured == {(code, "alike", n) for code in ("engine", "functors", "stock") for n in (1, 2)} | {
+        ("engine", kind, n) for kind in ("materials", "radii") for n in (1, 2)
+    }
     assert all(result["rate"] > 0 for result in found["speed"]["results"])
-    assert {r["instructions_used"] for r in found["speed"]["results"] if r["instructions"] == "portable"} == {"portable"}
+    assert {r["instructions_used"] for r in found["speed"]["results"] if r["instructions"] == "portable"} == {
+        "portable"
+    }
     assert [len(collision["parts"]) for collision in found["collision"]] == [TINY.collision_parts]
     assert all((folder / name).stat().st_size > 10000 for name in ("bench-speed.png", "bench-error.png"))
     table = (folder / "bench.md").read_text()
-    for what in ("/ LAMMPS, one core | at least 10 | - | not measured |", "two materials / like grains", "memory, bytes a contact", "through a collision", "Order of convergence"):
+    for what in (
+        "/ LAMMPS, one core | at least 10 | - | not measured |",
+        "two materials / like grains",
+        "memory, bytes a contact",
+        "through a collision",
+        "Order of convergence",
+    ):
         assert what.lower() in table.lower(), what
 
 
@@ -72,7 +88,9 @@ def test_peers_run_the_scene(code):
         pytest.skip(reason)
     scene = measured_scenes.make("alike", 5)
     found = peers.measure(code, scene, 20)
-    assert found["contacts"] == measured_scenes.touching(scene) and found["grains"] == scene.grains and found["rate"] > 1e5
+    assert (
+        found["contacts"] == measured_scenes.touching(scene) and found["grains"] == scene.grains and found["rate"] > 1e5
+    )
 
 
 def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
@@ -98,19 +116,39 @@ def test_two_sizes_start_at_rest():
     for first, second in ((sizes[1], sizes[1]), (sizes[0], sizes[1])):
         overlap = first + second - distance[(scene.radius[:, None] == first) & (scene.radius[None] == second)]
         touching = overlap[(overlap > 0) & (overlap < first)]  # the grain itself left out
-        expected = measured_scenes.pair_constants(measured_scenes.ICE, first, measured_scenes.ICE, second).equilibrium_overlap
+        expected = measured_scenes.pair_constants(
+            measured_scenes.ICE, first, measured_scenes.ICE, second
+        ).equilibrium_overlap
         assert len(touching) > 50
         assert np.sort(touching)[len(touching) // 2] == pytest.approx(expected, rel=1e-6)
 
 
 def test_ratios_are_taken_within_a_round():
-    results = [{"code": code, "threads": 1, "radius": 40, "kind": "alike", "instructions": "best" if code == "engine" else "", "rate": rate}
-               for round in ((20, 2), (30, 2), (40, 5)) for code, rate in zip(("engine", "stock"), round)]
+    results = [
+        {
+            "code": code,
+            "threads": 1,
+            "radius": 40,
+            "kind": "alike",
+            "instructions": "best" if code == "engine" else "",
+            "rate": rate,
+        }
+        for round in ((20, 2), (30, 2), (40, 5))
+        for code, rate in zip(("engine", "stock"), round)
+    ]
     assert Speeds(results, 40).ratio({"code": "engine"}, {"code": "stock"}) == Spread(10, 8, 15)
     assert Speeds(results, 40).ratio({"code": "engine"}, {"code": "lammps"}) is None
 
 
-@pytest.mark.parametrize("found, verdict", [(Spread(28, 27, 29), "| **reached** |"), (Spread(28, 26, 29), "| reached by the median, not in every round |"), (Spread(26, 25, 28), "| not reached |"), (None, "| not measured |")])
+@pytest.mark.parametrize(
+    "found, verdict",
+    [
+        (Spread(28, 27, 29), "| **reached** |"),
+        (Spread(28, 26, 29), "| reached by the median, not in every round |"),
+        (Spread(26, 25, 28), "| not reached |"),
+        (None, "| not measured |"),
+    ],
+)
 def test_a_target_says_whether_it_is_reached(found, verdict):
     assert Target("x", 27, found).line().endswith(verdict)
 

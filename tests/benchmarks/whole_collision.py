@@ -1,5 +1,6 @@
 """Speed in each part of a collision, from the approach to fragments flying apart, beside that of the same grains while they approach at the usual speed: at 60 m/s the approach
 lasts less than a measurement."""
+
 import measured_scenes
 from yade_process import YadeProcess
 

@@ -3,18 +3,22 @@
 LAW: jkr-wada, or stock (YADE's cohesive law CohFrictPhys with moments: sliding, rolling, twisting). Reads a request a line (JSON: {"do": name, ...})
 and answers with a line "ANSWER " + JSON, until its input ends. It keeps the scene between requests, so that measurements of several codes can alternate.
 """
+
 import ctypes
 import json
 import os
 import sys
 import time
 
-sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0])), os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))]
-import contact_law  # noqa: E402,F401
+sys.path[:0] = [
+    os.path.dirname(os.path.abspath(sys.argv[0])),
+    os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))),
+]
+import measured_scenes  # noqa: E402
 from yade import utils  # noqa: E402
 from yade.wrapper import *  # noqa: E402,F403
 
-import measured_scenes  # noqa: E402
+import contact_law  # noqa: E402,F401
 from analysis.fragments import fragment_labels, fragment_sizes  # noqa: E402
 from yade_scripts.scene import VERLET_DISTANCE, functor_engines  # noqa: E402
 
@@ -26,12 +30,36 @@ scene = measured_scenes.make(KIND, RADIUS, SPEED)
 def build():
     for material in scene.materials:
         if LAW == "stock":
-            O.materials.append(CohFrictMat(young=material.young, poisson=material.poisson, density=material.density, frictionAngle=0.5, isCohesive=True,
-                                           normalCohesion=1e9, shearCohesion=1e9, momentRotationLaw=True, alphaKr=1, alphaKtw=1))
+            O.materials.append(
+                CohFrictMat(
+                    young=material.young,
+                    poisson=material.poisson,
+                    density=material.density,
+                    frictionAngle=0.5,
+                    isCohesive=True,
+                    normalCohesion=1e9,
+                    shearCohesion=1e9,
+                    momentRotationLaw=True,
+                    alphaKr=1,
+                    alphaKtw=1,
+                )
+            )
         else:
-            O.materials.append(JKRMat(young=material.young, poisson=material.poisson, density=material.density, surfaceEnergy=material.surface_energy,
-                                      criticalRolling=material.critical_rolling))
-    O.bodies.append([utils.sphere(x, r, material=m) for x, r, m in zip(scene.position.tolist(), scene.radius.tolist(), scene.material.tolist())])
+            O.materials.append(
+                JKRMat(
+                    young=material.young,
+                    poisson=material.poisson,
+                    density=material.density,
+                    surfaceEnergy=material.surface_energy,
+                    criticalRolling=material.critical_rolling,
+                )
+            )
+    O.bodies.append(
+        [
+            utils.sphere(x, r, material=m)
+            for x, r, m in zip(scene.position.tolist(), scene.radius.tolist(), scene.material.tolist())
+        ]
+    )
     restart()
     O.trackEnergy = LAW != "stock"
 
@@ -44,7 +72,10 @@ def restart():
 def fused(threads, instructions=""):
     """Engine, lists and contacts made for the grains at the start."""
     restart()
-    O.engines, O.dt = [JKRWadaEngine(threads=threads, subSteps=SUB_STEPS, instructions=instructions)], scene.step * SUB_STEPS
+    O.engines, O.dt = (
+        [JKRWadaEngine(threads=threads, subSteps=SUB_STEPS, instructions=instructions)],
+        scene.step * SUB_STEPS,
+    )
     O.step()
     return O.engines[0]
 
@@ -56,10 +87,16 @@ def loop():
     restart()
     O.dt = scene.step
     if LAW == "stock":
-        O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=VERLET_DISTANCE * measured_scenes.GRAIN_RADIUS),
-                     InteractionLoop([Ig2_Sphere_Sphere_ScGeom6D()], [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True)],
-                                     [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(useIncrementalForm=True)]),
-                     NewtonIntegrator(damping=0)]
+        O.engines = [
+            ForceResetter(),
+            InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=VERLET_DISTANCE * measured_scenes.GRAIN_RADIUS),
+            InteractionLoop(
+                [Ig2_Sphere_Sphere_ScGeom6D()],
+                [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True)],
+                [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(useIncrementalForm=True)],
+            ),
+            NewtonIntegrator(damping=0),
+        ]
     else:
         O.engines = functor_engines(measured_scenes.GRAIN_RADIUS, PyRunner(command="pass", iterPeriod=10**9))
     O.engines[0].label = "measured loop"
@@ -79,12 +116,22 @@ def timed(seconds, small_steps, contacts):
         steps += small_steps
     elapsed, processor = time.perf_counter() - start, time.process_time() - processor
     mean = (before + contacts()) / 2
-    return {"contacts": mean, "grains": scene.grains, "steps": steps, "seconds": elapsed, "rate": mean * steps / elapsed, "share": processor / elapsed}
+    return {
+        "contacts": mean,
+        "grains": scene.grains,
+        "steps": steps,
+        "seconds": elapsed,
+        "rate": mean * steps / elapsed,
+        "share": processor / elapsed,
+    }
 
 
 def measure_fused(seconds, threads, instructions=""):
     engine = fused(threads, instructions)
-    return {**timed(seconds, SUB_STEPS, lambda: engine.statistics()["contacts"]), "instructions": engine.statistics()["instructions"]}
+    return {
+        **timed(seconds, SUB_STEPS, lambda: engine.statistics()["contacts"]),
+        "instructions": engine.statistics()["instructions"],
+    }
 
 
 def measure_loop(seconds):
@@ -119,8 +166,15 @@ def measure_collision(duration, parts):
             seconds[engine.threads] += time.perf_counter() - start
             updates[engine.threads] += contacts * SUB_STEPS
         contacts = contact_law.snapshot()["contact_pairs"]
-        result.append({"until": O.time - start_time, "contacts": len(contacts), "pieces": len(fragment_sizes(fragment_labels(scene.grains, contacts))),
-                       "events": engine.statistics()["events"], **{f"rate{n}": updates[n] / seconds[n] for n in (1, 2)}})
+        result.append(
+            {
+                "until": O.time - start_time,
+                "contacts": len(contacts),
+                "pieces": len(fragment_sizes(fragment_labels(scene.grains, contacts))),
+                "events": engine.statistics()["events"],
+                **{f"rate{n}": updates[n] / seconds[n] for n in (1, 2)},
+            }
+        )
     return result
 
 

@@ -2,18 +2,19 @@
 
 Writes {step: [speed of separation [m/s] of each gap], or the engine's refusal} to the file `answer`. steps in t0, speed in m/s; the gaps spread the moment of contact over a step.
 """
+
 import json
 import os
 import sys
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [os.path.dirname(os.path.dirname(HERE)), os.path.dirname(HERE), HERE]
-import contact_law  # noqa: E402,F401
 import numpy as np  # noqa: E402
-from yade.wrapper import *  # noqa: E402,F403
-
 from measured_scenes import GRAIN_RADIUS  # noqa: E402
 from scenes import constants, fused_engine, grain, ice, new_scene  # noqa: E402
+from yade.wrapper import *  # noqa: E402,F403
+
+import contact_law  # noqa: E402,F401
 
 asked = json.loads(sys.argv[1])
 

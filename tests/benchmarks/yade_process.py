@@ -1,4 +1,5 @@
 """A YADE that measures (yade_measured.py), from outside."""
+
 import json
 import subprocess
 import tempfile
@@ -15,8 +16,20 @@ class YadeProcess:
     def __init__(self, law, kind, radius, speed, loop_threads=1):
         self.name = f"YADE ({law}, {kind}, R = {radius}, -j{loop_threads})"
         self.errors = tempfile.TemporaryFile("w+")
-        command = ["yade", "-n", "-x", f"-j{loop_threads}", str(HERE / "yade_measured.py"), law, kind, str(radius), str(speed)]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors, text=True)
+        command = [
+            "yade",
+            "-n",
+            "-x",
+            f"-j{loop_threads}",
+            str(HERE / "yade_measured.py"),
+            law,
+            kind,
+            str(radius),
+            str(speed),
+        ]
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors, text=True
+        )
         self.scene = None
 
     def wait(self):
@@ -39,6 +52,6 @@ class YadeProcess:
     def _answer(self):
         for line in self.process.stdout:
             if line.startswith("ANSWER "):
-                return json.loads(line[len("ANSWER "):])
+                return json.loads(line[len("ANSWER ") :])
         self.errors.seek(0)
         raise RuntimeError(f"{self.name} ended without an answer:\n{self.errors.read()[-2000:]}")

@@ -1,4 +1,5 @@
 """Momentum, angular momentum and the energy ledger of small clusters of like and unlike grains in YADE."""
+
 import numpy as np
 import pytest
 
@@ -39,10 +40,14 @@ def test_momentum_and_angular_momentum_to_rounding(yade, kinds):
 def test_ledger_closes_with_second_order(yade, kinds, drag):
     """Root mean square over six clusters of the largest closure error over the initial kinetic energy, at two steps a factor 4 apart: second order
     gives 16, order 3/2 gives 8, first order 4. With drag the last steps before pull-off, where the contact radius shrinks as a square root, leave order 3/2."""
-    found = yade(CLUSTER + """
+    found = yade(
+        CLUSTER
+        + """
 for step in (0.1, 0.025):
     result[step] = [run(step, parameters["kinds"], drag=parameters["drag"], seed=seed)["closure"] for seed in range(6)]
-""", {"kinds": kinds, "drag": drag})
+""",
+        {"kinds": kinds, "drag": drag},
+    )
     coarse, fine = (np.sqrt(np.mean(np.square(v))) for v in found.values())
     assert coarse < 5e-4, (coarse, fine)
     assert coarse / fine > (6 if drag else 9), (coarse, fine)
@@ -69,5 +74,5 @@ for step in (0.1, 0.0125):
 """)
     coarse, fine = (np.array(rows) for rows in found.values())
     assert (coarse[:, 1] > 0.3).all()  # most of the slip's energy is lost
-    ratio = np.sqrt(np.mean(coarse[:, 0]**2) / np.mean(fine[:, 0]**2))
+    ratio = np.sqrt(np.mean(coarse[:, 0] ** 2) / np.mean(fine[:, 0] ** 2))
     assert ratio > 30, (ratio, coarse, fine)

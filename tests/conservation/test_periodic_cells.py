@@ -1,4 +1,5 @@
 """Momentum and the energy ledger in shrinking periodic cells, with the boundaries' work as a channel of its own; pressure against that work."""
+
 import numpy as np
 import pytest
 
@@ -34,12 +35,19 @@ def shrink(step, homo, drag=0.0, seed=1, time=80.0, rate=3e-4):
 def test_ledger_with_the_boundaries_work_closes_with_second_order(yade, homo, drag):
     """Root mean square over six scenes, at two steps a factor 4 apart: second order gives 16; with drag the last steps before pull-off leave order 3/2 (8).
     (In a cell at rest the same scene closes to 6e-4 at the longer step.)"""
-    found = yade(SHRINKING + """
+    found = yade(
+        SHRINKING
+        + """
 for step in (0.1, 0.025):
     result[step] = [shrink(step, parameters["homo"], parameters["drag"], seed) for seed in range(6)]
-""", {"homo": homo, "drag": drag})
+""",
+        {"homo": homo, "drag": drag},
+    )
     runs = list(found.values())
-    assert all(run["lost"]["connection"] > 0 and run["lost"]["slidingDissipation"] > 0 and abs(run["boundary"]) > 0.1 for run in runs[0])
+    assert all(
+        run["lost"]["connection"] > 0 and run["lost"]["slidingDissipation"] > 0 and abs(run["boundary"]) > 0.1
+        for run in runs[0]
+    )
     coarse, fine = (np.sqrt(np.mean([run["closure"] ** 2 for run in at])) for at in runs)
     print(coarse, fine, coarse / fine)
     assert coarse < 1e-3, (coarse, fine)

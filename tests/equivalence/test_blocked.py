@@ -1,5 +1,5 @@
 """Blocked degrees of freedom in JKRWadaEngine: as NewtonIntegrator treats them, and with a ledger that closes."""
-import numpy as np
+
 import pytest
 
 SCENE = """
@@ -39,7 +39,9 @@ def total():
 
 @pytest.mark.parametrize("scene,resting", [("planar()", True), ("mixed()", False)])
 def test_engine_and_functors_agree(yade, scene, resting):
-    found = yade(SCENE + f"""
+    found = yade(
+        SCENE
+        + f"""
 def run(engine, steps):
     new_scene(0.1 * unit)
     {scene}
@@ -54,7 +56,8 @@ result["energies"] = max(abs(functors[n] - engine[n]) for n in CHANNELS) / engin
 result["lost"] = engine
 result["z"] = float(np.abs(b[:, 2]).max())
 result["work"] = dict(O.energy.items()).get("constraintWork", 0.0)
-""")
+"""
+    )
     assert found["lost"]["connection"] > 0 and found["lost"]["slidingDissipation"] > 0
     assert found["difference"] < 1e-9, found
     if resting:
@@ -63,7 +66,9 @@ result["work"] = dict(O.energy.items()).get("constraintWork", 0.0)
 
 def test_work_of_a_moving_wall_is_booked(yade):
     """Kinetic and stored energy, losses and constraintWork add up to a constant, to second order in the step."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def closure(step):
     piston(step)
     O.engines[0].prepare()
@@ -82,7 +87,8 @@ result["errors"] = [closure(step) / unit_energy for step in (0.1, 0.05, 0.025)]
 result["work"] = O.energy["constraintWork"] / unit_energy
 result["wall"] = [list(O.bodies[1].state.vel), list(O.bodies[1].state.angVel), list(O.bodies[0].state.pos)]
 result["lost"] = {name: value / unit_energy for name, value in energies().items()}
-""")
+"""
+    )
     assert found["wall"] == [[0.2, 0, -2], [1e6, 0, 0], [0, 0, 0]] and found["straight"] < 1e-9
     assert abs(found["work"]) > 3, found
     errors = found["errors"]
@@ -90,7 +96,9 @@ result["lost"] = {name: value / unit_energy for name, value in energies().items(
 
 
 def test_a_body_blocked_and_freed_in_the_middle_of_a_run(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 new_scene(0.1 * unit)
 d = 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
 for k in range(3):
@@ -110,14 +118,17 @@ result["change"] = (total() - first) / energies()["kinetic"]
 b.blockedDOFs = ""
 O.run(20, True)
 result["freed"] = abs(b.vel[0] - kept)
-""")
+"""
+    )
     assert "constraintWork" not in found["before"]
     assert found["kept"][0] == found["kept"][1] and found["moved"] > 0 and found["freed"] > 0
     assert abs(found["change"]) < 1e-2, found
 
 
 def test_checkpoint_with_blocked_bodies_continues_to_the_bit(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 piston(0.1)
 O.engines = [JKRWadaEngine(subSteps=7)]
 O.dt *= 7
@@ -129,6 +140,7 @@ O.load("checkpoint.yade.bz2")
 O.run(60, True)
 result["same"] = bool((positions() == straight[0]).all())
 result["energies"] = [straight[1], dict(O.energy.items())]
-""")
+"""
+    )
     straight, again = found["energies"]
     assert found["same"] and straight["constraintWork"] != 0 and again == pytest.approx(straight, rel=1e-12)

@@ -1,4 +1,5 @@
 """Sintered bonds in JKRWadaEngine: against the functors step by step, threads, instruction sets, checkpoints, O.interactions, refusals."""
+
 import numpy as np
 import pytest
 
@@ -24,7 +25,9 @@ def law(): return O.engines[2].lawDispatcher.functors[0]
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_engine_and_functors_agree_step_by_step(yade, kind):
     """27 bonded grains break up: bonds of every mode, births, slips. Rounding grows as trajectories part."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 kind = parameters["kind"]
 start(kind)
 functors, functor_energies = record(301)
@@ -42,7 +45,9 @@ result["energies"] = [max(abs(functor_energies[k + 1][n] - engine_energies[k][n]
 result["lost"] = engine_energies[-1]
 by_mode = O.engines[0].statistics()
 result["sum"] = sum(by_mode[m + "Energy"] for m in "brokenByStretching brokenBySliding brokenByRolling brokenByTwisting".split())
-""", {"kind": kind})
+""",
+        {"kind": kind},
+    )
     assert sum(found["engine"]) > 8 and np.abs(np.subtract(found["engine"], found["functors"])).sum() <= 1
     assert found["bonds"] == found["bonded"] == 26 - sum(found["engine"])
     assert found["lost"]["bondBreaking"] == pytest.approx(found["sum"]) and found["lost"]["connection"] > 0
@@ -54,7 +59,9 @@ result["sum"] = sum(by_mode[m + "Energy"] for m in "brokenByStretching brokenByS
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_same_bits_on_one_and_two_threads_and_after_a_checkpoint(yade, kind):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def end(threads, save=False):
     start(parameters["kind"], count=200, speed=12.0)
     fused(threads=threads, subSteps=10)
@@ -71,27 +78,40 @@ result["same"] = [bool((runs[0][0] == r[0]).all() and runs[0][2] == r[2]) for r 
 result["energies"] = [runs[0][1] == r[1] for r in runs[1:]]
 result["close"] = [again[1], runs[0][1]]
 result["statistics"] = runs[0][2]
-""", {"kind": kind})
+""",
+        {"kind": kind},
+    )
     assert found["same"] == [True, True, True] and found["energies"] == [True, True]
     assert found["close"][0] == pytest.approx(found["close"][1], rel=1e-12)
-    assert sum(found["statistics"][n] for n in found["statistics"] if n.startswith("brokenBy") and not n.endswith("Energy")) > 50 and found["statistics"]["bonds"] > 20
+    assert (
+        sum(
+            found["statistics"][n] for n in found["statistics"] if n.startswith("brokenBy") and not n.endswith("Energy")
+        )
+        > 50
+        and found["statistics"]["bonds"] > 20
+    )
 
 
 def test_instruction_sets_agree_to_rounding(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def run(instructions):
     start()
     fused(instructions=instructions)
     O.run(150, True)
 result["differences"] = differences_of_instruction_sets(run)
-""")
+"""
+    )
     for name, difference in found["differences"].items():
         assert difference < 1e-10, name
 
 
 def test_bonds_go_to_the_functors_and_back(yade):
     """Functors, engine, functors: as if they had been the functors all along; and O.interactions tells of the bonds."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def track(n):
     for _ in range(n): O.step()
 start(); track(201); straight = positions(), broken(law())
@@ -110,7 +130,8 @@ Ip2 = O.engines[2].physDispatcher.functors[0]
 track(60)
 counted = np.add(counted, broken(law()))
 result.update(difference=float(np.abs(positions() - straight[0]).max() / 1e-7), counted=counted, straight=straight[1], first=first, iter=O.iter)
-""")
+"""
+    )
     assert found["interactions"] == found["bonds"] > 0
     kn, stiffness, depth, radius = found["kn"]
     assert kn == stiffness and abs(depth) < 1e-8 and radius == 1e-7
@@ -118,26 +139,37 @@ result.update(difference=float(np.abs(positions() - straight[0]).max() / 1e-7), 
     assert found["counted"] == found["straight"]
 
 
-@pytest.mark.parametrize("change,message", [
-    ("O.engines[0].neck = 0.8", "neck = 0.8"),
-    ("O.engines[0].neck = -1", "neck = -1, allowed: 0 (no bonds), or up to 0.7 for sintered bonds"),
-    ("O.periodic = True; O.cell.setBox(2e-5, 2e-5, 2e-5)", "in a periodic cell, allowed: 0; sintered bonds in periodic cells are the functors'"),
-    ("O.dt = 0.45 * unit", "every packing of these grains is unstable"),
-])
+@pytest.mark.parametrize(
+    "change,message",
+    [
+        ("O.engines[0].neck = 0.8", "neck = 0.8"),
+        ("O.engines[0].neck = -1", "neck = -1, allowed: 0 (no bonds), or up to 0.7 for sintered bonds"),
+        (
+            "O.periodic = True; O.cell.setBox(2e-5, 2e-5, 2e-5)",
+            "in a periodic cell, allowed: 0; sintered bonds in periodic cells are the functors'",
+        ),
+        ("O.dt = 0.45 * unit", "every packing of these grains is unstable"),
+    ],
+)
 def test_what_cannot_be_done_is_refused_in_one_line(yade, change, message):
-    found = yade(SCENE + f"""
+    found = yade(
+        SCENE
+        + f"""
 start(count=8)
 fused()
 {change}
 result["message"] = refusal()
-""")
+"""
+    )
     assert message in found["message"] and "\\n" not in found["message"]
 
 
 def test_a_bonded_pair_is_unstable_right_above_the_limit(yade):
     """The limit is 2 over the fastest vibration of two bonded grains. At beta = 0.5 that is sliding against turning, w^2 = k_st (2/m + 2 r^2/I) = 7 k_st/m
     (7 G > 2 E): the spins stay just below the limit and grow without bound just above it."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def grow(factor, engine):
     b = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=NECK).bondConstants(ice(), 1e-7, ice(), 1e-7)
     m = ice().density * 4 / 3 * np.pi * 1e-21
@@ -153,19 +185,23 @@ result["below"] = [grow(0.985, e) for e in ("functors", "fused")]
 result["above"] = grow(1.015, "functors")
 try: grow(1.015, "fused")
 except RuntimeError as error: result["message"] = str(error)
-""")
+"""
+    )
     assert max(found["below"]) < 20 and found["above"] > 1e6, found
     assert "is unstable" in found["message"]
 
 
 def test_bonded_grains_at_rest_stay_there(yade):
     """All energies are rounding then, and no reason to stop the run."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start(count=60, speed=0.0)
 O.dt *= 50
 fused(subSteps=50)
 before = positions()
 for _ in range(20): O.step()
 result.update(moved=float(np.abs(positions() - before).max() / 1e-7), bonds=O.engines[0].statistics()["bonds"])
-""")
+"""
+    )
     assert found["moved"] < 1e-12 and found["bonds"] == 59

@@ -1,4 +1,5 @@
 """JKRWadaEngine against the functors (to rounding, step by step), and against itself: threads, instruction sets, checkpoints, sub-steps."""
+
 import numpy as np
 import pytest
 
@@ -16,7 +17,9 @@ def start(kind, count=27, seed=1, damping=0):
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_engine_and_functors_agree_step_by_step(yade, kind):
     """27 grains fly together: births, slips, breaks. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 kind = parameters["kind"]
 start(kind)
 functors, functor_energies = record(401)
@@ -30,7 +33,9 @@ scale = functor_energies[0]["kinetic"]
 result["energies"] = [max(abs(functor_energies[k + 1][n] - engine_energies[k][n]) for k in range(400)) / scale for n in names]
 result["events"] = O.engines[0].statistics()["events"]
 result["lost"] = engine_energies[-1]
-""", {"kind": kind})
+""",
+        {"kind": kind},
+    )
     assert found["events"] > 100
     assert found["lost"]["slidingDissipation"] > 0 and found["lost"]["connection"] > 0
     difference = np.array(found["difference"])
@@ -41,7 +46,9 @@ result["lost"] = engine_energies[-1]
 
 def test_grains_far_apart_meet_their_neighbours(yade):
     """Stragglers 10^5 radii away, many more cells apart than there are grains: those of the crowd find each other as they do without them."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def end(fused):
     start("like")
     for k in range(6):
@@ -52,14 +59,17 @@ def end(fused):
 (functors, _), (engine, statistics) = end(False), end(True)
 result["difference"] = max(abs(functors[name] - engine[name]) for name in CHANNELS) / engine["kinetic"]
 result["statistics"] = {k: v for k, v in statistics.items() if k in ("events", "farRebuilds")}
-""")
+"""
+    )
     assert found["statistics"]["events"] > 50 and found["statistics"]["farRebuilds"] > 0, found
     assert found["difference"] < 1e-9, found
 
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_same_bits_on_one_and_two_threads_and_on_every_run(yade, kind):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def end(threads):
     start(parameters["kind"], count=400)
     fused_engine(threads=threads, subSteps=10)
@@ -69,25 +79,32 @@ def end(threads):
 runs = [end(1), end(2), end(1)]
 result["same"] = [bool((runs[0][0] == r[0]).all() and runs[0][1] == r[1]) for r in runs[1:]]
 result["events"] = runs[0][2]
-""", {"kind": kind})
+""",
+        {"kind": kind},
+    )
     assert found["same"] == [True, True] and found["events"] > 1000
 
 
 def test_instruction_sets_agree_to_rounding(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def run(instructions):
     start("like", count=27)
     fused_engine(instructions=instructions)
     O.run(200, True)
 result["differences"] = differences_of_instruction_sets(run)
-""")
+"""
+    )
     for name, difference in found["differences"].items():
         assert difference < 1e-11, name
 
 
 @pytest.mark.parametrize("kind,format", [("like", ".yade.bz2"), ("unlike", ".xml.gz"), ("drag", ".yade.gz")])
 def test_checkpoint_continues_to_the_bit(yade, kind, format):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start(parameters["kind"], count=100)
 fused_engine(subSteps=7)
 O.dt *= 7
@@ -100,7 +117,9 @@ O.run(60, True)
 again = positions(), energies()
 result["same"] = bool((straight[0] == again[0]).all())
 result["energies"] = [straight[1], again[1]]
-""", {"kind": kind, "format": format})
+""",
+        {"kind": kind, "format": format},
+    )
     assert found["same"]
     straight, again = found["energies"]
     assert straight["slidingDissipation"] > 0
@@ -109,16 +128,21 @@ result["energies"] = [straight[1], again[1]]
 
 def test_sub_steps_are_steps(yade):
     """Ten O.steps of one small step, and one O.step of ten."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start("like"); fused_engine(); O.run(300, True); a = positions()
 start("like"); fused_engine(subSteps=10); O.dt *= 10; O.run(30, True); b = positions()
 result["difference"] = float(np.abs(a - b).max())
-""")
+"""
+    )
     assert found["difference"] == 0
 
 
 def test_a_body_moved_by_the_script_is_noticed(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start("like", count=8)
 fused_engine()
 O.run(50, True)
@@ -126,22 +150,35 @@ O.bodies[3].state.vel = Vector3(1, 2, 3)
 before = np.array(O.bodies[3].state.pos)
 O.run(1, True)
 result["moved"] = (np.array(O.bodies[3].state.pos) - before) / O.dt
-""")
+"""
+    )
     assert found["moved"] == pytest.approx([1, 2, 3], rel=0.3)
 
 
-@pytest.mark.parametrize("change,message", [
-    ("O.bodies[2].state.vel = Vector3(float('nan'), 0, 0)", "body 2 has a position or velocity that is not a finite number"),
-    ("O.engines += [NewtonIntegrator()]", "NewtonIntegrator is among O.engines too; this engine replaces it"),
-    ("O.engines[0].subSteps = 0", "subSteps = 0, allowed: 1 or more"),
-    ("O.engines[0].instructions = 'sse9'", "instructions = 'sse9', allowed here"),
-    ("O.periodic = True; O.cell.hSize = Matrix3(1, 0.1, 0, 0, 1, 0, 0, 0, 1)", "O.cell.hSize has the element (0, 1) = 0.1"),
-])
+@pytest.mark.parametrize(
+    "change,message",
+    [
+        (
+            "O.bodies[2].state.vel = Vector3(float('nan'), 0, 0)",
+            "body 2 has a position or velocity that is not a finite number",
+        ),
+        ("O.engines += [NewtonIntegrator()]", "NewtonIntegrator is among O.engines too; this engine replaces it"),
+        ("O.engines[0].subSteps = 0", "subSteps = 0, allowed: 1 or more"),
+        ("O.engines[0].instructions = 'sse9'", "instructions = 'sse9', allowed here"),
+        (
+            "O.periodic = True; O.cell.hSize = Matrix3(1, 0.1, 0, 0, 1, 0, 0, 0, 1)",
+            "O.cell.hSize has the element (0, 1) = 0.1",
+        ),
+    ],
+)
 def test_what_cannot_be_done_is_refused_in_one_line(yade, change, message):
-    found = yade(SCENE + f"""
+    found = yade(
+        SCENE
+        + f"""
 start("like", count=8)
 fused_engine()
 {change}
 result["message"] = refusal()
-""")
+"""
+    )
     assert message in found["message"] and "\\n" not in found["message"]

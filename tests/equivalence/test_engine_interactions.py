@@ -1,5 +1,5 @@
 """What JKRWadaEngine leaves in O.interactions and in State.ori is what the functors leave there."""
-import numpy as np
+
 import pytest
 
 SCENE = """
@@ -27,7 +27,9 @@ def contacts():
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_interactions_are_those_of_the_functors(yade, kind):
     """After n O.steps the engine's contacts are of the positions then; the functors have them one step later."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 steps = parameters["steps"]
 start(parameters["kind"])
 O.run(steps, True)
@@ -49,17 +51,26 @@ for key in functors[min(functors)]:
     scales[key] = float(np.abs(a).max())
     result[key] = float(np.abs(a - b).max() / scales[key]) if scales[key] else float(np.abs(b).max())
 result["stress"] = float(np.abs(np.array(utils.getStress(volume=1e-18)) - stress).max() / np.abs(stress).max())
-""", {"kind": kind, "steps": 700 if kind == "unlike" else 200})
+""",
+        {"kind": kind, "steps": 700 if kind == "unlike" else 200},
+    )
     count = found.pop("count")
     assert len(set(count)) == 1 and count[0] > 10, count
     order = found.pop("order")
-    assert order == sorted(order) and all(a < b for a, b in order) and found.pop("same") and found.pop("bodies") == 2 * count[0]
+    assert (
+        order == sorted(order)
+        and all(a < b for a, b in order)
+        and found.pop("same")
+        and found.pop("bodies") == 2 * count[0]
+    )
     for key, difference in found.items():
         assert difference < 1e-9, (key, difference)
 
 
 def test_interactions_follow_the_contacts_and_stay_the_same_objects(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start("like", count=64)
 fused_engine(subSteps=5, exportInteractions=True)
 O.dt *= 5
@@ -79,13 +90,16 @@ O.step()
 result["without"] = len(O.interactions)
 O.engines[0].writeInteractions()
 result["asked"] = len(O.interactions) - O.engines[0].statistics()["contacts"]
-""")
+"""
+    )
     assert found["ended"] > 3 and found["kept"] > 100 and found["same"]
     assert found["without"] == 0 and found["asked"] == 0
 
 
 def test_exporting_changes_no_bit_and_checkpoints_go_on(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def run(**options):
     start("unlike", count=64)
     fused_engine(subSteps=7, **options)
@@ -103,13 +117,16 @@ O.load("checkpoint.yade.gz")
 result["loaded"] = len(O.interactions)
 O.run(60, True)
 result["same"] = [bool((plain == full).all()), bool((positions() == full).all()), straight == described(), turned == [list(b.state.ori) for b in O.bodies]]
-""")
+"""
+    )
     assert found["loaded"] > 10 and found["same"] == [True] * 4, found
 
 
 def test_orientations_are_those_of_the_functors(yade):
     """To rounding, whatever the sub-steps, with births, slips and fast spins."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def end(sub_steps):
     new_scene(0.05 * unit)
     grain((0, 0, 0), 1e-7, ice(), (1, 0, 0), (2e7, 1e8, -1e8))
@@ -123,13 +140,16 @@ def end(sub_steps):
 functors = end(0)
 result["turned"] = float(np.abs(functors - [0, 0, 0, 1]).max())
 result["differences"] = [float(np.abs(end(n) - functors).max()) for n in (1, 16)]
-""")
+"""
+    )
     assert found["turned"] > 0.1 and max(found["differences"]) < 1e-12, found
 
 
 def test_orientations_converge_with_second_order(yade):
     """Three grains that stick, turn together by a quarter of a radian and quiver."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def end(step, time=24):
     new_scene(step * unit)
     w, d = np.array([2e7, -5e7, 4e7]), 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
@@ -145,14 +165,17 @@ start("like")
 fused_engine()
 O.run(20, True)
 result["untouched"] = all(tuple(b.state.ori) == (0, 0, 0, 1) for b in O.bodies)
-""")
+"""
+    )
     coarse, middle, fine = found["errors"]
     assert found["lost"] == 0 and 3.5 < coarse / middle < 4.6 and 3.5 < middle / fine < 4.6, found
     assert found["untouched"]
 
 
 def test_orientations_given_by_a_script_are_kept_and_turned_on(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 new_scene(0.1 * unit)
 grain((0, 0, 0), 1e-7, ice(), (0, 0, 0), (0, 0, 1e7))
 fused_engine(orientations=True)
@@ -161,5 +184,6 @@ O.bodies[0].state.ori = Quaternion((0, 0, 1), 1.0)
 O.run(10, True)
 axis, angle = O.bodies[0].state.ori.toAxisAngle()
 result.update(angle=angle * axis[2], expected=1.0 + 1e7 * 10 * O.dt)
-""")
+"""
+    )
     assert found["angle"] == pytest.approx(found["expected"], rel=1e-12)

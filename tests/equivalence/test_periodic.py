@@ -1,4 +1,5 @@
 """JKRWadaEngine in periodic cells against the functors, step by step, and against itself: threads, instruction sets, sub-steps."""
+
 import numpy as np
 import pytest
 
@@ -27,7 +28,10 @@ def all_energies():
 """
 
 
-@pytest.mark.parametrize("kind,rate,homo", [("like", 0, 2), ("unlike", 0, 0), ("like", 2e-3, 0), ("drag", 2e-3, 1), ("unlike", 2e-3, 1), ("like", 2e-3, 2)])
+@pytest.mark.parametrize(
+    "kind,rate,homo",
+    [("like", 0, 2), ("unlike", 0, 0), ("like", 2e-3, 0), ("drag", 2e-3, 1), ("unlike", 2e-3, 1), ("like", 2e-3, 2)],
+)
 def test_engine_and_functors_agree_step_by_step(yade, kind, rate, homo):
     """Grains of which some lie in other periods than their neighbours, in a cell at rest, in a shrinking one through which they fly (homoDeform 0), and in one whose mean field moves them.
 
@@ -36,7 +40,9 @@ def test_engine_and_functors_agree_step_by_step(yade, kind, rate, homo):
     velocities that the functors are given have what the engine's have of it. Not compared: boundaryWork of the functors, which does not know of mean fields, and
     YADE's kinetic energy, in which velocities are counted from velGrad times position.
     """
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 kind, rate, homo, n = parameters["kind"], parameters["rate"], parameters["homo"], 300
 def record(n):
     tracks, sums, sizes = [], [], []
@@ -64,7 +70,9 @@ names = [c for c in CHANNELS + ["boundaryWork"] if not rate or (c != "kinetic" a
 result["energies"] = {c: max(abs(functor_energies[k + 1][c] - engine_energies[k][c]) for k in range(n)) / scale for c in names}
 result["events"] = O.engines[0].statistics()["events"]
 result["last"] = engine_energies[-1]
-""", {"kind": kind, "rate": rate, "homo": homo})
+""",
+        {"kind": kind, "rate": rate, "homo": homo},
+    )
     assert found["events"] > 50 and found["last"]["connection"] > 0 and found["last"]["slidingDissipation"] > 0
     assert (found["last"]["boundaryWork"] != 0) == (rate != 0)
     assert found["sizes"] < 1e-12
@@ -76,7 +84,9 @@ result["last"] = engine_energies[-1]
 
 @pytest.mark.parametrize("kind,homo", [("unlike", 2), ("drag", 0)])
 def test_same_bits_on_one_and_two_threads_and_steps_are_sub_steps(yade, kind, homo):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def end(threads, sub_steps=10, **options):
     start(parameters["kind"], 1e-3, parameters["homo"], count=343)
     fused_engine(threads=threads, subSteps=sub_steps, **options)
@@ -87,13 +97,17 @@ def end(threads, sub_steps=10, **options):
 runs = [end(1), end(2), end(1)]
 result["same"] = [bool((runs[0][0] == r[0]).all() and runs[0][1] == r[1]) for r in runs[1:]]
 result["statistics"] = runs[0][2]
-""", {"kind": kind, "homo": homo})
+""",
+        {"kind": kind, "homo": homo},
+    )
     assert found["same"] == [True, True]
     assert found["statistics"]["events"] > 1000 and found["statistics"]["farRebuilds"] > 1
 
 
 def test_instruction_sets_and_domains_agree_to_rounding(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 def end(**options):
     start("drag", 1e-3, 2)
     fused_engine(**options)
@@ -110,13 +124,16 @@ for name in ("avx2", "avx512"):
 for domains in (1, 3):
     x, w = end(instructions="portable", domains=domains)
     result[str(domains)] = max(float(np.abs(x - reference).max() / 1e-7), abs(w / work - 1))
-""")
+"""
+    )
     assert found.pop("events") > 50
     assert max(found.values()) < 1e-9, found
 
 
 def test_exported_interactions_are_those_of_the_nearest_images(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start("unlike", 1e-3, 1)
 fused_engine(exportInteractions=True, subSteps=10)
 O.dt *= 10
@@ -136,6 +153,7 @@ apart = shot["position"][shot["contact_pairs"][:, 0]] - shot["position"][shot["c
 apart -= size * np.round(apart / size)
 result["normal part"] = -float((np.linalg.norm(apart, axis=1) * shot["contact_normal_force"]).sum() / size.prod())
 result["stress"] = float(np.trace(stress))
-""")
+"""
+    )
     assert found["cells"] > 5 and found["normals"] < 1e-12 and found["overlaps"] < 1e-12
     assert found["stress"] == pytest.approx(found["normal part"], rel=1e-6)  # sliding forces have no part in the trace

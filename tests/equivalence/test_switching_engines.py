@@ -1,5 +1,5 @@
 """From the functors to JKRWadaEngine and back in the middle of a run: the trajectory and the ledger go on as if nothing had been."""
-import numpy as np
+
 import pytest
 
 SCENE = """
@@ -27,7 +27,9 @@ def difference(a, b):
 def test_functors_then_engine_then_functors_is_one_run(yade, kind):
     """A collision whose hundred steps in the middle are the engine's, in sub-steps. There are strained springs, births and slips in the middle."""
     first = 700 if kind == "unlike" else 100
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 kind, first = parameters["kind"], parameters["first"]
 start(kind)
 O.run(first + 200, True)
@@ -50,9 +52,13 @@ scale = straight_energies["kinetic"] + straight_energies["connection"]
 result["energies"] = {n: (switched_energies[n] - straight_energies[n]) / scale for n in CHANNELS}
 result["lost"] = straight_energies
 result["contacts"] = [contacts, O.interactions.countReal()]
-""", {"kind": kind, "first": first})
+""",
+        {"kind": kind, "first": first},
+    )
     assert found["contacts_taken_over"] > 8 and found["events"] > 8 and found["emptied"] == 0
-    assert found["moment"] == pytest.approx([first + 100, 1], rel=1e-12) and found["steps"] == pytest.approx(first + 200, rel=1e-12)
+    assert found["moment"] == pytest.approx([first + 100, 1], rel=1e-12) and found["steps"] == pytest.approx(
+        first + 200, rel=1e-12
+    )
     assert found["lost"]["slidingDissipation"] > 0
     # with drag, grains whose contacts were born or broke in the functors' last step are taken over to second order only
     tolerance = 1e-6 if kind == "drag" else 1e-9
@@ -62,7 +68,9 @@ result["contacts"] = [contacts, O.interactions.countReal()]
 
 
 def test_a_saved_scene_of_the_functors_goes_on_with_the_engine(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start("unlike")
 O.run(500, True)
 O.save("functors.xml.bz2")
@@ -75,13 +83,16 @@ result["contacts"] = O.engines[0].statistics()["contacts"]
 to_functors()
 O.run(5, True)
 result["differences"] = [difference(a, b) for a, b in zip(state(), straight)]
-""")
+"""
+    )
     assert found["contacts"] > 8 and max(found["differences"]) < 1e-9, found
 
 
 def test_an_engine_takes_over_from_an_engine_that_wrote_its_interactions(yade):
     """With another number of sub-steps, say. Everything is of one moment then; only impulses of events within the last small step are forgotten."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start("like")
 to_engine(10, exportInteractions=True)
 O.run(15, True)
@@ -100,18 +111,22 @@ O.run(15, True)
 O.engines = [JKRWadaEngine(subSteps=10)]  # springs unstrained
 O.run(15, True)
 result.update(taken=difference(taken, straight), forgotten=difference(positions(), straight), left=len(O.interactions))
-""")
+"""
+    )
     assert found["taken"] < 1e-6 < found["forgotten"], found
     assert found["left"] == 0
 
 
 def test_what_cannot_be_handed_over_is_refused(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start("like", count=8)
 fused_engine()
 try:
     O.engines[0].handOver()
 except RuntimeError as error:
     result["message"] = str(error)
-""")
+"""
+    )
     assert "before the first step" in found["message"]

@@ -1,4 +1,5 @@
 """A run that goes wrong stops at once, names grain, contact and time, and leaves the last good state."""
+
 import json
 import re
 
@@ -30,12 +31,17 @@ def check(found):
     return float(re.search(r"went wrong at t = (\S+) s", found["message"]).group(1))
 
 
-@pytest.mark.parametrize("case,expected", [
-    ("0.12, 30e-12, 3e7", "losses have given back"),  # below the limit for a pair, too long for a packing
-    ("0.49, 0, 1e9", "moves at"),  # hits at 600 m/s
-])
+@pytest.mark.parametrize(
+    "case,expected",
+    [
+        ("0.12, 30e-12, 3e7", "losses have given back"),  # below the limit for a pair, too long for a packing
+        ("0.49, 0, 1e9", "moves at"),  # hits at 600 m/s
+    ],
+)
 def test_an_unstable_step_is_stopped_while_all_numbers_are_finite(yade, case, expected):
-    found = yade(SCENE + f"""
+    found = yade(
+        SCENE
+        + f"""
 from yade_scripts import packings
 def hit(step, drag, rate):
     new_scene(step * unit)
@@ -48,15 +54,20 @@ hit({case})
 step_until_it_fails(100)
 result["dt"] = O.dt
 result["finite"] = bool(np.isfinite(positions()).all())
-""")
+"""
+    )
     when = check(found)
     message = found["message"]
-    assert found["finite"] and expected in message and "contact" in message and len(re.findall(r"body \d+", message)) >= 2, message
+    assert (
+        found["finite"] and expected in message and "contact" in message and len(re.findall(r"body \d+", message)) >= 2
+    ), message
     assert found["time"] < when <= found["time"] + found["dt"] * (1 + 1e-12)
 
 
 def test_a_body_put_onto_another_is_noticed(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 new_scene(0.1 * unit)
 for k in range(5):
     grain((k * 2.2e-7, 0, 0), 1e-7, ice(), (0.01 * k, 0, 0))
@@ -64,14 +75,17 @@ fused_engine()
 O.run(10, True)
 O.bodies[3].state.pos = O.bodies[1].state.pos + Vector3(1e-9, 0, 0)
 step_until_it_fails(5)
-""")
+"""
+    )
     check(found)
     assert "body 1" in found["message"] and "body 3" in found["message"], found["message"]
 
 
 def test_a_body_with_no_finite_position_is_named_with_its_contact(yade):
     """Exactly onto another's centre: the direction of the force is 0/0."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 new_scene(0.1 * unit)
 for k in range(5):
     grain((k * 2.2e-7, 0, 0), 1e-7, ice())
@@ -79,24 +93,32 @@ fused_engine()
 O.run(10, True)
 O.bodies[3].state.pos = O.bodies[1].state.pos
 step_until_it_fails(5)
-""")
+"""
+    )
     check(found)
-    assert "body 1" in found["message"] and "body 3" in found["message"] and "t = " in found["message"], found["message"]
+    assert "body 1" in found["message"] and "body 3" in found["message"] and "t = " in found["message"], found[
+        "message"
+    ]
 
 
 def test_grains_that_overlap_too_far_at_the_start_are_refused(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 new_scene(0.01 * unit)
 for x in (0, 5e-7, 5.9e-7):
     grain((x, 0, 0), 1e-7, ice())
 fused_engine()
 result["message"] = refusal()
-""")
+"""
+    )
     assert "body 1 and body 2 overlap by 1.1 of the smaller radius at the start, allowed: at most 1" in found["message"]
 
 
 def test_after_a_failure_a_checkpoint_holds_the_last_good_state(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 new_scene(0.1 * unit)
 c = constants(ice(), 1e-7)
 for k in range(4):
@@ -112,7 +134,8 @@ O.load("good.yade.gz")
 result["same"] = everything() == good and contacts == [(i.id1, i.id2, i.phys.twist, list(i.phys.slidingDisplacement)) for i in O.interactions]
 O.run(10, True)
 result["goes_on"] = O.engines[0].statistics()["contacts"]
-""")
+"""
+    )
     assert "body 0 moves at 1e+05 m/s" in found["message"] and "body 1" in found["message"], found["message"]
     assert found["same"] and found["goes_on"] == 3
 
@@ -120,7 +143,8 @@ result["goes_on"] = O.engines[0].statistics()["contacts"]
 @pytest.mark.parametrize("engine", ["fused", "functors"])
 def test_a_collision_that_fails_keeps_its_last_good_state(yade, tmp_path, engine):
     """collide.py with its own guard on the step switched off: exit status 1, the names in run.json, and the last sample before as the last state."""
-    found = yade("""
+    found = yade(
+        """
 import os, runpy
 from yade_scripts import parameters as checks
 checks.step_limit = lambda constants, filling: 1.0
@@ -131,7 +155,9 @@ try:
     runpy.run_path(sys.argv[0], init_globals={"O": O}, run_name="__main__")
 except SystemExit as end:
     result["status"] = end.code
-""", {"engine": engine, "out": str(tmp_path / "run")})
+""",
+        {"engine": engine, "out": str(tmp_path / "run")},
+    )
     outcome = json.loads((tmp_path / "run" / "run.json").read_text())["outcome"]
     assert found["status"] == 1 and outcome.startswith("failed: ") and " s" in outcome, outcome
     assert len(re.findall(r"body \d+", outcome)) >= 2 or "none touch" in outcome, outcome

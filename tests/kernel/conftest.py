@@ -1,4 +1,5 @@
 """Builds the kernel's probe once and wraps it with numpy."""
+
 import ctypes
 import subprocess
 from pathlib import Path
@@ -34,14 +35,20 @@ class Kernel:
 
     def call(self, name, *arguments):
         converted = [
-            a.ctypes.data_as(ctypes.c_void_p) if isinstance(a, np.ndarray) else ctypes.c_int(a) if isinstance(a, int) else ctypes.c_double(a)
+            a.ctypes.data_as(ctypes.c_void_p)
+            if isinstance(a, np.ndarray)
+            else ctypes.c_int(a)
+            if isinstance(a, int)
+            else ctypes.c_double(a)
             for a in arguments
         ]
         getattr(self.library, name)(*converted)
 
     def constants(self, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7, damping=0.0):
         out = np.empty(len(NAMES))
-        self.call("pairConstants", array(material1), float(radius1), array(material2), float(radius2), float(damping), out)
+        self.call(
+            "pairConstants", array(material1), float(radius1), array(material2), float(radius2), float(damping), out
+        )
         return SimpleNamespace(array=out, **dict(zip(NAMES, out)))
 
     def normal_law(self, overlap):
@@ -73,7 +80,9 @@ class Kernel:
     def bond(self, constants, rest, separation, n1, n2, twist=0.0):
         out = np.empty(14)
         self.call("bondAt", constants.array, float(rest), array([*separation, *n1, *n2, twist]), out)
-        return SimpleNamespace(force=out[:3], torque1=out[3:6], torque2=out[6:9], energies=out[9:13], breaks=bool(out[13]))
+        return SimpleNamespace(
+            force=out[:3], torque1=out[3:6], torque2=out[6:9], energies=out[9:13], breaks=bool(out[13])
+        )
 
     def turn(self, v, angle):
         out = np.empty(3)
@@ -84,5 +93,21 @@ class Kernel:
 @pytest.fixture(scope="session")
 def kernel(tmp_path_factory):
     library = tmp_path_factory.mktemp("kernel") / "kernel_probe.so"
-    subprocess.run(["g++", "-std=c++17", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared", str(HERE / "kernel_probe.cpp"), "-o", str(library)], check=True)
+    subprocess.run(
+        [
+            "g++",
+            "-std=c++17",
+            "-O2",
+            "-ffp-contract=off",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-fPIC",
+            "-shared",
+            str(HERE / "kernel_probe.cpp"),
+            "-o",
+            str(library),
+        ],
+        check=True,
+    )
     return Kernel(ctypes.CDLL(str(library)))

@@ -5,22 +5,22 @@
 using namespace contact_law;
 
 namespace {
-	Vec3<double> vector(const double* p) { return { p[0], p[1], p[2] }; }
-	void         write(double*& out, const Vec3<double>& v) { *out++ = v.x, *out++ = v.y, *out++ = v.z; }
-	PairConstants<double> constantsFrom(const double* p)
-	{
-		PairConstants<double> c;
-		std::memcpy(&c, p, sizeof c);
-		return c;
-	}
-	BondConstants<double> bondFrom(const double* p)
-	{
-		BondConstants<double> b;
-		std::memcpy(&b, p, sizeof b);
-		return b;
-	}
-	Material material(const double* p) { return { p[0], p[1], p[2], p[3], p[4], p[5] }; }
+Vec3<double> vector(const double* p) { return { p[0], p[1], p[2] }; }
+void write(double*& out, const Vec3<double>& v) { *out++ = v.x, *out++ = v.y, *out++ = v.z; }
+PairConstants<double> constantsFrom(const double* p)
+{
+	PairConstants<double> c;
+	std::memcpy(&c, p, sizeof c);
+	return c;
 }
+BondConstants<double> bondFrom(const double* p)
+{
+	BondConstants<double> b;
+	std::memcpy(&b, p, sizeof b);
+	return b;
+}
+Material material(const double* p) { return { p[0], p[1], p[2], p[3], p[4], p[5] }; }
+} // namespace
 
 extern "C" {
 
@@ -35,8 +35,8 @@ void pairConstants(const double* material1, double radius1, const double* materi
 void normalLaw(int n, const double* overlap, double* u, double* force, double* energy)
 {
 	for (int i = 0; i < n; ++i) {
-		u[i]      = normal::rootOfContactRadius(overlap[i]);
-		force[i]  = normal::force(u[i]);
+		u[i] = normal::rootOfContactRadius(overlap[i]);
+		force[i] = normal::force(u[i]);
 		energy[i] = normal::energy(u[i]);
 	}
 }
@@ -44,11 +44,11 @@ void normalLaw(int n, const double* overlap, double* u, double* force, double* e
 // state: separation, n1, n2, velocity (12 numbers), twist. out: force on 1 (without drag), drag, torque1, torque2, the four stored energies.
 void contactAt(const double* constants, const double* state, double* out)
 {
-	const auto                    c = constantsFrom(constants);
-	const ContactHistory<double>  h { { vector(state + 3), vector(state + 6) }, state[12] };
+	const auto c = constantsFrom(constants);
+	const ContactHistory<double> h { { vector(state + 3), vector(state + 6) }, state[12] };
 	const ContactGeometry<double> g = geometryOf(vector(state), c.radius1 + c.radius2);
-	const ContactForces<double>   f = contactForces<Everything>(c, g, h, vector(state + 9));
-	const StoredEnergy<double>    e = storedEnergy(c, f, h.twist);
+	const ContactForces<double> f = contactForces<Everything>(c, g, h, vector(state + 9));
+	const StoredEnergy<double> e = storedEnergy(c, f, h.twist);
 	write(out, f.normalForce * g.normal + f.sliding);
 	*out++ = f.drag;
 	write(out, f.torque1);
@@ -59,10 +59,12 @@ void contactAt(const double* constants, const double* state, double* out)
 // pointers: n1, n2, put back in place. which: 0 sliding, 1 rolling.
 void putBack(const double* constants, const double* normalVector, double* pointers, int which, double limit)
 {
-	const auto       c = constantsFrom(constants);
+	const auto c = constantsFrom(constants);
 	Pointers<double> p { vector(pointers), vector(pointers + 3) };
-	if (which == 0) p = slidBack(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
-	else p = rolledBack(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
+	if (which == 0)
+		p = slidBack(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
+	else
+		p = rolledBack(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
 	write(pointers, p.n1);
 	write(pointers, p.n2);
 }
@@ -70,7 +72,10 @@ void putBack(const double* constants, const double* normalVector, double* pointe
 int numberOfBondConstants() { return sizeof(BondConstants<double>) / sizeof(double); }
 
 // out: fillet radius, length, volume, radius of the shrunk grain, all relative to the grain
-void neckGeometry(double beta, double* out) { out[0] = neck::filletRadius(beta), out[1] = neck::length(beta), out[2] = neck::volume(beta), out[3] = neck::shrunkRadius(beta); }
+void neckGeometry(double beta, double* out)
+{
+	out[0] = neck::filletRadius(beta), out[1] = neck::length(beta), out[2] = neck::volume(beta), out[3] = neck::shrunkRadius(beta);
+}
 
 void bondConstants(const double* material1, double radius1, const double* material2, double radius2, double beta, double* out)
 {
@@ -81,11 +86,11 @@ void bondConstants(const double* material1, double radius1, const double* materi
 // state: separation, n1, n2 (9 numbers), twist. out: force on 1, torque1, torque2, the four stored energies, whether it breaks.
 void bondAt(const double* constants, double rest, const double* state, double* out)
 {
-	const auto                    b = bondFrom(constants);
-	const ContactHistory<double>  h { { vector(state + 3), vector(state + 6) }, state[9] };
+	const auto b = bondFrom(constants);
+	const ContactHistory<double> h { { vector(state + 3), vector(state + 6) }, state[9] };
 	const ContactGeometry<double> g = geometryOf(vector(state), rest);
-	const ContactForces<double>   f = bondForces(b, g, h);
-	const StoredEnergy<double>    e = bondEnergy(b, g, f, h.twist);
+	const ContactForces<double> f = bondForces(b, g, h);
+	const StoredEnergy<double> e = bondEnergy(b, g, f, h.twist);
 	write(out, f.normalForce * g.normal + f.sliding);
 	write(out, f.torque1);
 	write(out, f.torque2);

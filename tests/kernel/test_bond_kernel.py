@@ -1,4 +1,5 @@
 """The kernel's sintered bonds against Sirono & Ueno (2017), numerical quadrature and finite differences."""
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -10,7 +11,9 @@ def unit(v):
     return np.asarray(v) / np.linalg.norm(v)
 
 
-@pytest.mark.parametrize("beta,shrunk", [(0.2, 0.9996), (0.3, 0.9977), (0.4, 0.9924), (0.5, 0.9806), (0.6, 0.9575), (0.7, 0.9158)])
+@pytest.mark.parametrize(
+    "beta,shrunk", [(0.2, 0.9996), (0.3, 0.9977), (0.4, 0.9924), (0.5, 0.9806), (0.6, 0.9575), (0.7, 0.9158)]
+)
 def test_neck_geometry_and_shrunk_radius(kernel, beta, shrunk):
     """S17 eqs 1, 2; the neck's volume by quadrature of the fillet less the spheres; 0.91 of the radius at 0.7 is in S17's Fig. 4."""
     neck = kernel.neck(beta)
@@ -74,24 +77,32 @@ def test_force_is_minus_the_gradient_of_the_energy_and_angular_momentum_is_conse
             e = np.eye(3)[i]
             h, angle = 1e-13, 1e-6
             assert -(energy(move=h * e) - energy(move=-h * e)) / (2 * h) == pytest.approx(at.force[i], abs=1e-6 * force)
-            assert -(energy(turn1=angle * e) - energy(turn1=-angle * e)) / (2 * angle) == pytest.approx(at.torque1[i], abs=1e-5 * torque)
-            assert -(energy(turn2=angle * e) - energy(turn2=-angle * e)) / (2 * angle) == pytest.approx(at.torque2[i], abs=1e-5 * torque)
+            assert -(energy(turn1=angle * e) - energy(turn1=-angle * e)) / (2 * angle) == pytest.approx(
+                at.torque1[i], abs=1e-5 * torque
+            )
+            assert -(energy(turn2=angle * e) - energy(turn2=-angle * e)) / (2 * angle) == pytest.approx(
+                at.torque2[i], abs=1e-5 * torque
+            )
         rounding = 2.2e-16 * (b.slidingStiffness * np.dot(x, x) + np.linalg.norm(at.force) * np.linalg.norm(x))
         assert np.linalg.norm(at.torque1 + at.torque2 + np.cross(x, at.force)) < 8 * rounding
 
 
 def modes(kernel, b, rest, size):
     """A bond with one displacement of `size` times the critical one, for each mode: (separation, n1, n2, twist)."""
-    stretch, slide, roll, twist = (size * np.sqrt(2 * b.breakingEnergy / k)
-                                   for k in (b.normalStiffness, b.slidingStiffness, b.rollingStiffness, b.twistingStiffness))
+    stretch, slide, roll, twist = (
+        size * np.sqrt(2 * b.breakingEnergy / k)
+        for k in (b.normalStiffness, b.slidingStiffness, b.rollingStiffness, b.twistingStiffness)
+    )
     x, y, z = np.eye(3)
     slide_angle, roll_angle = np.arcsin(slide / (b.radius1 + b.radius2)), np.arcsin(roll / (2 * b.reducedRadius))
     turned = lambda v, angle: kernel.turn(v, angle * z)
     return {
-        "stretch": ((rest + stretch) * x, -x, x, 0.0), "press": ((rest - stretch) * x, -x, x, 0.0),
+        "stretch": ((rest + stretch) * x, -x, x, 0.0),
+        "press": ((rest - stretch) * x, -x, x, 0.0),
         "slide": (rest * x, turned(-x, slide_angle), turned(x, slide_angle), 0.0),
         "roll": (rest * x, turned(-x, roll_angle), turned(x, -roll_angle), 0.0),
-        "twist": (rest * x, -x, x, twist)}
+        "twist": (rest * x, -x, x, twist),
+    }
 
 
 @pytest.mark.parametrize("mode", ["stretch", "press", "slide", "roll", "twist"])

@@ -1,4 +1,5 @@
 """The kernel against closed forms and finite differences: constants, normal law, forces as gradients, limits."""
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -13,10 +14,19 @@ def unit(v):
 
 # --- constants -----------------------------------------------------------------------------------
 
+
 def test_constants_of_ice_are_those_of_model(kernel):
     c = kernel.constants()
-    expected = dict(equilibriumContactRadius=12.3712e-9, equilibriumOverlap=1.02031e-9, pullOffForce=47.1239e-9, slidingStiffness=79.176,
-                    rollingStiffness=3.7699, twistingStiffness=1.41372e-14, criticalSliding=0.43071e-9, timeUnit=1.936e-10)
+    expected = dict(
+        equilibriumContactRadius=12.3712e-9,
+        equilibriumOverlap=1.02031e-9,
+        pullOffForce=47.1239e-9,
+        slidingStiffness=79.176,
+        rollingStiffness=3.7699,
+        twistingStiffness=1.41372e-14,
+        criticalSliding=0.43071e-9,
+        timeUnit=1.936e-10,
+    )
     for name, value in expected.items():
         digits = len(f"{value:e}".split("e")[0].rstrip("0").replace(".", ""))
         assert getattr(c, name) == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits)), name
@@ -32,7 +42,10 @@ def test_energies_of_table_2_of_a22(kernel):
         "E_r,crit": (c.rollingStiffness * c.criticalRolling**2 / 2, 1.2e-18),
         "E_roll": (c.rollingStiffness * c.criticalRolling * np.pi * c.reducedRadius, 4.7e-16),
         "E_s,crit": (c.slidingStiffness * c.criticalSliding**2 / 2, 7.3e-18),
-        "E_slide": (c.slidingStiffness * c.criticalSliding * np.pi * c.reducedRadius, 5.4e-15),  # misprinted in A22: model.md
+        "E_slide": (
+            c.slidingStiffness * c.criticalSliding * np.pi * c.reducedRadius,
+            5.4e-15,
+        ),  # misprinted in A22: model.md
         "E_t,crit": (c.twistingStiffness * c.criticalTwisting**2 / 2, 2.8e-18),
         "E_twist": (c.twistingStiffness * c.criticalTwisting * np.pi / 2, 4.4e-16),
     }
@@ -57,8 +70,11 @@ def test_unlike_pair_is_symmetric_and_between_its_kinds(kernel):
 
 # --- normal law ----------------------------------------------------------------------------------
 
+
 def test_contact_radius_root_against_bisection(kernel):
-    overlaps = np.concatenate([-PULL_OFF + 10.0 ** np.arange(-14.0, -1), np.linspace(-0.8, 4, 200), [4.0000001, 10, 100, 1e4]])
+    overlaps = np.concatenate(
+        [-PULL_OFF + 10.0 ** np.arange(-14.0, -1), np.linspace(-0.8, 4, 200), [4.0000001, 10, 100, 1e4]]
+    )
     u, _, _ = kernel.normal_law(overlaps)
     for overlap, found in zip(overlaps, u):
         exact = brentq(lambda x: 3 * x**4 - 2 * x - overlap, 6 ** (-1 / 3), 100, xtol=1e-15, rtol=1e-15)
@@ -86,6 +102,7 @@ def test_energies_at_connection_and_pull_off(kernel):
 
 # --- forces and torques --------------------------------------------------------------------------
 
+
 def states(seed, count):
     """Random contacts: separation direction, pointers a little off the axis, twist, orientation of everything."""
     random = np.random.default_rng(seed)
@@ -108,15 +125,23 @@ def test_forces_and_torques_are_minus_the_gradient_of_the_energy(kernel, kind):
         def energy(move=np.zeros(3), turn1=np.zeros(3), turn2=np.zeros(3)):
             n = unit(x + move)
             grown = twist + np.dot(turn1 - turn2, n)  # dphi = (w1 - w2).n dt
-            return kernel.contact(c, x + move, kernel.turn(n1, turn1), kernel.turn(n2, turn2), twist=grown).energies.sum()
+            return kernel.contact(
+                c, x + move, kernel.turn(n1, turn1), kernel.turn(n2, turn2), twist=grown
+            ).energies.sum()
 
         for i in range(3):
             e = np.eye(3)[i]
             h, angle = 1e-4 * c.equilibriumOverlap, 1e-5
-            assert -(energy(move=h * e) - energy(move=-h * e)) / (2 * h) == pytest.approx(at.force[i], abs=2e-6 * c.pullOffForce)
+            assert -(energy(move=h * e) - energy(move=-h * e)) / (2 * h) == pytest.approx(
+                at.force[i], abs=2e-6 * c.pullOffForce
+            )
             size = np.linalg.norm(at.torque1) + c.pullOffForce * c.equilibriumOverlap
-            assert -(energy(turn1=angle * e) - energy(turn1=-angle * e)) / (2 * angle) == pytest.approx(at.torque1[i], abs=2e-6 * size)
-            assert -(energy(turn2=angle * e) - energy(turn2=-angle * e)) / (2 * angle) == pytest.approx(at.torque2[i], abs=2e-6 * size)
+            assert -(energy(turn1=angle * e) - energy(turn1=-angle * e)) / (2 * angle) == pytest.approx(
+                at.torque1[i], abs=2e-6 * size
+            )
+            assert -(energy(turn2=angle * e) - energy(turn2=-angle * e)) / (2 * angle) == pytest.approx(
+                at.torque2[i], abs=2e-6 * size
+            )
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -127,7 +152,9 @@ def test_no_net_torque_and_rotation_and_exchange_symmetry(kernel, kind):
         x = (c.radius1 + c.radius2 - overlap * c.equilibriumOverlap) * axis
         v = random.normal(size=3)
         at = kernel.contact(c, x, n1, n2, v, twist)
-        rounding = 2.2e-16 * (c.slidingStiffness * np.dot(x, x) + np.linalg.norm(at.force) * np.linalg.norm(x))  # of what is added up
+        rounding = 2.2e-16 * (
+            c.slidingStiffness * np.dot(x, x) + np.linalg.norm(at.force) * np.linalg.norm(x)
+        )  # of what is added up
         assert np.linalg.norm(at.torque1 + at.torque2 + np.cross(x, at.force)) < 4 * rounding
 
         turn = Rotation.random(random_state=random.integers(1 << 30)).as_matrix()
@@ -152,10 +179,13 @@ def test_drag_opposes_motion_and_has_the_coefficient_of_a22_eq_7(kernel):
         at = kernel.contact(c, x, -axis, axis, velocity=-2.5 * axis)  # approaching
         a = c.equilibriumContactRadius * u[0] ** 2
         mass = 4 / 3 * np.pi * 1300 * 1e-21
-        assert at.drag == pytest.approx(2.5 * (2 * 4e-12 * c.reducedYoung / 0.33**2 * a + 0.01 * mass / c.timeUnit), rel=1e-7)
+        assert at.drag == pytest.approx(
+            2.5 * (2 * 4e-12 * c.reducedYoung / 0.33**2 * a + 0.01 * mass / c.timeUnit), rel=1e-7
+        )
 
 
 # --- limits --------------------------------------------------------------------------------------
+
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("which", [0, 1])
@@ -178,11 +208,15 @@ def test_putting_back_reaches_the_limit_and_leaves_the_other_displacement(kernel
             return d - np.dot(d, axis) * axis
 
         mine, other = (slide, roll) if which == 0 else (roll, slide)
-        target = (slide if which == 0 else lambda a, b: R * (a + b))
+        target = slide if which == 0 else lambda a, b: R * (a + b)
         limit = 0.6 * np.linalg.norm(target(n1, n2))
         m1, m2 = kernel.put_back(c, axis, n1, n2, which, limit)
         assert np.linalg.norm(m1) == pytest.approx(1, abs=1e-15) and np.linalg.norm(m2) == pytest.approx(1, abs=1e-15)
-        return abs(np.linalg.norm(target(m1, m2)) - limit) / limit, np.linalg.norm(other(m1, m2) - other(n1, n2)) / limit, np.linalg.norm(mine(m1, m2)) / limit
+        return (
+            abs(np.linalg.norm(target(m1, m2)) - limit) / limit,
+            np.linalg.norm(other(m1, m2) - other(n1, n2)) / limit,
+            np.linalg.norm(mine(m1, m2)) / limit,
+        )
 
     coarse = np.mean([errors(0.02, seed)[:2] for seed in range(40)], axis=0)
     fine = np.mean([errors(0.01, seed)[:2] for seed in range(40)], axis=0)

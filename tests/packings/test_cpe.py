@@ -1,15 +1,15 @@
 """Close-packed and extracted aggregates are what A24 section 3 says, exactly."""
+
 import time
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
 
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 
-RADIUS = MATERIALS['ice'].grainRadius
-OVERLAP = equilibrium_overlap(MATERIALS['ice'])
+RADIUS = MATERIALS["ice"].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 SPACING = 2 * RADIUS - OVERLAP
 
 
@@ -17,8 +17,10 @@ def ice(filling=0.4, relative_radius=20, seed=1, index=0):
     return packings.cpe(filling, relative_radius * RADIUS, RADIUS, OVERLAP, seed, index)
 
 
-@pytest.mark.parametrize('filling, relative_radius, grains',
-                         [(0.4, 20, 3200), (0.3, 20, 2400), (0.4, 4, 26), (0.35, 10.3, 382), (0.7, 12, 1210)])
+@pytest.mark.parametrize(
+    "filling, relative_radius, grains",
+    [(0.4, 20, 3200), (0.3, 20, 2400), (0.4, 4, 26), (0.35, 10.3, 382), (0.7, 12, 1210)],
+)
 def test_number_of_grains_is_filling_times_the_cubed_radius(filling, relative_radius, grains):
     packing = ice(filling, relative_radius)
     assert packing.grains == grains == round(filling * relative_radius**3)
@@ -55,14 +57,14 @@ def test_neighbours_overlap_by_the_equilibrium_overlap():
 def test_sites_are_those_of_a_face_centred_cubic_lattice():
     """Distances squared, in units of the spacing, are whole; full shells have 12, 6, 24, 12, 24 sites."""
     packing = ice(filling=0.745, relative_radius=12)
-    steps = np.linalg.norm(packing.position[:, None] - packing.position[None], axis=2)**2 / SPACING**2
+    steps = np.linalg.norm(packing.position[:, None] - packing.position[None], axis=2) ** 2 / SPACING**2
     assert np.abs(steps - steps.round()).max() < 1e-10
     inner = np.linalg.norm(packing.position, axis=1) < 12 * RADIUS - np.sqrt(5.1) * SPACING
     shells = [np.count_nonzero(steps[inner].round() == k, axis=1).max() for k in (1, 2, 3, 4, 5)]
     assert shells == [12, 6, 24, 12, 24]
 
 
-@pytest.mark.parametrize('filling', [0.15, 0.4, 0.6])
+@pytest.mark.parametrize("filling", [0.15, 0.4, 0.6])
 def test_mean_coordination_of_inner_grains(filling):
     """12 filling/maximum (A24 eq 39) to 3.9 standard errors: 99.99 % if right; fixed seeds, so the same at
     each run.
@@ -81,7 +83,7 @@ def test_mean_coordination_of_inner_grains(filling):
         means.append(neighbours[inner].mean())
     p = expected / 12
     error = np.std(means, ddof=1) / np.sqrt(len(means))
-    assert np.std(means, ddof=1) > 0.5 * np.sqrt(24 * p * (1 - p)**2 / packing.grains)
+    assert np.std(means, ddof=1) > 0.5 * np.sqrt(24 * p * (1 - p) ** 2 / packing.grains)
     assert error < 0.02
     assert abs(np.mean(means) - expected) < 3.9 * error
 
@@ -96,14 +98,14 @@ def test_contacts_are_the_touching_pairs():
 def test_packings_apart_and_overlapping():
     first, second = ice(seed=1, relative_radius=8), ice(seed=1, index=1, relative_radius=8)
     packings.require_apart(first, packings.moved(second, (18 * RADIUS, 0, 0)))
-    with pytest.raises(packings.PackingError, match='overlap: [0-9]+ pairs of grains, by .* allowed: none'):
+    with pytest.raises(packings.PackingError, match="overlap: [0-9]+ pairs of grains, by .* allowed: none"):
         packings.require_apart(first, packings.moved(second, (12 * RADIUS, 0, 0)))
 
 
 def test_filling_above_what_the_lattice_holds_names_the_maximum():
-    with pytest.raises(packings.PackingError, match=r'filling = 0\.76: .*at most 0\.7519 \(A24') as error:
+    with pytest.raises(packings.PackingError, match=r"filling = 0\.76: .*at most 0\.7519 \(A24") as error:
         ice(filling=0.76)
-    assert '\n' not in str(error.value)
+    assert "\n" not in str(error.value)
 
 
 def test_filling_above_what_this_sphere_holds_says_how_many_sites_it_has():
@@ -114,8 +116,8 @@ def test_filling_above_what_this_sphere_holds_says_how_many_sites_it_has():
             ice(filling=0.75, relative_radius=4, seed=seed)
         except packings.PackingError as error:
             short.append(str(error))
-    assert short and all('asks for 48 grains, but the lattice has' in text for text in short)
-    assert all('\n' not in text for text in short)
+    assert short and all("asks for 48 grains, but the lattice has" in text for text in short)
+    assert all("\n" not in text for text in short)
 
 
 def test_two_hundred_thousand_grains_in_seconds():

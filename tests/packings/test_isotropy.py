@@ -1,12 +1,13 @@
 """Orientation and lattice phase are uniform: tests at 99.9 % confidence each, of fixed seeds."""
+
 import numpy as np
 from scipy.stats import kstest, norm
 
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 
-RADIUS = MATERIALS['ice'].grainRadius
-OVERLAP = equilibrium_overlap(MATERIALS['ice'])
+RADIUS = MATERIALS["ice"].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 SPACING = 2 * RADIUS - OVERLAP
 CONFIDENCE = 0.999
 
@@ -20,9 +21,9 @@ def test_orientation_is_uniform():
     are alike.
     """
     frames = np.array([_frame(seed) for seed in range(2000)])
-    p_values = [kstest(component, 'uniform', args=(-1, 2)).pvalue for component in frames.reshape(-1, 6).T]
+    p_values = [kstest(component, "uniform", args=(-1, 2)).pvalue for component in frames.reshape(-1, 6).T]
     angles = [_angle_around(u, n) for u, n in frames]
-    p_values.append(kstest(angles, 'uniform', args=(-np.pi, 2 * np.pi)).pvalue)
+    p_values.append(kstest(angles, "uniform", args=(-np.pi, 2 * np.pi)).pvalue)
     assert min(p_values) > (1 - CONFIDENCE) / len(p_values)
 
 
@@ -53,7 +54,7 @@ def test_cubic_axes_point_everywhere_alike():
     of (u.e)^4 is (3 - that)/2.
     """
     seeds = 1500
-    moments = 3 - 2 * np.mean([(_bond_directions(seed)**4).sum(axis=0) for seed in range(seeds)], axis=0)
+    moments = 3 - 2 * np.mean([(_bond_directions(seed) ** 4).sum(axis=0) for seed in range(seeds)], axis=0)
     assert np.abs(moments - 3 / 5).max() < norm.isf((1 - CONFIDENCE) / 6) * np.sqrt(16 / 525 / seeds)
 
 
@@ -73,9 +74,10 @@ def _bond_directions(seed):
 def test_centre_is_uniform_in_the_unit_cell():
     """The lattice's primitive coordinates of a site, modulo one, are uniform."""
     primitive = SPACING / np.sqrt(2) * np.array([[0, 1, 1], [1, 0, 1], [1, 1, 0]])
-    site = np.array([packings._lattice_in_sphere(SPACING, 3 * RADIUS, packings.random_stream(seed, 0))[0]
-                     for seed in range(1000)])
+    site = np.array(
+        [packings._lattice_in_sphere(SPACING, 3 * RADIUS, packings.random_stream(seed, 0))[0] for seed in range(1000)]
+    )
     phase = np.linalg.solve(primitive.T, site.T) % 1
-    p_values = [kstest(component, 'uniform').pvalue for component in phase]
-    p_values += [kstest((phase[i] + phase[j]) % 1, 'uniform').pvalue for i, j in ((0, 1), (0, 2), (1, 2))]
+    p_values = [kstest(component, "uniform").pvalue for component in phase]
+    p_values += [kstest((phase[i] + phase[j]) % 1, "uniform").pvalue for i, j in ((0, 1), (0, 2), (1, 2))]
     assert min(p_values) > (1 - CONFIDENCE) / len(p_values)

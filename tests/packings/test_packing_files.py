@@ -1,4 +1,5 @@
 """Packings are saved and loaded to the bit, and made from the command line."""
+
 import os
 import subprocess
 import sys
@@ -10,51 +11,58 @@ from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-OVERLAP = equilibrium_overlap(MATERIALS['ice'])
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 
 
 def test_save_and_load(tmp_path):
     saved = packings.cpe(0.4, 8e-7, 1e-7, OVERLAP, 3, 1)
-    packings.save(tmp_path / 'a.npz', saved)
-    loaded = packings.load(tmp_path / 'a.npz')
+    packings.save(tmp_path / "a.npz", saved)
+    loaded = packings.load(tmp_path / "a.npz")
     assert np.array_equal(saved.position, loaded.position) and np.array_equal(saved.radius, loaded.radius)
     assert (saved.seed, saved.parameters) == (loaded.seed, loaded.parameters)
-    assert os.listdir(tmp_path) == ['a.npz']
+    assert os.listdir(tmp_path) == ["a.npz"]
 
 
-@pytest.mark.parametrize('content', [None, b'', b'not an archive', 'other arrays'])
+@pytest.mark.parametrize("content", [None, b"", b"not an archive", "other arrays"])
 def test_what_is_no_packing_gives_one_line(tmp_path, content):
-    path = tmp_path / 'a.npz'
-    if content == 'other arrays':
+    path = tmp_path / "a.npz"
+    if content == "other arrays":
         np.savez(path, x=1)
     elif content is not None:
         path.write_bytes(content)
-    with pytest.raises(packings.PackingError, match='not a packing') as error:
+    with pytest.raises(packings.PackingError, match="not a packing") as error:
         packings.load(path)
-    assert '\n' not in str(error.value) and str(path) in str(error.value)
+    assert "\n" not in str(error.value) and str(path) in str(error.value)
 
 
 def make_packing(folder, *arguments):
-    return subprocess.run([sys.executable, os.path.join(TOP, 'yade_scripts', 'make_packing.py'), *arguments],
-                          cwd=folder, capture_output=True, text=True)
+    return subprocess.run(
+        [sys.executable, os.path.join(TOP, "yade_scripts", "make_packing.py"), *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
 
 
 def test_command_line(tmp_path):
-    done = make_packing(tmp_path, 'a.npz', 'b.npz', 'radius=10', 'seed=3')
+    done = make_packing(tmp_path, "a.npz", "b.npz", "radius=10", "seed=3")
     assert done.returncode == 0, done.stderr
-    for index, name in enumerate(['a.npz', 'b.npz']):
+    for index, name in enumerate(["a.npz", "b.npz"]):
         expected = packings.cpe(0.4, 10 * 1e-7, 1e-7, OVERLAP, 3, index)
         assert np.array_equal(packings.load(tmp_path / name).position, expected.position)
 
 
-@pytest.mark.parametrize('arguments, message', [
-    (['a.npz', 'filling=0.8'], 'allowed: at most 0.7519'),
-    (['a.npz', 'radius=-3'], 'radius = -3: not allowed; allowed: > 0'),
-    (['a.npz', 'velocity=3'], 'velocity: no parameter of a packing'),
-    (['nowhere/a.npz'], 'nowhere'),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["a.npz", "filling=0.8"], "allowed: at most 0.7519"),
+        (["a.npz", "radius=-3"], "radius = -3: not allowed; allowed: > 0"),
+        (["a.npz", "velocity=3"], "velocity: no parameter of a packing"),
+        (["nowhere/a.npz"], "nowhere"),
+    ],
+)
 def test_command_line_errors(tmp_path, arguments, message):
     failed = make_packing(tmp_path, *arguments)
     assert failed.returncode != 0
-    assert message in failed.stderr and failed.stderr.count('\n') == 1
+    assert message in failed.stderr and failed.stderr.count("\n") == 1
     assert os.listdir(tmp_path) == []

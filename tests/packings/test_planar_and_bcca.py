@@ -1,4 +1,5 @@
 """Planar packings, and aggregates by ballistic cluster-cluster aggregation (S17 section 4)."""
+
 import numpy as np
 import pytest
 from scipy.sparse import coo_matrix
@@ -9,8 +10,8 @@ from yade_scripts import aggregates, packings
 from yade_scripts.bcca import bcca, extent
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 
-RADIUS = MATERIALS['ice'].grainRadius
-OVERLAP = equilibrium_overlap(MATERIALS['ice'])
+RADIUS = MATERIALS["ice"].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 SPACING = 2 * RADIUS - OVERLAP
 
 
@@ -20,7 +21,7 @@ def clusters(packing):
     return connected_components(graph, directed=False)[0]
 
 
-@pytest.mark.parametrize('filling, relative_radius, grains', [(0.6, 20, 240), (0.9, 25, 562), (0.3, 10, 30)])
+@pytest.mark.parametrize("filling, relative_radius, grains", [(0.6, 20, 240), (0.9, 25, 562), (0.3, 10, 30)])
 def test_planar_cpe_is_a_hexagonal_lattice_in_a_circle(filling, relative_radius, grains):
     packing = packings.cpe(filling, relative_radius * RADIUS, RADIUS, OVERLAP, 3, planar=True)
     assert packing.grains == grains == round(filling * relative_radius**2) and np.all(packing.position[:, 2] == 0)
@@ -34,21 +35,25 @@ def test_planar_cpe_is_a_hexagonal_lattice_in_a_circle(filling, relative_radius,
 
 def test_planar_filling_has_the_limit_of_the_lattice():
     assert packings.maximum_filling(1.0, 0.0, True) == pytest.approx(np.pi / (2 * np.sqrt(3)))
-    with pytest.raises(packings.PackingError, match='filling = 0.95: more than the lattice holds; allowed: at most 0.916'):
+    with pytest.raises(
+        packings.PackingError, match="filling = 0.95: more than the lattice holds; allowed: at most 0.916"
+    ):
         packings.cpe(0.95, 20 * RADIUS, RADIUS, OVERLAP, 1, planar=True)
 
 
 def test_mean_coordination_of_planar_packings():
     """Six neighbours times the share of sites that is filled, on average over seeds; 4 standard errors, and the rim (some 4 per cent at R = 60)."""
     filling = 0.5
-    found = [2 * len(packings.contacts(p)) / p.grains
-             for p in (packings.cpe(filling, 60 * RADIUS, RADIUS, OVERLAP, seed, planar=True) for seed in range(8))]
+    found = [
+        2 * len(packings.contacts(p)) / p.grains
+        for p in (packings.cpe(filling, 60 * RADIUS, RADIUS, OVERLAP, seed, planar=True) for seed in range(8))
+    ]
     expected = 6 * filling / packings.maximum_filling(RADIUS, OVERLAP, True)
     assert 0.95 * expected - 4 * np.std(found) / np.sqrt(8) < np.mean(found) < expected
 
 
-@pytest.mark.parametrize('planar', [False, True])
-@pytest.mark.parametrize('grains', [2, 7, 256])
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("grains", [2, 7, 256])
 def test_bcca_is_one_cluster_whose_grains_touch_and_never_overlap_more(planar, grains):
     packing = bcca(grains, RADIUS, OVERLAP, 5, planar=planar)
     assert packing.grains == grains and clusters(packing) == 1
@@ -67,12 +72,14 @@ def test_bcca_is_a_function_of_seed_and_index():
     assert not np.array_equal(one, bcca(64, RADIUS, OVERLAP, 1, index=1).position)
 
 
-@pytest.mark.parametrize('planar, dimension', [(True, 1.5), (False, 1.9)])
+@pytest.mark.parametrize("planar, dimension", [(True, 1.5), (False, 1.9)])
 def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, dimension):
     """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991). Mean of the logarithm over 12 aggregates at 64 and 1024
     grains; within 4 standard errors and 0.15 (small clusters)."""
-    size = lambda grains: [np.log(np.sqrt((bcca(grains, 1.0, 0.0, seed, planar=planar).position**2).sum(axis=1).mean()))
-                           for seed in range(12)]
+    size = lambda grains: [
+        np.log(np.sqrt((bcca(grains, 1.0, 0.0, seed, planar=planar).position ** 2).sum(axis=1).mean()))
+        for seed in range(12)
+    ]
     small, large = size(64), size(1024)
     slope = (np.mean(large) - np.mean(small)) / np.log(16)
     error = np.hypot(np.std(small), np.std(large)) / np.sqrt(12) / np.log(16)
@@ -80,7 +87,7 @@ def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, di
 
 
 def test_radius_of_a_bcca_run_holds_both_aggregates():
-    values = dict(packing='bcca', grains=100, seed=4, planar=1)
+    values = dict(packing="bcca", grains=100, seed=4, planar=1)
     radius = aggregates.bcca_radius(100, OVERLAP / RADIUS, 4, 1)
     reach = [extent(aggregates.make(values, RADIUS, OVERLAP, index)) / RADIUS for index in (0, 1)]
     assert max(reach) == pytest.approx(radius, rel=1e-9)

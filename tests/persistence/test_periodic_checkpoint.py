@@ -1,4 +1,5 @@
 """Checkpoints of JKRWadaEngine in a shrinking periodic cell go on to the same bits, and scenes change between engine and functors there."""
+
 import pytest
 
 SCENE = """
@@ -27,7 +28,9 @@ def difference(a, b):
 
 @pytest.mark.parametrize("homo,drag,format", [(2, 0.0, ".yade.gz"), (0, 2e-12, ".xml.bz2")])
 def test_checkpoint_continues_to_the_bit(yade, homo, drag, format):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start(parameters["homo"], parameters["drag"])
 fused_engine(subSteps=7)
 O.dt *= 7
@@ -40,7 +43,9 @@ O.run(60, True)
 result["same"] = [bool((a == b).all()) for a, b in zip(straight[0], state())]
 result["energies"] = [straight[1], all_energies()]
 result["statistics"] = [straight[2], O.engines[0].statistics()]
-""", {"homo": homo, "drag": drag, "format": format})
+""",
+        {"homo": homo, "drag": drag, "format": format},
+    )
     assert found["same"] == [True, True, True]
     straight, again = found["energies"]
     assert straight["slidingDissipation"] > 0 and straight["boundaryWork"] != 0
@@ -51,7 +56,9 @@ result["statistics"] = [straight[2], O.engines[0].statistics()]
 @pytest.mark.parametrize("homo,drag", [(0, 0.0), (0, 2e-12), (1, 0.0), (2, 0.0)])
 def test_functors_then_engine_then_functors_is_one_run(yade, homo, drag):
     """To rounding, with one small step in an O.step (with more, the engine's cell goes along chords of YADE's exponential). NewtonIntegrator remembers the velocity gradient that it gave the grains; a new one must be told (prevVelGrad)."""
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 homo, drag = parameters["homo"], parameters["drag"]
 start(homo, drag)
 O.run(400, True)
@@ -70,7 +77,9 @@ result["size"] = O.cell.hSize[0, 0] / size - 1
 result["differences"] = [difference(a, b) for a, b in zip(state(), straight)]
 result["contacts"] = [contacts, O.interactions.countReal()]
 result["work"] = O.energy["boundaryWork"] / work - 1
-""", {"homo": homo, "drag": drag})
+""",
+        {"homo": homo, "drag": drag},
+    )
     assert found["steps"] == pytest.approx(400, rel=1e-12) and found["events"] > 8
     assert found["contacts"][0] == found["contacts"][1] > 8
     # with drag, grains whose contacts were born or broke in the functors' last step are taken over to second order only

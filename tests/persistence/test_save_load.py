@@ -2,6 +2,7 @@
 
 YADE adds up the forces on a grain in the order of its interaction container, which contacts that break shuffle differently before and after loading;
 InteractionLoop(loopOnSortedInteractions=True) makes the order that of the ids, and with it the bits."""
+
 import pytest
 
 CONTINUE = """

@@ -1,4 +1,5 @@
 """Two grains in YADE against closed forms and an independent integration: error and order of convergence."""
+
 import numpy as np
 import pytest
 
@@ -42,8 +43,11 @@ def test_sticking_velocity_with_drag(yade, picoseconds):
     """A22 eq 30, integrated independently to 1e-10 (analysis.theory)."""
     material = Material(**{**ICE.__dict__, "viscoelastic_time": picoseconds * 1e-12})
     independent = sticking_velocity(pair_constants(material, 1e-7))
-    found = yade(HEAD_ON + "m = ice(viscoelasticTime=parameters['T'])\nresult['v'] = sticking(0.005, m, *parameters['range'], 2e-4)",
-                 {"T": picoseconds * 1e-12, "range": [0.9 * independent, 1.1 * independent]})
+    found = yade(
+        HEAD_ON
+        + "m = ice(viscoelasticTime=parameters['T'])\nresult['v'] = sticking(0.005, m, *parameters['range'], 2e-4)",
+        {"T": picoseconds * 1e-12, "range": [0.9 * independent, 1.1 * independent]},
+    )
     assert found["v"] == pytest.approx(independent, rel=1e-3)
 
 
@@ -55,15 +59,20 @@ def test_rebound_converges_with_second_order(yade, kind):
     material = {"elastic": "ice()", "viscous": "ice(viscoelasticTime=2e-12)", "unlike": "ice()"}[kind]
     other = "soft(), radius2=1.7e-7, other=soft()" if kind == "unlike" else ""
     call = f"rebound({speed}, step, gap, " + ("ice(), other=soft(), radius2=1.7e-7" if other else material) + ")"
-    found = yade(HEAD_ON + f"""
+    found = yade(
+        HEAD_ON
+        + f"""
 for step in (0.1, 0.05, 0.025, 0.0125):
     result[step] = [{call} for gap in 2e-9 + 1e-10 * np.arange(12) / 1.7]
-""")
+"""
+    )
     if kind == "unlike":
         soft = Material(3e9, 0.33, 1300.0, 0.05, 1.1e-9)
         pair = pair_constants(ICE, 1e-7, soft, 1.7e-7)
     else:
-        pair = pair_constants(Material(**{**ICE.__dict__, "viscoelastic_time": 2e-12 if kind == "viscous" else 0.0}), 1e-7)
+        pair = pair_constants(
+            Material(**{**ICE.__dict__, "viscoelastic_time": 2e-12 if kind == "viscous" else 0.0}), 1e-7
+        )
     exact = collide_pair(speed, pair).rebound_velocity
     errors = [np.sqrt(np.mean((np.array(v) / exact - 1) ** 2)) for v in found.values()]
     assert errors[0] < 1e-2 and errors[-1] < 2e-4, errors
@@ -98,9 +107,16 @@ def driven(mode, times_limit, step, radius2, material, other):
 def test_driven_past_the_limit(yade, mode, radius2):
     """A displacement driven to 8 times its limit: force at the limit, stored k/2 crit^2, dissipated k crit (total - crit) (A22 eqs 13-26), and the
     other two modes untouched. The pointers' finite angles (up to 8 crit/r, 6 %) enter in second order, less for smaller grains' limits."""
-    found = yade(DRIVEN + "m = ice()\nresult.update(driven(parameters['mode'], 8, 0.1, parameters['radius2'], m, m))", {"mode": mode, "radius2": radius2})
+    found = yade(
+        DRIVEN + "m = ice()\nresult.update(driven(parameters['mode'], 8, 0.1, parameters['radius2'], m, m))",
+        {"mode": mode, "radius2": radius2},
+    )
     c, limit, e = found["constants"], found["limit"], found["energies"]
-    stiffness = {"sliding": c["slidingStiffness"], "rolling": c["rollingStiffness"], "twisting": c["twistingStiffness"]}[mode]
+    stiffness = {
+        "sliding": c["slidingStiffness"],
+        "rolling": c["rollingStiffness"],
+        "twisting": c["twistingStiffness"],
+    }[mode]
     assert e[mode] == pytest.approx(stiffness / 2 * limit**2, rel=1e-3)
     assert e[mode + "Dissipation"] == pytest.approx(stiffness * limit * 7 * limit, rel=2e-3)
     for other in {"sliding", "rolling", "twisting"} - {mode}:

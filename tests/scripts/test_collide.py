@@ -1,4 +1,5 @@
 """collide.py run for real: what a run folder holds, what is refused, what an interruption leaves."""
+
 import os
 import shutil
 import signal
@@ -7,172 +8,201 @@ import time
 
 import numpy as np
 import pytest
-
 from running import COLLIDE, TINY, collide, environment, messages, read_arrays, read_json
+
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.parameters import FIELDS
 from yade_scripts.run_folder import CHANNELS, SERIES
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """The folder of a tiny collision, run once."""
-    folder = tmp_path_factory.mktemp('collision')
-    process = collide(folder, *TINY, 'out=run')
+    folder = tmp_path_factory.mktemp("collision")
+    process = collide(folder, *TINY, "out=run")
     assert process.returncode == 0, process.stdout + process.stderr
     assert messages(process) == []
-    assert process.stdout.rstrip().splitlines()[-1].startswith('run folder: run (completed, ')
-    return folder / 'run'
+    assert process.stdout.rstrip().splitlines()[-1].startswith("run folder: run (completed, ")
+    return folder / "run"
 
 
 def test_run_folder_is_complete(run):
-    assert sorted(os.listdir(run)) == ['ended', 'history.npz', 'run.json', 'states']
-    assert os.path.getsize(run / 'ended') == 0
-    about = read_json(run, 'run.json')
-    assert set(about) == {'format', 'parameters', 'derived', 'versions', 'commit', 'seed', 'hardware',
-                          'wallTime', 'outcome'}
-    assert list(about['parameters']) == [field.name for field in FIELDS]
-    assert [name for name, value in about['parameters'].items() if value is None] == ['tolerance']
-    assert about['derived']['stepChoice'] == 'as given'
-    assert set(about['derived']) == {
-        'young', 'poisson', 'surfaceEnergy', 'density', 'criticalRolling', 'viscoelasticTime',
-        'grainRadius', 'grainMass', 'equilibriumContactRadius', 'equilibriumOverlap', 'pullOffOverlap',
-        'pullOffForce', 'timeUnit', 'timeStep', 'stepChoice', 'steps', 'aggregateRadius', 'grainsPerAggregate'}
-    assert set(about['versions']) == {'yade', 'python', 'numpy', 'contact_law'}
-    assert about['outcome'] == 'completed' and about['wallTime'] > 0 and about['seed'] == 1
+    assert sorted(os.listdir(run)) == ["ended", "history.npz", "run.json", "states"]
+    assert os.path.getsize(run / "ended") == 0
+    about = read_json(run, "run.json")
+    assert set(about) == {
+        "format",
+        "parameters",
+        "derived",
+        "versions",
+        "commit",
+        "seed",
+        "hardware",
+        "wallTime",
+        "outcome",
+    }
+    assert list(about["parameters"]) == [field.name for field in FIELDS]
+    assert [name for name, value in about["parameters"].items() if value is None] == ["tolerance"]
+    assert about["derived"]["stepChoice"] == "as given"
+    assert set(about["derived"]) == {
+        "young",
+        "poisson",
+        "surfaceEnergy",
+        "density",
+        "criticalRolling",
+        "viscoelasticTime",
+        "grainRadius",
+        "grainMass",
+        "equilibriumContactRadius",
+        "equilibriumOverlap",
+        "pullOffOverlap",
+        "pullOffForce",
+        "timeUnit",
+        "timeStep",
+        "stepChoice",
+        "steps",
+        "aggregateRadius",
+        "grainsPerAggregate",
+    }
+    assert set(about["versions"]) == {"yade", "python", "numpy", "contact_law"}
+    assert about["outcome"] == "completed" and about["wallTime"] > 0 and about["seed"] == 1
 
 
 def test_history_has_every_series(run):
-    about, history = read_json(run, 'run.json'), read_arrays(run, 'history.npz')
+    about, history = read_json(run, "run.json"), read_arrays(run, "history.npz")
     assert set(history) == set(SERIES) and len({series.shape for series in history.values()}) == 1
-    spacing = np.diff(history['time'])
-    assert history['time'][0] == 0 and np.ptp(spacing) < 1e-9 * spacing[0]
+    spacing = np.diff(history["time"])
+    assert history["time"][0] == 0 and np.ptp(spacing) < 1e-9 * spacing[0]
     assert len(spacing) >= 300
-    end = about['derived']['steps'] * about['derived']['timeStep']
-    assert history['time'][-1] == pytest.approx(end, rel=1e-9)
-    assert about['parameters']['duration'] <= end < 1.01 * about['parameters']['duration']
-    assert history['contacts_between'][0] == 0 and history['contacts_between'][-1] > 0
-    assert np.all(history['contacts'] >= history['contacts_between'])
+    end = about["derived"]["steps"] * about["derived"]["timeStep"]
+    assert history["time"][-1] == pytest.approx(end, rel=1e-9)
+    assert about["parameters"]["duration"] <= end < 1.01 * about["parameters"]["duration"]
+    assert history["contacts_between"][0] == 0 and history["contacts_between"][-1] > 0
+    assert np.all(history["contacts"] >= history["contacts_between"])
 
 
 def test_states_agree_with_the_history(run):
-    history = read_arrays(run, 'history.npz')
-    names = sorted(os.listdir(run / 'states'))
-    assert names == [f'{number:06d}.npz' for number in range(22)]
-    states = [read_arrays(run, 'states', name) for name in names]
-    assert states[0]['time'] == 0 and states[-1]['time'] == history['time'][-1]
+    history = read_arrays(run, "history.npz")
+    names = sorted(os.listdir(run / "states"))
+    assert names == [f"{number:06d}.npz" for number in range(22)]
+    states = [read_arrays(run, "states", name) for name in names]
+    assert states[0]["time"] == 0 and states[-1]["time"] == history["time"][-1]
     for state in states:
-        row = np.flatnonzero(history['time'] == state['time'])
+        row = np.flatnonzero(history["time"] == state["time"])
         assert len(row) == 1
-        for name in ('position', 'velocity', 'angular_velocity'):
+        for name in ("position", "velocity", "angular_velocity"):
             assert state[name].shape == (52, 3)
-        assert np.array_equal(state['aggregate'], np.repeat([0, 1], 26)) and np.all(state['radius'] == 1e-7)
-        contacts = len(state['contact_pairs'])
-        assert contacts == history['contacts'][row[0]]
-        assert contacts == len(state['contact_normal_force']) == len(state['contact_bonded'])
-        sides = state['aggregate'][state['contact_pairs']]
-        assert np.count_nonzero(sides[:, 0] != sides[:, 1]) == history['contacts_between'][row[0]]
-        x, v = state['position'][:, 0], state['velocity'][:, 0]
-        assert history['d'][row[0]] == pytest.approx(8e-7 - x[x > 0].mean() + x[x <= 0].mean(), rel=1e-12)
-        assert history['v'][row[0]] == pytest.approx(v[x <= 0].mean() - v[x > 0].mean(), rel=1e-12)
+        assert np.array_equal(state["aggregate"], np.repeat([0, 1], 26)) and np.all(state["radius"] == 1e-7)
+        contacts = len(state["contact_pairs"])
+        assert contacts == history["contacts"][row[0]]
+        assert contacts == len(state["contact_normal_force"]) == len(state["contact_bonded"])
+        sides = state["aggregate"][state["contact_pairs"]]
+        assert np.count_nonzero(sides[:, 0] != sides[:, 1]) == history["contacts_between"][row[0]]
+        x, v = state["position"][:, 0], state["velocity"][:, 0]
+        assert history["d"][row[0]] == pytest.approx(8e-7 - x[x > 0].mean() + x[x <= 0].mean(), rel=1e-12)
+        assert history["v"][row[0]] == pytest.approx(v[x <= 0].mean() - v[x > 0].mean(), rel=1e-12)
 
 
 def test_starts_at_rest_within_each_aggregate(run):
     """Kinetic energy 2 (1/2) M (v/2)^2, no force in any contact, nothing stored or lost but in the normal."""
-    about, start = read_json(run, 'run.json'), read_arrays(run, 'states', '000000.npz')
-    history = read_arrays(run, 'history.npz')
-    mass = about['derived']['grainsPerAggregate'] * about['derived']['grainMass']
-    velocity = about['parameters']['velocity']
-    assert history['kinetic'][0] == pytest.approx(2 * 0.5 * mass * (velocity / 2)**2, rel=1e-12)
-    assert np.abs(start['contact_normal_force']).max() < 1e-9 * about['derived']['pullOffForce']
-    assert not start['contact_bonded'].any()
-    others = [history[channel][0] for channel in CHANNELS if channel not in ('kinetic', 'normal')]
-    assert np.abs(others).max() < 1e-12 * history['kinetic'][0]
-    towards_each_other = np.outer(1 - 2 * start['aggregate'], (velocity / 2, 0, 0))
-    assert np.allclose(start['velocity'], towards_each_other, rtol=0, atol=1e-9)
-    assert np.all(start['position'][:26, 0] < 0) and np.all(start['position'][26:, 0] > 0)
+    about, start = read_json(run, "run.json"), read_arrays(run, "states", "000000.npz")
+    history = read_arrays(run, "history.npz")
+    mass = about["derived"]["grainsPerAggregate"] * about["derived"]["grainMass"]
+    velocity = about["parameters"]["velocity"]
+    assert history["kinetic"][0] == pytest.approx(2 * 0.5 * mass * (velocity / 2) ** 2, rel=1e-12)
+    assert np.abs(start["contact_normal_force"]).max() < 1e-9 * about["derived"]["pullOffForce"]
+    assert not start["contact_bonded"].any()
+    others = [history[channel][0] for channel in CHANNELS if channel not in ("kinetic", "normal")]
+    assert np.abs(others).max() < 1e-12 * history["kinetic"][0]
+    towards_each_other = np.outer(1 - 2 * start["aggregate"], (velocity / 2, 0, 0))
+    assert np.allclose(start["velocity"], towards_each_other, rtol=0, atol=1e-9)
+    assert np.all(start["position"][:26, 0] < 0) and np.all(start["position"][26:, 0] > 0)
 
 
 def test_overlap_of_packings_made_without_yade_is_the_plugins(run):
-    assert read_json(run, 'run.json')['derived']['equilibriumOverlap'] == pytest.approx(
-        equilibrium_overlap(MATERIALS['ice']), rel=1e-12)
+    assert read_json(run, "run.json")["derived"]["equilibriumOverlap"] == pytest.approx(
+        equilibrium_overlap(MATERIALS["ice"]), rel=1e-12
+    )
 
 
 def test_momentum_is_conserved_to_rounding(run):
-    for name in os.listdir(run / 'states'):
-        velocity = read_arrays(run, 'states', name)['velocity']
+    for name in os.listdir(run / "states"):
+        velocity = read_arrays(run, "states", name)["velocity"]
         assert np.abs(velocity.sum(axis=0)).max() < 1e-12 * np.abs(velocity).sum()
 
 
 def test_channels_add_up_to_a_constant(run):
-    history = read_arrays(run, 'history.npz')
+    history = read_arrays(run, "history.npz")
     total = sum(history[channel] for channel in CHANNELS)
-    assert np.abs(total - total[0]).max() < 1e-3 * history['kinetic'][0]
-    assert history['connection'][-1] > 0
+    assert np.abs(total - total[0]).max() < 1e-3 * history["kinetic"][0]
+    assert history["connection"][-1] > 0
 
 
 def test_a_run_that_has_ended_is_kept_unless_asked(run, tmp_path):
-    run = shutil.copytree(run, tmp_path / 'run')
-    before = os.stat(run / 'run.json').st_mtime_ns
-    refused = collide(run.parent, *TINY, 'out=run')
+    run = shutil.copytree(run, tmp_path / "run")
+    before = os.stat(run / "run.json").st_mtime_ns
+    refused = collide(run.parent, *TINY, "out=run")
     assert refused.returncode == 2
-    assert messages(refused) == ['collide.py: out = run: holds a run that has ended; '
-                                 'allowed: another folder, or overwrite=1']
-    assert os.stat(run / 'run.json').st_mtime_ns == before
-    replaced = collide(run.parent, *TINY, 'out=run', 'overwrite=1', 'seed=2')
+    assert messages(refused) == [
+        "collide.py: out = run: holds a run that has ended; " "allowed: another folder, or overwrite=1"
+    ]
+    assert os.stat(run / "run.json").st_mtime_ns == before
+    replaced = collide(run.parent, *TINY, "out=run", "overwrite=1", "seed=2")
     assert replaced.returncode == 0, replaced.stderr
-    assert read_json(run, 'run.json')['seed'] == 2 and (run / 'ended').exists()
-    assert len(os.listdir(run / 'states')) == 22
+    assert read_json(run, "run.json")["seed"] == 2 and (run / "ended").exists()
+    assert len(os.listdir(run / "states")) == 22
 
 
-@pytest.mark.parametrize('signal_number, status', [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+@pytest.mark.parametrize("signal_number, status", [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
 def test_an_interrupted_run_leaves_what_it_had(tmp_path, signal_number, status):
-    command = ['yade', '-n', '-x', COLLIDE, 'radius=4', 'velocity=10', 'duration=1e-3', 'out=run']
-    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                               text=True, env=environment())
-    first_state = tmp_path / 'run' / 'states' / '000000.npz'
+    command = ["yade", "-n", "-x", COLLIDE, "radius=4", "velocity=10", "duration=1e-3", "out=run"]
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment()
+    )
+    first_state = tmp_path / "run" / "states" / "000000.npz"
     deadline = time.monotonic() + 30
     while not first_state.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.05)
     process.send_signal(signal_number)
     output, errors = process.communicate(timeout=30)
     assert process.returncode == status, errors
-    assert 'run folder: run (interrupted, ' in output
-    assert sorted(os.listdir(tmp_path / 'run')) == ['checkpoint', 'history.npz', 'run.json', 'states']
-    assert read_json(tmp_path, 'run', 'run.json')['outcome'] == 'interrupted'
-    history = read_arrays(tmp_path, 'run', 'history.npz')
-    last = read_arrays(tmp_path, 'run', 'states', sorted(os.listdir(tmp_path / 'run' / 'states'))[-1])
-    assert last['time'] == history['time'][-1] > 0
+    assert "run folder: run (interrupted, " in output
+    assert sorted(os.listdir(tmp_path / "run")) == ["checkpoint", "history.npz", "run.json", "states"]
+    assert read_json(tmp_path, "run", "run.json")["outcome"] == "interrupted"
+    history = read_arrays(tmp_path, "run", "history.npz")
+    last = read_arrays(tmp_path, "run", "states", sorted(os.listdir(tmp_path / "run" / "states"))[-1])
+    assert last["time"] == history["time"][-1] > 0
 
 
 WRONG = [
-    (['velocty=3'], 'collide.py: velocty: unknown parameter; allowed: '),
-    (['radius=-4'], 'collide.py: radius = -4: not allowed; allowed: > 0'),
-    (['filling=0.76'], 'collide.py: filling = 0.76: more than the lattice holds; allowed: at most 0.7519'),
-    (['stepFraction=0.3', 'viscoelasticTime=6e-12'],
-     'collide.py: stepFraction = 0.3: unstable at this filling and drag; allowed: '),
-    (['threads=2', 'engine=functors'], 'collide.py: threads = 2: YADE was started with 1; allowed: '),
-    (['threads=3'], 'collide.py: threads = 3: more than the fused engine has domains; allowed: '),
-    (['out=/dev/null/run'],
-     'collide.py: out = /dev/null/run: Not a directory; allowed: a folder that can be written'),
-    (['out=.'], 'collide.py: out = .: exists and is no run folder; allowed: '),
-    (['table=rows.table:3'], 'collide.py: velocity = fast: not a finite number; allowed: '),
-    (['table=rows.table:9'], 'collide.py: table rows.table:9: no such row; allowed lines: 2, 3'),
+    (["velocty=3"], "collide.py: velocty: unknown parameter; allowed: "),
+    (["radius=-4"], "collide.py: radius = -4: not allowed; allowed: > 0"),
+    (["filling=0.76"], "collide.py: filling = 0.76: more than the lattice holds; allowed: at most 0.7519"),
+    (
+        ["stepFraction=0.3", "viscoelasticTime=6e-12"],
+        "collide.py: stepFraction = 0.3: unstable at this filling and drag; allowed: ",
+    ),
+    (["threads=2", "engine=functors"], "collide.py: threads = 2: YADE was started with 1; allowed: "),
+    (["threads=3"], "collide.py: threads = 3: more than the fused engine has domains; allowed: "),
+    (["out=/dev/null/run"], "collide.py: out = /dev/null/run: Not a directory; allowed: a folder that can be written"),
+    (["out=."], "collide.py: out = .: exists and is no run folder; allowed: "),
+    (["table=rows.table:3"], "collide.py: velocity = fast: not a finite number; allowed: "),
+    (["table=rows.table:9"], "collide.py: table rows.table:9: no such row; allowed lines: 2, 3"),
 ]
 
 
-@pytest.mark.parametrize('arguments, message', WRONG, ids=[' '.join(arguments) for arguments, _ in WRONG])
+@pytest.mark.parametrize("arguments, message", WRONG, ids=[" ".join(arguments) for arguments, _ in WRONG])
 def test_wrong_parameters_give_one_line_and_run_nothing(tmp_path, arguments, message):
-    (tmp_path / 'rows.table').write_text('radius velocity\n4 10\n4 fast\n')
+    (tmp_path / "rows.table").write_text("radius velocity\n4 10\n4 fast\n")
     failed = collide(tmp_path, *arguments)
     assert failed.returncode == 2
     lines = messages(failed)
     assert len(lines) == 1 and lines[0].startswith(message)
-    assert os.listdir(tmp_path) == ['rows.table']
+    assert os.listdir(tmp_path) == ["rows.table"]
 
 
 def test_a_misspelt_column_gives_one_line(tmp_path):
-    (tmp_path / 'rows.table').write_text('radius velocty\n4 10\n')
-    failed = collide(tmp_path, YADE_BATCH='rows.table:2')
+    (tmp_path / "rows.table").write_text("radius velocty\n4 10\n")
+    failed = collide(tmp_path, YADE_BATCH="rows.table:2")
     assert failed.returncode == 2
-    assert [line[:47] for line in messages(failed)] == ['collide.py: velocty: unknown parameter; allowed']
+    assert [line[:47] for line in messages(failed)] == ["collide.py: velocty: unknown parameter; allowed"]

@@ -1,4 +1,5 @@
 """What the README says, run as written."""
+
 import re
 import subprocess
 from pathlib import Path
@@ -40,4 +41,6 @@ def test_the_commands_are_there():
         assert re.search(rf"^{target}:", makefile, re.M), target
     for path in re.findall(r"(?:yade_scripts|contact_law|tests)/[\w./]*\w/?", README):
         assert (TOP / path.rstrip("/")).exists(), path
-    assert subprocess.run(["/usr/bin/python3", "-m", "analysis", "--help"], cwd=TOP, capture_output=True).returncode == 0
+    assert (
+        subprocess.run(["/usr/bin/python3", "-m", "analysis", "--help"], cwd=TOP, capture_output=True).returncode == 0
+    )

@@ -1,4 +1,5 @@
 """The run folder's files, the schedule of samples, the progress bar: without YADE."""
+
 import io
 import json
 import os
@@ -15,82 +16,87 @@ from yade_scripts.sampling import Schedule, compression_and_velocity
 
 def ended_run(path):
     folder = RunFolder(str(path))
-    folder.write_run({'outcome': 'completed'})
-    folder.write_history({'time': np.zeros(3)})
-    folder.write_state(0, {'time': 0.0})
+    folder.write_run({"outcome": "completed"})
+    folder.write_history({"time": np.zeros(3)})
+    folder.write_state(0, {"time": 0.0})
     folder.write_ended()
     os.close(folder._lock)
     return path
 
 
 def test_files_are_whole_and_no_others_stay(tmp_path):
-    ended_run(tmp_path / 'a' / 'b')
-    found = {os.path.relpath(os.path.join(at, name), tmp_path)
-             for at, _, names in os.walk(tmp_path) for name in names}
-    assert found == {'a/b/run.json', 'a/b/history.npz', 'a/b/ended', 'a/b/states/000000.npz'}
-    with open(tmp_path / 'a' / 'b' / 'run.json') as file:
-        assert json.load(file) == {'format': 1, 'outcome': 'completed'}
+    ended_run(tmp_path / "a" / "b")
+    found = {os.path.relpath(os.path.join(at, name), tmp_path) for at, _, names in os.walk(tmp_path) for name in names}
+    assert found == {"a/b/run.json", "a/b/history.npz", "a/b/ended", "a/b/states/000000.npz"}
+    with open(tmp_path / "a" / "b" / "run.json") as file:
+        assert json.load(file) == {"format": 1, "outcome": "completed"}
 
 
 def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):
-    folder = RunFolder(str(tmp_path / 'run'))
-    folder.write_run({'outcome': 'running'})
+    folder = RunFolder(str(tmp_path / "run"))
+    folder.write_run({"outcome": "running"})
     with pytest.raises(ValueError):
-        folder.write_run({'wallTime': float('nan')})
-    with open(tmp_path / 'run' / 'run.json') as file:
-        assert json.load(file)['outcome'] == 'running'
-    assert sorted(os.listdir(tmp_path / 'run')) == ['run.json', 'states']
+        folder.write_run({"wallTime": float("nan")})
+    with open(tmp_path / "run" / "run.json") as file:
+        assert json.load(file)["outcome"] == "running"
+    assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"]
 
 
 def test_an_ended_run_is_replaced_only_when_asked(tmp_path):
-    path = ended_run(tmp_path / 'run')
-    with pytest.raises(RunFolderError, match='holds a run that has ended; allowed: another folder'):
+    path = ended_run(tmp_path / "run")
+    with pytest.raises(RunFolderError, match="holds a run that has ended; allowed: another folder"):
         RunFolder(str(path))
-    (path / 'notes.txt').write_text('mine')
+    (path / "notes.txt").write_text("mine")
     RunFolder(str(path), overwrite=True)
-    assert sorted(os.listdir(path)) == ['notes.txt', 'run.json', 'states']
-    assert os.listdir(path / 'states') == []
+    assert sorted(os.listdir(path)) == ["notes.txt", "run.json", "states"]
+    assert os.listdir(path / "states") == []
 
 
 def test_a_run_that_has_not_ended_is_replaced(tmp_path):
-    path = ended_run(tmp_path / 'run')
-    os.unlink(path / 'ended')
+    path = ended_run(tmp_path / "run")
+    os.unlink(path / "ended")
     RunFolder(str(path))
-    assert sorted(os.listdir(path)) == ['run.json', 'states']
+    assert sorted(os.listdir(path)) == ["run.json", "states"]
 
 
 def test_a_folder_in_use_is_refused_until_the_run_is_gone(tmp_path):
-    path = str(tmp_path / 'run')
-    script = ('import sys; sys.path.insert(0, sys.argv[1])\n'
-              'from yade_scripts.run_folder import RunFolder\n'
-              'folder = RunFolder(sys.argv[2]); print(flush=True); sys.stdin.read()')
+    path = str(tmp_path / "run")
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "from yade_scripts.run_folder import RunFolder\n"
+        "folder = RunFolder(sys.argv[2]); print(flush=True); sys.stdin.read()"
+    )
     top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    command = [sys.executable, '-c', script, top, path]
+    command = [sys.executable, "-c", script, top, path]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
         other.stdout.readline()
-        with pytest.raises(RunFolderError, match='another run is writing there'):
+        with pytest.raises(RunFolderError, match="another run is writing there"):
             RunFolder(path)
         other.kill()
     RunFolder(path)
 
 
-@pytest.mark.parametrize('make, message', [
-    (lambda path: path.write_text('x'), 'is a file; allowed: a folder'),
-    (lambda path: (path.mkdir(), (path / 'thesis.tex').write_text('x')), 'exists and is no run folder'),
-])
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (lambda path: path.write_text("x"), "is a file; allowed: a folder"),
+        (lambda path: (path.mkdir(), (path / "thesis.tex").write_text("x")), "exists and is no run folder"),
+    ],
+)
 def test_what_is_no_run_folder_is_left_alone(tmp_path, make, message):
-    make(tmp_path / 'run')
+    make(tmp_path / "run")
     with pytest.raises(RunFolderError, match=message):
-        RunFolder(str(tmp_path / 'run'), overwrite=True)
+        RunFolder(str(tmp_path / "run"), overwrite=True)
 
 
 def test_an_unwritable_folder():
-    with pytest.raises(RunFolderError, match='out = /proc/run: .*; allowed: a folder that can be written'):
-        RunFolder('/proc/run')
+    with pytest.raises(RunFolderError, match="out = /proc/run: .*; allowed: a folder that can be written"):
+        RunFolder("/proc/run")
 
 
-@pytest.mark.parametrize('duration, steps, interval',
-                         [(250e-9, 12950, 43), (1e-12, 1, 1), (10e-12, 10, 1), (1e-6, 51800, 50)])
+@pytest.mark.parametrize(
+    "duration, steps, interval", [(250e-9, 12950, 43), (1e-12, 1, 1), (10e-12, 10, 1), (1e-6, 51800, 50)]
+)
 def test_schedule(duration, steps, interval):
     step = duration / steps
     schedule = Schedule.of(duration, step)
@@ -120,6 +126,6 @@ def test_progress_shows_the_time_left_on_a_terminal_only():
         progress.start -= 10  # ten seconds ago
         progress.update(50)
         progress.close()
-    assert quiet.getvalue() == ''
-    assert '] ' + ' 25.0 %  0:30 left' in terminal.getvalue() and terminal.getvalue().endswith('\r\033[K')
-    assert [duration_text(s) for s in (0.4, 59.6, 3600)] == ['0:00', '1:00', '1:00:00']
+    assert quiet.getvalue() == ""
+    assert "] " + " 25.0 %  0:30 left" in terminal.getvalue() and terminal.getvalue().endswith("\r\033[K")
+    assert [duration_text(s) for s in (0.4, 59.6, 3600)] == ["0:00", "1:00", "1:00:00"]

@@ -1,113 +1,143 @@
 """collide.py with necks and in a plane: the columns neck and planar, packing bcca, contact_bonded, the channel bondBreaking."""
+
 import os
 import subprocess
 import time
 
 import numpy as np
 import pytest
-
 from running import COLLIDE, collide, environment, messages, read_arrays, read_json
+
 from yade_scripts import parameters
 from yade_scripts.run_folder import CHANNELS
 
-PLANAR = ('radius=6', 'filling=0.7', 'planar=1', 'velocity=60', 'duration=6e-9', 'seed=2', 'stepFraction=0.05')
-LONG = ('packing=bcca', 'grains=512', 'planar=1', 'neck=0.3', 'velocity=60', 'duration=300e-9', 'threads=1')
+PLANAR = ("radius=6", "filling=0.7", "planar=1", "velocity=60", "duration=6e-9", "seed=2", "stepFraction=0.05")
+LONG = ("packing=bcca", "grains=512", "planar=1", "neck=0.3", "velocity=60", "duration=300e-9", "threads=1")
 
 
-@pytest.fixture(scope='module', params=['fused', 'functors'])
+@pytest.fixture(scope="module", params=["fused", "functors"])
 def run(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
-    done = collide(folder, *PLANAR, 'neck=0.5', f'engine={request.param}', 'out=run')
+    done = collide(folder, *PLANAR, "neck=0.5", f"engine={request.param}", "out=run")
     assert done.returncode == 0 and messages(done) == [], done.stderr
-    return folder / 'run'
+    return folder / "run"
 
 
 def states(run):
-    return [read_arrays(run, 'states', name) for name in sorted(os.listdir(run / 'states'))]
+    return [read_arrays(run, "states", name) for name in sorted(os.listdir(run / "states"))]
 
 
 def test_bonds_break_and_new_contacts_are_none(run):
     all_states = states(run)
-    assert all_states[0]['contact_bonded'].all() and len(all_states[0]['contact_bonded']) >= 50
-    number = [state['contact_bonded'].sum() for state in all_states]
+    assert all_states[0]["contact_bonded"].all() and len(all_states[0]["contact_bonded"]) >= 50
+    number = [state["contact_bonded"].sum() for state in all_states]
     assert number == sorted(number, reverse=True) and number[-1] < number[0]
     end = all_states[-1]
-    sides = end['aggregate'][end['contact_pairs']]
+    sides = end["aggregate"][end["contact_pairs"]]
     between = sides[:, 0] != sides[:, 1]
-    assert between.any() and not end['contact_bonded'][between].any()
+    assert between.any() and not end["contact_bonded"][between].any()
 
 
 def test_a_plane_stays_a_plane_to_the_bit(run):
     for state in states(run):
-        assert np.all(state['position'][:, 2] == 0) and np.all(state['velocity'][:, 2] == 0)
-        assert np.all(state['angular_velocity'][:, :2] == 0)
-    assert np.any(states(run)[-1]['angular_velocity'][:, 2] != 0)
+        assert np.all(state["position"][:, 2] == 0) and np.all(state["velocity"][:, 2] == 0)
+        assert np.all(state["angular_velocity"][:, :2] == 0)
+    assert np.any(states(run)[-1]["angular_velocity"][:, 2] != 0)
 
 
 def test_ledger_has_bond_breaking_and_closes(run):
-    history = read_arrays(run, 'history.npz')
-    broken = history['bondBreaking']
+    history = read_arrays(run, "history.npz")
+    broken = history["bondBreaking"]
     assert broken[0] == 0 and broken[-1] > 0
     total = sum(history[channel] for channel in CHANNELS)
-    assert np.abs(total - total[0]).max() < 2e-3 * history['kinetic'][0]
-    assert np.all(history['twisting'] == 0)
+    assert np.abs(total - total[0]).max() < 2e-3 * history["kinetic"][0]
+    assert np.all(history["twisting"] == 0)
 
 
 def test_run_json_tells_of_the_bonds(run):
-    about = read_json(run, 'run.json')
-    derived = about['derived']
-    assert about['parameters']['neck'] == 0.5 and about['parameters']['planar'] == 1
-    assert derived['neckRadius'] == pytest.approx(0.5e-7) and derived['shrunkRadius'] == pytest.approx(0.9806e-7, rel=1e-4)
-    assert derived['breakingEnergy'] == pytest.approx(np.pi * 0.25e-14 * 0.1)
-    assert derived['aggregateRadius'] == pytest.approx(about['parameters']['radius'] * 1e-7)
+    about = read_json(run, "run.json")
+    derived = about["derived"]
+    assert about["parameters"]["neck"] == 0.5 and about["parameters"]["planar"] == 1
+    assert derived["neckRadius"] == pytest.approx(0.5e-7) and derived["shrunkRadius"] == pytest.approx(
+        0.9806e-7, rel=1e-4
+    )
+    assert derived["breakingEnergy"] == pytest.approx(np.pi * 0.25e-14 * 0.1)
+    assert derived["aggregateRadius"] == pytest.approx(about["parameters"]["radius"] * 1e-7)
 
 
 def test_both_engines_tell_the_same_story(tmp_path):
     """Until rounding has grown: the energies after 10 ns, when the aggregates have met."""
     ends = []
-    for engine in ('fused', 'functors'):
-        done = collide(tmp_path, 'radius=4', 'velocity=40', 'neck=0.4', 'duration=7e-9', f'engine={engine}', f'out={engine}')
+    for engine in ("fused", "functors"):
+        done = collide(
+            tmp_path, "radius=4", "velocity=40", "neck=0.4", "duration=7e-9", f"engine={engine}", f"out={engine}"
+        )
         assert done.returncode == 0, done.stderr
-        history = read_arrays(tmp_path / engine, 'history.npz')
-        ends.append([history[channel][-1] / history['kinetic'][0] for channel in CHANNELS])
-    assert ends[0] == pytest.approx(ends[1], abs=1e-9) and ends[0][CHANNELS.index('bondBreaking')] > 0
+        history = read_arrays(tmp_path / engine, "history.npz")
+        ends.append([history[channel][-1] / history["kinetic"][0] for channel in CHANNELS])
+    assert ends[0] == pytest.approx(ends[1], abs=1e-9) and ends[0][CHANNELS.index("bondBreaking")] > 0
 
 
 def test_a_killed_sintered_run_goes_on_to_the_same_bits(tmp_path):
-    done = collide(tmp_path, *LONG, 'out=straight')
+    done = collide(tmp_path, *LONG, "out=straight")
     assert done.returncode == 0, done.stderr
-    command = ['yade', '-n', '-x', COLLIDE, *LONG, 'checkpointInterval=0.05', 'out=killed']
-    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment())
-    saved, deadline = tmp_path / 'killed' / 'checkpoint' / 'recorder.npz', time.monotonic() + 60
+    command = ["yade", "-n", "-x", COLLIDE, *LONG, "checkpointInterval=0.05", "out=killed"]
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment()
+    )
+    saved, deadline = tmp_path / "killed" / "checkpoint" / "recorder.npz", time.monotonic() + 60
     while not saved.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.005)
     process.kill()
     process.wait()
-    assert saved.exists() and not (tmp_path / 'killed' / 'ended').exists()
-    assert collide(tmp_path, *LONG, 'out=killed', 'resume=1').returncode == 0
-    straight, again = (read_arrays(tmp_path / name, 'history.npz') for name in ('straight', 'killed'))
+    assert saved.exists() and not (tmp_path / "killed" / "ended").exists()
+    assert collide(tmp_path, *LONG, "out=killed", "resume=1").returncode == 0
+    straight, again = (read_arrays(tmp_path / name, "history.npz") for name in ("straight", "killed"))
     assert all(straight[name].tobytes() == again[name].tobytes() for name in straight)
-    assert straight['bondBreaking'][-1] > 0
+    assert straight["bondBreaking"][-1] > 0
 
 
-@pytest.mark.parametrize('wrong, message', [
-    (('neck=0.123',), 'neck = 0.123: no thicker than a contact that is not sintered; allowed: 0 (not sintered), or above 0.1237 and at most 0.7'),
-    (('neck=0.8',), 'neck = 0.8: not allowed; allowed: 0, or above that of a contact that is not sintered'),
-    (('neck=0.2', 'stepFraction=0.2'), 'stepFraction = 0.2: unstable at this neck, filling and drag; allowed: at most 0.119 (t0)'),
-    (('neck=0.4', 'stepFraction=auto'), 'stepFraction = auto: measured for cpe aggregates in space without necks only; allowed here: a number (t0)'),
-    (('packing=bcca', 'filling=0.3'), 'filling = 0.3: given with packing = bcca; allowed: grains only'),
-    (('planar=1', 'filling=0.95'), 'filling = 0.95: more than the lattice holds; allowed: at most 0.91'),
-])
+@pytest.mark.parametrize(
+    "wrong, message",
+    [
+        (
+            ("neck=0.123",),
+            "neck = 0.123: no thicker than a contact that is not sintered; allowed: 0 (not sintered), or above 0.1237 and at most 0.7",
+        ),
+        (("neck=0.8",), "neck = 0.8: not allowed; allowed: 0, or above that of a contact that is not sintered"),
+        (
+            ("neck=0.2", "stepFraction=0.2"),
+            "stepFraction = 0.2: unstable at this neck, filling and drag; allowed: at most 0.119 (t0)",
+        ),
+        (
+            ("neck=0.4", "stepFraction=auto"),
+            "stepFraction = auto: measured for cpe aggregates in space without necks only; allowed here: a number (t0)",
+        ),
+        (("packing=bcca", "filling=0.3"), "filling = 0.3: given with packing = bcca; allowed: grains only"),
+        (("planar=1", "filling=0.95"), "filling = 0.95: more than the lattice holds; allowed: at most 0.91"),
+    ],
+)
 def test_wrong_necks_are_refused_in_one_line(tmp_path, wrong, message):
     done = collide(tmp_path, *wrong)
     assert done.returncode == 2 and len(messages(done)) == 1 and message in messages(done)[0]
-    assert not os.path.exists(tmp_path / 'runs')
+    assert not os.path.exists(tmp_path / "runs")
 
 
 def test_bonds_lower_the_stable_step():
     """Below the steps at which bonds broke without cause, see step_limit; and no lower than the default step for any neck."""
-    ice = dict(timeUnit=1.936e-10, dragPerContactRadius=0.0, linearDrag=0.0, reducedMass=2.0944e-18, reducedRadius=5e-8, equilibriumContactRadius=12.3712e-9,
-               equilibriumOverlap=1.02031e-9, pullOffForce=47.1239e-9, slidingStiffness=79.176)
+    ice = dict(
+        timeUnit=1.936e-10,
+        dragPerContactRadius=0.0,
+        linearDrag=0.0,
+        reducedMass=2.0944e-18,
+        reducedRadius=5e-8,
+        equilibriumContactRadius=12.3712e-9,
+        equilibriumOverlap=1.02031e-9,
+        pullOffForce=47.1239e-9,
+        slidingStiffness=79.176,
+    )
     for stiffness, blew_up in ((1803, 0.15), (1374, 0.17), (1197, 0.18)):
-        limit = parameters.step_limit(dict(ice, bond=dict(normalStiffness=stiffness, slidingStiffness=0.4 * stiffness)), 0.4)
+        limit = parameters.step_limit(
+            dict(ice, bond=dict(normalStiffness=stiffness, slidingStiffness=0.4 * stiffness)), 0.4
+        )
         assert 0.1 < limit < 0.9 * blew_up

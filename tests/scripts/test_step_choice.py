@@ -1,4 +1,5 @@
 """stepFraction=auto: the step that is chosen, what is said of it, and that real runs keep to the tolerance."""
+
 import csv
 import json
 import os
@@ -8,71 +9,88 @@ import subprocess
 
 import numpy as np
 import pytest
+from running import COLLIDE, PYTHON, TINY, TOP, collide, environment, messages, read_arrays, read_json
 from scipy.stats import binom
 
-from running import COLLIDE, PYTHON, TINY, TOP, collide, environment, messages, read_arrays, read_json
 from yade_scripts import agreement, parameters, step_choice, study_cost
 from yade_scripts.materials import MATERIALS
 
-STUDY = os.path.join(TOP, 'yade_scripts', 'study.py')
-BENCHMARKS = os.path.join(TOP, 'tests', 'benchmarks')
-AUTO = {'stepFraction': 'auto'}
+STUDY = os.path.join(TOP, "yade_scripts", "study.py")
+BENCHMARKS = os.path.join(TOP, "tests", "benchmarks")
+AUTO = {"stepFraction": "auto"}
 
 
 def completed(**given):
     """(parameters, constants, limit) of a scene with stepFraction=auto."""
     values = parameters.parse({**AUTO, **given})
-    constants = study_cost.pair_constants(MATERIALS[values['material']], values['viscoelasticTime'])
-    limit = parameters.step_limit(constants, values['filling'])
+    constants = study_cost.pair_constants(MATERIALS[values["material"]], values["viscoelasticTime"])
+    limit = parameters.step_limit(constants, values["filling"])
     return parameters.complete(values, constants, 1), constants, limit
 
 
 def expected_error(values, constants):
-    return sum(step_choice.coefficients(*step_choice.energies(values, constants))) * values['stepFraction']**2
+    return sum(step_choice.coefficients(*step_choice.energies(values, constants))) * values["stepFraction"] ** 2
 
 
 def test_auto_and_its_tolerance():
-    values = parameters.parse({'stepFraction': "'auto'", 'velocity': '2'})
-    assert (values['stepFraction'], values['tolerance']) == ('auto', 1e-4)
-    assert values['out'] == 'runs/collide-ice-f0.4-R20-v2-s1-stepFractionauto'
-    assert parameters.parse({**AUTO, 'tolerance': '10**-5'})['tolerance'] == 1e-5
-    assert parameters.parse({})['tolerance'] is None
+    values = parameters.parse({"stepFraction": "'auto'", "velocity": "2"})
+    assert (values["stepFraction"], values["tolerance"]) == ("auto", 1e-4)
+    assert values["out"] == "runs/collide-ice-f0.4-R20-v2-s1-stepFractionauto"
+    assert parameters.parse({**AUTO, "tolerance": "10**-5"})["tolerance"] == 1e-5
+    assert parameters.parse({})["tolerance"] is None
 
 
-@pytest.mark.parametrize('scene', [{}, {'velocity': 30}, {'velocity': 0.5}, {'radius': 8}, {'radius': 60, 'filling': 0.3},
-                                   {'material': 'silicate'}], ids=str)
+@pytest.mark.parametrize(
+    "scene",
+    [{}, {"velocity": 30}, {"velocity": 0.5}, {"radius": 8}, {"radius": 60, "filling": 0.3}, {"material": "silicate"}],
+    ids=str,
+)
 def test_the_step_is_the_longest_of_two_digits_that_keeps_to_the_tolerance(scene):
     steps = []
     for tolerance in (1e-5, 1e-4, 1e-3, 1e-2):
         values, constants, limit = completed(tolerance=tolerance, **scene)
-        steps.append(values['stepFraction'])
+        steps.append(values["stepFraction"])
         assert 0.01 <= steps[-1] <= limit and expected_error(values, constants) <= tolerance
         if steps[-1] < limit:
-            assert steps[-1] == float(f'{steps[-1]:.2g}')
+            assert steps[-1] == float(f"{steps[-1]:.2g}")
             assert expected_error(dict(values, stepFraction=1.11 * steps[-1]), constants) > tolerance
     assert steps == sorted(steps) and steps[0] < steps[-1]
 
 
 def test_drag_and_dense_packings_limit_it():
-    for scene in ({'viscoelasticTime': 6e-12}, {'filling': 0.7}):
+    for scene in ({"viscoelasticTime": 6e-12}, {"filling": 0.7}):
         values, _, limit = completed(tolerance=1e-2, **scene)
-        assert values['stepFraction'] == limit < 0.4
+        assert values["stepFraction"] == limit < 0.4
 
 
 def test_a_tolerance_that_no_step_reaches():
     with pytest.raises(parameters.ParameterError) as error:
         completed(tolerance=1e-7, velocity=0.5)
     text = str(error.value)
-    least = float(re.fullmatch(r'tolerance = 1e-07: would take a step of 0\.00\d+ t0 at 0\.5 m/s; allowed: at least '
-                               r'(\S+) K\(0\) in this scene, for 0\.01 t0, or stepFraction as a number', text).group(1))
-    assert 0.01 <= completed(tolerance=least, velocity=0.5)[0]['stepFraction'] < 0.011
+    least = float(
+        re.fullmatch(
+            r"tolerance = 1e-07: would take a step of 0\.00\d+ t0 at 0\.5 m/s; allowed: at least "
+            r"(\S+) K\(0\) in this scene, for 0\.01 t0, or stepFraction as a number",
+            text,
+        ).group(1)
+    )
+    assert 0.01 <= completed(tolerance=least, velocity=0.5)[0]["stepFraction"] < 0.011
 
 
-@pytest.mark.parametrize('scene, part', [
-    ({'velocity': 1}, "6400 grains at 1 m/s, no drag (set by contacts' births and breaks; limit of stability 0.4 t0)"),
-    ({'velocity': 30}, '6400 grains at 30 m/s, no drag (set by the speed of the impact; limit of stability 0.4 t0)'),
-    ({'viscoelasticTime': 6e-12, 'tolerance': 1e-3}, 'T_vis = 6 ps (set by the limit of stability, where '),
-])
+@pytest.mark.parametrize(
+    "scene, part",
+    [
+        (
+            {"velocity": 1},
+            "6400 grains at 1 m/s, no drag (set by contacts' births and breaks; limit of stability 0.4 t0)",
+        ),
+        (
+            {"velocity": 30},
+            "6400 grains at 30 m/s, no drag (set by the speed of the impact; limit of stability 0.4 t0)",
+        ),
+        ({"viscoelasticTime": 6e-12, "tolerance": 1e-3}, "T_vis = 6 ps (set by the limit of stability, where "),
+    ],
+)
 def test_it_says_why(scene, part):
     values, constants, _ = completed(**scene)
     text = parameters.step_chosen(values, constants)
@@ -81,13 +99,16 @@ def test_it_says_why(scene, part):
 
 def test_constants_for_estimates_are_the_plugins(yade):
     """What study.py works a row's step out with, without the plugin."""
-    cases = [('ice', 0.0), ('ice', 4e-12), ('silicate', 1e-11)]
-    found = yade("""
+    cases = [("ice", 0.0), ("ice", 4e-12), ("silicate", 1e-11)]
+    found = yade(
+        """
 from yade_scripts import scene
 from yade_scripts.materials import MATERIALS
 for name, drag in parameters["cases"]:
     result[name + str(drag)] = dict(scene.pair_constants({"viscoelasticTime": drag, "material": name, "neck": 0}, MATERIALS[name]))
-""", {'cases': cases})
+""",
+        {"cases": cases},
+    )
     for name, drag in cases:
         ours = study_cost.pair_constants(MATERIALS[name], drag)
         plugins = found[name + str(drag)]
@@ -99,16 +120,16 @@ def test_the_constants_are_those_of_the_data():
 
     Of the sets together that were fitted about 98 % do. Fewer of a set than binom.ppf would be a chance of 2 %.
     """
-    with open(os.path.join(BENCHMARKS, 'results', 'step_choice.csv')) as file:
-        rows = [row for row in csv.DictReader(line for line in file if line[0] != '#') if float(row['error']) > 1e-9]
+    with open(os.path.join(BENCHMARKS, "results", "step_choice.csv")) as file:
+        rows = [row for row in csv.DictReader(line for line in file if line[0] != "#") if float(row["error"]) > 1e-9]
     below = {}
     for row in rows:
-        scene = {name: text for name, text in row.items() if name not in ('set', 'error')}
+        scene = {name: text for name, text in row.items() if name not in ("set", "error")}
         values = parameters.parse(scene)
-        constants = study_cost.pair_constants(MATERIALS[values['material']], values['viscoelasticTime'])
-        below.setdefault(row['set'], []).append(float(row['error']) <= expected_error(values, constants))
-    assert len(below['grid']) > 400 and len(below['random']) > 90
-    assert 0.95 < np.mean(below['grid'] + below['study']) < 0.99
+        constants = study_cost.pair_constants(MATERIALS[values["material"]], values["viscoelasticTime"])
+        below.setdefault(row["set"], []).append(float(row["error"]) <= expected_error(values, constants))
+    assert len(below["grid"]) > 400 and len(below["random"]) > 90
+    assert 0.95 < np.mean(below["grid"] + below["study"]) < 0.99
     for name, found in below.items():
         assert sum(found) >= binom.ppf(0.02, len(found), 0.95), name
 
@@ -116,102 +137,140 @@ def test_the_constants_are_those_of_the_data():
 # Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds.
 # (radius, velocity, filling, T_vis, material, tolerance)
 OTHER_SCENES = [
-    (7, 0.8, 0.45, 0, 'ice', 1e-3), (9, 1.5, 0.35, 0, 'ice', 1e-4), (8, 2.3, 0.5, 2e-12, 'ice', 1e-4),
-    (12, 2.3, 0.3, 0, 'ice', 1e-4), (8, 4.2, 0.4, 0, 'ice', 3e-5), (11, 4.2, 0.55, 4e-12, 'ice', 1e-4),
-    (6, 6.5, 0.38, 0, 'ice', 3e-4), (9, 6.5, 0.28, 1e-12, 'ice', 1e-4), (13, 8.5, 0.42, 0, 'ice', 1e-4),
-    (7, 13, 0.6, 0, 'ice', 1e-4), (9, 13, 0.33, 5e-12, 'ice', 3e-5), (6, 21, 0.5, 0, 'ice', 1e-3),
-    (10, 21, 0.4, 0, 'ice', 1e-4), (8, 45, 0.35, 0, 'ice', 1e-4), (7, 45, 0.45, 3e-12, 'ice', 1e-3),
-    (6, 2, 0.4, 0, 'silicate', 1e-4), (8, 0.7, 0.5, 0, 'silicate', 1e-3), (6, 17, 0.35, 0, 'silicate', 1e-3)]
+    (7, 0.8, 0.45, 0, "ice", 1e-3),
+    (9, 1.5, 0.35, 0, "ice", 1e-4),
+    (8, 2.3, 0.5, 2e-12, "ice", 1e-4),
+    (12, 2.3, 0.3, 0, "ice", 1e-4),
+    (8, 4.2, 0.4, 0, "ice", 3e-5),
+    (11, 4.2, 0.55, 4e-12, "ice", 1e-4),
+    (6, 6.5, 0.38, 0, "ice", 3e-4),
+    (9, 6.5, 0.28, 1e-12, "ice", 1e-4),
+    (13, 8.5, 0.42, 0, "ice", 1e-4),
+    (7, 13, 0.6, 0, "ice", 1e-4),
+    (9, 13, 0.33, 5e-12, "ice", 3e-5),
+    (6, 21, 0.5, 0, "ice", 1e-3),
+    (10, 21, 0.4, 0, "ice", 1e-4),
+    (8, 45, 0.35, 0, "ice", 1e-4),
+    (7, 45, 0.45, 3e-12, "ice", 1e-3),
+    (6, 2, 0.4, 0, "silicate", 1e-4),
+    (8, 0.7, 0.5, 0, "silicate", 1e-3),
+    (6, 17, 0.35, 0, "silicate", 1e-3),
+]
 
 
 def test_runs_that_are_in_no_fit_keep_to_the_tolerance(tmp_path):
     """18 collisions; with 19 of 20 to keep to it, more than 4 that don't would be a chance of 0.1 %."""
-    scenes, answers = tmp_path / 'scenes.json', tmp_path / 'answers.jsonl'
-    names = ('radius', 'velocity', 'filling', 'viscoelasticTime', 'material', 'tolerance')
-    scenes.write_text(json.dumps([{**AUTO, 'seed': 1000 + number, **dict(zip(names, scene))}
-                                  for number, scene in enumerate(OTHER_SCENES)]))
-    subprocess.run(['yade', '-n', '-x', '-j1', os.path.join(BENCHMARKS, 'yade_step_choice.py'), scenes, answers], check=True,
-                   capture_output=True, timeout=200)
+    scenes, answers = tmp_path / "scenes.json", tmp_path / "answers.jsonl"
+    names = ("radius", "velocity", "filling", "viscoelasticTime", "material", "tolerance")
+    scenes.write_text(
+        json.dumps(
+            [{**AUTO, "seed": 1000 + number, **dict(zip(names, scene))} for number, scene in enumerate(OTHER_SCENES)]
+        )
+    )
+    subprocess.run(
+        ["yade", "-n", "-x", "-j1", os.path.join(BENCHMARKS, "yade_step_choice.py"), scenes, answers],
+        check=True,
+        capture_output=True,
+        timeout=200,
+    )
     found = [json.loads(line) for line in answers.read_text().splitlines()]
-    over = np.array([answer['error'] / answer['tolerance'] for answer in found])
+    over = np.array([answer["error"] / answer["tolerance"] for answer in found])
     assert len(over) == len(OTHER_SCENES) and np.all(over > 1e-6)  # all met
     assert np.count_nonzero(over > 1) <= binom.ppf(0.999, len(over), 0.05)
     assert over.max() < 5 and np.median(over) > 0.05  # nor is the step much shorter than it need be
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """(folder, finished process) of a tiny collision with stepFraction=auto."""
-    folder = tmp_path_factory.mktemp('auto')
-    process = collide(folder, *TINY, 'stepFraction=auto', 'tolerance=3e-4', 'out=run')
+    folder = tmp_path_factory.mktemp("auto")
+    process = collide(folder, *TINY, "stepFraction=auto", "tolerance=3e-4", "out=run")
     assert process.returncode == 0 and messages(process) == [], process.stderr
-    return folder / 'run', process
+    return folder / "run", process
 
 
 def test_a_run_says_and_keeps_what_it_chose(run):
     folder, process = run
-    about = read_json(folder, 'run.json')
-    values, derived = about['parameters'], about['derived']
-    assert 0.01 <= values['stepFraction'] <= 0.4 and values['tolerance'] == 3e-4
-    assert derived['timeStep'] == values['stepFraction'] * derived['timeUnit']
-    line = next(line for line in process.stdout.splitlines() if line.startswith('step: '))
+    about = read_json(folder, "run.json")
+    values, derived = about["parameters"], about["derived"]
+    assert 0.01 <= values["stepFraction"] <= 0.4 and values["tolerance"] == 3e-4
+    assert derived["timeStep"] == values["stepFraction"] * derived["timeUnit"]
+    line = next(line for line in process.stdout.splitlines() if line.startswith("step: "))
     assert line == f'step: {derived["stepChoice"]}'
-    assert derived['stepChoice'].startswith(f'{values["stepFraction"]:g} t0 for a ledger error of at most 0.0003 K(0)')
-    assert values['stepFraction'] == completed(tolerance=3e-4, radius=4, velocity=30)[0]['stepFraction']
+    assert derived["stepChoice"].startswith(f'{values["stepFraction"]:g} t0 for a ledger error of at most 0.0003 K(0)')
+    assert values["stepFraction"] == completed(tolerance=3e-4, radius=4, velocity=30)[0]["stepFraction"]
 
 
 def test_an_impossible_tolerance_is_refused_before_anything_is_run(tmp_path):
-    refused = collide(tmp_path, 'radius=4', 'velocity=1', 'stepFraction=auto', 'tolerance=1e-7', 'out=run')
+    refused = collide(tmp_path, "radius=4", "velocity=1", "stepFraction=auto", "tolerance=1e-7", "out=run")
     assert refused.returncode == 2 and len(messages(refused)) == 1
-    assert messages(refused)[0].startswith('collide.py: tolerance = 1e-07: would take a step of ')
+    assert messages(refused)[0].startswith("collide.py: tolerance = 1e-07: would take a step of ")
     assert os.listdir(tmp_path) == []
 
 
 def test_agreement_with_a_run_that_chose_its_step(run):
-    about = read_json(run[0], 'run.json')
-    chosen = about['parameters']['stepFraction']
-    tiny = dict(argument.split('=') for argument in TINY)
-    row = parameters.parse({**tiny, **AUTO, 'tolerance': 3e-4})
+    about = read_json(run[0], "run.json")
+    chosen = about["parameters"]["stepFraction"]
+    tiny = dict(argument.split("=") for argument in TINY)
+    row = parameters.parse({**tiny, **AUTO, "tolerance": 3e-4})
     assert agreement.difference(row, about) is None
-    assert agreement.difference(parameters.parse({**tiny, 'stepFraction': chosen}), about) is None
-    assert agreement.difference(parameters.parse({**tiny, **AUTO}), about) == 'tolerance = 0.0003, not 0.0001'
-    assert agreement.difference(parameters.parse(tiny), about) == f'stepFraction = {chosen:g}, not 0.1'
-    fixed = {**about, 'parameters': {**about['parameters'], 'stepFraction': 0.1, 'tolerance': None}}
-    assert agreement.difference(row, fixed) == 'stepFraction = 0.1, not auto'
-    del fixed['parameters']['tolerance']  # written before there was a choice
-    assert agreement.difference(row, fixed) == 'stepFraction = 0.1, not auto'
+    assert agreement.difference(parameters.parse({**tiny, "stepFraction": chosen}), about) is None
+    assert agreement.difference(parameters.parse({**tiny, **AUTO}), about) == "tolerance = 0.0003, not 0.0001"
+    assert agreement.difference(parameters.parse(tiny), about) == f"stepFraction = {chosen:g}, not 0.1"
+    fixed = {**about, "parameters": {**about["parameters"], "stepFraction": 0.1, "tolerance": None}}
+    assert agreement.difference(row, fixed) == "stepFraction = 0.1, not auto"
+    del fixed["parameters"]["tolerance"]  # written before there was a choice
+    assert agreement.difference(row, fixed) == "stepFraction = 0.1, not auto"
     assert agreement.difference(parameters.parse(tiny), fixed) is None
 
 
 def test_estimates_count_the_steps_that_will_be_chosen(run):
-    tiny = dict(argument.split('=') for argument in TINY)
-    cost = study_cost.Cost({'ice': read_json(run[0], 'run.json')['derived']['timeUnit']})
-    chosen = read_json(run[0], 'run.json')['parameters']['stepFraction']
-    row, same = parameters.parse({**tiny, **AUTO, 'tolerance': 3e-4}), parameters.parse({**tiny, 'stepFraction': chosen})
+    tiny = dict(argument.split("=") for argument in TINY)
+    cost = study_cost.Cost({"ice": read_json(run[0], "run.json")["derived"]["timeUnit"]})
+    chosen = read_json(run[0], "run.json")["parameters"]["stepFraction"]
+    row, same = (
+        parameters.parse({**tiny, **AUTO, "tolerance": 3e-4}),
+        parameters.parse({**tiny, "stepFraction": chosen}),
+    )
     assert cost.contact_updates(row) == cost.contact_updates(same) != cost.contact_updates(parameters.parse(tiny))
 
 
 def test_a_study_goes_on_from_checkpoints_of_rows_that_choose(tmp_path):
     """A row is killed, goes on in the next call to the same bits as a straight run, and is done in the one after."""
-    scene = ['radius=10', 'velocity=10', 'duration=300e-9', 'stepFraction=auto']
-    (tmp_path / 'auto.table').write_text('description radius velocity duration stepFraction checkpointInterval out\n'
-                                         'killed 10 10 300e-9 auto 0.1 runs/killed\n')
-    process = subprocess.Popen(['yade', '-n', '-x', COLLIDE, *scene, 'checkpointInterval=0.1', 'out=runs/killed'],
-                               cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment())
-    assert any(line.startswith('step: 0.') for line in process.stdout)  # said before the first step
-    while not (tmp_path / 'runs' / 'killed' / 'checkpoint' / 'recorder.npz').exists():
+    scene = ["radius=10", "velocity=10", "duration=300e-9", "stepFraction=auto"]
+    (tmp_path / "auto.table").write_text(
+        "description radius velocity duration stepFraction checkpointInterval out\n"
+        "killed 10 10 300e-9 auto 0.1 runs/killed\n"
+    )
+    process = subprocess.Popen(
+        ["yade", "-n", "-x", COLLIDE, *scene, "checkpointInterval=0.1", "out=runs/killed"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        env=environment(),
+    )
+    assert any(line.startswith("step: 0.") for line in process.stdout)  # said before the first step
+    while not (tmp_path / "runs" / "killed" / "checkpoint" / "recorder.npz").exists():
         assert process.poll() is None
     process.send_signal(signal.SIGKILL)
     process.communicate()
 
     def study(*arguments):
-        return subprocess.run([PYTHON, STUDY, 'auto.table', *arguments], cwd=tmp_path, capture_output=True, text=True,
-                              env=environment(), timeout=120)
-    assert 'checkpoint at ' in study('--status').stdout
-    gone_on = study('-j', '1')
-    assert gone_on.returncode == 0 and '1 to run, 1 of them from checkpoints' in gone_on.stdout, gone_on.stderr
-    straight = collide(tmp_path, *scene, 'out=straight')
+        return subprocess.run(
+            [PYTHON, STUDY, "auto.table", *arguments],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            env=environment(),
+            timeout=120,
+        )
+
+    assert "checkpoint at " in study("--status").stdout
+    gone_on = study("-j", "1")
+    assert gone_on.returncode == 0 and "1 to run, 1 of them from checkpoints" in gone_on.stdout, gone_on.stderr
+    straight = collide(tmp_path, *scene, "out=straight")
     assert straight.returncode == 0
-    one, other = (read_arrays(tmp_path, *folder, 'history.npz') for folder in (('runs', 'killed'), ('straight',)))
+    one, other = (read_arrays(tmp_path, *folder, "history.npz") for folder in (("runs", "killed"), ("straight",)))
     assert all(np.array_equal(one[name], other[name], equal_nan=True) for name in other)
-    assert study().stdout == 'auto: 1 rows, 1 done, 0 failed\n'
+    assert study().stdout == "auto: 1 rows, 1 done, 0 failed\n"

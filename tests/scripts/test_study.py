@@ -1,4 +1,5 @@
 """study.py: a table is run to its end however often it is stopped, and a row that fails is not overlooked."""
+
 import os
 import signal
 import subprocess
@@ -6,57 +7,63 @@ import time
 
 import numpy as np
 import pytest
-
 from running import PYTHON, TOP, collide, environment, read_arrays, read_json
 
-STUDY = os.path.join(TOP, 'yade_scripts', 'study.py')
-HEADER = 'description radius velocity duration stepFraction checkpointInterval out\n'
+STUDY = os.path.join(TOP, "yade_scripts", "study.py")
+HEADER = "description radius velocity duration stepFraction checkpointInterval out\n"
 ROWS = {
-    'ends':    'ends    5  10   10e-9   *   *   runs/tiny/ends\n',
-    'killed':  'killed  10 10   500e-9  *   0.1 runs/tiny/killed\n',
-    'fails':   'fails   5  3000 10e-9   0.4 *   runs/tiny/fails\n',  # a step too long for such an impact
-    'refused': 'refused 5  -1   =       =   *   runs/tiny/refused\n',
+    "ends": "ends    5  10   10e-9   *   *   runs/tiny/ends\n",
+    "killed": "killed  10 10   500e-9  *   0.1 runs/tiny/killed\n",
+    "fails": "fails   5  3000 10e-9   0.4 *   runs/tiny/fails\n",  # a step too long for such an impact
+    "refused": "refused 5  -1   =       =   *   runs/tiny/refused\n",
 }
 
 
 def study(folder, *arguments):
-    return subprocess.run([PYTHON, STUDY, *arguments], cwd=folder, capture_output=True, text=True,
-                          env=environment(), timeout=120)
+    return subprocess.run(
+        [PYTHON, STUDY, *arguments], cwd=folder, capture_output=True, text=True, env=environment(), timeout=120
+    )
 
 
 def start(folder, *arguments):
-    return subprocess.Popen([PYTHON, STUDY, *arguments], cwd=folder, text=True, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, env=environment())
+    return subprocess.Popen(
+        [PYTHON, STUDY, *arguments],
+        cwd=folder,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=environment(),
+    )
 
 
 def wait_for(condition, seconds=60):
     deadline = time.monotonic() + seconds
     while not condition():
-        assert time.monotonic() < deadline, 'waited in vain'
+        assert time.monotonic() < deadline, "waited in vain"
         time.sleep(0.02)
 
 
 def process_writing(folder):
     """The process that holds a run folder's lock."""
     inode = str(os.stat(folder).st_ino)
-    with open('/proc/locks') as locks:
-        return next((int(lock.split()[4]) for lock in locks if lock.split()[5].endswith(':' + inode)), None)
+    with open("/proc/locks") as locks:
+        return next((int(lock.split()[4]) for lock in locks if lock.split()[5].endswith(":" + inode)), None)
 
 
 def write_table(folder, name, *rows):
-    (folder / name).write_text(HEADER + ''.join(ROWS[row] for row in rows))
+    (folder / name).write_text(HEADER + "".join(ROWS[row] for row in rows))
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope="module")
 def first_call(tmp_path_factory):
     """(folder, the finished study, --status midway): one row ends, one is killed, one fails, one is refused."""
-    folder = tmp_path_factory.mktemp('study')
-    write_table(folder, 'tiny.table', *ROWS)
-    process = start(folder, 'tiny.table', '-j', '2')
-    run = folder / 'runs' / 'tiny' / 'killed'
-    wait_for(lambda: (run / 'checkpoint' / 'recorder.npz').exists())
+    folder = tmp_path_factory.mktemp("study")
+    write_table(folder, "tiny.table", *ROWS)
+    process = start(folder, "tiny.table", "-j", "2")
+    run = folder / "runs" / "tiny" / "killed"
+    wait_for(lambda: (run / "checkpoint" / "recorder.npz").exists())
     os.kill(process_writing(run), signal.SIGSTOP)  # so that it is still running when asked
-    midway = study(folder, 'tiny.table', '--status')
+    midway = study(folder, "tiny.table", "--status")
     os.kill(process_writing(run), signal.SIGKILL)
     output, errors = process.communicate(timeout=60)
     return folder, (process.returncode, output, errors), midway
@@ -65,96 +72,102 @@ def first_call(tmp_path_factory):
 def test_failures_fail_the_study_after_all_others_have_run(first_call):
     folder, (status, output, errors), _ = first_call
     assert status == 1
-    assert output.splitlines()[-1] == 'tiny: 4 rows, 1 done, 3 failed'
-    ends = [line for line in errors.splitlines() if not line.endswith('the other rows are run')]
+    assert output.splitlines()[-1] == "tiny: 4 rows, 1 done, 3 failed"
+    ends = [line for line in errors.splitlines() if not line.endswith("the other rows are run")]
     assert len(ends) == 3
-    assert ends[0].startswith('study.py: killed: killed by signal 9 (checkpoint at ')
-    assert ends[1].startswith('study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run went wrong at t = ')
-    assert ends[2] == 'study.py: refused: line 5 of tiny.table: velocity = -1: not allowed; allowed: > 0 [m/s]'
-    assert sorted(os.listdir(folder / 'runs' / 'tiny')) == ['ends', 'fails', 'killed']
+    assert ends[0].startswith("study.py: killed: killed by signal 9 (checkpoint at ")
+    assert ends[1].startswith("study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run went wrong at t = ")
+    assert ends[2] == "study.py: refused: line 5 of tiny.table: velocity = -1: not allowed; allowed: > 0 [m/s]"
+    assert sorted(os.listdir(folder / "runs" / "tiny")) == ["ends", "fails", "killed"]
 
 
 def test_estimate_comes_first(first_call):
     _, (_, output, _), _ = first_call
     line = output.splitlines()[0]
-    assert line.startswith('tiny: 4 rows, 1 done or failed, 3 to run; estimated time 0:')
-    assert 'with 2 at once (measured: ' in line
+    assert line.startswith("tiny: 4 rows, 1 done or failed, 3 to run; estimated time 0:")
+    assert "with 2 at once (measured: " in line
 
 
 def test_status_from_another_process(first_call):
     _, _, midway = first_call
-    assert midway.returncode == 0 and midway.stderr == ''
+    assert midway.returncode == 0 and midway.stderr == ""
     states = [line.split()[:2] for line in midway.stdout.splitlines()]
-    assert ['running', 'killed'] in states and ['failed', 'refused'] in states
-    assert midway.stdout.splitlines()[-1].startswith('tiny: ')
+    assert ["running", "killed"] in states and ["failed", "refused"] in states
+    assert midway.stdout.splitlines()[-1].startswith("tiny: ")
 
 
 def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_call):
     folder, _, _ = first_call
-    ended = os.stat(folder / 'runs' / 'tiny' / 'ends' / 'ended').st_mtime_ns
-    write_table(folder, 'tiny.table', 'ends', 'killed')
-    done = study(folder, 'tiny.table')
-    assert done.returncode == 0 and done.stderr == '', done.stderr
-    assert '2 rows, 1 done or failed, 1 to run, 1 of them from checkpoints; estimated time' in done.stdout
-    assert done.stdout.splitlines()[-1] == 'tiny: 2 rows, 2 done, 0 failed'
-    assert os.stat(folder / 'runs' / 'tiny' / 'ends' / 'ended').st_mtime_ns == ended
-    straight = collide(folder, 'radius=10', 'velocity=10', 'duration=500e-9', 'out=straight')
+    ended = os.stat(folder / "runs" / "tiny" / "ends" / "ended").st_mtime_ns
+    write_table(folder, "tiny.table", "ends", "killed")
+    done = study(folder, "tiny.table")
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    assert "2 rows, 1 done or failed, 1 to run, 1 of them from checkpoints; estimated time" in done.stdout
+    assert done.stdout.splitlines()[-1] == "tiny: 2 rows, 2 done, 0 failed"
+    assert os.stat(folder / "runs" / "tiny" / "ends" / "ended").st_mtime_ns == ended
+    straight = collide(folder, "radius=10", "velocity=10", "duration=500e-9", "out=straight")
     assert straight.returncode == 0
-    run = folder / 'runs' / 'tiny' / 'killed'
-    assert sorted(os.listdir(run / 'states')) == sorted(os.listdir(folder / 'straight' / 'states'))
-    for name in ['history.npz'] + [f'states/{name}' for name in os.listdir(run / 'states')]:
-        one, other = read_arrays(run, name), read_arrays(folder, 'straight', name)
+    run = folder / "runs" / "tiny" / "killed"
+    assert sorted(os.listdir(run / "states")) == sorted(os.listdir(folder / "straight" / "states"))
+    for name in ["history.npz"] + [f"states/{name}" for name in os.listdir(run / "states")]:
+        one, other = read_arrays(run, name), read_arrays(folder, "straight", name)
         assert all(np.array_equal(one[key], other[key]) for key in one), name
-    again = study(folder, 'tiny.table')  # nothing left: no estimate, nothing run
-    assert (again.returncode, again.stdout) == (0, 'tiny: 2 rows, 2 done, 0 failed\n')
+    again = study(folder, "tiny.table")  # nothing left: no estimate, nothing run
+    assert (again.returncode, again.stdout) == (0, "tiny: 2 rows, 2 done, 0 failed\n")
 
 
 def test_an_ended_run_with_other_parameters_fails_its_row(first_call, tmp_path):
     folder, _, _ = first_call
-    os.makedirs(tmp_path / 'runs')
-    os.symlink(folder / 'runs' / 'tiny', tmp_path / 'runs' / 'tiny')
-    (tmp_path / 'tiny.table').write_text(HEADER + ROWS['ends'].replace(' 10e-9', ' 20e-9'))
-    refused = study(tmp_path, 'tiny.table')
+    os.makedirs(tmp_path / "runs")
+    os.symlink(folder / "runs" / "tiny", tmp_path / "runs" / "tiny")
+    (tmp_path / "tiny.table").write_text(HEADER + ROWS["ends"].replace(" 10e-9", " 20e-9"))
+    refused = study(tmp_path, "tiny.table")
     assert refused.returncode == 1
-    assert refused.stderr == ('study.py: ends: runs/tiny/ends: holds an ended run with duration = 1e-08, not 2e-08; '
-                              'allowed: the same, or take that folder away\n')
-    assert read_json(folder, 'runs', 'tiny', 'ends', 'run.json')['parameters']['duration'] == 10e-9
+    assert refused.stderr == (
+        "study.py: ends: runs/tiny/ends: holds an ended run with duration = 1e-08, not 2e-08; "
+        "allowed: the same, or take that folder away\n"
+    )
+    assert read_json(folder, "runs", "tiny", "ends", "run.json")["parameters"]["duration"] == 10e-9
 
 
 def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
-    write_table(tmp_path, 'tiny.table', 'killed', 'ends')
-    old = tmp_path / 'runs' / 'logs' / 'tiny' / 'ends.log'  # of an earlier failure
+    write_table(tmp_path, "tiny.table", "killed", "ends")
+    old = tmp_path / "runs" / "logs" / "tiny" / "ends.log"  # of an earlier failure
     old.parent.mkdir(parents=True)
-    old.write_text('status  : 1 (FAILED)\nfinished: long ago\n')
-    process = start(tmp_path, 'tiny.table', '-j', '1')
-    run = tmp_path / 'runs' / 'tiny' / 'killed'
-    wait_for(lambda: (run / 'checkpoint' / 'recorder.npz').exists())
+    old.write_text("status  : 1 (FAILED)\nfinished: long ago\n")
+    process = start(tmp_path, "tiny.table", "-j", "1")
+    run = tmp_path / "runs" / "tiny" / "killed"
+    wait_for(lambda: (run / "checkpoint" / "recorder.npz").exists())
     assert not old.exists()
-    busy = study(tmp_path, 'tiny.table')
-    assert busy.returncode == 2 and 'this study is being run by another process' in busy.stderr
+    busy = study(tmp_path, "tiny.table")
+    assert busy.returncode == 2 and "this study is being run by another process" in busy.stderr
     process.send_signal(signal.SIGTERM)
     output, errors = process.communicate(timeout=60)
     assert process.returncode == 143
-    assert errors == 'stopping; the runs write their checkpoints\n'
-    assert output.splitlines()[-1] == 'tiny: 2 rows, 0 done, 0 failed, 2 left'
+    assert errors == "stopping; the runs write their checkpoints\n"
+    assert output.splitlines()[-1] == "tiny: 2 rows, 0 done, 0 failed, 2 left"
     assert process_writing(run) is None
-    assert read_json(run, 'run.json')['outcome'] == 'interrupted'
-    assert not (tmp_path / 'runs' / 'tiny' / 'ends').exists()
-    lines = study(tmp_path, 'tiny.table', '--status').stdout.splitlines()
-    assert lines[0].split()[:2] == ['waiting', 'killed'] and 'checkpoint at ' in lines[0]
+    assert read_json(run, "run.json")["outcome"] == "interrupted"
+    assert not (tmp_path / "runs" / "tiny" / "ends").exists()
+    lines = study(tmp_path, "tiny.table", "--status").stdout.splitlines()
+    assert lines[0].split()[:2] == ["waiting", "killed"] and "checkpoint at " in lines[0]
 
 
-@pytest.mark.parametrize('text, message', [
-    (None, 'study.py: rows.table: No such file or directory; allowed: '),
-    ('radius velocity\n', 'study.py: rows.table: no rows; allowed: '),
-    ('radius velocity\n4\n', 'study.py: rows.table: line 2 has 1 cells; allowed: 2'),
-    ('radius velocity\n= 3\n', 'study.py: rows.table: line 2: = has no row above; allowed: a value'),
-    ('radius out\n4 a\n5 a\n', 'study.py: rows.table: lines 2 and 3 both have out = a; allowed: one'),
-], ids=['missing', 'empty', 'short', 'nothing above', 'same folder'])
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        (None, "study.py: rows.table: No such file or directory; allowed: "),
+        ("radius velocity\n", "study.py: rows.table: no rows; allowed: "),
+        ("radius velocity\n4\n", "study.py: rows.table: line 2 has 1 cells; allowed: 2"),
+        ("radius velocity\n= 3\n", "study.py: rows.table: line 2: = has no row above; allowed: a value"),
+        ("radius out\n4 a\n5 a\n", "study.py: rows.table: lines 2 and 3 both have out = a; allowed: one"),
+    ],
+    ids=["missing", "empty", "short", "nothing above", "same folder"],
+)
 def test_tables_that_cannot_be_used_run_nothing(tmp_path, text, message):
     if text:
-        (tmp_path / 'rows.table').write_text(text)
-    failed = study(tmp_path, 'rows.table')
+        (tmp_path / "rows.table").write_text(text)
+    failed = study(tmp_path, "rows.table")
     assert failed.returncode == 2
-    assert failed.stderr.startswith(message) and failed.stderr.count('\n') == 1
-    assert 'runs' not in os.listdir(tmp_path)
+    assert failed.stderr.startswith(message) and failed.stderr.count("\n") == 1
+    assert "runs" not in os.listdir(tmp_path)

@@ -1,5 +1,5 @@
 """YADE's recorders, stresses and PyRunners around JKRWadaEngine."""
-import numpy as np
+
 import pytest
 
 SCENE = """
@@ -14,7 +14,9 @@ def start(sub_steps=20, **options):
 
 
 def test_vtk_recorder_and_stresses_see_the_contacts(yade, tmp_path):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start(exportInteractions=True)
 O.engines += [VTKRecorder(fileName=parameters["base"], recorders=["spheres", "intr", "velocity"], iterPeriod=5, multiblock=True), PyRunner(command="count.append(O.interactions.countReal())", iterPeriod=1)]
 count = []
@@ -32,7 +34,9 @@ volumes = [4 / 3 * math.pi * b.shape.radius**3 for b in O.bodies]
 # YADE takes each contact's branches to the contact point: together they are the whole branch
 both = sum(np.array(t) * v for t, v in zip(each, volumes))
 result["each"] = float(np.abs(both - total).max() / np.abs(total).max())
-""", {"base": str(tmp_path / "out-")})
+""",
+        {"base": str(tmp_path / "out-")},
+    )
     assert found["count"][0] == found["count"][1] > 10
     assert found["force"] < 1e-12 and found["normal"] < 1e-12 and found["stress"] < 1e-12 and found["each"] < 1e-12
     written = b"".join(p.read_bytes() for p in tmp_path.rglob("*.vtp"))
@@ -40,7 +44,9 @@ result["each"] = float(np.abs(both - total).max() / np.abs(total).max())
 
 
 def test_a_pyrunner_asks_for_the_contacts_when_it_wants_them(yade):
-    found = yade(SCENE + """
+    found = yade(
+        SCENE
+        + """
 start()
 seen = []
 O.engines += [PyRunner(command="O.engines[0].writeInteractions(); seen.append(O.interactions.countReal())", iterPeriod=4, initRun=False),
@@ -48,19 +54,23 @@ O.engines += [PyRunner(command="O.engines[0].writeInteractions(); seen.append(O.
 between = []
 O.run(20, True)
 result.update(seen=seen, between=between)
-""")
+"""
+    )
     assert len(found["seen"]) >= 4 and found["seen"][-1] > 10
     assert 0 < sum(n > 0 for n in found["between"]) <= len(found["seen"])  # none that are out of date
 
 
 @pytest.mark.parametrize("other", ["NewtonIntegrator()", "InteractionLoop([], [], [])"])
 def test_engines_that_would_move_the_grains_twice_are_refused(yade, other):
-    found = yade(SCENE + f"""
+    found = yade(
+        SCENE
+        + f"""
 start()
 O.engines += [{other}]
 result["message"] = refusal()
 O.engines[1].dead = True
 O.step()
 result["steps"] = O.iter
-""")
+"""
+    )
     assert found["message"].endswith("is among O.engines too; this engine replaces it") and found["steps"] == 1

@@ -1,4 +1,5 @@
 """The functors in the company of YADE's own tools: periodic cells, threads, VTK output, stress, help texts, energies."""
+
 import numpy as np
 import pytest
 
@@ -52,6 +53,7 @@ result["expected"] = -rate * 2e-7
 """)
     assert found["closing"] == pytest.approx(found["expected"], rel=2e-2)
     from analysis.theory import ICE, Material, contact_radius, pair_constants
+
     pair = pair_constants(Material(**{**ICE.__dict__, "viscoelastic_time": 1e-12}), 1e-7)
     drag = pair.drag_per_contact_radius * contact_radius(found["overlap"], pair) * found["expected"]
     assert found["drag"] == pytest.approx(drag, rel=2e-2)
@@ -73,7 +75,8 @@ result.update(x=positions(), e=energies())
 
 
 def test_vtk_recorder_writes_the_contact_forces(yade, tmp_path):
-    found = yade("""
+    found = yade(
+        """
 from scenes import *
 c = constants(ice(), 1e-7)
 new_scene(0.1 * c["timeUnit"])
@@ -87,8 +90,11 @@ i = O.interactions[0, 1]
 result.update(force=i.phys.normalForce.norm(), sign=i.phys.normalForce.dot(i.geom.normal), constants=c)
 result["stress"] = [list(row) for row in utils.getStress(volume=1e-18)]
 result["d"] = 2e-7 - 3 * c["equilibriumOverlap"]
-""", {"base": str(tmp_path / "out-")})
+""",
+        {"base": str(tmp_path / "out-")},
+    )
     from analysis.theory import ICE, normal_force, pair_constants
+
     pair = pair_constants(ICE, 1e-7)
     expected = normal_force(3 * pair.equilibrium_overlap, pair)
     assert found["sign"] == pytest.approx(expected, rel=1e-9)  # repulsive: positive along YADE's normal
@@ -107,16 +113,24 @@ for name in ("JKRMat", "JKRWadaPhys", "Ip2_JKRMat_JKRMat_JKRWadaPhys", "Law2_ScG
     result[name] = pydoc.plain(pydoc.render_doc(globals()[name]))
 """)
     assert "Surface energy gamma [J/m^2]" in found["JKRMat"]
-    for text, word in (("JKRWadaPhys", "overlap"), ("Ip2_JKRMat_JKRMat_JKRWadaPhys", "pairConstants"), ("Law2_ScGeom_JKRWadaPhys_JKRWada", "connection"), ("JKRWadaEngine", "subSteps")):
+    for text, word in (
+        ("JKRWadaPhys", "overlap"),
+        ("Ip2_JKRMat_JKRMat_JKRWadaPhys", "pairConstants"),
+        ("Law2_ScGeom_JKRWadaPhys_JKRWada", "connection"),
+        ("JKRWadaEngine", "subSteps"),
+    ):
         assert word in found[text]
 
 
-@pytest.mark.parametrize("setting,message", [
-    ("surfaceEnergy=-1", "surfaceEnergy = -1, allowed: a positive number"),
-    ("poisson=0.6", "poisson = 0.59999999999999998, allowed: 0 to 0.5"),
-    ("poisson=0, viscoelasticTime=1e-12", "poisson = 0, allowed: 0 to 0.5, and above 0 with drag"),
-    ("criticalRolling=float('nan')", "criticalRolling = nan, allowed: a positive number"),
-])
+@pytest.mark.parametrize(
+    "setting,message",
+    [
+        ("surfaceEnergy=-1", "surfaceEnergy = -1, allowed: a positive number"),
+        ("poisson=0.6", "poisson = 0.59999999999999998, allowed: 0 to 0.5"),
+        ("poisson=0, viscoelasticTime=1e-12", "poisson = 0, allowed: 0 to 0.5, and above 0 with drag"),
+        ("criticalRolling=float('nan')", "criticalRolling = nan, allowed: a positive number"),
+    ],
+)
 def test_materials_out_of_range_are_refused_in_one_line(yade, setting, message):
     found = yade(f"""
 from scenes import *

@@ -1,5 +1,6 @@
 """Restitution, sticking probability and the energy of a bounce, channel by channel: beyond A24 (section
 5.3)."""
+
 import numpy as np
 
 from ...channels import CHANNELS, LABELS
@@ -26,10 +27,12 @@ def outcome_figure(study):
         series = [b for b in own if b.radius == radius]
         _series(axes[:, 0], [b.velocity for b in series], series, colour, f"$R$ = {radius:g} $r$")
     for number, (other, colour) in enumerate(zip(study.by_filling, _FILLING_COLOURS)):
-        series = [b for b in study.bounces if b.filling == other
-                  and abs(b.velocity / study.by_filling[other].size_fit.velocity - 1.0) < 1e-6]
-        _series(axes[:, 1], [b.radius + 0.3 * number for b in series], series, colour,
-                f"filling {other:g}")
+        series = [
+            b
+            for b in study.bounces
+            if b.filling == other and abs(b.velocity / study.by_filling[other].size_fit.velocity - 1.0) < 1e-6
+        ]
+        _series(axes[:, 1], [b.radius + 0.3 * number for b in series], series, colour, f"filling {other:g}")
     _draw_theory(axes[0, 0], study, filling, np.array([b.velocity for b in own]))
     for row, label in zip(axes, ("coefficient of restitution", "sticking probability")):
         for place in row:
@@ -49,10 +52,20 @@ def outcome_figure(study):
 def _series(axes, x, series, colour, label):
     """Restitution on the first of the axes, sticking on the second."""
     for place, name in zip(axes, ("restitution", "sticking")):
-        mean, low, high = np.array([[np.nan if v is None else v for v in getattr(b, name)] for b in series],
-                                   dtype=float).T
-        place.errorbar(x, mean, yerr=np.nan_to_num([mean - low, high - mean]), fmt="D-", color=colour, markersize=5,
-                       capsize=3, linewidth=0.9, label=label)
+        mean, low, high = np.array(
+            [[np.nan if v is None else v for v in getattr(b, name)] for b in series], dtype=float
+        ).T
+        place.errorbar(
+            x,
+            mean,
+            yerr=np.nan_to_num([mean - low, high - mean]),
+            fmt="D-",
+            color=colour,
+            markersize=5,
+            capsize=3,
+            linewidth=0.9,
+            label=label,
+        )
 
 
 def _draw_theory(axes, study, filling, velocities):
@@ -60,8 +73,12 @@ def _draw_theory(axes, study, filling, velocities):
     v = np.geomspace(velocities.min(), velocities.max(), 60)
     density = filling * study.grain_density
     if results.velocity_fit.reason is None and np.all(np.isfinite(results.velocity_fit.values)):
-        axes.plot(v, restitution(v, Spheres(1.0, density, *results.velocity_fit.values)), color=OURS,
-                  label="Andrews, our moduli")
+        axes.plot(
+            v,
+            restitution(v, Spheres(1.0, density, *results.velocity_fit.values)),
+            color=OURS,
+            label="Andrews, our moduli",
+        )
     if filling in paper.YOUNG:
         spheres = Spheres(1.0, density, paper.YIELD_STRESS[filling], paper.YOUNG[filling])
         axes.plot(v, restitution(v, spheres), "--", color=PAPER, label="Andrews, A24's moduli")
@@ -131,6 +148,14 @@ def _stack(axes, phases):
                 base[up] = base[up] + part
     lost = -100.0 * np.array([phase["kinetic"][0] for phase in phases])
     error = 100.0 * np.array([phase["kinetic"][1] or 0.0 for phase in phases])
-    axes.errorbar(range(len(phases)), lost, yerr=error, fmt="D", color="black", markersize=5, capsize=3,
-                  label="kinetic energy lost")
+    axes.errorbar(
+        range(len(phases)),
+        lost,
+        yerr=error,
+        fmt="D",
+        color="black",
+        markersize=5,
+        capsize=3,
+        label="kinetic energy lost",
+    )
     axes.axhline(0.0, color="black", linewidth=0.7)

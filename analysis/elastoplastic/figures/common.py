@@ -1,4 +1,5 @@
 """What the figures share: colours of the sizes, the paper's style, error bars over the seeds."""
+
 import numpy as np
 
 from ...figures.style import new_figure
@@ -41,11 +42,13 @@ def legend(axes, **options):
 def scatter_of_seeds(axes, x, values, colour, label=None, spread=0.0):
     """Small open diamonds for the runs at x, values (n,), and their mean with its standard error."""
     values = np.asarray(values, dtype=float)
-    axes.plot(np.full(len(values), x), values, "D", markersize=4, markerfacecolor="none", color=colour, alpha=0.45,
-              zorder=2)
+    axes.plot(
+        np.full(len(values), x), values, "D", markersize=4, markerfacecolor="none", color=colour, alpha=0.45, zorder=2
+    )
     error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else 0.0
-    axes.errorbar([x], [values.mean()], yerr=[error], fmt="D", color=colour, markersize=5.5, capsize=3, zorder=4,
-                  label=label)
+    axes.errorbar(
+        [x], [values.mean()], yerr=[error], fmt="D", color=colour, markersize=5.5, capsize=3, zorder=4, label=label
+    )
 
 
 def velocity_axis(axes, velocities):
@@ -53,8 +56,11 @@ def velocity_axis(axes, velocities):
     axes.set_xscale("log")
     low, high = min(velocities), max(velocities)
     axes.set_xlim(low / 1.12, high * 1.12)
-    ticks = [t for t in (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 100)
-             if low / 1.12 <= t <= high * 1.12]
+    ticks = [
+        t
+        for t in (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 100)
+        if low / 1.12 <= t <= high * 1.12
+    ]
     axes.set_xticks(ticks if len(ticks) > 1 else [low, high])
     axes.set_xticks([], minor=True)
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")

@@ -1,4 +1,5 @@
 """Yield stress and coordination number beside those of other aggregates: A24 Fig. 11."""
+
 import numpy as np
 
 from ...figures.style import styled
@@ -18,21 +19,31 @@ def strength_figure(study):
     figure, axes = panels(1, 2)
     left, right = axes[0]
     left.semilogy(phi, bcca_strength(phi) / MEGA, color=OURS, label="compressed BCCA, quasistatic (eq 44)")
-    left.plot(list(paper.YIELD_STRESS), [value / MEGA for value in paper.YIELD_STRESS.values()], "*", markersize=15,
-              markerfacecolor="none", color=PAPER, linestyle="none", label="A24, CPE, collisions")
+    left.plot(
+        list(paper.YIELD_STRESS),
+        [value / MEGA for value in paper.YIELD_STRESS.values()],
+        "*",
+        markersize=15,
+        markerfacecolor="none",
+        color=PAPER,
+        linestyle="none",
+        label="A24, CPE, collisions",
+    )
     label = "here, CPE, collisions"
     for filling in fillings:
         fit = study.by_filling[filling].velocity_fit
         if fit.reason or not np.isfinite(fit.values[0]):
             continue
         error = None if fit.errors[0] is None else [fit.errors[0] / MEGA]
-        left.errorbar([filling], [fit.values[0] / MEGA], yerr=error, fmt="*", markersize=11, color=_RED, capsize=3,
-                      label=label)
+        left.errorbar(
+            [filling], [fit.values[0] / MEGA], yerr=error, fmt="*", markersize=11, color=_RED, capsize=3, label=label
+        )
         label = None
     left.set_ylabel("yield stress  [MPa]")
     right.plot(phi, bcca_coordination(phi), color=OURS, label="compressed BCCA (eq 45)")
-    right.plot(phi, cpe_coordination(phi, study.grain_radius, study.overlap), color=PAPER, linestyle="--",
-               label="CPE (eq 39)")
+    right.plot(
+        phi, cpe_coordination(phi, study.grain_radius, study.overlap), color=PAPER, linestyle="--", label="CPE (eq 39)"
+    )
     inner = [study.by_filling[filling].coordination[0] for filling in fillings]
     whole = [np.mean([row.coordination for row in study.rows if round(row.filling, 6) == f]) for f in fillings]
     right.plot(fillings, inner, "D", color=_RED, markersize=6, label="measured, 2 $r$ below the surface")

@@ -1,36 +1,41 @@
 """The list of figures: their files, what they need, their captions."""
+
 import io
 
-from PIL import Image      # what matplotlib itself writes PNGs with
+from PIL import Image  # what matplotlib itself writes PNGs with
 
 from .bounce import energy_size_figure, energy_velocity_figure, outcome_figure
+from .common import main_filling
 from .constants import strength_figure
 from .motion import andrews_figure, chains_figure, motion_figure
 from .offset import offset_figure
 from .size import size_figure, time_figure
 from .velocity import moduli_figure, velocity_figure
-from .common import main_filling
 
-DOTS_PER_INCH = 80      # a gallery of all figures stays below 1.5 MB
+DOTS_PER_INCH = 80  # a gallery of all figures stays below 1.5 MB
 COLOURS = 128
 
 
 def _of_filling(make, filling=None, needs_offset=True):
     """Figure of one filling (None: the main one); None where it has no runs, or no offset."""
+
     def figure(study):
         results = study.by_filling.get(main_filling(study) if filling is None else filling)
         if results is None or (needs_offset and results.offset is None):
             return None
         return make(study, results)
+
     return figure
 
 
 def _others(make):
     """Figure of the second filling, the one that A24 shows in Figs. 6 and 9; None where there is one only."""
+
     def figure(study):
         others = [f for f in study.by_filling if f != main_filling(study)]
         filling = 0.3 if 0.3 in others else (others[0] if others else None)
         return None if filling is None else _of_filling(make, filling, make is velocity_figure)(study)
+
     return figure
 
 

@@ -1,5 +1,6 @@
 """d and v of all seeds against time, and v beside Andrews's model: A24 Figs. 4, 12; the force chains: Fig.
 13."""
+
 import numpy as np
 
 from ...figures.forces import forces_figure
@@ -42,8 +43,13 @@ def motion_figure(study):
     line = paper.line(round(row.filling, 6))
     radius = row.radius / row.grain_radius
     if line and abs(row.velocity / paper.VELOCITY - 1.0) < 1e-3:
-        axes[0, 0].axhline(line[0] * radius - line[1], color=PAPER, linestyle="--", linewidth=1.2,
-                           label=f"A24's line: $d_{{max}}$ = {line[0] * radius - line[1]:.2f} $r$")
+        axes[0, 0].axhline(
+            line[0] * radius - line[1],
+            color=PAPER,
+            linestyle="--",
+            linewidth=1.2,
+            label=f"A24's line: $d_{{max}}$ = {line[0] * radius - line[1]:.2f} $r$",
+        )
         legend(axes[0, 0], loc="lower right")
     for place in axes[0]:
         place.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
@@ -65,16 +71,27 @@ def andrews_figure(study):
     last = 0.0
     for number, each in enumerate(rows):
         history = open_run(each.path).history
-        place.plot(history["time"] * NANO, history["v"], color=_GREY, linewidth=0.9,
-                   label=f"{len(rows)} seeds" if number == 0 else None)
+        place.plot(
+            history["time"] * NANO,
+            history["v"],
+            color=_GREY,
+            linewidth=0.9,
+            label=f"{len(rows)} seeds" if number == 0 else None,
+        )
         last = max(last, history["time"][-1])
     for moduli, offset, colour, style, label in _models(results, study):
         density = results.filling * study.grain_density
         model = motion(row.velocity, Spheres(reduced_radius(row.radius, offset), density, *moduli))
         contact = 2.0 * (study.grain_radius - offset) / row.velocity
         time = np.linspace(0.0, last, 1500)
-        place.plot(time * NANO, model.velocity(time - contact), style, color=colour, linewidth=1.8,
-                   label=f"Andrews, {label}: {moduli[0] / MEGA:.3g}, {moduli[1] / MEGA:.3g} MPa")
+        place.plot(
+            time * NANO,
+            model.velocity(time - contact),
+            style,
+            color=colour,
+            linewidth=1.8,
+            label=f"Andrews, {label}: {moduli[0] / MEGA:.3g}, {moduli[1] / MEGA:.3g} MPa",
+        )
     place.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
     place.set_xlabel("time $t$  [ns]")
     place.set_ylabel("mutual velocity $v$  [m/s]")
@@ -89,8 +106,13 @@ def _models(results, study):
     if fit.reason is None and np.all(np.isfinite(fit.values)):
         yield fit.values, fit.offset, OURS, "-", "our fit"
     if results.filling in paper.YOUNG:
-        yield ((paper.YIELD_STRESS[results.filling], paper.YOUNG[results.filling]),
-               paper.OFFSET[results.filling] * study.grain_radius, PAPER, "--", "A24's fit")
+        yield (
+            (paper.YIELD_STRESS[results.filling], paper.YOUNG[results.filling]),
+            paper.OFFSET[results.filling] * study.grain_radius,
+            PAPER,
+            "--",
+            "A24's fit",
+        )
 
 
 def chains_figure(study):

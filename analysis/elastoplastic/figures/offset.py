@@ -1,4 +1,5 @@
 """d_max against where d starts: the part of its scatter that comes from the aggregates' centres of mass."""
+
 import numpy as np
 
 from ...figures.style import styled
@@ -20,20 +21,43 @@ def offset_figure(study):
     for k in chosen:
         radius, fix = round(float(points.radius[k] / unit), 3), results.corrections[k]
         d_max = points.samples[k][0] / unit
-        offset = np.array([row.offset / unit for seed in points.seeds[k] for row in study.rows
-                           if row.seed == seed and abs(row.radius / points.radius[k] - 1.0) < 1e-6
-                           and round(row.filling, 6) == results.filling
-                           and abs(row.velocity / points.velocity[k] - 1.0) < 1e-6])
-        place.plot(offset, d_max, "D", markersize=5, color=colours[radius],
-                   label=f"$R$ = {radius:g} $r$, {len(d_max)} seeds")
+        offset = np.array(
+            [
+                row.offset / unit
+                for seed in points.seeds[k]
+                for row in study.rows
+                if row.seed == seed
+                and abs(row.radius / points.radius[k] - 1.0) < 1e-6
+                and round(row.filling, 6) == results.filling
+                and abs(row.velocity / points.velocity[k] - 1.0) < 1e-6
+            ]
+        )
+        place.plot(
+            offset, d_max, "D", markersize=5, color=colours[radius], label=f"$R$ = {radius:g} $r$, {len(d_max)} seeds"
+        )
         if fix.slope is not None:
             reach = np.array([min(offset.min(), 0.0), max(offset.max(), 0.0)])
             place.plot(reach, fix.corrected + fix.slope * reach, color=colours[radius], linewidth=1.0)
-            place.errorbar([0.0], [fix.corrected], yerr=[fix.corrected_error or 0.0], fmt="s", capsize=4, markersize=7,
-                           markerfacecolor="none", color=colours[radius])
+            place.errorbar(
+                [0.0],
+                [fix.corrected],
+                yerr=[fix.corrected_error or 0.0],
+                fmt="s",
+                capsize=4,
+                markersize=7,
+                markerfacecolor="none",
+                color=colours[radius],
+            )
         if line:
-            place.plot([0.0], [line[0] * radius - line[1]], "*", markersize=15, markerfacecolor="none", color=PAPER,
-                       label="A24's line" if k == chosen[0] else None)
+            place.plot(
+                [0.0],
+                [line[0] * radius - line[1]],
+                "*",
+                markersize=15,
+                markerfacecolor="none",
+                color=PAPER,
+                label="A24's line" if k == chosen[0] else None,
+            )
     place.axvline(0.0, color="0.8", linewidth=0.8, zorder=0)
     place.set_xlabel("offset of the centres of mass at the start, $d(0) + 2r$  [grain radii]")
     place.set_ylabel("$d_{max}$  [grain radii]")

@@ -1,12 +1,23 @@
 """d_max, delta_max and tau_max against size: A24 Figs. 5, 6, 7."""
+
 import numpy as np
 
 from ...figures.style import NANO, styled
 from .. import paper
 from ..andrews import Spheres, elastic_time, plastic_time
 from ..velocity_fit import effective, reduced_radius
-from .common import (ELASTIC, OURS, PAPER, RIGID, filling_text, is_papers_velocity, legend, letter, panels,
-                     scatter_of_seeds)
+from .common import (
+    ELASTIC,
+    OURS,
+    PAPER,
+    RIGID,
+    filling_text,
+    is_papers_velocity,
+    legend,
+    letter,
+    panels,
+    scatter_of_seeds,
+)
 
 _RED = "#c62828"
 
@@ -32,11 +43,20 @@ def size_figure(study, results):
     for radius, d_max, _ in sizes:
         scatter_of_seeds(left, radius, d_max, _RED)
     if fit.reason is None:
-        left.plot(radii, fit.values["c1"] * radii - fit.values["c2"], color=OURS,
-                  label=f"fit: $c_1$ = {fit.values['c1']:.4f}, $c_2$ = {fit.values['c2']:.3f}")
+        left.plot(
+            radii,
+            fit.values["c1"] * radii - fit.values["c2"],
+            color=OURS,
+            label=f"fit: $c_1$ = {fit.values['c1']:.4f}, $c_2$ = {fit.values['c2']:.3f}",
+        )
     if theirs:
-        left.plot(radii, theirs[0] * radii - theirs[1], "--", color=PAPER,
-                  label=f"A24: $c_1$ = {theirs[0]:.4f}, $c_2$ = {theirs[1]:.3f}")
+        left.plot(
+            radii,
+            theirs[0] * radii - theirs[1],
+            "--",
+            color=PAPER,
+            label=f"A24: $c_1$ = {theirs[0]:.4f}, $c_2$ = {theirs[1]:.3f}",
+        )
     left.set_xlabel("aggregate radius $R$  [grain radii]")
     left.set_ylabel("largest compression length $d_{max}$  [grain radii]")
     if results.offset is not None:
@@ -58,12 +78,18 @@ def _draw_effective(axes, results, theirs, sizes, unit, radii):
     half = 0.5 * radii
     if results.size_fit.reason is None:
         ratio = results.size_fit.values["ratio"]
-        axes.plot(half, ratio * half, color=OURS,
-                  label=f"fit: {ratio:.4f} $R^*$, $\\delta_{{offset}}$ = {offset:.3f} $r$")
+        axes.plot(
+            half, ratio * half, color=OURS, label=f"fit: {ratio:.4f} $R^*$, $\\delta_{{offset}}$ = {offset:.3f} $r$"
+        )
     if theirs:
-        axes.plot(half, 2.0 * theirs[0] * half, "--", color=PAPER,
-                  label=f"A24: {paper.RATIO[results.filling]:g} $R^*$, $\\delta_{{offset}}$ = "
-                        f"{paper.OFFSET[results.filling]:g} $r$")
+        axes.plot(
+            half,
+            2.0 * theirs[0] * half,
+            "--",
+            color=PAPER,
+            label=f"A24: {paper.RATIO[results.filling]:g} $R^*$, $\\delta_{{offset}}$ = "
+            f"{paper.OFFSET[results.filling]:g} $r$",
+        )
     axes.set_xlabel("reduced radius $R^*$  [grain radii]")
     axes.set_ylabel("largest compression $\\delta_{max}$  [grain radii]")
 
@@ -96,10 +122,15 @@ def time_figure(study, results):
 
 def _draw_limits(axes, line, ratio, velocity, results, study, unit, whose):
     density = results.filling * study.grain_density
-    young = 5.0 * np.pi * density * velocity ** 2 / ratio ** 2.5
-    sigma = 16.0 / 3.0 * density * velocity ** 2 / ratio ** 2
+    young = 5.0 * np.pi * density * velocity**2 / ratio**2.5
+    sigma = 16.0 / 3.0 * density * velocity**2 / ratio**2
     style = "--" if whose == "A24's" else "-"
     for time, colour, name in ((elastic_time, ELASTIC, "elastic"), (plastic_time, RIGID, "rigid plastic")):
         slope = float(time(velocity, Spheres(1.0, density, sigma, young)))
-        axes.plot(line, slope * line * unit * NANO, style, color=colour,
-                  label=f"{name}, {whose} $\\delta_{{max}}/R^*$ = {ratio:.3g}")
+        axes.plot(
+            line,
+            slope * line * unit * NANO,
+            style,
+            color=colour,
+            label=f"{name}, {whose} $\\delta_{{max}}/R^*$ = {ratio:.3g}",
+        )

@@ -1,13 +1,33 @@
 """delta_max and tau_max against velocity, and the pairs of yield stress and E*: A24 Figs. 8, 9, 10."""
+
 import numpy as np
 
 from ...figures.style import NANO, styled
 from .. import paper
-from ..andrews import (Spheres, elastic_compression, elastic_time, largest_compression, plastic_compression,
-                       plastic_time, time_of_largest_compression)
+from ..andrews import (
+    Spheres,
+    elastic_compression,
+    elastic_time,
+    largest_compression,
+    plastic_compression,
+    plastic_time,
+    time_of_largest_compression,
+)
 from ..velocity_fit import degenerate_curve, effective, reduced_radius
-from .common import (ELASTIC, MEGA, OURS, PAPER, RIGID, filling_text, legend, letter, panels, scatter_of_seeds,
-                     size_colours, velocity_axis)
+from .common import (
+    ELASTIC,
+    MEGA,
+    OURS,
+    PAPER,
+    RIGID,
+    filling_text,
+    legend,
+    letter,
+    panels,
+    scatter_of_seeds,
+    size_colours,
+    velocity_axis,
+)
 
 
 @styled
@@ -59,23 +79,44 @@ def _draw_models(left, right, v, study, results, radius, named):
     curves = []
     if fit.reason is None:
         spheres = Spheres(half, density, *fit.values)
-        curves.append((largest_compression(v, spheres), time_of_largest_compression(v, spheres), OURS, "-",
-                       f"fit: {fit.values[0] / MEGA:.3g}, {fit.values[1] / MEGA:.3g} MPa"))
+        curves.append(
+            (
+                largest_compression(v, spheres),
+                time_of_largest_compression(v, spheres),
+                OURS,
+                "-",
+                f"fit: {fit.values[0] / MEGA:.3g}, {fit.values[1] / MEGA:.3g} MPa",
+            )
+        )
     if results.filling in paper.YOUNG:
         theirs = paper.YIELD_STRESS[results.filling], paper.YOUNG[results.filling]
         spheres = Spheres(half, density, *theirs)
-        curves.append((largest_compression(v, spheres), time_of_largest_compression(v, spheres), PAPER, "--",
-                       f"A24: {theirs[0] / MEGA:g}, {theirs[1] / MEGA:g} MPa"))
+        curves.append(
+            (
+                largest_compression(v, spheres),
+                time_of_largest_compression(v, spheres),
+                PAPER,
+                "--",
+                f"A24: {theirs[0] / MEGA:g}, {theirs[1] / MEGA:g} MPa",
+            )
+        )
     ratio, anchor = results.size_fit.ratio, results.size_fit.velocity
     if ratio is None:
         ratio, anchor = paper.RATIO.get(results.filling), paper.VELOCITY
     if ratio is not None:
-        young = 5.0 * np.pi * density * anchor ** 2 / ratio ** 2.5
-        sigma = 16.0 / 3.0 * density * anchor ** 2 / ratio ** 2
+        young = 5.0 * np.pi * density * anchor**2 / ratio**2.5
+        sigma = 16.0 / 3.0 * density * anchor**2 / ratio**2
         limit = Spheres(half, density, sigma, young)
         curves.append((elastic_compression(v, limit), elastic_time(v, limit), ELASTIC, ":", "elastic"))
-        curves.append((plastic_compression(v, limit), np.broadcast_to(plastic_time(v, limit), v.shape), RIGID, "-.",
-                       "rigid plastic"))
+        curves.append(
+            (
+                plastic_compression(v, limit),
+                np.broadcast_to(plastic_time(v, limit), v.shape),
+                RIGID,
+                "-.",
+                "rigid plastic",
+            )
+        )
     for delta, tau, colour, style, label in curves:
         left.plot(v, delta / unit, style, color=colour, linewidth=1.4, label=label if named else None)
         right.plot(v, tau * NANO, style, color=colour, linewidth=1.4)
@@ -92,20 +133,52 @@ def moduli_figure(study):
         size_fit, fit = results.size_fit, results.velocity_fit
         if size_fit.ratio is not None:
             ratio, error = size_fit.ratio, size_fit.errors["ratio"] or 0.0
-            _draw_curve(place, ratio, size_fit.velocity, density, OURS, "-",
-                        f"$\\delta_{{max}}/R^*$ = {ratio:.4f} $\\pm$ {error:.4f}")
+            _draw_curve(
+                place,
+                ratio,
+                size_fit.velocity,
+                density,
+                OURS,
+                "-",
+                f"$\\delta_{{max}}/R^*$ = {ratio:.4f} $\\pm$ {error:.4f}",
+            )
             for other in (max(ratio - error, 0.5 * ratio), ratio + error):
                 _draw_curve(place, other, size_fit.velocity, density, "0.6", "-", None)
         if results.filling in paper.RATIO:
-            _draw_curve(place, paper.RATIO[results.filling], paper.VELOCITY, density, PAPER, "--",
-                        f"A24: {paper.RATIO[results.filling]:g}")
-            place.plot(paper.YIELD_STRESS[results.filling] / MEGA, paper.YOUNG[results.filling] / MEGA, "*",
-                       markersize=15, markerfacecolor="none", color=PAPER, label="A24's fit", zorder=5)
+            _draw_curve(
+                place,
+                paper.RATIO[results.filling],
+                paper.VELOCITY,
+                density,
+                PAPER,
+                "--",
+                f"A24: {paper.RATIO[results.filling]:g}",
+            )
+            place.plot(
+                paper.YIELD_STRESS[results.filling] / MEGA,
+                paper.YOUNG[results.filling] / MEGA,
+                "*",
+                markersize=15,
+                markerfacecolor="none",
+                color=PAPER,
+                label="A24's fit",
+                zorder=5,
+            )
         if fit.reason is None and np.all(np.isfinite(fit.values)):
             sigma, young = (value / MEGA for value in fit.values)
             bars = [None if e is None else [e / MEGA] for e in fit.errors]
-            place.errorbar([sigma], [young], xerr=bars[0], yerr=bars[1], fmt="*", markersize=13, color="#c62828",
-                           capsize=3, label="fit to all velocities", zorder=6)
+            place.errorbar(
+                [sigma],
+                [young],
+                xerr=bars[0],
+                yerr=bars[1],
+                fmt="*",
+                markersize=13,
+                color="#c62828",
+                capsize=3,
+                label="fit to all velocities",
+                zorder=6,
+            )
         place.set_xlabel("yield stress $\\sigma_{plastic}$  [MPa]")
         place.set_ylabel("reduced Young's modulus $E^*$  [MPa]")
         place.set_yscale("log")
@@ -119,7 +192,7 @@ def moduli_figure(study):
 def _draw_curve(axes, ratio, velocity, density, colour, style, label):
     sigma, young, elastic_from, elastic_young = degenerate_curve(ratio, velocity, density)
     seen = young < 30.0 * elastic_young
-    axes.plot(sigma[seen] / MEGA, young[seen] / MEGA, style, color=colour, label=label,
-              linewidth=1.6 if label else 0.8)
-    axes.plot([elastic_from / MEGA, 1.5 * elastic_from / MEGA], [elastic_young / MEGA] * 2, style, color=colour,
-              linewidth=0.9)
+    axes.plot(sigma[seen] / MEGA, young[seen] / MEGA, style, color=colour, label=label, linewidth=1.6 if label else 0.8)
+    axes.plot(
+        [elastic_from / MEGA, 1.5 * elastic_from / MEGA], [elastic_young / MEGA] * 2, style, color=colour, linewidth=0.9
+    )

@@ -12,8 +12,8 @@ class Interaction;
 
 class Body : public Serializable {
 public:
-	using id_t       = int;
-	using mask_t     = int;
+	using id_t = int;
+	using mask_t = int;
 	using MapId2IntrT = std::map<id_t, shared_ptr<Interaction>>;
 	static constexpr id_t ID_NONE = -1;
 
@@ -29,18 +29,18 @@ public:
 	bool isStandalone() const;
 	bool isAspherical() const;
 
-	id_t                 id;
-	mask_t               groupMask;
-	int                  flags;
-	int                  subdomain;
+	id_t id;
+	mask_t groupMask;
+	int flags;
+	int subdomain;
 	shared_ptr<Material> material;
-	shared_ptr<State>    state;
-	shared_ptr<Shape>    shape;
-	shared_ptr<Bound>    bound;
-	MapId2IntrT          intrs; // by the other body's id
-	id_t                 clumpId;
-	long                 iterBorn;
-	Real                 timeBorn;
+	shared_ptr<State> state;
+	shared_ptr<Shape> shape;
+	shared_ptr<Bound> bound;
+	MapId2IntrT intrs; // by the other body's id
+	id_t clumpId;
+	long iterBorn;
+	Real timeBorn;
 };
 static_assert(sizeof(Body) == 176, "Body");
 YADE_INTERFACE_AT_(Body, id, 24)

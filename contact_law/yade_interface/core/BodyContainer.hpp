@@ -18,12 +18,12 @@ public:
 	YADE_INTERFACE_OVERRIDES_(BodyContainer)
 
 	// Always inline: libyade exports functions of these names, whose iterator is another type.
-	[[gnu::always_inline]] iterator                begin() { return iterator(IsThere(), body.begin(), body.end()); }
-	[[gnu::always_inline]] iterator                end() { return iterator(IsThere(), body.end(), body.end()); }
-	[[gnu::always_inline]] size_t                  size() const { return body.size(); }
-	[[gnu::always_inline]] shared_ptr<Body>&       operator[](unsigned int id) { return body[id]; }
+	[[gnu::always_inline]] iterator begin() { return iterator(IsThere(), body.begin(), body.end()); }
+	[[gnu::always_inline]] iterator end() { return iterator(IsThere(), body.end(), body.end()); }
+	[[gnu::always_inline]] size_t size() const { return body.size(); }
+	[[gnu::always_inline]] shared_ptr<Body>& operator[](unsigned int id) { return body[id]; }
 	[[gnu::always_inline]] const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }
-	[[gnu::always_inline]] bool                    exists(Body::id_t id) const { return id >= 0 && size_t(id) < body.size() && bool(body[size_t(id)]); }
+	[[gnu::always_inline]] bool exists(Body::id_t id) const { return id >= 0 && size_t(id) < body.size() && bool(body[size_t(id)]); }
 
 	Body::id_t insert(shared_ptr<Body>);
 
@@ -32,13 +32,13 @@ private:
 	ContainerT body;
 
 public:
-	bool             dirty, checkedByCollider;
+	bool dirty, checkedByCollider;
 	std::vector<int> insertedBodies, erasedBodies, realBodies;
-	bool             useRedirection, enableRedirection;
+	bool useRedirection, enableRedirection;
 
 private:
 	std::vector<int> subdomainBodies;
-	declare::Mutex   drawloopmutex;
+	declare::Mutex drawloopmutex;
 };
 static_assert(sizeof(BodyContainer) == 200, "BodyContainer");
 YADE_INTERFACE_AT_(BodyContainer, dirty, 48) // right behind body

@@ -24,8 +24,8 @@ public:
 	Matrix3r velGrad;
 	Matrix3r nextVelGrad;
 	Matrix3r prevVelGrad;
-	int      homoDeform;
-	bool     velGradChanged, flipFlippable;
+	int homoDeform;
+	bool velGradChanged, flipFlippable;
 };
 static_assert(sizeof(Cell) == 1104, "Cell");
 YADE_INTERFACE_AT_(Cell, trsf, 592)

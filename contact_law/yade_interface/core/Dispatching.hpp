@@ -6,16 +6,13 @@
 namespace yade {
 
 // The types of the arguments are part of the base classes' names and must be exactly these.
-using IPhysFunctorBase_ = Functor2D<
-        Material,
-        Material,
-        void,
+using IPhysFunctorBase_ = Functor2D<Material, Material, void,
         boost::mpl::vector<const shared_ptr<Material>&, const shared_ptr<Material>&, const shared_ptr<Interaction>&>>;
 using LawFunctorBase_ = Functor2D<IGeom, IPhys, bool, boost::mpl::vector<shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*>>;
 
 class IPhysFunctor : public IPhysFunctorBase_ {
 public:
-	IPhysFunctor() { } // not exported
+	IPhysFunctor() {} // not exported
 	~IPhysFunctor() override;
 	YADE_INTERFACE_OVERRIDES_(IPhysFunctor)
 };
@@ -24,7 +21,7 @@ static_assert(sizeof(IPhysFunctor) == 88, "IPhysFunctor");
 // go() returns false to have the interaction deleted
 class LawFunctor : public LawFunctorBase_ {
 public:
-	LawFunctor() { } // not exported
+	LawFunctor() {} // not exported
 	~LawFunctor() override;
 	YADE_INTERFACE_OVERRIDES_(LawFunctor)
 };

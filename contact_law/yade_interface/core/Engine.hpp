@@ -20,12 +20,12 @@ public:
 	Scene* scene; // set before action() is called
 
 private:
-	long                     timingInfo[2]; // calls, nanoseconds
+	long timingInfo[2]; // calls, nanoseconds
 	shared_ptr<TimingDeltas> timingDeltas;
 
 public:
-	bool   dead;
-	int    ompThreads;
+	bool dead;
+	int ompThreads;
 	string label;
 };
 static_assert(sizeof(Engine) == 104, "Engine");

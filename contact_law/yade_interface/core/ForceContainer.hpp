@@ -16,7 +16,7 @@ public:
 	// valid after sync()
 	const Vector3r& getForce(Body::id_t);
 	const Vector3r& getTorque(Body::id_t);
-	void            sync();
+	void sync();
 };
 static_assert(sizeof(ForceContainer) == 304, "ForceContainer");
 

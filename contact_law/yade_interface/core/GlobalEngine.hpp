@@ -6,7 +6,7 @@ namespace yade {
 
 class GlobalEngine : public Engine {
 public:
-	GlobalEngine() { } // not exported
+	GlobalEngine() {} // not exported
 	~GlobalEngine() override;
 	YADE_INTERFACE_OVERRIDES_(GlobalEngine)
 };

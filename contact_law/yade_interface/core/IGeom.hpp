@@ -9,7 +9,7 @@ namespace yade {
 
 class IGeom : public Serializable, public Indexable {
 public:
-	IGeom() { }
+	IGeom() {}
 	~IGeom() override;
 	YADE_INTERFACE_OVERRIDES_(IGeom)
 	REGISTER_INDEX_COUNTER(IGeom);

@@ -9,7 +9,7 @@ namespace yade {
 
 class IPhys : public Serializable, public Indexable {
 public:
-	IPhys() { }
+	IPhys() {}
 	~IPhys() override;
 	YADE_INTERFACE_OVERRIDES_(IPhys)
 	REGISTER_INDEX_COUNTER(IPhys);

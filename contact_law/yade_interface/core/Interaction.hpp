@@ -14,10 +14,10 @@ class Interaction : public Serializable {
 public:
 	bool isActive;
 	struct {
-		bool                     geomExists;
+		bool geomExists;
 		shared_ptr<IGeomFunctor> geom;
 		shared_ptr<IPhysFunctor> phys;
-		shared_ptr<LawFunctor>   constLaw;
+		shared_ptr<LawFunctor> constLaw;
 	} functorCache;
 
 	Interaction();
@@ -31,14 +31,14 @@ public:
 	// always inline: YADE's libraries hold a function of the same name, and this one is called for every contact
 	[[gnu::always_inline]] bool isReal() const { return geom && phys; }
 
-	Body::id_t        id1, id2;
-	long              iterMadeReal;
-	long              iterLastSeen;
+	Body::id_t id1, id2;
+	long iterMadeReal;
+	long iterLastSeen;
 	shared_ptr<IGeom> geom;
 	shared_ptr<IPhys> phys;
-	Vector3i          cellDist; // body 2 is shifted by hSize*cellDist
-	int               linIx;
-	long              iterBorn;
+	Vector3i cellDist; // body 2 is shifted by hSize*cellDist
+	int linIx;
+	long iterBorn;
 };
 static_assert(sizeof(Interaction) == 168, "Interaction");
 YADE_INTERFACE_AT_(Interaction, isActive, 24)

@@ -13,14 +13,14 @@ class Material : public Serializable, public Indexable {
 public:
 	~Material() override;
 	virtual shared_ptr<State> newAssocState() const;
-	virtual bool              stateTypeOk(State*) const;
-	Material() { } // not exported: the defaults below are YADE's
+	virtual bool stateTypeOk(State*) const;
+	Material() {} // not exported: the defaults below are YADE's
 	YADE_INTERFACE_OVERRIDES_(Material)
 	REGISTER_INDEX_COUNTER(Material);
 
-	int    id      = -1; // in O.materials
+	int id = -1; // in O.materials
 	string label;
-	Real   density = 1000;
+	Real density = 1000;
 };
 static_assert(sizeof(Material) == 80, "Material");
 YADE_INTERFACE_AT_(Material, id, 32)

@@ -29,7 +29,7 @@ public:
 	Real dt;
 	long iter;
 	bool subStepping;
-	int  subStep;
+	int subStep;
 	Real time;
 	Real speed;
 	long stopAtIter;
@@ -43,15 +43,15 @@ private:
 	char room2[28] __attribute__((aligned(4))); // selected body, subdomain
 
 public:
-	std::vector<std::string>          tags;
-	std::vector<shared_ptr<Engine>>   engines;
-	std::vector<shared_ptr<Engine>>   _nextEngines;
-	shared_ptr<BodyContainer>         bodies;
-	shared_ptr<InteractionContainer>  interactions;
-	shared_ptr<EnergyTracker>         energy;
+	std::vector<std::string> tags;
+	std::vector<shared_ptr<Engine>> engines;
+	std::vector<shared_ptr<Engine>> _nextEngines;
+	shared_ptr<BodyContainer> bodies;
+	shared_ptr<InteractionContainer> interactions;
+	shared_ptr<EnergyTracker> energy;
 	std::vector<shared_ptr<Material>> materials;
-	shared_ptr<Bound>                 bound;
-	shared_ptr<Cell>                  cell;
+	shared_ptr<Bound> bound;
+	shared_ptr<Cell> cell;
 
 private:
 	char room3[48] __attribute__((aligned(8))); // parameters for display and others

@@ -19,7 +19,7 @@ private:
 
 public:
 	Vector3r color;
-	bool     wire, highlight;
+	bool wire, highlight;
 
 protected:
 	Shape(); // made by YADE only

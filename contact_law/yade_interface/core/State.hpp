@@ -10,27 +10,38 @@ namespace yade {
 
 class State : public Serializable, public Indexable {
 public:
-	enum { DOF_NONE = 0, DOF_X = 1, DOF_Y = 2, DOF_Z = 4, DOF_RX = 8, DOF_RY = 16, DOF_RZ = 32, DOF_ALL = 63, DOF_XYZ = 7, DOF_RXRYRZ = 56 };
+	enum {
+		DOF_NONE = 0,
+		DOF_X = 1,
+		DOF_Y = 2,
+		DOF_Z = 4,
+		DOF_RX = 8,
+		DOF_RY = 16,
+		DOF_RZ = 32,
+		DOF_ALL = 63,
+		DOF_XYZ = 7,
+		DOF_RXRYRZ = 56
+	};
 
 	State();
 	~State() override;
 	YADE_INTERFACE_OVERRIDES_(State)
 	REGISTER_INDEX_COUNTER(State);
 
-	Vector3r&    pos; // = se3.position
+	Vector3r& pos;    // = se3.position
 	Quaternionr& ori; // = se3.orientation
 	declare::Mutex updateMutex;
-	Se3r         se3;
-	Vector3r     vel;
-	Real         mass;
-	Vector3r     angVel;
-	Vector3r     angMom;
-	Vector3r     inertia;
-	Vector3r     refPos;
-	Quaternionr  refOri;
+	Se3r se3;
+	Vector3r vel;
+	Real mass;
+	Vector3r angVel;
+	Vector3r angMom;
+	Vector3r inertia;
+	Vector3r refPos;
+	Quaternionr refOri;
 	unsigned int blockedDOFs;
-	bool         isDamped;
-	Real         densityScaling;
+	bool isDamped;
+	Real densityScaling;
 
 protected:
 	Real dR; // not used: keeps the size

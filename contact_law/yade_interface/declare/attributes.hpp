@@ -20,9 +20,9 @@ namespace attributes {
 
 	template <auto Member, int Flags> struct Attribute {
 		static constexpr auto member = Member;
-		static constexpr int  flags  = Flags;
-		const char*           name;
-		const char*           documentation;
+		static constexpr int flags = Flags;
+		const char* name;
+		const char* documentation;
 	};
 
 	// The default may be left empty. Not T(value) written out: unsigned int(0) is no expression.
@@ -75,7 +75,8 @@ namespace attributes {
 			if constexpr (A::flags & Attr::hidden) return;
 			const Getter getter = &get<Class, A::member>;
 			const Setter setter = &set<Class, A::member, bool(A::flags & Attr::triggerPostLoad)>;
-			if constexpr (bool(A::flags & Attr::readonly)) pythonClass.add_property(attribute.name, getter, attribute.documentation);
+			if constexpr (bool(A::flags & Attr::readonly))
+				pythonClass.add_property(attribute.name, getter, attribute.documentation);
 			else
 				pythonClass.add_property(attribute.name, getter, setter, attribute.documentation);
 		});
@@ -90,68 +91,73 @@ namespace attributes {
 #define YADE_INTERFACE_FLAGS_(attribute) BOOST_PP_TUPLE_ELEM(5, 3, attribute)
 #define YADE_INTERFACE_DOC_(attribute) BOOST_PP_TUPLE_ELEM(5, 4, attribute)
 
-#define YADE_INTERFACE_DECLARE_(r, data, a) YADE_INTERFACE_TYPE_(a) YADE_INTERFACE_NAME_(a) = ::yade::attributes::initial<YADE_INTERFACE_TYPE_(a)>(YADE_INTERFACE_DEFAULT_(a));
+#define YADE_INTERFACE_DECLARE_(r, data, a)                                                                                                \
+	YADE_INTERFACE_TYPE_(a) YADE_INTERFACE_NAME_(a) = ::yade::attributes::initial<YADE_INTERFACE_TYPE_(a)>(YADE_INTERFACE_DEFAULT_(a));
 
 // The two roles after the text are those that YADE's documentation shows.
-#define YADE_INTERFACE_VISIT_(r, Class, a)                                                                                                                     \
-	visit(::yade::attributes::Attribute<&Class::YADE_INTERFACE_NAME_(a), ::yade::Attr::join(YADE_INTERFACE_FLAGS_(a))> {                                   \
-	        BOOST_PP_STRINGIZE(YADE_INTERFACE_NAME_(a)),                                                                                                   \
-	        YADE_INTERFACE_DOC_(a) " :ydefault:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_DEFAULT_(a)) "` :yattrtype:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_TYPE_(a)) "`" });
+#define YADE_INTERFACE_VISIT_(r, Class, a)                                                                                                 \
+	visit(::yade::attributes::Attribute<&Class::YADE_INTERFACE_NAME_(a), ::yade::Attr::join(YADE_INTERFACE_FLAGS_(a))> {               \
+	        BOOST_PP_STRINGIZE(YADE_INTERFACE_NAME_(a)),                                                                               \
+	                YADE_INTERFACE_DOC_(a) " :ydefault:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_DEFAULT_(a)) "` :yattrtype:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_TYPE_(a)) "`" });
 
-#define YADE_INTERFACE_INITIALIZE_(r, data, i, pair)                                                                                                           \
+#define YADE_INTERFACE_INITIALIZE_(r, data, i, pair)                                                                                       \
 	BOOST_PP_IF(i, BOOST_PP_COMMA, BOOST_PP_TUPLE_EAT(0))() BOOST_PP_TUPLE_ELEM(2, 0, pair)(BOOST_PP_TUPLE_ELEM(2, 1, pair))
 
-#define YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(Class, Base, doc, attributeList, deprecated, initializers, constructor, pythonExtras)                    \
-	static_assert(BOOST_PP_SEQ_SIZE(deprecated) == 0, "deprecated attributes are not supported here");                                                     \
-                                                                                                                                                               \
-public:                                                                                                                                                        \
-	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_DECLARE_, ~, attributeList)                                                                                       \
-	Class() BOOST_PP_IF(BOOST_PP_SEQ_SIZE(initializers), :, ) BOOST_PP_SEQ_FOR_EACH_I(YADE_INTERFACE_INITIALIZE_, ~, initializers) { constructor; }         \
-	template <class Visitor> static void visitAttributes(Visitor&& visit)                                                                                  \
-	{                                                                                                                                                      \
-		(void)visit;                                                                                                                                   \
-		BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_VISIT_, Class, attributeList)                                                                             \
-	}                                                                                                                                                      \
-	std::string getClassName() const override { return #Class; }                                                                                           \
-	std::string getBaseClassName(unsigned int i = 0) const override { return i == 0 ? #Base : ""; }                                                        \
-	int         getBaseClassNumber() const override { return 1; }                                                                                          \
-	void        pySetAttr(const std::string& key, const boost::python::object& value) override                                                             \
-	{                                                                                                                                                      \
-		if (!::yade::attributes::setByName<Class>(*this, key, value)) Base::pySetAttr(key, value);                                                     \
-	}                                                                                                                                                      \
-	boost::python::dict pyDict() const override                                                                                                            \
-	{                                                                                                                                                      \
-		boost::python::dict all;                                                                                                                       \
-		::yade::attributes::addToDict<Class>(*this, all);                                                                                              \
-		all.update(Base::pyDict());                                                                                                                    \
-		return all;                                                                                                                                    \
-	}                                                                                                                                                      \
-	void callPostLoad() override                                                                                                                           \
-	{                                                                                                                                                      \
-		Base::callPostLoad();                                                                                                                          \
-		postLoad(*this);                                                                                                                               \
-	}                                                                                                                                                      \
-	void pyRegisterClass(boost::python::object yadeScope) override                                                                                         \
-	{                                                                                                                                                      \
-		checkPyClassRegistersItself(#Class);                                                                                                           \
-		const boost::python::scope              inside(yadeScope);                                                                                     \
-		const boost::python::docstring_options  show(true, true, false);                                                                               \
-		boost::python::class_<Class, boost::shared_ptr<Class>, boost::python::bases<Base>, boost::noncopyable> pythonClass(                            \
-		        #Class, doc, boost::python::no_init);                                                                                                  \
-		pythonClass.def("__init__", boost::python::raw_function(&::yade::python::initialize<Class>, 1));                                               \
-		::yade::attributes::addProperties<Class>(pythonClass);                                                                                         \
-		(void)pythonClass pythonExtras;                                                                                                                \
-	}                                                                                                                                                      \
-                                                                                                                                                               \
-private:                                                                                                                                                       \
-	friend class boost::serialization::access;                                                                                                             \
-	template <class Archive> void serialize(Archive& archive, const unsigned int)                                                                          \
-	{                                                                                                                                                      \
-		if (Archive::is_saving::value) preSave(*this);                                                                                                 \
-		archive& boost::serialization::make_nvp(#Base, boost::serialization::base_object<Base>(*this));                                                \
-		::yade::attributes::serialize(archive, *this);                                                                                                 \
-		if (Archive::is_loading::value) postLoad(*this); /* O.load doesn't call callPostLoad() of a plugin's classes */                                \
-	}                                                                                                                                                      \
-                                                                                                                                                               \
-public:                                                                                                                                                        \
+#define YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(                                                                                     \
+        Class, Base, doc, attributeList, deprecated, initializers, constructor, pythonExtras)                                              \
+	static_assert(BOOST_PP_SEQ_SIZE(deprecated) == 0, "deprecated attributes are not supported here");                                 \
+                                                                                                                                           \
+public:                                                                                                                                    \
+	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_DECLARE_, ~, attributeList)                                                                   \
+	Class() BOOST_PP_IF(BOOST_PP_SEQ_SIZE(initializers), :, ) BOOST_PP_SEQ_FOR_EACH_I(YADE_INTERFACE_INITIALIZE_, ~, initializers)     \
+	{                                                                                                                                  \
+		constructor;                                                                                                               \
+	}                                                                                                                                  \
+	template <class Visitor> static void visitAttributes(Visitor&& visit)                                                              \
+	{                                                                                                                                  \
+		(void)visit;                                                                                                               \
+		BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_VISIT_, Class, attributeList)                                                         \
+	}                                                                                                                                  \
+	std::string getClassName() const override { return #Class; }                                                                       \
+	std::string getBaseClassName(unsigned int i = 0) const override { return i == 0 ? #Base : ""; }                                    \
+	int getBaseClassNumber() const override { return 1; }                                                                              \
+	void pySetAttr(const std::string& key, const boost::python::object& value) override                                                \
+	{                                                                                                                                  \
+		if (!::yade::attributes::setByName<Class>(*this, key, value)) Base::pySetAttr(key, value);                                 \
+	}                                                                                                                                  \
+	boost::python::dict pyDict() const override                                                                                        \
+	{                                                                                                                                  \
+		boost::python::dict all;                                                                                                   \
+		::yade::attributes::addToDict<Class>(*this, all);                                                                          \
+		all.update(Base::pyDict());                                                                                                \
+		return all;                                                                                                                \
+	}                                                                                                                                  \
+	void callPostLoad() override                                                                                                       \
+	{                                                                                                                                  \
+		Base::callPostLoad();                                                                                                      \
+		postLoad(*this);                                                                                                           \
+	}                                                                                                                                  \
+	void pyRegisterClass(boost::python::object yadeScope) override                                                                     \
+	{                                                                                                                                  \
+		checkPyClassRegistersItself(#Class);                                                                                       \
+		const boost::python::scope inside(yadeScope);                                                                              \
+		const boost::python::docstring_options show(true, true, false);                                                            \
+		boost::python::class_<Class, boost::shared_ptr<Class>, boost::python::bases<Base>, boost::noncopyable> pythonClass(        \
+		        #Class, doc, boost::python::no_init);                                                                              \
+		pythonClass.def("__init__", boost::python::raw_function(&::yade::python::initialize<Class>, 1));                           \
+		::yade::attributes::addProperties<Class>(pythonClass);                                                                     \
+		(void)pythonClass pythonExtras;                                                                                            \
+	}                                                                                                                                  \
+                                                                                                                                           \
+private:                                                                                                                                   \
+	friend class boost::serialization::access;                                                                                         \
+	template <class Archive> void serialize(Archive& archive, const unsigned int)                                                      \
+	{                                                                                                                                  \
+		if (Archive::is_saving::value) preSave(*this);                                                                             \
+		archive& boost::serialization::make_nvp(#Base, boost::serialization::base_object<Base>(*this));                            \
+		::yade::attributes::serialize(archive, *this);                                                                             \
+		if (Archive::is_loading::value) postLoad(*this); /* O.load doesn't call callPostLoad() of a plugin's classes */            \
+	}                                                                                                                                  \
+                                                                                                                                           \
+public:                                                                                                                                    \
 	static_assert(true, "")

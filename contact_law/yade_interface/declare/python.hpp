@@ -15,7 +15,8 @@ namespace python {
 		boost::shared_ptr<T> instance(new T);
 		instance->pyHandleCustomCtorArgs(positional, named);
 		if (boost::python::len(positional) > 0)
-			throw std::runtime_error(instance->getClassName() + ": takes attributes by name only, " + instance->getClassName() + "(attribute=value, ...)");
+			throw std::runtime_error(instance->getClassName() + ": takes attributes by name only, " + instance->getClassName()
+			        + "(attribute=value, ...)");
 		if (boost::python::len(named) > 0) instance->pyUpdateAttrs(named);
 		return instance;
 	}

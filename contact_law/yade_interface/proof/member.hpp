@@ -14,14 +14,14 @@ namespace proof {
 	struct Member {
 		const char* className;
 		const char* name; // in Python
-		size_t      offset;
-		size_t      classSize;
+		size_t offset;
+		size_t classSize;
 		// Writes and reads both ways; number makes the values of all rows different. Empty, or what was found instead.
 		std::string (*compare)(const Member&, int number);
 	};
 
-	py::object make(const char* className);                                        // an object of a YADE class
-	void       write(py::object&, const char* attribute, const py::object& value); // read-only attributes too
+	py::object make(const char* className);                                  // an object of a YADE class
+	void write(py::object&, const char* attribute, const py::object& value); // read-only attributes too
 
 	// Room that an object has: to look past its end would find other objects, to write there would destroy them.
 	inline bool fits(const void* object, size_t end) { return malloc_usable_size(const_cast<void*>(object)) >= end; }
@@ -39,14 +39,17 @@ namespace proof {
 		for (int j = 0; j < 9; ++j)
 			v(j / 3, j % 3) = i + 0.03125 * (j + 1) + (j % 4 == 0 ? 5 : 0);
 	}
-	inline void sample(int i, yade::Quaternionr& v) { v = i % 2 ? yade::Quaternionr(0.5, -0.5, 0.5, 0.5) : yade::Quaternionr(0.5, 0.5, 0.5, -0.5); }
+	inline void sample(int i, yade::Quaternionr& v)
+	{
+		v = i % 2 ? yade::Quaternionr(0.5, -0.5, 0.5, 0.5) : yade::Quaternionr(0.5, 0.5, 0.5, -0.5);
+	}
 
 	template <class T> bool equalsAt(const char* at, const T& value) { return std::memcmp(at, &value, sizeof(T)) == 0; }
 	template <> inline bool equalsAt(const char* at, const std::string& value)
 	{
 		// looks like a short string first: a pointer found by chance must not be followed
 		const char* text;
-		size_t      length;
+		size_t length;
 		std::memcpy(&text, at, sizeof text);
 		std::memcpy(&length, at + sizeof text, sizeof length);
 		return text == at + 16 && length == value.size() && std::memcmp(text, value.data(), length) == 0;
@@ -55,7 +58,7 @@ namespace proof {
 	template <class Class, class T> std::string compareBothWays(const Member& row, int number)
 	{
 		py::object object = make(row.className);
-		char*      start  = reinterpret_cast<char*>(&py::extract<Class&>(object)());
+		char* start = reinterpret_cast<char*>(&py::extract<Class&>(object)());
 		if (!fits(start, row.offset + sizeof(T))) return "the object ends before it";
 		T fromPython, fromHere;
 		// twice, so that a truth value is written both ways too
@@ -74,7 +77,7 @@ namespace proof {
 	template <class Class, class Target> std::string comparePointer(const Member& row, const char* targetClass)
 	{
 		py::object object = make(row.className), target = make(targetClass);
-		char*      start  = reinterpret_cast<char*>(&py::extract<Class&>(object)());
+		char* start = reinterpret_cast<char*>(&py::extract<Class&>(object)());
 		if (!fits(start, row.offset + sizeof(boost::shared_ptr<Target>))) return "the object ends before it";
 		write(object, row.name, target);
 		const Target* written = &py::extract<Target&>(target)();

@@ -21,12 +21,13 @@ namespace proof {
 		std::string compareBlockedDOFs(const Member& row, int)
 		{
 			py::object object = make(row.className);
-			char*      start  = reinterpret_cast<char*>(&py::extract<State&>(object)());
+			char* start = reinterpret_cast<char*>(&py::extract<State&>(object)());
 			if (!fits(start, row.offset + sizeof(unsigned))) return "the object ends before it";
 			object.attr(row.name) = "yZ";
 			if (!equalsAt(start + row.offset, unsigned(State::DOF_Y | State::DOF_RZ))) return "what Python wrote isn't there";
 			*reinterpret_cast<unsigned*>(start + row.offset) = State::DOF_X | State::DOF_RY;
-			if (std::string(py::extract<std::string>(object.attr(row.name))) != "xY") return "Python doesn't see what is written there";
+			if (std::string(py::extract<std::string>(object.attr(row.name))) != "xY")
+				return "Python doesn't see what is written there";
 			return "";
 		}
 
@@ -34,10 +35,11 @@ namespace proof {
 		template <class T> std::string compareInSe3(const Member& row, int number)
 		{
 			py::object object = make(row.className);
-			State&     state  = py::extract<State&>(object)();
-			char*      start  = reinterpret_cast<char*>(&state);
+			State& state = py::extract<State&>(object)();
+			char* start = reinterpret_cast<char*>(&state);
 			if (!fits(start, sizeof(State))) return "the object ends before it";
-			if (reinterpret_cast<char*>(&state.pos) != start + offsetof(State, se3.position) || reinterpret_cast<char*>(&state.ori) != start + offsetof(State, se3.orientation))
+			if (reinterpret_cast<char*>(&state.pos) != start + offsetof(State, se3.position)
+			        || reinterpret_cast<char*>(&state.ori) != start + offsetof(State, se3.orientation))
 				return "pos and ori don't refer to it";
 			T fromPython, fromHere;
 			sample(number, fromPython);
@@ -45,7 +47,8 @@ namespace proof {
 			object.attr(row.name) = fromPython;
 			if (!equalsAt(start + row.offset, fromPython)) return "what Python wrote isn't there";
 			*reinterpret_cast<T*>(start + row.offset) = fromHere;
-			if (!(py::extract<T>(object.attr(row.name))().isApprox(fromHere))) return "Python doesn't see what is written there";
+			if (!(py::extract<T>(object.attr(row.name))().isApprox(fromHere)))
+				return "Python doesn't see what is written there";
 			return "";
 		}
 
@@ -53,7 +56,7 @@ namespace proof {
 		std::string comparePrevHSize(const Member& row, int number)
 		{
 			py::object object = make(row.className);
-			char*      start  = reinterpret_cast<char*>(&py::extract<Cell&>(object)());
+			char* start = reinterpret_cast<char*>(&py::extract<Cell&>(object)());
 			if (!fits(start, row.offset + sizeof(Matrix3r))) return "the object ends before it";
 			Matrix3r fromPython, fromHere;
 			sample(number, fromPython);
@@ -61,19 +64,41 @@ namespace proof {
 			write(object, "hSize", py::object(fromPython));
 			if (!equalsAt(start + row.offset, fromPython)) return "what Python wrote isn't there";
 			*reinterpret_cast<Matrix3r*>(start + row.offset) = fromHere;
-			if (!(py::extract<Matrix3r>(object.attr(row.name))() == fromHere)) return "Python doesn't see what is written there";
+			if (!(py::extract<Matrix3r>(object.attr(row.name))() == fromHere))
+				return "Python doesn't see what is written there";
 			return "";
 		}
 
-		template <class Class, class Target> std::string compareGeom(const Member& row, int) { return comparePointer<Class, Target>(row, "ScGeom"); }
-		template <class Class, class Target> std::string comparePhys(const Member& row, int) { return comparePointer<Class, Target>(row, "NormShearPhys"); }
-		template <class Class, class Target> std::string compareMaterial(const Member& row, int) { return comparePointer<Class, Target>(row, "ElastMat"); }
-		template <class Class, class Target> std::string compareState(const Member& row, int) { return comparePointer<Class, Target>(row, "State"); }
-		template <class Class, class Target> std::string compareShape(const Member& row, int) { return comparePointer<Class, Target>(row, "Sphere"); }
+		template <class Class, class Target> std::string compareGeom(const Member& row, int)
+		{
+			return comparePointer<Class, Target>(row, "ScGeom");
+		}
+		template <class Class, class Target> std::string comparePhys(const Member& row, int)
+		{
+			return comparePointer<Class, Target>(row, "NormShearPhys");
+		}
+		template <class Class, class Target> std::string compareMaterial(const Member& row, int)
+		{
+			return comparePointer<Class, Target>(row, "ElastMat");
+		}
+		template <class Class, class Target> std::string compareState(const Member& row, int)
+		{
+			return comparePointer<Class, Target>(row, "State");
+		}
+		template <class Class, class Target> std::string compareShape(const Member& row, int)
+		{
+			return comparePointer<Class, Target>(row, "Sphere");
+		}
 	}
 
-#define MEMBER(Class, member, T) { #Class, #member, offsetof(Class, member), sizeof(Class), &compareBothWays<Class, T> }
-#define MEMBER_BY(Class, name, member, compare) { #Class, #name, offsetof(Class, member), sizeof(Class), &compare }
+#define MEMBER(Class, member, T)                                                                                                           \
+	{                                                                                                                                  \
+#Class, #member, offsetof(Class, member), sizeof(Class), &compareBothWays < Class, T>                                      \
+	}
+#define MEMBER_BY(Class, name, member, compare)                                                                                            \
+	{                                                                                                                                  \
+#Class, #name, offsetof(Class, member), sizeof(Class), &compare                                                            \
+	}
 
 	std::vector<Member> members()
 	{

@@ -31,8 +31,8 @@ namespace proof {
 		std::string differenceInSize(const Member& row)
 		{
 			const py::object object = make(row.className);
-			const void*      start  = &py::extract<yade::Serializable&>(object)();
-			const size_t     room   = malloc_usable_size(const_cast<void*>(start));
+			const void* start = &py::extract<yade::Serializable&>(object)();
+			const size_t room = malloc_usable_size(const_cast<void*>(start));
 			// an allocator rounds up: by less than 32 bytes the usual one, by up to a quarter others
 			const size_t most = row.classSize + std::max<size_t>(48, row.classSize / 4);
 			if (room >= row.classSize && room <= most) return "";
@@ -43,7 +43,8 @@ namespace proof {
 	std::string refusal(const std::string& what, const std::string& where)
 	{
 		return "contact_law: refusing to load: " + what + " (" + where + "). It was compiled for YADE " + describedVersion
-		        + "; use that one (Debian 12 ships 2023.02a), or compile for yours: make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version.";
+		        + "; use that one (Debian 12 ships 2023.02a), or compile for yours: make YADE_INCLUDE=/path/to/its/source "
+		          "YADE_VERSION=its-version.";
 	}
 
 	py::object make(const char* className) { return wrapper().attr(className)(); }
@@ -57,10 +58,12 @@ namespace proof {
 
 	std::string differenceInVersion()
 	{
-		if (!Py_IsInitialized()) return "contact_law: refusing to load: this is no running YADE (no Python here). Run it inside yade.";
+		if (!Py_IsInitialized())
+			return "contact_law: refusing to load: this is no running YADE (no Python here). Run it inside yade.";
 		try {
 			const std::string version = py::extract<std::string>(py::import("yade.config").attr("version"));
-			if (version != describedVersion) return refusal("this is YADE " + version + ", not " + describedVersion, "yade.config.version");
+			if (version != describedVersion)
+				return refusal("this is YADE " + version + ", not " + describedVersion, "yade.config.version");
 			return "";
 		} catch (py::error_already_set&) {
 			return refusal("cannot tell YADE's version: " + pythonError(), "yade.config.version");
@@ -70,7 +73,8 @@ namespace proof {
 	bool classesAreThere()
 	{
 		const py::object everything = wrapper();
-		std::set<std::string> needed { "Omega", "ForceResetter", "Law2_ScGeom_FrictPhys_CundallStrack", "Ip2_FrictMat_FrictMat_FrictPhys", "GlobalEngine", "LawFunctor", "IPhysFunctor" };
+		std::set<std::string> needed { "Omega", "ForceResetter", "Law2_ScGeom_FrictPhys_CundallStrack",
+			"Ip2_FrictMat_FrictMat_FrictPhys", "GlobalEngine", "LawFunctor", "IPhysFunctor" };
 		for (const Member& row : members())
 			needed.insert(row.className);
 		for (const std::string& name : needed)
@@ -83,7 +87,7 @@ namespace proof {
 		int number = 1;
 		for (const Member& row : rows) {
 			const std::string where = "byte " + std::to_string(row.offset) + " of " + std::to_string(row.classSize);
-			const std::string name  = std::string(row.className) + "." + row.name;
+			const std::string name = std::string(row.className) + "." + row.name;
 			try {
 				const std::string size = differenceInSize(row);
 				if (!size.empty()) return refusal(std::string(row.className) + " " + size, where);

@@ -34,8 +34,8 @@ bool factory::versionAgrees()
 #endif
 
 namespace {
-	bool        proven      = false; // whether the proof has run
-	bool        fromPython  = false; // loaded by import contact_law, which reports a refusal itself
+	bool proven = false;     // whether the proof has run
+	bool fromPython = false; // loaded by import contact_law, which reports a refusal itself
 	std::string whyRefused;
 
 #if !CONTACT_LAW_WAITS_FOR_PROOF
@@ -43,8 +43,9 @@ namespace {
 	bool isInThisLibrary(const std::string& className)
 	{
 		const shared_ptr<Factorable> object = ClassFactory::instance().createShared(className);
-		Dl_info                      there, here;
-		return dladdr(*reinterpret_cast<void**>(object.get()), &there) && dladdr(&whyRefused, &here) && there.dli_fbase == here.dli_fbase;
+		Dl_info there, here;
+		return dladdr(*reinterpret_cast<void**>(object.get()), &there) && dladdr(&whyRefused, &here)
+		        && there.dli_fbase == here.dli_fbase;
 	}
 #endif
 
@@ -65,7 +66,7 @@ namespace {
 
 	void proveAndLetIn()
 	{
-		proven     = true;
+		proven = true;
 		whyRefused = contact_law::proof::differenceFromRunningYade();
 		if (whyRefused.empty()) {
 			if (CONTACT_LAW_WAITS_FOR_PROOF || fromPython) Omega::instance().buildDynlibDatabase(ownClasses());
@@ -112,7 +113,8 @@ extern "C" const char* contact_law_load()
 		yade::fromPython = true;
 		if (!yade::proven) yade::Omega::instance().buildDynlibDatabase({ "ContactLawPlugin" });
 		result = yade::whyRefused;
-		if (result.empty() && !yade::proven) result = contact_law::proof::refusal("the proof of layouts did not run", "contact_law_load");
+		if (result.empty() && !yade::proven)
+			result = contact_law::proof::refusal("the proof of layouts did not run", "contact_law_load");
 	} catch (boost::python::error_already_set&) {
 		PyErr_Clear();
 		result = contact_law::proof::refusal("Python raised an error", "contact_law_load");

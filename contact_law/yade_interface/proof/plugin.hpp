@@ -6,13 +6,13 @@ namespace yade {
 
 class ContactLawPlugin : public Serializable {
 public:
-	static std::string         commit();     // of the sources, "unknown" where git didn't know
-	static std::string         refusal();    // why the classes are not there; empty when they are
+	static std::string commit();             // of the sources, "unknown" where git didn't know
+	static std::string refusal();            // why the classes are not there; empty when they are
 	static boost::python::list classNames(); // of the plugin's classes
 
 	// YADE calls this when it takes a class to Python: the moment at which this plugin proves the layouts and lets its other classes in.
 	void checkPyClassRegistersItself(const std::string& className) const override;
-	virtual ~ContactLawPlugin() { }
+	virtual ~ContactLawPlugin() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(ContactLawPlugin, Serializable,
 		"The plugin contact_law itself: the git commit it was built from, the names of its classes, and, when it refused to load them, the reason.",

@@ -38,23 +38,24 @@ using std::runtime_error;
 using std::string;
 using std::vector;
 
-using Real        = double;
-using Vector2r    = Eigen::Matrix<Real, 2, 1>;
-using Vector3r    = Eigen::Matrix<Real, 3, 1>;
-using Vector3i    = Eigen::Matrix<int, 3, 1>;
-using Matrix3r    = Eigen::Matrix<Real, 3, 3>;
+using Real = double;
+using Vector2r = Eigen::Matrix<Real, 2, 1>;
+using Vector3r = Eigen::Matrix<Real, 3, 1>;
+using Vector3i = Eigen::Matrix<int, 3, 1>;
+using Matrix3r = Eigen::Matrix<Real, 3, 3>;
 using Quaternionr = Eigen::Quaternion<Real>;
-using AngleAxisr  = Eigen::AngleAxis<Real>;
+using AngleAxisr = Eigen::AngleAxis<Real>;
 
 template <class Scalar> struct Se3 {
 	Eigen::Matrix<Scalar, 3, 1> position;
-	Eigen::Quaternion<Scalar>   orientation;
+	Eigen::Quaternion<Scalar> orientation;
 };
 using Se3r = Se3<Real>;
 
 const Real NaN = std::numeric_limits<Real>::quiet_NaN();
 
-static_assert(sizeof(Vector3r) == 24 && sizeof(Vector3i) == 12 && sizeof(Matrix3r) == 72 && sizeof(Quaternionr) == 32 && sizeof(Se3r) == 56, "Eigen's layouts");
+static_assert(sizeof(Vector3r) == 24 && sizeof(Vector3i) == 12 && sizeof(Matrix3r) == 72 && sizeof(Quaternionr) == 32 && sizeof(Se3r) == 56,
+        "Eigen's layouts");
 
 } // namespace yade
 

@@ -21,7 +21,8 @@ namespace yade {
 // The object lives in libyade and only these two functions are called: its layout doesn't matter here.
 class ClassFactory : public Singleton<ClassFactory> {
 public:
-	bool registerFactorable(std::string name, Factorable* (*create)(), shared_ptr<Factorable> (*createShared)(), void* (*createPureCustom)());
+	bool registerFactorable(
+	        std::string name, Factorable* (*create)(), shared_ptr<Factorable> (*createShared)(), void* (*createPureCustom)());
 	void registerPluginClasses(const char* fileAndClasses[]);
 };
 
@@ -30,16 +31,16 @@ public:
 std::vector<std::string>& pluginClassesAwaitingProof();
 
 namespace factory {
-	template <class T> Factorable*            create() { return new T; }
+	template <class T> Factorable* create() { return new T; }
 	template <class T> shared_ptr<Factorable> createShared() { return shared_ptr<Factorable>(new T); }
-	template <class T> void*                  createPureCustom() { return new T; }
-	template <class T> bool                   registerClass(const char* name)
+	template <class T> void* createPureCustom() { return new T; }
+	template <class T> bool registerClass(const char* name)
 	{
 		ClassFactory::instance().registerFactorable(name, create<T>, createShared<T>, createPureCustom<T>);
 		pluginClassesAwaitingProof().push_back(name);
 		return true;
 	}
-	bool                   versionAgrees(); // says one line on stderr if it doesn't
+	bool versionAgrees(); // says one line on stderr if it doesn't
 	template <class T> void registerIfVersionAgrees(const char* file, const char* name)
 	{
 		if (!versionAgrees()) return;
@@ -51,29 +52,29 @@ namespace factory {
 
 } // namespace yade
 
-#define YADE_INTERFACE_REGISTER_(r, data, className)                                                                                                           \
-	namespace {                                                                                                                                            \
-		const bool BOOST_PP_CAT(registered, className) = ::yade::factory::registerClass<className>(BOOST_PP_STRINGIZE(className));                         \
+#define YADE_INTERFACE_REGISTER_(r, data, className)                                                                                       \
+	namespace {                                                                                                                        \
+		const bool BOOST_PP_CAT(registered, className) = ::yade::factory::registerClass<className>(BOOST_PP_STRINGIZE(className)); \
 	}
-#define YADE_INTERFACE_EXPORT_(r, data, className)                                                                                                             \
-	}                                                                                                                                                      \
-	BOOST_CLASS_EXPORT_IMPLEMENT(yade::className)                                                                                                          \
+#define YADE_INTERFACE_EXPORT_(r, data, className)                                                                                         \
+	}                                                                                                                                  \
+	BOOST_CLASS_EXPORT_IMPLEMENT(yade::className)                                                                                      \
 	namespace yade {
 
 // Stands in the one .cpp file of the classes, inside namespace yade (left for a moment: Boost's macros must stand outside of every namespace).
-#define YADE_PLUGIN(classes)                                                                                                                                   \
-	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_REGISTER_, ~, classes)                                                                                            \
-	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_EXPORT_, ~, classes)                                                                                              \
+#define YADE_PLUGIN(classes)                                                                                                               \
+	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_REGISTER_, ~, classes)                                                                        \
+	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_EXPORT_, ~, classes)                                                                          \
 	static_assert(true, "")
 
 /* For the one class that runs the proof: YADE hears of it when the library is loaded, if it is the YADE that is described here. Otherwise one line says so. */
-#define YADE_PLUGIN_AT_ONCE(oneClass)                                                                                                                          \
-	namespace {                                                                                                                                            \
-		__attribute__((constructor)) void registerAtOnce()                                                                                             \
-		{                                                                                                                                              \
-			using Class = BOOST_PP_SEQ_HEAD(oneClass);                                                                                             \
-			::yade::factory::registerIfVersionAgrees<Class>(__FILE__, BOOST_PP_STRINGIZE(BOOST_PP_SEQ_HEAD(oneClass)));                            \
-		}                                                                                                                                              \
-	}                                                                                                                                                      \
-	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_EXPORT_, ~, oneClass)                                                                                             \
+#define YADE_PLUGIN_AT_ONCE(oneClass)                                                                                                      \
+	namespace {                                                                                                                        \
+		__attribute__((constructor)) void registerAtOnce()                                                                         \
+		{                                                                                                                          \
+			using Class = BOOST_PP_SEQ_HEAD(oneClass);                                                                         \
+			::yade::factory::registerIfVersionAgrees<Class>(__FILE__, BOOST_PP_STRINGIZE(BOOST_PP_SEQ_HEAD(oneClass)));        \
+		}                                                                                                                          \
+	}                                                                                                                                  \
+	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_EXPORT_, ~, oneClass)                                                                         \
 	static_assert(true, "")

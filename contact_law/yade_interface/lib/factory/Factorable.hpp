@@ -9,10 +9,10 @@ namespace yade {
 
 class Factorable : public boost::enable_shared_from_this<Factorable> {
 public:
-	Factorable() { }
+	Factorable() {}
 	virtual ~Factorable();
 	virtual std::string getBaseClassName(unsigned int = 0) const;
-	virtual int         getBaseClassNumber() const;
+	virtual int getBaseClassNumber() const;
 	virtual std::string getClassName() const;
 };
 static_assert(sizeof(Factorable) == 24, "Factorable");

@@ -28,25 +28,28 @@ template <class Result, class Arguments> class FunctorWrapper {
 	using A6 = typename At<5>::type;
 	using A7 = typename At<6>::type;
 
-	[[noreturn]] static Result notOverridden() { throw std::logic_error("a functor was called with a number of arguments that it does not take"); }
+	[[noreturn]] static Result notOverridden()
+	{
+		throw std::logic_error("a functor was called with a number of arguments that it does not take");
+	}
 
 public:
-	virtual ~FunctorWrapper() { }
+	virtual ~FunctorWrapper() {}
 	virtual std::string checkOrder() const { return ""; }
-	virtual Result      go(A1) { return notOverridden(); }
-	virtual Result      go(A1, A2) { return notOverridden(); }
-	virtual Result      go(A1, A2, A3) { return notOverridden(); }
-	virtual Result      go(A1, A2, A3, A4) { return notOverridden(); }
-	virtual Result      go(A1, A2, A3, A4, A5) { return notOverridden(); }
-	virtual Result      go(A1, A2, A3, A4, A5, A6) { return notOverridden(); }
-	virtual Result      go(A1, A2, A3, A4, A5, A6, A7) { return notOverridden(); }
-	virtual Result      goReverse(A1) { return notOverridden(); }
-	virtual Result      goReverse(A1, A2) { return notOverridden(); }
-	virtual Result      goReverse(A1, A2, A3) { return notOverridden(); }
-	virtual Result      goReverse(A1, A2, A3, A4) { return notOverridden(); }
-	virtual Result      goReverse(A1, A2, A3, A4, A5) { return notOverridden(); }
-	virtual Result      goReverse(A1, A2, A3, A4, A5, A6) { return notOverridden(); }
-	virtual Result      goReverse(A1, A2, A3, A4, A5, A6, A7) { return notOverridden(); }
+	virtual Result go(A1) { return notOverridden(); }
+	virtual Result go(A1, A2) { return notOverridden(); }
+	virtual Result go(A1, A2, A3) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4, A5) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4, A5, A6) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4, A5, A6, A7) { return notOverridden(); }
+	virtual Result goReverse(A1) { return notOverridden(); }
+	virtual Result goReverse(A1, A2) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4, A5) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4, A5, A6) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4, A5, A6, A7) { return notOverridden(); }
 };
 
 } // namespace yade

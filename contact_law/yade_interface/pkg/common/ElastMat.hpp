@@ -11,7 +11,7 @@ public:
 	YADE_INTERFACE_OVERRIDES_(ElastMat)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
-	Real young   = 1e9;
+	Real young = 1e9;
 	Real poisson = 0.25;
 };
 static_assert(sizeof(ElastMat) == 96, "ElastMat");

@@ -11,7 +11,7 @@ public:
 	YADE_INTERFACE_OVERRIDES_(NormPhys)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
-	Real     kn;
+	Real kn;
 	Vector3r normalForce;
 };
 static_assert(sizeof(NormPhys) == 64, "NormPhys");
@@ -25,7 +25,7 @@ public:
 	YADE_INTERFACE_OVERRIDES_(NormShearPhys)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
-	Real     ks;
+	Real ks;
 	Vector3r shearForce;
 };
 static_assert(sizeof(NormShearPhys) == 96, "NormShearPhys");

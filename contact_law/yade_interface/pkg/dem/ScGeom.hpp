@@ -12,7 +12,7 @@ public:
 
 	Vector3r normal; // from body 1 to body 2
 	Vector3r contactPoint;
-	Real     refR1, refR2;
+	Real refR1, refR2;
 
 protected:
 	GenericSpheresContact(); // made by YADE only
@@ -32,9 +32,9 @@ public:
 	YADE_INTERFACE_OVERRIDES_(ScGeom)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
-	Real&    radius1; // = refR1
-	Real&    radius2; // = refR2
-	Real     penetrationDepth;
+	Real& radius1; // = refR1
+	Real& radius2; // = refR2
+	Real penetrationDepth;
 	Vector3r shearInc;
 };
 static_assert(sizeof(ScGeom) == 192, "ScGeom");

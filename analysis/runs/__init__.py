@@ -1,0 +1,1 @@
+"""Run folders: their format, reading them, and where they come from."""

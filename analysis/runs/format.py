@@ -1,0 +1,125 @@
+"""The run folder's format, once: what is in run.json, history.npz and states/NNNNNN.npz, with units and shapes.
+
+Scripts write what stands here and the analysis reads it. All quantities are in SI units. A folder holds
+
+    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome
+    history.npz         time series, arrays (T,)
+    states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts
+    ended               empty: the run came to its planned end
+    checkpoint/         while the run is under way, or was stopped: not part of the format
+
+Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
+and no `cell_size` in states. Format 2 has them.
+"""
+
+from dataclasses import dataclass
+
+FORMAT = 2
+READABLE = (1, 2)
+
+RUN_FILE, HISTORY_FILE, ENDED_FILE = "run.json", "history.npz", "ended"
+STATES_FOLDER, CHECKPOINT_FOLDER = "states", "checkpoint"
+
+
+def state_file(number):
+    """Name of the file of state `number`, counted from 0."""
+    return f"{number:06d}.npz"
+
+
+@dataclass(frozen=True)
+class Channel:
+    """An energy channel [J]. kind: STORED (held now), LOST (dissipated since the start) or WORK (done since the start
+    against what holds or moves the grains). The sum of all channels is constant in time. colour: in figures."""
+
+    name: str
+    kind: str
+    label: str
+    colour: str
+
+
+STORED, LOST, WORK = "stored", "lost", "work"
+
+# In the order used everywhere. The plugin's list is contact_law/kernel/energy_channels.hpp; a test compares the two.
+# Stored energies in cool colours, dissipation in warm ones, with one order of hues for sliding, rolling, twisting.
+CHANNEL_TABLE = (
+    Channel("kinetic", STORED, "kinetic", "#9aa5b1"),
+    Channel("normal", STORED, "normal (JKR potential)", "#1f5fa8"),
+    Channel("sliding", STORED, "sliding, stored", "#57b8d9"),
+    Channel("rolling", STORED, "rolling, stored", "#1b8a8f"),
+    Channel("twisting", STORED, "twisting, stored", "#7fd1ae"),
+    Channel("slidingDissipation", LOST, "sliding dissipation", "#f2b134"),
+    Channel("rollingDissipation", LOST, "rolling dissipation", "#d7301f"),
+    Channel("twistingDissipation", LOST, "twisting dissipation", "#fc8d59"),
+    Channel("connection", LOST, "connection", "#8c4a9e"),
+    Channel("disconnection", LOST, "disconnection", "#d094d8"),
+    Channel("drag", LOST, "drag", "#7a5230"),
+    Channel("bondBreaking", LOST, "bond breaking", "#3b2a20"),
+    Channel("boundaryWork", WORK, "work on the boundaries", "#4d4d4d"),
+    Channel("constraintWork", WORK, "work on constraints", "#b3b3b3"),
+)
+CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An array of a history or a state. shape: of "T", "N", "M" (samples, grains, contacts) and numbers; kind: numpy's
+    letter of the type, "f", "i" or "b". `optional`: left out where the scene has none. `gaps`: may be NaN in places."""
+
+    name: str
+    shape: tuple
+    unit: str
+    meaning: str
+    kind: str = "f"
+    optional: bool = False
+    gaps: bool = False
+
+
+@dataclass(frozen=True)
+class RunKind:
+    """A kind of run, by the `kind` of run.json: what its history and its states hold beside what every run has."""
+
+    name: str
+    series: tuple
+    state: tuple = ()
+
+    @property
+    def history(self):
+        """Quantities of history.npz, in the order of its columns: time, the channels, the contacts, the kind's own."""
+        channels = (Quantity(c.name, ("T",), "J", c.label) for c in CHANNEL_TABLE)
+        return (TIME_SERIES, *channels, CONTACTS, *self.series)
+
+    @property
+    def states(self):
+        """Quantities of a state."""
+        return STATE + self.state
+
+
+TIME_SERIES = Quantity("time", ("T",), "s", "time, rising")
+CONTACTS = Quantity("contacts", ("T",), "", "number of contacts", "i")
+
+STATE = (
+    Quantity("time", (), "s", "time"),
+    Quantity("position", ("N", 3), "m", "positions; unwrapped in a periodic cell"),
+    Quantity("velocity", ("N", 3), "m/s", "velocities"),
+    Quantity("angular_velocity", ("N", 3), "rad/s", "angular velocities"),
+    Quantity("radius", ("N",), "m", "radii"),
+    Quantity("aggregate", ("N",), "", "number of the aggregate that a grain belongs to at the start", "i"),
+    Quantity("contact_pairs", ("M", 2), "", "rows of the two grains of a contact", "i"),
+    Quantity("contact_normal_force", ("M",), "N", "normal force, elastic and viscous, positive when repulsive"),
+    Quantity("contact_bonded", ("M",), "", "whether a contact is a sintered bond", "b"),
+    Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True),
+)
+
+COLLISION = RunKind(
+    "collision",
+    (
+        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11); NaN with all grains on one side", gaps=True),
+        Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13), positive while approaching", gaps=True),
+        Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates", "i"),
+    ),
+)
+
+RUN_KINDS = {kind.name: kind for kind in (COLLISION,)}
+
+# Derived constants of run.json that every analysis may divide by.
+POSITIVE_CONSTANTS = ("grainRadius", "pullOffForce")
