@@ -1,19 +1,25 @@
-"""Analysis of collisions of cohesive dust aggregates: run folders in, numbers and figures out. Needs no YADE.
+"""Analysis of runs of cohesive dust aggregates: run folders in, numbers and figures out. Needs no YADE.
+
+    from analysis import open_run, summarise
+    summarise(open_run("runs/demo"))["d_max"]
 
 A24 = Arakawa et al. 2024 (elastoplastic collisions), A22 = Arakawa et al. 2022 (viscous dissipation), K13 =
 Kataoka et al. 2013 (static compression). Everything is in SI units."""
 
-from .channels import CHANNELS, DISSIPATED, STORED
-from .run_folder import RunFolder, RunFolderError, State, open_run
-from .summary import summarise
+from importlib import import_module
 
-__all__ = [
-    "CHANNELS",
-    "DISSIPATED",
-    "STORED",
-    "RunFolder",
-    "RunFolderError",
-    "State",
-    "open_run",
-    "summarise",
-]
+# Loaded when they are first asked for: the scripts that yade runs import analysis.runs.format only.
+_PLACES = {
+    "RunFolder": ".run_folder",
+    "RunFolderError": ".run_folder",
+    "State": ".run_folder",
+    "open_run": ".run_folder",
+    "summarise": ".summary",
+}
+__all__ = sorted(_PLACES)
+
+
+def __getattr__(name):
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_PLACES[name], __name__), name)

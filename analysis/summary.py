@@ -6,8 +6,8 @@ import numpy as np
 
 from .channels import CHANNELS, LABELS
 from .collision_outcome import collision_outcome
-from .compression import maximum_compression
 from .ledger import closure, final_values, initial_kinetic_energy, shares
+from .measures.compression import maximum_compression
 from .run_folder import RunFolderError
 
 _PARAMETERS = (

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..channels import CHANNELS
 from ..collision_outcome import STICKING, collision_outcome
-from ..compression import compression_length, maximum_compression
 from ..ledger import closure, initial_kinetic_energy, shares
+from ..measures.compression import compression_length, maximum_compression
 from ..run_folder import RunFolderError, read_arrays
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
-from ..compression import maximum_compression
+from ..measures.compression import maximum_compression
 from .style import NANO, new_figure, run_title, styled
 
 _STRONG = 0.2  # of F_c, A24 Fig. 13

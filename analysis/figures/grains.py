@@ -3,7 +3,7 @@ open."""
 
 import numpy as np
 
-from ..compression import maximum_compression
+from ..measures.compression import maximum_compression
 from .sphere_raster import paint_spheres
 from .style import AGGREGATE_COLOURS, NANO, new_figure, run_title, styled
 

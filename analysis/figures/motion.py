@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..compression import maximum_compression
+from ..measures.compression import maximum_compression
 from ..run_folder import RunFolderError
 from .style import NANO, new_figure, run_title, styled
 

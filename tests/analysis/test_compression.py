@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from analysis.compression import compression_length, maximum_compression, mutual_velocity
+from analysis.measures.compression import (
+    compression_and_velocity,
+    compression_length,
+    maximum_compression,
+    mutual_velocity,
+)
 from analysis.run_folder import open_run
 
 
@@ -21,13 +26,14 @@ def test_v_is_the_rate_of_d():
     assert mutual_velocity(x, speed) == pytest.approx(rate, abs=1e-10)
 
 
-def test_one_empty_side_is_refused():
-    for call in (
-        lambda: compression_length([1.0, 2.0], 1.0),
-        lambda: mutual_velocity([-1.0, 0.0], [0.0, 0.0]),
-    ):
-        with pytest.raises(ValueError, match="both sides"):
-            call()
+def test_one_empty_side_leaves_no_value():
+    assert np.isnan(compression_length([1.0, 2.0], 1.0)) and np.isnan(mutual_velocity([-1.0, 0.0], [0.0, 0.0]))
+    assert np.all(np.isnan(compression_and_velocity([0.0, 0.0], [1.0, 1.0], 1.0)))
+
+
+def test_a_grain_at_zero_belongs_to_neither_side():
+    x, speed = np.array([-1.0, 0.0, 3.0]), np.array([2.0, 100.0, -2.0])
+    assert compression_and_velocity(x, speed, 2.0) == (0.0, 4.0)
 
 
 def test_maximum_of_a_parabola_between_samples():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from analysis.compression import maximum_compression
 from analysis.figures.energy import energy_figure
 from analysis.figures.forces import force_kinds, forces_figure
 from analysis.figures.grains import grains_figure
@@ -12,6 +11,7 @@ from analysis.figures.motion import motion_figure
 from analysis.figures.sphere_raster import paint_spheres
 from analysis.figures.style import CHANNEL_COLOURS
 from analysis.ledger import shares
+from analysis.measures.compression import maximum_compression
 from analysis.run_folder import open_run
 
 

@@ -26,30 +26,36 @@ class Maximum:
 def compression_length(x, aggregate_radius):
     """d = 2 R_agg - (x_+ - x_-) [m], with x_+ (x_-) the mean of the x > 0 (x < 0): A24 eqs 10, 11.
 
-    x (N,) [m] along the collision axis from the centre of mass, aggregate_radius [m]. ValueError if one side
-    is empty."""
-    right, left = _sides(x)
-    x = np.asarray(x, dtype=float)
-    return 2.0 * aggregate_radius - (x[right].mean() - x[left].mean())
+    x (N,) [m] along the collision axis from the centre of mass, aggregate_radius [m]. A grain at x = 0 belongs to
+    neither side. NaN while a side is empty.
+
+    >>> compression_length([-3.0, 0.0, 1.0, 2.0], 2.5)
+    0.5
+    """
+    return compression_and_velocity(x, x, aggregate_radius)[0]
 
 
 def mutual_velocity(x, x_velocity):
-    """v = -(v_+ - v_-) [m/s], positive while approaching, with v_+ (v_-) the mean over grains with x > 0 (x <
-    0): A24 eqs 12, 13.
+    """v = -(v_+ - v_-) [m/s], positive while approaching, with v_+ (v_-) the mean over grains with x > 0 (x < 0): A24
+    eqs 12, 13.
 
-    x (N,) [m], x_velocity (N,) [m/s]. ValueError if one side is empty.
+    x (N,) [m], x_velocity (N,) [m/s]. NaN while a side is empty.
+
+    >>> mutual_velocity([-1.0, 1.0], [2.0, -3.0])
+    5.0
     """
-    right, left = _sides(x)
-    x_velocity = np.asarray(x_velocity, dtype=float)
-    return -(x_velocity[right].mean() - x_velocity[left].mean())
+    return compression_and_velocity(x, x_velocity, 0.0)[1]
 
 
-def _sides(x):
-    x = np.asarray(x, dtype=float)
+def compression_and_velocity(x, x_velocity, aggregate_radius):
+    """(d [m], v [m/s]) as compression_length and mutual_velocity define them, at the cost of one; NaNs while a side of
+    x = 0 is empty."""
+    x, x_velocity = np.asarray(x, dtype=float), np.asarray(x_velocity, dtype=float)
     right, left = x > 0, x < 0
     if not (right.any() and left.any()):
-        raise ValueError("d and v need grains on both sides of x = 0")
-    return right, left
+        return float("nan"), float("nan")
+    d = 2.0 * aggregate_radius - (x[right].mean() - x[left].mean())
+    return float(d), float(-(x_velocity[right].mean() - x_velocity[left].mean()))
 
 
 def maximum_compression(time, d, v):
