@@ -10,11 +10,11 @@ from importlib import import_module
 
 # Loaded when they are first asked for: the scripts that yade runs import analysis.runs.format only.
 _PLACES = {
-    "RunFolder": ".run_folder",
-    "RunFolderError": ".run_folder",
-    "State": ".run_folder",
-    "open_run": ".run_folder",
-    "summarise": ".summary",
+    "RunFolder": ".runs.folder",
+    "RunFolderError": ".runs.arrays",
+    "State": ".runs.folder",
+    "open_run": ".runs.folder",
+    "summarise": ".report.summary",
 }
 __all__ = sorted(_PLACES)
 

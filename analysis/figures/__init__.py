@@ -1,5 +1,2 @@
-"""Figures of a run folder, drawn without a display and saved as PNG."""
-
-from .draw import FIGURES, draw_all
-
-__all__ = ["FIGURES", "draw_all"]
+"""Figures, drawn without a display and saved as PNG: those of one run (of_run), and what all figures share (style,
+panels, save)."""

@@ -1,13 +1,20 @@
 """All figures of a run."""
 
+import pkgutil
+from importlib import import_module
 from pathlib import Path
 
-from .energy import energy_figure
-from .forces import forces_figure
-from .grains import grains_figure
-from .motion import motion_figure
+from . import of_run
 
-FIGURES = {"motion": motion_figure, "energy": energy_figure, "grains": grains_figure, "forces": forces_figure}
+
+def figures_of(run):
+    """{name: function of the run that makes the figure} for a RunFolder's kind, found by their modules."""
+    modules = {m.name: import_module(f"{of_run.__name__}.{m.name}") for m in pkgutil.iter_modules(of_run.__path__)}
+    return {
+        name: module.FIGURE
+        for name, module in modules.items()
+        if run.kind.name in getattr(module, "KINDS", (run.kind.name,))
+    }
 
 
 def draw_all(run, folder):
@@ -18,7 +25,7 @@ def draw_all(run, folder):
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, make in FIGURES.items():
+    for name, make in figures_of(run).items():
         figure = make(run)
         file = folder / f"{name}.png"
         figure.savefig(file)

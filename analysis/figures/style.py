@@ -1,4 +1,4 @@
-"""Common look of the figures: sizes, fonts, and one colour for each energy channel and aggregate."""
+"""Common look of the figures: sizes, fonts, one colour for each aggregate (those of the channels: runs.format)."""
 
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -18,22 +18,6 @@ _SETTINGS = {
     "savefig.dpi": 150,
 }
 
-# Stored energies in cool colours, dissipation in warm ones, with the same hue order for sliding, rolling,
-# twisting.
-CHANNEL_COLOURS = {
-    "kinetic": "#9aa5b1",
-    "normal": "#1f5fa8",
-    "sliding": "#57b8d9",
-    "rolling": "#1b8a8f",
-    "twisting": "#7fd1ae",
-    "slidingDissipation": "#f2b134",
-    "rollingDissipation": "#d7301f",
-    "twistingDissipation": "#fc8d59",
-    "connection": "#8c4a9e",
-    "disconnection": "#d094d8",
-    "drag": "#7a5230",
-    "bondBreaking": "#3b2a20",
-}
 AGGREGATE_COLOURS = ((0.92, 0.60, 0.18), (0.24, 0.52, 0.82))
 
 

@@ -91,6 +91,30 @@ def maximum_compression(time, d, v):
     return Maximum(d_max, t_max, max(abs(d_max - vertex_d), mismatch), max(abs(t_max - vertex_t), to_crossing), True)
 
 
+def first_compression(time, d, v):
+    """(Maximum, whether d exceeds it later): the largest d before v, once fallen through zero, rises through it again.
+
+    Aggregates that stuck may creep together further, long after the collision (A24 defines d_max as the largest d; it
+    is this one then). Arguments and None as maximum_compression, of whole arrays without NaN between."""
+    v = np.asarray(v, dtype=float)
+    falls = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0))
+    rises = np.flatnonzero((v[:-1] <= 0) & (v[1:] > 0))
+    rises = rises[rises > falls[0]] if falls.size else rises[:0]
+    end = int(rises[0]) + 1 if rises.size else len(v)
+    first = maximum_compression(time[:end], d[:end], v[:end])
+    return first, bool(first is not None and np.nanmax(d) > first.length)
+
+
+def compression_by_aggregate(x, aggregate, aggregate_radius):
+    """d [m] as A24 eq 10, but with the means over the grains that belonged to each aggregate at the start: x (N,) [m],
+    aggregate (N,) 0 or 1.
+
+    >>> compression_by_aggregate(np.array([-2.0, 1.0, 3.0]), np.array([0, 1, 1]), 2.5)
+    1.0
+    """
+    return float(2.0 * aggregate_radius - abs(x[aggregate == 1].mean() - x[aggregate == 0].mean()))
+
+
 def _hermite_top(t, d, v):
     """Highest point (value, time) of the cubic through two samples with slopes, on the interval between
     them."""

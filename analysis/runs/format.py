@@ -29,12 +29,14 @@ def state_file(number):
 @dataclass(frozen=True)
 class Channel:
     """An energy channel [J]. kind: STORED (held now), LOST (dissipated since the start) or WORK (done since the start
-    against what holds or moves the grains). The sum of all channels is constant in time. colour: in figures."""
+    against what holds or moves the grains). The sum of all channels is constant in time. colour: in figures. since: the
+    first format that has it; in older folders it is zero."""
 
     name: str
     kind: str
     label: str
     colour: str
+    since: int = 1
 
 
 STORED, LOST, WORK = "stored", "lost", "work"
@@ -54,16 +56,19 @@ CHANNEL_TABLE = (
     Channel("disconnection", LOST, "disconnection", "#d094d8"),
     Channel("drag", LOST, "drag", "#7a5230"),
     Channel("bondBreaking", LOST, "bond breaking", "#3b2a20"),
-    Channel("boundaryWork", WORK, "work on the boundaries", "#4d4d4d"),
-    Channel("constraintWork", WORK, "work on constraints", "#b3b3b3"),
+    Channel("boundaryWork", WORK, "work on the boundaries", "#4d4d4d", since=2),
+    Channel("constraintWork", WORK, "work on constraints", "#b3b3b3", since=2),
 )
 CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE)
+LABELS = {channel.name: channel.label for channel in CHANNEL_TABLE}
+COLOURS = {channel.name: channel.colour for channel in CHANNEL_TABLE}
 
 
 @dataclass(frozen=True)
 class Quantity:
     """An array of a history or a state. shape: of "T", "N", "M" (samples, grains, contacts) and numbers; kind: numpy's
-    letter of the type, "f", "i" or "b". `optional`: left out where the scene has none. `gaps`: may be NaN in places."""
+    letter of the type, "f", "i" or "b". `optional`: left out where the scene has none. `gaps`: may be NaN in places.
+    `since`: the first format that has it; zeros stand for it in older folders."""
 
     name: str
     shape: tuple
@@ -72,20 +77,23 @@ class Quantity:
     kind: str = "f"
     optional: bool = False
     gaps: bool = False
+    since: int = 1
 
 
 @dataclass(frozen=True)
 class RunKind:
-    """A kind of run, by the `kind` of run.json: what its history and its states hold beside what every run has."""
+    """A kind of run, by the `kind` of run.json: what its history and its states hold beside what every run has, and how
+    many aggregates there are (their numbers are 0, 1, ...)."""
 
     name: str
     series: tuple
     state: tuple = ()
+    aggregates: int = 1
 
     @property
     def history(self):
         """Quantities of history.npz, in the order of its columns: time, the channels, the contacts, the kind's own."""
-        channels = (Quantity(c.name, ("T",), "J", c.label) for c in CHANNEL_TABLE)
+        channels = (Quantity(c.name, ("T",), "J", c.label, since=c.since) for c in CHANNEL_TABLE)
         return (TIME_SERIES, *channels, CONTACTS, *self.series)
 
     @property
@@ -117,6 +125,7 @@ COLLISION = RunKind(
         Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13), positive while approaching", gaps=True),
         Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates", "i"),
     ),
+    aggregates=2,
 )
 
 RUN_KINDS = {kind.name: kind for kind in (COLLISION,)}

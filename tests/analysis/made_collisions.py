@@ -4,11 +4,11 @@ folders."""
 import numpy as np
 from written_runs import RADIUS, record, state_arrays, write_run
 
-from analysis.channels import CHANNELS
-from analysis.elastoplastic.andrews import Spheres, largest_compression, time_of_largest_compression
-from analysis.elastoplastic.andrews_motion import motion
-from analysis.elastoplastic.points import make_points
-from analysis.elastoplastic.velocity_fit import reduced_radius
+from analysis.runs.format import CHANNELS
+from analysis.studies.elastoplastic.points import make_points
+from analysis.studies.elastoplastic.velocity_fit import reduced_radius
+from analysis.theory.andrews import Spheres, largest_compression, time_of_largest_compression
+from analysis.theory.andrews_motion import motion
 
 MODULI, OFFSET, FILLING, DENSITY = (2.0e6, 20e6), 0.25 * RADIUS, 0.4, 1000.0
 V = 10**0.5

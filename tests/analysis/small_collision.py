@@ -5,8 +5,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 from written_runs import MASS, PAIR, RADIUS, record, state_arrays
 
-from analysis.channels import CHANNELS
 from analysis.measures.compression import compression_length, mutual_velocity
+from analysis.runs.format import CHANNELS
 from analysis.theory import normalised_energy, normalised_force
 
 DRAG = 2e-9  # [N s/m] at every contact, so that the clusters don't ring for long

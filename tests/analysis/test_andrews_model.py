@@ -2,19 +2,19 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
-
-from analysis.elastoplastic import andrews
-from analysis.elastoplastic.andrews import Spheres
-from analysis.elastoplastic.andrews_motion import motion
-from analysis.elastoplastic.andrews_stress import (
+from andrews_stress import (
     compression_stress,
     contact_force,
     elastic_stress,
     plastic_radius,
     return_stress,
 )
-from analysis.elastoplastic.velocity_fit import degenerate_curve
+from scipy.integrate import quad, solve_ivp
+
+from analysis.studies.elastoplastic.velocity_fit import degenerate_curve
+from analysis.theory import andrews
+from analysis.theory.andrews import Spheres
+from analysis.theory.andrews_motion import motion
 
 V = 10**0.5
 PAPER = Spheres(0.5 * 80.271e-7, 400.0, 2.25e6, 15.7e6)

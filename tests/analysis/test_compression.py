@@ -9,7 +9,7 @@ from analysis.measures.compression import (
     maximum_compression,
     mutual_velocity,
 )
-from analysis.run_folder import open_run
+from analysis.runs.folder import open_run
 
 
 def test_d_and_v_of_three_grains():

@@ -11,9 +11,9 @@ import pytest
 from made_collisions import MODULI, line_of, made_run
 from written_runs import RADIUS
 
-from analysis.elastoplastic.bounce import wilson
-from analysis.elastoplastic.measure import first_compression
-from analysis.elastoplastic.report import LEGEND
+from analysis.studies.elastoplastic.bounce import wilson
+from analysis.studies.elastoplastic.measure import first_compression
+from analysis.studies.elastoplastic.report import LEGEND
 
 TOP = Path(__file__).resolve().parents[2]
 VELOCITIES = [10 ** (0.1 * i) for i in (1, 3, 5, 7)]

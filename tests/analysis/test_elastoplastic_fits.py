@@ -8,8 +8,14 @@ from made_collisions import MODULI, OFFSET, V, line_of, made_points
 from scipy.optimize import least_squares
 from written_runs import RADIUS
 
-from analysis.elastoplastic import paper
-from analysis.elastoplastic.andrews import (
+from analysis.statistics import mean_interval, smoothed_scatter, wilson
+from analysis.studies.elastoplastic import paper
+from analysis.studies.elastoplastic.moduli_search import ModuliSearch
+from analysis.studies.elastoplastic.points import make_points, resampled
+from analysis.studies.elastoplastic.size_fit import errors_of_design, fit_sizes, offset_from_line
+from analysis.studies.elastoplastic.start_offset import common_slope, correct
+from analysis.studies.elastoplastic.velocity_fit import fit_velocities, moduli_errors_of_design
+from analysis.theory.andrews import (
     Spheres,
     elastic_compression,
     elastic_time,
@@ -18,12 +24,6 @@ from analysis.elastoplastic.andrews import (
     plastic_time,
     time_of_largest_compression,
 )
-from analysis.elastoplastic.bounce import restitution_interval, wilson
-from analysis.elastoplastic.moduli_search import ModuliSearch
-from analysis.elastoplastic.points import make_points, resampled, smoothed_scatter
-from analysis.elastoplastic.size_fit import errors_of_design, fit_sizes, offset_from_line
-from analysis.elastoplastic.start_offset import common_slope, correct
-from analysis.elastoplastic.velocity_fit import fit_velocities, moduli_errors_of_design
 
 VELOCITIES = tuple(10 ** (0.1 * i) for i in range(8))
 
@@ -53,7 +53,7 @@ def test_without_scatter_the_truth_comes_out():
 
 
 def test_errors_of_the_line_are_those_it_has():
-    """400 data sets of four sizes with ten seeds: the share within one error is 68.3 %, +- 7.7 % at 99.9 %
+    """400 data sets of four sizes with ten seeds: the fraction within one error is 68.3 %, +- 7.7 % at 99.9 %
     confidence, one standard error of t(27) being 67.4 %."""
     random, truth = np.random.default_rng(3), line_of()
     pulls = []
@@ -88,7 +88,7 @@ def test_same_pairs_at_all_velocities_are_not_taken_for_independent():
 
 def test_moduli_are_recovered_within_their_errors():
     """30 data sets of two sizes, eight velocities, ten seeds. Their pulls have a root mean square of 1.2
-    (t(9): 1.13), which 30 tell to +- 0.5 at 99.9 %; the share within one error is 65 % +- 29 %."""
+    (t(9): 1.13), which 30 tell to +- 0.5 at 99.9 %; the fraction within one error is 65 % +- 29 %."""
     random, pulls, chi_square = np.random.default_rng(6), [], []
     for k in range(30):
         fit = fitted(made_points(random, 10, (40.0, 80.0), VELOCITIES, 0.15), 40, k)
@@ -242,7 +242,7 @@ def test_restitutions_interval_covers_the_mean():
     random = np.random.default_rng(14)
     inside = 0
     for _ in range(300):
-        _, low, high = restitution_interval(random.uniform(0.2, 0.6, 10))
+        _, low, high = mean_interval(random.uniform(0.2, 0.6, 10))
         inside += low < 0.4 < high
     assert inside / 300 > 0.88
-    assert restitution_interval([0.3]) == (0.3, None, None)
+    assert mean_interval([0.3]) == (0.3, None, None)

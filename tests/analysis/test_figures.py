@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from analysis.figures.energy import energy_figure
-from analysis.figures.forces import force_kinds, forces_figure
-from analysis.figures.grains import grains_figure
-from analysis.figures.motion import motion_figure
+from analysis.figures.of_run.energy import energy_figure
+from analysis.figures.of_run.forces import force_kinds, forces_figure
+from analysis.figures.of_run.grains import grains_figure
+from analysis.figures.of_run.motion import motion_figure
 from analysis.figures.sphere_raster import paint_spheres
-from analysis.figures.style import CHANNEL_COLOURS
-from analysis.ledger import shares
 from analysis.measures.compression import maximum_compression
-from analysis.run_folder import open_run
+from analysis.measures.ledger import fractions
+from analysis.runs.folder import open_run
+from analysis.runs.format import COLOURS
 
 
 @pytest.fixture(scope="module")
@@ -29,11 +29,11 @@ def test_motion_is_in_nanoseconds_grain_radii_and_metres_per_second(run):
     assert upper.texts[0].get_text().startswith(f"$d_{{max}}$ = {maximum.length / 1e-7:.3f}")
 
 
-def test_energy_areas_are_the_shares(run):
+def test_energy_areas_are_the_fractions(run):
     upper, lower = energy_figure(run).axes
-    parts = shares(run.history)
+    parts = fractions(run.history)
     drawn = {name: 0.0 for name in parts}
-    colours = {to_rgb(colour): name for name, colour in CHANNEL_COLOURS.items()}
+    colours = {to_rgb(colour): name for name, colour in COLOURS.items()}
     time = run.history["time"] * 1e9
     for area in upper.collections:
         x, y = area.get_paths()[0].vertices.T

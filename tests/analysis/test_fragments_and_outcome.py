@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 from written_runs import state_arrays
 
-from analysis.collision_outcome import classify, collision_outcome, restitution
-from analysis.fragments import (
+from analysis.measures.fragments import (
     belongs_to_an_aggregate,
     fragment_labels,
     fragment_masses,
     fragment_sizes,
     growth_efficiency,
 )
-from analysis.run_folder import State
+from analysis.measures.outcome import classify, collision_outcome, restitution, still_parting
 
 
 def _labels_by_flooding(grains, pairs):
@@ -82,7 +81,7 @@ def test_growth_efficiency_of_a22_equation_28():
 
 def test_restitution_is_projected():
     assert restitution([-2.0, 0.0, 0.0], [0.5, 3.0, 0.0]) == pytest.approx(0.25)
-    assert restitution([-2.0, 0.0, 0.0], [-0.5, 3.0, 0.0]) == pytest.approx(-0.25)
+    assert restitution([-2.0, 0.0, 0.0], [-0.5, 3.0, 0.0]) is None
     assert restitution([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]) is None
 
 
@@ -92,7 +91,19 @@ def _chain(first, grains):
 
 def _state(velocity, pairs, half):
     position = np.arange(2.0 * half)[:, None] * [1e-7, 0, 0]
-    return State(**state_arrays(0.0, position, velocity, np.repeat([0, 1], half), pairs))
+    return state_arrays(0.0, position, velocity, np.repeat([0, 1], half), pairs)
+
+
+def _outcome(start, end, met=True):
+    return collision_outcome(
+        start["radius"],
+        start["aggregate"],
+        start["velocity"],
+        start["contact_pairs"],
+        end["velocity"],
+        end["contact_pairs"],
+        met,
+    )
 
 
 def _start(half=20):
@@ -102,7 +113,7 @@ def _start(half=20):
 
 def test_sticking():
     end = _state(np.zeros((40, 3)), _chain(0, 40), 20)
-    outcome = collision_outcome(_start(), end)
+    outcome = _outcome(_start(), end)
     assert (outcome.kind, outcome.restitution, outcome.largest_fragment) == ("sticking", 0.0, 40)
     assert outcome.growth_efficiency == 1.0 and outcome.fragments == 1
 
@@ -111,38 +122,44 @@ def test_sticking():
 def test_bouncing_with_known_restitution_whichever_fragment_is_heavier(moved):
     cut = 20 + moved
     velocity = np.where(np.arange(40)[:, None] < cut, [[-0.3, 0.1, 0]], [[0.3, 0.1, 0]])
-    outcome = collision_outcome(_start(), _state(velocity, _chain(0, cut) + _chain(cut, 40 - cut), 20))
+    outcome = _outcome(_start(), _state(velocity, _chain(0, cut) + _chain(cut, 40 - cut), 20))
     assert outcome.kind == "bouncing" and outcome.restitution == pytest.approx(0.3)
     assert outcome.largest_fragment == max(cut, 40 - cut)
     assert outcome.growth_efficiency == pytest.approx((max(cut, 40 - cut) - 20) / 20)
 
 
-def test_passing_through_each_other_has_negative_restitution():
+def test_pieces_that_passed_each_other_have_no_restitution():
     velocity = np.repeat([[0.5, 0, 0], [-0.5, 0, 0]], 20, axis=0)
-    outcome = collision_outcome(_start(), _state(velocity, _chain(0, 20) + _chain(20, 20), 20))
-    assert outcome.restitution == pytest.approx(-0.5)
+    outcome = _outcome(_start(), _state(velocity, _chain(0, 20) + _chain(20, 20), 20))
+    assert outcome.kind == "bouncing" and outcome.restitution is None
 
 
 def test_fragmentation():
-    outcome = collision_outcome(_start(), _state(np.zeros((40, 3)), _chain(0, 10) + _chain(20, 12), 20))
+    outcome = _outcome(_start(), _state(np.zeros((40, 3)), _chain(0, 10) + _chain(20, 12), 20))
     assert outcome.kind == "fragmentation" and outcome.mass_fractions == (0.3, 0.25)
-    assert outcome.restitution == 0.0 and outcome.largest_fragment == 12
+    assert outcome.restitution is None and outcome.largest_fragment == 12
 
 
 def test_a_grain_that_was_alone_does_not_spoil_sticking():
     velocity = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], 20, axis=0)
     # Grains 16 to 19, a fifth of aggregate 0, lie about singly from the start.
     start = _state(velocity, _chain(0, 16) + _chain(20, 20), 20)
-    outcome = collision_outcome(start, _state(np.zeros((40, 3)), _chain(0, 16) + _chain(20, 20) + [[15, 20]], 20))
+    outcome = _outcome(start, _state(np.zeros((40, 3)), _chain(0, 16) + _chain(20, 20) + [[15, 20]], 20))
     assert outcome.kind == "sticking" and outcome.excluded_grains == 4 and outcome.mass_fractions[0] == 1.0
 
 
-def test_states_of_different_runs_are_refused():
-    with pytest.raises(ValueError, match="same grains"):
-        collision_outcome(_start(20), _start(10))
+def test_aggregates_that_never_met_are_no_bounce():
+    outcome = _outcome(_start(), _start(), met=False)
+    assert (outcome.kind, outcome.restitution, outcome.mass_fractions) == ("never met", None, (0.5, 0.5))
+
+
+def test_halves_that_part_slowly_have_stuck():
+    assert still_parting([3.0, 0.0, -1.0, -0.3]) and not still_parting([3.0, 0.0, -1.0, -0.2])
+    assert not still_parting([3.0, 1.0, 0.5]) and not still_parting([np.nan, np.nan])
+    assert still_parting([3.0, -1.0, -0.5, np.nan])
 
 
 def test_one_aggregate_alone_is_refused():
-    alone = State(**state_arrays(0.0, np.zeros((3, 3)), np.zeros((3, 3)), [0, 0, 0]))
+    alone = state_arrays(0.0, np.zeros((3, 3)), np.zeros((3, 3)), [0, 0, 0])
     with pytest.raises(ValueError, match="aggregate 1 has no grain"):
-        collision_outcome(alone, alone)
+        _outcome(alone, alone)

@@ -1,12 +1,18 @@
-"""The ledger's sum, closure and shares."""
+"""The ledger's sum, closure and fractions."""
 
 import numpy as np
 import pytest
 
-from analysis.channels import CHANNELS, DISSIPATED, LABELS, STORED
-from analysis.figures.style import CHANNEL_COLOURS
-from analysis.ledger import closure, closure_history, final_values, shares, total_energy
-from analysis.run_folder import open_run
+from analysis.measures.ledger import (
+    closure,
+    closure_history,
+    final_values,
+    fractions,
+    fractions_at,
+    total_energy,
+)
+from analysis.runs.folder import open_run
+from analysis.runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, LABELS, LOST, STORED, WORK
 
 
 def _history(**changed):
@@ -18,15 +24,11 @@ def _history(**changed):
 
 
 def test_channels_are_those_of_the_run_folder_in_order():
-    assert (
-        CHANNELS
-        == STORED + DISSIPATED
-        == (
-            "kinetic",
-            "normal",
-            "sliding",
-            "rolling",
-            "twisting",
+    kinds = {kind: tuple(c.name for c in CHANNEL_TABLE if c.kind == kind) for kind in (STORED, LOST, WORK)}
+    assert CHANNELS == kinds[STORED] + kinds[LOST] + kinds[WORK]
+    assert kinds == {
+        STORED: ("kinetic", "normal", "sliding", "rolling", "twisting"),
+        LOST: (
             "slidingDissipation",
             "rollingDissipation",
             "twistingDissipation",
@@ -34,10 +36,11 @@ def test_channels_are_those_of_the_run_folder_in_order():
             "disconnection",
             "drag",
             "bondBreaking",
-        )
-    )
-    assert set(LABELS) == set(CHANNEL_COLOURS) == set(CHANNELS)
-    assert len(set(CHANNEL_COLOURS.values())) == len(CHANNELS)
+        ),
+        WORK: ("boundaryWork", "constraintWork"),
+    }
+    assert set(LABELS) == set(COLOURS) == set(CHANNELS)
+    assert len(set(COLOURS.values())) == len(CHANNELS)
 
 
 def test_sum_and_closure():
@@ -56,15 +59,17 @@ def test_every_channel_counts(channel):
     assert final_values(history)[channel] == history[channel][-1]
 
 
-def test_shares_add_up_to_one():
-    parts = shares(_history())
+def test_fractions_add_up_to_one():
+    parts = fractions(_history())
     assert sum(parts.values()) == pytest.approx(np.ones(4))
     assert parts["normal"] == pytest.approx([0.0, 0.0, -0.5, -1.0]) and parts["kinetic"][0] == 1.0
+    between = fractions_at(_history(time=np.arange(4.0)), 2.5)
+    assert between["normal"] == pytest.approx(-0.75) and sum(between.values()) == pytest.approx(1.0)
 
 
 def test_no_kinetic_energy_at_the_start_leaves_them_undefined():
     at_rest = _history(kinetic=np.zeros(4))
-    assert closure(at_rest) is None and shares(at_rest) is None
+    assert closure(at_rest) is None and fractions(at_rest) is None
 
 
 def test_ledger_of_an_integrated_pair_closes(pair_folder):

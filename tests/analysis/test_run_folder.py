@@ -6,7 +6,10 @@ import shutil
 import numpy as np
 import pytest
 
-from analysis.run_folder import RunFolderError, open_run
+from analysis import summarise
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.folder import open_run
+from analysis.runs.format import CHANNELS, COLLISION
 
 
 @pytest.fixture
@@ -43,6 +46,7 @@ def test_nothing_read_can_be_changed(folder):
         lambda: run.start.position.__setitem__(0, 1.0),
         lambda: run.derived.__setitem__("grainRadius", 1.0),
         lambda: setattr(run, "ended", False),
+        lambda: setattr(run.start, "time", 1.0),
     ):
         with pytest.raises((ValueError, TypeError, AttributeError)):
             change()
@@ -67,6 +71,49 @@ def test_d_and_v_may_have_no_value(folder):
     assert np.isnan(open_run(folder).history["d"][-1])
 
 
+def _as_format_1(folder):
+    """What a folder of format 1 lacks."""
+    _change_record(folder, lambda r: (r.update(format=1), r.pop("kind")))
+    _change_arrays(folder / "history.npz", boundaryWork=None, constraintWork=None)
+
+
+def test_a_folder_of_format_1_is_read(folder):
+    new = open_run(folder)
+    _as_format_1(folder)
+    old = open_run(folder)
+    assert old.kind is new.kind is COLLISION and old.record["format"] == 1
+    assert set(old.history) == set(new.history) == {quantity.name for quantity in COLLISION.history}
+    for name in old.history:
+        assert np.array_equal(old.history[name], new.history[name])
+    assert not old.history["boundaryWork"].any() and old.start.cell_size is None
+    assert summarise(old) == summarise(new)
+
+
+def test_a_folder_of_format_1_lacks_nothing_else(folder):
+    _as_format_1(folder)
+    _change_arrays(folder / "history.npz", connection=None)
+    with pytest.raises(RunFolderError, match="lacks the array 'connection'"):
+        open_run(folder)
+
+
+def test_the_cell_is_read_where_there_is_one(folder):
+    _change_arrays(folder / "states" / "000000.npz", cell_size=np.array([1e-6, 2e-6, 3e-6]))
+    run = open_run(folder)
+    assert list(run.start.cell_size) == [1e-6, 2e-6, 3e-6] and run.last.cell_size is None
+
+
+def test_every_quantity_of_the_format_is_read(folder):
+    run = open_run(folder)
+    assert all(hasattr(run.start, quantity.name) for quantity in COLLISION.states)
+    assert [q.name for q in COLLISION.history][1 : len(CHANNELS) + 1] == list(CHANNELS)
+
+
+def test_grains_of_different_states_make_no_outcome(folder):
+    _change_arrays(folder / "states" / "000000.npz", aggregate=np.array([1, 0]))
+    with pytest.raises(RunFolderError, match="don't hold the same grains"):
+        summarise(open_run(folder))
+
+
 def _halve(file):
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
 
@@ -89,9 +136,14 @@ DAMAGE = {
     ),
     "a list": (lambda f: (f / "run.json").write_text("[1]"), "run.json: not the record of a run"),
     "later format": (
-        lambda f: _change_record(f, lambda r: r.update(format=2)),
-        "format is 2, this analysis reads format 1",
+        lambda f: _change_record(f, lambda r: r.update(format=3)),
+        "format is 3, this analysis reads formats 1 and 2",
     ),
+    "another kind": (
+        lambda f: _change_record(f, lambda r: r.update(kind="compresion")),
+        "kind is 'compresion': must be collision",
+    ),
+    "no kind at all": (lambda f: _change_record(f, lambda r: r.update(kind=[])), "kind is []: must be collision"),
     "no derived": (lambda f: _change_record(f, lambda r: r.pop("derived")), "'derived' is missing"),
     "zero radius": (
         lambda f: _change_record(f, lambda r: r["derived"].update(grainRadius=0)),
@@ -130,6 +182,14 @@ DAMAGE = {
     "objects": (
         lambda f: _change_arrays(f / "history.npz", drag=np.array([None] * 201)),
         "history.npz: damaged",
+    ),
+    "no work on the boundaries": (
+        lambda f: _change_arrays(f / "history.npz", boundaryWork=None),
+        "history.npz: lacks the array 'boundaryWork'",
+    ),
+    "fractional contacts": (
+        lambda f: _change_arrays(f / "history.npz", contacts=np.full(201, 0.5)),
+        "'contacts' must be integers",
     ),
     "infinite": (
         lambda f: _change_arrays(f / "history.npz", drag=np.full(201, np.inf)),
@@ -191,6 +251,11 @@ STATE_DAMAGE = {
         lambda f: _change_arrays(f, position=np.full((2, 3), np.nan)),
         "'position' holds a value that is not finite",
     ),
+    "spinning endlessly": (
+        lambda f: _change_arrays(f, angular_velocity=np.full((2, 3), np.inf)),
+        "'angular_velocity' holds a value that is not finite",
+    ),
+    "flat cell": (lambda f: _change_arrays(f, cell_size=np.ones(2)), "'cell_size' has the shape (2,), expected (3,)"),
     "two times": (lambda f: _change_arrays(f, time=np.zeros(2)), "'time' must be one number"),
 }
 

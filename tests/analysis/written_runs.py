@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 
-from analysis.channels import CHANNELS
+from analysis.runs.format import CHANNELS, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
 from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair_constants, pair_motion
 
 RADIUS = 1e-7
@@ -35,7 +35,8 @@ def record(aggregate_radius, parameters=None):
         "grainsPerAggregate": 1,
     }
     return {
-        "format": 1,
+        "format": FORMAT,
+        "kind": "collision",
         "parameters": parameters or {"material": "ice"},
         "derived": derived,
         "versions": {},
@@ -49,13 +50,13 @@ def record(aggregate_radius, parameters=None):
 
 def write_run(path, run_record, history, states, ended=True):
     """Write a run folder: record (dict), history (dict of (T,)), states (list of dicts of arrays)."""
-    (path / "states").mkdir(parents=True)
-    (path / "run.json").write_text(json.dumps(run_record))
-    np.savez(path / "history.npz", **history)
+    (path / STATES_FOLDER).mkdir(parents=True)
+    (path / RUN_FILE).write_text(json.dumps(run_record))
+    np.savez(path / HISTORY_FILE, **history)
     for number, state in enumerate(states):
-        np.savez(path / "states" / f"{number:06d}.npz", **state)
+        np.savez(path / STATES_FOLDER / state_file(number), **state)
     if ended:
-        (path / "ended").touch()
+        (path / ENDED_FILE).touch()
     return path
 
 

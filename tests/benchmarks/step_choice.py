@@ -26,7 +26,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 from analysis import open_run  # noqa: E402
-from analysis.ledger import closure  # noqa: E402
+from analysis.measures.ledger import closure  # noqa: E402
 from yade_scripts import parameters, step_choice, study_cost  # noqa: E402
 from yade_scripts.materials import MATERIALS  # noqa: E402
 

@@ -19,7 +19,7 @@ from yade import utils  # noqa: E402
 from yade.wrapper import *  # noqa: E402,F403
 
 import contact_law  # noqa: E402,F401
-from analysis.fragments import fragment_labels, fragment_sizes  # noqa: E402
+from analysis.measures.fragments import fragment_labels, fragment_sizes  # noqa: E402
 from yade_scripts.scene import VERLET_DISTANCE, functor_engines  # noqa: E402
 
 SUB_STEPS = 50

@@ -1,0 +1,10 @@
+"""The commands of python3 -m analysis, one a module: add_parser(commands) and what they run."""
+
+import sys
+
+FAILED = 2
+
+
+def complain(message):
+    """One line on stderr."""
+    print(f"analysis: {message}", file=sys.stderr, flush=True)

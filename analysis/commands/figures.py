@@ -1,0 +1,33 @@
+"""python3 -m analysis figures RUN [--out FOLDER]"""
+
+from . import FAILED, complain
+
+
+def add_parser(commands):
+    """Add the command to argparse's subparsers."""
+    parser = commands.add_parser(
+        "figures",
+        help="draw a run's figures",
+        description="Write motion.png (d and v against time), energy.png (the channels), grains.png (cut through the "
+        "aggregates) and forces.png (contact forces).",
+    )
+    parser.add_argument("run", metavar="RUN", help="run folder")
+    parser.add_argument("--out", metavar="FOLDER", help="where to (default: RUN/figures), made if it is missing")
+    parser.set_defaults(command=run)
+
+
+def run(options):
+    """Exit status: 0, or 2 when the run could not be read or the figures not be written."""
+    # matplotlib is slow to load, and `summary` does without it.
+    from ..figures.draw import draw_all
+    from ..runs.arrays import RunFolderError
+    from ..runs.folder import open_run
+
+    try:
+        folder = open_run(options.run)
+        for file in draw_all(folder, options.out or folder.path / "figures"):
+            print(file)
+    except (RunFolderError, OSError) as error:
+        complain(error)
+        return FAILED
+    return 0

@@ -1,0 +1,65 @@
+"""Snapshots of the grains, coloured by aggregate: the half behind the plane z = 0, as A24 Fig. 3 but cut
+open."""
+
+import numpy as np
+
+from ...measures.of_run import maximum_of_run
+from ...runs.format import COLLISION
+from ..sphere_raster import paint_spheres
+from ..style import AGGREGATE_COLOURS, NANO, new_figure, run_title, styled
+
+# More pixels than this across would only cost time: the figure is about 1,300 wide.
+_PIXELS_ACROSS = 1500
+_LARGEST_VIEW = 2.0  # half height of the view in aggregate sizes: fragments that flew farther are left outside
+
+
+@styled
+def grains_figure(run):
+    """Figure of the grains at the start, at the largest compression and at the end (those of them that are
+    different states), cut along the plane z = 0 through the collision axis, to one scale in grain radii.
+    RunFolderError if there is no state."""
+    run.start  # says so when there is no state
+    unit = run.derived["grainRadius"]
+    chosen = _chosen_states(run)
+    states = [run.states[i] for i in chosen]
+    window = _window(states, unit)
+    pixel = max((window[1] - window[0]) / _PIXELS_ACROSS, 0.02)
+    width = 8.6
+    panel = width * 0.88 * (window[3] - window[2]) / (window[1] - window[0])
+    figure = new_figure(width, len(states) * (panel + 0.35) + 0.75, constrained_layout=True)
+    for axes, state in zip(figure.subplots(len(states), 1, sharex=True, squeeze=False)[:, 0], states):
+        _draw(axes, state, unit, window, pixel)
+    axes.set_xlabel("$x$  [grain radii]")
+    figure.get_layout_engine().set(w_pad=0.1)
+    figure.suptitle(run_title(run, "grains behind the plane $z$ = 0"), fontsize=10, color="0.3")
+    return figure
+
+
+FIGURE, KINDS = grains_figure, (COLLISION.name,)
+
+
+def _chosen_states(run):
+    maximum = maximum_of_run(run)
+    middle = [] if maximum is None else [run.states.nearest(maximum.time)]
+    return sorted({0, *middle, len(run.states) - 1})
+
+
+def _window(states, unit):
+    """(x0, x1, y0, y1) in grain radii that holds the grains of all states, centred, fragments far off
+    aside."""
+    start = states[0].position / unit
+    across = np.abs(start[:, 1]).max() + 2.0
+    reach = [np.abs(s.position[:, :2]).max(axis=0) / unit for s in states]
+    half_y = min(max(r[1] for r in reach) + 2.0, _LARGEST_VIEW * across)
+    half_x = min(max(r[0] for r in reach) + 2.0, _LARGEST_VIEW * (np.abs(start[:, 0]).max() + 2.0))
+    return -half_x, half_x, -half_y, half_y
+
+
+def _draw(axes, state, unit, window, pixel):
+    behind = state.position[:, 2] <= 0.0
+    position = state.position[behind] / unit
+    colour = np.array(AGGREGATE_COLOURS)[state.aggregate[behind]]
+    image = paint_spheres(position, state.radius[behind] / unit, colour, window, pixel)
+    axes.imshow(image, extent=window, origin="lower", interpolation="antialiased")
+    axes.set_ylabel("$y$  [grain radii]")
+    axes.set_title(f"$t$ = {state.time * NANO:.1f} ns", loc="left")

@@ -1,0 +1,56 @@
+"""Fragments: grains connected by contacts, and what became of two aggregates' mass."""
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+
+def fragment_labels(grains, contact_pairs):
+    """Fragment number (N,) int of each of N = `grains` grains, joined by contact_pairs (M,2) int. Number 0
+    has the most grains, and so on; equally large ones are in the order of their first grain.
+
+    >>> fragment_labels(5, [[1, 2], [2, 4]]).tolist()
+    [1, 0, 0, 2, 0]
+    """
+    pairs = np.asarray(contact_pairs, dtype=np.intp).reshape(-1, 2)
+    graph = coo_matrix((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains))
+    _, labels = connected_components(graph, directed=False)
+    _, first, sizes = np.unique(labels, return_index=True, return_counts=True)
+    rank = np.empty(len(sizes), dtype=np.intp)
+    rank[np.lexsort((first, -sizes))] = np.arange(len(sizes))
+    return rank[labels]
+
+
+def fragment_sizes(labels):
+    """Number of grains (K,) int of each fragment, for labels (N,) as fragment_labels returns them."""
+    return np.bincount(labels)
+
+
+def fragment_masses(labels, mass):
+    """Mass (K,) of each fragment, for labels (N,) and grain masses (N,) in any unit."""
+    return np.bincount(labels, weights=mass)
+
+
+def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
+    """Mask (N,) of the grains that are part of an aggregate at the start: those in a piece, connected within
+    their aggregate, that holds at least least_fraction of the aggregate's mass. Grains that a packing left
+    isolated or in crumbs are not.
+
+    aggregate (N,) int, contact_pairs (M,2) int, mass (N,) in any unit.
+    """
+    aggregate, mass = np.asarray(aggregate), np.asarray(mass, dtype=float)
+    pairs = np.asarray(contact_pairs, dtype=np.intp).reshape(-1, 2)
+    inside = pairs[aggregate[pairs[:, 0]] == aggregate[pairs[:, 1]]]
+    labels = fragment_labels(len(aggregate), inside)
+    whole = np.bincount(aggregate, weights=mass)
+    return fragment_masses(labels, mass)[labels] >= least_fraction * whole[aggregate] * (1.0 - 1e-12)
+
+
+def growth_efficiency(largest, target, projectile):
+    """f_gro = (N_lar - N_tar)/N_pro from the numbers of grains of the largest fragment, of target and
+    projectile: A22 eq 28.
+
+    >>> growth_efficiency(30, 20, 10)
+    1.0
+    """
+    return (largest - target) / projectile

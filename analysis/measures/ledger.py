@@ -1,0 +1,50 @@
+"""The energy ledger: the channels [J] of a history, their sum, how well it stays constant, and where the energy goes.
+
+A history is a dict of arrays (T,) by name: `time` [s] and every channel of runs.format."""
+
+import numpy as np
+
+from ..runs.format import CHANNELS
+
+
+def total_energy(history):
+    """Sum of all channels (T,) [J], work on boundaries and constraints included: constant for an exact ledger."""
+    return np.sum([history[name] for name in CHANNELS], axis=0)
+
+
+def initial_kinetic_energy(history):
+    """K(0) [J]: the unit of the fractions and of the closure."""
+    return float(history["kinetic"][0])
+
+
+def closure_history(history):
+    """[E(t) - E(0)]/K(0) (T,), which is 0 at all times for an exact ledger; None where K(0) = 0."""
+    unit = initial_kinetic_energy(history)
+    total = total_energy(history)
+    return (total - total[0]) / unit if unit > 0 else None
+
+
+def closure(history):
+    """max over t of |E(t) - E(0)|/K(0); None where K(0) = 0."""
+    error = closure_history(history)
+    return None if error is None else float(np.abs(error).max())
+
+
+def final_values(history):
+    """Last value [J] of every channel, by name, in the order of CHANNELS."""
+    return {name: float(history[name][-1]) for name in CHANNELS}
+
+
+def fractions(history):
+    """Change of every channel since the start over K(0), by name, each (T,); the kinetic channel itself over K(0), so
+    that the fractions add up to 1 at all times. None where K(0) = 0."""
+    unit = initial_kinetic_energy(history)
+    if not unit > 0:
+        return None
+    return {name: (history[name] - (0.0 if name == "kinetic" else history[name][0])) / unit for name in CHANNELS}
+
+
+def fractions_at(history, time):
+    """fractions(history) at one time [s], linear between samples, by name: floats. None where K(0) = 0."""
+    parts = fractions(history)
+    return None if parts is None else {c: float(np.interp(time, history["time"], part)) for c, part in parts.items()}

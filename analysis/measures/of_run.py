@@ -1,0 +1,37 @@
+"""Measures of a run folder: its arrays given to the pure functions of this package."""
+
+import numpy as np
+
+from ..runs.arrays import RunFolderError
+from ..runs.format import STATES_FOLDER
+from .compression import maximum_compression
+from .outcome import collision_outcome
+
+
+def maximum_of_run(run):
+    """compression.Maximum of a RunFolder over all of its history; None where d has no value."""
+    return maximum_compression(run.history["time"], run.history["d"], run.history["v"])
+
+
+def met(run):
+    """Whether the two aggregates of a RunFolder touched at any recorded time."""
+    return bool(np.any(run.history["contacts_between"] > 0))
+
+
+def outcome_of_run(run):
+    """outcome.Outcome of a RunFolder from its first and last state; RunFolderError where they don't make one."""
+    start, end = run.start, run.last
+    if start.aggregate.shape != end.aggregate.shape or np.any(start.aggregate != end.aggregate):
+        raise RunFolderError(f"{run.path / STATES_FOLDER}: the first and the last state don't hold the same grains")
+    try:
+        return collision_outcome(
+            start.radius,
+            start.aggregate,
+            start.velocity,
+            start.contact_pairs,
+            end.velocity,
+            end.contact_pairs,
+            met(run),
+        )
+    except ValueError as error:
+        raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None

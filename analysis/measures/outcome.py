@@ -1,0 +1,135 @@
+"""Outcome of a collision of two aggregates, and the coefficient of restitution.
+
+Counted are the grains that belong to an aggregate at the start (fragments.belongs_to_an_aggregate).
+With f1 >= f2 the fractions of their mass in the two heaviest fragments at the end:
+
+    never met      no contact between the aggregates at any time
+    sticking       f1 >= 0.9
+    bouncing       f1 + f2 >= 0.9 and f2 >= 0.25
+    fragmentation  everything else
+
+The coefficient of restitution is 0 for sticking. For bouncing it is minus the relative velocity of the centres of mass
+of the two heaviest fragments, projected on the direction of the aggregates' relative velocity at the start, over that
+velocity. There is none (None) for fragmentation, for aggregates that never met, where that ratio is negative (the two
+pieces have passed each other), and where the aggregates had no relative velocity."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .fragments import (
+    belongs_to_an_aggregate,
+    fragment_labels,
+    fragment_masses,
+    fragment_sizes,
+    growth_efficiency,
+)
+
+NEVER_MET, STICKING, BOUNCING, FRAGMENTATION = "never met", "sticking", "bouncing", "fragmentation"
+
+# Of a run that ends in one piece while its halves still part, at more than this fraction of the largest speed of
+# their return: a sixteenth of that kinetic energy is left, which may yet part them.
+UNDECIDED, STILL_PARTING = "undecided", 0.25
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """kind (never met, sticking, bouncing, fragmentation), restitution (None where there is none, see the module),
+    mass_fractions (f1, f2), largest_fragment [grains, all counted], growth_efficiency (A22 eq 28, all grains, the
+    target being the aggregate with more grains), fragments (their number) and excluded_grains (not counted in the
+    fractions)."""
+
+    kind: str
+    restitution: float
+    mass_fractions: tuple
+    largest_fragment: int
+    growth_efficiency: float
+    fragments: int
+    excluded_grains: int
+
+
+def classify(f1, f2):
+    """Name of the outcome for the mass fractions f1 >= f2 of the two heaviest fragments: the rule at the module's head.
+
+    >>> classify(0.5, 0.5), classify(0.95, 0.01), classify(0.5, 0.1)
+    ('bouncing', 'sticking', 'fragmentation')
+    """
+    if f1 >= 0.9:
+        return STICKING
+    if f1 + f2 >= 0.9 and f2 >= 0.25:
+        return BOUNCING
+    return FRAGMENTATION
+
+
+def restitution(initial_velocity, final_velocity):
+    """-(final . n)/|initial| with n the direction of initial; both (3,) [m/s], relative velocities of the same two
+    bodies. None where there is no initial velocity, and where it would be negative: the bodies have passed each other.
+
+    >>> restitution([-2.0, 0.0, 0.0], [0.5, 3.0, 0.0])
+    0.25
+    """
+    initial_velocity = np.asarray(initial_velocity, dtype=float)
+    square = initial_velocity @ initial_velocity
+    if not square > 0:
+        return None
+    ratio = float(-(np.asarray(final_velocity) @ initial_velocity) / square)
+    return ratio if ratio >= 0 else None
+
+
+def mean_velocity(velocity, mass, members):
+    """Velocity (3,) [m/s] of the centre of mass of the grains in the mask members (N,); velocity (N,3) [m/s], mass
+    (N,) in any unit."""
+    return np.average(velocity[members], axis=0, weights=mass[members])
+
+
+def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_velocity, end_pairs, met=True):
+    """Outcome from grains of one density: radius (N,) [m], aggregate (N,) 0 or 1, velocities (N,3) [m/s] and contact
+    pairs (M,2) (rows of the grains) at the start and at the end; met: whether the aggregates touched at any time.
+
+    ValueError if one aggregate has no grain."""
+    radius, aggregate = np.asarray(radius, dtype=float), np.asarray(aggregate)
+    numbers = np.bincount(aggregate, minlength=2)
+    if not numbers.all():
+        raise ValueError(f"an outcome needs two aggregates, aggregate {int(np.argmin(numbers))} has no grain")
+    # In units of the largest grain, so that equal grains add up without rounding.
+    mass = (radius / radius.max()) ** 3
+    counted = belongs_to_an_aggregate(aggregate, start_pairs, mass)
+    labels = fragment_labels(len(mass), end_pairs)
+    fractions = fragment_masses(labels, mass * counted) / mass[counted].sum()
+    heaviest = np.argsort(-fractions, kind="stable")[:2]
+    f1, f2 = (float(fractions[k]) for k in heaviest) if len(heaviest) == 2 else (float(fractions[0]), 0.0)
+    kind = classify(f1, f2) if met else NEVER_MET
+    ratio = 0.0 if kind == STICKING else None
+    if kind == BOUNCING:
+        pieces = [(labels == k) & counted for k in heaviest]
+        ratio = _restitution(aggregate, mass, counted, pieces, start_velocity, end_velocity)
+    largest = int(fragment_sizes(labels).max())
+    return Outcome(
+        kind,
+        ratio,
+        (f1, f2),
+        largest,
+        growth_efficiency(largest, int(numbers.max()), int(numbers.min())),
+        int(labels.max()) + 1,
+        int((~counted).sum()),
+    )
+
+
+def _restitution(aggregate, mass, counted, pieces, start_velocity, end_velocity):
+    # The fragment richer in aggregate 1 stands for aggregate 1: otherwise the sign would depend on which is heavier.
+    first, second = sorted(pieces, key=lambda piece: np.average(aggregate[piece], weights=mass[piece]))
+    before = [mean_velocity(start_velocity, mass, counted & (aggregate == k)) for k in (0, 1)]
+    after = [mean_velocity(end_velocity, mass, piece) for piece in (first, second)]
+    return restitution(before[1] - before[0], after[1] - after[0])
+
+
+def still_parting(v):
+    """Whether halves with the mutual velocity v (T,) [m/s], positive while they approach (A24 eq 12), part at the end
+    at more than STILL_PARTING of the largest speed at which they ever did.
+
+    >>> still_parting([2.0, -1.0, -0.5]), still_parting([2.0, -1.0, -0.1])
+    (True, False)
+    """
+    v = np.asarray(v, dtype=float)
+    v = v[np.isfinite(v)]
+    return bool(v.size and v.min() < 0 and v[-1] < STILL_PARTING * v.min())

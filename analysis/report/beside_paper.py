@@ -1,0 +1,89 @@
+"""Our numbers beside a paper's: lines of a table, with differences in units of the errors."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .section import Column, Section
+
+
+@dataclass(frozen=True)
+class Line:
+    """quantity, unit ('' for numbers), ours with its standard error (None: no error), paper (None: it gives none),
+    paper_error (None: it gives none, and there is no estimate), note."""
+
+    quantity: str
+    unit: str
+    ours: float
+    error: float = None
+    paper: float = None
+    paper_error: float = None
+    note: str = ""
+
+    @property
+    def difference(self):
+        """(ours - paper)/error, in our standard errors; None where one of them is missing, or the error is 0."""
+        if self.ours is None or self.paper is None or not self.error:
+            return None
+        return (self.ours - self.paper) / self.error
+
+    @property
+    def combined_difference(self):
+        """The same in units of both errors together; None without paper_error."""
+        if self.difference is None or self.paper_error is None:
+            return None
+        return (self.ours - self.paper) / np.hypot(self.error, self.paper_error)
+
+    @property
+    def record(self):
+        """All of it as a dict."""
+        names = (
+            "quantity",
+            "unit",
+            "ours",
+            "error",
+            "paper",
+            "paper_error",
+            "difference",
+            "combined_difference",
+            "note",
+        )
+        return {name: getattr(self, name) for name in names}
+
+
+def section_of_lines(heading, lines, notes=()):
+    """Section of a list of Line."""
+    return Section(heading, _COLUMNS, tuple(line.record for line in lines), notes=tuple(notes))
+
+
+def number(value, error=None):
+    """As many digits as the error has use for (two of its own), or four.
+
+    >>> number(1.23456), number(1.23456, 0.019), number(float("inf")), number(None)
+    ('1.235', '1.235', 'inf', '-')
+    """
+    if value is None or not math.isfinite(value):
+        return "inf" if value == math.inf else "-"
+    if not error:
+        return f"{value:.4g}"
+    return f"{value:.{max(0, 1 - math.floor(math.log10(error)))}f}"
+
+
+def _error(error):
+    return "-" if error is None else f"{error:.2g}"
+
+
+def _sigma(value):
+    return "-" if value is None else f"{value:+.1f}"
+
+
+_COLUMNS = (
+    Column("quantity", lambda r: r["quantity"] + (f" [{r['unit']}]" if r["unit"] else "")),
+    Column("ours", lambda r: number(r["ours"], r["error"])),
+    Column("error", lambda r: _error(r["error"])),
+    Column("paper", lambda r: number(r["paper"])),
+    Column("diff", lambda r: _sigma(r["difference"])),
+    Column("diff*", lambda r: _sigma(r["combined_difference"])),
+    Column("note", lambda r: r["note"], beside=True),
+)

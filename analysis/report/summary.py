@@ -1,0 +1,136 @@
+"""What a run says in a few numbers, as a dict (for JSON) and as a table (for people)."""
+
+import textwrap
+
+from ..measures.ledger import closure, final_values, fractions, initial_kinetic_energy
+from ..measures.of_run import maximum_of_run, outcome_of_run
+from ..measures.outcome import BOUNCING
+from ..runs.format import CHANNELS, LABELS
+
+_PARAMETERS = (
+    ("packing", ""),
+    ("filling", ""),
+    ("radius", "r_p"),
+    ("grains", "per aggregate"),
+    ("velocity", "m/s"),
+    ("impact", ""),
+    ("material", ""),
+    ("viscoelasticTime", "s"),
+    ("neck", ""),
+    ("seed", ""),
+)
+
+
+def summarise(run):
+    """Numbers of a RunFolder as a dict, SI units, None where a value does not exist:
+
+    run (path), ended, time (of the last sample), d_max, d_max_error, t_max, t_max_error, maximum_inside
+    (False: d_max is only a bound, see compression.Maximum), restitution (None where there is none, see
+    measures.outcome), outcome, mass_fractions, largest_fragment [grains], fragments, growth_efficiency (A22 eq 28),
+    energy_closure (max |E(t) - E(0)|/K(0)), initial_kinetic_energy, and the final value of every channel [J] under
+    its name. RunFolderError when a state is missing or damaged."""
+    history = run.history
+    maximum = maximum_of_run(run)
+    numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
+    numbers.update(_compression(maximum))
+    numbers.update(_outcome(run))
+    numbers["energy_closure"] = closure(history)
+    numbers["initial_kinetic_energy"] = initial_kinetic_energy(history)
+    numbers.update(final_values(history))
+    return numbers
+
+
+def _compression(maximum):
+    keys = ("d_max", "d_max_error", "t_max", "t_max_error", "maximum_inside")
+    if maximum is None:
+        return dict.fromkeys(keys)
+    values = [float(x) for x in (maximum.length, maximum.length_error, maximum.time, maximum.time_error)]
+    if not maximum.inside:
+        values[1] = values[3] = None
+    return dict(zip(keys, values + [maximum.inside]))
+
+
+def _outcome(run):
+    outcome = outcome_of_run(run)
+    return {
+        "restitution": outcome.restitution,
+        "outcome": outcome.kind,
+        "mass_fractions": list(outcome.mass_fractions),
+        "largest_fragment": outcome.largest_fragment,
+        "fragments": outcome.fragments,
+        "growth_efficiency": outcome.growth_efficiency,
+    }
+
+
+def table(run, numbers):
+    """Readable table (str, several lines) of a RunFolder and its summarise() dict."""
+    rows = [f"run {run.path} ({_progress(run, numbers)})", _settings(run.parameters)]
+    rows += [f"  {name:<20} {value}" for name, value in _measures(run, numbers)]
+    return "\n".join(row for row in rows if row) + "\n\n" + _channel_table(run, numbers)
+
+
+def _progress(run, numbers):
+    reached = f"t = {numbers['time'] * 1e9:.4g} ns"
+    if run.ended:
+        return f"ended, {reached}"
+    return f"NOT ENDED: analysed as far as it went, {reached}"
+
+
+def _settings(parameters):
+    given = []
+    for name, unit in _PARAMETERS:
+        if parameters.get(name) not in (None, ""):
+            given.append(f"{name} {_short(parameters[name])} {unit}".rstrip())
+    return textwrap.fill(", ".join(given), 100, initial_indent="  ", subsequent_indent="  ")
+
+
+def _short(value):
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _measures(run, numbers):
+    yield "d_max", _d_max(numbers, run.derived["grainRadius"])
+    yield "t_max", _t_max(numbers)
+    f1, f2 = numbers["mass_fractions"]
+    kind = numbers["outcome"] + ("" if run.ended else ", so far")
+    yield "outcome", f"{kind} (mass in the two largest fragments: {f1:.2%}, {f2:.2%})"
+    restitution = numbers["restitution"]
+    yield "restitution", _no_restitution(numbers) if restitution is None else f"{restitution:.4g}"
+    grains, fragments = run.start.radius.size, numbers["fragments"]
+    yield "largest fragment", f"{numbers['largest_fragment']} grains of {grains}, {fragments} fragments"
+    yield "growth efficiency", f"{numbers['growth_efficiency']:.4g}"
+    closed = numbers["energy_closure"]
+    yield "energy closure", ("undefined: no kinetic energy at the start" if closed is None else f"{closed:.3g} of K(0)")
+
+
+def _no_restitution(numbers):
+    if numbers["outcome"] == BOUNCING:
+        return "none: no velocity at the start, or the two pieces have passed each other"
+    return f"none: {numbers['outcome']}"
+
+
+def _d_max(numbers, grain_radius):
+    if numbers["d_max"] is None:
+        return "undefined: all grains on one side of x = 0"
+    text = f"{numbers['d_max']:.4g} m = {numbers['d_max'] / grain_radius:.4g} grain radii"
+    if numbers["maximum_inside"]:
+        return text + f" (+- {numbers['d_max_error'] / grain_radius:.1g})"
+    return text + " (only a bound: the largest d is at an end of the record)"
+
+
+def _t_max(numbers):
+    if numbers["t_max"] is None:
+        return "undefined"
+    text = f"{numbers['t_max'] * 1e9:.4g} ns"
+    return text + (f" (+- {numbers['t_max_error'] * 1e9:.1g} ns)" if numbers["maximum_inside"] else "")
+
+
+def _channel_table(run, numbers):
+    parts = fractions(run.history)
+    rows = [f"  {'energy':<24}{'final [J]':>14}{'change [J]':>14}{'change/K(0)':>14}"]
+    for name in CHANNELS:
+        change = numbers[name] - run.history[name][0]
+        fraction = "-" if parts is None else f"{change / numbers['initial_kinetic_energy']:.3%}"
+        rows.append(f"  {LABELS[name]:<24}{numbers[name]:>14.5g}{change:>14.4g}{fraction:>14}")
+    rows.append(f"  K(0) = {numbers['initial_kinetic_energy']:.5g} J")
+    return "\n".join(rows)

@@ -1,0 +1,89 @@
+"""From the paths of a command line to run folders, tables of runs, and what is wrong with the others."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from .arrays import RunFolderError
+from .folder import open_run
+from .format import COLLISION, ENDED_FILE, RUN_FILE
+from .table import ENDING
+
+LEVELS = 2
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Which runs belong together: its name (as in "A24's scene"), the parameters that every run has (`values`), those
+    that must be numbers (`numbers`; two runs with the same ones are the same run) and the kind of run."""
+
+    name: str
+    values: dict
+    numbers: tuple
+    kind: str = COLLISION.name
+
+    def why_not(self, run):
+        """Why a RunFolder is no run of this scene; None if it is one."""
+        if run.kind.name != self.kind:
+            return f"it is a run of the kind {run.kind.name}, {self.name} is {self.kind}"
+        for name in self.numbers:
+            value = run.parameters.get(name)
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                return f"its parameter {name} is {value!r}, not a number"
+        for name, wanted in self.values.items():
+            if run.parameters.get(name, wanted) != wanted:
+                return f"{name} = {run.parameters[name]}, {self.name} has {wanted}"
+        return None
+
+
+@dataclass(frozen=True)
+class Collection:
+    """runs (RunFolder, ended, of the scene), tables (Path of each file with runs of an earlier analysis), notes (str, one
+    a run left out for a good reason) and problems (str, one a path or run that could not be read)."""
+
+    runs: tuple
+    tables: tuple
+    notes: tuple
+    problems: tuple
+
+
+def collect(paths, scene):
+    """Collection of the run folders at the paths, or in folders at most LEVELS below them, and of tables (.csv)."""
+    runs, tables, notes, problems = [], [], [], []
+    for path, error in _folders(paths):
+        if error:
+            problems.append(error)
+        elif path.suffix == ENDING and path.is_file():
+            tables.append(path)
+        elif not (path / ENDED_FILE).is_file():
+            # A run that is under way has perhaps no history yet: it is no broken one.
+            notes.append(f"{path}: has not ended, left out")
+        else:
+            try:
+                run = open_run(path)
+            except RunFolderError as failure:
+                problems.append(str(failure))
+                continue
+            reason = scene.why_not(run)
+            if reason:
+                notes.append(f"{path}: {reason}, left out")
+            else:
+                runs.append(run)
+    return Collection(tuple(runs), tuple(tables), tuple(notes), tuple(problems))
+
+
+def _folders(paths):
+    """(run folder or table, None) or (None, what is wrong) for every path."""
+    for path in map(Path, paths):
+        if (path / RUN_FILE).exists() or (path.suffix == ENDING and path.is_file()):
+            yield path, None
+            continue
+        if not path.is_dir():
+            yield None, f"{path}: " + ("is not a folder" if path.exists() else "no such folder")
+            continue
+        found = []
+        for level in range(1, LEVELS + 1):
+            found += [file.parent for file in path.glob("*/" * level + RUN_FILE)]
+        if not found:
+            yield None, f"{path}: no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below"
+        for folder in sorted(found):
+            yield folder, None

@@ -1,0 +1,199 @@
+"""Reading a run folder of runs.format: run.json, history.npz, states/NNNNNN.npz and the mark `ended`, all in SI units.
+
+Folders of every format in READABLE are read; what an older one lacks is filled in (runs.format says with what).
+Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Mapping
+
+import numpy as np
+
+from .arrays import RunFolderError, read_arrays, read_quantities
+from .format import (
+    COLLISION,
+    ENDED_FILE,
+    HISTORY_FILE,
+    POSITIVE_CONSTANTS,
+    READABLE,
+    RUN_FILE,
+    RUN_KINDS,
+    STATE,
+    STATES_FOLDER,
+    RunKind,
+)
+
+_STATE_NAME = re.compile(r"\d{6}\.npz")
+
+
+class State:
+    """The grains at one time: an attribute for each quantity of runs.format.STATE, and of the kind of run; `time` is a
+    float [s], an optional one that the run does not have is None. The arrays are read-only."""
+
+    def __init__(self, time, **arrays):
+        optional = {quantity.name: None for quantity in STATE if quantity.optional}
+        self.__dict__.update({**optional, "time": float(np.reshape(time, ())), **arrays})
+
+    def __setattr__(self, name, value):
+        raise AttributeError(f"a state cannot be changed ({name})")
+
+
+class StateSequence(Sequence):
+    """The states of a run, oldest first, each read from its file when it is asked for (RunFolderError if it is
+    damaged)."""
+
+    def __init__(self, files, kind=COLLISION, file_format=READABLE[-1]):
+        self.files, self.kind, self.file_format = tuple(files), kind, file_format
+        self._times = None
+
+    def __len__(self):
+        return len(self.files)
+
+    def __getitem__(self, index):
+        if isinstance(index, slice):
+            return StateSequence(self.files[index], self.kind, self.file_format)
+        return read_state(self.files[index], self.kind, self.file_format)
+
+    @property
+    def times(self):
+        """Time [s] (number of states,) of every state, read without the grains."""
+        if self._times is None:
+            quantity = [q for q in STATE if q.name == "time"]
+            times = [float(read_quantities(f, quantity, self.file_format)["time"].reshape(())) for f in self.files]
+            self._times = np.array(times)
+            self._times.flags.writeable = False
+        return self._times
+
+    def nearest(self, time):
+        """Index of the state whose time is nearest to `time` [s]."""
+        return int(np.argmin(np.abs(self.times - time)))
+
+    def arrays(self, index, names):
+        """Some arrays of a state by name, without reading the others (unchecked but for being there)."""
+        return read_arrays(self.files[index], names)
+
+
+@dataclass(frozen=True, eq=False)
+class RunFolder:
+    """One run: path, kind (runs.format.RunKind), parameters (as in the run's table), derived (constants, SI), record
+    (all of run.json), history (arrays (T,) by name, as listed in kind.history), states, ended (came to its planned
+    end)."""
+
+    path: Path
+    kind: RunKind
+    parameters: Mapping
+    derived: Mapping
+    record: Mapping
+    history: Mapping
+    states: StateSequence
+    ended: bool
+
+    @property
+    def start(self):
+        """The first state; RunFolderError when the run has left none."""
+        return self._state(0)
+
+    @property
+    def last(self):
+        """The last state: the end of a run that ended, how far it came otherwise; RunFolderError when there is
+        none."""
+        return self._state(-1)
+
+    def _state(self, index):
+        if not self.states:
+            raise RunFolderError(f"{self.path / STATES_FOLDER}: holds no state (NNNNNN.npz)")
+        return self.states[index]
+
+
+def open_run(path):
+    """RunFolder at `path`; RunFolderError when it is no run folder, has no history yet, or is damaged.
+
+    A run that has not ended can be read as far as it came (`ended` is False then).
+    """
+    path = Path(path)
+    if not path.is_dir():
+        raise RunFolderError(f"{path}: " + ("is not a folder" if path.exists() else "no such run folder"))
+    record = _read_record(path / RUN_FILE)
+    kind, file_format = RUN_KINDS[record.get("kind", COLLISION.name)], record["format"]
+    return RunFolder(
+        path=path,
+        kind=kind,
+        parameters=MappingProxyType(record["parameters"]),
+        derived=MappingProxyType(record["derived"]),
+        record=MappingProxyType(record),
+        history=MappingProxyType(_read_history(path / HISTORY_FILE, kind, file_format)),
+        states=StateSequence(_state_files(path / STATES_FOLDER), kind, file_format),
+        ended=(path / ENDED_FILE).is_file(),
+    )
+
+
+def read_state(file, kind=COLLISION, file_format=READABLE[-1]):
+    """State in one states/NNNNNN.npz; RunFolderError when it is missing, damaged or inconsistent."""
+    arrays = read_quantities(Path(file), kind.states, file_format)
+    grains, pairs, aggregate = len(arrays["radius"]), arrays["contact_pairs"], arrays["aggregate"]
+    if grains == 0:
+        raise RunFolderError(f"{file}: holds no grain")
+    if pairs.size and (pairs.min() < 0 or pairs.max() >= grains):
+        raise RunFolderError(
+            f"{file}: 'contact_pairs' names grain {pairs.max() if pairs.min() >= 0 else pairs.min()}, "
+            f"there are grains 0 to {grains - 1}"
+        )
+    if aggregate.min() < 0 or aggregate.max() >= kind.aggregates:
+        numbers = " or ".join(map(str, range(kind.aggregates)))
+        raise RunFolderError(f"{file}: 'aggregate' must be {numbers} for every grain")
+    return State(**arrays)
+
+
+def _read_record(file):
+    record = _read_json(file)
+    if not isinstance(record, dict) or "format" not in record:
+        raise RunFolderError(
+            f"{file}: not the record of a run: no 'format' (another program's file, or a run that has only just begun)"
+        )
+    if record["format"] not in READABLE:
+        known = " and ".join(map(str, READABLE))
+        raise RunFolderError(f"{file}: format is {record['format']!r}, this analysis reads formats {known}")
+    if record.get("kind", COLLISION.name) not in tuple(RUN_KINDS):
+        raise RunFolderError(f"{file}: kind is {record['kind']!r}: must be {' or '.join(RUN_KINDS)}")
+    for key in ("parameters", "derived"):
+        if not isinstance(record.get(key), dict):
+            raise RunFolderError(f"{file}: '{key}' is missing or not an object")
+    for key in POSITIVE_CONSTANTS:
+        value = record["derived"].get(key)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
+            raise RunFolderError(f"{file}: derived '{key}' must be a positive number, it is {value!r}")
+    return record
+
+
+def _read_json(file):
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise RunFolderError(f"{file}: missing, so this is not a run folder") from None
+    except OSError as error:
+        raise RunFolderError(f"{file}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise RunFolderError(f"{file}: not valid JSON: {error}") from None
+
+
+def _read_history(file, kind, file_format):
+    if not file.exists():
+        raise RunFolderError(f"{file}: missing: the run has recorded no history yet")
+    time = read_arrays(file, ("time",))["time"]
+    if time.ndim != 1 or time.size == 0:
+        raise RunFolderError(f"{file}: 'time' must be a non-empty one-dimensional array, its shape is {time.shape}")
+    history = read_quantities(file, kind.history, file_format)
+    falls = np.diff(history["time"]) <= 0
+    if falls.any():
+        raise RunFolderError(f"{file}: 'time' does not increase everywhere, first at index {int(np.argmax(falls)) + 1}")
+    return history
+
+
+def _state_files(folder):
+    if not folder.is_dir():
+        return []
+    return sorted(f for f in folder.iterdir() if _STATE_NAME.fullmatch(f.name))

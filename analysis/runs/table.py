@@ -1,0 +1,90 @@
+"""A table of runs: a pandas DataFrame with one row a run, in memory and as a CSV file.
+
+Beside what a study measures it has the columns `run` (the folder's name) and, in memory only, `folder` (its path on
+this machine, None for a row read from a file). The file says in lines that begin with # where its runs come from (one
+line of JSON) and what each column is; numbers are written so that reading gives back the same bits."""
+
+import csv
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas
+
+from .folder import open_run
+
+RUN, FOLDER = "run", "folder"
+ENDING = ".csv"
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a column holds: name, unit ('' for numbers and words), meaning; absent: its value in tables that lack it
+    (None: they cannot be read)."""
+
+    name: str
+    unit: str
+    meaning: str
+    absent: float = None
+
+
+class TableError(Exception):
+    """A file that is no table of runs; the message is one line."""
+
+
+class NoRunFolder(Exception):
+    """A row was read from a table: its run folder is not at hand."""
+
+
+def make_table(measured):
+    """DataFrame from (folder, {column: value}) of each run."""
+    rows = [{RUN: Path(folder).name, FOLDER: str(folder), **values} for folder, values in measured]
+    return pandas.DataFrame(rows)
+
+
+def run_folder(row):
+    """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where the folder
+    is damaged."""
+    if not isinstance(row.folder, str):
+        raise NoRunFolder(row.run)
+    return open_run(row.folder)
+
+
+def table_text(table, columns, head):
+    """The CSV file (str) of a table; head: a dict that JSON can hold."""
+    lines = [json.dumps(head, allow_nan=False)]
+    lines += [f"{c.name}{f' [{c.unit}]' if c.unit else ''}: {c.meaning}" for c in columns]
+    out = io.StringIO()
+    out.writelines(f"# {line}\n" for line in lines)
+    names = [RUN, *(column.name for column in columns)]
+    table.to_csv(out, columns=names, index=False, quoting=csv.QUOTE_MINIMAL, lineterminator="\n")
+    return out.getvalue()
+
+
+def read_table(file, columns):
+    """(DataFrame, head) of a CSV file; TableError where it is not one with these columns."""
+    try:
+        text = Path(file).read_text(encoding="utf-8")
+        comments = [line for line in text.splitlines() if line.startswith("# ")]
+        head = json.loads(comments[0][2:]) if comments else None
+        if not isinstance(head, dict):
+            raise ValueError("its first line is not '# ' with a JSON object")
+        body = text.splitlines()[len(comments) :]
+        table = pandas.read_csv(
+            io.StringIO("\n".join(body)),
+            dtype={RUN: str},
+            float_precision="round_trip",
+            keep_default_na=False,
+            na_values=[""],
+        )
+    except OSError as error:
+        raise TableError(f"{file}: cannot be read: {error.strerror}") from None
+    except ValueError as error:  # pandas's and json's errors are ValueErrors too
+        raise TableError(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
+    lacking = [c.name for c in columns if c.name not in table and c.absent is None]
+    if RUN not in table or lacking:
+        raise TableError(f"{file}: lacks the column " + ", ".join(lacking or [RUN]))
+    absent = {c.name: c.absent for c in columns if c.name not in table}
+    return table.assign(**absent, **{FOLDER: None}), head
+

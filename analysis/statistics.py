@@ -1,0 +1,105 @@
+"""Statistics of runs that differ by their seeds: errors, intervals, and a bootstrap over pairs of aggregates.
+
+Whether there is scatter at all is told by the number of runs, never by a standard deviation of exactly 0: rounding
+makes that 1e-17, or not, from one processor to another."""
+
+import numpy as np
+from scipy.special import digamma
+from scipy.stats import binomtest, bootstrap
+
+CONFIDENCE = 0.95
+RESAMPLES = 1000
+RANDOM_SEED = 20240124
+_INTERVAL_RESAMPLES, _INTERVAL_SEED = 2000, 20240513
+# Numbers that agree to this fraction of their size are the same number, rounded differently.
+_ROUNDING = 1e-12
+
+
+def mean_and_error(values):
+    """(mean, standard error) of values (n,); the error is None for one value.
+
+    >>> mean_and_error([1.0, 3.0]), mean_and_error([2.0])
+    ((2.0, 1.0), (2.0, None))
+    """
+    values = np.asarray(values, dtype=float)
+    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else None
+
+
+def scatter(values):
+    """Standard deviation of values (n,) about their mean, n - 1 degrees of freedom; NaN for one value, 0 where they agree
+    to rounding."""
+    values = np.asarray(values, dtype=float)
+    return _without_rounding(values.std(ddof=1), values) if len(values) > 1 else float("nan")
+
+
+def resampling_error(resamples):
+    """Standard error: the standard deviation over resamples (B,), of those that are finite; None where fewer than two
+    are, 0 where they agree to rounding."""
+    resamples = np.asarray(resamples, dtype=float)
+    finite = resamples[np.isfinite(resamples)]
+    return _without_rounding(finite.std(ddof=1), finite) if finite.size > 1 else None
+
+
+def percentile_error(resamples):
+    """Half the distance between the 15.87 and the 84.13 per cent of resamples (B,), which is one standard deviation of a
+    normal distribution and bears the long tails of a modulus; None where it is not finite."""
+    low, high = np.quantile(resamples, [0.158655, 0.841345], method="nearest")
+    return 0.5 * float(high - low) if np.isfinite(high) else None
+
+
+def _without_rounding(spread, values):
+    return float(spread) if spread > _ROUNDING * np.abs(values).max() else 0.0
+
+
+def wilson(successes, trials):
+    """(low, high): Wilson's score interval of a probability at CONFIDENCE.
+
+    >>> wilson(0, 10)[0], wilson(10, 10)[1]
+    (0.0, 1.0)
+    """
+    interval = binomtest(successes, trials).proportion_ci(CONFIDENCE, method="wilson")
+    return float(interval.low), float(interval.high)
+
+
+def mean_interval(values, lowest=-np.inf):
+    """(mean, low, high) at CONFIDENCE of the mean of values (n,): percentile bootstrap, the deviations stretched by
+    [n/(n-1)]^(1/2) for few values, low not below `lowest`; (mean, None, None) for one value, Nones for none."""
+    values = np.asarray(values, dtype=float)
+    n = len(values)
+    if n < 2:
+        return (float(values[0]) if n else None), None, None
+    mean = values.mean()
+    interval = bootstrap(
+        (values,),
+        lambda draws, axis: mean + (draws.mean(axis=axis) - mean) * np.sqrt(n / (n - 1.0)),
+        n_resamples=_INTERVAL_RESAMPLES,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        random_state=np.random.default_rng(_INTERVAL_SEED),
+    ).confidence_interval
+    return float(mean), max(lowest, float(interval.low)), float(interval.high)
+
+
+def smoothed_scatter(x, scatter, number):
+    """Standard deviations (K,) of one run that follow a power of x, from each point's own (K,), x (K,) and the number
+    of runs (K,): ln s^2 against ln x by least squares, weighted with the degrees of freedom and freed of its bias
+    (digamma). A constant for less than four points; NaN without any point of two runs.
+
+    Weights 1/s^2 of three runs each would vary by orders of magnitude by chance alone."""
+    # A point of two equal numbers has no logarithm.
+    known = (number > 1) & (scatter > 0)
+    if not known.any():
+        return np.full(len(scatter), np.nan)
+    freedom = number[known] - 1.0
+    log = 2.0 * np.log(scatter[known]) - digamma(freedom / 2.0) + np.log(freedom / 2.0)
+    x = np.log(x)
+    degree = 1 if known.sum() >= 4 and np.ptp(x[known]) > 0 else 0
+    return np.exp(0.5 * np.polyval(np.polyfit(x[known], log, degree, w=np.sqrt(freedom)), x))
+
+
+def weighted_deviations(sample, weights):
+    """Deviations (B,) of the mean of a sample (n,) in a Bayesian bootstrap with exponential weights (B, n), stretched by
+    [(n+1)/(n-1)]^(1/2), without which the errors of few runs come out too small (Rubin 1981: Dirichlet weights)."""
+    n = len(sample)
+    own = weights / weights.sum(axis=1, keepdims=True) * np.sqrt((n + 1.0) / (n - 1.0))
+    return own @ (sample - sample.mean())

@@ -1,0 +1,128 @@
+"""One row of numbers for each collision: what the fits, tables and figures are made of."""
+
+import numpy as np
+
+from ...measures.compression import compression_by_aggregate, compression_length, first_compression
+from ...measures.coordination import inner_coordination, mean_coordination
+from ...measures.ledger import closure, fractions_at, initial_kinetic_energy
+from ...measures.of_run import met, outcome_of_run
+from ...measures.outcome import STICKING, UNDECIDED, still_parting
+from ...runs.arrays import RunFolderError
+from ...runs.format import CHANNELS, HISTORY_FILE, LABELS
+from ...runs.table import Column
+from ..definition import NotMeasured
+
+# Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.
+SKIN = 2.0  # grain radii
+
+
+def at_maximum(channel):
+    """Name of the column of a channel's change from the start to t_max."""
+    return f"{channel}_at_maximum"
+
+
+def at_end(channel):
+    """Name of the column of a channel's change from the start to the end."""
+    return f"{channel}_at_end"
+
+
+COLUMNS = (
+    Column("filling", "", "filling factor"),
+    Column("radius", "m", "radius of an aggregate"),
+    Column("velocity", "m/s", "collision velocity"),
+    Column("seed", "", "random seed of the pair of aggregates"),
+    Column("grain_radius", "m", "radius of a grain"),
+    Column("grain_density", "kg/m^3", "density of a grain"),
+    Column("pull_off_force", "N", "F_c"),
+    Column("overlap", "m", "delta_0, the overlap at equilibrium"),
+    Column("offset", "m", "d(0) + 2 r, by which the centres of mass are closer than the spheres' centres by chance"),
+    Column("d_max", "m", "largest compression length of the first compression"),
+    Column("d_max_error", "m", "its error, see measures.compression.Maximum"),
+    Column("exceeded", "", "whether d grows beyond it later"),
+    Column("t_max", "s", "time of d_max"),
+    Column("t_max_error", "s", "its error"),
+    Column("label_d_max", "m", "d_max with each aggregate's own grains in place of A24's x > 0 and x < 0"),
+    Column("outcome", "", f"as measures.outcome has it, or {UNDECIDED}: in one piece, but still parting"),
+    Column(
+        "restitution", "", "coefficient of restitution; none for fragmentation and for pieces that passed each other"
+    ),
+    Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
+    Column("coordination", "", "mean number of contacts of a grain at the start"),
+    Column("inner_coordination", "", f"the same of the grains {SKIN:g} r below the surface"),
+    Column("closure", "", "largest error of the energy ledger over K(0)"),
+    *(
+        Column(name(c), "K(0)", f"{LABELS[c]}, change from the start to {when} (kinetic: what is left)", absent=0.0)
+        for name, when in ((at_maximum, "t_max"), (at_end, "the end"))
+        for c in CHANNELS
+    ),
+)
+
+
+def measure(run):
+    """{column: value} of a RunFolder of A24's scene that has ended. NotMeasured where the aggregates never met or never
+    turned around, RunFolderError where something is missing."""
+    history = run.history
+    maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
+    if maximum is None or not maximum.inside or not met(run):
+        raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
+    if not initial_kinetic_energy(history) > 0:
+        raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
+    outcome = outcome_of_run(run)
+    parts = {at_maximum: fractions_at(history, maximum.time), at_end: fractions_at(history, history["time"][-1])}
+    scene = _scene(run)
+    start, r, velocity = run.start, scene["grain_radius"], scene["velocity"]
+    return {
+        **scene,
+        "offset": float(history["d"][0]) + 2.0 * r,
+        "d_max": maximum.length,
+        "d_max_error": maximum.length_error,
+        "exceeded": exceeded,
+        "t_max": maximum.time,
+        "t_max_error": maximum.time_error,
+        "label_d_max": maximum.length + _label_difference(run, maximum.time, scene["radius"]),
+        "outcome": UNDECIDED if outcome.kind == STICKING and still_parting(history["v"]) else outcome.kind,
+        "restitution": outcome.restitution,
+        "bulk": float(np.nan_to_num(history["v"][-1] / velocity) ** 2),
+        "coordination": mean_coordination(len(start.radius), start.contact_pairs),
+        "inner_coordination": _inner_coordination(start, scene["radius"], r),
+        "closure": closure(history),
+        **{name(c): values[c] for name, values in parts.items() for c in CHANNELS},
+    }
+
+
+def _scene(run):
+    """The columns that say what collided."""
+    derived, parameters = run.derived, run.parameters
+    names = {
+        "radius": "aggregateRadius",
+        "grain_radius": "grainRadius",
+        "grain_density": "density",
+        "pull_off_force": "pullOffForce",
+        "overlap": "equilibriumOverlap",
+    }
+    try:
+        constants = {column: float(derived[name]) for column, name in names.items()}
+    except (KeyError, TypeError, ValueError) as error:
+        raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
+    given = {"filling": float(parameters["filling"]), "velocity": float(parameters["velocity"])}
+    return {**given, "seed": int(parameters["seed"]), **constants}
+
+
+def _label_difference(run, time, radius):
+    """What d by the label has over d by the sign of x at `time` [m]: between the states before and after it."""
+    times = run.states.times
+    after = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1)) if len(times) > 1 else 0
+    around = sorted({max(after - 1, 0), after})
+    differences = []
+    for k in around:
+        arrays = run.states.arrays(k, ("position", "aggregate"))
+        x = arrays["position"][:, 0]
+        differences.append(compression_by_aggregate(x, arrays["aggregate"], radius) - compression_length(x, radius))
+    return float(np.interp(time, times[around], differences))
+
+
+def _inner_coordination(start, radius, grain_radius):
+    # The spheres stand at -+(R + r) on the collision axis (A24 section 3).
+    x = np.where(start.aggregate == 1, 1.0, -1.0) * (radius + grain_radius)
+    centres = np.stack([x, 0.0 * x, 0.0 * x], axis=1)
+    return inner_coordination(start.position, start.contact_pairs, centres, radius - SKIN * grain_radius)

@@ -1,0 +1,161 @@
+"""All results of a set of runs."""
+
+from dataclasses import dataclass
+from typing import Mapping
+
+import numpy as np
+import pandas
+
+from ...statistics import mean_and_error, percentile_error
+from ...theory.aggregates import bulk_modulus, cpe_coordination, poisson_ratio
+from . import paper
+from .bounce import bounces
+from .points import Points, points_of, resampled
+from .size_fit import SizeFit, fit_sizes, size_velocity
+from .start_offset import common_slope, correct
+from .velocity_fit import VelocityFit, fit_velocities
+
+# What d_max may be taken for, of a table of runs; the first is A24's.
+DEFINITIONS = {
+    "as A24 defines it": lambda table: table.d_max,
+    "less d(0) + 2 r": lambda table: table.d_max - table.offset,
+    "by each aggregate's own grains": lambda table: table.label_d_max,
+}
+
+# Columns that are the same for all runs.
+CONSTANTS = ("grain_radius", "grain_density", "overlap", "pull_off_force")
+
+
+@dataclass(frozen=True)
+class Filling:
+    """Results at one filling factor: factor, points with resamples (d_max, t_max), size_fits (SizeFit by
+    DEFINITIONS), offset [m] and offset_source, velocity_fits (VelocityFit by what is special about it; ''
+    comes first), slope (of d_max on the start's offset, its error), corrections ({index of point: Correction}
+    in grain radii), coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson
+    (value, error), grain_radius [m]."""
+
+    factor: float
+    points: Points
+    resamples: tuple
+    size_fits: Mapping
+    offset: float
+    offset_source: str
+    velocity_fits: Mapping
+    slope: tuple
+    corrections: Mapping
+    coordination: tuple
+    bulk_modulus: float
+    poisson: tuple
+    grain_radius: float
+
+    @property
+    def size_fit(self) -> SizeFit:
+        return next(iter(self.size_fits.values()))
+
+    @property
+    def velocity_fit(self) -> VelocityFit:
+        return self.velocity_fits[""]
+
+
+@dataclass(frozen=True)
+class Results:
+    """table (a row a run, measure.COLUMNS), by_filling ({filling: Filling}), bounces (list of bounce.Bounce),
+    grain_radius [m], grain_density [kg/m^3], overlap [m], pull_off_force [N]."""
+
+    table: pandas.DataFrame
+    by_filling: Mapping
+    bounces: tuple
+    grain_radius: float
+    grain_density: float
+    overlap: float
+    pull_off_force: float
+
+    def runs(self, filling, radius=None, velocity=None):
+        """Table of the runs at a filling factor, and at a radius [m] and a velocity [m/s] where they are given."""
+        table = self.table[self.table.filling.round(6) == filling]
+        for name, value in (("radius", radius), ("velocity", velocity)):
+            if value is not None:
+                table = table[(table[name] / value - 1.0).abs() < 1e-6]
+        return table
+
+
+def make_results(table):
+    """Results of a table of runs (measure.COLUMNS), at least one; all of one material."""
+    fillings = table.filling.round(6)
+    by_filling = {
+        float(filling): _filling(float(filling), table[fillings == filling])
+        for filling in sorted(fillings.unique(), reverse=True)
+    }
+    constants = {name: float(table[name].iloc[0]) for name in CONSTANTS}
+    return Results(table, by_filling, tuple(bounces(table)), **constants)
+
+
+def _filling(filling, table):
+    r, density, overlap, force = (float(table[name].iloc[0]) for name in CONSTANTS)
+    points = {name: points_of(table, d_max) for name, d_max in DEFINITIONS.items()}
+    draws = {name: resampled(each) for name, each in points.items()}
+    size_fits = {
+        name: fit_sizes(each, draws[name][0], r, size_velocity(each, paper.VELOCITY)) for name, each in points.items()
+    }
+    own = next(iter(DEFINITIONS))
+    offset = _offset(filling, size_fits[own], r)
+    fits = _velocity_fits(points[own], draws[own], offset, size_fits[own], r, density)
+    slope, corrections = _corrections(points[own], table)
+    modulus = float(bulk_modulus(filling, cpe_coordination(filling, r, overlap), r, overlap, force))
+    return Filling(
+        filling,
+        points[own],
+        draws[own],
+        size_fits,
+        offset[0],
+        offset[2],
+        fits,
+        slope,
+        corrections,
+        mean_and_error(table.inner_coordination),
+        modulus,
+        _poisson(fits[""], modulus),
+        r,
+    )
+
+
+def _offset(filling, fit, grain_radius):
+    """(delta_offset [m], its resamples, where it is from); Nones where there is none."""
+    if fit.reason is None:
+        return fit.values["offset"] * grain_radius, fit.resamples["offset"] * grain_radius, "fitted to the sizes here"
+    if filling in paper.OFFSET:
+        offset = paper.OFFSET[filling] * grain_radius
+        return offset, offset, "A24's, since one size gives none"
+    return None, None, None
+
+
+def _velocity_fits(points, draws, offset, size_fit, grain_radius, grain_density):
+    filling = float(points.filling[0])
+    if offset[0] is None:
+        reason = f"no delta_offset at filling {filling:g}: neither two sizes, nor one of A24's"
+        return {name: VelocityFit(filling, reason=reason) for name in ("", "weights unsmoothed")}
+    scale = grain_radius, grain_density
+    fits = {
+        "": fit_velocities(points, draws, *offset, *scale),
+        "weights unsmoothed": fit_velocities(points, draws, *offset, *scale, raw=True),
+    }
+    if filling in paper.OFFSET and size_fit.reason is None:
+        theirs = paper.OFFSET[filling] * grain_radius
+        fits["A24's delta_offset"] = fit_velocities(points, draws, theirs, theirs, "A24's", *scale)
+    return fits
+
+
+def _corrections(points, table):
+    unit = table.grain_radius.iloc[0]
+    offsets = points_of(table, lambda runs: runs.offset)
+    groups = [(o[0] / unit, d[0] / unit) for o, d in zip(offsets.samples, points.samples)]
+    slope = common_slope([group for group in groups if len(group[0]) > 1])
+    return slope, {k: correct(*group, slope) for k, group in enumerate(groups)}
+
+
+def _poisson(fit, modulus):
+    if fit.reason or not np.isfinite(fit.values[1]):
+        return None, None
+    # An E* without bound is one beyond every nu_agg: eq 42 goes to -1 there.
+    young = np.minimum(fit.resamples[:, 1], 1e6 * modulus)
+    return float(poisson_ratio(fit.values[1], modulus)), percentile_error(poisson_ratio(young, modulus))

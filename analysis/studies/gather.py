@@ -1,0 +1,92 @@
+"""From paths to one table with the runs of a study."""
+
+from dataclasses import dataclass, field
+
+import pandas
+from tqdm import tqdm
+
+from ..runs.arrays import RunFolderError
+from ..runs.collect import collect
+from ..runs.provenance import joined, provenance
+from ..runs.table import RUN, TableError, make_table, read_table
+from .definition import NotMeasured
+
+
+@dataclass
+class Gathered:
+    """What was found: table (DataFrame, a row a run; None where there is none), provenance (dict), notes (str, one a run
+    left out), problems (str, one a path or run that could not be read), earlier (what tables that were read say of
+    runs left out)."""
+
+    table: pandas.DataFrame = None
+    provenance: dict = None
+    notes: list = field(default_factory=list)
+    problems: list = field(default_factory=list)
+    earlier: list = field(default_factory=list)
+
+
+def gather(study, paths):
+    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers of the
+    scene only the first is taken: counted twice it would make errors too small."""
+    collection = collect(paths, study.scene)
+    found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
+    taken, tables, origins = {}, [], []
+    for file in collection.tables:
+        try:
+            table, origin, earlier = _read(study, file, taken)
+        except TableError as error:
+            found.problems.append(str(error))
+            continue
+        tables.append(table)
+        origins.append(origin)
+        found.earlier += earlier
+    measured, runs = _measure(study, collection.runs, taken, found)
+    if measured:
+        tables.append(make_table(measured))
+        origins.append(provenance(runs))
+    if tables:
+        found.table = pandas.concat(tables, ignore_index=True) if len(tables) > 1 else tables[0]
+        found.provenance = joined(origins) if len(origins) > 1 else origins[0]
+    return found
+
+
+def _measure(study, runs, taken, found):
+    """([(path, {column: value})], their RunFolders)."""
+    measured, sources = [], []
+    for run in tqdm(runs, "reading runs", disable=None, leave=False):
+        try:
+            values = study.measure(run)
+        except NotMeasured as error:
+            found.notes.append(f"{error}, left out")
+            continue
+        except RunFolderError as error:
+            found.problems.append(str(error))
+            continue
+        twin = taken.setdefault(_key(study, values), run.path)
+        if twin is not run.path:
+            found.notes.append(f"{run.path}: the same {_listed(study.scene.numbers)} as {twin}, left out")
+            continue
+        measured.append((run.path, values))
+        sources.append(run)
+    return measured, sources
+
+
+def _read(study, file, taken):
+    """(table, provenance, notes) of a file of an earlier analysis."""
+    table, head = read_table(file, study.columns)
+    if head.get("study") != study.name or not isinstance(head.get("provenance"), dict):
+        raise TableError(f"{file}: a table of the study {head.get('study')}: must be of {study.name}")
+    keys = {_key(study, row): f"{file}, {row[RUN]}" for row in table.to_dict("records")}
+    twins = keys.keys() & taken.keys()
+    if twins or len(keys) < len(table):
+        raise TableError(f"{file}: two runs have the same {_listed(study.scene.numbers)}")
+    taken.update(keys)
+    return table, head["provenance"], head.get("notes", [])
+
+
+def _key(study, values):
+    return tuple(f"{values[name]:.9g}" for name in study.scene.numbers)
+
+
+def _listed(names):
+    return ", ".join(names[:-1]) + " and " + names[-1] if len(names) > 1 else names[0]
