@@ -1,5 +1,7 @@
 """A report for a terminal."""
 
+import textwrap
+
 from ..runs.provenance import provenance_lines
 
 
@@ -8,7 +10,7 @@ def text(report):
     parts = list(provenance_lines(report.provenance))
     for section in report.sections:
         parts += ["", section.heading]
-        parts += [f"  {line}" for line in (section.intro,) if line]
+        parts += textwrap.wrap(section.intro, 120, initial_indent="  ", subsequent_indent="  ")
         parts += _table(section)
         parts += section.notes
     parts += ["", *report.remarks] if report.remarks else []

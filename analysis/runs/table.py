@@ -15,17 +15,21 @@ import pandas
 from .folder import open_run
 
 RUN, FOLDER = "run", "folder"
+_TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
 ENDING = ".csv"
 
 
 @dataclass(frozen=True)
 class Column:
-    """What a column holds: name, unit ('' for numbers and words), meaning; absent: its value in tables that lack it
-    (None: they cannot be read)."""
+    """What a column holds: name, unit ('' for numbers and words), meaning; kind: numpy's letter of the type ("f", "i",
+    "b", "O" for words); gaps: may have no value in places; absent: its value in tables that lack it (None: they cannot be
+    read)."""
 
     name: str
     unit: str
     meaning: str
+    kind: str = "f"
+    gaps: bool = False
     absent: float = None
 
 
@@ -85,6 +89,17 @@ def read_table(file, columns):
     lacking = [c.name for c in columns if c.name not in table and c.absent is None]
     if RUN not in table or lacking:
         raise TableError(f"{file}: lacks the column " + ", ".join(lacking or [RUN]))
-    absent = {c.name: c.absent for c in columns if c.name not in table}
-    return table.assign(**absent, **{FOLDER: None}), head
+    table = table.assign(**{c.name: c.absent for c in columns if c.name not in table}, **{FOLDER: None})
+    for column in columns:
+        _check(file, column, table[column.name])
+    return table, head
+
+
+def _check(file, column, values):
+    kinds, words = _TYPES[column.kind]
+    empty = values.isna()
+    if empty.any() and not column.gaps:
+        raise TableError(f"{file}: '{column.name}' has no value in row {int(empty.argmax()) + 1}")
+    if values.dtype.kind not in kinds and not empty.all():
+        raise TableError(f"{file}: '{column.name}' must be {words}")
 

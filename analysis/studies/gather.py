@@ -76,6 +76,9 @@ def _read(study, file, taken):
     table, head = read_table(file, study.columns)
     if head.get("study") != study.name or not isinstance(head.get("provenance"), dict):
         raise TableError(f"{file}: a table of the study {head.get('study')}: must be of {study.name}")
+    if head["provenance"].get("runs") != len(table):
+        said = head["provenance"].get("runs")
+        raise TableError(f"{file}: says that it holds {said} runs, it holds {len(table)}")
     keys = {_key(study, row): f"{file}, {row[RUN]}" for row in table.to_dict("records")}
     twins = keys.keys() & taken.keys()
     if twins or len(keys) < len(table):

@@ -30,7 +30,7 @@ COLUMNS = (
     Column("filling", "", "filling factor"),
     Column("radius", "m", "radius of an aggregate"),
     Column("velocity", "m/s", "collision velocity"),
-    Column("seed", "", "random seed of the pair of aggregates"),
+    Column("seed", "", "random seed of the pair of aggregates", kind="i"),
     Column("grain_radius", "m", "radius of a grain"),
     Column("grain_density", "kg/m^3", "density of a grain"),
     Column("pull_off_force", "N", "F_c"),
@@ -38,17 +38,15 @@ COLUMNS = (
     Column("offset", "m", "d(0) + 2 r, by which the centres of mass are closer than the spheres' centres by chance"),
     Column("d_max", "m", "largest compression length of the first compression"),
     Column("d_max_error", "m", "its error, see measures.compression.Maximum"),
-    Column("exceeded", "", "whether d grows beyond it later"),
+    Column("exceeded", "", "whether d grows beyond it later", kind="b"),
     Column("t_max", "s", "time of d_max"),
     Column("t_max_error", "s", "its error"),
     Column("label_d_max", "m", "d_max with each aggregate's own grains in place of A24's x > 0 and x < 0"),
-    Column("outcome", "", f"as measures.outcome has it, or {UNDECIDED}: in one piece, but still parting"),
-    Column(
-        "restitution", "", "coefficient of restitution; none for fragmentation and for pieces that passed each other"
-    ),
+    Column("outcome", "", f"as measures.outcome has it, or {UNDECIDED}: in one piece, but still parting", kind="O"),
+    Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
     Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
     Column("coordination", "", "mean number of contacts of a grain at the start"),
-    Column("inner_coordination", "", f"the same of the grains {SKIN:g} r below the surface"),
+    Column("inner_coordination", "", f"the same of the grains {SKIN:g} r below the surface", gaps=True),
     Column("closure", "", "largest error of the energy ledger over K(0)"),
     *(
         Column(name(c), "K(0)", f"{LABELS[c]}, change from the start to {when} (kinetic: what is left)", absent=0.0)
