@@ -31,7 +31,7 @@ YADE_VERSION ?= 2023.02a
 PYTHON := /usr/bin/python3
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
-            python3-numpy python3-scipy python3-matplotlib python3-pytest
+            python3-numpy python3-scipy python3-pandas python3-matplotlib python3-tqdm python3-pytest
 
 # ---- flags ----
 
@@ -155,14 +155,14 @@ RUNS  := runs/elastoplastic$(filter-out -desk,-$(SIZE))
 .PHONY: study-elastoplastic study-status gallery-elastoplastic
 study-elastoplastic: all
 	@$(PYTHON) yade_scripts/study.py $(STUDY) -j $(JOBS)
-	@$(PYTHON) -m analysis elastoplastic $(RUNS) --figures $(RUNS)/figures
+	@$(PYTHON) -m analysis study elastoplastic $(RUNS) --figures $(RUNS)/figures
 
 study-status:
 	@$(PYTHON) yade_scripts/study.py $(STUDY) -j $(JOBS) --status
 
 # the comparison and figures that the repository keeps, of the runs that are there
 gallery-elastoplastic:
-	@$(PYTHON) -m analysis elastoplastic $(RUNS) --figures analysis/gallery/elastoplastic
+	@$(PYTHON) -m analysis study elastoplastic $(RUNS) --figures analysis/gallery/elastoplastic
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
 .PHONY: bench bench-peers

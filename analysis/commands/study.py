@@ -1,6 +1,5 @@
 """python3 -m analysis study [NAME RUNS... [--figures FOLDER] [--json | --format FORMAT]]"""
 
-import json
 from pathlib import Path
 
 from . import FAILED, complain
@@ -103,14 +102,14 @@ def _kept(found):
 
 
 def _printed(wanted, study, report, found):
-    from ..report.data import data
+    from ..report.data import json_text
     from ..report.markdown import markdown
     from ..report.text import text
 
     if wanted == "csv":
         return _csv(study, report, found).rstrip("\n")
     if wanted == "json":
-        return json.dumps(data(report), indent=2, allow_nan=False)
+        return json_text(report).rstrip("\n")
     return markdown(report).rstrip("\n") if wanted == "markdown" else text(report)
 
 
@@ -122,12 +121,12 @@ def _csv(study, report, found):
 
 
 def _write(folder, study, report, found, results):
-    from ..report.data import data
+    from ..report.data import json_text
     from ..report.markdown import markdown
 
     folder.mkdir(parents=True, exist_ok=True)
     (folder / TABLE_FILE).write_text(_csv(study, report, found), encoding="utf-8")
-    (folder / DATA_FILE).write_text(json.dumps(data(report), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (folder / DATA_FILE).write_text(json_text(report), encoding="utf-8")
     drawn = list(_draw(folder, study, results))
     (folder / PAGE_FILE).write_text(markdown(report, drawn), encoding="utf-8")
 

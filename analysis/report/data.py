@@ -1,5 +1,6 @@
 """A report for JSON."""
 
+import json
 import math
 
 
@@ -25,3 +26,18 @@ def plain(value):
     if hasattr(value, "item"):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def json_text(report):
+    """data(report) as a JSON file (str) with one line a row of a table."""
+    content = data(report)
+    sections = [
+        '  {"heading": ' + json.dumps(section["heading"]) + ', "rows": [\n' + _lines(section["rows"], "   ") + "\n  ]}"
+        for section in content.pop("sections")
+    ]
+    head = json.dumps(content, indent=1, allow_nan=False).rstrip("\n}")
+    return head + ',\n "sections": [\n' + ",\n".join(sections) + "\n ]\n}\n"
+
+
+def _lines(rows, margin):
+    return ",\n".join(margin + json.dumps(row, allow_nan=False) for row in rows)
