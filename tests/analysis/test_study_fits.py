@@ -8,7 +8,6 @@ from made_collisions import MODULI, OFFSET, V, line_of, made_points
 from scipy.optimize import least_squares
 from written_runs import RADIUS
 
-from analysis.statistics import mean_interval, smoothed_scatter, wilson
 from analysis.studies.elastoplastic import paper
 from analysis.studies.elastoplastic.moduli_search import ModuliSearch
 from analysis.studies.elastoplastic.points import make_points, resampled
@@ -160,6 +159,15 @@ def test_what_cannot_be_fitted_says_why():
     assert sized(made_points(np.random.default_rng(9), 1)).errors["c1"] is None
 
 
+def test_one_seed_a_point_has_no_error_however_the_resamples_round():
+    """On another processor the mean of equal numbers may be off in its last digit, and their scatter 1e-17."""
+    points = made_points(np.random.default_rng(9), 1)
+    rounded = resampled(points, 50)[0] * (1 + 1e-16 * np.random.default_rng(0).integers(-2, 3, (50, 3)))
+    fit = fit_sizes(points, rounded, RADIUS, V)
+    assert fit.errors == dict.fromkeys(("c1", "c2", "offset", "ratio")) and fit.values["c1"] > 0
+    assert not points.varies.any() and made_points(np.random.default_rng(9), 2).varies.all()
+
+
 def test_one_seed_takes_the_scatter_of_its_size():
     random = np.random.default_rng(10)
     points = made_points(random, 12, (40.0,), VELOCITIES)
@@ -168,15 +176,6 @@ def test_one_seed_takes_the_scatter_of_its_size():
     fewer = make_points(points.filling, points.radius, points.velocity, tuple(samples), tuple(seeds))
     spread = resampled(fewer, 2000)[0].std(axis=0)
     assert spread[0] == pytest.approx(fewer.d_scatter[0], rel=0.1) and np.isnan(fewer.raw_d_scatter[0])
-
-
-def test_smoothed_scatter_follows_a_power_without_bias():
-    """s ~ v^-1 from three seeds at eight velocities, 400 times: the mean logarithm is right to 3.3 standard
-    errors."""
-    random, v = np.random.default_rng(11), np.array(VELOCITIES)
-    found = [smoothed_scatter(v, random.normal(size=(3, 8)).std(axis=0, ddof=1) / v, np.full(8, 3)) for _ in range(400)]
-    logs = np.log(found)
-    assert np.all(np.abs(logs.mean(axis=0) + np.log(v)) < 3.3 * logs.std(axis=0) / 20)
 
 
 def test_errors_of_a_design_are_those_of_its_fits():
@@ -228,21 +227,3 @@ def test_slope_common_to_groups():
     slope, error = common_slope([(x, 5 + 2 * x), (x + 3, 1 + 2 * x)])
     assert slope == pytest.approx(2.0) and error == pytest.approx(0.0, abs=1e-12)
     assert common_slope([(x[:2], x[:2])]) == (None, None) and common_slope([]) == (None, None)
-
-
-def test_wilsons_interval():
-    assert wilson(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
-    assert wilson(10, 10) == pytest.approx((0.7225, 1.0), abs=1e-4)
-    assert wilson(5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
-
-
-def test_restitutions_interval_covers_the_mean():
-    """The mean of ten uniform numbers lies in the 95 % interval 92 % of the time or more: 300 sets, 88 % at
-    least."""
-    random = np.random.default_rng(14)
-    inside = 0
-    for _ in range(300):
-        _, low, high = mean_interval(random.uniform(0.2, 0.6, 10))
-        inside += low < 0.4 < high
-    assert inside / 300 > 0.88
-    assert mean_interval([0.3]) == (0.3, None, None)

@@ -51,21 +51,15 @@ def outcome_figure(results):
 
 
 def _series(axes, x, series, colour, label):
-    """Restitution on the first of the axes, sticking on the second."""
+    """Restitution on the first of the axes, sticking on the second; the line is broken where no run is decided."""
+    x = np.asarray(x, dtype=float)
     for place, name in zip(axes, ("restitution", "sticking")):
-        mean, low, high = np.array(
-            [[np.nan if v is None else v for v in getattr(b, name)] for b in series], dtype=float
-        ).T
+        mean, low, high = np.array([getattr(b, name) for b in series], dtype=float).T
+        known = np.isfinite(mean)
+        error = np.nan_to_num([mean - low, high - mean])
+        place.plot(x, mean, color=colour, linewidth=0.9)
         place.errorbar(
-            x,
-            mean,
-            yerr=np.nan_to_num([mean - low, high - mean]),
-            fmt="D-",
-            color=colour,
-            markersize=5,
-            capsize=3,
-            linewidth=0.9,
-            label=label,
+            x[known], mean[known], yerr=error[:, known], fmt="D", color=colour, markersize=5, capsize=3, label=label
         )
 
 
