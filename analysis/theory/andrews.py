@@ -127,15 +127,15 @@ def largest_compression(velocity, spheres):
 def time_of_largest_compression(velocity, spheres):
     """tau_max [s] from first contact to the largest compression, at a collision velocity [m/s].
 
-    The elastic phase is an incomplete beta function of the share of K_ini that it takes, the plastic phase a
+    The elastic phase is an incomplete beta function of the fraction of K_ini that it takes, the plastic phase a
     quarter (or less) of a harmonic oscillation about delta_crit/3."""
     critical = critical_compression(spheres)
     rigid = plastic_compression(velocity, spheres)
     elastic = _stays_elastic(critical, rigid)
     # In what follows the plastic case alone.
     critical, rigid = np.where(elastic, 0.0, critical), np.where(elastic, 1.0, rigid)
-    share = 8.0 / 15.0 * critical**2 / rigid**2
-    until_yield = critical / velocity * hyp2f1(0.5, 0.4, 1.4, np.minimum(share, 1.0))
+    fraction = 8.0 / 15.0 * critical**2 / rigid**2
+    until_yield = critical / velocity * hyp2f1(0.5, 0.4, 1.4, np.minimum(fraction, 1.0))
     amplitude = np.sqrt(np.maximum(rigid**2 - 4.0 / 45.0 * critical**2, 0.0))
     angle = np.arccos(np.minimum(2.0 / 3.0 * critical / amplitude, 1.0))
     return np.where(elastic, elastic_time(velocity, spheres), until_yield + angle * rigid / velocity)

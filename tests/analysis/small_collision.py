@@ -100,11 +100,11 @@ class _Motion:
         self.lost["drag"] += DRAG * np.sum(self.rate**2) * self.dt
 
     def _events(self):
-        born = ~self.touching & (self.distance <= _CONTACT)
-        gone = self.touching & (self.distance > _SEPARATION)
-        self.touching = (self.touching | born) & ~gone
-        self.lost["connection"] -= self._energy()[born].sum()
-        self.lost["disconnection"] += gone.sum() * 4.0 / 45.0 * PAIR.pull_off_force * PAIR.pull_off_overlap
+        formed = ~self.touching & (self.distance <= _CONTACT)
+        broken = self.touching & (self.distance > _SEPARATION)
+        self.touching = (self.touching | formed) & ~broken
+        self.lost["connection"] -= self._energy()[formed].sum()
+        self.lost["disconnection"] += broken.sum() * 4.0 / 45.0 * PAIR.pull_off_force * PAIR.pull_off_overlap
 
     def _energy(self):
         normalised = normalised_energy((_CONTACT - self.distance) / PAIR.equilibrium_overlap)

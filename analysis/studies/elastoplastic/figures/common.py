@@ -1,4 +1,4 @@
-"""What this study's figures share."""
+"""What this study's figures have in common."""
 
 from ....figures.panels import OURS, PAPER, legend, letter, panels, scatter_of_seeds, size_colours, velocity_axis
 from .. import paper
