@@ -16,13 +16,13 @@ _ROUNDING = 1e-12
 
 
 def mean_and_error(values):
-    """(mean, standard error) of values (n,); the error is None for one value.
+    """(mean, standard error) of values (n,); the error is None for one value, 0 where they agree to rounding.
 
     >>> mean_and_error([1.0, 3.0]), mean_and_error([2.0])
     ((2.0, 1.0), (2.0, None))
     """
     values = np.asarray(values, dtype=float)
-    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else None
+    return float(values.mean()), float(scatter(values) / np.sqrt(len(values))) if len(values) > 1 else None
 
 
 def scatter(values):
@@ -48,7 +48,7 @@ def percentile_error(resamples):
 
 
 def _without_rounding(spread, values):
-    return float(spread) if spread > _ROUNDING * np.abs(values).max() else 0.0
+    return 0.0 if spread <= _ROUNDING * np.abs(values).max() else float(spread)
 
 
 def wilson(successes, trials):

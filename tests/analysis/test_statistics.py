@@ -29,6 +29,7 @@ def test_numbers_that_agree_to_rounding_have_no_scatter(value):
     """Whether their mean is exact depends on the processor."""
     same = [value, np.nextafter(value, 1e9), value, np.nextafter(value, 0.0), value]
     assert scatter(same) == 0.0 and resampling_error(same) == 0.0
+    assert mean_and_error(same)[1] == 0.0 and np.isnan(scatter([value, np.nan]))
     assert scatter([0.0, 0.0, 0.0]) == 0.0 and np.isnan(scatter([value]))
     assert scatter([value, value * (1 + 1e-9)]) == pytest.approx(value * 1e-9 / 2**0.5, rel=1e-5)
     assert np.all(np.isnan(smoothed_scatter(np.ones(3), np.array([scatter(same)] * 3), np.full(3, 5))))
