@@ -51,6 +51,11 @@ def scatter_of_seeds(axes, x, values, colour, label=None):
     )
 
 
+def papers_star(axes, x, y, label=None, **options):
+    """Open stars for a paper's values at x, y (floats or lists)."""
+    axes.plot(x, y, "*", markersize=15, markerfacecolor="none", color=PAPER, label=label, **options)
+
+
 def velocity_axis(axes, velocities):
     """Logarithmic axis of the collision velocity with plain numbers."""
     axes.set_xscale("log")

@@ -8,7 +8,7 @@ Checked while writing: B15 and B19 are what B13 makes of B14 and B16, and B23 wh
 force is continuous at delta_c and at delta_max; eqs 30-33 are the limits of eqs 27-29. Three things to know:
 
 - eq 18 prints delta_offset = c2 r/(2 - c1/2). Eqs 14, 15, 17 and 19 give c2 r/(2 - c1), and only that gives
-  the printed 0.271 r (the printed form gives 0.267 r). Used in size_fit.offset_from_line.
+  the printed 0.271 r (the printed form gives 0.267 r). studies.elastoplastic.size_fit uses that.
 - eq 29 takes the mass of spheres of radius R_eff = R + delta_offset; what collides is phi rho_p of radius R.
   K_ini differs by (1 + delta_offset/R)^3, 2 % at R = 40 r. Kept as printed, because the paper's fits use it.
 - After B21 the stress is cut at sigma_inner only inside a_max, so that a collision that stayed elastic
@@ -113,6 +113,16 @@ def elastic_time(velocity, spheres):
 def plastic_time(velocity, spheres):
     """tau_max [s] in the rigid-plastic limit: eq 33; the same at every velocity."""
     return 0.5 * np.pi * plastic_compression(velocity, spheres) / velocity
+
+
+def young_if_elastic(ratio, velocity, density):
+    """E* [Pa] of spheres that never yield, from delta_max/R* at velocity [m/s]: eq 30."""
+    return 5.0 * np.pi * density * velocity**2 / ratio**2.5
+
+
+def stress_if_rigid(ratio, velocity, density):
+    """sigma [Pa] in the rigid-plastic limit, from delta_max/R* at velocity [m/s]: eq 31."""
+    return 16.0 / 3.0 * density * velocity**2 / ratio**2
 
 
 def largest_compression(velocity, spheres):

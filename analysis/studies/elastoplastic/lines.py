@@ -5,7 +5,7 @@ import numpy as np
 from ...report.beside_paper import Line
 from ...statistics import mean_and_error
 from ...theory.aggregates import bulk_modulus, cpe_coordination
-from ...theory.andrews import Spheres, restitution
+from ...theory.andrews import Spheres, restitution, stress_if_rigid
 from . import paper
 from .size_fit import errors_of_design
 from .velocity_fit import degenerate_curve, fitted_sizes, moduli_errors_of_design, reduced_radius
@@ -199,7 +199,7 @@ def _curve_lines(results, filling):
 
     def ends(ratio):
         sigma, _, elastic_from, young = degenerate_curve(ratio, velocity, density, 2)
-        return np.array([16.0 / 3.0 * density * velocity**2 / ratio**2, elastic_from, young]) / MEGA
+        return np.array([stress_if_rigid(ratio, velocity, density), elastic_from, young]) / MEGA
 
     theirs = (paper.LEAST_YIELD_STRESS, paper.ELASTIC_FROM, paper.YOUNG_IF_ELASTIC)
     known = filling.factor == 0.4 and _is_papers(filling)

@@ -10,7 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...statistics import percentile_error
-from ...theory.andrews import Spheres, largest_compression, time_of_largest_compression
+from ...theory.andrews import (
+    Spheres,
+    largest_compression,
+    stress_if_rigid,
+    time_of_largest_compression,
+    young_if_elastic,
+)
 from .moduli_search import ModuliSearch
 
 FEWEST_VELOCITIES = 3
@@ -126,9 +132,9 @@ def degenerate_curve(ratio, velocity, density, samples=300):
     """(sigma, E*) [Pa] (samples,) of all elastoplastic pairs with delta_max/R* = ratio at velocity [m/s], and
     sigma_elastic from which nothing yields, with E* of eq 30: A24 Fig. 10. sigma goes from the rigid-plastic
     limit (where E* = inf, left out) to sigma_elastic."""
-    young = 5.0 * np.pi * density * velocity**2 / ratio**2.5
+    young = young_if_elastic(ratio, velocity, density)
     elastic_from = 2.0 * young / np.pi * np.sqrt(ratio)
-    least = 16.0 / 3.0 * density * velocity**2 / ratio**2
+    least = stress_if_rigid(ratio, velocity, density)
     sigma = least + (elastic_from - least) * np.linspace(0.0, 1.0, samples + 1)[1:] ** 2
     # 28 with 27 and 29 is a square equation in delta_crit/R*; the smaller root is the one below delta_max.
     rest = 0.5 * ratio**2 * (1.0 - least / sigma)

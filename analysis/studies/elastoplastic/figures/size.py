@@ -3,7 +3,7 @@
 import numpy as np
 
 from ....figures.style import NANO, styled
-from ....theory.andrews import Spheres, elastic_time, plastic_time
+from ....theory.andrews import Spheres, elastic_time, plastic_time, stress_if_rigid, young_if_elastic
 from ...definition import StudyFigure
 from .. import paper
 from ..velocity_fit import effective, reduced_radius
@@ -125,8 +125,8 @@ def time_figure(results, filling):
 
 def _draw_limits(axes, line, ratio, velocity, filling, results, unit, whose):
     density = filling.factor * results.grain_density
-    young = 5.0 * np.pi * density * velocity**2 / ratio**2.5
-    sigma = 16.0 / 3.0 * density * velocity**2 / ratio**2
+    young = young_if_elastic(ratio, velocity, density)
+    sigma = stress_if_rigid(ratio, velocity, density)
     style = "--" if whose == "A24's" else "-"
     for time, colour, name in ((elastic_time, ELASTIC, "elastic"), (plastic_time, RIGID, "rigid plastic")):
         slope = float(time(velocity, Spheres(1.0, density, sigma, young)))

@@ -1,4 +1,4 @@
-"""delta_max and tau_max against velocity, and the pairs of yield stress and E*: A24 Figs. 8, 9, 10."""
+"""delta_max and tau_max against velocity: A24 Figs. 8, 9."""
 
 import numpy as np
 
@@ -10,11 +10,13 @@ from ....theory.andrews import (
     largest_compression,
     plastic_compression,
     plastic_time,
+    stress_if_rigid,
     time_of_largest_compression,
+    young_if_elastic,
 )
 from ...definition import StudyFigure
 from .. import paper
-from ..velocity_fit import degenerate_curve, effective, reduced_radius
+from ..velocity_fit import effective, reduced_radius
 from .common import (
     ELASTIC,
     MEGA,
@@ -76,129 +78,36 @@ def velocity_figure(results, filling):
 
 def _draw_models(left, right, v, results, filling, radius, named):
     """Curves of both panels for one size; their labels only once."""
-    unit, density = results.grain_radius, filling.factor * results.grain_density
-    half = reduced_radius(radius * unit, filling.offset)
-    fit = filling.velocity_fit
-    curves = []
+    half = reduced_radius(radius * results.grain_radius, filling.offset)
+    for delta, tau, colour, style, label in _curves(v, results, filling, half):
+        left.plot(v, delta / results.grain_radius, style, color=colour, linewidth=1.4, label=label if named else None)
+        right.plot(v, tau * NANO, style, color=colour, linewidth=1.4)
+
+
+def _curves(v, results, filling, half):
+    """(delta_max [m], tau_max [s], colour, style, label) of each model at velocities v and R* = half [m]."""
+    density, fit = filling.factor * results.grain_density, filling.velocity_fit
     if fit.reason is None:
-        spheres = Spheres(half, density, *fit.values)
-        curves.append(
-            (
-                largest_compression(v, spheres),
-                time_of_largest_compression(v, spheres),
-                OURS,
-                "-",
-                f"fit: {fit.values[0] / MEGA:.3g}, {fit.values[1] / MEGA:.3g} MPa",
-            )
-        )
+        label = f"fit: {fit.values[0] / MEGA:.3g}, {fit.values[1] / MEGA:.3g} MPa"
+        yield *_motion(v, Spheres(half, density, *fit.values)), OURS, "-", label
     if filling.factor in paper.YOUNG:
         theirs = paper.YIELD_STRESS[filling.factor], paper.YOUNG[filling.factor]
-        spheres = Spheres(half, density, *theirs)
-        curves.append(
-            (
-                largest_compression(v, spheres),
-                time_of_largest_compression(v, spheres),
-                PAPER,
-                "--",
-                f"A24: {theirs[0] / MEGA:g}, {theirs[1] / MEGA:g} MPa",
-            )
-        )
+        label = f"A24: {theirs[0] / MEGA:g}, {theirs[1] / MEGA:g} MPa"
+        yield *_motion(v, Spheres(half, density, *theirs)), PAPER, "--", label
     ratio, anchor = filling.size_fit.ratio, filling.size_fit.velocity
     if ratio is None:
         ratio, anchor = paper.RATIO.get(filling.factor), paper.VELOCITY
     if ratio is not None:
-        young = 5.0 * np.pi * density * anchor**2 / ratio**2.5
-        sigma = 16.0 / 3.0 * density * anchor**2 / ratio**2
-        limit = Spheres(half, density, sigma, young)
-        curves.append((elastic_compression(v, limit), elastic_time(v, limit), ELASTIC, ":", "elastic"))
-        curves.append(
-            (
-                plastic_compression(v, limit),
-                np.broadcast_to(plastic_time(v, limit), v.shape),
-                RIGID,
-                "-.",
-                "rigid plastic",
-            )
+        limit = Spheres(
+            half, density, stress_if_rigid(ratio, anchor, density), young_if_elastic(ratio, anchor, density)
         )
-    for delta, tau, colour, style, label in curves:
-        left.plot(v, delta / unit, style, color=colour, linewidth=1.4, label=label if named else None)
-        right.plot(v, tau * NANO, style, color=colour, linewidth=1.4)
+        yield elastic_compression(v, limit), elastic_time(v, limit), ELASTIC, ":", "elastic"
+        rigid_time = np.broadcast_to(plastic_time(v, limit), v.shape)
+        yield plastic_compression(v, limit), rigid_time, RIGID, "-.", "rigid plastic"
 
 
-@styled
-def moduli_figure(results):
-    """Pairs (sigma_plastic, E*) that give the measured delta_max/R*, with its error, and the best fits: Fig.
-    10."""
-    fillings = list(results.by_filling.values())
-    figure, axes = panels(1, len(fillings), 5.4, 4.6)
-    for place, filling in zip(axes[0], fillings):
-        density = filling.factor * results.grain_density
-        size_fit, fit = filling.size_fit, filling.velocity_fit
-        if size_fit.ratio is not None:
-            ratio, error = size_fit.ratio, size_fit.errors["ratio"] or 0.0
-            _draw_curve(
-                place,
-                ratio,
-                size_fit.velocity,
-                density,
-                OURS,
-                "-",
-                f"$\\delta_{{max}}/R^*$ = {ratio:.4f} $\\pm$ {error:.4f}",
-            )
-            for other in (max(ratio - error, 0.5 * ratio), ratio + error):
-                _draw_curve(place, other, size_fit.velocity, density, "0.6", "-", None)
-        if filling.factor in paper.RATIO:
-            _draw_curve(
-                place,
-                paper.RATIO[filling.factor],
-                paper.VELOCITY,
-                density,
-                PAPER,
-                "--",
-                f"A24: {paper.RATIO[filling.factor]:g}",
-            )
-            place.plot(
-                paper.YIELD_STRESS[filling.factor] / MEGA,
-                paper.YOUNG[filling.factor] / MEGA,
-                "*",
-                markersize=15,
-                markerfacecolor="none",
-                color=PAPER,
-                label="A24's fit",
-                zorder=5,
-            )
-        if fit.reason is None and np.all(np.isfinite(fit.values)):
-            sigma, young = (value / MEGA for value in fit.values)
-            bars = [None if e is None else [e / MEGA] for e in fit.errors]
-            place.errorbar(
-                [sigma],
-                [young],
-                xerr=bars[0],
-                yerr=bars[1],
-                fmt="*",
-                markersize=13,
-                color="#c62828",
-                capsize=3,
-                label="fit to all velocities",
-                zorder=6,
-            )
-        place.set_xlabel("yield stress $\\sigma_{plastic}$  [MPa]")
-        place.set_ylabel("reduced Young's modulus $E^*$  [MPa]")
-        place.set_yscale("log")
-        place.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        place.set_xlim(0.0, None)
-        legend(place, loc="upper right")
-        place.set_title(filling_text(filling.factor), loc="right", fontsize=10, color="0.3")
-    return figure
-
-
-def _draw_curve(axes, ratio, velocity, density, colour, style, label):
-    sigma, young, elastic_from, elastic_young = degenerate_curve(ratio, velocity, density)
-    seen = young < 30.0 * elastic_young
-    axes.plot(sigma[seen] / MEGA, young[seen] / MEGA, style, color=colour, label=label, linewidth=1.6 if label else 0.8)
-    axes.plot(
-        [elastic_from / MEGA, 1.5 * elastic_from / MEGA], [elastic_young / MEGA] * 2, style, color=colour, linewidth=0.9
-    )
+def _motion(v, spheres):
+    return largest_compression(v, spheres), time_of_largest_compression(v, spheres)
 
 
 FIGURES = (
@@ -208,9 +117,4 @@ FIGURES = (
         of_main_filling(velocity_figure),
     ),
     StudyFigure("fig09_velocity", "A24 Fig. 9: the same at the other filling.", of_other_filling(velocity_figure)),
-    StudyFigure(
-        "fig10_moduli",
-        "A24 Fig. 10: pairs of yield stress and E* that give one largest compression.",
-        moduli_figure,
-    ),
 )
