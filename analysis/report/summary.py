@@ -5,7 +5,7 @@ import textwrap
 from ..measures.ledger import closure, final_values, fractions, initial_kinetic_energy
 from ..measures.of_run import maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
-from ..runs.format import CHANNELS, LABELS
+from ..runs.format import CHANNELS, COLLISION, LABELS
 
 _PARAMETERS = (
     ("packing", ""),
@@ -20,6 +20,16 @@ _PARAMETERS = (
     ("seed", ""),
 )
 
+# {key: attribute of measures.outcome.Outcome}
+OUTCOME = {
+    "restitution": "restitution",
+    "outcome": "kind",
+    "mass_fractions": "mass_fractions",
+    "largest_fragment": "largest_fragment",
+    "fragments": "fragments",
+    "growth_efficiency": "growth_efficiency",
+}
+
 
 def summarise(run):
     """Numbers of a RunFolder as a dict, SI units, None where a value does not exist:
@@ -28,12 +38,14 @@ def summarise(run):
     (False: d_max is only a bound, see compression.Maximum), restitution (None where there is none, see
     measures.outcome), outcome, mass_fractions, largest_fragment [grains], fragments, growth_efficiency (A22 eq 28),
     energy_closure (max |E(t) - E(0)|/K(0)), initial_kinetic_energy, and the final value of every channel [J] under
-    its name. RunFolderError when a state is missing or damaged."""
+    its name. What only collisions have is None for other kinds of run. RunFolderError when a state is missing or
+    damaged."""
     history = run.history
-    maximum = maximum_of_run(run)
+    collision = run.kind is COLLISION
+    maximum = maximum_of_run(run) if collision else None
     numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
     numbers.update(_compression(maximum))
-    numbers.update(_outcome(run))
+    numbers.update(_outcome(run) if collision else dict.fromkeys(OUTCOME))
     numbers["energy_closure"] = closure(history)
     numbers["initial_kinetic_energy"] = initial_kinetic_energy(history)
     numbers.update(final_values(history))
@@ -52,14 +64,8 @@ def _compression(maximum):
 
 def _outcome(run):
     outcome = outcome_of_run(run)
-    return {
-        "restitution": outcome.restitution,
-        "outcome": outcome.kind,
-        "mass_fractions": list(outcome.mass_fractions),
-        "largest_fragment": outcome.largest_fragment,
-        "fragments": outcome.fragments,
-        "growth_efficiency": outcome.growth_efficiency,
-    }
+    numbers = {name: getattr(outcome, attribute) for name, attribute in OUTCOME.items()}
+    return {**numbers, "mass_fractions": list(outcome.mass_fractions)}
 
 
 def table(run, numbers):
@@ -89,6 +95,15 @@ def _short(value):
 
 
 def _measures(run, numbers):
+    if run.kind is COLLISION:
+        yield from _collision_measures(run, numbers)
+    else:
+        yield "kind", f"a run of the kind {run.kind.name}"
+    closed = numbers["energy_closure"]
+    yield "energy closure", ("undefined: no kinetic energy at the start" if closed is None else f"{closed:.3g} of K(0)")
+
+
+def _collision_measures(run, numbers):
     yield "d_max", _d_max(numbers, run.derived["grainRadius"])
     yield "t_max", _t_max(numbers)
     f1, f2 = numbers["mass_fractions"]
@@ -99,8 +114,6 @@ def _measures(run, numbers):
     grains, fragments = run.start.radius.size, numbers["fragments"]
     yield "largest fragment", f"{numbers['largest_fragment']} grains of {grains}, {fragments} fragments"
     yield "growth efficiency", f"{numbers['growth_efficiency']:.4g}"
-    closed = numbers["energy_closure"]
-    yield "energy closure", ("undefined: no kinetic energy at the start" if closed is None else f"{closed:.3g} of K(0)")
 
 
 def _no_restitution(numbers):

@@ -4,6 +4,7 @@ Whatever is missing, damaged or foreign raises RunFolderError: one line that nam
 
 import zipfile
 import zlib
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -15,29 +16,42 @@ class RunFolderError(Exception):
     """A run folder that cannot be analysed; the message is one line: which file, and what is wrong."""
 
 
+def array_names(file):
+    """Names of the arrays of an .npz file; RunFolderError when it is missing or damaged."""
+    with _opened(file) as archive:
+        return list(archive.files)
+
+
 def read_arrays(file, names, optional=()):
     """The named arrays of an .npz file by name, read-only; those of `optional` where the file has them.
 
     RunFolderError when the file or an array is missing or damaged, or an array does not hold numbers."""
-    try:
-        archive = np.load(file, allow_pickle=False)
-        if isinstance(archive, np.ndarray):
-            raise RunFolderError(f"{file}: damaged, or not an .npz file: it holds a single array")
-        with archive:
-            absent = [name for name in names if name not in archive.files]
-            if absent:
-                raise RunFolderError(f"{file}: lacks the array " + ", ".join(f"'{name}'" for name in absent))
-            arrays = {name: archive[name] for name in (*names, *optional) if name in archive.files}
-    except FileNotFoundError:
-        raise RunFolderError(f"{file}: missing") from None
-    except (OSError, ValueError, EOFError, AttributeError, zipfile.BadZipFile, zlib.error) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise RunFolderError(f"{file}: damaged, or not an .npz file: {reason}") from None
+    with _opened(file) as archive:
+        absent = [name for name in names if name not in archive.files]
+        if absent:
+            raise RunFolderError(f"{file}: lacks the array " + ", ".join(f"'{name}'" for name in absent))
+        arrays = {name: archive[name] for name in (*names, *optional) if name in archive.files}
     for name, array in arrays.items():
         if array.dtype.kind not in "biuf":
             raise RunFolderError(f"{file}: '{name}' must hold numbers, it holds {array.dtype}")
         array.flags.writeable = False
     return arrays
+
+
+@contextmanager
+def _opened(file):
+    """The archive; whatever goes wrong while it is read is a RunFolderError."""
+    try:
+        archive = np.load(file, allow_pickle=False)
+        if isinstance(archive, np.ndarray):
+            raise RunFolderError(f"{file}: damaged, or not an .npz file: it holds a single array")
+        with archive:
+            yield archive
+    except FileNotFoundError:
+        raise RunFolderError(f"{file}: missing") from None
+    except (OSError, ValueError, EOFError, AttributeError, zipfile.BadZipFile, zlib.error) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise RunFolderError(f"{file}: damaged, or not an .npz file: {reason}") from None
 
 
 def read_quantities(file, quantities, file_format):

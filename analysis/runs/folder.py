@@ -13,7 +13,7 @@ from typing import Mapping
 
 import numpy as np
 
-from .arrays import RunFolderError, read_arrays, read_quantities
+from .arrays import RunFolderError, array_names, read_arrays, read_quantities
 from .format import (
     COLLISION,
     ENDED_FILE,
@@ -24,6 +24,7 @@ from .format import (
     RUN_KINDS,
     STATE,
     STATES_FOLDER,
+    Quantity,
     RunKind,
 )
 
@@ -118,14 +119,18 @@ def open_run(path):
     if not path.is_dir():
         raise RunFolderError(f"{path}: " + ("is not a folder" if path.exists() else "no such run folder"))
     record = _read_record(path / RUN_FILE)
-    kind, file_format = RUN_KINDS[record.get("kind", COLLISION.name)], record["format"]
+    file_format, history = record["format"], path / HISTORY_FILE
+    if not history.exists():
+        raise RunFolderError(f"{history}: missing: the run has recorded no history yet")
+    name = record.get("kind", COLLISION.name)
+    kind = RUN_KINDS[name] if name in RUN_KINDS else _kind_of_its_own(name, history)
     return RunFolder(
         path=path,
         kind=kind,
         parameters=MappingProxyType(record["parameters"]),
         derived=MappingProxyType(record["derived"]),
         record=MappingProxyType(record),
-        history=MappingProxyType(_read_history(path / HISTORY_FILE, kind, file_format)),
+        history=MappingProxyType(_read_history(history, kind, file_format)),
         states=StateSequence(_state_files(path / STATES_FOLDER), kind, file_format),
         ended=(path / ENDED_FILE).is_file(),
     )
@@ -142,8 +147,8 @@ def read_state(file, kind=COLLISION, file_format=READABLE[-1]):
             f"{file}: 'contact_pairs' names grain {pairs.max() if pairs.min() >= 0 else pairs.min()}, "
             f"there are grains 0 to {grains - 1}"
         )
-    if aggregate.min() < 0 or aggregate.max() >= kind.aggregates:
-        numbers = " or ".join(map(str, range(kind.aggregates)))
+    if aggregate.min() < 0 or (kind.aggregates and aggregate.max() >= kind.aggregates):
+        numbers = " or ".join(map(str, range(kind.aggregates))) if kind.aggregates else "0 or more"
         raise RunFolderError(f"{file}: 'aggregate' must be {numbers} for every grain")
     return State(**arrays)
 
@@ -157,8 +162,8 @@ def _read_record(file):
     if record["format"] not in READABLE:
         known = " and ".join(map(str, READABLE))
         raise RunFolderError(f"{file}: format is {record['format']!r}, this analysis reads formats {known}")
-    if record.get("kind", COLLISION.name) not in tuple(RUN_KINDS):
-        raise RunFolderError(f"{file}: kind is {record['kind']!r}: must be {' or '.join(RUN_KINDS)}")
+    if not isinstance(record.get("kind", ""), str):
+        raise RunFolderError(f"{file}: kind is {record['kind']!r}: must be a name, such as {COLLISION.name}")
     for key in ("parameters", "derived"):
         if not isinstance(record.get(key), dict):
             raise RunFolderError(f"{file}: '{key}' is missing or not an object")
@@ -167,6 +172,13 @@ def _read_record(file):
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
             raise RunFolderError(f"{file}: derived '{key}' must be a positive number, it is {value!r}")
     return record
+
+
+def _kind_of_its_own(name, history):
+    """RunKind of a script of a user's: its series are whatever the history holds beside what every run has."""
+    every = {quantity.name for quantity in RunKind(name, ()).history}
+    own = sorted(set(array_names(history)) - every)
+    return RunKind(name, tuple(Quantity(series, ("T",), "", "", gaps=True) for series in own))
 
 
 def _read_json(file):
@@ -181,8 +193,6 @@ def _read_json(file):
 
 
 def _read_history(file, kind, file_format):
-    if not file.exists():
-        raise RunFolderError(f"{file}: missing: the run has recorded no history yet")
     time = read_arrays(file, ("time",))["time"]
     if time.ndim != 1 or time.size == 0:
         raise RunFolderError(f"{file}: 'time' must be a non-empty one-dimensional array, its shape is {time.shape}")

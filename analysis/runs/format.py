@@ -83,12 +83,12 @@ class Quantity:
 @dataclass(frozen=True)
 class RunKind:
     """A kind of run, by the `kind` of run.json: what its history and its states hold beside what every run has, and how
-    many aggregates there are (their numbers are 0, 1, ...)."""
+    many aggregates there are (their numbers are 0, 1, ...; None: any number)."""
 
     name: str
     series: tuple
     state: tuple = ()
-    aggregates: int = 1
+    aggregates: int | None = None
 
     @property
     def history(self):
@@ -128,6 +128,8 @@ COLLISION = RunKind(
     aggregates=2,
 )
 
+# The kinds that come with the package. A script may have a kind of its own: the analysis then reads what every run has,
+# and its series as they are.
 RUN_KINDS = {kind.name: kind for kind in (COLLISION,)}
 
 # Derived constants of run.json that every analysis may divide by.

@@ -21,19 +21,6 @@ class Material:
     critical_rolling: float
     viscoelastic_time: float = 0.0
 
-    @classmethod
-    def from_derived(cls, derived):
-        """The material of a run folder's "derived" dict (young, poisson, density, surfaceEnergy, ...);
-        KeyError if absent."""
-        return cls(
-            derived["young"],
-            derived["poisson"],
-            derived["density"],
-            derived["surfaceEnergy"],
-            derived["criticalRolling"],
-            derived["viscoelasticTime"],
-        )
-
     @property
     def shear(self):
         """G = E/(2 (1 + nu)) [Pa]."""

@@ -1,0 +1,45 @@
+"""What aggregates are said to be like (A24 section 5), against the paper's numbers and other ways to them."""
+
+import numpy as np
+import pytest
+
+from analysis.studies.elastoplastic import paper
+from analysis.theory import ICE, aggregates, pair_constants
+
+R = 1e-7
+PAIR = pair_constants(ICE, R)
+OVERLAP, FORCE = PAIR.equilibrium_overlap, PAIR.pull_off_force
+
+
+def test_numbers_of_the_paper():
+    coordination = aggregates.cpe_coordination(0.4, R, OVERLAP)
+    modulus = aggregates.bulk_modulus(0.4, coordination, R, OVERLAP, FORCE)
+    assert modulus == pytest.approx(paper.BULK_MODULUS, rel=1e-3)  # eq 41
+    assert aggregates.poisson_ratio(paper.YOUNG[0.4], modulus) == pytest.approx(paper.POISSON_RATIO, abs=5e-4)  # eq 43
+    assert aggregates.bcca_coordination(0.0) == 2.0
+    for filling, stress in paper.YIELD_STRESS.items():  # Fig. 11: above the quasistatic strength
+        assert 3 < stress / aggregates.bcca_strength(filling) < 10
+
+
+def test_poissons_ratio_and_the_modulus_are_each_others_inverse():
+    poisson = np.linspace(-0.9, 0.49, 30)
+    young = aggregates.reduced_young(poisson, 70e6)
+    assert aggregates.poisson_ratio(young, 70e6) == pytest.approx(poisson, abs=1e-12)
+
+
+def test_the_densest_lattice_has_twelve_contacts():
+    densest = aggregates.fcc_filling(R, OVERLAP)
+    assert aggregates.fcc_filling(R, 0.0) == pytest.approx(np.pi / 18**0.5) and densest > np.pi / 18**0.5
+    assert aggregates.cpe_coordination(densest, R, OVERLAP) == pytest.approx(12.0)
+
+
+def test_bulk_modulus_is_that_of_springs_on_the_lattice():
+    """A uniform strain e of the densest lattice stretches each of its six contacts a grain by the distance times e:
+    9/2 K e^2 times the volume of a grain's cell is 6 k (e distance)^2/2."""
+    distance = 2 * R - OVERLAP
+    stiffness = aggregates.contact_stiffness(FORCE, OVERLAP)
+    cell = 4 / 3 * np.pi * R**3 / aggregates.fcc_filling(R, OVERLAP)
+    expected = 6 * 0.5 * stiffness * distance**2 / (4.5 * cell)
+    assert aggregates.bulk_modulus(aggregates.fcc_filling(R, OVERLAP), 12.0, R, OVERLAP, FORCE) == pytest.approx(
+        expected, rel=1e-12
+    )
