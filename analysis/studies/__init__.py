@@ -3,4 +3,4 @@
     NAME/study.py     STUDY, a definition.Study: which runs, what is measured of a run, results, sections of the report
     NAME/figures.py   (or a package figures/) FIGURES, tuples of definition.StudyFigure; may be left out
 
-`python3 -m analysis study NAME RUNS` does the rest: command.py."""
+`python3 -m analysis study NAME RUNS` does the rest: analyse.py."""

@@ -1,0 +1,93 @@
+"""From a study and paths to its results, report, table and figures."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from tqdm import tqdm
+
+from ..report.data import json_text
+from ..report.markdown import markdown
+from ..report.section import Report
+from ..runs.table import NoRunFolder, table_text
+from .definition import Study
+from .find import figures
+from .gather import Gathered, gather
+
+TABLE_FILE, PAGE_FILE, DATA_FILE = "runs.csv", "comparison.md", "comparison.json"
+
+
+class NothingToAnalyse(Exception):
+    """No run of the study's scene was found; `found` says what was."""
+
+    def __init__(self, study, found):
+        super().__init__(f"no run of {study.scene.name} to analyse")
+        self.found = found
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """A study's results of a set of runs: found (gather.Gathered), results (of study.results), report."""
+
+    study: Study
+    found: Gathered
+    results: Any
+    report: Report
+
+    def csv(self):
+        """The table of runs as a file (str)."""
+        head = {"study": self.study.name, "provenance": self.report.provenance, "notes": list(self.report.notes)}
+        return table_text(self.found.table, self.study.columns, head)
+
+    def write(self, folder):
+        """Write table, page, JSON and figures into a folder (Path, made if it is missing); the names of the figures that
+        could not be drawn because they need run folders."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / TABLE_FILE).write_text(self.csv(), encoding="utf-8")
+        (folder / DATA_FILE).write_text(json_text(self.report), encoding="utf-8")
+        drawn, undrawn = _draw(self.study, self.results, folder)
+        (folder / PAGE_FILE).write_text(markdown(self.report, drawn), encoding="utf-8")
+        return undrawn
+
+
+def analyse(study, paths):
+    """Analysis of a definition.Study from run folders, folders that hold them and tables of earlier analyses (paths).
+
+    NothingToAnalyse where no run of its scene is among them; what is wrong with others is in .found."""
+    found = gather(study, paths)
+    if found.table is None:
+        raise NothingToAnalyse(study, found)
+    results = study.results(found.table)
+    sections, remarks = tuple(study.sections(results)), tuple(study.remarks(results))
+    report = Report(study.name, study.title, found.provenance, remarks, tuple(_kept(found)), sections)
+    return Analysis(study, found, results, report)
+
+
+def _kept(found):
+    """What the files say of runs left out, without this machine's paths."""
+    yield from found.earlier
+    if found.notes:
+        yield f"{len(found.notes)} runs left out (not ended, of another scene, or with nothing to measure)"
+    if found.problems:
+        yield f"{len(found.problems)} runs not readable"
+
+
+def _draw(study, results, folder):
+    """([(file name, caption)] of the figures that are there, [name] of those that need run folders)."""
+    # matplotlib is slow to load, and the numbers do without it.
+    from ..figures.save import save_small
+
+    there, undrawn = [], []
+    for figure in tqdm(figures(study.name), "drawing", disable=None, leave=False):
+        file = folder / f"{figure.name}.png"
+        try:
+            drawn = figure.draw(results)
+            if drawn is None:
+                file.unlink(missing_ok=True)
+            else:
+                save_small(drawn, file)
+        except NoRunFolder:
+            # One of an earlier analysis stays.
+            undrawn.append(figure.name)
+        if file.exists():
+            there.append((file.name, figure.caption))
+    return there, undrawn
