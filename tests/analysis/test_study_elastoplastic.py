@@ -20,8 +20,9 @@ from analysis.measures.compression import first_compression
 from analysis.runs.format import CHANNELS
 from analysis.runs.table import read_table
 from analysis.statistics import wilson
+from analysis.studies.collision_points import at_end, at_maximum
 from analysis.studies.elastoplastic.comparison import LEGEND
-from analysis.studies.elastoplastic.measure import COLUMNS, at_end, at_maximum
+from analysis.studies.elastoplastic.measure import COLUMNS
 
 TOP = Path(__file__).resolve().parents[2]
 VELOCITIES = [10 ** (0.1 * i) for i in (1, 3, 5, 7)]

@@ -4,27 +4,16 @@ import numpy as np
 
 from ...measures.compression import compression_by_aggregate, compression_length, first_compression
 from ...measures.coordination import inner_coordination, mean_coordination
-from ...measures.ledger import closure, fractions_at, initial_kinetic_energy
-from ...measures.of_run import met, outcome_of_run
-from ...measures.outcome import STICKING, UNDECIDED, still_parting
+from ...measures.ledger import closure, initial_kinetic_energy
+from ...measures.of_run import met
 from ...runs.arrays import RunFolderError
-from ...runs.format import CHANNELS, HISTORY_FILE, LABELS
+from ...runs.format import HISTORY_FILE
 from ...runs.table import Column
+from ..collision_points import OUTCOME_COLUMNS, PARTITION_COLUMNS, energy_partition, outcome_values
 from ..definition import NotMeasured
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.
 SKIN = 2.0  # grain radii
-
-
-def at_maximum(channel):
-    """Name of the column of a channel's change from the start to t_max."""
-    return f"{channel}_at_maximum"
-
-
-def at_end(channel):
-    """Name of the column of a channel's change from the start to the end."""
-    return f"{channel}_at_end"
-
 
 COLUMNS = (
     Column("filling", "", "filling factor"),
@@ -41,18 +30,12 @@ COLUMNS = (
     Column("exceeded", "", "whether d grows beyond it later", kind="b"),
     Column("t_max", "s", "time of d_max"),
     Column("t_max_error", "s", "its error"),
-    Column("label_d_max", "m", "d_max with each aggregate's own grains in place of A24's x > 0 and x < 0"),
-    Column("outcome", "", f"as measures.outcome has it, or {UNDECIDED}: in one piece, but still parting", kind="O"),
-    Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
-    Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
+    Column("label_d_max", "m", "d_max with each aggregate's own grains in place of A24's x > 0 and x < 0", gaps=True),
+    *OUTCOME_COLUMNS,
     Column("coordination", "", "mean number of contacts of a grain at the start"),
     Column("inner_coordination", "", f"the same of the grains {SKIN:g} r below the surface", gaps=True),
     Column("closure", "", "largest error of the energy ledger over K(0)"),
-    *(
-        Column(name(c), "K(0)", f"{LABELS[c]}, change from the start to {when} (kinetic: what is left)", absent=0.0)
-        for name, when in ((at_maximum, "t_max"), (at_end, "the end"))
-        for c in CHANNELS
-    ),
+    *PARTITION_COLUMNS,
 )
 
 
@@ -65,10 +48,8 @@ def measure(run):
         raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
     if not initial_kinetic_energy(history) > 0:
         raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
-    outcome = outcome_of_run(run)
-    parts = {at_maximum: fractions_at(history, maximum.time), at_end: fractions_at(history, history["time"][-1])}
     scene = _scene(run)
-    start, r, velocity = run.start, scene["grain_radius"], scene["velocity"]
+    start, r = run.start, scene["grain_radius"]
     return {
         **scene,
         "offset": float(history["d"][0]) + 2.0 * r,
@@ -78,13 +59,11 @@ def measure(run):
         "t_max": maximum.time,
         "t_max_error": maximum.time_error,
         "label_d_max": maximum.length + _label_difference(run, maximum.time, scene["radius"]),
-        "outcome": UNDECIDED if outcome.kind == STICKING and still_parting(history["v"]) else outcome.kind,
-        "restitution": outcome.restitution,
-        "bulk": float(np.nan_to_num(history["v"][-1] / velocity) ** 2),
+        **outcome_values(run, scene["velocity"]),
         "coordination": mean_coordination(len(start.radius), start.contact_pairs),
         "inner_coordination": _inner_coordination(start, scene["radius"], r),
         "closure": closure(history),
-        **{name(c): values[c] for name, values in parts.items() for c in CHANNELS},
+        **energy_partition(history, maximum.time),
     }
 
 

@@ -8,9 +8,9 @@ import pandas
 
 from ...statistics import mean_and_error, percentile_error
 from ...theory.aggregates import bulk_modulus, cpe_coordination, poisson_ratio
+from ..collision_points import collision_point
 from . import paper
-from .bounce import bounces
-from .points import Points, points_of, resampled
+from .points import Points, parameter_sets, points_of, resampled
 from .size_fit import SizeFit, fit_sizes, size_velocity
 from .start_offset import common_slope, correct
 from .velocity_fit import VelocityFit, fit_velocities
@@ -59,7 +59,7 @@ class Filling:
 
 @dataclass(frozen=True)
 class Results:
-    """table (a row a run, measure.COLUMNS), by_filling ({filling: Filling}), bounces (list of bounce.Bounce),
+    """table (a row a run, measure.COLUMNS), by_filling ({filling: Filling}), bounces (CollisionPoint of each filling, radius [grain radii], velocity),
     grain_radius [m], grain_density [kg/m^3], overlap [m], pull_off_force [N]."""
 
     table: pandas.DataFrame
@@ -87,7 +87,16 @@ def make_results(table):
         for filling in sorted(fillings.unique(), reverse=True)
     }
     constants = {name: float(table[name].iloc[0]) for name in CONSTANTS}
-    return Results(table, by_filling, tuple(bounces(table)), **constants)
+    return Results(table, by_filling, tuple(_bounces(table)), **constants)
+
+
+def _bounces(table):
+    for _, runs in parameter_sets(table):
+        first = runs.iloc[0]
+        radius = float(first.radius / first.grain_radius)
+        yield collision_point(
+            {"filling": float(first.filling), "radius": radius, "velocity": float(first.velocity)}, runs
+        )
 
 
 def _filling(filling, table):
