@@ -140,8 +140,8 @@ demo: all
 	@$(PYTHON) -m analysis figures runs/demo
 
 # made again when the plugin or the scripts are newer
-runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py) yade_scripts/studies/demo.table
-	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:3 out=runs/demo overwrite=1
+runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yade_scripts/studies/demo.table
+	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:4 out=runs/demo overwrite=1
 
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider tests

@@ -1,1 +1,1 @@
-"""What a user runs with yade and yade-batch: short scripts, and the modules that they share."""
+"""Collisions of dust aggregates with YADE: scripts to run, and what they are made of."""

@@ -1,26 +1,28 @@
-"""Make aggregates, close-packed and extracted (cpe) or by ballistic cluster-cluster aggregation (bcca), and save them as .npz; needs no YADE.
+"""Make aggregates and save them as .npz; needs no YADE.
 
-    python3 yade_scripts/make_packing.py a.npz b.npz filling=0.4 radius=20 material=ice seed=3
+    python3 yade_scripts/make_packing.py a.npz b.npz filling=0.4 radius=20 seed=3
 
-The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py.
+The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py. Parameters that a packing
+doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
 """
 
 import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from yade_scripts import aggregates, packings
-from yade_scripts.arguments import from_arguments
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
-from yade_scripts.parameters import ParameterError, parse
+from yade_scripts import materials, packings
+from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run.arguments import from_arguments
 
-TAKEN = ("packing", "filling", "radius", "grains", "planar", "material", "seed")
+WITHOUT_EFFECT = ("density", "criticalRolling", "viscoelasticTime")
 
 
-def make_packing(file, values, index):
+def make_packing(file, parameters, index):
     """Make aggregate number index, save it, print one line about it."""
-    material = MATERIALS[values["material"]]
-    packing = aggregates.make(values, material.grainRadius, equilibrium_overlap(material), index)
+    constants = materials.pair_constants(parameters)
+    materials.require_small_contacts(constants)
+    packing = make(parameters, constants["equilibriumOverlap"], index)
     packings.save(file, packing)
     coordination = 2 * len(packings.contacts(packing)) / packing.grains
     print(f"{file}: {packing.grains} grains, mean coordination number {coordination:.3f}")
@@ -29,14 +31,15 @@ def make_packing(file, values, index):
 def main(arguments):
     files = [argument for argument in arguments if "=" not in argument]
     if "--help" in arguments or not 1 <= len(files) <= 2:
-        print(__doc__ + "\nparameters: " + ", ".join(TAKEN))
+        print(__doc__ + "\n" + AggregateParameters.help_text())
         return 0 if "--help" in arguments else 2
     texts = from_arguments(argument for argument in arguments if "=" in argument)
-    for name in texts:
-        if name not in TAKEN:
-            raise ParameterError(f'{name}: no parameter of a packing; allowed: {", ".join(TAKEN)}')
+    for name in WITHOUT_EFFECT:
+        if name in texts:
+            raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
+    parameters = AggregateParameters.parse(texts)
     for index, file in enumerate(files):
-        make_packing(file, parse(texts), index)
+        make_packing(file, parameters, index)
     return 0
 
 

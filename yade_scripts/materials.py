@@ -1,53 +1,97 @@
-"""The materials of the papers, in SI units, with their sources."""
+"""The materials of the papers, and the grains of a run: SI units, with sources."""
 
-from dataclasses import dataclass
-from math import pi
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+
+from yade_scripts.parameters import POSITIVE, Check, ParameterError, Parameters, between, one_of, parameter
 
 
 @dataclass(frozen=True)
 class Material:
-    """One row: what a grain is made of, and how large it is in the paper that the row is from."""
+    """What a grain is made of, and how large it is in the paper that the row is from."""
 
+    grainRadius: float  # m
     young: float  # Pa
     poisson: float  # 1
-    surfaceEnergy: float  # J/m^2
     density: float  # kg/m^3
+    surfaceEnergy: float  # J/m^2
     criticalRolling: float  # m
-    grainRadius: float  # m
-    source: str
 
 
 MATERIALS = {
+    # Arakawa et al. 2022, Table 1 (and Kataoka et al. 2013, Table 1)
     "ice": Material(
-        young=7e9,
-        poisson=0.25,
-        surfaceEnergy=0.1,
-        density=1000.0,
-        criticalRolling=0.8e-9,
-        grainRadius=0.1e-6,
-        source="Arakawa et al. 2022, Table 1 (and Kataoka et al. 2013, Table 1)",
+        grainRadius=0.1e-6, young=7e9, poisson=0.25, density=1000.0, surfaceEnergy=0.1, criticalRolling=0.8e-9
     ),
+    # Kataoka et al. 2013, Table 1
     "silicate": Material(
-        young=54e9,
-        poisson=0.17,
-        surfaceEnergy=0.02,
-        density=2650.0,
-        criticalRolling=2e-9,
-        grainRadius=0.6e-6,
-        source="Kataoka et al. 2013, Table 1",
+        grainRadius=0.6e-6, young=54e9, poisson=0.17, density=2650.0, surfaceEnergy=0.02, criticalRolling=2e-9
     ),
 }
 
 
-def equilibrium_overlap(material, radius=None):
-    """Overlap [m] at which the JKR force between two equal grains of this radius [m] vanishes.
+@dataclass(frozen=True)
+class GrainParameters(Parameters):
+    """The grains. Each property is that of `material` unless it is given."""
 
-    a0^2/(3R) with a0 = (9 pi gamma R^2/E*)^(1/3), R = radius/2, E* = E/[2(1-nu^2)] (A22 eq 1 and text below
-    eq 2). For packings made without YADE; a run takes the number from the plugin (a test holds the two
-    together).
+    material: str = parameter("ice", one_of(list(MATERIALS)), "whose properties the grains have")
+    grainRadius: float | None = parameter(None, POSITIVE, "radius of a grain", "m")
+    young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa")
+    poisson: float | None = parameter(None, between(0, 0.5), "Poisson's ratio", "1")
+    density: float | None = parameter(None, POSITIVE, "density", "kg/m^3")
+    surfaceEnergy: float | None = parameter(None, POSITIVE, "surface energy gamma", "J/m^2")
+    criticalRolling: float | None = parameter(None, POSITIVE, "critical rolling displacement xi_crit", "m")
+    viscoelasticTime: float = parameter(
+        0.0, Check(">= 0", lambda x: x >= 0), "T_vis of the viscous drag (A22 eq 7); 0: no drag", "s"
+    )
+
+    def filled_in(self):
+        """The material's properties where none are given."""
+        of_material = asdict(MATERIALS[self.material])
+        grains = self.changed(**{name: value for name, value in of_material.items() if getattr(self, name) is None})
+        if grains.viscoelasticTime and not grains.poisson:
+            raise ParameterError("poisson = 0: with viscous drag must be > 0 (A22 eq 7 divides by its square)")
+        return super(GrainParameters, grains).filled_in()
+
+
+def pair_constants(grains):
+    """{name: value} of a contact of two of these grains (SI), by the plugin's names, where no YADE runs.
+
+    grains: anything with the attributes of Material, and viscoelasticTime [s] if there is drag. A run takes the
+    constants from the plugin; a test holds the two together. Sources: analysis.theory.
     """
-    radius = material.grainRadius if radius is None else radius
-    reduced_radius = radius / 2
-    reduced_young = material.young / (2 * (1 - material.poisson**2))
-    contact_radius = (9 * pi * material.surfaceEnergy * reduced_radius**2 / reduced_young) ** (1 / 3)
-    return contact_radius**2 / (3 * reduced_radius)
+    names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
+    properties = [float(getattr(grains, name)) for name in names]
+    return dict(_pair_constants(*properties, getattr(grains, "viscoelasticTime", 0.0), grains.grainRadius))
+
+
+@lru_cache
+def _pair_constants(*properties_and_radius):
+    from analysis import theory  # takes a moment, and runs within YADE do without
+
+    *properties, radius = properties_and_radius
+    pair = theory.pair_constants(theory.Material(*properties), radius)
+    return {_camel_case(name): value for name, value in vars(pair).items()}
+
+
+def _camel_case(name):
+    first, *others = name.split("_")
+    return first + "".join(word.capitalize() for word in others)
+
+
+def equilibrium_overlap(grains):
+    """Overlap [m] at which the JKR force between two of these grains vanishes (A22 after eq 2)."""
+    return pair_constants(grains)["equilibriumOverlap"]
+
+
+def require_small_contacts(constants):
+    """Raise ParameterError when adhesion presses grains together so much that the JKR theory means nothing.
+
+    constants: of a contact, by the plugin's names.
+    """
+    radius, contact = 2 * constants["reducedRadius"], constants["equilibriumContactRadius"]
+    if contact >= 0.5 * radius:
+        raise ParameterError(
+            f"grainRadius = {radius:g}: contacts at rest have a radius of {contact / radius:.2g} grain radii; must be "
+            f"less than 0.5, with larger or stiffer grains or less surfaceEnergy"
+        )

@@ -3,37 +3,16 @@
     python3 yade_scripts/run_table.py yade_scripts/studies/seeds.table [options of yade-batch: -j 2, -l 4-7]
 
 Logs go to runs/logs/. Exit status: 0 when every row's run came to its planned end, otherwise 1, with one line
-on stderr for each row that did not.
+on stderr for each row that did not. study.py does more: it skips what has ended, resumes, and estimates the time.
 """
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(HERE))
-from yade_scripts.run_folder import read_closing_line
-
-LOGS = os.path.join("runs", "logs")
-
-
-def batch_command(table, log, options=()):
-    """yade-batch's command line; log: a path in which % stands for a row's line and @ for its description."""
-    return [
-        "yade-batch",
-        "--disable-pynotify",
-        "--plot-update",
-        "0",
-        "--executable",
-        shutil.which("yade") or "yade",
-        "--log",
-        log,
-        *options,
-        table,
-        os.path.join(HERE, "collide.py"),
-    ]
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from yade_scripts.runner.batch_command import LOGS, batch_command, failure
 
 
 def run_batch(table, options):
@@ -53,23 +32,6 @@ def log_files(output):
     """The logs of all jobs, from what yade-batch printed (a job that failed to start has one too)."""
     found = re.search(r"^Log files: (.*)$", output, re.MULTILINE)
     return found.group(1).split(" ") if found and found.group(1) else []
-
-
-def failure(log_file):
-    """One line that says what went wrong with the run of a log, or None when it came to its planned end."""
-    try:
-        with open(log_file, errors="replace") as file:
-            log = file.read()
-    except OSError as error:
-        return f"{log_file}: {error.strerror}"
-    closing = read_closing_line(log)
-    if closing is None:
-        message = re.findall(r"^collide\.py: .*$", log, re.MULTILINE)
-        return f'{log_file}: {message[-1] if message else "the script did not come to its end"}'
-    folder, outcome = closing
-    if outcome != "completed" or not os.path.exists(os.path.join(folder, "ended")):
-        return f"{log_file}: {folder}: {outcome}"
-    return None
 
 
 def main(arguments):

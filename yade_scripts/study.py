@@ -1,11 +1,11 @@
-"""Run a table of collisions to its end, however often it is stopped in between.
+"""Run a table to its end, however often it is stopped in between.
 
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, by yade-batch, JOBS threads at once
     python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell
 
 Rows whose run folder has ended are skipped, provided that its parameters are the row's; runs that were killed
-go on from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
-ended, or from a piece of a collision that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
+resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
+ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
 a checkpoint. Logs, and the table of the rows that were left, are in runs/logs/NAME of the table.
 
 Exit status: 0 when every row has ended, 1 when a row failed (one line on stderr for each; the others have run),
@@ -18,15 +18,13 @@ import signal
 import sys
 import time
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(HERE))
-from yade_scripts import study_rows, study_view
-from yade_scripts.progress import duration_text
-from yade_scripts.stop_signals import StopSignals
-from yade_scripts.study_batch import Batch, StudyBusy, StudyFolder
-from yade_scripts.study_rows import DONE, FAILED, RUNNING
-from yade_scripts.study_screen import Screen
-from yade_scripts.table import TableError
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from yade_scripts.run.stop_signals import StopSignals
+from yade_scripts.run.table import TableError
+from yade_scripts.runner import rows, view
+from yade_scripts.runner.batch import Batch, StudyBusy, StudyFolder
+from yade_scripts.runner.rows import DONE, FAILED, RUNNING
+from yade_scripts.runner.screen import Screen
 
 POLL = 1.0  # s
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -46,7 +44,7 @@ def parse_arguments(arguments):
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
     options = parser.parse_args(arguments)
     if options.jobs < 1:
-        parser.error(f"-j = {options.jobs}: not allowed; allowed: 1 or more")
+        parser.error(f"-j = {options.jobs}: must be 1 or more")
     return options
 
 
@@ -55,23 +53,23 @@ class Study:
 
     def __init__(self, table, jobs):
         self.name = os.path.splitext(os.path.basename(table))[0]
-        self.rows, self.jobs = study_rows.read(table), jobs
+        self.rows, self.jobs = rows.read(table), jobs
         self.folder = StudyFolder(self.name)
         self.since = 0.0
-        self._kept = {}  # states that can't change any more
+        self._final = {}  # states that can't change any more
 
     def states(self):
         found = []
         for row in self.rows:
-            state = self._kept.get(row.name) or study_rows.state(row, self.folder.log(row), self.since)
+            state = self._final.get(row.name) or rows.state(row, self.folder.log(row), self.since)
             if state.kind == DONE:
-                self._kept[row.name] = state
+                self._final[row.name] = state
             found.append(state)
         return found
 
-    def text(self, view):
+    def text(self, drawn_as):
         states = self.states()
-        return view(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
+        return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
 
     def announce(self):
         """Print how much there is to do, and the estimate; measures a piece of a run unless runs have ended."""
@@ -81,9 +79,9 @@ class Study:
             return
         self.folder.measure(left[0], self.rows, states, self.jobs)
         cost = self.folder.cost(self.rows, states)
-        seconds = study_view.total_left(states, cost, self.rows, self.jobs)
+        seconds = view.total_left(states, cost, self.rows, self.jobs)
         again = sum(state.progress > 0 for state in states if state.kind not in (DONE, FAILED))
-        estimate = "unknown" if seconds is None else duration_text(seconds)
+        estimate = "unknown" if seconds is None else view.duration_text(seconds)
         print(
             f'{self.name}: {len(self.rows)} rows, {len(self.rows) - len(left)} done or failed, {len(left)} to run'
             f'{f", {again} of them from checkpoints" if again else ""}; estimated time {estimate} with '
@@ -105,7 +103,7 @@ def run(study, stop):
         if left:
             tried |= {row.name for row in left}
             _run_batch(study, left, screen, stop)
-        elif any(state.kind == RUNNING for state in states):  # by somebody else
+        elif any(state.kind == RUNNING for state in states):  # by another process
             _wait(study, screen, stop)
         else:
             break
@@ -124,7 +122,7 @@ def _run_batch(study, left, screen, stop):
 
 def _wait(study, screen, stop):
     if screen.shown:
-        screen.draw(study.text(study_view.live_table))
+        screen.draw(study.text(view.live_table))
     until = time.monotonic() + POLL
     while time.monotonic() < until and not stop.received:
         time.sleep(0.1)
@@ -158,7 +156,7 @@ def main(arguments):
     try:
         study = Study(options.table, options.jobs)
         if options.status:
-            print(study.text(study_view.full_table))
+            print(study.text(view.full_table))
             return 0
         study.folder.lock()
     except (TableError, StudyBusy, OSError) as error:

@@ -23,7 +23,8 @@ import settings  # noqa: E402
 import speed  # noqa: E402
 import whole_collision  # noqa: E402
 
-from yade_scripts.progress import Progress, duration_text  # noqa: E402
+from yade_scripts.run.progress import progress_bar  # noqa: E402
+from yade_scripts.runner.view import duration_text  # noqa: E402
 
 PARTS = {"speed": speed, "collision": whole_collision, "error": errors}
 
@@ -40,7 +41,7 @@ def arguments():
     given = parser.parse_args()
     given.only = given.only.split(",")
     if unknown := [name for name in given.only if name not in PARTS]:
-        parser.error(f"--only: no part {unknown[0]}; allowed: {', '.join(PARTS)}")
+        parser.error(f"--only: no part {unknown[0]}; must be of {', '.join(PARTS)}")
     given.out = given.out or (TOP / "build/bench" if given.size else RESULTS)
     return given
 
@@ -49,11 +50,12 @@ class Done:
     """Adds up the estimated seconds of what is done, for the progress bar."""
 
     def __init__(self, total):
-        self.progress, self.total, self.seconds = Progress(total), total, 0.0
+        self.progress, self.total, self.seconds = progress_bar(total, unit="s"), total, 0.0
 
     def __call__(self, seconds):
-        self.seconds = min(self.total, self.seconds + seconds)
-        self.progress.update(self.seconds)
+        new = min(self.total, self.seconds + seconds) - self.seconds
+        self.seconds += new
+        self.progress.update(new)
 
 
 def main():

@@ -1,6 +1,6 @@
-"""The ledger's error against step, velocity, size, filling, drag and material, and the constants of yade_scripts/step_choice.py from it.
+"""The ledger's error against step, velocity, size, filling, drag and material, and the constants of yade_scripts/stability.py from it.
 
-    python3 tests/benchmarks/step_choice.py          measure (half an hour on one core; goes on where it was stopped), fit, write results
+    python3 tests/benchmarks/step_choice.py          measure (half an hour on one core; resumes where it was stopped), fit, write results
     python3 tests/benchmarks/step_choice.py --fit    fit and write from the results that are there
     python3 tests/benchmarks/step_choice.py --fit --runs runs/elastoplastic    with the ended runs of a study, which are larger
 
@@ -27,8 +27,9 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 from analysis import open_run  # noqa: E402
 from analysis.measures.ledger import closure  # noqa: E402
-from yade_scripts import parameters, step_choice, study_cost  # noqa: E402
-from yade_scripts.materials import MATERIALS  # noqa: E402
+from yade_scripts import stability  # noqa: E402
+from yade_scripts.experiments.collision import CollisionParameters  # noqa: E402
+from yade_scripts.materials import pair_constants  # noqa: E402
 
 CSV, LEVEL = RESULTS / "step_choice.csv", 0.95
 FITTED_LEVEL = 0.98  # its constants are taken: the fit's own 95 % level holds for less among scenes unlike the grid's
@@ -103,12 +104,13 @@ def random_scenes(number=120, seed=20):
     return scenes
 
 
-def constants(s):
-    return study_cost.pair_constants(MATERIALS[s["material"]], s["viscoelasticTime"])
+def parameters_of(s):
+    return CollisionParameters.parse({name: value for name, value in s.items() if name not in ("set", "error")})
 
 
 def limit(s):
-    return parameters.step_limit(constants(s), s["filling"])
+    grains = CollisionParameters.parse({name: s[name] for name in ("material", "viscoelasticTime")})
+    return stability.step_limit(pair_constants(grains), s["filling"])
 
 
 def key(s):
@@ -195,17 +197,17 @@ def terms(scenes):
     """(x = K(0)/e, kappa = K(0)/(N e), s, error) of the scenes, each an array."""
     numbers = []
     for s in scenes:
-        values = parameters.parse({name: value for name, value in s.items() if name not in ("set", "error")})
-        numbers.append((*step_choice.energies(values, constants(s)), s["stepFraction"], s["error"]))
+        given = parameters_of(s)
+        numbers.append((*stability.energies(given, pair_constants(given)), s["stepFraction"], s["error"]))
     return np.array(numbers).T
 
 
 def fit(scenes, level=FITTED_LEVEL):
-    """(EVENTS, DECAY, SPEED) of step_choice.py: quantile regression of the logarithm of the error at a level."""
+    """(EVENTS, DECAY, SPEED) of stability.py: quantile regression of the logarithm of the error at a level."""
     kinetic, of_grain, step, error = terms(scenes)
 
     def loss(logs):
-        over = np.log(error / (step**2 * sum(step_choice.coefficients(kinetic, of_grain, *np.exp(logs)))))
+        over = np.log(error / (step**2 * sum(stability.ledger_errors(kinetic, of_grain, *np.exp(logs)))))
         return np.mean(np.where(over > 0, level * over, (level - 1) * over))
 
     starts = product((-3.5, -2.5), (-1.2, -0.7), (-6.0, -4.0))
@@ -217,9 +219,9 @@ def fit(scenes, level=FITTED_LEVEL):
 
 
 def ratios(scenes):
-    """Error over what step_choice.py has for the 95 % level."""
+    """Error over what stability.py has for the 95 % level."""
     kinetic, of_grain, step, error = terms(scenes)
-    return error / (step**2 * sum(step_choice.coefficients(kinetic, of_grain)))
+    return error / (step**2 * sum(stability.ledger_errors(kinetic, of_grain)))
 
 
 SETS = ("grid", "study", "random")
@@ -252,9 +254,9 @@ def report(measured):
         + ", ".join(f"{sum(s['set'] == name for s in met)} {name}" for name in SETS)
         + ". Measured on: "
         + "; ".join(f"{name}: {text}" for name, text in origins().items() if name != "columns")
-        + ". Data: step_choice.csv; formula: yade_scripts/step_choice.py.",
+        + ". Data: step_choice.csv; formula: yade_scripts/stability.py.",
         "",
-        "Fit to all but the random ones at a level (share of runs below):",
+        "Fit to all but the random ones at a level (fraction of runs below):",
         "",
         "| level | EVENTS | DECAY | SPEED |",
         "|---:|---:|---:|---:|",
@@ -266,9 +268,9 @@ def report(measured):
     ]
     lines += [
         "",
-        f"Error over the formula, with the constants as they stand in step_choice.py ({step_choice.EVENTS:g}, {step_choice.DECAY:g}, {step_choice.SPEED:g}: those of the {FITTED_LEVEL:.0%} level):",
+        f"Error over the formula, with the constants as they stand in stability.py ({stability.EVENTS:g}, {stability.DECAY:g}, {stability.SPEED:g}: those of the {FITTED_LEVEL:.0%} level):",
         "",
-        "| scenes | number | share below | median | 95 % | largest |",
+        "| scenes | number | fraction below | median | 95 % | largest |",
         "|---|---:|---:|---:|---:|---:|",
     ]
     for name, belongs in GROUPS.items():
@@ -290,7 +292,7 @@ def draw(measured):
             continue
         kinetic, of_grain, step, error = terms(chosen)
         points = axis.scatter(
-            step**2 * sum(step_choice.coefficients(kinetic, of_grain)),
+            step**2 * sum(stability.ledger_errors(kinetic, of_grain)),
             error,
             c=np.log10(of_grain),
             s=14,

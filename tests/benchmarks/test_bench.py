@@ -69,7 +69,7 @@ def test_measures_everything_and_says_what_it_goes_without(tiny):
 
 def test_half_a_time_unit_is_shown_as_refused(tiny):
     found = json.loads((tiny[1] / "bench.json").read_text())["error"]
-    assert "allowed: > 0 and <= 0.4" in found["collision"]["0.5"][0]["refused"]
+    assert "must be > 0 and <= 0.4" in found["collision"]["0.5"][0]["refused"]
     assert found["pair"]["0.5"].startswith("JKRWadaEngine: the small step")
     assert len(found["pair"]["0.4"]) == TINY.gaps
 
@@ -161,4 +161,4 @@ def test_the_fitted_order():
 
 def test_an_unknown_part_is_refused():
     done = bench("--only", "sped")
-    assert done.returncode == 2 and "no part sped; allowed: speed, collision, error" in done.stderr
+    assert done.returncode == 2 and "no part sped; must be of speed, collision, error" in done.stderr

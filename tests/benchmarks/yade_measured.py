@@ -20,7 +20,7 @@ from yade.wrapper import *  # noqa: E402,F403
 
 import contact_law  # noqa: E402,F401
 from analysis.measures.fragments import fragment_labels, fragment_sizes  # noqa: E402
-from yade_scripts.scene import VERLET_DISTANCE, functor_engines  # noqa: E402
+from yade_scripts.run.scene import VERLET_DISTANCE, functor_engines  # noqa: E402
 
 SUB_STEPS = 50
 LAW, KIND, RADIUS, SPEED = sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4])

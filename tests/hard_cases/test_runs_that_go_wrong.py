@@ -146,7 +146,7 @@ def test_a_collision_that_fails_keeps_its_last_good_state(yade, tmp_path, engine
     found = yade(
         """
 import os, runpy
-from yade_scripts import parameters as checks
+from yade_scripts import stability as checks
 checks.step_limit = lambda constants, filling: 1.0
 top = os.path.dirname(os.path.dirname(checks.__file__))
 sys.argv = [os.path.join(top, "yade_scripts/collide.py"), "radius=4", "velocity=30", "duration=15e-9", "stepFraction=0.12", "viscoelasticTime=30e-12",

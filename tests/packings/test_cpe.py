@@ -98,7 +98,7 @@ def test_contacts_are_the_touching_pairs():
 def test_packings_apart_and_overlapping():
     first, second = ice(seed=1, relative_radius=8), ice(seed=1, index=1, relative_radius=8)
     packings.require_apart(first, packings.moved(second, (18 * RADIUS, 0, 0)))
-    with pytest.raises(packings.PackingError, match="overlap: [0-9]+ pairs of grains, by .* allowed: none"):
+    with pytest.raises(packings.PackingError, match="overlap: [0-9]+ pairs of grains, by .* must be none"):
         packings.require_apart(first, packings.moved(second, (12 * RADIUS, 0, 0)))
 
 
@@ -109,7 +109,7 @@ def test_filling_above_what_the_lattice_holds_names_the_maximum():
 
 
 def test_filling_above_what_this_sphere_holds_says_how_many_sites_it_has():
-    """Below the lattice's maximum, but a small sphere may hold fewer sites than its volume's share."""
+    """Below the lattice's maximum, but a small sphere may hold fewer sites than its volume has."""
     short = []
     for seed in range(20):
         try:

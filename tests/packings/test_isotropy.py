@@ -5,6 +5,7 @@ from scipy.stats import kstest, norm
 
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.packings import lattice
 
 RADIUS = MATERIALS["ice"].grainRadius
 OVERLAP = equilibrium_overlap(MATERIALS["ice"])
@@ -18,7 +19,7 @@ def test_orientation_is_uniform():
 
     A direction is uniform on the sphere when each component is uniform in [-1, 1] (Archimedes). The first is
     that of a contact; the second, perpendicular, lies at a uniform angle around the first when all rotations
-    are alike.
+    are equally likely.
     """
     frames = np.array([_frame(seed) for seed in range(2000)])
     p_values = [kstest(component, "uniform", args=(-1, 2)).pvalue for component in frames.reshape(-1, 6).T]
@@ -45,7 +46,7 @@ def _angle_around(axis, direction):
     return np.arctan2(direction @ np.cross(axis, east), direction @ east)
 
 
-def test_cubic_axes_point_everywhere_alike():
+def test_cubic_axes_point_everywhere_equally():
     """x^4 + y^4 + z^4 of a fixed direction in the lattice's own frame is 3/5 on average, with variance
     16/525.
 
@@ -75,7 +76,7 @@ def test_centre_is_uniform_in_the_unit_cell():
     """The lattice's primitive coordinates of a site, modulo one, are uniform."""
     primitive = SPACING / np.sqrt(2) * np.array([[0, 1, 1], [1, 0, 1], [1, 1, 0]])
     site = np.array(
-        [packings._lattice_in_sphere(SPACING, 3 * RADIUS, packings.random_stream(seed, 0))[0] for seed in range(1000)]
+        [lattice._lattice_in_sphere(SPACING, 3 * RADIUS, packings.random_stream(seed, 0))[0] for seed in range(1000)]
     )
     phase = np.linalg.solve(primitive.T, site.T) % 1
     p_values = [kstest(component, "uniform").pvalue for component in phase]

@@ -55,9 +55,11 @@ def test_command_line(tmp_path):
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        (["a.npz", "filling=0.8"], "allowed: at most 0.7519"),
-        (["a.npz", "radius=-3"], "radius = -3: not allowed; allowed: > 0"),
-        (["a.npz", "velocity=3"], "velocity: no parameter of a packing"),
+        (["a.npz", "filling=0.8"], "must be at most 0.7519"),
+        (["a.npz", "radius=-3"], "radius = -3: must be > 0 [grain radii]"),
+        (["a.npz", "velocity=3"], "velocity: unknown parameter; must be one of packing, filling"),
+        (["a.npz", "density=900"], "density: a packing doesn't depend on it; must be left out"),
+        (["a.npz", "surfaceEnergy=1e4"], "grainRadius = 1e-07: contacts at rest have a radius of "),
         (["nowhere/a.npz"], "nowhere"),
     ],
 )

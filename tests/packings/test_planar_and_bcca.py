@@ -6,9 +6,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from yade_scripts import aggregates, packings
-from yade_scripts.bcca import bcca, extent
+from yade_scripts import packings
+from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.packings import bcca, extent
 
 RADIUS = MATERIALS["ice"].grainRadius
 OVERLAP = equilibrium_overlap(MATERIALS["ice"])
@@ -36,13 +37,13 @@ def test_planar_cpe_is_a_hexagonal_lattice_in_a_circle(filling, relative_radius,
 def test_planar_filling_has_the_limit_of_the_lattice():
     assert packings.maximum_filling(1.0, 0.0, True) == pytest.approx(np.pi / (2 * np.sqrt(3)))
     with pytest.raises(
-        packings.PackingError, match="filling = 0.95: more than the lattice holds; allowed: at most 0.916"
+        packings.PackingError, match="filling = 0.95: more than the lattice holds; must be at most 0.916"
     ):
         packings.cpe(0.95, 20 * RADIUS, RADIUS, OVERLAP, 1, planar=True)
 
 
 def test_mean_coordination_of_planar_packings():
-    """Six neighbours times the share of sites that is filled, on average over seeds; 4 standard errors, and the rim (some 4 per cent at R = 60)."""
+    """Six neighbours times the fraction of sites that is filled, on average over seeds; 4 standard errors, and the rim (some 4 per cent at R = 60)."""
     filling = 0.5
     found = [
         2 * len(packings.contacts(p)) / p.grains
@@ -86,8 +87,12 @@ def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, di
     assert abs(slope - 1 / dimension) < 4 * error + 0.15 / dimension**2, (1 / slope, error)
 
 
-def test_radius_of_a_bcca_run_holds_both_aggregates():
-    values = dict(packing="bcca", grains=100, seed=4, planar=1)
-    radius = aggregates.bcca_radius(100, OVERLAP / RADIUS, 4, 1)
-    reach = [extent(aggregates.make(values, RADIUS, OVERLAP, index)) / RADIUS for index in (0, 1)]
-    assert max(reach) == pytest.approx(radius, rel=1e-9)
+@pytest.mark.parametrize("planar", [0, 1])
+def test_radius_of_a_bcca_run_holds_both_aggregates(planar):
+    given = CollisionParameters.parse(dict(packing="bcca", grains=100, seed=4, planar=planar))
+    assert given.radius is None and given.filling is None
+    placed, pair, _ = place(given, OVERLAP)
+    reach = [np.linalg.norm(p.position - p.position.mean(axis=0), axis=1).max() / RADIUS for p in pair]
+    assert max(reach) == pytest.approx(placed.radius, rel=1e-9) and min(reach) < 0.999 * placed.radius
+    assert placed.filling == pytest.approx(100 / placed.radius ** (2 if planar else 3), rel=1e-12)
+    assert extent(bcca(100, RADIUS, OVERLAP, 4, planar=bool(planar))) <= placed.radius * RADIUS * (1 + 1e-12)

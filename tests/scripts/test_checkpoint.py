@@ -1,4 +1,4 @@
-"""A run that was killed or stopped goes on from its checkpoint as if nothing had happened."""
+"""A run that was killed or stopped resumes from its checkpoint as if nothing had happened."""
 
 import os
 import shutil
@@ -67,7 +67,7 @@ def killed(tmp_path_factory):
     return folder
 
 
-def test_a_killed_run_goes_on_to_the_same_bits(straight, killed, tmp_path):
+def test_a_killed_run_resumes_to_the_same_bits(straight, killed, tmp_path):
     run = shutil.copytree(killed / "run", tmp_path / "run")
     saved = read_arrays(run, "checkpoint", "recorder.npz")["rows"]
     assert 1 < len(saved) < len(straight["history.npz"]["time"])
@@ -79,7 +79,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(straight, killed, tmp_path):
     assert read_json(run, "run.json")["outcome"] == "completed"
 
 
-def test_what_a_killed_writer_left_goes(killed, tmp_path):
+def test_what_a_killed_writer_left_is_removed(killed, tmp_path):
     run = shutil.copytree(killed / "run", tmp_path / "run")
     left = [run / ".history.npz.x.unfinished", run / "states" / ".000003.npz.x.unfinished"]
     for path in left:
@@ -89,8 +89,8 @@ def test_what_a_killed_writer_left_goes(killed, tmp_path):
     assert not any(path.exists() for path in left)
 
 
-def test_a_stopped_run_goes_on_to_the_same_bits(straight, tmp_path):
-    """SIGTERM records one state more, where it stopped; that one goes when the run goes on."""
+def test_a_stopped_run_resumes_to_the_same_bits(straight, tmp_path):
+    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes."""
     assert stop_midway(tmp_path, [*RUN, OFTEN, "out=run"], signal.SIGTERM).returncode == 143
     before = read_json(tmp_path, "run", "run.json")
     assert before["outcome"] == "interrupted"
@@ -105,8 +105,7 @@ def test_a_checkpoint_of_other_parameters_is_refused(killed):
     refused = collide(killed, *RUN, "out=run", "resume=1", "seed=2")
     assert refused.returncode == 2
     assert messages(refused) == [
-        "collide.py: run/checkpoint: of a run with seed = 1, not 2; allowed: the same, "
-        "or take that folder away to start the run again"
+        "collide.py: run/checkpoint: of a run with seed = 1, not 2; must be the same, or removed to start the run again"
     ]
     assert sorted(os.listdir(killed / "run")) == before
 
@@ -118,8 +117,13 @@ def test_a_checkpoint_of_other_parameters_is_refused(killed):
         (lambda about: about.replace('"yade": "', '"yade": "1'), "written by YADE 1"),
         (lambda about: about.replace("scene-", "nothing-"), "not a checkpoint ([Errno 2]"),
         (lambda about: about[:20], "not a checkpoint ("),
+        (lambda about: about.replace('"drag", ', ""), "of a history with other columns"),
+        (
+            lambda about: about.replace('"kind": "collision"', '"kind": "toy"'),
+            "of a run with kind = toy, not collision",
+        ),
     ],
-    ids=["commit", "yade", "no scene", "cut off"],
+    ids=["commit", "yade", "no scene", "cut off", "columns", "kind"],
 )
 def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, damage, message):
     shutil.copytree(killed / "run", tmp_path / "run")
@@ -129,7 +133,7 @@ def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, damag
     refused = collide(tmp_path, *RUN, "out=run", "resume=1")
     assert refused.returncode == 2
     lines = messages(refused)
-    assert len(lines) == 1 and lines[0].startswith(f"collide.py: run/checkpoint: {message}") and "allowed: " in lines[0]
+    assert len(lines) == 1 and lines[0].startswith(f"collide.py: run/checkpoint: {message}") and "must be " in lines[0]
 
 
 def test_resume_without_a_checkpoint_starts_from_the_beginning(straight, tmp_path):
@@ -144,7 +148,7 @@ def test_without_resume_a_checkpoint_is_thrown_away(straight, killed, tmp_path):
     assert not (tmp_path / "run" / "checkpoint").exists()
 
 
-def test_yades_own_loop_goes_on_to_rounding(tmp_path):
+def test_yades_own_loop_resumes_to_rounding(tmp_path):
     """Forces may be added in another order after loading; early in a run that is all the difference."""
     arguments = ("radius=5", "velocity=30", "duration=12e-9", "engine=functors")
     assert collide(tmp_path, *arguments, "out=straight").returncode == 0

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from running import COLLIDE, TINY, collide, environment, messages, read_arrays, read_json
 
+from analysis.runs.format import CHANNELS, COLLISION
+from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
-from yade_scripts.parameters import FIELDS
-from yade_scripts.run_folder import CHANNELS, SERIES
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +32,7 @@ def test_run_folder_is_complete(run):
     about = read_json(run, "run.json")
     assert set(about) == {
         "format",
+        "kind",
         "parameters",
         "derived",
         "versions",
@@ -41,7 +42,8 @@ def test_run_folder_is_complete(run):
         "wallTime",
         "outcome",
     }
-    assert list(about["parameters"]) == [field.name for field in FIELDS]
+    assert (about["format"], about["kind"]) == (2, "collision")
+    assert list(about["parameters"]) == list(CollisionParameters.columns())
     assert [name for name, value in about["parameters"].items() if value is None] == ["tolerance"]
     assert about["derived"]["stepChoice"] == "as given"
     assert set(about["derived"]) == {
@@ -63,6 +65,7 @@ def test_run_folder_is_complete(run):
         "steps",
         "aggregateRadius",
         "grainsPerAggregate",
+        "firstTouch",
     }
     assert set(about["versions"]) == {"yade", "python", "numpy", "contact_law"}
     assert about["outcome"] == "completed" and about["wallTime"] > 0 and about["seed"] == 1
@@ -70,14 +73,19 @@ def test_run_folder_is_complete(run):
 
 def test_history_has_every_series(run):
     about, history = read_json(run, "run.json"), read_arrays(run, "history.npz")
-    assert set(history) == set(SERIES) and len({series.shape for series in history.values()}) == 1
+    assert (
+        list(history) == [series.name for series in COLLISION.history]
+        and len({series.shape for series in history.values()}) == 1
+    )
     spacing = np.diff(history["time"])
     assert history["time"][0] == 0 and np.ptp(spacing) < 1e-9 * spacing[0]
     assert len(spacing) >= 300
     end = about["derived"]["steps"] * about["derived"]["timeStep"]
     assert history["time"][-1] == pytest.approx(end, rel=1e-9)
     assert about["parameters"]["duration"] <= end < 1.01 * about["parameters"]["duration"]
-    assert history["contacts_between"][0] == 0 and history["contacts_between"][-1] > 0
+    touch = history["time"][np.argmax(history["contacts_between"] > 0)]
+    assert history["contacts_between"][0] == 0
+    assert 0 <= touch - about["derived"]["firstTouch"] < 1.5 * spacing[0]
     assert np.all(history["contacts"] >= history["contacts_between"])
 
 
@@ -144,7 +152,7 @@ def test_a_run_that_has_ended_is_kept_unless_asked(run, tmp_path):
     refused = collide(run.parent, *TINY, "out=run")
     assert refused.returncode == 2
     assert messages(refused) == [
-        "collide.py: out = run: holds a run that has ended; " "allowed: another folder, or overwrite=1"
+        "collide.py: out = run: holds a run that has ended; must be another folder, or overwrite=1"
     ]
     assert os.stat(run / "run.json").st_mtime_ns == before
     replaced = collide(run.parent, *TINY, "out=run", "overwrite=1", "seed=2")
@@ -175,19 +183,28 @@ def test_an_interrupted_run_leaves_what_it_had(tmp_path, signal_number, status):
 
 
 WRONG = [
-    (["velocty=3"], "collide.py: velocty: unknown parameter; allowed: "),
-    (["radius=-4"], "collide.py: radius = -4: not allowed; allowed: > 0"),
-    (["filling=0.76"], "collide.py: filling = 0.76: more than the lattice holds; allowed: at most 0.7519"),
+    (["velocty=3"], "collide.py: velocty: unknown parameter; must be one of velocity, impact"),
+    (["radius=-4"], "collide.py: radius = -4: must be > 0 [grain radii]"),
+    (["filling=0.76"], "collide.py: filling = 0.76: more than the lattice holds; must be at most 0.7519"),
     (
         ["stepFraction=0.3", "viscoelasticTime=6e-12"],
-        "collide.py: stepFraction = 0.3: unstable at this filling and drag; allowed: ",
+        "collide.py: stepFraction = 0.3: unstable at this filling and drag; must be at most ",
     ),
-    (["threads=2", "engine=functors"], "collide.py: threads = 2: YADE was started with 1; allowed: "),
-    (["threads=3"], "collide.py: threads = 3: more than the fused engine has domains; allowed: "),
-    (["out=/dev/null/run"], "collide.py: out = /dev/null/run: Not a directory; allowed: a folder that can be written"),
-    (["out=."], "collide.py: out = .: exists and is no run folder; allowed: "),
-    (["table=rows.table:3"], "collide.py: velocity = fast: not a finite number; allowed: "),
-    (["table=rows.table:9"], "collide.py: table rows.table:9: no such row; allowed lines: 2, 3"),
+    (["threads=2", "engine=functors"], "collide.py: threads = 2: YADE was started with 1; must be "),
+    (["threads=3"], "collide.py: threads = 3: more than the fused engine has domains; must be 1 to 2"),
+    (["out=/dev/null/run"], "collide.py: out = /dev/null/run: Not a directory; must be a folder that can be written"),
+    (["out=."], "collide.py: out = .: exists and is no run folder; must be "),
+    (
+        ["impact=1"],
+        "collide.py: impact = 1: the aggregates of seed 1 would never meet; must be another impact or seed, or",
+    ),
+    (["duration=1e10"], "collide.py: duration = 1e+10: 5.2e+20 steps of 0.1 t0; must be at most 1e+09 steps, 0.0194 s"),
+    (["stepFraction=1e-300"], "collide.py: duration = "),
+    (["surfaceEnergy=1e4"], "collide.py: grainRadius = 1e-07: contacts at rest have a radius of "),
+    (["poisson=0", "viscoelasticTime=1e-12"], "collide.py: poisson = 0: with viscous drag must be > 0"),
+    (["velocity=9**9**9**9"], "collide.py: velocity = 9**9**9**9: an exponent above 1000; must be > 0 [m/s]"),
+    (["table=rows.table:3"], "collide.py: velocity = fast: not a finite number; must be > 0 [m/s]"),
+    (["table=rows.table:9"], "collide.py: table rows.table:9: no such row; must be a line of 2, 3"),
 ]
 
 
@@ -205,4 +222,4 @@ def test_a_misspelt_column_gives_one_line(tmp_path):
     (tmp_path / "rows.table").write_text("radius velocty\n4 10\n")
     failed = collide(tmp_path, YADE_BATCH="rows.table:2")
     assert failed.returncode == 2
-    assert [line[:47] for line in messages(failed)] == ["collide.py: velocty: unknown parameter; allowed"]
+    assert [line[:47] for line in messages(failed)] == ["collide.py: velocty: unknown parameter; must be"]

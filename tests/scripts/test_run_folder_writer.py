@@ -5,13 +5,15 @@ import json
 import os
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
 
-from yade_scripts.progress import Progress, duration_text
-from yade_scripts.run_folder import RunFolder, RunFolderError
-from yade_scripts.sampling import Schedule, compression_and_velocity
+from yade_scripts.experiments.collision import compression_and_velocity
+from yade_scripts.run.folder import RunFolder, RunFolderError, being_written, locked_inodes
+from yade_scripts.run.progress import progress_bar
+from yade_scripts.run.schedule import MOST_SAMPLES, Schedule
 
 
 def ended_run(path):
@@ -29,7 +31,7 @@ def test_files_are_whole_and_no_others_stay(tmp_path):
     found = {os.path.relpath(os.path.join(at, name), tmp_path) for at, _, names in os.walk(tmp_path) for name in names}
     assert found == {"a/b/run.json", "a/b/history.npz", "a/b/ended", "a/b/states/000000.npz"}
     with open(tmp_path / "a" / "b" / "run.json") as file:
-        assert json.load(file) == {"format": 1, "outcome": "completed"}
+        assert json.load(file) == {"format": 2, "outcome": "completed"}
 
 
 def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):
@@ -44,7 +46,7 @@ def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):
 
 def test_an_ended_run_is_replaced_only_when_asked(tmp_path):
     path = ended_run(tmp_path / "run")
-    with pytest.raises(RunFolderError, match="holds a run that has ended; allowed: another folder"):
+    with pytest.raises(RunFolderError, match="holds a run that has ended; must be another folder"):
         RunFolder(str(path))
     (path / "notes.txt").write_text("mine")
     RunFolder(str(path), overwrite=True)
@@ -63,7 +65,7 @@ def test_a_folder_in_use_is_refused_until_the_run_is_gone(tmp_path):
     path = str(tmp_path / "run")
     script = (
         "import sys; sys.path.insert(0, sys.argv[1])\n"
-        "from yade_scripts.run_folder import RunFolder\n"
+        "from yade_scripts.run.folder import RunFolder\n"
         "folder = RunFolder(sys.argv[2]); print(flush=True); sys.stdin.read()"
     )
     top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -76,10 +78,40 @@ def test_a_folder_in_use_is_refused_until_the_run_is_gone(tmp_path):
     RunFolder(path)
 
 
+LOCKS = """1: FLOCK  ADVISORY  WRITE 1234 08:01:131 0 EOF
+1: -> FLOCK  ADVISORY  WRITE 5678 08:01:131 0 EOF
+2: POSIX  ADVISORY  READ 1111 00:1a:17 128 128
+3: -> FLOCK  ADVISORY  READ 99 fd:01:77 0 EOF
+4: FLOCK  ADVISORY  READ -1 fd:01:4026531992 0 EOF
+5: LEASE  ACTIVE    READ 12 08:01:55 0 EOF
+"""
+
+
+def test_a_process_that_waits_for_a_lock_does_not_hold_it():
+    assert locked_inodes(LOCKS.splitlines(keepends=True)) == {131, 4026531992}
+
+
+def test_being_written_while_another_process_waits_for_the_lock(tmp_path):
+    """A waiting process has a line of its own in the kernel's list."""
+    path = str(tmp_path / "run")
+    assert not being_written(path)
+    folder = RunFolder(path)
+    script = "import fcntl, os, sys; print(flush=True); fcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX)"
+    with subprocess.Popen([sys.executable, "-c", script, path], stdout=subprocess.PIPE) as waiting:
+        waiting.stdout.readline()
+        deadline = time.monotonic() + 20
+        while not any("->" in lock and f" {waiting.pid} " in lock for lock in open("/proc/locks")):
+            assert time.monotonic() < deadline and waiting.poll() is None
+        assert being_written(path) and not being_written(str(tmp_path))
+        waiting.kill()
+    os.close(folder._lock)
+    assert not being_written(path)
+
+
 @pytest.mark.parametrize(
     "make, message",
     [
-        (lambda path: path.write_text("x"), "is a file; allowed: a folder"),
+        (lambda path: path.write_text("x"), "is a file; must be a folder"),
         (lambda path: (path.mkdir(), (path / "thesis.tex").write_text("x")), "exists and is no run folder"),
     ],
 )
@@ -90,7 +122,7 @@ def test_what_is_no_run_folder_is_left_alone(tmp_path, make, message):
 
 
 def test_an_unwritable_folder():
-    with pytest.raises(RunFolderError, match="out = /proc/run: .*; allowed: a folder that can be written"):
+    with pytest.raises(RunFolderError, match="out = /proc/run: .*; must be a folder that can be written"):
         RunFolder("/proc/run")
 
 
@@ -105,6 +137,12 @@ def test_schedule(duration, steps, interval):
     assert samples * interval == schedule.steps and samples >= min(300, steps)
     assert {0, samples} <= schedule.states <= set(range(samples + 1))
     assert len(schedule.states) == min(22, samples + 1)
+
+
+def test_a_run_of_very_many_steps_has_a_history_that_fits_in_memory():
+    schedule = Schedule.of(1.0, 1e-9)
+    samples = schedule.steps // schedule.interval
+    assert 1e9 <= schedule.steps < 1e9 + schedule.interval and 0.9 * MOST_SAMPLES < samples <= MOST_SAMPLES
 
 
 def test_compression_and_velocity():
@@ -122,10 +160,12 @@ class Terminal(io.StringIO):
 def test_progress_shows_the_time_left_on_a_terminal_only():
     quiet, terminal = io.StringIO(), Terminal()
     for stream in (quiet, terminal):
-        progress = Progress(200, stream)
-        progress.start -= 10  # ten seconds ago
-        progress.update(50)
-        progress.close()
+        bar = progress_bar(200, 10, stream)
+        if stream is terminal:
+            bar.start_t -= 10  # ten seconds ago
+        bar.update(40)
+        bar.refresh()
+        bar.close()
     assert quiet.getvalue() == ""
-    assert "] " + " 25.0 %  0:30 left" in terminal.getvalue() and terminal.getvalue().endswith("\r\033[K")
-    assert [duration_text(s) for s in (0.4, 59.6, 3600)] == ["0:00", "1:00", "1:00:00"]
+    assert " 25%|" in terminal.getvalue() and "00:10<00:37" in terminal.getvalue()
+    assert terminal.getvalue().endswith("\r")

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from running import COLLIDE, collide, environment, messages, read_arrays, read_json
 
-from yade_scripts import parameters
-from yade_scripts.run_folder import CHANNELS
+from analysis.runs.format import CHANNELS
+from yade_scripts import stability
 
 PLANAR = ("radius=6", "filling=0.7", "planar=1", "velocity=60", "duration=6e-9", "seed=2", "stepFraction=0.05")
 LONG = ("packing=bcca", "grains=512", "planar=1", "neck=0.3", "velocity=60", "duration=300e-9", "threads=1")
@@ -78,7 +78,7 @@ def test_both_engines_tell_the_same_story(tmp_path):
     assert ends[0] == pytest.approx(ends[1], abs=1e-9) and ends[0][CHANNELS.index("bondBreaking")] > 0
 
 
-def test_a_killed_sintered_run_goes_on_to_the_same_bits(tmp_path):
+def test_a_killed_sintered_run_resumes_to_the_same_bits(tmp_path):
     done = collide(tmp_path, *LONG, "out=straight")
     assert done.returncode == 0, done.stderr
     command = ["yade", "-n", "-x", COLLIDE, *LONG, "checkpointInterval=0.05", "out=killed"]
@@ -102,19 +102,19 @@ def test_a_killed_sintered_run_goes_on_to_the_same_bits(tmp_path):
     [
         (
             ("neck=0.123",),
-            "neck = 0.123: no thicker than a contact that is not sintered; allowed: 0 (not sintered), or above 0.1237 and at most 0.7",
+            "neck = 0.123: no thicker than a contact that is not sintered; must be 0 (not sintered), or above 0.1237 and at most 0.7",
         ),
-        (("neck=0.8",), "neck = 0.8: not allowed; allowed: 0, or above that of a contact that is not sintered"),
+        (("neck=0.8",), "neck = 0.8: must be 0, or above that of a contact that is not sintered"),
         (
             ("neck=0.2", "stepFraction=0.2"),
-            "stepFraction = 0.2: unstable at this neck, filling and drag; allowed: at most 0.119 (t0)",
+            "stepFraction = 0.2: unstable at this neck, filling and drag; must be at most 0.119 [t0]",
         ),
         (
             ("neck=0.4", "stepFraction=auto"),
-            "stepFraction = auto: measured for cpe aggregates in space without necks only; allowed here: a number (t0)",
+            "stepFraction = auto: measured for cpe aggregates in space without necks only; must be a number [t0] here",
         ),
-        (("packing=bcca", "filling=0.3"), "filling = 0.3: given with packing = bcca; allowed: grains only"),
-        (("planar=1", "filling=0.95"), "filling = 0.95: more than the lattice holds; allowed: at most 0.91"),
+        (("packing=bcca", "filling=0.3"), "filling = 0.3: given with packing = bcca; must be grains only"),
+        (("planar=1", "filling=0.95"), "filling = 0.95: more than the lattice holds; must be at most 0.91"),
     ],
 )
 def test_wrong_necks_are_refused_in_one_line(tmp_path, wrong, message):
@@ -137,7 +137,7 @@ def test_bonds_lower_the_stable_step():
         slidingStiffness=79.176,
     )
     for stiffness, blew_up in ((1803, 0.15), (1374, 0.17), (1197, 0.18)):
-        limit = parameters.step_limit(
+        limit = stability.step_limit(
             dict(ice, bond=dict(normalStiffness=stiffness, slidingStiffness=0.4 * stiffness)), 0.4
         )
         assert 0.1 < limit < 0.9 * blew_up

@@ -12,32 +12,37 @@ import pytest
 from running import COLLIDE, PYTHON, TINY, TOP, collide, environment, messages, read_arrays, read_json
 from scipy.stats import binom
 
-from yade_scripts import agreement, parameters, step_choice, study_cost
-from yade_scripts.materials import MATERIALS
+from yade_scripts import stability
+from yade_scripts.experiments import collision
+from yade_scripts.experiments.collision import KIND
+from yade_scripts.materials import pair_constants
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run.agreement import difference
 
 STUDY = os.path.join(TOP, "yade_scripts", "study.py")
 BENCHMARKS = os.path.join(TOP, "tests", "benchmarks")
 AUTO = {"stepFraction": "auto"}
+parse = KIND.parse
 
 
 def completed(**given):
     """(parameters, constants, limit) of a scene with stepFraction=auto."""
-    values = parameters.parse({**AUTO, **given})
-    constants = study_cost.pair_constants(MATERIALS[values["material"]], values["viscoelasticTime"])
-    limit = parameters.step_limit(constants, values["filling"])
-    return parameters.complete(values, constants, 1), constants, limit
+    parameters = parse({**AUTO, **given})
+    constants = pair_constants(parameters)
+    limit = stability.step_limit(constants, parameters.filling)
+    return collision.complete(parameters, constants, 1), constants, limit
 
 
-def expected_error(values, constants):
-    return sum(step_choice.coefficients(*step_choice.energies(values, constants))) * values["stepFraction"] ** 2
+def expected_error(parameters, constants):
+    return sum(stability.ledger_errors(*stability.energies(parameters, constants))) * parameters.stepFraction**2
 
 
 def test_auto_and_its_tolerance():
-    values = parameters.parse({"stepFraction": "'auto'", "velocity": "2"})
-    assert (values["stepFraction"], values["tolerance"]) == ("auto", 1e-4)
-    assert values["out"] == "runs/collide-ice-f0.4-R20-v2-s1-stepFractionauto"
-    assert parameters.parse({**AUTO, "tolerance": "10**-5"})["tolerance"] == 1e-5
-    assert parameters.parse({})["tolerance"] is None
+    found = parse({"stepFraction": "'auto'", "velocity": "2"})
+    assert (found.stepFraction, found.tolerance) == ("auto", 1e-4)
+    assert found.out == "runs/collide-ice-f0.4-R20-v2-s1-stepFractionauto"
+    assert parse({**AUTO, "tolerance": "10**-5"}).tolerance == 1e-5
+    assert parse({}).tolerance is None
 
 
 @pytest.mark.parametrize(
@@ -48,33 +53,33 @@ def test_auto_and_its_tolerance():
 def test_the_step_is_the_longest_of_two_digits_that_keeps_to_the_tolerance(scene):
     steps = []
     for tolerance in (1e-5, 1e-4, 1e-3, 1e-2):
-        values, constants, limit = completed(tolerance=tolerance, **scene)
-        steps.append(values["stepFraction"])
-        assert 0.01 <= steps[-1] <= limit and expected_error(values, constants) <= tolerance
+        found, constants, limit = completed(tolerance=tolerance, **scene)
+        steps.append(found.stepFraction)
+        assert 0.01 <= steps[-1] <= limit and expected_error(found, constants) <= tolerance
         if steps[-1] < limit:
             assert steps[-1] == float(f"{steps[-1]:.2g}")
-            assert expected_error(dict(values, stepFraction=1.11 * steps[-1]), constants) > tolerance
+            assert expected_error(found.changed(stepFraction=1.11 * steps[-1]), constants) > tolerance
     assert steps == sorted(steps) and steps[0] < steps[-1]
 
 
 def test_drag_and_dense_packings_limit_it():
     for scene in ({"viscoelasticTime": 6e-12}, {"filling": 0.7}):
-        values, _, limit = completed(tolerance=1e-2, **scene)
-        assert values["stepFraction"] == limit < 0.4
+        found, _, limit = completed(tolerance=1e-2, **scene)
+        assert found.stepFraction == limit < 0.4
 
 
 def test_a_tolerance_that_no_step_reaches():
-    with pytest.raises(parameters.ParameterError) as error:
+    with pytest.raises(ParameterError) as error:
         completed(tolerance=1e-7, velocity=0.5)
     text = str(error.value)
     least = float(
         re.fullmatch(
-            r"tolerance = 1e-07: would take a step of 0\.00\d+ t0 at 0\.5 m/s; allowed: at least "
-            r"(\S+) K\(0\) in this scene, for 0\.01 t0, or stepFraction as a number",
+            r"tolerance = 1e-07: would take a step of 0\.00\d+ t0 at 0\.5 m/s; must be at least "
+            r"(\S+) K\(0\) in this scene, for 0\.01 t0, or stepFraction a number",
             text,
         ).group(1)
     )
-    assert 0.01 <= completed(tolerance=least, velocity=0.5)[0]["stepFraction"] < 0.011
+    assert 0.01 <= completed(tolerance=least, velocity=0.5)[0].stepFraction < 0.011
 
 
 @pytest.mark.parametrize(
@@ -82,7 +87,7 @@ def test_a_tolerance_that_no_step_reaches():
     [
         (
             {"velocity": 1},
-            "6400 grains at 1 m/s, no drag (set by contacts' births and breaks; limit of stability 0.4 t0)",
+            "6400 grains at 1 m/s, no drag (set by forming and breaking contacts; limit of stability 0.4 t0)",
         ),
         (
             {"velocity": 30},
@@ -92,26 +97,29 @@ def test_a_tolerance_that_no_step_reaches():
     ],
 )
 def test_it_says_why(scene, part):
-    values, constants, _ = completed(**scene)
-    text = parameters.step_chosen(values, constants)
-    assert text.startswith(f'{values["stepFraction"]:.3g} t0 for a ledger error of at most ') and part in text
+    found, constants, _ = completed(**scene)
+    text = collision.step_choice(found, constants)
+    assert text.startswith(f"{found.stepFraction:.3g} t0 for a ledger error of at most ") and part in text
 
 
 def test_constants_for_estimates_are_the_plugins(yade):
     """What study.py works a row's step out with, without the plugin."""
-    cases = [("ice", 0.0), ("ice", 4e-12), ("silicate", 1e-11)]
+    cases = [
+        {"material": "ice"},
+        {"viscoelasticTime": 4e-12, "poisson": 0.3, "grainRadius": 3e-7},
+        {"material": "silicate", "viscoelasticTime": 1e-11, "young": 30e9, "surfaceEnergy": 0.1},
+        {"density": 800, "criticalRolling": 2e-9},
+    ]
     found = yade(
         """
-from yade_scripts import scene
-from yade_scripts.materials import MATERIALS
-for name, drag in parameters["cases"]:
-    result[name + str(drag)] = dict(scene.pair_constants({"viscoelasticTime": drag, "material": name, "neck": 0}, MATERIALS[name]))
+from yade_scripts.experiments.collision import KIND
+from yade_scripts.run import scene
+result["found"] = [scene.pair_constants(KIND.parse(case)) for case in parameters["cases"]]
 """,
         {"cases": cases},
     )
-    for name, drag in cases:
-        ours = study_cost.pair_constants(MATERIALS[name], drag)
-        plugins = found[name + str(drag)]
+    for case, plugins in zip(cases, found["found"], strict=True):
+        ours = pair_constants(parse(case))
         assert {key: plugins[key] for key in ours} == pytest.approx(ours, rel=1e-12)
 
 
@@ -125,9 +133,8 @@ def test_the_constants_are_those_of_the_data():
     below = {}
     for row in rows:
         scene = {name: text for name, text in row.items() if name not in ("set", "error")}
-        values = parameters.parse(scene)
-        constants = study_cost.pair_constants(MATERIALS[values["material"]], values["viscoelasticTime"])
-        below.setdefault(row["set"], []).append(float(row["error"]) <= expected_error(values, constants))
+        given = parse(scene)
+        below.setdefault(row["set"], []).append(float(row["error"]) <= expected_error(given, pair_constants(given)))
     assert len(below["grid"]) > 400 and len(below["random"]) > 90
     assert 0.95 < np.mean(below["grid"] + below["study"]) < 0.99
     for name, found in below.items():
@@ -198,7 +205,7 @@ def test_a_run_says_and_keeps_what_it_chose(run):
     line = next(line for line in process.stdout.splitlines() if line.startswith("step: "))
     assert line == f'step: {derived["stepChoice"]}'
     assert derived["stepChoice"].startswith(f'{values["stepFraction"]:g} t0 for a ledger error of at most 0.0003 K(0)')
-    assert values["stepFraction"] == completed(tolerance=3e-4, radius=4, velocity=30)[0]["stepFraction"]
+    assert values["stepFraction"] == completed(tolerance=3e-4, radius=4, velocity=30)[0].stepFraction
 
 
 def test_an_impossible_tolerance_is_refused_before_anything_is_run(tmp_path):
@@ -212,31 +219,27 @@ def test_agreement_with_a_run_that_chose_its_step(run):
     about = read_json(run[0], "run.json")
     chosen = about["parameters"]["stepFraction"]
     tiny = dict(argument.split("=") for argument in TINY)
-    row = parameters.parse({**tiny, **AUTO, "tolerance": 3e-4})
-    assert agreement.difference(row, about) is None
-    assert agreement.difference(parameters.parse({**tiny, "stepFraction": chosen}), about) is None
-    assert agreement.difference(parameters.parse({**tiny, **AUTO}), about) == "tolerance = 0.0003, not 0.0001"
-    assert agreement.difference(parameters.parse(tiny), about) == f"stepFraction = {chosen:g}, not 0.1"
+    row = parse({**tiny, **AUTO, "tolerance": 3e-4})
+    assert difference(KIND, row, about) is None
+    assert difference(KIND, parse({**tiny, "stepFraction": chosen}), about) is None
+    assert difference(KIND, parse({**tiny, **AUTO}), about) == "tolerance = 0.0003, not 0.0001"
+    assert difference(KIND, parse(tiny), about) == f"stepFraction = {chosen:g}, not 0.1"
     fixed = {**about, "parameters": {**about["parameters"], "stepFraction": 0.1, "tolerance": None}}
-    assert agreement.difference(row, fixed) == "stepFraction = 0.1, not auto"
+    assert difference(KIND, row, fixed) == "stepFraction = 0.1, not auto"
     del fixed["parameters"]["tolerance"]  # written before there was a choice
-    assert agreement.difference(row, fixed) == "stepFraction = 0.1, not auto"
-    assert agreement.difference(parameters.parse(tiny), fixed) is None
+    assert difference(KIND, row, fixed) == "stepFraction = 0.1, not auto"
+    assert difference(KIND, parse(tiny), fixed) is None
 
 
 def test_estimates_count_the_steps_that_will_be_chosen(run):
     tiny = dict(argument.split("=") for argument in TINY)
-    cost = study_cost.Cost({"ice": read_json(run[0], "run.json")["derived"]["timeUnit"]})
     chosen = read_json(run[0], "run.json")["parameters"]["stepFraction"]
-    row, same = (
-        parameters.parse({**tiny, **AUTO, "tolerance": 3e-4}),
-        parameters.parse({**tiny, "stepFraction": chosen}),
-    )
-    assert cost.contact_updates(row) == cost.contact_updates(same) != cost.contact_updates(parameters.parse(tiny))
+    row, same = parse({**tiny, **AUTO, "tolerance": 3e-4}), parse({**tiny, "stepFraction": chosen})
+    assert KIND.estimate(row) == KIND.estimate(same) != KIND.estimate(parse(tiny))
 
 
-def test_a_study_goes_on_from_checkpoints_of_rows_that_choose(tmp_path):
-    """A row is killed, goes on in the next call to the same bits as a straight run, and is done in the one after."""
+def test_a_study_resumes_from_checkpoints_of_rows_that_choose(tmp_path):
+    """A row is killed, resumes in the next call to the same bits as a straight run, and is done in the one after."""
     scene = ["radius=10", "velocity=10", "duration=300e-9", "stepFraction=auto"]
     (tmp_path / "auto.table").write_text(
         "description radius velocity duration stepFraction checkpointInterval out\n"
@@ -267,8 +270,8 @@ def test_a_study_goes_on_from_checkpoints_of_rows_that_choose(tmp_path):
         )
 
     assert "checkpoint at " in study("--status").stdout
-    gone_on = study("-j", "1")
-    assert gone_on.returncode == 0 and "1 to run, 1 of them from checkpoints" in gone_on.stdout, gone_on.stderr
+    resumed = study("-j", "1")
+    assert resumed.returncode == 0 and "1 to run, 1 of them from checkpoints" in resumed.stdout, resumed.stderr
     straight = collide(tmp_path, *scene, "out=straight")
     assert straight.returncode == 0
     one, other = (read_arrays(tmp_path, *folder, "history.npz") for folder in (("runs", "killed"), ("straight",)))

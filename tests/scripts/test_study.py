@@ -47,7 +47,8 @@ def process_writing(folder):
     """The process that holds a run folder's lock."""
     inode = str(os.stat(folder).st_ino)
     with open("/proc/locks") as locks:
-        return next((int(lock.split()[4]) for lock in locks if lock.split()[5].endswith(":" + inode)), None)
+        held = (lock.split() for lock in locks if "->" not in lock)
+        return next((int(lock[4]) for lock in held if lock[5].endswith(":" + inode)), None)
 
 
 def write_table(folder, name, *rows):
@@ -77,14 +78,14 @@ def test_failures_fail_the_study_after_all_others_have_run(first_call):
     assert len(ends) == 3
     assert ends[0].startswith("study.py: killed: killed by signal 9 (checkpoint at ")
     assert ends[1].startswith("study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run went wrong at t = ")
-    assert ends[2] == "study.py: refused: line 5 of tiny.table: velocity = -1: not allowed; allowed: > 0 [m/s]"
+    assert ends[2] == "study.py: refused: line 5 of tiny.table: velocity = -1: must be > 0 [m/s]"
     assert sorted(os.listdir(folder / "runs" / "tiny")) == ["ends", "fails", "killed"]
 
 
 def test_estimate_comes_first(first_call):
     _, (_, output, _), _ = first_call
     line = output.splitlines()[0]
-    assert line.startswith("tiny: 4 rows, 1 done or failed, 3 to run; estimated time 0:")
+    assert line.startswith("tiny: 4 rows, 1 done or failed, 3 to run; estimated time 00:")
     assert "with 2 at once (measured: " in line
 
 
@@ -125,7 +126,7 @@ def test_an_ended_run_with_other_parameters_fails_its_row(first_call, tmp_path):
     assert refused.returncode == 1
     assert refused.stderr == (
         "study.py: ends: runs/tiny/ends: holds an ended run with duration = 1e-08, not 2e-08; "
-        "allowed: the same, or take that folder away\n"
+        "must be the same, or removed to run the row\n"
     )
     assert read_json(folder, "runs", "tiny", "ends", "run.json")["parameters"]["duration"] == 10e-9
 
@@ -156,11 +157,11 @@ def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
 @pytest.mark.parametrize(
     "text, message",
     [
-        (None, "study.py: rows.table: No such file or directory; allowed: "),
-        ("radius velocity\n", "study.py: rows.table: no rows; allowed: "),
-        ("radius velocity\n4\n", "study.py: rows.table: line 2 has 1 cells; allowed: 2"),
-        ("radius velocity\n= 3\n", "study.py: rows.table: line 2: = has no row above; allowed: a value"),
-        ("radius out\n4 a\n5 a\n", "study.py: rows.table: lines 2 and 3 both have out = a; allowed: one"),
+        (None, "study.py: rows.table: No such file or directory; must be "),
+        ("radius velocity\n", "study.py: rows.table: no rows; must be "),
+        ("radius velocity\n4\n", "study.py: rows.table: line 2 has 1 cells; must be 2"),
+        ("radius velocity\n= 3\n", "study.py: rows.table: line 2: = has no row above; must be a value"),
+        ("radius out\n4 a\n5 a\n", "study.py: rows.table: lines 2 and 3 both have out = a; must be one"),
     ],
     ids=["missing", "empty", "short", "nothing above", "same folder"],
 )

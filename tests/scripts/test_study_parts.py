@@ -6,20 +6,29 @@ import os
 import pytest
 from running import TOP
 
-from yade_scripts import agreement, elastoplastic_tables, packings, study_cost, study_rows, study_view, table
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
-from yade_scripts.parameters import parse
-from yade_scripts.study_screen import Screen
+from yade_scripts import packings
+from yade_scripts.experiments.collision import KIND
+from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
+from yade_scripts.run import agreement, table
+from yade_scripts.runner import cost, rows, view
+from yade_scripts.runner.screen import Screen
+from yade_scripts.studies import elastoplastic
 
 STUDIES = os.path.join(TOP, "yade_scripts", "studies")
-ICE = {"ice": 1.936e-10}
+TABLES = sorted(name for name in os.listdir(STUDIES) if name.endswith(".table"))
+TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
+parse = KIND.parse
+
+
+def row(**cells):
+    return rows.StudyRow("row", cells, "collide.py", KIND, parse(cells))
 
 
 def test_tables_are_read_as_yade_reads_them(yade, tmp_path):
     (tmp_path / "marked.table").write_text(
         "# a comment\n\nradius! velocity material !THREADS # more\n" "4 10 'ice' 2\n\n= = * 1 # same\n5 = 'ice' =\n"
     )
-    paths = [str(tmp_path / "marked.table")] + [os.path.join(STUDIES, name) for name in sorted(os.listdir(STUDIES))]
+    paths = [str(tmp_path / "marked.table")] + [os.path.join(STUDIES, name) for name in TABLES]
     found = yade(
         """
 from yade.utils import TableParamReader
@@ -34,58 +43,85 @@ result.update({path: {str(line): row for line, row in TableParamReader(path).par
 
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
-    rows = [{"description": "a", "radius": 4, "!THREADS": 1}, {"description": "b", "velocity": "10**0.5"}]
-    table.write(tmp_path / "rows.table", rows)
+    written = [{"description": "a", "radius": 4, "!THREADS": 1}, {"description": "b", "velocity": "10**0.5"}]
+    table.write(tmp_path / "rows.table", written, "what these are\nand their units")
+    assert (tmp_path / "rows.table").read_text().startswith("# what these are\n# and their units\ndescription")
     back = table.read(tmp_path / "rows.table")
     assert [row.description for row in back] == ["a", "b"]
     assert [row.cells for row in back] == [{"radius": "4", "!THREADS": "1"}, {"velocity": "10**0.5"}]
 
 
 def test_committed_tables_are_what_the_generator_writes(tmp_path):
-    elastoplastic_tables.write_tables(tmp_path)
+    elastoplastic.write_tables(tmp_path)
     assert sorted(os.listdir(tmp_path)) == ["elastoplastic-desk.table", "elastoplastic-full.table"]
     for name in os.listdir(tmp_path):
         with open(os.path.join(STUDIES, name)) as file:
-            assert file.read() == (tmp_path / name).read_text(), f"{name}: run yade_scripts/elastoplastic_tables.py"
+            assert file.read() == (tmp_path / name).read_text(), f"{name}: run yade_scripts/studies/elastoplastic.py"
 
 
 def test_the_tables_hold_the_papers_runs():
     """A24 section 3 and the captions of Figs 5 to 9; desk has some of each size, every velocity, both fillings."""
-    full, desk = (study_rows.read(os.path.join(STUDIES, f"elastoplastic-{size}.table")) for size in ("full", "desk"))
-    scenes = {(row.values["filling"], row.values["radius"], row.values["velocity"]) for row in full}
+    full, desk = (rows.read(os.path.join(STUDIES, f"elastoplastic-{size}.table")) for size in ("full", "desk"))
+    assert not any(row.error for row in full + desk)
+    names = {row.name: row.parameters for row in desk}
+    full, desk = ([row.parameters for row in table_rows] for table_rows in (full, desk))
+    scenes = {(p.filling, p.radius, p.velocity) for p in full}
     assert len(scenes) == 2 * (5 + 2 * 7) and len(full) == 10 * len(scenes)
-    assert {row.values["stepFraction"] for row in full} == {0.1} and not any(row.error for row in full + desk)
-    assert {row.values["velocity"] for row in desk} == {10 ** (0.1 * i) for i in range(8)}
-    assert {(row.values["filling"], row.values["radius"]) for row in desk} == {
+    assert {p.stepFraction for p in full} == {0.1}
+    assert {p.velocity for p in desk} == {10 ** (0.1 * i) for i in range(8)}
+    assert {(p.filling, p.radius) for p in desk} == {
         (filling, radius) for filling in (0.3, 0.4) for radius in (40, 50, 60, 80)
     }
-    one = next(row for row in desk if row.name == "f0.4-R40-i5-s1")
-    assert one.values["out"] == "runs/elastoplastic/f0.4-R40-i5-s1"
-    assert one.values["velocity"] == 10**0.5 and one.values["seed"] == 1
+    one = names["f0.4-R40-i5-s1"]
+    assert one.out == "runs/elastoplastic/f0.4-R40-i5-s1"
+    assert one.velocity == 10**0.5 and one.seed == 1
+
+
+def test_the_tables_give_the_papers_duration():
+    """12.5 ns per grain radius from the start, as older run folders of these rows have it; the slowest 1000 ns."""
+    for size in ("full", "desk"):
+        for found in (row.parameters for row in rows.read(os.path.join(STUDIES, f"elastoplastic-{size}.table"))):
+            slow = size == "desk" and found.radius == 40 and found.velocity < 1.6
+            expected = 1e-6 if slow else 64.6 * found.radius * TIME_UNIT
+            assert found.duration == pytest.approx(expected, rel=1e-13)
 
 
 def test_contact_updates_are_those_of_a_packing():
-    """Contacts counted in a packing of A24's at R = 30, whose surface takes some away."""
-    values = parse({"radius": 30, "filling": 0.4})
+    """Contacts counted in a packing of A24's at R = 30, whose surface has fewer."""
     overlap = equilibrium_overlap(MATERIALS["ice"])
     counted = len(packings.contacts(packings.cpe(0.4, 30e-7, 1e-7, overlap, seed=1)))
-    steps = 64.6 * 30 / 0.1
-    assert 0.9 < 2 * counted * steps / study_cost.Cost(ICE).contact_updates(values) < 1
-    given = parse({"radius": 30, "filling": 0.4, "duration": 64.6 * 30 * ICE["ice"]})
-    assert study_cost.Cost(ICE).contact_updates(given) == pytest.approx(study_cost.Cost(ICE).contact_updates(values))
+    given = row(radius=30, filling=0.4, duration=64.6 * 30 * TIME_UNIT)
+    assert 0.9 < 2 * counted * 64.6 * 30 / 0.1 / cost.contact_updates(given) < 1
+
+
+@pytest.mark.parametrize("cells", [{"radius": 25, "impact": 0.5}, {"packing": "bcca", "grains": 300}], ids=str)
+def test_the_default_duration_is_estimated_without_packings(cells):
+    """Of ten seeds those that meet, on average, to a fifth."""
+    from yade_scripts.experiments.collision import default_duration, place
+    from yade_scripts.packings.approach import first_touch
+
+    durations = []
+    for seed in range(10):
+        placed, pair, velocities = place(parse({**cells, "seed": seed}), equilibrium_overlap(MATERIALS["ice"]))
+        touch = first_touch(*pair, velocities[1] - velocities[0])
+        if touch is not None:
+            durations.append(default_duration(placed.radius, TIME_UNIT, touch))
+    assert len(durations) >= 8
+    steps = sum(durations) / len(durations) / TIME_UNIT / 0.1
+    assert row(**cells).estimate.steps == pytest.approx(steps, rel=0.2)
 
 
 def test_estimates_follow_ended_runs_and_otherwise_the_measured_piece():
-    small, large = parse({"radius": 40}), parse({"radius": 80})
-    fast = parse({"radius": 40, "stepFraction": 0.2})
-    assert study_cost.Cost(ICE).seconds(small) is None
-    cost = study_cost.Cost(ICE, ended=[(small, 80.0), (small, 100.0), (small, 300.0), (parse({"radius": 10}), 0.5)])
-    assert cost.seconds(small) == pytest.approx(100)  # a median; what took half a second says nothing
-    assert cost.seconds(fast) == pytest.approx(50)
-    assert cost.seconds(large) == pytest.approx(1600 * 8**study_cost.CACHE_EXPONENT, rel=0.01)
-    assert cost.seconds(parse({"radius": 40, "engine": "functors"})) is None
-    measured = study_cost.Cost(ICE, measured=(small, 30e6, 2.0))
-    assert measured.seconds(small) == pytest.approx(measured.contact_updates(small) / 30e6 + 2)
+    of = lambda radius, **cells: row(radius=radius, duration=64.6 * radius * TIME_UNIT, **cells)
+    small, large, fast = of(40), of(80), of(40, stepFraction=0.2)
+    assert cost.Cost().seconds(small) is None
+    known = cost.Cost(ended=[(small, 80.0), (small, 100.0), (small, 300.0), (of(10), 0.5)])
+    assert known.seconds(small) == pytest.approx(100)  # a median; what took half a second says nothing
+    assert known.seconds(fast) == pytest.approx(50)
+    assert known.seconds(large) == pytest.approx(1600 * 8**cost.CACHE_EXPONENT, rel=0.01)
+    assert known.seconds(of(40, engine="functors")) is None
+    measured = cost.Cost(measured=(small, 30e6, 2.0))
+    assert measured.seconds(small) == pytest.approx(cost.contact_updates(small) / 30e6 + 2)
 
 
 @pytest.mark.parametrize(
@@ -93,21 +129,51 @@ def test_estimates_follow_ended_runs_and_otherwise_the_measured_piece():
     [([], [], 2, 0), ([], [5, 1, 1], 2, 5), ([4], [1, 1, 1], 2, 4), ([4, 4], [1], 2, 5), ([], [3, 3], 1, 6)],
 )
 def test_makespan(running, waiting, at_once, expected):
-    assert study_cost.makespan(running, waiting, at_once) == expected
+    assert cost.makespan(running, waiting, at_once) == expected
 
 
 def test_difference_names_the_first_parameter_that_disagrees():
-    values = parse({"radius": 40, "velocity": "10**(0.1*5)"})
+    wanted = parse({"radius": 40, "velocity": "10**(0.1*5)"})
+    difference = lambda given, run: agreement.difference(KIND, given, run)
     run = {
-        "parameters": dict(values, duration=40 * 64.6 * 2e-10, threads=2, out="elsewhere"),
-        "derived": {"timeUnit": 2e-10},
+        "format": 2,
+        "kind": "collision",
+        "parameters": {**wanted.as_dict(), "duration": 40 * 64.6 * 2e-10 + 3e-8, "threads": 2, "out": "elsewhere"},
+        "derived": {"timeUnit": 2e-10, "firstTouch": 3e-8},
     }
-    assert agreement.difference(values, run) is None
-    assert agreement.difference(dict(values, velocity=3.0), run) == "velocity = 3.16227766017, not 3"
-    assert agreement.difference(dict(values, duration=1e-9), run) == "duration = 5.168e-07, not 1e-09"
-    del run["parameters"]["impact"]  # written before there was such a parameter
-    assert agreement.difference(values, run) is None
-    assert agreement.difference(dict(values, impact=0.5), run) == "impact = 0, not 0.5"
+    assert difference(wanted, run) is None
+    assert difference(wanted.changed(velocity=3.0), run) == "velocity = 3.16227766017, not 3"
+    assert difference(wanted.changed(duration=1e-9), run) == "duration = 5.468e-07, not 1e-09"
+    assert difference(wanted.changed(young=6e9), run) == "young = 7000000000, not 6000000000"
+    assert difference(wanted, {**run, "kind": "compression"}) == "kind = compression, not collision"
+    del run["derived"]["firstTouch"]  # never met, with a duration that was given
+    assert difference(wanted, run) == "duration = 5.468e-07, not the default"
+
+
+def test_runs_of_format_1_agree_with_rows_that_give_no_duration():
+    """Their default didn't count the time until the first touch; properties of the material stand under derived."""
+    wanted = parse({"radius": 40})
+    properties = ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling")
+    parameters = {**wanted.as_dict(), "duration": 40 * 64.6 * 2e-10}
+    run = {
+        "format": 1,
+        "parameters": {name: value for name, value in parameters.items() if name not in (*properties, "impact")},
+        "derived": {"timeUnit": 2e-10, **{name: getattr(wanted, name) for name in properties}},
+    }
+    assert agreement.difference(KIND, wanted, run) is None
+    assert agreement.difference(KIND, wanted.changed(impact=0.5), run) == "impact = 0, not 0.5"
+    assert agreement.difference(KIND, wanted.changed(poisson=0.3), run) == "poisson = 0.25, not 0.3"
+    assert agreement.difference(KIND, wanted.changed(duration=1e-9), run) == "duration = 5.168e-07, not 1e-09"
+    run["parameters"]["duration"] *= 1.1
+    assert agreement.difference(KIND, wanted, run) == "duration = 5.6848e-07, not 5.168e-07"
+
+
+def test_a_bcca_row_agrees_with_its_run_whatever_the_radius_became():
+    wanted = parse({"packing": "bcca", "grains": 64})
+    run = {"format": 1, "parameters": wanted.changed(radius=17.3, filling=0.0124, duration=64.6 * 17.3e-10).as_dict()}
+    run["derived"] = {"timeUnit": 1e-10}
+    assert agreement.difference(KIND, wanted, run) is None
+    assert agreement.difference(KIND, wanted.changed(grains=65), run) == "grains = 64, not 65"
 
 
 class Terminal(io.StringIO):
@@ -116,15 +182,15 @@ class Terminal(io.StringIO):
 
 
 def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
-    rows = [study_rows.StudyRow(name, {}, parse({"radius": 40})) for name in "abc"]
+    three = [rows.StudyRow(name, {}, "collide.py", KIND, parse({"radius": 40})) for name in "abc"]
     states = [
-        study_rows.State(study_rows.RUNNING, 0.43, 60, 25.0),
-        study_rows.State(study_rows.DONE, 1.0, 44.0),
-        study_rows.State(study_rows.FAILED, note="it broke"),
+        rows.State(rows.RUNNING, 0.43, 60, 25.0),
+        rows.State(rows.DONE, 1.0, 44.0),
+        rows.State(rows.FAILED, note="it broke"),
     ]
-    text = study_view.live_table("tiny", rows, states, study_cost.Cost(ICE), 2)
-    assert text.splitlines()[0] == "tiny: 1 done, 1 running, 0 waiting, 1 failed; 0:25 left"
-    assert "[########............]  43.0 %     0:25 left" in text and "it broke" in text
+    text = view.live_table("tiny", three, states, cost.Cost(), 2)
+    assert text.splitlines()[0] == "tiny: 1 done, 1 running, 0 waiting, 1 failed; 00:25 left"
+    assert "[########............]  43.0 %    00:25 left" in text and "it broke" in text
     terminal, file = Terminal(), io.StringIO()
     for stream in (terminal, file):
         screen = Screen(stream)

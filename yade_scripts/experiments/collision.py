@@ -1,0 +1,250 @@
+"""Collisions of two aggregates of equal size: parameters, scene, series, estimate (A24 section 3; A22 eq 27; S17)."""
+
+from dataclasses import dataclass, replace
+from math import sqrt
+
+import numpy as np
+
+from analysis.runs.format import COLLISION
+from yade_scripts import packings, stability
+from yade_scripts.materials import pair_constants, require_small_contacts
+from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.packings.approach import first_touch
+from yade_scripts.parameters import POSITIVE, Check, ParameterError, between, parameter
+from yade_scripts.run.kind import Estimate, Kind, Scene
+from yade_scripts.run.parameters import RunParameters
+from yade_scripts.stability import AUTO
+
+# A24 follows aggregates of 80 grain radii for 1000 ns: 12.5 ns per grain radius, in units of ice's t0.
+DURATION_PER_RADIUS = 64.6
+LARGEST_NECK = 0.7  # the largest of S17
+NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
+
+
+@dataclass(frozen=True)
+class CollisionParameters(AggregateParameters, RunParameters):
+    """The collision."""
+
+    velocity: float = parameter(10**0.5, POSITIVE, "relative velocity of the aggregates", "m/s")
+    impact: float = parameter(
+        0.0, between(0, 1), "impact parameter B_off in units of the sum of the radii (A22 eq 27)", "1"
+    )
+    neck: float = parameter(
+        0.0,
+        Check(
+            f"0, or above that of a contact that is not sintered (ice: 0.1237) and at most {LARGEST_NECK}",
+            lambda x: 0 <= x <= LARGEST_NECK,
+        ),
+        "neck radius over grain radius of the sintered bonds that the aggregates start with; 0: no bonds (S17)",
+        "1",
+    )
+    duration: float | None = parameter(
+        None,
+        POSITIVE,
+        f"time that is simulated (until the first touch, and {DURATION_PER_RADIUS} t0 per grain radius of the "
+        "aggregates' radius: 12.5 ns for ice)",
+        "s",
+    )
+
+    def title(self):
+        """collide-ice-f0.4-R20-v3.162-s1 or collide-ice-bcca-N1024-v3.162-s1, and what that tells."""
+        size = f"bcca-N{self.grains}" if self.packing == "bcca" else f"f{self.filling:g}-R{self.radius:.4g}"
+        told = ("material", "packing", "filling", "radius", "grains", "velocity", "seed")
+        return f"collide-{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", told
+
+
+def complete(parameters, constants, threads):
+    """The parameters with what depends on the contact and on YADE's threads: stepFraction and threads.
+
+    constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
+    """
+    require_small_contacts(constants)
+    _require_sintered(parameters.neck, constants)
+    limit = step_limit(parameters, constants)
+    if parameters.stepFraction == AUTO:
+        parameters = parameters.changed(stepFraction=_longest_step(parameters, constants, limit))
+    sintered = "neck, filling and drag" if parameters.neck else "filling and drag"
+    stability.require_stable(parameters.stepFraction, limit, sintered)
+    if parameters.duration is not None:
+        stability.require_countable(parameters.duration, parameters.stepFraction, constants["timeUnit"])
+    return parameters.with_threads(threads)
+
+
+def step_limit(parameters, constants):
+    """Largest stable stepFraction [t0] of a collision."""
+    filling = stability.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
+    return stability.step_limit(constants, filling)
+
+
+def step_choice(parameters, constants):
+    """How complete() came to parameters.stepFraction, in one line."""
+    if parameters.tolerance is None:
+        return "as given"
+    return stability.reason(parameters, constants, step_limit(parameters, constants))
+
+
+def default_duration(radius, time_unit, touch):
+    """Duration [s] of a run that gives none: radius in grain radii, t0 [s], time of the first touch [s]."""
+    return touch + DURATION_PER_RADIUS * radius * time_unit
+
+
+def placements(radius, grain_radius, velocity, impact):
+    """Centre and velocity, ((3,), (3,)), of both aggregates: A24 section 3, offset as in A22 eq 27.
+
+    Centres at -/+(R_agg + r) in x and -/+ impact (R_agg + r) in y; velocities +/- velocity/2 in x. radius: R_agg in
+    grain radii; grain_radius: r [m]; velocity [m/s].
+    """
+    reach = (radius + 1) * grain_radius
+    centre = np.array([reach, impact * reach, 0.0])
+    half = np.array([velocity / 2, 0.0, 0.0])
+    return (-centre, half), (centre, -half)
+
+
+def prepare(parameters, threads):
+    """The Scene of a collision; called within YADE. Raises ParameterError and PackingError."""
+    from yade_scripts.run import scene as yade_scene
+
+    constants = yade_scene.pair_constants(parameters, parameters.neck)
+    parameters = complete(parameters, constants, threads)
+    parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
+    touch = _time_of_touch(pair, velocities, constants["bond"])
+    parameters = with_duration(parameters, constants["timeUnit"], touch)
+    aggregate_radius = parameters.radius * parameters.grainRadius
+    derived = {"aggregateRadius": aggregate_radius, "grainsPerAggregate": parameters.grains}
+    material = yade_scene.material_of(parameters)
+    return Scene(
+        parameters=parameters,
+        constants=constants,
+        derived=derived if touch is None else {**derived, "firstTouch": touch},
+        aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
+        build=lambda: yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar)),
+        series=lambda state: series(state, aggregate_radius),
+        law={"neck": parameters.neck},
+        step_choice=step_choice(parameters, constants),
+    )
+
+
+def place(parameters, overlap):
+    """(parameters with the size of the aggregates, the two packings in their places, their velocities).
+
+    overlap: of touching grains [m]. Radius and filling of BCCA aggregates are of the larger of the two.
+    """
+    pair = [make(parameters, overlap, index) for index in (0, 1)]
+    if parameters.packing == "bcca":
+        radius = max(map(packings.extent, pair)) / parameters.grainRadius
+        dimensions = 2 if parameters.planar else 3
+        parameters = parameters.changed(radius=radius, filling=parameters.grains / radius**dimensions)
+    where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
+    pair = [packings.moved(packing, centre) for packing, (centre, _) in zip(pair, where)]
+    packings.require_apart(*pair)
+    return parameters, pair, [velocity for _, velocity in where]
+
+
+def with_duration(parameters, time_unit, touch):
+    """The parameters with a duration; touch: time of the first touch [s], or None. Raises ParameterError."""
+    if parameters.duration is not None:
+        return parameters
+    if touch is None:
+        raise ParameterError(
+            f"impact = {parameters.impact:g}: the aggregates of seed {parameters.seed} would never meet; must be "
+            "another impact or seed, or duration be given"
+        )
+    duration = default_duration(parameters.radius, time_unit, touch)
+    stability.require_countable(duration, parameters.stepFraction, time_unit)
+    return parameters.changed(duration=duration)
+
+
+def series(state, aggregate_radius):
+    """{name: value} of a collision's own series; state: as contact_law.snapshot(), with `aggregate`; R_agg [m]."""
+    d, v = compression_and_velocity(state["position"][:, 0], state["velocity"][:, 0], aggregate_radius)
+    sides = state["aggregate"][state["contact_pairs"]]
+    return {"d": d, "v": v, "contacts_between": int(np.count_nonzero(sides[:, 0] != sides[:, 1]))}
+
+
+def compression_and_velocity(x, v, aggregate_radius):
+    """A24's d [m] and v [m/s] (eqs 10-13) from x components (N,); nan when one side of x = 0 is empty."""
+    right = x > 0
+    if right.all() or not right.any():
+        return np.nan, np.nan
+    compression = 2 * aggregate_radius - (x[right].mean() - x[~right].mean())
+    return compression, -(v[right].mean() - v[~right].mean())
+
+
+def estimate(parameters):
+    """Estimate of a run, without its packings: contacts of a CPE packing by A24 eq 39, in BCCA two a grain."""
+    constants = pair_constants(parameters)
+    planar, bcca = bool(parameters.planar), parameters.packing == "bcca"
+    if bcca:
+        neighbours = 2
+    else:
+        full = packings.maximum_filling(parameters.grainRadius, constants["equilibriumOverlap"], planar)
+        neighbours = parameters.filling / full * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
+    duration = parameters.duration
+    if duration is None:
+        radius = _typical_bcca_radius(parameters.grains, planar) if bcca else parameters.radius
+        touch = _typical_way(radius, parameters.impact, bcca) * parameters.grainRadius / parameters.velocity
+        duration = default_duration(radius, constants["timeUnit"], touch)
+    grains = 2 * parameters.grains
+    return Estimate(grains, grains * neighbours / 2, duration / constants["timeUnit"] / _step(parameters, constants))
+
+
+def expected(parameters, run):
+    """What a run's run.json should hold of size and duration where the parameters leave them open.
+
+    Runs of format 1 didn't count the time until the first touch.
+    """
+    held, derived = run.get("parameters", {}), run.get("derived", {})
+    found = {name: held.get(name) for name in ("radius", "filling") if getattr(parameters, name) is None}
+    touch = derived.get("firstTouch") if run.get("format", 1) > 1 else 0.0
+    if parameters.duration is None and touch is not None:
+        found["duration"] = default_duration(held["radius"], derived["timeUnit"], touch)
+    return found
+
+
+def _require_sintered(neck, constants):
+    unsintered = constants["equilibriumContactRadius"] / (2 * constants["reducedRadius"])
+    if 0 < neck <= unsintered:
+        raise ParameterError(
+            f"neck = {neck:g}: no thicker than a contact that is not sintered; must be 0 (not sintered), or above "
+            f"{unsintered:.4g} and at most {LARGEST_NECK}"
+        )
+
+
+def _longest_step(parameters, constants, limit):
+    if parameters.packing != "cpe" or parameters.planar or parameters.neck:
+        raise ParameterError(
+            "stepFraction = auto: measured for cpe aggregates in space without necks only; must be a number [t0] here"
+        )
+    return stability.longest_step(parameters, constants, limit)
+
+
+def _step(parameters, constants):
+    """stepFraction as a run will have it."""
+    if parameters.stepFraction != AUTO:
+        return parameters.stepFraction
+    try:
+        return _longest_step(parameters, constants, step_limit(parameters, constants))
+    except ParameterError:  # the run will say what is wrong
+        return stability.SHORTEST
+
+
+def _time_of_touch(pair, velocities, bond):
+    """Time [s] until grains of the two aggregates first touch, or None; grains that sintered have shrunk."""
+    if bond:
+        pair = [replace(packing, radius=np.full(packing.grains, bond["shrunkRadius"])) for packing in pair]
+    return first_touch(*pair, velocities[1] - velocities[0])
+
+
+def _typical_bcca_radius(grains, planar):
+    """In grain radii: a fit to aggregates of 32 to 4096 grains."""
+    return 1.6 * grains ** (1 / 1.5) if planar else 1.9 * grains ** (1 / 1.9)
+
+
+def _typical_way(radius, impact, bcca):
+    """Grain radii until the first touch: of spheres and 1.4 more, or (BCCA) half of the distance of the centres."""
+    if bcca:
+        return radius + 1
+    return 2 * (radius + 1) * (1 - sqrt(1 - impact**2)) + 1.4
+
+
+KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected)

@@ -1,0 +1,90 @@
+"""Packings of spheres: what they are, their contacts, how far they are from touching, saving and loading."""
+
+import json
+import zipfile
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from yade_scripts.run.atomic_write import write_atomically
+
+
+class PackingError(ValueError):
+    """A packing that can't be made or read; the message is one line: what, where, what it must be."""
+
+
+@dataclass(frozen=True)
+class Packing:
+    """position (N,3) and radius (N,) in m; the seed and parameters that the packing was made from."""
+
+    position: np.ndarray
+    radius: np.ndarray
+    seed: int
+    parameters: dict = field(default_factory=dict)
+
+    @property
+    def grains(self):
+        return len(self.radius)
+
+
+def random_stream(seed, index):
+    """numpy Generator of one aggregate of a seed, number index of what SeedSequence(seed).spawn() gives."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
+
+
+def contacts(packing):
+    """Pairs (M,2) of touching grains, sorted, first < second: as far apart as the sum of radii, or less."""
+    tree = cKDTree(packing.position)
+    pairs = tree.query_pairs(2 * packing.radius.max(), output_type="ndarray")
+    distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
+    touching = pairs[distance <= packing.radius[pairs].sum(axis=1)]
+    return touching[np.lexsort((touching[:, 1], touching[:, 0]))]
+
+
+def require_apart(first, second):
+    """Raise PackingError when a grain of one packing touches one of the other."""
+    reach = first.radius.max() + second.radius.max()
+    near = cKDTree(first.position).sparse_distance_matrix(cKDTree(second.position), reach, output_type="coo_matrix")
+    overlap = first.radius[near.row] + second.radius[near.col] - near.data
+    if np.any(overlap > 0):
+        raise PackingError(
+            f"the packings overlap: {np.count_nonzero(overlap > 0)} pairs of grains, by up to "
+            f"{overlap.max():.3g} m; must be none, so put their centres further apart"
+        )
+
+
+def extent(packing):
+    """Largest distance [m] of a grain's centre from the origin."""
+    return np.linalg.norm(packing.position, axis=1).max()
+
+
+def moved(packing, shift):
+    """The same packing, every grain moved by shift (3,) [m]."""
+    return Packing(packing.position + np.asarray(shift), packing.radius, packing.seed, packing.parameters)
+
+
+def save(path, packing):
+    """Write a packing as .npz: position (N,3), radius (N,) in m, seed, parameters (a JSON text)."""
+    write_atomically(
+        path,
+        lambda file: np.savez(
+            file,
+            position=packing.position,
+            radius=packing.radius,
+            seed=packing.seed,
+            parameters=json.dumps(packing.parameters),
+        ),
+    )
+
+
+def load(path):
+    """Read a packing that save() wrote; raises PackingError when the file is missing or isn't one."""
+    try:
+        with np.load(path) as file:
+            return Packing(file["position"], file["radius"], int(file["seed"]), json.loads(str(file["parameters"])))
+    except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
+        reason = " ".join(str(error).split())
+        raise PackingError(
+            f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"
+        ) from None

@@ -1,0 +1,1 @@
+"""What every kind of run shares: parameters, scene, recorder, run folder, checkpoints, the loop over steps."""

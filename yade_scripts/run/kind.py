@@ -1,0 +1,98 @@
+"""What run/ and runner/ know of a kind of run: one Kind for each file of experiments/, named KIND in its script."""
+
+import importlib.util
+import os
+import sys
+from dataclasses import dataclass, field
+from typing import Any, Callable, Mapping, NamedTuple
+
+import numpy as np
+
+from analysis.runs.format import RunKind
+from yade_scripts.run.parameters import RunParameters
+
+
+class Estimate(NamedTuple):
+    """What a run is about to take: number of grains, mean number of contacts, small steps."""
+
+    grains: float
+    contacts: float
+    steps: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A run that is ready to be built in YADE.
+
+    parameters: complete, with duration [s] and a number as stepFraction; constants: of a contact, as
+    run.scene.pair_constants() gives them; derived: what run.json tells beside the grains and constants;
+    aggregate: (N,) int, the aggregate of each grain; build(): makes the bodies (and the cell);
+    series(state): {name: value} of the kind's own series, state as contact_law.snapshot() with `aggregate`;
+    law: attributes of the contact law, the same words for JKRWadaEngine and Ip2_JKRMat_JKRMat_JKRWadaPhys;
+    energy_is_conserved: whether all channels together are constant (not with moving boundaries and the functors);
+    step_choice: how stepFraction came about, in one line.
+    """
+
+    parameters: RunParameters
+    constants: Mapping
+    derived: Mapping
+    aggregate: np.ndarray
+    build: Callable[[], None]
+    series: Callable[[Mapping], Mapping[str, Any]]
+    law: Mapping = field(default_factory=dict)
+    energy_is_conserved: bool = True
+    step_choice: str = "as given"
+
+    @property
+    def time_step(self):
+        """The small step [s]."""
+        return self.parameters.stepFraction * self.constants["timeUnit"]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of run.
+
+    format: its name, series and states in run folders. parameters: its class of parameters, which parses texts and
+    names the run folder. prepare(parameters, threads of YADE) -> Scene, called within YADE, raises ParameterError and
+    PackingError. estimate(parameters) -> Estimate, without YADE. expected(parameters, run) -> {name: value}: what a
+    run.json should hold of parameters that are None and follow from the run itself.
+    """
+
+    format: RunKind
+    parameters: type[RunParameters]
+    prepare: Callable[[RunParameters, int], Scene]
+    estimate: Callable[[RunParameters], Estimate]
+    expected: Callable[[RunParameters, Mapping], Mapping] = lambda parameters, run: {}
+
+    @property
+    def name(self):
+        return self.format.name
+
+    def parse(self, texts, description=None):
+        """Parameters from {name: text or number}; see yade_scripts.parameters.Parameters.parse."""
+        return self.parameters.parse(texts, description)
+
+
+class NoKind(ValueError):
+    """A script that defines no kind of run; the message is one line."""
+
+
+def kind_of(script):
+    """The KIND that a script defines; raises NoKind. The script is imported, not run."""
+    if not os.path.isfile(script):
+        raise NoKind(f"{script}: no such script")
+    name = "script_" + os.path.splitext(os.path.basename(script))[0]
+    path = list(sys.path)
+    try:
+        spec = importlib.util.spec_from_file_location(name, script)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise NoKind(f"{script}: {' '.join(str(error).split()) or type(error).__name__}") from None
+    finally:
+        sys.path[:] = path
+    kind = getattr(module, "KIND", None)
+    if not isinstance(kind, Kind):
+        raise NoKind(f"{script}: defines no KIND; must be a script such as yade_scripts/collide.py")
+    return kind

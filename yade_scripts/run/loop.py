@@ -1,0 +1,42 @@
+"""Steps a scene to its end, or to where it is stopped or fails."""
+
+from yade.wrapper import Omega
+
+from yade_scripts.run.progress import progress_bar
+from yade_scripts.run.stop_signals import StopSignals
+
+
+def run(steps, recorder, runner, begin, checkpoints):
+    """Call begin(), step until that many O.steps are taken, and return (outcome, exit status).
+
+    recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
+    taken, with a checkpoint and one more step that records where it stopped; the outcome is then
+    "interrupted". A scene from a checkpoint has taken some of the steps.
+    """
+    omega, stop = Omega(), StopSignals()
+    progress = progress_bar(steps, omega.iter)
+    try:
+        begin()
+        for step in range(omega.iter + 1, steps + 1):
+            omega.step()
+            progress.update()
+            if recorder.error:
+                return f"failed: {one_line(recorder.error)}", 1
+            checkpoints.save_if_due()
+            if stop.received and step < steps:
+                checkpoints.save()
+                recorder.ending, runner.iterPeriod = True, 1
+                omega.step()
+                return "interrupted", 128 + stop.received
+    except (RuntimeError, OSError) as error:  # from an engine, or a checkpoint that can't be written
+        recorder.write_last_good()
+        return f"failed: {one_line(error)}", 1
+    finally:
+        progress.close()
+        stop.restore()
+    return "completed", 0
+
+
+def one_line(error):
+    """What an exception says, on one line."""
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,113 @@
+"""Parameters of every kind of run: how it is stepped, where it is written."""
+
+from dataclasses import dataclass
+
+from yade_scripts.parameters import (
+    POSITIVE,
+    SWITCH,
+    Check,
+    ParameterError,
+    Parameters,
+    between,
+    one_of,
+    parameter,
+)
+from yade_scripts.stability import AUTO, STABLE_STEP
+
+FUSED_THREADS = 2  # JKRWadaEngine's domains
+TOLERANCE, TOLERANCES = 1e-4, (1e-7, 1e-2)  # with stepFraction=auto: default and range
+
+
+@dataclass(frozen=True)
+class RunParameters(Parameters):
+    """The run."""
+
+    stepFraction: float | str = parameter(
+        0.1,
+        Check(
+            f"> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}",
+            lambda x: 0 < x <= STABLE_STEP,
+        ),
+        f"time step; {AUTO}: the longest that keeps to tolerance",
+        "t0",
+        word=AUTO,
+    )
+    tolerance: float | None = parameter(
+        None,
+        between(*TOLERANCES),
+        f"largest error of the energy ledger, with stepFraction={AUTO} only ({TOLERANCE:g})",
+        "K(0)",
+    )
+    engine: str = parameter(
+        "fused", one_of(["fused", "functors"]), "JKRWadaEngine, or YADE's own loop (the reference, much slower)"
+    )
+    threads: int | None = parameter(
+        None,
+        Check(">= 1", lambda n: n >= 1),
+        "of the processor: 1 or 2 for the fused engine; for the functors those that yade -j or yade-batch set",
+        of_consequence=False,
+    )
+    out: str | None = parameter(
+        None,
+        Check("a folder that can be written", lambda text: text != ""),
+        "run folder (runs/<description of the row, or a name made from the parameters>)",
+        of_consequence=False,
+    )
+    overwrite: int = parameter(0, SWITCH, "1: replace a run that has ended", of_consequence=False)
+    resume: int = parameter(
+        0, SWITCH, "1: resume from the run folder's checkpoint, if there is one", of_consequence=False
+    )
+    checkpointInterval: float = parameter(300.0, POSITIVE, "wall time between checkpoints", "s", of_consequence=False)
+
+    @classmethod
+    def parse(cls, texts, description=None):
+        """As Parameters.parse; `out` is named after the table's row or the parameters where it isn't given."""
+        found = super().parse(texts)
+        if found.out is not None:
+            return found
+        return found.changed(out="runs/" + _file_name(description or found._name_with(texts)))
+
+    def title(self):
+        """(name of a run of these parameters, names of the parameters that it tells)."""
+        return "run", ()
+
+    def filled_in(self):
+        """The default tolerance with stepFraction=auto; without it a tolerance is refused."""
+        found = self
+        if self.stepFraction == AUTO:
+            found = self.changed(tolerance=TOLERANCE if self.tolerance is None else self.tolerance)
+        elif self.tolerance is not None:
+            raise ParameterError(
+                f"tolerance = {self.tolerance:g}: given with stepFraction = {self.stepFraction:g}; must be left out, "
+                f"or stepFraction be {AUTO}"
+            )
+        return super(RunParameters, found).filled_in()
+
+    def with_threads(self, of_yade):
+        """The same with the number of threads; of_yade: those that YADE was started with."""
+        if self.engine == "fused":
+            threads = self.threads or min(of_yade, FUSED_THREADS)
+            if threads > FUSED_THREADS:
+                raise ParameterError(
+                    f"threads = {threads}: more than the fused engine has domains; must be 1 to {FUSED_THREADS}"
+                )
+            return self.changed(threads=threads)
+        if self.threads not in (None, of_yade):
+            raise ParameterError(
+                f"threads = {self.threads}: YADE was started with {of_yade}; must be the same "
+                "(yade -jN, or the column !OMP_NUM_THREADS of a table)"
+            )
+        return self.changed(threads=of_yade)
+
+    def _name_with(self, texts):
+        """The title, and whatever else was given and has consequences."""
+        name, told = self.title()
+        columns = self.columns()
+        others = (key for key in sorted(texts) if key not in told and columns[key].of_consequence)
+        return name + "".join(f"-{key}{getattr(self, key)}" for key in others)
+
+
+def _file_name(text):
+    """text as the name of one folder."""
+    allowed = "-_.,=+"
+    return "".join(c if c.isalnum() or c in allowed else "_" for c in text).lstrip(".")[:200] or "run"

@@ -1,0 +1,108 @@
+"""Samples a running scene into its run folder."""
+
+import time
+
+import numpy as np
+from yade.wrapper import Omega
+
+import contact_law
+from analysis.runs.format import CHANNEL_TABLE, CHANNELS, WORK
+from yade_scripts.run.diagnosis import RunFailed, suspects
+
+SECONDS_BETWEEN_WRITES = 10
+LARGEST_LEDGER_ERROR = 0.1  # of the energies at the start and the work done since: beyond, a run isn't worth its time
+WORK_CHANNELS = [channel.name for channel in CHANNEL_TABLE if channel.kind == WORK]
+
+
+class Recorder:
+    """sample() takes one row of the history, and some states: for a PyRunner that is the last engine.
+
+    kind_format: a RunKind of analysis.runs.format, which names the columns; scene: of run.kind, for its series, the
+    grains' aggregates and whether its energy is conserved.
+    An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
+    """
+
+    def __init__(self, folder, schedule, kind_format, scene):
+        self.folder, self.schedule, self.scene = folder, schedule, scene
+        self.history, self.states = kind_format.history, kind_format.states
+        self.columns = [quantity.name for quantity in self.history]
+        self.error = None
+        self.ending = False
+        self._rows, self._written = [], 0
+        self._last_good = None  # state of the last sample, unless it is written already
+        self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
+
+    def rows(self):
+        """The history so far, (T, columns), for a checkpoint."""
+        return np.array(self._rows, dtype=float).reshape(-1, len(self.columns))
+
+    def resume(self, rows):
+        """Have these rows, of a checkpoint, as the history so far; later states of the folder are removed."""
+        self._rows = [tuple(row) for row in rows.tolist()]
+        self._written = sum(number < len(rows) for number in self.schedule.states)
+        self.folder.keep_states(self._written)
+
+    def sample(self):
+        try:
+            self._sample()
+        except Exception as error:
+            self.error = error
+            self.write_last_good()
+
+    def write_last_good(self):
+        """After a failure: the state of the last sample that was in order, if it isn't written yet."""
+        if self._last_good is not None:
+            self._write_state(self._last_good)
+
+    def write_history(self):
+        """Write all samples so far."""
+        series = dict(zip(self.columns, self.rows().T))
+        whole = [quantity.name for quantity in self.history if quantity.kind == "i"]
+        self.folder.write_history({**series, **{name: series[name].astype(int) for name in whole}})
+
+    def _sample(self):
+        state = {**contact_law.snapshot(), "aggregate": self.scene.aggregate}
+        booked = dict(Omega().energy.items())
+        energies = {channel: booked.get(channel, 0.0) for channel in CHANNELS}  # none of it so far: no entry
+        self._require_sound(state, energies)
+        contacts = len(state["contact_pairs"])
+        sample = {"time": state["time"], **energies, "contacts": contacts, **self.scene.series(state)}
+        number = len(self._rows)
+        self._rows.append(tuple(sample[name] for name in self.columns))
+        self._last_good = state
+        if self.ending or number in self.schedule.states:
+            self._write_state(state)
+        if time.monotonic() >= self._next_write:
+            self.write_history()
+            self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
+
+    def _write_state(self, state):
+        there = [quantity.name for quantity in self.states if not quantity.optional or quantity.name in state]
+        self.folder.write_state(self._written, {name: state[name] for name in there})
+        self._written += 1
+        self._last_good = None
+
+    def _require_sound(self, state, energies):
+        """Raise RunFailed when a number is not finite, or the ledger of all channels is off by a tenth."""
+        when = f'at {state["time"]:.4g} s'
+        for channel, energy in energies.items():
+            if not np.isfinite(energy):
+                raise RunFailed(f"energy {channel} is {energy} {when}")
+        finite = np.isfinite(state["position"]).all(axis=1)
+        if not finite.all():
+            raise RunFailed(f'body {state["ids"][~finite][0]} has no finite position {when}')
+        if self.scene.energy_is_conserved:
+            self._require_conserved(state, energies, when)
+
+    def _require_conserved(self, state, energies, when):
+        start = energies
+        if self._rows:
+            first = self.columns.index(CHANNELS[0])
+            start = dict(zip(CHANNELS, self._rows[0][first : first + len(CHANNELS)]))
+        more = sum(energies.values()) - sum(start.values())
+        scale = sum(map(abs, start.values())) + sum(abs(energies[name] - start[name]) for name in WORK_CHANNELS)
+        if abs(more) > LARGEST_LEDGER_ERROR * scale:
+            raise RunFailed(
+                f"energy is not conserved ({more:.3g} J more than at the start, of {scale:.3g} J) "
+                f"{when}: the step is too long{suspects(state)}"
+            )

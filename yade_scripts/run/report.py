@@ -1,0 +1,70 @@
+"""run.json from the start of a run to its end, and the line that says how it ended."""
+
+import os
+import re
+import sys
+import time
+
+import numpy as np
+
+from yade_scripts.run import checkpoint
+from yade_scripts.run.folder import hardware
+
+
+def made_with():
+    """What run.json says of the software: its versions, and the plugin's commit. Called within YADE."""
+    import yade.config
+
+    import contact_law
+
+    return {
+        "versions": {
+            "yade": yade.config.version,
+            "python": sys.version.split()[0],
+            "numpy": np.__version__,
+            "contact_law": contact_law.__version__,
+        },
+        "commit": contact_law.commit,
+    }
+
+
+class Report:
+    """Writes run.json at the start (outcome "running", which a killed run keeps) and at the end.
+
+    about: what run.json tells of the run beside software and hardware; start: of this process, on the clock of
+    time.monotonic(); earlier: wall time [s] before interruptions.
+    """
+
+    def __init__(self, folder, about, start, earlier=0.0):
+        self.folder, self.start = folder, start - earlier
+        self.run = {**about, **made_with(), "hardware": hardware()}
+        self._write("running")
+
+    def wall_time(self):
+        """Seconds that the run has taken, those before interruptions included."""
+        return time.monotonic() - self.start
+
+    def end(self, outcome):
+        """Write the outcome and, if the run came to its planned end, the mark of that; print one line."""
+        self._write(outcome)
+        if outcome == "completed":
+            self.folder.write_ended()
+            checkpoint.remove(self.folder.path)
+        if outcome.startswith("failed"):
+            sys.stderr.write(f"{os.path.basename(sys.argv[0])}: {outcome}\n")
+        print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
+
+    def _write(self, outcome):
+        self.folder.write_run({**self.run, "wallTime": self.wall_time(), "outcome": outcome})
+
+
+def closing_line(path, outcome, seconds):
+    """What a script prints at its end; read_closing_line() finds it in a log."""
+    return f"run folder: {path} ({outcome}, {seconds:.1f} s)"
+
+
+def read_closing_line(log):
+    """(path, outcome) from the text of a log, or None when the script didn't get to its end."""
+    line = r"^run folder: (.*?) \((completed|interrupted|failed: .*), [0-9.]+ s\)$"
+    found = re.findall(line, log, re.MULTILINE)
+    return found[-1] if found else None

@@ -1,0 +1,29 @@
+"""When a run is sampled, and which samples become states."""
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Steps of the run; a sample every `interval` of them and at both ends; which samples become states."""
+
+    steps: int
+    interval: int
+    states: frozenset
+
+    @classmethod
+    def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22):
+        """At most `interval` steps between samples, and at least `fewest_samples` if the steps suffice.
+
+        Runs of more than MOST_SAMPLES intervals are sampled less often.
+        """
+        steps = max(1, ceil(duration / time_step * (1 - 1e-12)))
+        interval = max(1, min(interval, steps // fewest_samples), ceil(steps / MOST_SAMPLES))
+        samples = ceil(steps / interval)
+        chosen = np.linspace(0, samples, states).round().astype(int)
+        return cls(samples * interval, interval, frozenset(int(number) for number in chosen))

@@ -1,0 +1,73 @@
+"""A run from its parameters to its run folder: what a script of a kind of run calls."""
+
+import os
+import sys
+import time
+
+from yade_scripts.run.arguments import gather
+from yade_scripts.run.errors import one_line_errors
+
+
+def main(kind, description):
+    """Run the parameters of the command line or of yade-batch, and end the process.
+
+    kind: run.kind.Kind; description: what --help says before the parameters. To be called within YADE.
+    """
+    begun = time.monotonic()
+    script = os.path.basename(sys.argv[0])
+    if "--help" in sys.argv[1:]:
+        print(f"{description}\n{kind.parameters.help_text()}")
+        sys.exit(0)
+    with one_line_errors(script):
+        parameters = kind.parse(*gather(sys.argv[1:]))
+        from yade.wrapper import Omega
+
+        import contact_law  # noqa: F401  (the plugin, before anything asks it)
+
+        scene = kind.prepare(parameters, Omega().numThreads)
+        folder, saved = _open(kind, scene)
+    outcome, status, report = _carry_out(kind, scene, folder, saved, begun)
+    report.end(outcome)
+    sys.exit(status)
+
+
+def _open(kind, scene):
+    """The run folder, and its checkpoint if the run resumes from one."""
+    from yade_scripts.run import report
+    from yade_scripts.run.folder import RunFolder
+
+    folder = RunFolder(scene.parameters.out, scene.parameters.overwrite, scene.parameters.resume)
+    if folder.checkpoint:
+        folder.checkpoint.require_agreement(kind, scene.parameters, report.made_with())
+    return folder, folder.checkpoint
+
+
+def _carry_out(kind, scene, folder, saved, begun):
+    """(outcome, exit status, report) of the run."""
+    from yade_scripts.run import checkpoint, loop
+    from yade_scripts.run import scene as yade_scene
+    from yade_scripts.run.recorder import Recorder
+    from yade_scripts.run.report import Report
+    from yade_scripts.run.schedule import Schedule
+
+    parameters = scene.parameters
+    schedule = Schedule.of(parameters.duration, scene.time_step)
+    recorder = Recorder(folder, schedule, kind.format, scene)
+    if saved:
+        recorder.resume(saved.rows)
+        steps, runner, begin = yade_scene.resume(scene, schedule, recorder, saved)
+    else:
+        steps, runner, begin = yade_scene.start(scene, schedule, recorder)
+    about = {
+        "kind": kind.name,
+        "parameters": parameters.as_dict(),
+        "derived": yade_scene.derived(scene, schedule),
+        "seed": parameters.seed,
+    }
+    report = Report(folder, about, begun, saved.wallTime if saved else 0.0)
+    checkpoints = checkpoint.Writer(folder.path, report.run, recorder, report.wall_time, parameters.checkpointInterval)
+    if scene.step_choice != "as given":
+        print(f"step: {scene.step_choice}", flush=True)
+    outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
+    recorder.write_history()
+    return outcome, status, report

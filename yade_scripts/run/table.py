@@ -1,0 +1,67 @@
+"""yade-batch's tables read and written without YADE, by the rules of its TableParamReader."""
+
+import re
+from dataclasses import dataclass
+
+from yade_scripts.run.atomic_write import write_atomically
+
+
+class TableError(ValueError):
+    """A table that can't be used; the message is one line: what, where, what it must be."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of a table: its number from 1, its description, {column: text} of what it gives."""
+
+    line: int
+    description: str
+    cells: dict
+
+    @property
+    def parameters(self):
+        """The cells without yade-batch's own columns."""
+        return {name: text for name, text in self.cells.items() if name[0] != "!"}
+
+
+def read(path):
+    """The rows of a table in their order: = repeats the cell above, and cells with * are left out.
+
+    Columns named !... are yade-batch's own and stay. Raises TableError when the file can't be read, a row has
+    another number of cells than the header, or there are no rows.
+    """
+    try:
+        with open(path) as file:
+            lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
+    except (OSError, UnicodeDecodeError) as error:
+        raise TableError(f'{path}: {getattr(error, "strerror", error)}; must be a table of parameters') from None
+    used = [(number, cells) for number, cells in enumerate(lines, 1) if cells]
+    if len(used) < 2:
+        raise TableError(f"{path}: no rows; must be a line of names, then rows of values")
+    header = used[0][1]
+    marked = [name for name in header if name.endswith("!")] or header
+    rows, above = [], {}
+    for number, cells in used[1:]:
+        if len(cells) != len(header):
+            raise TableError(f"{path}: line {number} has {len(cells)} cells; must be {len(header)}, one for each name")
+        above = {name: above.get(name, "=") if cell == "=" else cell for name, cell in zip(header, cells)}
+        if "=" in above.values():
+            raise TableError(f"{path}: line {number}: = has no row above; must be a value")
+        plain = {name.rstrip("!"): cell for name, cell in above.items() if cell != "*"}
+        description = plain.pop("description", None) or ",".join(
+            f'{name.rstrip("!")}={above[name]}' for name in marked
+        ).replace("'", "").replace('"', "")
+        if "description" not in header and any(row.description == description for row in rows):
+            description += f"__line={number}__"
+        rows.append(Row(number, description, plain))
+    return rows
+
+
+def write(path, rows, comment=""):
+    """Write [{column: text}] as a table, * where a row has no such column; comment: lines for its head."""
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    cells = [columns] + [[str(row.get(name, "*")) for name in columns] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*cells)]
+    text = "".join(f"# {line}\n" for line in comment.splitlines())
+    text += "".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() + "\n" for line in cells)
+    write_atomically(path, lambda file: file.write(text.encode()))

@@ -1,0 +1,147 @@
+"""A study's folder for logs, its yade-batch, and what is measured for the estimate."""
+
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import time
+from contextlib import suppress
+
+from yade_scripts.run import table
+from yade_scripts.run.folder import being_written, write_json
+from yade_scripts.runner.batch_command import LOGS, batch_command
+from yade_scripts.runner.cost import TELLING, Cost
+from yade_scripts.runner.rows import DONE
+
+MEASURING = 300  # s, at most
+MEASURE_SPEED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "measure_speed.py")
+NICE = "10"  # as yade-batch runs its jobs
+
+
+class StudyBusy(RuntimeError):
+    """Another process runs the same study; the message is one line."""
+
+
+class StudyFolder:
+    """runs/logs/NAME: a log for each row, yade-batch's own, the table of what was left, the measured speed."""
+
+    def __init__(self, name):
+        self.path = os.path.join(LOGS, name)
+        self.held = None
+
+    def file(self, name):
+        return os.path.join(self.path, name)
+
+    def log(self, row):
+        return self.file(f"{row.name}.log")
+
+    def lock(self):
+        """Take the study for this process and its jobs; raises StudyBusy when another has it."""
+        os.makedirs(self.path, exist_ok=True)
+        self.held = os.open(self.path, os.O_RDONLY)
+        try:
+            fcntl.flock(self.held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise StudyBusy(
+                f"{self.path}: this study is being run by another process, or its last jobs still "
+                "are; must be one at a time (--status shows how far it is)"
+            ) from None
+
+    def cost(self, rows, states):
+        """Cost from the rows that have ended, and from what was measured."""
+        ended = [(row, state.seconds) for row, state in zip(rows, states) if state.kind == DONE and state.seconds]
+        try:
+            with open(self.file("speed.json")) as file:
+                speed = json.load(file)
+            row = next(row for row in rows if row.name == speed["row"] and row.parameters)
+            measured = row, speed["contactUpdatesPerSecond"], speed["setup"]
+        except (OSError, ValueError, KeyError, StopIteration):
+            measured = None
+        return Cost(measured, ended)
+
+    def measure(self, row, rows, states, at_once):
+        """Time a piece of a row's run, at_once of them together, unless runs have ended to judge by."""
+        if any(state.kind == DONE and (state.seconds or 0) >= TELLING for state in states):
+            return
+        scene = [f"{name}={text}" for name, text in row.cells.items() if name[0] != "!"]
+        command = ["nice", "-n", NICE, "yade", "-n", "-x", MEASURE_SPEED, row.script, *scene]
+        environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
+        together = max(1, at_once // (row.parameters.threads or 1))
+        pieces = [
+            subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
+            for _ in range(together)
+        ]
+        try:
+            found = [json.loads(piece.communicate(timeout=MEASURING)[0].splitlines()[-1]) for piece in pieces]
+        except (subprocess.TimeoutExpired, ValueError, IndexError):  # a row that fails says so when it is run
+            for piece in pieces:
+                piece.kill()
+            return
+        slowest = min(found, key=lambda piece: piece["contactUpdatesPerSecond"])
+        write_json(self.file("speed.json"), {**slowest, "row": row.name})
+
+    def basis(self, rows, states):
+        """What the estimate rests on, in words."""
+        cost = self.cost(rows, states)
+        telling = sum(time >= TELLING for _, time in cost.ended)
+        if telling:
+            return f"from {telling} runs that have ended"
+        if cost.measured:
+            return f"measured: {cost.measured[1] / 1e6:.1f} million contact updates/s of each at first"
+        return "nothing could be measured"
+
+
+class Batch:
+    """yade-batch at work on rows, in a session of its own, so that stop() reaches the jobs and Ctrl-C doesn't."""
+
+    def __init__(self, folder, rows, jobs):
+        self.rows = rows
+        left = folder.file("left.table")
+        table.write(
+            left,
+            [
+                {
+                    "description": row.name,
+                    **row.cells,
+                    "out": row.out,
+                    "resume": 1,
+                    "!SCRIPT": row.script,
+                    "!THREADS": row.parameters.threads or 1,
+                }
+                for row in rows
+            ],
+        )
+        for row in rows:  # an earlier failure would still be one to --status until the row's turn comes
+            with suppress(FileNotFoundError):
+                os.remove(folder.log(row))
+        self._output = open(folder.file("yade-batch.out"), "w")
+        command = batch_command(left, folder.file("@.log"), ["-j", str(jobs), "--nice", NICE])
+        # Jobs inherit the study's lock: it is free again when the last of them is gone, whatever becomes of this.
+        self._process = subprocess.Popen(
+            command,
+            stdout=self._output,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
+            pass_fds=[folder.held],
+        )
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._output.close()
+
+    def running(self):
+        return self._process.poll() is None
+
+    def stop(self):
+        """End yade-batch and have the runs write their checkpoints; returns when they have."""
+        try:
+            os.killpg(self._process.pid, signal.SIGTERM)
+        except ProcessLookupError:
+            pass
+        self._process.wait()
+        while any(being_written(row.out) for row in self.rows):
+            time.sleep(0.1)

@@ -1,0 +1,176 @@
+"""The rows of a study, and what has become of each, from its run folder and its log."""
+
+import json
+import os
+import re
+import signal
+import time
+import zipfile
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from analysis.runs.format import ENDED_FILE, HISTORY_FILE, RUN_FILE
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run import checkpoint, table
+from yade_scripts.run.agreement import difference
+from yade_scripts.run.folder import being_written
+from yade_scripts.run.kind import Kind, NoKind, kind_of
+from yade_scripts.run.parameters import RunParameters
+from yade_scripts.runner.batch_command import DEFAULT_SCRIPT, failure
+
+DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
+
+
+@dataclass(frozen=True)
+class StudyRow:
+    """A row of a table: its kind of run and parameters (None where they are wrong), or the error of these."""
+
+    name: str
+    cells: dict
+    script: str
+    kind: Kind = None
+    parameters: RunParameters = None
+    error: str = None
+
+    @property
+    def out(self):
+        """The run folder."""
+        return self.parameters.out
+
+    @cached_property
+    def estimate(self):
+        """run.kind.Estimate of its run."""
+        return self.kind.estimate(self.parameters)
+
+
+@dataclass(frozen=True)
+class State:
+    """kind: DONE, ...; progress: 0 to 1; seconds: wall time spent; left: seconds by the run's own pace, if known."""
+
+    kind: str
+    progress: float = 0.0
+    seconds: float = None
+    left: float = None
+    note: str = ""
+
+
+def read(path):
+    """[StudyRow] of a table; raises TableError, also when two rows would write to one folder or one log.
+
+    The column !SCRIPT names the script of a row's kind of run, as for yade-batch; without it rows are collisions.
+    """
+    rows, lines, kinds = [], {}, {}
+    for row in table.read(path):
+        name = re.sub(r"[^\w.,=+-]", "_", row.description)
+        script, kind, parameters, error = row.cells.get("!SCRIPT", DEFAULT_SCRIPT), None, None, None
+        try:
+            kind = kinds[script] = kinds.get(script) or kind_of(script)
+            parameters = kind.parse(row.parameters, row.description)
+        except (ParameterError, NoKind) as problem:
+            error = f"line {row.line} of {path}: {problem}"
+        for key in {f"description = {row.description}", f"out = {parameters.out if parameters else name}"}:
+            if key in lines:
+                raise table.TableError(f"{path}: lines {lines[key]} and {row.line} both have {key}; must be one")
+            lines[key] = row.line
+        rows.append(StudyRow(name, row.cells, script, kind, parameters, error))
+    return rows
+
+
+def state(row, log, since=0.0):
+    """What has become of a row. log: the file that its output goes to; failures before `since` don't count."""
+    if row.error:
+        return State(FAILED, note=row.error)
+    folder = row.out
+    run = run_of(folder)
+    if os.path.exists(os.path.join(folder, ENDED_FILE)):
+        return _ended(row, run)
+    if being_written(folder):
+        return _running(folder, run)
+    outcome = run.get("outcome", "")
+    note, progress = _stopped(folder, run)
+    problem = _failure(log) if _changed(log) >= since else None
+    if problem:
+        return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
+    if outcome.startswith("failed") and _changed(os.path.join(folder, RUN_FILE)) >= since:
+        return State(FAILED, progress, note=f"{folder}: {outcome}")
+    return State(WAITING, progress, run.get("wallTime"), note=note)
+
+
+def _ended(row, run):
+    differs = difference(row.kind, row.parameters, run)
+    if differs:
+        note = f"{row.out}: holds an ended run with {differs}; must be the same, or removed to run the row"
+        return State(FAILED, note=note)
+    return State(DONE, 1.0, run.get("wallTime"))
+
+
+def _running(folder, run):
+    """Its pace is that of the wall time and the progress at the last writing of the history."""
+    progress = _progress(folder, run)
+    begun, written = _changed(os.path.join(folder, RUN_FILE)), _changed(os.path.join(folder, HISTORY_FILE))
+    if not written > begun or progress < 0.02:
+        return State(RUNNING, progress)
+    spent, since = run.get("wallTime", 0.0) + written - begun, time.time() - written
+    return State(RUNNING, progress, spent + since, max(0.0, spent * (1 - progress) / progress - since))
+
+
+def _stopped(folder, run):
+    """(what to say of a run that didn't come to its end, how far its checkpoint is)."""
+    if not run:
+        return "", 0.0
+    if not checkpoint.exists(folder):
+        return ("starts again", 0.0) if run.get("outcome") in ("running", "interrupted") else ("", 0.0)
+    try:
+        rows = checkpoint.Checkpoint(folder).rows
+    except checkpoint.CheckpointError:
+        return "", 0.0
+    reached = rows[-1][0] / _end(run) if len(rows) else 0.0
+    return f"checkpoint at {100 * reached:.0f} %", reached
+
+
+def _progress(folder, run):
+    try:
+        with np.load(os.path.join(folder, HISTORY_FILE)) as history:
+            return float(history["time"][-1]) / _end(run)
+    except (OSError, KeyError, IndexError, ValueError, zipfile.BadZipFile):
+        return 0.0
+
+
+def _end(run):
+    return run["derived"]["steps"] * run["derived"]["timeStep"]
+
+
+def run_of(folder):
+    """A run folder's run.json, or {} when there is none."""
+    try:
+        with open(os.path.join(folder, RUN_FILE)) as file:
+            return json.load(file)
+    except (OSError, ValueError):
+        return {}
+
+
+def _changed(path):
+    """When a file was written [s since 1970]; -1 when it isn't there."""
+    try:
+        return os.stat(path).st_mtime
+    except OSError:
+        return -1.0
+
+
+def _failure(log):
+    """Why the job of a log failed; None when it did not, or yade-batch hasn't seen its end."""
+    try:
+        with open(log, errors="replace") as file:
+            summary = file.read().partition("JOB SUMMARY")[2]
+    except OSError:
+        return None
+    if not summary:
+        return None
+    status = re.search(r"^status  : (\d+)", summary, re.MULTILINE)
+    code = int(status.group(1)) >> 8 if status else 0  # of the shell: 128 and more for a signal
+    if code > 128 and code - 128 not in (signal.SIGINT, signal.SIGTERM):
+        return f"killed by signal {code - 128}"
+    problem = failure(log)
+    return problem and problem.removeprefix(f"{log}: ")

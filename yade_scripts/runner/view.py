@@ -1,0 +1,82 @@
+"""What a study looks like as text."""
+
+from tqdm import tqdm
+
+from yade_scripts.runner.cost import makespan
+from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
+
+WIDTH = 20  # of a bar
+SHOWN = 15  # lines of a live table
+
+
+def duration_text(seconds):
+    """02:03 or 1:02:03 for a number of seconds."""
+    return tqdm.format_interval(seconds)
+
+
+def headline(name, states, cost, rows, at_once):
+    """One line: how many rows are done, running, waiting, failed, and the time left."""
+    counts = ", ".join(
+        f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, WAITING, FAILED)
+    )
+    return f"{name}: {counts}{_left(total_left(states, cost, rows, at_once))}"
+
+
+def total_left(states, cost, rows, at_once):
+    """Seconds until every row is done or has failed, or None when no cost is known."""
+    left = [seconds_left(state, cost, row) for state, row in zip(states, rows)]
+    open_rows = [time for time, state in zip(left, states) if state.kind in (RUNNING, WAITING)]
+    if None in open_rows:
+        return None
+    return makespan(
+        [time for time, state in zip(left, states) if state.kind == RUNNING],
+        [time for time, state in zip(left, states) if state.kind == WAITING],
+        at_once,
+    )
+
+
+def seconds_left(state, cost, row):
+    """Of one row: by its own pace when it runs, otherwise by the estimate."""
+    if state.kind not in (RUNNING, WAITING):
+        return 0.0
+    if state.left is not None:
+        return state.left
+    estimate = cost.seconds(row)
+    return None if estimate is None else estimate * (1 - state.progress)
+
+
+def line(row, state, cost):
+    """One row of the table."""
+    text = f"  {state.kind:8s} {row.name:24s}"
+    if state.kind == FAILED:
+        return f"{text} {state.note}"
+    if state.kind == DONE:
+        return f"{text} {duration_text(state.seconds or 0):>8s}"
+    filled = int(WIDTH * state.progress)
+    bar = f' [{"#" * filled}{"." * (WIDTH - filled)}] {100 * state.progress:5.1f} %' if state.kind == RUNNING else ""
+    left = seconds_left(state, cost, row)
+    note = f"  {state.note}" if state.note else ""
+    return text + bar + ("" if left is None else f" {duration_text(left):>8s} left") + note
+
+
+def full_table(name, rows, states, cost, at_once):
+    """Every row, and the headline below."""
+    return "\n".join(
+        [line(row, state, cost) for row, state in zip(rows, states)] + [headline(name, states, cost, rows, at_once)]
+    )
+
+
+def live_table(name, rows, states, cost, at_once):
+    """What runs, what failed, and what comes next, in no more than SHOWN lines, below the headline."""
+    order = (RUNNING, FAILED, WAITING)
+    chosen = sorted(
+        (pair for pair in zip(rows, states) if pair[1].kind in order), key=lambda pair: order.index(pair[1].kind)
+    )
+    more = [f"  and {len(chosen) - SHOWN} more: --status shows all"] if len(chosen) > SHOWN else []
+    return "\n".join(
+        [headline(name, states, cost, rows, at_once)] + [line(row, state, cost) for row, state in chosen[:SHOWN]] + more
+    )
+
+
+def _left(seconds):
+    return "" if seconds is None else f"; {duration_text(seconds)} left"

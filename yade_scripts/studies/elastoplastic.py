@@ -1,0 +1,115 @@
+"""Writes the tables of the study of Arakawa et al. (2024): python3 yade_scripts/studies/elastoplastic.py
+
+full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every scene, at its default step. desk is a
+selection for two hours on two cores, at twice that step. Rows are in the order in which they are
+worth having: small scenes first, and every figure gets its first points early.
+"""
+
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
+from yade_scripts.run import table
+
+FASTEST_STEP = 0.2  # t0; the ledger closes to 1e-4 of the kinetic energy
+REFERENCE = 5  # i of the velocity 10^0.5 m/s at which sizes are compared (Figs 5 to 7)
+VELOCITIES = range(8)
+
+# {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow
+# collisions of larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
+DESK_SIZES = {
+    (0.4, 40): 20,
+    (0.3, 40): 20,
+    (0.4, 50): 8,
+    (0.3, 50): 8,
+    (0.4, 60): 8,
+    (0.3, 60): 8,
+    (0.4, 80): 3,
+    (0.3, 80): 3,
+}
+DESK_VELOCITIES = 6
+DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
+SLOW = (0, 2)
+TIME_UNIT = "1.936532021439599e-10"  # s: t0 of ice
+# A24 follows aggregates of 80 grain radii for 1000 ns, which is 64.6 t0 per grain radius; times from the start.
+DURATION = "64.6*{radius}*" + TIME_UNIT
+# The slowest at R = 40 are followed for twice as long, when more of them have stuck or parted.
+FOLLOWED = {(40, i): "1e-6" for i in range(3)}  # {(radius, i): duration [s]}
+FIRST = 2  # seeds of each of these that come before any third
+
+
+def desk():
+    """[(filling, radius, i, seed)] of the small study."""
+    sizes = [
+        (filling, radius, REFERENCE, seed)
+        for (filling, radius), seeds in DESK_SIZES.items()
+        for seed in range(1, seeds + 1)
+    ]
+    velocities = [
+        (filling, 40, i, seed)
+        for seed in range(1, DESK_VELOCITIES + 1)
+        for filling in (0.4, 0.3)
+        for i in VELOCITIES
+        if i != REFERENCE
+    ]
+    slow = [
+        (filling, radius, i, seed)
+        for (filling, radius), seeds in DESK_SLOW.items()
+        for i in SLOW
+        for seed in range(1, seeds + 1)
+    ]
+    return sorted(sizes + velocities + slow, key=lambda row: (row[3] > FIRST, row[1], row[3]))
+
+
+def full():
+    """[(filling, radius, i, seed)] of all of the paper's runs."""
+    sizes = {(filling, radius, REFERENCE) for filling in (0.4, 0.3) for radius in (40, 50, 60, 70, 80)}
+    velocities = {(filling, radius, i) for filling in (0.4, 0.3) for radius in (40, 80) for i in VELOCITIES}
+    scenes = sorted(sizes | velocities, key=lambda scene: (scene[1], -scene[0], scene[2]))
+    rows = [(*scene, seed) for scene in scenes for seed in range(1, 11)]
+    return sorted(rows, key=lambda row: (row[3] > FIRST, row[1], row[3]))
+
+
+def rows(scenes, folder, step, followed):
+    """A table's rows, with run folders FOLDER/fFILLING-RRADIUS-iI-sSEED; followed: {(radius, i): duration} of
+    those that have another than DURATION."""
+    found = []
+    for filling, radius, i, seed in scenes:
+        name = f"f{filling:g}-R{radius:g}-i{i}-s{seed}"
+        found.append(
+            {
+                "description": name,
+                "filling": filling,
+                "radius": radius,
+                "velocity": f"10**(0.1*{i})",
+                "seed": seed,
+                "duration": followed.get((radius, i), DURATION.format(radius=radius)),
+                "stepFraction": step,
+                "threads": 1,
+                "out": f"{folder}/{name}",
+            }
+        )
+    return found
+
+
+HEAD = """Arakawa et al. (2024), section 3 and Figs 4 to 9: head-on collisions of equal CPE aggregates of ice grains. {which}
+Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0. Written by yade_scripts/studies/elastoplastic.py."""
+
+
+def write_tables(folder):
+    """Write elastoplastic-desk.table and elastoplastic-full.table into a folder."""
+    table.write(
+        os.path.join(folder, "elastoplastic-desk.table"),
+        rows(desk(), "runs/elastoplastic", FASTEST_STEP, FOLLOWED),
+        HEAD.format(which="A selection."),
+    )
+    table.write(
+        os.path.join(folder, "elastoplastic-full.table"),
+        rows(full(), "runs/elastoplastic-full", 0.1, {}),
+        HEAD.format(which="All of the paper's."),
+    )
+
+
+if __name__ == "__main__":
+    write_tables(HERE)
