@@ -62,7 +62,7 @@ def _carry_out(kind, scene, folder, saved, begun):
         "kind": kind.name,
         "parameters": parameters.as_dict(),
         "derived": yade_scene.derived(scene, schedule),
-        "seed": parameters.seed,
+        "seed": parameters.as_dict().get("seed"),
     }
     report = Report(folder, about, begun, saved.wallTime if saved else 0.0)
     checkpoints = checkpoint.Writer(folder.path, report.run, recorder, report.wall_time, parameters.checkpointInterval)
