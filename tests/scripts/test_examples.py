@@ -1,0 +1,55 @@
+"""The examples run as written, and what they print is right."""
+
+import os
+import re
+import subprocess
+
+import pytest
+from running import TOP, environment, messages
+
+EXAMPLES = os.path.join(TOP, "yade_scripts", "examples")
+
+
+def example(name):
+    """The lines that an example prints; it fits a screen and writes no files."""
+    path = os.path.join(EXAMPLES, name)
+    with open(path) as file:
+        assert len(file.readlines()) <= 60
+    done = subprocess.run(
+        ["yade", "-n", "-x", path], cwd=TOP, capture_output=True, text=True, env=environment(), timeout=60
+    )
+    assert done.returncode == 0 and messages(done) == [], done.stderr
+    return done.stdout
+
+
+def test_every_example_is_tested():
+    assert sorted(name for name in os.listdir(EXAMPLES) if name.endswith(".py")) == [
+        "cluster.py",
+        "pair.py",
+        "periodic_cell.py",
+    ]
+
+
+def test_a_pair_sticks_below_its_velocity_and_parts_above():
+    """Restitution (1 - (v_stick/v)^2)^(1/2): what a contact takes doesn't depend on the velocity."""
+    text = example("pair.py")
+    assert re.findall(r"(\S+) of it: stick", text) == ["0.50", "0.95"]
+    parted = {float(v): float(e) for v, e in re.findall(r"(\S+) of it: part, restitution (\S+)", text)}
+    assert parted == {v: pytest.approx((1 - v**-2) ** 0.5, abs=2e-3) for v in (1.05, 2.0)}
+
+
+def test_the_clusters_energy_is_accounted_for():
+    changes = {
+        name: float(value) for name, value in re.findall(r"^(\w+) +([+-]\S+) K\(0\)$", example("cluster.py"), re.M)
+    }
+    assert changes["kinetic"] < -0.1 and changes["rollingDissipation"] > 0.05
+    assert abs(changes.pop("sum")) < 1e-3 and abs(sum(changes.values())) < 2e-3
+
+
+def test_the_shrinking_cell_has_a_rising_pressure():
+    text = example("periodic_cell.py")
+    filling = [float(value) for value in re.findall(r"^filling (\S+)", text, re.M)]
+    pressure = [float(value) for value in re.findall(r"pressure (\S+) Pa", text)]
+    assert len(filling) == 8 and filling == sorted(filling) and filling[-1] > 0.57
+    assert len(pressure) == 7 and pressure[2:] == sorted(pressure[2:]) and pressure[-1] > 5e6
+    assert float(re.search(r"changed by (\S+) of the largest", text).group(1)) < 1e-3
