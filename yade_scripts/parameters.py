@@ -9,9 +9,10 @@ from textwrap import fill
 from typing import Any, Callable
 
 from yade_scripts.arithmetic import NotANumber, evaluate
+from yade_scripts.errors import InputError
 
 
-class ParameterError(ValueError):
+class ParameterError(InputError, ValueError):
     """A wrong parameter; the message is one line: what, where, what it must be."""
 
 

@@ -26,7 +26,7 @@ smaller.
 
 import math
 
-from yade_scripts.packings.lattice import maximum_filling
+from yade_scripts.packings.filling import maximum_filling
 from yade_scripts.parameters import ParameterError
 
 AUTO = "auto"

@@ -182,6 +182,21 @@ def test_an_interrupted_run_leaves_what_it_had(tmp_path, signal_number, status):
     assert last["time"] == history["time"][-1] > 0
 
 
+@pytest.mark.parametrize("arguments", [("radius=4",), ("packing=bcca", "grains=64")], ids=["cpe", "bcca"])
+def test_slow_aggregates_meet_within_the_default_duration(tmp_path, arguments):
+    """At 3 m/s the approach takes longer than the rest: the duration counts from the first touch."""
+    done = collide(tmp_path, *arguments, "velocity=3", "out=run")
+    assert done.returncode == 0, done.stderr
+    about, history = read_json(tmp_path, "run", "run.json"), read_arrays(tmp_path, "run", "history.npz")
+    parameters, derived = about["parameters"], about["derived"]
+    after = 64.6 * parameters["radius"] * derived["timeUnit"]
+    assert parameters["duration"] == pytest.approx(derived["firstTouch"] + after, rel=1e-12)
+    met = history["time"][np.argmax(history["contacts_between"] > 0)]
+    assert 0 <= met - derived["firstTouch"] < 1.5 * np.diff(history["time"])[0]
+    assert history["time"][-1] - met == pytest.approx(after, rel=0.02)
+    assert parameters["filling"] == pytest.approx(parameters["grains"] / parameters["radius"] ** 3, rel=0.02)
+
+
 WRONG = [
     (["velocty=3"], "collide.py: velocty: unknown parameter; must be one of velocity, impact"),
     (["radius=-4"], "collide.py: radius = -4: must be > 0 [grain radii]"),

@@ -11,7 +11,7 @@ EXAMPLES = os.path.join(TOP, "yade_scripts", "examples")
 
 
 def example(name):
-    """The lines that an example prints; it fits a screen and writes no files."""
+    """The lines that an example prints; it fits a screen."""
     path = os.path.join(EXAMPLES, name)
     with open(path) as file:
         assert len(file.readlines()) <= 60

@@ -8,7 +8,7 @@ from running import PYTHON, RUN_TABLE, TOP, environment, read_json
 
 from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.run import table
-from yade_scripts.run.report import closing_line, read_closing_line
+from yade_scripts.run.closing_line import closing_line, read_closing_line
 
 STUDIES = os.path.join(TOP, "yade_scripts", "studies")
 TABLES = sorted(name for name in os.listdir(STUDIES) if name.endswith(".table"))

@@ -47,10 +47,10 @@ class CollisionParameters(AggregateParameters, RunParameters):
     )
 
     def title(self):
-        """collide-ice-f0.4-R20-v3.162-s1 or collide-ice-bcca-N1024-v3.162-s1, and what that tells."""
+        """collide-ice-f0.4-R20-v3.162-s1 or collide-ice-bcca-N1024-v3.162-s1, and the names of what is in it."""
         size = f"bcca-N{self.grains}" if self.packing == "bcca" else f"f{self.filling:g}-R{self.radius:.4g}"
-        told = ("material", "packing", "filling", "radius", "grains", "velocity", "seed")
-        return f"collide-{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", told
+        in_name = ("material", "packing", "filling", "radius", "grains", "velocity", "seed")
+        return f"collide-{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", in_name
 
 
 def complete(parameters, constants, threads):
@@ -196,7 +196,7 @@ def expected(parameters, run):
     held, derived = run.get("parameters", {}), run.get("derived", {})
     found = {name: held.get(name) for name in ("radius", "filling") if getattr(parameters, name) is None}
     touch = derived.get("firstTouch") if run.get("format", 1) > 1 else 0.0
-    if parameters.duration is None and touch is not None:
+    if parameters.duration is None and None not in (touch, held.get("radius"), derived.get("timeUnit")):
         found["duration"] = default_duration(held["radius"], derived["timeUnit"], touch)
     return found
 

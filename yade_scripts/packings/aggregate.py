@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.bcca import bcca
-from yade_scripts.packings.lattice import cpe, grain_number
+from yade_scripts.packings.filling import grain_number
+from yade_scripts.packings.lattice import cpe
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, ParameterError, between, one_of, parameter
 
 MOST_GRAINS = 5_000_000

@@ -22,24 +22,24 @@ def first_touch(first, second, velocity):
         moved = second.position + travelled * along
         near = target.sparse_distance_matrix(cKDTree(moved), reach + window, output_type="coo_matrix")
         apart = first.position[near.row] - moved[near.col]
-        ways = _ways(apart, first.radius[near.row] + second.radius[near.col], along)
-        if ways.size and ways.min() <= window:
-            return float((travelled + ways.min()) / speed)
+        distances = _distances(apart, first.radius[near.row] + second.radius[near.col], along)
+        if distances.size and distances.min() <= window:
+            return float((travelled + distances.min()) / speed)
         travelled += window
     return None
 
 
-def _ways(apart, radii, along):
+def _distances(apart, radii, along):
     """How far grains must move until they touch [m], for those of the pairs that will."""
     ahead = apart @ along
     square = radii**2 - (np.einsum("ij,ij->i", apart, apart) - ahead**2)
     meets = (square >= 0) & (ahead > 0)
-    way = ahead[meets] - np.sqrt(square[meets])
-    return np.maximum(way[way > -1e-9 * radii[meets]], 0.0)  # touching already, to rounding
+    distance = ahead[meets] - np.sqrt(square[meets])
+    return np.maximum(distance[distance > -1e-9 * radii[meets]], 0.0)  # touching already, to rounding
 
 
 def _encounter(first, second, along, reach):
-    """(begin, end): ways [m] between which the spheres around the two can touch; (0, 0) when they never do."""
+    """(begin, end): distances moved [m] between which the spheres around the two can touch; (0, 0) when they never do."""
     centres = [positions.mean(axis=0) for positions in (first, second)]
     extents = [np.linalg.norm(p - c, axis=1).max() for p, c in zip((first, second), centres)]
     apart = centres[0] - centres[1]

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
+from yade_scripts.errors import InputError
 from yade_scripts.run.atomic_write import write_atomically
 
 
-class PackingError(ValueError):
+class PackingError(InputError, ValueError):
     """A packing that can't be made or read; the message is one line: what, where, what it must be."""
 
 

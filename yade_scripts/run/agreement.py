@@ -2,8 +2,6 @@
 
 from math import isclose
 
-from yade_scripts.stability import AUTO
-
 
 def difference(kind, wanted, run):
     """'name = this, not that' for the first parameter in which a run is not what is wanted, or None.
@@ -32,7 +30,7 @@ def _compares_steps(wanted, held):
     A step that is still to be chosen is that of any run that chose it for the same tolerance. A number is compared as
     such, whether or not it was chosen.
     """
-    return not (wanted.stepFraction == AUTO and held.get("tolerance") is not None)
+    return not (isinstance(wanted.stepFraction, str) and held.get("tolerance") is not None)
 
 
 def _same(one, other):

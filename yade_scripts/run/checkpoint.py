@@ -15,13 +15,14 @@ import zipfile
 import numpy as np
 
 from analysis.runs.format import CHECKPOINT_FOLDER
+from yade_scripts.errors import InputError
 from yade_scripts.run.agreement import difference
 from yade_scripts.run.atomic_write import write_atomically
 
 RECORDER = "recorder.npz"
 
 
-class CheckpointError(RuntimeError):
+class CheckpointError(InputError):
     """A checkpoint that can't be used; the message is one line: what, where, what it must be."""
 
 

@@ -3,17 +3,17 @@
 import fcntl
 import json
 import os
-import platform
 import re
 
 import numpy as np
 
 from analysis.runs.format import ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
+from yade_scripts.errors import InputError
 from yade_scripts.run import checkpoint
 from yade_scripts.run.atomic_write import remove_unfinished, write_atomically
 
 
-class RunFolderError(RuntimeError):
+class RunFolderError(InputError):
     """A run folder that can't be used; the message is one line: what, where, what it must be."""
 
 
@@ -97,18 +97,6 @@ def locked_inodes(lines):
     """Inodes on which the lines of /proc/locks say that a process holds a flock; one that waits for it has '->'."""
     held = r"\d+: FLOCK +\S+ +\S+ +-?\d+ +[0-9a-f]+:[0-9a-f]+:(\d+) "
     return {int(found.group(1)) for found in (re.match(held, line) for line in lines) if found}
-
-
-def hardware():
-    """{'cpu': model, 'cores': number} of this machine."""
-    model = platform.processor() or platform.machine()
-    try:
-        with open("/proc/cpuinfo") as lines:
-            names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-            model = next(names, model)
-    except OSError:
-        pass
-    return {"cpu": model, "cores": os.cpu_count()}
 
 
 def _require_usable(path, overwrite):

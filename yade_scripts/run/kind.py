@@ -9,7 +9,7 @@ from typing import Any, Callable, Mapping, NamedTuple
 import numpy as np
 
 from analysis.runs.format import RunKind
-from yade_scripts.run.parameters import RunParameters
+from yade_scripts.errors import InputError
 
 
 class Estimate(NamedTuple):
@@ -24,7 +24,7 @@ class Estimate(NamedTuple):
 class Scene:
     """A run that is ready to be built in YADE.
 
-    parameters: complete, with duration [s] and a number as stepFraction; constants: of a contact, as
+    parameters: of the kind, complete, with a duration and a number as stepFraction; constants: of a contact, as
     run.scene.pair_constants() gives them; derived: what run.json tells beside the grains and constants;
     aggregate: (N,) int, the aggregate of each grain; build(): makes the bodies (and the cell);
     series(state): {name: value} of the kind's own series, state as contact_law.snapshot() with `aggregate`;
@@ -33,7 +33,7 @@ class Scene:
     step_choice: how stepFraction came about, in one line.
     """
 
-    parameters: RunParameters
+    parameters: Any
     constants: Mapping
     derived: Mapping
     aggregate: np.ndarray
@@ -53,17 +53,18 @@ class Scene:
 class Kind:
     """A kind of run.
 
-    format: its name, series and states in run folders. parameters: its class of parameters, which parses texts and
-    names the run folder. prepare(parameters, threads of YADE) -> Scene, called within YADE, raises ParameterError and
-    PackingError. estimate(parameters) -> Estimate, without YADE. expected(parameters, run) -> {name: value}: what a
-    run.json should hold of parameters that are None and follow from the run itself.
+    format: its name, series and states in run folders. parameters: its class of parameters, of
+    materials.GrainParameters and run.parameters.RunParameters, with a field `duration` [s] and the method title().
+    prepare(parameters, threads of YADE) -> Scene, called within YADE, raises ParameterError and PackingError.
+    estimate(parameters) -> Estimate, without YADE. expected(parameters, run) -> {name: value}: what a run.json should
+    hold of parameters that are None and follow from the run itself.
     """
 
     format: RunKind
-    parameters: type[RunParameters]
-    prepare: Callable[[RunParameters, int], Scene]
-    estimate: Callable[[RunParameters], Estimate]
-    expected: Callable[[RunParameters, Mapping], Mapping] = lambda parameters, run: {}
+    parameters: type
+    prepare: Callable[[Any, int], Scene]
+    estimate: Callable[[Any], Estimate]
+    expected: Callable[[Any, Mapping], Mapping] = lambda parameters, run: {}
 
     @property
     def name(self):
@@ -74,7 +75,7 @@ class Kind:
         return self.parameters.parse(texts, description)
 
 
-class NoKind(ValueError):
+class NoKind(InputError):
     """A script that defines no kind of run; the message is one line."""
 
 
@@ -88,7 +89,7 @@ def kind_of(script):
         spec = importlib.util.spec_from_file_location(name, script)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise NoKind(f"{script}: {' '.join(str(error).split()) or type(error).__name__}") from None
     finally:
         sys.path[:] = path

@@ -68,7 +68,7 @@ class RunParameters(Parameters):
         return found.changed(out="runs/" + _file_name(description or found._name_with(texts)))
 
     def title(self):
-        """(name of a run of these parameters, names of the parameters that it tells)."""
+        """(name of a run of these parameters, names of the parameters that are in it)."""
         return "run", ()
 
     def filled_in(self):
@@ -101,13 +101,13 @@ class RunParameters(Parameters):
 
     def _name_with(self, texts):
         """The title, and whatever else was given and has consequences."""
-        name, told = self.title()
+        name, in_name = self.title()
         columns = self.columns()
-        others = (key for key in sorted(texts) if key not in told and columns[key].of_consequence)
+        others = (key for key in sorted(texts) if key not in in_name and columns[key].of_consequence)
         return name + "".join(f"-{key}{getattr(self, key)}" for key in others)
 
 
 def _file_name(text):
     """text as the name of one folder."""
-    allowed = "-_.,=+"
-    return "".join(c if c.isalnum() or c in allowed else "_" for c in text).lstrip(".")[:200] or "run"
+    others = "-_.,=+"
+    return "".join(c if c.isalnum() or c in others else "_" for c in text).lstrip(".")[:200] or "run"

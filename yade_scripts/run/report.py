@@ -1,14 +1,14 @@
 """run.json from the start of a run to its end, and the line that says how it ended."""
 
 import os
-import re
+import platform
 import sys
 import time
 
 import numpy as np
 
 from yade_scripts.run import checkpoint
-from yade_scripts.run.folder import hardware
+from yade_scripts.run.closing_line import closing_line
 
 
 def made_with():
@@ -58,13 +58,13 @@ class Report:
         self.folder.write_run({**self.run, "wallTime": self.wall_time(), "outcome": outcome})
 
 
-def closing_line(path, outcome, seconds):
-    """What a script prints at its end; read_closing_line() finds it in a log."""
-    return f"run folder: {path} ({outcome}, {seconds:.1f} s)"
-
-
-def read_closing_line(log):
-    """(path, outcome) from the text of a log, or None when the script didn't get to its end."""
-    line = r"^run folder: (.*?) \((completed|interrupted|failed: .*), [0-9.]+ s\)$"
-    found = re.findall(line, log, re.MULTILINE)
-    return found[-1] if found else None
+def hardware():
+    """{'cpu': model, 'cores': number} of this machine."""
+    model = platform.processor() or platform.machine()
+    try:
+        with open("/proc/cpuinfo") as lines:
+            names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+            model = next(names, model)
+    except OSError:
+        pass
+    return {"cpu": model, "cores": os.cpu_count()}

@@ -96,7 +96,8 @@ def start(scene, schedule, recorder):
     scene.build()
     omega.trackEnergy = True
     omega.dt = scene.time_step
-    runner = sampling(recorder, schedule.interval)
+    _publish(recorder)
+    runner = PyRunner(command="history.sample()", iterPeriod=schedule.interval, initRun=True)
     if parameters.engine == "functors":
         omega.engines = functor_engines(parameters.grainRadius, runner, **scene.law)
         return schedule.steps + 1, runner, lambda: None
@@ -111,7 +112,7 @@ def resume(scene, schedule, recorder, saved):
     """The same for the scene of a checkpoint, which has its engines and whose start has been sampled."""
     omega = Omega()
     saved.load_scene()
-    sampling(recorder, schedule.interval)
+    _publish(recorder)
     fused, runner = omega.engines[0], omega.engines[-1]
     if scene.parameters.engine == "functors":
         return schedule.steps + 1, runner, lambda: None
@@ -119,10 +120,9 @@ def resume(scene, schedule, recorder, saved):
     return schedule.steps // schedule.interval, runner, lambda: None
 
 
-def sampling(recorder, period):
-    """A PyRunner that samples; its command is run in YADE's main namespace, where it finds the recorder."""
+def _publish(recorder):
+    """Put the recorder where the PyRunner's command finds it: YADE runs that in the main namespace."""
     sys.modules["__main__"].history = recorder
-    return PyRunner(command="history.sample()", iterPeriod=period, initRun=True)
 
 
 def functor_engines(grain_radius, runner, **law):

@@ -4,8 +4,8 @@ import os
 import sys
 import time
 
+from yade_scripts.errors import one_line_errors
 from yade_scripts.run.arguments import gather
-from yade_scripts.run.errors import one_line_errors
 
 
 def main(kind, description):

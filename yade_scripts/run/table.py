@@ -3,10 +3,11 @@
 import re
 from dataclasses import dataclass
 
+from yade_scripts.errors import InputError
 from yade_scripts.run.atomic_write import write_atomically
 
 
-class TableError(ValueError):
+class TableError(InputError, ValueError):
     """A table that can't be used; the message is one line: what, where, what it must be."""
 
 

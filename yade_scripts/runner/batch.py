@@ -117,7 +117,7 @@ class Batch:
                 os.remove(folder.log(row))
         self._output = open(folder.file("yade-batch.out"), "w")
         command = batch_command(left, folder.file("@.log"), ["-j", str(jobs), "--nice", NICE])
-        # Jobs inherit the study's lock: it is free again when the last of them is gone, whatever becomes of this.
+        # Jobs inherit the study's lock: it is free again when the last of them has ended, even if this process is killed.
         self._process = subprocess.Popen(
             command,
             stdout=self._output,

@@ -4,7 +4,7 @@ import os
 import re
 import shutil
 
-from yade_scripts.run.report import read_closing_line
+from yade_scripts.run.closing_line import read_closing_line
 
 DEFAULT_SCRIPT = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "collide.py")
 LOGS = os.path.join("runs", "logs")

@@ -14,20 +14,16 @@ import time
 
 top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
 sys.path.insert(0, top)
-from yade_scripts.parameters import ParameterError
+from yade_scripts.errors import one_line_errors
 from yade_scripts.run.arguments import from_arguments
-from yade_scripts.run.errors import one_line_errors
-from yade_scripts.run.kind import NoKind, kind_of
+from yade_scripts.run.kind import kind_of
 
 SECONDS = 1.0
 STEPS = 20
 
 start = time.process_time()
 with one_line_errors("measure_speed.py"):
-    try:
-        kind = kind_of(sys.argv[1])
-    except NoKind as problem:
-        raise ParameterError(str(problem)) from None
+    kind = kind_of(sys.argv[1])
     parameters = kind.parse(from_arguments(sys.argv[2:]))
     import contact_law  # noqa: F401  (the plugin, before anything asks it)
 

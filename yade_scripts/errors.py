@@ -1,0 +1,18 @@
+"""Wrong input ends a script with one line on stderr and exit status 2."""
+
+import sys
+from contextlib import contextmanager
+
+
+class InputError(Exception):
+    """Input that can't be used; the message is one line: what, where, what it must be."""
+
+
+@contextmanager
+def one_line_errors(script):
+    """Within it, an InputError, or a plugin that isn't built, becomes one line and exit status 2."""
+    try:
+        yield
+    except (InputError, ImportError, MemoryError) as error:
+        sys.stderr.write(f'{script}: {" ".join(str(error).split()) or type(error).__name__}\n')
+        sys.exit(2)
