@@ -9,12 +9,13 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [os.path.dirname(os.path.dirname(HERE)), os.path.dirname(HERE), HERE]
+import contact_law  # noqa: E402,F401  (makes the classes known that scenes imports)
+
+# isort: split
 import numpy as np  # noqa: E402
 from measured_scenes import GRAIN_RADIUS  # noqa: E402
 from scenes import constants, fused_engine, grain, ice, new_scene  # noqa: E402
 from yade.wrapper import *  # noqa: E402,F403
-
-import contact_law  # noqa: E402,F401
 
 asked = json.loads(sys.argv[1])
 
