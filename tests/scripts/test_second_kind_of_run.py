@@ -131,9 +131,25 @@ def test_the_ledger_counts_the_work_of_the_boundaries(run):
     assert np.abs(total - total[0]).max() < 1e-3 * np.ptp(stored)
 
 
-def test_wrong_parameters_and_help(tmp_path):
-    refused = shrink(tmp_path, "rate=-1")
-    assert refused.returncode == 2 and messages(refused) == ["shrink.py: rate = -1: must be > 0 [1/t0]"]
+@pytest.mark.parametrize(
+    "argument, message",
+    [
+        ("rate=-1", "rate = -1: must be > 0 [1/t0]"),
+        ("stepFraction=auto", "stepFraction = auto: not measured for this kind of run; must be a number [t0]"),
+        (
+            "duration=1e9",
+            "duration = 1e+09: 5.2e+19 steps of 0.1 t0; must be at most 1e+09 steps, 0.0194 s with this "
+            "stepFraction",
+        ),
+    ],
+)
+def test_wrong_parameters_give_one_line(tmp_path, argument, message):
+    refused = shrink(tmp_path, argument)
+    assert refused.returncode == 2 and messages(refused) == [f"shrink.py: {message}"]
+    assert os.listdir(tmp_path) == ["shrink.py"]
+
+
+def test_help(tmp_path):
     assert "rate = 0.0003 [1/t0]" in shrink(tmp_path, "--help").stdout
 
 

@@ -7,7 +7,7 @@ from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.bcca import bcca
 from yade_scripts.packings.filling import grain_number
 from yade_scripts.packings.lattice import cpe
-from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, ParameterError, between, one_of, parameter
+from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
 
 MOST_GRAINS = 5_000_000
 MOST_BCCA_GRAINS = 100_000  # made in a minute
@@ -21,7 +21,10 @@ class AggregateParameters(GrainParameters):
         "cpe", one_of(["cpe", "bcca"]), "how they are made: close-packed and extracted, or cluster-cluster aggregation"
     )
     filling: float | None = parameter(
-        None, POSITIVE, "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4)", "1"
+        None,
+        Check("> 0 and at most what the lattice holds", lambda x: x > 0),
+        "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4)",
+        "1",
     )
     radius: float | None = parameter(
         None, POSITIVE, "radius of a cpe aggregate (20 if grains is not given either)", "grain radii"

@@ -5,7 +5,9 @@ import sys
 import time
 
 from yade_scripts.errors import one_line_errors
+from yade_scripts.parameters import ParameterError
 from yade_scripts.run.arguments import gather
+from yade_scripts.stability import AUTO, require_countable
 
 
 def main(kind, description):
@@ -25,10 +27,18 @@ def main(kind, description):
         import contact_law  # noqa: F401  (the plugin, before anything asks it)
 
         scene = kind.prepare(parameters, Omega().numThreads)
+        _require_finite(scene.parameters, scene.constants["timeUnit"])
         folder, saved = _open(kind, scene)
     outcome, status, report = _carry_out(kind, scene, folder, saved, begun)
     report.end(outcome)
     sys.exit(status)
+
+
+def _require_finite(parameters, time_unit):
+    """Raise ParameterError when a kind of run has left the step open, or the steps are too many."""
+    if parameters.stepFraction == AUTO:
+        raise ParameterError(f"stepFraction = {AUTO}: not measured for this kind of run; must be a number [t0]")
+    require_countable(parameters.duration, parameters.stepFraction, time_unit)
 
 
 def _open(kind, scene):
