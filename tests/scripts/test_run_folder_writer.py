@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-from yade_scripts.experiments.collision import compression_and_velocity
+from analysis.measures.compression import compression_and_velocity
 from yade_scripts.run.folder import RunFolder, RunFolderError, being_written, locked_inodes
 from yade_scripts.run.progress import progress_bar
 from yade_scripts.run.schedule import MOST_SAMPLES, Schedule

@@ -5,6 +5,7 @@ from math import sqrt
 
 import numpy as np
 
+from analysis.measures.compression import compression_and_velocity
 from analysis.runs.format import COLLISION
 from yade_scripts import packings, stability
 from yade_scripts.materials import pair_constants, require_small_contacts
@@ -159,15 +160,6 @@ def series(state, aggregate_radius):
     d, v = compression_and_velocity(state["position"][:, 0], state["velocity"][:, 0], aggregate_radius)
     sides = state["aggregate"][state["contact_pairs"]]
     return {"d": d, "v": v, "contacts_between": int(np.count_nonzero(sides[:, 0] != sides[:, 1]))}
-
-
-def compression_and_velocity(x, v, aggregate_radius):
-    """A24's d [m] and v [m/s] (eqs 10-13) from x components (N,); nan when one side of x = 0 is empty."""
-    right = x > 0
-    if right.all() or not right.any():
-        return np.nan, np.nan
-    compression = 2 * aggregate_radius - (x[right].mean() - x[~right].mean())
-    return compression, -(v[right].mean() - v[~right].mean())
 
 
 def estimate(parameters):

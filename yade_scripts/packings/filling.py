@@ -2,6 +2,8 @@
 
 from math import pi, sqrt
 
+from analysis.theory.aggregates import fcc_filling
+
 
 def maximum_filling(grain_radius, overlap, planar=False):
     """Filling factor of the whole lattice, pi/(3 sqrt 2) [2r/(2r-overlap)]^3 (A24 eq 40); lengths in m.
@@ -10,7 +12,7 @@ def maximum_filling(grain_radius, overlap, planar=False):
     """
     if planar:
         return pi / (2 * sqrt(3)) * (2 * grain_radius / (2 * grain_radius - overlap)) ** 2
-    return pi / (3 * sqrt(2)) * (2 * grain_radius / (2 * grain_radius - overlap)) ** 3
+    return fcc_filling(grain_radius, overlap)
 
 
 def grain_number(filling, relative_radius, planar=False):
