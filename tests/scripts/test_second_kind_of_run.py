@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from running import PYTHON, TOP, environment, messages, read_arrays, read_json
 
+from analysis import open_run
 from analysis.runs.format import CHANNELS
 from yade_scripts.run.kind import NoKind, kind_of
 
@@ -108,6 +109,12 @@ def test_the_run_folder_tells_the_kind_and_holds_its_series(run):
     assert list(history) == ["time", *CHANNELS, "contacts", "filling"]
     strain = 3e-4 * history["time"] / about["derived"]["timeUnit"]
     assert history["filling"] == pytest.approx(history["filling"][0] * np.exp(3 * strain), rel=3e-4)
+
+
+def test_the_analysis_reads_it(run):
+    found = open_run(run)
+    assert found.kind.name == "shrink" and found.ended and len(found.states) == 22
+    assert np.array_equal(found.history["filling"], read_arrays(run, "history.npz")["filling"])
 
 
 def test_states_have_the_cell(run):
