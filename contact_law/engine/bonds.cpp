@@ -40,7 +40,7 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 	const PairConstants<double> constants = s.constantsOf(i, j);
 	ContactHistory<double> h = ContactList::history(old, k);
 
-	const ContactBefore before = aStepAgo(b, bond.rest, m, h);
+	const ContactBefore before = aStepAgo(b, bond.rest, separationAStepAgo(i, j, m), h);
 	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 
 	const BondStepResult result = bondStepWith[s.mechanisms](b, constants, motion, before, bond.rest, h);

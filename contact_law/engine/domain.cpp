@@ -62,7 +62,7 @@ void Domain::addFirstForces()
 	addForces(Second, 0, contacts[Second].blockCount(), false);
 	addForces(Both, sortedBlocks, contacts[Both].blockCount(), false);
 	addBondForces();
-	births();
+	formContacts();
 }
 
 void Domain::addOtherForces(bool behind)
@@ -100,7 +100,7 @@ void Domain::integrateUpTo(int grain)
 	moved = grain;
 }
 
-// The share of the convective acceleration in the kick to come, and its work: the impulse times the mean of the velocities before and after the kick.
+// The part of the convective acceleration in the kick to come, and its work: the impulse times the mean of the velocities before and after the kick.
 void Domain::convect(int first, int last)
 {
 	for (int k = first; k < last; ++k) {
@@ -120,6 +120,16 @@ ContactMotion Domain::motionOf(int i, int j, Image& image) const
 	const double inverseMass =
 	        inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
 	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity };
+}
+
+// Positions move by velocity * dt, and by where a script has put the grains since.
+Vec3<double> Domain::separationAStepAgo(int i, int j, const ContactMotion& m) const
+{
+	Vec3<double> then = m.separation - m.dt * m.velocity;
+	if (s.displaced.empty()) return then;
+	then = then - (s.displaced[i] - s.displaced[j]);
+	nearestImage(cell, then);
+	return then;
 }
 
 void Domain::book(const ContactStepResult& r, const ContactMotion& m, const Image& image, int sort)
@@ -157,7 +167,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	const PairConstants<double> constants = s.constantsOf(i, j);
 	ContactHistory<double> h = ContactList::history(old, k);
 
-	ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, m, h);
+	ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, separationAStepAgo(i, j, m), h);
 	if (s.hasDrag()) {
 		const PreviousVelocity &a = s.previous[i], &b = s.previous[j];
 		before.velocity = Vec3<double> { a.x - b.x, a.y - b.y, a.z - b.z } + image.velocityBefore;
@@ -187,20 +197,20 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	near[sort].push_back(pair);
 }
 
-void Domain::births()
+void Domain::formContacts()
 {
 	for (int sort = 0; sort < 3; ++sort) {
-		std::vector<int> born;
+		std::vector<int> forming;
 		for (const int index : near[sort]) {
-			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, 0)) born.push_back(index);
+			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, 0)) forming.push_back(index);
 		}
-		std::sort(born.begin(), born.end()); // the order of pairs, whatever the order of the list
-		for (const int index : born)
-			birth(sort, index);
+		std::sort(forming.begin(), forming.end()); // the order of pairs, whatever the order of the list
+		for (const int index : forming)
+			formContact(sort, index);
 	}
 }
 
-void Domain::birth(int sort, int index)
+void Domain::formContact(int sort, int index)
 {
 	const Pair p = far[sort][index];
 	Image image;

@@ -1,4 +1,4 @@
-// A share of the grains (a stretch of the space-filling curve) with all contacts that touch them. Contacts across a border are computed in both
+// A part of the grains (a stretch of the space-filling curve) with all contacts that touch them. Contacts across a border are computed in both
 // domains, each adding to its own grains only, so that results do not depend on how many threads the domains are dealt to.
 #pragma once
 #include "../kernel/contact_step.hpp"
@@ -29,7 +29,14 @@ struct Setting {
 	double dt = 0, farGap = 0, smallestRadius = 0;
 	Vec3<double> convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
 	const InstructionSet* passes = nullptr;
+	std::vector<Vec3<double>> displaced; // of each grain, by a script since the latest step [m]; empty when none was
 
+	void displace(int grain, const Vec3<double>& by)
+	{
+		if (by.x == 0 && by.y == 0 && by.z == 0) return;
+		displaced.resize(grains.size(), Vec3<double> { 0, 0, 0 });
+		displaced[grain] = displaced[grain] + by;
+	}
 	bool hasDrag() const { return mechanisms & Drag; }
 	bool convects() const { return convective.x != 0 || convective.y != 0 || convective.z != 0; }
 	Contact contactOf(const ContactList& list, int lane) const
@@ -55,11 +62,11 @@ struct StepSums { // since the start, and (eventWork) of the latest step's event
 	        0; // taken out of the kinetic energy by changes of the cell's velocity gradient and by the convective acceleration [J]
 };
 
-/* The moment a step ago of a pair whose springs rest at a distance `rest`, from where it was: positions moved by velocity * dt, and the pointers of `h`
- * had not turned yet. Constants: of a contact or of a bond. */
-template <class Constants> ContactBefore aStepAgo(const Constants& c, double rest, const ContactMotion& m, const ContactHistory<double>& h)
+/* The moment a step ago of a pair whose springs rest at a distance `rest`: the first grain stood at `then` from the second, and the pointers of `h` had not
+ * turned yet. Constants: of a contact or of a bond. */
+template <class Constants>
+ContactBefore aStepAgo(const Constants& c, double rest, const Vec3<double>& then, const ContactHistory<double>& h)
 {
-	const Vec3<double> then = m.separation - m.dt * m.velocity;
 	const double apart = std::sqrt(dot(then, then));
 	ContactBefore before;
 	before.touching = true;
@@ -74,7 +81,7 @@ class Domain {
 public:
 	Domain(Setting& setting, int begin, int end, int dummy);
 
-	/* A step's forces come in two parts. First what reads grains of other domains, contacts that came since the last sorting, and births; then, when all
+	/* A step's forces come in two parts. First what reads grains of other domains, contacts that came since the last sorting, and contacts that form now; then, when all
 	 * domains have got so far, the sorted rest, behind which grains can be moved as soon as their last contact is done: they are in the cache then. */
 	void addFirstForces();
 	void addOtherForces(bool moveBehind);
@@ -129,9 +136,10 @@ private:
 	static void breaksOf(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
 	void breakOf(int sort, int lane, const BondBlock& before, LaneForces& forces);
 	void addBondEnergies(StoredEnergy<double>&);
-	void births();
-	void birth(int sort, int farIndex);
+	void formContacts();
+	void formContact(int sort, int farIndex);
 	ContactMotion motionOf(int i, int j, Image&) const;
+	Vec3<double> separationAStepAgo(int i, int j, const ContactMotion&) const;
 	void book(const ContactStepResult&, const ContactMotion&, const Image&, int sort);
 	void addAlone(int sort, int i, int j, const ContactStepResult&, const Image&); // kicks of a contact that no pass scatters
 	bool owns(int grain) const { return grain >= begin && grain < end; }

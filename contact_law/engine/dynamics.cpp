@@ -1,7 +1,6 @@
-#include "dynamics.hpp"
+#include "contacts.hpp"
 #include <algorithm>
 #include <omp.h>
-#include <set>
 #include <stdexcept>
 
 namespace contact_law {
@@ -10,12 +9,33 @@ namespace {
 	constexpr double stepsOfNearPairs = 16; // that lists of near pairs should last where grains are fast (measured)
 }
 
-Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Material>& materials, const Options& options_,
-        const std::vector<double>* memory, const Inherited* inherited)
+Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_)
         : options(options_)
-        , count(int(grains.size()))
+{
+	prepare(grains, materials);
+	orderGrains(grains);
+	loadGrains(grains);
+	makeDomains();
+	refreshLists(Lists::FarAndNear);
+	for (auto& domain : domains)
+		setting.neck > 0 ? domain->placeBonds() : domain->placeOverlapping();
+	firstForces();
+}
+
+Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_, const Inherited& inherited)
+        : options(options_)
+{
+	prepare(grains, materials);
+	orderGrains(grains);
+	loadGrains(grains);
+	makeDomains();
+	inherit(inherited);
+}
+
+void Dynamics::prepare(const Grains& grains, const Materials& materials)
 {
 	if (grains.empty()) throw std::invalid_argument("no grains: at least one sphere is needed");
+	count = int(grains.size());
 	setting.passes = &instructionSet(options.instructions);
 	setting.material = materials;
 	setting.linearDamping = options.linearDamping;
@@ -23,36 +43,9 @@ Dynamics::Dynamics(const std::vector<GrainInput>& grains, const std::vector<Mate
 	setting.mechanisms = options.mechanisms;
 	setting.dt = options.dt;
 	setting.convective = options.convective;
-	if (memory)
-		recallOrder(*memory);
-	else
-		orderGrains(grains);
-	loadGrains(grains);
-	makeDomains();
-	if (memory) {
-		recall(*memory);
-		return;
-	}
-	if (inherited) inherit(*inherited);
-	refreshLists(true);
-	if (inherited && inherited->stepBehind) { // an ordinary step's end: events since the histories' moment are found as in any other
-		addForces();
-		for (auto& domain : domains)
-			domain->constraints.work = 0,
-			domain->sums.boundary.done *=
-			        2; // half of it would be missing: of blocked grains it is left out, the boundaries' forces hardly change in a step
-		return;
-	}
-	const bool bonded = setting.neck > 0 && !inherited;
-	for (auto& domain : domains)
-		bonded ? domain->placeBonds() : domain->placeOverlapping();
-	refreshLists(false);
-	for (auto& domain : domains)
-		domain->sortContacts();
-	firstForces();
 }
 
-void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
+void Dynamics::loadGrains(const Grains& grains)
 {
 	const double shrunk = neck::shrunkRadius(setting.neck);
 	double& smallest = setting.smallestRadius;
@@ -63,7 +56,7 @@ void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 		indexHere[original[k]] = k;
 		smallest = std::min(smallest, shrunk * g.radius);
 		setting.grains.push_back(Grain {});
-		write(g, setting.grains.back());
+		copyMotion(g, setting.grains.back());
 		setting.radius.push_back(shrunk * g.radius);
 		setting.grainRadius.push_back(g.radius);
 		setting.kind.push_back(g.kind);
@@ -81,21 +74,21 @@ void Dynamics::loadGrains(const std::vector<GrainInput>& grains)
 	setting.farGap = 0.8 * smallest;
 }
 
-void Dynamics::write(const GrainInput& g, Grain& grain)
+void copyMotion(const GrainMotion& g, Grain& grain)
 {
 	grain.x = g.position[0], grain.y = g.position[1], grain.z = g.position[2];
 	grain.vx = g.velocity[0], grain.vy = g.velocity[1], grain.vz = g.velocity[2];
 	grain.wx = g.angularVelocity[0], grain.wy = g.angularVelocity[1], grain.wz = g.angularVelocity[2];
 }
 
-void Dynamics::write(const Grain& grain, GrainInput& g)
+void copyMotion(const Grain& grain, GrainMotion& g)
 {
 	g.position[0] = grain.x, g.position[1] = grain.y, g.position[2] = grain.z;
 	g.velocity[0] = grain.vx, g.velocity[1] = grain.vy, g.velocity[2] = grain.vz;
 	g.angularVelocity[0] = grain.wx, g.angularVelocity[1] = grain.wy, g.angularVelocity[2] = grain.wz;
 }
 
-void Dynamics::set(int index, const GrainInput& now)
+void Dynamics::set(int index, const GrainMotion& now)
 {
 	const int k = indexHere[index];
 	Grain& p = setting.grains[k];
@@ -104,13 +97,14 @@ void Dynamics::set(int index, const GrainInput& now)
 		setting.blocked[k] = now.blocked;
 	}
 	if (options.orientations) setting.orientation[k] = now.orientation;
-	write(now, p);
-	kick(p, k, -0.5 * setting.dt);
+	const Vec3<double> from = positionOf(p);
+	copyMotion(now, p);
+	setting.displace(k, positionOf(p) - from);
+	kick(setting, p, k, -0.5 * setting.dt);
 	travelSinceFar = travelSinceNear = setting.farGap; // whatever the distance: look for neighbours anew
 }
 
-// The velocities through the given time with the forces as they are; back in time, it undoes what it does.
-void Dynamics::kick(Grain& p, int k, double time) const
+void kick(const Setting& setting, Grain& p, int k, double time)
 {
 	const double m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
 	const Vec3<double>& c = setting.convective; // grows with the velocity before the kick
@@ -160,9 +154,9 @@ template <class Mine, class Wait> void Dynamics::buildGrid(bool firstThread, Min
 	mine([&](Domain&, int d) { grid.place(d, grains, setting.radius.data()); });
 }
 
-void Dynamics::refreshLists(bool farToo)
+void Dynamics::refreshLists(Lists which)
 {
-	if (farToo) {
+	if (which == Lists::FarAndNear) {
 		const auto each = [&](auto&& what) {
 			for (std::size_t d = 0; d < domains.size(); ++d)
 				what(*domains[d], int(d));
@@ -178,10 +172,13 @@ void Dynamics::refreshLists(bool farToo)
 	travelSinceNear = 0;
 }
 
-/* The forces at the start, without moving: a step of zero length books no event and turns nothing. Then velocities go half a step back, where the
- * leapfrog keeps them. */
+/* The forces at the start, of contacts that have just been placed, without moving: a step of zero length books no event and turns nothing.
+ * Then velocities go half a step back, where the leapfrog keeps them. */
 void Dynamics::firstForces()
 {
+	refreshLists(Lists::Near);
+	for (auto& domain : domains)
+		domain->sortContacts();
 	const double dt = setting.dt;
 	setting.dt = 0;
 	if (setting.hasDrag())
@@ -190,7 +187,7 @@ void Dynamics::firstForces()
 	addForces();
 	setting.dt = dt;
 	for (int g = 0; g < count; ++g)
-		kick(setting.grains[g], g, -0.5 * dt);
+		kick(setting, setting.grains[g], g, -0.5 * dt);
 }
 
 void Dynamics::addForces()
@@ -201,24 +198,8 @@ void Dynamics::addForces()
 		domain->addOtherForces(false);
 }
 
-double Dynamics::unstableStep() const
-{
-	double least = 1e300;
-	std::set<std::pair<int, double>> seen;
-	for (int k = 0; k < count; ++k) {
-		if (!seen.emplace(setting.kind[k], setting.radius[k]).second) continue;
-		const PairConstants<double> c = setting.constantsOf(k, k);
-		if (bondCount())
-			least = std::min(
-			        least, 2 / fastestVibration(setting.bondOf(k, k), setting.inverseMass[k], setting.inverseInertia[k]));
-		const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
-		least = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
-	}
-	return least;
-}
-
-// One thread's share of a run; all threads take the same decisions from the same numbers. Returns the steps made.
-long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier& barrier)
+// A run as one of its threads makes it; all threads take the same decisions from the same numbers. Returns the steps made.
+long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier& barrier)
 {
 	const auto mine = [&](auto&& what) {
 		for (std::size_t d = thread; d < domains.size(); d += threads)
@@ -251,7 +232,7 @@ long Dynamics::runShare(long steps, const Vec3<double>& growth, const Vec3<doubl
 			} else
 				mine([&](Domain& domain, int) { domain.findNearPairs(gap); });
 			sinceNear = 0;
-			if (thread == 0) ++(farToo ? farRebuilds : nearRebuilds);
+			if (thread == 0) ++(farToo ? counted.farRebuilds : counted.nearRebuilds);
 		}
 		mine([](Domain& domain, int) { domain.addFirstForces(); });
 		barrier.wait();
@@ -277,26 +258,43 @@ VelocityRange Dynamics::velocities() const
  * the same; given: by how much they may in a step. */
 double Dynamics::nearGapFor(double approach) const
 {
-	const double r = smallestRadius();
+	const double r = setting.smallestRadius;
 	return std::max(0.03 * r, std::min(stepsOfNearPairs * approach, 0.25 * r));
 }
 
 long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 {
+	const Vec3<double> from = cell().size, to = sizeAtEnd ? *sizeAtEnd : from;
+	if (setting.displaced.empty() || steps == 1) {
+		const long made = runEvenly(steps, to);
+		setting.displaced.clear();
+		return made;
+	}
+	// what a script has moved is moved for the first step only
+	const long first = runEvenly(1, from + (1. / double(steps)) * (to - from));
+	setting.displaced.clear();
+	return first < 1 ? first : first + runEvenly(steps - 1, to);
+}
+
+long Dynamics::runEvenly(long steps, const Vec3<double>& to)
+{
 	const int threads = threadCount();
 	Barrier barrier(threads);
 	long made = steps;
-	const Vec3<double> from = cell().size, to = sizeAtEnd ? *sizeAtEnd : from, growth = (1. / double(steps)) * (to - from);
+	const Vec3<double> growth = (1. / double(steps)) * (to - cell().size);
 #pragma omp parallel num_threads(threads)
 	{
-		const long here = runShare(steps, growth, to, omp_get_thread_num(), threads, barrier);
+		const long here = runThread(steps, growth, to, omp_get_thread_num(), threads, barrier);
 		if (omp_get_thread_num() == 0) made = here;
 	}
-	contactUpdates += made * contactCount();
+	counted.contactUpdates += made * contactCount(*this);
 	return made;
 }
 
-void Dynamics::read(std::vector<GrainInput>& grains) const
+// In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
+double Dynamics::fastestAllowed() const { return 0.5 * setting.smallestRadius / setting.dt; }
+
+void Dynamics::read(std::vector<GrainMotion>& grains) const
 {
 	grains.resize(count);
 #pragma omp parallel for num_threads(threadCount())
@@ -306,12 +304,9 @@ void Dynamics::read(std::vector<GrainInput>& grains) const
 		__builtin_prefetch(coming, 1);
 		__builtin_prefetch(coming + 64, 1);
 		Grain p = setting.grains[k];
-		GrainInput& g = grains[original[k]];
-		kick(p, k, 0.5 * setting.dt);
-		write(p, g);
-		g.radius = setting.grainRadius[k];
-		g.mass = 1 / setting.inverseMass[k], g.inertia = 1 / setting.inverseInertia[k];
-		g.kind = setting.kind[k];
+		GrainMotion& g = grains[original[k]];
+		kick(setting, p, k, 0.5 * setting.dt);
+		copyMotion(p, g);
 		g.blocked = setting.blocked[k];
 		if (options.orientations) g.orientation = setting.orientation[k];
 	}
@@ -329,7 +324,7 @@ Energies Dynamics::energies()
 		convective[d] = domains[d]->convectiveWork();
 	}
 	Energies e;
-	e.dissipated = dissipated();
+	e.dissipated = dissipated(*this);
 	for (std::size_t d = 0; d < domains.size(); ++d) {
 		e.stored += stored[d];
 		e.kinetic += kinetic[d] + convective[d];
@@ -337,47 +332,6 @@ Energies Dynamics::energies()
 		e.constraintWork += domains[d]->constraints.work;
 	}
 	return e;
-}
-
-Dissipation Dynamics::dissipated() const
-{
-	Dissipation total;
-	for (const auto& domain : domains)
-		total += domain->sums.dissipated;
-	return total;
-}
-
-int Dynamics::contactCount() const
-{
-	int total = 0;
-#pragma omp parallel for num_threads(threadCount()) reduction(+ : total)
-	for (std::size_t d = 0; d < domains.size(); ++d)
-		total += domains[d]->contactCount();
-	return total;
-}
-
-int Dynamics::bondCount() const
-{
-	int total = 0;
-	eachBondPlace([&](const BondList&, int, int, int) { ++total; });
-	return total;
-}
-
-std::array<long, bondModes> Dynamics::brokenBonds() const
-{
-	std::array<long, bondModes> total {};
-	for (const auto& domain : domains)
-		for (int mode = 0; mode < bondModes; ++mode)
-			total[mode] += domain->broken[mode];
-	return total;
-}
-
-long Dynamics::events() const
-{
-	long total = 0;
-	for (const auto& domain : domains)
-		total += domain->events;
-	return total;
 }
 
 } // namespace contact_law

@@ -1,35 +1,6 @@
-// Contacts and grains as others hand them in and want them handed out in the middle of a run.
-#include "dynamics.hpp"
+#include "exchange.hpp"
 
 namespace contact_law {
-
-namespace {
-
-	ContactHistory<double> swapped(const ContactHistory<double>& h)
-	{
-		return { { h.pointers.n2, h.pointers.n1 }, h.twist };
-	} // spin and normal both change sign
-}
-
-ContactNow swapped(const ContactNow& c)
-{
-	ContactNow s = c;
-	s.first = c.second;
-	s.second = c.first;
-	s.constants.radius1 = c.constants.radius2;
-	s.constants.radius2 = c.constants.radius1;
-	s.history = swapped(c.history);
-	s.geometry.normal = -c.geometry.normal;
-	s.forces.sliding = -c.forces.sliding;
-	s.forces.slidingDisplacement = -c.forces.slidingDisplacement;
-	s.forces.torque1 = c.forces.torque2;
-	s.forces.torque2 = c.forces.torque1;
-	s.velocity = -c.velocity;
-	s.bond.radius1 = c.bond.radius2;
-	s.bond.radius2 = c.bond.radius1;
-	s.shift = -c.shift;
-	return s;
-}
 
 void Dynamics::inherit(const Inherited& inherited)
 {
@@ -42,64 +13,47 @@ void Dynamics::inherit(const Inherited& inherited)
 	}
 	for (auto& domain : domains)
 		domain->sortContacts();
-	if (!setting.hasDrag() || !inherited.stepBehind) return;
-	for (int k = 0; k < count; ++k) {
-		const Vec3<double>& v = inherited.previous[original[k]];
-		setting.previous[k] = { v.x, v.y, v.z, 0 };
+	if (inherited.stepBehind && setting.hasDrag())
+		for (int k = 0; k < count; ++k) {
+			const Vec3<double>& v = inherited.previous[original[k]];
+			setting.previous[k] = { v.x, v.y, v.z, 0 };
+		}
+	refreshLists(Lists::FarAndNear);
+	if (inherited.stepBehind) {
+		completeInheritedStep();
+		return;
+	}
+	for (auto& domain : domains)
+		domain->placeOverlapping();
+	firstForces();
+}
+
+/* The end of the step whose beginning another owner of the contacts has made: events since the histories' moment are found as in any other step.
+ * Two works over this one step need forces at its beginning, which are not handed over. The boundaries' work is (V_n + V_{n+1})/2 . (L_{n+1} - L_n) (MODEL.md) with
+ * V_n taken to be V_{n+1}, so what complete() has booked, the half of V_{n+1}, counts twice: an error of second order in the step, of first order for contacts
+ * that formed or broke in it. The work on blocked degrees of freedom is left out: of first order, one step's work. */
+void Dynamics::completeInheritedStep()
+{
+	addForces();
+	for (auto& domain : domains) {
+		domain->sums.boundary.done *= 2;
+		domain->constraints.work = 0;
 	}
 }
 
-ContactNow Dynamics::now(const Contact& c) const
+void readAhead(const Dynamics& dynamics, std::vector<GrainMotion>& grains)
 {
-	const Grain &a = setting.grains[c.i], &b = setting.grains[c.j];
-	Vec3<double> separation = separationOf(a, b);
-	const Image image = nearestImage(cell(), separation);
-	ContactNow n { original[c.i], original[c.j], c.constants, c.history,
-		geometryOf(separation, c.constants.radius1 + c.constants.radius2), {}, velocityOf(a) - velocityOf(b) + image.velocity,
-		image.shift };
-	n.forces = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
-	n.forces.drag = c.drag;
-	if (!(setting.mechanisms & Sliding)) n.forces.sliding = { 0, 0, 0 };
-	return n;
-}
-
-ContactNow Dynamics::now(const Bond& b) const
-{
-	const Grain &a = setting.grains[b.i], &other = setting.grains[b.j];
-	ContactNow n { original[b.i], original[b.j], setting.constantsOf(b.i, b.j), b.history, geometryOf(separationOf(a, other), b.rest),
-		{}, velocityOf(a) - velocityOf(other), { 0, 0, 0 }, true, b.constants, b.rest };
-	n.forces = bondForces(b.constants, n.geometry, b.history);
-	return n;
-}
-
-double Dynamics::normalForce(const Contact& c) const
-{
-	const Grain &a = setting.grains[c.i], &b = setting.grains[c.j];
-	Vec3<double> separation = separationOf(a, b);
-	nearestImage(cell(), separation);
-	const auto g = geometryOf(separation, c.constants.radius1 + c.constants.radius2);
-	return contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce + c.drag;
-}
-
-void Dynamics::readAhead(std::vector<GrainInput>& grains) const
-{
-	read(grains);
-	for (int k = 0; k < count; ++k) {
+	dynamics.read(grains);
+	const Setting& setting = dynamics.state();
+	const double dt = setting.dt;
+	for (int k = 0; k < dynamics.grainCount(); ++k) {
 		Grain p = setting.grains[k];
-		const double dt = setting.dt;
-		kick(p, k, dt);
+		kick(setting, p, k, dt);
 		p.x += dt * p.vx, p.y += dt * p.vy, p.z += dt * p.vz;
-		GrainInput& g = grains[original[k]];
-		write(p, g);
+		GrainMotion& g = grains[dynamics.given(k)];
+		copyMotion(p, g);
 		g.orientation = turnedBy(dt * p.wx, dt * p.wy, dt * p.wz, g.orientation);
 	}
-}
-
-bool Dynamics::constrained() const
-{
-	for (const auto& domain : domains)
-		if (!domain->constraints.grains.empty()) return true;
-	return false;
 }
 
 } // namespace contact_law

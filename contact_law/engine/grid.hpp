@@ -99,7 +99,7 @@ public:
 		for (int g = p.first; g < p.last; ++g)
 			++p.next[placeOf[g] = placeAt(&grains[g].x)];
 	}
-	// A part sums up a share of the places.
+	// A part sums up a fraction of the places.
 	void sum(int part)
 	{
 		int total = 0;
@@ -160,7 +160,7 @@ private:
 		int first, last; // cells along an axis
 	};
 	struct Part {
-		int first, last, total; // grains; and how many are in this part's share of the places
+		int first, last, total; // grains; and how many are in this part's fraction of the places
 		double low[3], high[3];
 		std::vector<int> next; // by place: first how many grains, then where the next one goes
 	};
@@ -181,7 +181,7 @@ private:
 	{
 		const double cells = x / length[k],
 		             at = periodic ? (cells - std::floor(cells)) * size[k] : (x - origin[k]) * inverseSize[k];
-		return std::max(0, std::min(int(at), size[k] - 1)); // also where a run has gone wrong and x is no number
+		return std::max(0, std::min(int(at), size[k] - 1)); // also where a run has broken down and x is no number
 	}
 	unsigned placeAt(const double* x) const { return placeOfCell(cellAlong(0, x[0]), cellAlong(1, x[1]), cellAlong(2, x[2])); }
 

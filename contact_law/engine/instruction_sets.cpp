@@ -14,7 +14,7 @@ const InstructionSet& instructionSet(const std::string& name)
 		__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"), true };
 	for (int k = 0; k < 3; ++k)
 		if (here[k] && (name.empty() || name == sets[k].name)) return sets[k];
-	throw std::invalid_argument("instructions = '" + name + "', allowed here: '' (the best), " + (here[0] ? "'avx512', " : "")
+	throw std::invalid_argument("instructions = '" + name + "': must be here '' (the best), " + (here[0] ? "'avx512', " : "")
 	        + (here[1] ? "'avx2', " : "") + "'portable'");
 }
 

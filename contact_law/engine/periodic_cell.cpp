@@ -16,12 +16,12 @@ void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& conve
 		domain->sums.meanField += domain->kineticEnergy();
 	for (int k = 0; k < count; ++k) {
 		Grain& p = setting.grains[k];
-		kick(p, k, 0.5 * setting.dt);
+		kick(setting, p, k, 0.5 * setting.dt);
 		p.vx += added.x * p.x, p.vy += added.y * p.y, p.vz += added.z * p.z;
 	}
 	setting.convective = convective;
 	for (int k = 0; k < count; ++k)
-		kick(setting.grains[k], k, -0.5 * setting.dt);
+		kick(setting, setting.grains[k], k, -0.5 * setting.dt);
 	for (auto& domain : domains) {
 		domain->sums.meanField -= domain->kineticEnergy();
 		domain->cell.rate = domain->cell.rate

@@ -5,7 +5,7 @@
 
 namespace contact_law {
 
-// Grains keep the positions that their motion gives them, in whatever copy of the cell; no contact remembers a shift.
+// Grains keep the positions that their motion gives them, in whatever copy of the cell; no contact keeps a shift.
 struct PeriodicCell {
 	bool on = false;
 	Vec3<double> size { 0, 0, 0 }, inverse { 0, 0, 0 };    // now [m], [1/m]; zero in open space, where nothing is shifted

@@ -1,0 +1,167 @@
+/* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are found anew.
+ * Whoever changes what is transferred, or its order, raises formatNumber. */
+#include "checkpoint_archive.hpp"
+#include "dynamics.hpp"
+
+namespace contact_law {
+
+namespace {
+	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
+	constexpr int formatNumber = 2;            // 1: without this header, up to version 0.1
+
+	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
+	{
+		transferNumbers(archive, c.i, c.j);
+		transfer(archive, c.history);
+		transferNumbers(archive, c.drag, c.overlap);
+		if (Archive::restoring) c.constants = setting.constantsOf(c.i, c.j);
+	}
+	template <class Archive> void transfer(Archive& archive, Bond& b, const Setting& setting)
+	{
+		transferNumbers(archive, b.i, b.j);
+		transfer(archive, b.history);
+		archive.number(b.rest);
+		if (Archive::restoring) b.constants = setting.bondOf(b.i, b.j);
+	}
+
+	Contact get(const ContactList& list, int lane, const Setting& setting) { return setting.contactOf(list, lane); }
+	Bond get(const BondList& list, int lane, const Setting& setting) { return list.get(lane, setting.commonBond); }
+
+	// Lane by lane, dead ones too: sums over lanes are taken in the same order afterwards.
+	template <class Pair, class Archive, class List> void transferLanes(Archive& archive, List& list, const Setting& setting)
+	{
+		int lanesUsed = list.size();
+		archive.number(lanesUsed);
+		if (Archive::restoring) list.clear();
+		for (int lane = 0; lane < lanesUsed; ++lane) {
+			bool alive = !Archive::restoring && list.alive(lane);
+			archive.number(alive);
+			if (!alive) {
+				if (Archive::restoring) list.appendDead();
+				continue;
+			}
+			Pair pair = Archive::restoring ? Pair {} : get(list, lane, setting);
+			transfer(archive, pair, setting);
+			if (Archive::restoring) list.append(pair);
+		}
+	}
+
+	template <class Archive> void transfer(Archive& archive, Constraints& constraints)
+	{
+		std::size_t size = constraints.grains.size();
+		archive.number(size);
+		constraints.grains.resize(size);
+		for (Constrained& c : constraints.grains) {
+			transferNumbers(archive, c.grain, c.blocked);
+			transfer(archive, c.force);
+			transfer(archive, c.torque);
+		}
+		archive.number(constraints.work);
+	}
+
+	template <class Archive> void transfer(Archive& archive, Domain& domain, const Setting& setting)
+	{
+		transfer(archive, domain.cell);
+		transfer(archive, domain.sums.dissipated);
+		transferNumbers(archive, domain.sums.eventWork, domain.sums.meanField);
+		transfer(archive, domain.sums.boundary);
+		transfer(archive, domain.constraints);
+		transferNumbers(archive, domain.events, domain.sortedBlocks);
+		for (long& number : domain.broken)
+			archive.number(number);
+		for (BondList& list : domain.bonds)
+			transferLanes<Bond>(archive, list, setting);
+		for (ContactList& list : domain.contacts)
+			transferLanes<Contact>(archive, list, setting);
+	}
+
+	template <class Archive> void transferMaterial(Archive& archive, const Material& m, int kind)
+	{
+		const auto same = [&](double value, const char* name) {
+			archive.same(value, [&] { return std::string(name) + " of material " + std::to_string(kind); });
+		};
+		same(m.young, "young"), same(m.poisson, "poisson"), same(m.density, "density");
+		same(m.surfaceEnergy, "surfaceEnergy"), same(m.criticalRolling, "criticalRolling");
+		same(m.viscoelasticTime, "viscoelasticTime");
+	}
+}
+
+// What must be known before the grains can be laid out, and what must be as it was.
+template <class Archive> void Dynamics::transferLayout(Archive& archive)
+{
+	const auto named = [](const char* name) { return [name] { return std::string(name); }; };
+	archive.header(magicNumber, formatNumber);
+	archive.same(count, named("the number of bodies"));
+	archive.same(std::max(1, std::min(options.domains, count)), named("domains"));
+	archive.same(int(options.cell.on), named("O.periodic"));
+	archive.same(setting.material.size(), named("the number of materials"));
+	archive.same(setting.linearDamping, named("linearDamping"));
+	archive.same(setting.neck, named("neck"));
+	archive.same(setting.mechanisms, named("the bits of sliding, rolling, twisting (1, 2, 4) and drag (8)"));
+	archive.same(setting.dt, named("the small step"));
+	for (std::size_t kind = 0; kind < setting.material.size(); ++kind)
+		transferMaterial(archive, setting.material[kind], int(kind));
+	original.resize(count);
+	for (int& index : original) {
+		archive.number(index);
+		if (index < 0 || index >= count)
+			throw std::invalid_argument("the checkpoint of the grains is damaged: their order must be of 0 to N - 1");
+	}
+}
+
+template <class Archive> void Dynamics::transferState(Archive& archive)
+{
+	for (int k = 0; k < count; ++k) {
+		const auto same = [&](double value, const char* name) {
+			archive.same(value, [&] { return std::string(name) + " of body " + std::to_string(original[k]); });
+		};
+		same(setting.grainRadius[k], "the radius"), same(1 / setting.inverseMass[k], "the mass");
+		same(1 / setting.inverseInertia[k], "the moment of inertia");
+		same(setting.kind[k], "the number of the material");
+		archive.number(setting.blocked[k]);
+		transfer(archive, setting.grains[k]);
+		if (setting.hasDrag()) transfer(archive, setting.previous[k]);
+	}
+	bool moved = !setting.displaced.empty();
+	archive.number(moved);
+	if (moved) setting.displaced.resize(setting.grains.size());
+	for (Vec3<double>& by : setting.displaced)
+		transfer(archive, by);
+	transferNumbers(archive, travelSinceFar, travelSinceNear, nearGap);
+	transferNumbers(archive, counted.contactUpdates, counted.farRebuilds, counted.nearRebuilds);
+	transfer(archive, mostCells);
+	transfer(archive, setting.convective);
+	for (auto& domain : domains)
+		transfer(archive, *domain, setting);
+}
+
+std::vector<double> Dynamics::save()
+{
+	SavingArchive to;
+	transferLayout(to);
+	transferState(to);
+	return std::move(to.numbers);
+}
+
+Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_, const std::vector<double>& saved)
+        : options(options_)
+{
+	prepare(grains, materials);
+	RestoringArchive from(saved);
+	transferLayout(from);
+	loadGrains(grains);
+	makeDomains();
+	transferState(from);
+	if (!from.atEnd()) throw std::invalid_argument("the checkpoint of the grains is too long: it must be as O.save wrote it");
+	for (auto& domain : domains)
+		domain->findCompleted();
+	// The pairs may be others than before; the contacts' order and the contacts that will form are not.
+	const double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
+	const Vec3<double> most = mostCells;
+	refreshLists(Lists::FarAndNear);
+	travelSinceFar = sinceFar;
+	travelSinceNear = sinceNear;
+	mostCells = most;
+}
+
+} // namespace contact_law

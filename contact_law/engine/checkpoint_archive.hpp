@@ -1,0 +1,101 @@
+/* The two directions of a checkpoint: one list of numbers, taken through either archive, is saved or restored (as in Boost.Serialization).
+ * Numbers are doubles in a row, whole ones (below 2^53) and flags among them. */
+#pragma once
+#include "arrays.hpp"
+#include "orientations.hpp"
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace contact_law {
+
+class SavingArchive {
+public:
+	static constexpr bool restoring = false;
+	std::vector<double> numbers;
+
+	void header(double magic, int format) { numbers.insert(numbers.end(), { magic, double(format) }); }
+	template <class T> void number(T& value) { numbers.push_back(double(value)); }
+	// One that must be the same when the run is restored; what() names it in the refusal.
+	template <class T, class What> void same(const T& value, What&&) { numbers.push_back(double(value)); }
+};
+
+class RestoringArchive {
+public:
+	static constexpr bool restoring = true;
+
+	explicit RestoringArchive(const std::vector<double>& from_)
+	        : from(from_)
+	{
+	}
+	void header(double magic, int format)
+	{
+		const bool known = next() == magic;
+		const double saved = known ? next() : 1; // the first format had no header
+		if (saved != format)
+			throw std::invalid_argument("the checkpoint of the grains is of format " + text(saved)
+			        + ", which another version wrote: it must be " + text(format));
+	}
+	template <class T> void number(T& value) { value = T(next()); }
+	template <class T, class What> void same(const T& value, What&& what)
+	{
+		const double saved = next();
+		if (saved != double(value))
+			throw std::invalid_argument(what() + " is another than in the checkpoint: it must be " + text(saved));
+	}
+	bool atEnd() const { return at == from.size(); }
+
+private:
+	double next()
+	{
+		if (at == from.size())
+			throw std::invalid_argument("the checkpoint of the grains is cut off: it must be whole, as O.save wrote it");
+		return from[at++];
+	}
+	static std::string text(double number)
+	{
+		char digits[32];
+		std::snprintf(digits, sizeof digits, "%.17g", number);
+		return digits;
+	}
+
+	const std::vector<double>& from;
+	std::size_t at = 0;
+};
+
+// ---- what checkpoints are made of, each listed once ----
+
+template <class Archive, class... Numbers> void transferNumbers(Archive& archive, Numbers&... numbers) { (archive.number(numbers), ...); }
+
+template <class Archive> void transfer(Archive& archive, Vec3<double>& v) { transferNumbers(archive, v.x, v.y, v.z); }
+template <class Archive> void transfer(Archive& archive, PreviousVelocity& v) { transferNumbers(archive, v.x, v.y, v.z); }
+template <class Archive> void transfer(Archive& archive, Grain& g)
+{
+	transferNumbers(archive, g.x, g.y, g.z, g.vx, g.vy, g.vz, g.wx, g.wy, g.wz, g.fx, g.fy, g.fz, g.tx, g.ty, g.tz);
+}
+template <class Archive> void transfer(Archive& archive, ContactHistory<double>& h)
+{
+	transfer(archive, h.pointers.n1);
+	transfer(archive, h.pointers.n2);
+	archive.number(h.twist);
+}
+template <class Archive> void transfer(Archive& archive, Dissipation& d)
+{
+	transferNumbers(archive, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag);
+	for (double& energy : d.bondBreaking)
+		archive.number(energy);
+}
+template <class Archive> void transfer(Archive& archive, PeriodicCell& cell)
+{
+	for (Vec3<double>* v : { &cell.size, &cell.inverse, &cell.rate, &cell.rateBefore })
+		transfer(archive, *v);
+}
+template <class Archive> void transfer(Archive& archive, BoundaryWork& work)
+{
+	archive.number(work.done);
+	transfer(archive, work.kicks);
+	transfer(archive, work.early);
+}
+
+} // namespace contact_law

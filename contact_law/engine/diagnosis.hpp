@@ -1,0 +1,22 @@
+// What to say of a run that went wrong.
+#pragma once
+
+namespace contact_law {
+
+class Dynamics;
+
+// A grain, and one that it touches; both as given, -1: none.
+struct Diagnosis {
+	int grain = -1, other = -1;
+	double speed = 0, overlap = 0, force = 0; // of the grain [m/s]; over the smaller radius; along the normal [N]
+};
+
+enum { FastestGrain = -1 };
+// The given grain, or the one that moves fastest, with its contact that had the largest force before the grains moved.
+Diagnosis diagnoseGrain(const Dynamics&, int grain = FastestGrain);
+// The contact with the largest force of all.
+Diagnosis largestForce(const Dynamics&);
+// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are not looked up. Grain -1: none does.
+Diagnosis deepestOverlap(const Dynamics&);
+
+} // namespace contact_law

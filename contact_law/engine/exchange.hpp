@@ -1,0 +1,27 @@
+// Contacts and grains as other owners of a scene (YADE's functors, another engine) hand them in and want them handed out in the middle of a run.
+#pragma once
+#include "contacts.hpp"
+
+namespace contact_law {
+
+// Contacts that grains have when a run starts, in place of unstrained springs where they overlap.
+struct Inherited {
+	struct One {
+		int first, second;              // grains as given
+		ContactHistory<double> history; // laboratory frame
+		double overlap, drag;           // at the moment of the history
+		bool bonded = false;
+		double rest = 0; // of a bond
+	};
+	std::vector<One> contacts;
+	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
+	 * scenes with drag `previous`, the velocities another step before. Otherwise all is of one moment. */
+	bool stepBehind = false;
+	std::vector<Vec3<double>> previous;
+};
+
+// As YADE's loop leaves grains after a step: moved on by a small step, velocities of half a step before that, contacts as they are now.
+// Orientations are turned from those of this run, or, where it follows none, from those given.
+void readAhead(const Dynamics&, std::vector<GrainMotion>& grains);
+
+} // namespace contact_law
