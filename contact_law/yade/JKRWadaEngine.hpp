@@ -2,6 +2,8 @@
 #pragma once
 #include "../engine/dynamics.hpp"
 #include "EnergyChannels.hpp"
+#include "EngineSettings.hpp"
+#include "SceneCell.hpp"
 #include <core/GlobalEngine.hpp>
 #include <boost/python.hpp>
 #include <memory>
@@ -15,17 +17,22 @@ class JKRWadaEngine : public GlobalEngine {
 	EnergyChannels channels;
 
 	long actedAt = -1;   // iteration
-	std::string failure; // why the run cannot go on
+	std::string failure; // why the run cannot be continued
 
+	EngineSettings settings() const;
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
+	void requireInRange() const;
+	void requireOwnScene() const;
 
-	void start(bool inStep);
+	void start(Moment);
+	void continueBooking();
 	void requireStable() const;
+	void enter(const char* call, Moment);
 	void takeChanges();
-	void requireSound(long stepsMade, const contact_law::Energies*);
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();
-	void writeEnergies(const contact_law::Energies&, bool known);
+	enum class Booking { Add, AlreadyInOEnergy };
+	void writeEnergies(const contact_law::Energies&, Booking = Booking::Add);
 
 public:
 	void action() override;
@@ -34,7 +41,7 @@ public:
 	void writeInteractions();
 	void handOver();
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
-	// Adds this engine's arrays to a snapshot (JKRWadaSnapshot); false before the first step.
+	// Adds this engine's contacts to a snapshot (JKRWadaSnapshot), by the ids of their bodies; false before the first step.
 	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const;
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
@@ -48,11 +55,13 @@ public:
 		"Periodic cells may be boxes along the axes, deformed by a diagonal O.cell.velGrad: forces, neighbours and velocities are those of the nearest images, grains keep their unwrapped positions, "
 		"O.cell.homoDeform means what it means with NewtonIntegrator, and O.energy['boundaryWork'] is what the grains did against the moving boundaries (minus what those did on them). A velocity gradient set between two O.steps "
 		"holds from the second O.step on, or at once when prepare() is called. "
-		"A run that goes wrong stops with the body, the contact and the time in the message, and leaves O.bodies as they were before the step. "
+		"A run that blows up stops with the body, the contact and the time in the message, and leaves O.bodies as they were before the step. "
+		"What a script does between two O.steps to positions, velocities, blockedDOFs, O.cell.velGrad, threads, exportInteractions and O.trackEnergy holds from the next one on; any other change of the bodies, their materials "
+		"or this engine, and forces in O.forces, are refused with a RuntimeError. Contacts are the only forces: engines that add others cannot stand in O.engines. "
 		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
 		((int, subSteps, 1, , "Small steps in one O.step."))
 		((int, threads, 1, , "Threads to use, at most as many as domains."))
-		((int, domains, 2, , "Shares the grains are divided into. Another number changes results by rounding."))
+		((int, domains, 2, , "Parts that the grains are divided into, for the threads. Another number changes results by rounding."))
 		((std::string, instructions, "", , "Instruction set: 'avx512', 'avx2', 'portable', or '' for the best this machine has. Another one changes results by rounding."))
 		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
 		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that touch at the start are bonded, all others as shrunk as they "
@@ -60,16 +69,16 @@ public:
 		((bool, sliding, true, , "Whether contacts resist sliding (bonds always do; likewise below)."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
-		((bool, orientations, false, , "Whether to keep the bodies' orientations up (State.ori); otherwise they stay as they were."))
+		((bool, orientations, false, , "Whether to follow the bodies' orientations (State.ori); otherwise they stay as they were."))
 		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
-		((std::vector<Real>, memory, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint.")),
+		((std::vector<Real>, savedState, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint (engine/checkpoint.cpp).")),
 		,
 		.def("prepare", &JKRWadaEngine::prepare, "Read the bodies and compute forces and energies without moving anything, so that O.energy and contact_law.snapshot() have the start.")
 		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
-		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors go on from here as if they had been there before: bodies a small step further "
+		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors continue from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
-		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (births, breaks, slips), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
+		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (contacts that formed or broke, and slips), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;

@@ -1,6 +1,7 @@
 #include "JKRWadaSnapshot.hpp"
 #include "JKRWada.hpp"
 #include "JKRWadaEngine.hpp"
+#include "RunningLoop.hpp"
 #include <core/Body.hpp>
 #include <core/Cell.hpp>
 #include <core/Omega.hpp>
@@ -83,6 +84,7 @@ namespace {
 
 boost::python::dict JKRWadaSnapshot::read() const
 {
+	requireLoopAtRest("contact_law.snapshot()");
 	Scene& scene = *Omega::instance().getScene();
 	const auto* fused = fusedEngine(scene);
 	const Grains grains = readGrains(scene, fused);

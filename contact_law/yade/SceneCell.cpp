@@ -1,5 +1,5 @@
 #include "SceneCell.hpp"
-#include "SceneGrains.hpp"
+#include "Refusal.hpp"
 #include <core/Cell.hpp>
 
 namespace yade {
@@ -18,8 +18,7 @@ namespace {
 			for (int j = 0; j < 3; ++j)
 				if (!std::isfinite(m(i, j)) || (i != j && m(i, j) != 0))
 					refuseInEngine(std::string("O.cell.") + name + " has the element (" + std::to_string(i) + ", "
-					        + std::to_string(j) + ") = " + boost::lexical_cast<std::string>(m(i, j))
-					        + ", allowed: " + what);
+					        + std::to_string(j) + ") = " + text(m(i, j)) + ": must be " + what);
 	}
 
 	void requireBox(const Cell& cell)
@@ -29,13 +28,8 @@ namespace {
 		requireDiagonal(cell.nextVelGrad, "velGrad", "stretching along the axes (diagonal)");
 	}
 
-	std::string text(Real length)
-	{
-		char digits[32];
-		std::snprintf(digits, sizeof digits, "%.6g", double(length));
-		return digits;
-	}
-	std::string text(const Vec3d& v) { return "(" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + ")"; }
+	std::string sizeText(Real length) { return rounded(length, 6); }
+	std::string sizeText(const Vec3d& v) { return "(" + sizeText(v.x) + ", " + sizeText(v.y) + ", " + sizeText(v.z) + ")"; }
 }
 
 Vec3d SceneCell::now(const Scene& scene) { return scene.isPeriodic ? diagonal(scene.cell->hSize) : Vec3d { 0, 0, 0 }; }
@@ -45,9 +39,10 @@ Vec3d SceneCell::convective(const Scene& scene)
 	return scene.isPeriodic && scene.cell->homoDeform == 2 ? diagonal(scene.cell->velGrad) : Vec3d { 0, 0, 0 };
 }
 
-PeriodicCell SceneCell::start(Scene& scene, bool inStep, bool stepBehind, Real dt)
+PeriodicCell SceneCell::start(Scene& scene, Moment moment, bool stepBehind, Real dt)
 {
 	if (!scene.isPeriodic) return {};
+	const bool inStep = moment == Moment::WithinStep;
 	Cell& cell = *scene.cell;
 	requireBox(cell);
 	const Matrix3r before = inStep ? cell.prevHSize : cell.hSize;
@@ -58,25 +53,26 @@ PeriodicCell SceneCell::start(Scene& scene, bool inStep, bool stepBehind, Real d
 	}
 	size = diagonal(inStep ? cell.prevHSize : cell.hSize);
 	for (const Real length : { size.x, size.y, size.z })
-		if (!(length > 0)) refuseInEngine("O.cell.hSize is " + text(size) + " m, allowed: above 0");
+		if (!(length > 0)) refuseInEngine("O.cell.hSize is " + sizeText(size) + " m: must be > 0");
 	return PeriodicCell::box(size, rate);
 }
 
 void SceneCell::require(const Scene& scene, const Dynamics& dynamics) const
 {
-	if (scene.isPeriodic != dynamics.cell().on) refuseInEngine("O.periodic was changed after the start; make a new engine");
+	if (scene.isPeriodic != dynamics.cell().on)
+		refuseInEngine("O.periodic was changed after the start: it must stay " + text(dynamics.cell().on) + "; make a new engine");
 	if (!scene.isPeriodic) return;
 	requireBox(*scene.cell);
 	const Vec3d was = diagonal(scene.cell->prevHSize);
 	if (!same(was, size))
-		refuseInEngine("O.cell was given another size " + text(was) + " m by a script, after the start with " + text(size)
-		        + " m; change O.cell.velGrad, or make a new engine");
+		refuseInEngine("O.cell was given another size " + sizeText(was) + " m by a script, after the start with " + sizeText(size)
+		        + " m: it must change by O.cell.velGrad only; or make a new engine");
 }
 
 std::string SceneCell::tooSmall(const PeriodicCell& cell, const Dynamics& dynamics)
 {
 	if (!cell.on || cell.holds(dynamics.reach())) return "";
-	return "the periodic cell of " + text(cell.size) + " m is too small, allowed: at least " + text(2 * dynamics.reach())
+	return "the periodic cell of " + sizeText(cell.size) + " m is too small: must be at least " + sizeText(2 * dynamics.reach())
 	        + " m along each axis, twice the reach of a pair of grains";
 }
 
@@ -85,23 +81,30 @@ std::string SceneCell::wrong(const Scene& scene, const Dynamics& dynamics, int s
 	if (!scene.isPeriodic) return "";
 	const PeriodicCell cell = PeriodicCell::box(now(scene), {});
 	const Vec3d change = cell.size - size;
-	const Real most = 0.5 * dynamics.smallestRadius() * steps;
+	const Real most = 0.5 * dynamics.state().smallestRadius * steps;
 	for (const Real way : { change.x, change.y, change.z })
 		if (!(std::abs(way) <= most))
-			return "the periodic cell changes to " + text(cell.size)
+			return "the periodic cell changes to " + sizeText(cell.size)
 			        + " m, by more than half the smallest radius in a small step";
 	return tooSmall(cell, dynamics);
 }
 
-void SceneCell::takeVelocityGradient(Scene& scene, Dynamics& dynamics, bool wanted)
+void SceneCell::takeVelocityGradient(Scene& scene, Dynamics& dynamics)
 {
 	if (!scene.isPeriodic) return;
 	Cell& cell = *scene.cell;
-	if (wanted && (cell.velGradChanged || cell.nextVelGrad != Matrix3r::Zero())) {
+	if (cell.velGradChanged || cell.nextVelGrad != Matrix3r::Zero()) {
 		cell.velGrad = cell.nextVelGrad;
 		cell.velGradChanged = false;
 		cell.nextVelGrad = Matrix3r::Zero();
 	}
+	applyVelocityGradient(scene, dynamics);
+}
+
+void SceneCell::applyVelocityGradient(Scene& scene, Dynamics& dynamics)
+{
+	if (!scene.isPeriodic) return;
+	Cell& cell = *scene.cell;
 	const Vec3d gradient = diagonal(cell.velGrad), none { 0, 0, 0 };
 	dynamics.setMeanField(cell.homoDeform ? gradient - diagonal(cell.prevVelGrad) : none, convective(scene));
 	cell.prevVelGrad = cell.velGrad;

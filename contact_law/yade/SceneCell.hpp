@@ -6,11 +6,13 @@
 
 namespace yade {
 
+enum class Moment { BetweenSteps, WithinStep }; // of O.step
+
 class SceneCell {
 public:
 	/* The cell at the start's moment. Within an O.step the Scene has deformed it already, and the start is before that. `stepBehind`: the contacts are the
 	 * functors', who leave the cell a small step (dt, s) behind the grains; O.cell is brought to them. Throws std::runtime_error for a cell that is no box. */
-	contact_law::PeriodicCell start(Scene&, bool inStep, bool stepBehind, Real dt);
+	contact_law::PeriodicCell start(Scene&, Moment, bool stepBehind, Real dt);
 
 	/* Before a step: refuses, in one line, a cell that this engine cannot follow. After it the cell is of size now(). */
 	void require(const Scene&, const contact_law::Dynamics&) const;
@@ -19,12 +21,14 @@ public:
 	static std::string tooSmall(const contact_law::PeriodicCell&, const contact_law::Dynamics&); // likewise, of its size only
 	void arrive(const Scene& scene) { size = now(scene); }
 
-	// The velocity gradient that a script wants becomes the present one, as NewtonIntegrator does it; grains get its change when Cell.homoDeform says so.
-	static void takeVelocityGradient(Scene&, contact_law::Dynamics&, bool wanted);
+	// Grains get the change of the velocity gradient since they got the last, when Cell.homoDeform says so.
+	static void applyVelocityGradient(Scene&, contact_law::Dynamics&);
+	// Before that, the velocity gradient that a script wants becomes the present one, as NewtonIntegrator does it.
+	static void takeVelocityGradient(Scene&, contact_law::Dynamics&);
 
 	static contact_law::Vec3<double> now(const Scene&);
-	static contact_law::Vec3<double> convective(
-	        const Scene&); // diagonal of the gradient whose convective acceleration grains have [1/s]
+	// Diagonal of the gradient whose convective acceleration grains have [1/s].
+	static contact_law::Vec3<double> convective(const Scene&);
 
 private:
 	contact_law::Vec3<double> size { 0, 0, 0 }; // that the engine's run has reached [m]

@@ -29,7 +29,7 @@ namespace {
 
 	const State& stateOf(const Scene& scene, int id) { return *(*scene.bodies)[id]->state; }
 
-	void writeContact(const Scene& scene, const ContactNow& c, bool current, Interaction& interaction)
+	void writeContact(const Scene& scene, const ContactNow& c, SceneContacts::Stage stage, Interaction& interaction)
 	{
 		const State &state1 = stateOf(scene, c.first), &state2 = stateOf(scene, c.second);
 		auto& geometry = static_cast<ScGeom&>(*interaction.geom);
@@ -44,13 +44,13 @@ namespace {
 		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity));
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(c.history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(c.history.pointers.n2);
-		phys.current = current;
+		phys.current = stage == SceneContacts::Stage::OfPositions;
 		if (phys.bonded && !c.bonded) phys.endBond();
 		phys.restDistance = c.rest;
 	}
 
-	/* The velocities through the step before the last: the last step's less what the contacts' forces added (but for impulses of births and breaks, which shows
-	 * in the drag of that one grain and step only). */
+	/* The velocities through the step before the last: the last step's less what the contacts' forces added (but for impulses of contacts that formed or broke, which
+	 * shows in the drag of that one grain and step only). */
 	std::vector<Vec3d> velocitiesBefore(const Scene& scene, const std::vector<shared_ptr<Interaction>>& contacts, Real dt)
 	{
 		std::vector<Vec3d> forces(scene.bodies->size(), Vec3d { 0, 0, 0 });
@@ -100,10 +100,10 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dynamics& dynamics)
 {
 	std::vector<Place> places;
-	dynamics.eachPlace([&](const contact_law::ContactList& list, int lane, int first, int second) {
+	eachContactLane(dynamics, [&](const contact_law::ContactList& list, int lane, int first, int second) {
 		places.push_back({ std::min(first, second), std::max(first, second), &list, nullptr, lane });
 	});
-	dynamics.eachBondPlace([&](const contact_law::BondList& list, int lane, int first, int second) {
+	eachBondLane(dynamics, [&](const contact_law::BondList& list, int lane, int first, int second) {
 		places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, lane });
 	});
 	std::sort(places.begin(), places.end(),
@@ -113,7 +113,7 @@ std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dyn
 
 ContactNow SceneContacts::Place::now(const contact_law::Dynamics& dynamics) const
 {
-	return bonds ? dynamics.now(bonds->get(lane, dynamics.commonBond())) : dynamics.now(dynamics.contactOf(*list, lane));
+	return bonds ? contactNow(dynamics, *bonds, lane) : contactNow(dynamics, *list, lane);
 }
 
 bool SceneContacts::inOrder(Scene& scene, const std::vector<Place>& places) const
@@ -161,7 +161,7 @@ void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
 	held.swap(now);
 }
 
-void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, bool current)
+void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, Stage stage)
 {
 	const std::vector<Place> places = placesOf(dynamics);
 	const auto now = [&](size_t k, int id1) {
@@ -177,7 +177,7 @@ void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, b
 	}
 #pragma omp parallel for num_threads(dynamics.threadCount())
 	for (size_t k = 0; k < places.size(); ++k)
-		writeContact(scene, now(k, held[k]->getId1()), current, *held[k]);
+		writeContact(scene, now(k, held[k]->getId1()), stage, *held[k]);
 }
 
 void SceneContacts::withdraw(Scene& scene)

@@ -1,6 +1,6 @@
 // O.interactions and the fused engine's contacts: written out for YADE's recorders and functors, and taken over from functors.
 #pragma once
-#include "../engine/dynamics.hpp"
+#include "../engine/exchange.hpp"
 #include "JKRWada.hpp"
 
 namespace yade {
@@ -11,10 +11,12 @@ public:
 	 * O.interactions are this object's afterwards. */
 	contact_law::Inherited take(Scene&, Real dt);
 
+	/* OfPositions: everything is of the moment of the bodies' positions. AStepBehind: as the functors leave it, pointers with the orientations as they are
+	 * at this call. */
+	enum class Stage { OfPositions, AStepBehind };
 	/* All contacts, in the order of their bodies' ids, as real interactions with ScGeom and JKRWadaPhys; those that have ended go. Interactions of contacts
-	 * that go on stay the same objects. `current`: everything is of the moment of the bodies' positions; otherwise as the functors leave it, pointers with the
-	 * orientations as they are at this call. */
-	void write(Scene&, const contact_law::Dynamics&, bool current);
+	 * that continue stay the same objects. */
+	void write(Scene&, const contact_law::Dynamics&, Stage);
 
 	// Empties O.interactions of what was written before and is no longer so.
 	void withdraw(Scene&);

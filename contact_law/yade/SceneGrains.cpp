@@ -1,13 +1,10 @@
 #include "SceneGrains.hpp"
-#include "JKRWada.hpp"
-#include <core/Body.hpp>
-#include <core/State.hpp>
-#include <pkg/common/Sphere.hpp>
 #include <algorithm>
 
 namespace yade {
 
 using contact_law::GrainInput;
+using contact_law::GrainMotion;
 
 namespace {
 	void copy(const Vector3r& from, double (&to)[3])
@@ -17,69 +14,196 @@ namespace {
 	}
 	bool same(const Vector3r& x, const double (&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; }
 	Vector3r eigen(const double (&x)[3]) { return Vector3r(x[0], x[1], x[2]); }
+	bool isotropic(const Vector3r& inertia) { return inertia[0] == inertia[1] && inertia[1] == inertia[2]; }
+
+	void write(const GrainMotion& g, State& s, bool orientations)
+	{
+		s.pos = eigen(g.position);
+		s.vel = eigen(g.velocity);
+		s.angVel = eigen(g.angularVelocity);
+		if (orientations) s.ori = Quaternionr(g.orientation.w, g.orientation.x, g.orientation.y, g.orientation.z);
+	}
+
+	std::string changed(const std::string& what, Real was, Real is)
+	{
+		return what + " was changed after the start: it must stay " + text(was) + ", not " + text(is) + "; make a new engine";
+	}
 }
 
-GrainInput grainOf(const State& s)
+GrainMotion motionOf(const State& s)
 {
-	GrainInput g {};
+	GrainMotion g {};
 	copy(s.pos, g.position);
 	copy(s.vel, g.velocity);
 	copy(s.angVel, g.angularVelocity);
-	g.mass = s.mass;
-	g.inertia = s.inertia[0];
 	g.blocked = s.blockedDOFs;
 	g.orientation = { s.ori.w(), s.ori.x(), s.ori.y(), s.ori.z() };
 	return g;
 }
 
-bool sameMotion(const State& s, const GrainInput& g, bool orientations)
+bool sameMotion(const State& s, const GrainMotion& g, bool orientations)
 {
 	const contact_law::Orientation& q = g.orientation;
 	if (orientations && !(s.ori.w() == q.w && s.ori.x() == q.x && s.ori.y() == q.y && s.ori.z() == q.z)) return false;
 	return same(s.pos, g.position) && same(s.vel, g.velocity) && same(s.angVel, g.angularVelocity) && s.blockedDOFs == g.blocked;
 }
 
-void write(const GrainInput& g, State& s, bool orientations)
-{
-	s.pos = eigen(g.position);
-	s.vel = eigen(g.velocity);
-	s.angVel = eigen(g.angularVelocity);
-	if (orientations) s.ori = Quaternionr(g.orientation.w, g.orientation.x, g.orientation.y, g.orientation.z);
-}
-
-bool finite(const GrainInput& g)
+bool finite(const GrainMotion& g)
 {
 	const auto all = [](const double(&x)[3]) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); };
 	return all(g.position) && all(g.velocity) && all(g.angularVelocity);
 }
 
-SceneGrains readGrains(const Scene& scene)
+void requireNoForces(Scene& scene, std::size_t bodies, int threads)
 {
-	SceneGrains result;
-	std::vector<const JKRMat*> kinds;
-	for (size_t id = 0; id < scene.bodies->size(); ++id) {
-		const auto& body = (*scene.bodies)[id];
-		const std::string who = "body " + std::to_string(id);
-		if (!body) refuseInEngine(who + " was erased: erased bodies are not supported, make the scene without them");
-		const auto* sphere = dynamic_cast<const Sphere*>(body->shape.get());
-		const auto* material = dynamic_cast<const JKRMat*>(body->material.get());
-		if (!sphere || !material) refuseInEngine(who + " is not a sphere of JKRMat; this engine moves nothing else");
-		GrainInput g = grainOf(*body->state);
-		g.radius = sphere->radius;
-		if (!finite(g)) refuseInEngine(who + " has a position or velocity that is not a finite number");
-		if (!(g.radius > 0) || !(g.mass > 0) || !(g.inertia > 0))
-			refuseInEngine(who + ": radius, mass and moment of inertia must be positive");
-		const auto known = std::find(kinds.begin(), kinds.end(), material);
-		g.kind = int(known - kinds.begin());
-		if (known == kinds.end()) {
-			material->requireInRange();
-			kinds.push_back(material);
-			result.materials.push_back(material->forKernel());
-		}
-		result.grains.push_back(g);
-		result.states.push_back(body->state);
+	scene.forces.sync();
+	const auto none = [&](std::size_t k) {
+		return scene.forces.getForce(int(k)).isZero(0) && scene.forces.getTorque(int(k)).isZero(0);
+	};
+	if (forAll(bodies, threads, none)) return;
+	for (std::size_t k = 0; k < bodies; ++k) {
+		if (none(k)) continue;
+		const bool isForce = !scene.forces.getForce(int(k)).isZero(0);
+		const Vector3r v = isForce ? scene.forces.getForce(int(k)) : scene.forces.getTorque(int(k));
+		refuseInEngine("O.forces has a " + std::string(isForce ? "force" : "torque") + " on " + bodyName(k) + ", (" + rounded(v[0])
+		        + ", " + rounded(v[1]) + ", " + rounded(v[2]) + (isForce ? ") N" : ") N m")
+		        + ": it must be 0, contacts are the only forces here (O.forces.reset() clears what others left)");
 	}
-	return result;
+}
+
+SceneGrains::SceneGrains(const Scene& scene)
+{
+	bodies.reserve(scene.bodies->size());
+	for (size_t id = 0; id < scene.bodies->size(); ++id)
+		bodies.push_back(read((*scene.bodies)[id], id));
+	written = motions();
+}
+
+int SceneGrains::kindOf(const shared_ptr<JKRMat>& material)
+{
+	const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) { return kind.material == material; });
+	if (known != kinds.end()) return int(known - kinds.begin());
+	material->requireInRange();
+	kinds.push_back({ material, material->forKernel() });
+	return int(kinds.size() - 1);
+}
+
+SceneGrains::Kept SceneGrains::read(const shared_ptr<Body>& body, std::size_t id)
+{
+	const std::string who = bodyName(id);
+	if (!body) refuseInEngine(who + " was erased: there must be a body of every id, make the scene without those erased");
+	const auto sphere = boost::dynamic_pointer_cast<Sphere>(body->shape);
+	const auto material = boost::dynamic_pointer_cast<JKRMat>(body->material);
+	if (!sphere || !material) refuseInEngine(who + " must be a sphere of JKRMat; this engine moves nothing else");
+	const State& state = *body->state;
+	if (!finite(motionOf(state))) refuseInEngine(who + " has a position or velocity that is not a finite number");
+	if (!(sphere->radius > 0 && state.mass > 0 && state.inertia.minCoeff() > 0))
+		refuseInEngine(who + ": radius, mass and moments of inertia must be > 0");
+	if (!isotropic(state.inertia)) refuseInEngine(who + ": its three moments of inertia must be the same, those of a sphere");
+	if (!body->isBounded() || body->groupMask == 0)
+		refuseInEngine(who + " must be bounded, with a mask other than 0: all bodies meet all others");
+	if (!bodies.empty() && body->groupMask != bodies[0].mask)
+		refuseInEngine(who + ": mask = " + text(body->groupMask) + ", must be " + text(bodies[0].mask)
+		        + " as body 0's: all bodies meet all others");
+	return { body, body->state, sphere, body->material.get(), sphere->radius, state.mass, state.inertia[0], body->groupMask,
+		body->flags, kindOf(material) };
+}
+
+std::vector<GrainInput> SceneGrains::grains() const
+{
+	std::vector<GrainInput> all;
+	all.reserve(size());
+	for (const Kept& kept : bodies) {
+		GrainInput g {};
+		static_cast<GrainMotion&>(g) = motionOf(*kept.state);
+		g.radius = kept.radius, g.mass = kept.mass, g.inertia = kept.inertia;
+		g.kind = kept.kind;
+		all.push_back(g);
+	}
+	return all;
+}
+
+std::vector<contact_law::Material> SceneGrains::materials() const
+{
+	std::vector<contact_law::Material> all;
+	for (const Kind& kind : kinds)
+		all.push_back(kind.values);
+	return all;
+}
+
+std::vector<GrainMotion> SceneGrains::motions() const
+{
+	std::vector<GrainMotion> all;
+	all.reserve(size());
+	for (const Kept& kept : bodies)
+		all.push_back(motionOf(*kept.state));
+	return all;
+}
+
+void SceneGrains::write(std::vector<GrainMotion>& now, bool orientations, int threads)
+{
+#pragma omp parallel for num_threads(threads)
+	for (std::size_t k = 0; k < now.size(); ++k)
+		yade::write(now[k], *bodies[k].state, orientations);
+	written.swap(now);
+}
+
+void SceneGrains::requireThere(const Scene& scene) const
+{
+	const BodyContainer& there = *scene.bodies;
+	if (there.size() != size())
+		refuseInEngine("there are " + std::to_string(there.size()) + " bodies, must be the " + std::to_string(size())
+		        + " of the start: bodies were added or cleared; make a new engine");
+	for (std::size_t k = 0; k < size(); ++k) {
+		if (isThere(scene, k)) continue;
+		refuseInEngine(bodyName(k) + (there[k] ? " was replaced by another" : " was erased")
+		        + " after the start: bodies must stay those of the start; make a new engine");
+	}
+}
+
+bool SceneGrains::sameBody(std::size_t k) const
+{
+	const Kept& kept = bodies[k];
+	const Body& body = *kept.body;
+	const State& state = *kept.state;
+	return body.state == kept.state && body.shape == kept.sphere && body.material.get() == kept.material && body.groupMask == kept.mask
+	        && body.flags == kept.flags && state.mass == kept.mass && state.inertia[0] == kept.inertia && isotropic(state.inertia)
+	        && kept.sphere->radius == kept.radius;
+}
+
+void SceneGrains::refuseChange(std::size_t k) const
+{
+	const Kept& kept = bodies[k];
+	const Body& body = *kept.body;
+	const auto replaced = [&](const char* what) {
+		refuseInEngine(bodyName(k) + " was given another " + what + " after the start: it must keep its own; make a new engine");
+	};
+	if (body.state != kept.state) replaced("state");
+	if (body.shape != kept.sphere) replaced("shape");
+	if (body.material.get() != kept.material) replaced("material");
+	const std::string of = " of " + bodyName(k);
+	if (body.groupMask != kept.mask) refuseInEngine(changed("the mask" + of, kept.mask, body.groupMask));
+	if (kept.sphere->radius != kept.radius) refuseInEngine(changed("the radius" + of, kept.radius, kept.sphere->radius));
+	if (kept.state->mass != kept.mass) refuseInEngine(changed("the mass" + of, kept.mass, kept.state->mass));
+	for (int i = 0; i < 3; ++i)
+		if (kept.state->inertia[i] != kept.inertia)
+			refuseInEngine(changed("the moment of inertia" + of, kept.inertia, kept.state->inertia[i]));
+	refuseInEngine(bodyName(k) + ": bounded or aspherical was changed after the start: it must stay as it was; make a new engine");
+}
+
+void SceneGrains::requireSameMaterials() const
+{
+	for (const Kind& kind : kinds) {
+		const auto require = [&](const char* name, Real was, Real is) {
+			if (was != is) refuseInEngine(changed(std::string(name) + " of a material", was, is));
+		};
+		const contact_law::Material now = kind.material->forKernel(), &was = kind.values;
+		require("young", was.young, now.young), require("poisson", was.poisson, now.poisson),
+		        require("density", was.density, now.density);
+		require("surfaceEnergy", was.surfaceEnergy, now.surfaceEnergy);
+		require("criticalRolling", was.criticalRolling, now.criticalRolling);
+		require("viscoelasticTime", was.viscoelasticTime, now.viscoelasticTime);
+	}
 }
 
 } // namespace yade

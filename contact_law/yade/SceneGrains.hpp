@@ -1,30 +1,94 @@
-// YADE's bodies as the fused engine's grains, and back.
+// YADE's bodies as the fused engine's grains: read at the start, written after each step, and looked through for what scripts have changed meanwhile.
 #pragma once
 #include "../engine/dynamics.hpp"
+#include "JKRWada.hpp"
+#include "Refusal.hpp"
+#include <core/Body.hpp>
 #include <core/Scene.hpp>
-#include <stdexcept>
-#include <string>
+#include <core/State.hpp>
+#include <pkg/common/Sphere.hpp>
 #include <vector>
 
 namespace yade {
 
-[[noreturn]] inline void refuseInEngine(const std::string& what) { throw std::runtime_error("JKRWadaEngine: " + what); }
+class SceneGrains {
+public:
+	// Throws std::runtime_error for a body that the engine cannot move.
+	explicit SceneGrains(const Scene&);
 
-struct SceneGrains { // in the order of the ids
-	std::vector<contact_law::GrainInput> grains;
-	std::vector<contact_law::Material> materials;
-	std::vector<shared_ptr<State>> states;
+	// In the order of the ids, as the bodies are; for the start.
+	std::vector<contact_law::GrainInput> grains() const;
+	std::vector<contact_law::Material> materials() const;
+	std::vector<contact_law::GrainMotion> motions() const;
+
+	// The bodies get these motions, whose place the ones written before take. Orientations only when asked for.
+	void write(std::vector<contact_law::GrainMotion>& now, bool orientations, int threads);
+	// As if the bodies had been given these motions.
+	void setWritten(const std::vector<contact_law::GrainMotion>& motions) { written = motions; }
+
+	// Throws std::runtime_error when the scene has not the bodies any more that it had.
+	void requireThere(const Scene&) const;
+	/* Calls changed(index, motion) for bodies that a script has moved, pushed or blocked since they were written.
+	 * Throws std::runtime_error for a change that the engine cannot follow: of bodies, their radius, mass, inertia, material, shape or mask; of materials. */
+	template <class Changed> void eachChange(const Scene&, bool orientations, int threads, Changed&& changed) const;
+
+	const State& stateOf(std::size_t k) const { return *bodies[k].state; }
+	std::size_t size() const { return bodies.size(); }
+
+private:
+	struct Kept { // what a body must stay; pointers are the body's own
+		shared_ptr<Body> body;
+		shared_ptr<State> state;
+		shared_ptr<Sphere> sphere;
+		const Material* material;
+		Real radius, mass, inertia;
+		int mask, flags, kind;
+	};
+	struct Kind {
+		shared_ptr<JKRMat> material;
+		contact_law::Material values;
+	};
+
+	Kept read(const shared_ptr<Body>&, std::size_t id);
+	int kindOf(const shared_ptr<JKRMat>&);
+	bool isThere(const Scene& scene, std::size_t k) const { return (*scene.bodies)[k] == bodies[k].body; }
+	bool sameBody(std::size_t k) const;
+	[[noreturn]] void refuseChange(std::size_t k) const;
+	void requireSameMaterials() const;
+
+	std::vector<Kept> bodies;
+	std::vector<Kind> kinds;
+	std::vector<contact_law::GrainMotion> written;
 };
 
-// Throws std::runtime_error for a body that the engine cannot move.
-SceneGrains readGrains(const Scene&);
+contact_law::GrainMotion motionOf(const State&);
+bool sameMotion(const State&, const contact_law::GrainMotion&, bool orientations);
+bool finite(const contact_law::GrainMotion&);
 
-// Position, velocities, mass, blocked degrees of freedom and orientation of a body.
-contact_law::GrainInput grainOf(const State&);
-bool finite(const contact_law::GrainInput&);
+// Throws std::runtime_error when O.forces holds anything: the fused engine does not add other engines' forces to the contacts'.
+void requireNoForces(Scene&, std::size_t bodies, int threads);
 
-// Whether nobody has touched the body since it was written.
-bool sameMotion(const State&, const contact_law::GrainInput&, bool orientations);
-void write(const contact_law::GrainInput&, State&, bool orientations);
+// Whether it is so for every body; asked by all threads, since reading every body takes about a small step.
+template <class Is> bool forAll(std::size_t bodies, int threads, const Is& is)
+{
+	bool so = true;
+#pragma omp parallel for num_threads(threads) reduction(&& : so)
+	for (std::size_t k = 0; k < bodies; ++k)
+		so = so && is(k);
+	return so;
+}
+
+template <class Changed> void SceneGrains::eachChange(const Scene& scene, bool orientations, int threads, Changed&& changed) const
+{
+	requireSameMaterials();
+	const auto moved = [&](std::size_t k) { return !sameMotion(*bodies[k].state, written[k], orientations); };
+	const auto untouched = [&](std::size_t k) { return isThere(scene, k) && sameBody(k) && !moved(k); };
+	if (scene.bodies->size() == size() && forAll(size(), threads, untouched)) return;
+	requireThere(scene);
+	for (std::size_t k = 0; k < size(); ++k)
+		if (!sameBody(k)) refuseChange(k);
+	for (std::size_t k = 0; k < size(); ++k)
+		if (moved(k)) changed(k, motionOf(*bodies[k].state));
+}
 
 } // namespace yade

@@ -77,7 +77,7 @@ def test_failures_fail_the_study_after_all_others_have_run(first_call):
     ends = [line for line in errors.splitlines() if not line.endswith("the other rows are run")]
     assert len(ends) == 3
     assert ends[0].startswith("study.py: killed: killed by signal 9 (checkpoint at ")
-    assert ends[1].startswith("study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run went wrong at t = ")
+    assert ends[1].startswith("study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run broke down at t = ")
     assert ends[2] == "study.py: refused: line 5 of tiny.table: velocity = -1: must be > 0 [m/s]"
     assert sorted(os.listdir(folder / "runs" / "tiny")) == ["ends", "fails", "killed"]
 

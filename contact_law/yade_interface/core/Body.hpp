@@ -28,6 +28,7 @@ public:
 	bool isClumpMember() const;
 	bool isStandalone() const;
 	bool isAspherical() const;
+	bool isBounded() const;
 
 	id_t id;
 	mask_t groupMask;

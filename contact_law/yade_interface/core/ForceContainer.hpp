@@ -17,6 +17,7 @@ public:
 	const Vector3r& getForce(Body::id_t);
 	const Vector3r& getTorque(Body::id_t);
 	void sync();
+	void reset(long iter, bool resetAll = false); // resetAll: permanent forces (O.forces.setPermF) too
 };
 static_assert(sizeof(ForceContainer) == 304, "ForceContainer");
 

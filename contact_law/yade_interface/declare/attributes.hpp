@@ -62,8 +62,15 @@ namespace attributes {
 
 	template <class Class, auto Member, bool callPostLoad> void set(Class& self, const boost::python::object& value)
 	{
+		const auto before = self.*Member;
 		assign(self.*Member, value);
-		if (callPostLoad) self.callPostLoad();
+		if (!callPostLoad) return;
+		try {
+			self.callPostLoad();
+		} catch (...) { // a refused value is not kept
+			self.*Member = before;
+			throw;
+		}
 	}
 
 	template <class Class, class PythonClass> void addProperties(PythonClass& pythonClass)

@@ -1,0 +1,37 @@
+// Those attributes of JKRWadaEngine that a run keeps from its start to its end.
+#pragma once
+#include "Refusal.hpp"
+#include <string>
+
+namespace yade {
+
+struct EngineSettings {
+	int domains;
+	std::string instructions;
+	double linearDamping, neck;
+	bool sliding, rolling, twisting, orientations;
+
+	// visit(name, value before, value now), of each
+	template <class Visit> static void each(const EngineSettings& before, const EngineSettings& now, Visit&& visit)
+	{
+		visit("domains", before.domains, now.domains);
+		visit("instructions", before.instructions, now.instructions);
+		visit("linearDamping", before.linearDamping, now.linearDamping);
+		visit("neck", before.neck, now.neck);
+		visit("sliding", before.sliding, now.sliding);
+		visit("rolling", before.rolling, now.rolling);
+		visit("twisting", before.twisting, now.twisting);
+		visit("orientations", before.orientations, now.orientations);
+	}
+	// Throws std::runtime_error for one that has been changed.
+	void requireSame(const EngineSettings& now) const
+	{
+		each(*this, now, [](const char* name, const auto& was, const auto& is) {
+			if (was != is)
+				refuseInEngine(std::string(name) + " was changed after the start: it must stay " + text(was) + ", not "
+				        + text(is) + "; make a new engine");
+		});
+	}
+};
+
+} // namespace yade

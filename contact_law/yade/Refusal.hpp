@@ -1,0 +1,28 @@
+// One line for what the fused engine cannot do, and numbers in it.
+#pragma once
+#include <boost/lexical_cast.hpp>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+namespace yade {
+
+[[noreturn]] inline void refuseInEngine(const std::string& what) { throw std::runtime_error("JKRWadaEngine: " + what); }
+
+// All digits, of what a user gave; strings in quotes and bools as in Python.
+inline std::string text(double number) { return boost::lexical_cast<std::string>(number); }
+inline std::string text(int number) { return std::to_string(number); }
+inline std::string text(bool is) { return is ? "True" : "False"; }
+inline std::string text(const std::string& string) { return "'" + string + "'"; }
+
+// Of what was computed.
+inline std::string rounded(double number, int digits = 4)
+{
+	char buffer[32];
+	std::snprintf(buffer, sizeof buffer, "%.*g", digits, number);
+	return buffer;
+}
+
+inline std::string bodyName(std::size_t id) { return "body " + std::to_string(id); }
+
+} // namespace yade

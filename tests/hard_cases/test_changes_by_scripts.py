@@ -1,0 +1,518 @@
+"""What a script does to a scene between two steps of JKRWadaEngine: it is obeyed, or refused in one line that says what, where, and what it must be."""
+
+import pytest
+
+SCENE = """
+from scenes import *
+unit = constants(ice(), 1e-7)["timeUnit"]
+def chain(count=4, speed=0.1, **options):
+    'Touching grains in a row that vibrate, under the fused engine.'
+    new_scene(0.1 * unit)
+    d = 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
+    for k in range(count):
+        grain((k * d, 0, 0), 1e-7, ice() if k == 0 else O.bodies[0].material, (0, speed * (-1) ** k, 0))
+    fused_engine(**options)
+def said(call):
+    'What a call is refused with, or an empty string.'
+    try:
+        call()
+    except (RuntimeError, ValueError) as error:
+        return str(error)
+    return ""
+def engine(): return O.engines[0]
+"""
+
+
+def refused(yade, script, *words):
+    """The refusal that the script leaves in result["message"] is one line with these words in it, and nothing has moved since."""
+    found = yade(SCENE + script)
+    message = found["message"]
+    assert message and "\n" not in message and all(word in message for word in words), message
+    return found
+
+
+# ---- what may be changed: obeyed ----
+
+
+@pytest.mark.parametrize("orientations", [False, True])
+def test_what_a_script_sets_after_loading_holds(yade, orientations):
+    """Velocities, positions, blocked degrees of freedom and orientations: as if they had been set in the run that was never saved."""
+    found = yade(
+        SCENE
+        + """
+def change():
+    O.bodies[1].state.vel += Vector3(3, -1, 2)
+    O.bodies[2].state.angVel += Vector3(1e7, 2e7, -1e7)
+    O.bodies[3].state.pos += Vector3(1e-10, -1e-10, 3e-10)
+    O.bodies[0].state.blockedDOFs = "xyZ"
+    O.bodies[3].state.ori = Quaternion((0, 1, 0), 0.3)
+def all_states():
+    return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel), b.state.blockedDOFs, list(b.state.ori)] for b in O.bodies]
+chain(subSteps=7, orientations=parameters["orientations"])
+O.dt *= 7
+for _ in range(20): O.step()
+O.save("saved.yade.gz")
+unchanged = all_states()
+change()
+changed = all_states()
+for _ in range(20): O.step()
+straight = all_states(), energies()
+O.load("saved.yade.gz")
+result["loaded"] = all_states() == unchanged != changed
+change()
+for _ in range(20): O.step()
+result["same"] = all_states() == straight[0]
+result["energies"] = [straight[1], energies()]
+""",
+        {"orientations": orientations},
+    )
+    assert found["loaded"] and found["same"]
+    assert found["energies"][1] == pytest.approx(found["energies"][0], rel=1e-12)
+
+
+def test_a_change_before_saving_is_not_lost(yade):
+    """Set after the last step, then saved, loaded and continued."""
+    found = yade(
+        SCENE
+        + """
+chain(subSteps=5)
+O.dt *= 5
+for _ in range(10): O.step()
+O.bodies[1].state.vel = Vector3(3, -1, 2)
+O.save("saved.xml.bz2")
+for _ in range(10): O.step()
+straight = positions()
+O.load("saved.xml.bz2")
+for _ in range(10): O.step()
+result["same"] = bool((positions() == straight).all())
+"""
+    )
+    assert found["same"]
+
+
+@pytest.mark.parametrize("mover", ["fused", "functors"])
+@pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0.02, 0, 0), (-3.0, 1.0, 0), (0, 30.0, 0)])
+def test_a_touching_body_may_be_moved(yade, mover, by):
+    """Its contacts break when they are torn apart, and what they took is booked; nothing becomes infinite."""
+    found = yade(
+        SCENE
+        + """
+chain(viscous=False) if False else chain()
+if parameters["mover"] == "functors": O.engines = functor_engines()
+for _ in range(200): O.step()
+before = energies()
+O.bodies[3].state.pos += Vector3(*parameters["by"]) * 1e-7
+for _ in range(200): O.step()
+shot = contact_law.snapshot()
+pairs = sorted(sorted(p) for p in shot["contact_pairs"].tolist())
+result.update(pairs=pairs, finite=bool(np.isfinite(positions()).all()), lost={n: energies()[n] - before[n] for n in LOST})
+result["speed"] = max(b.state.vel.norm() for b in O.bodies)
+c = constants(ice(), 1e-7)
+result["unit"] = c["pullOffForce"] * c["pullOffOverlap"]
+""",
+        {"mover": mover, "by": by},
+    )
+    assert found["finite"] and found["speed"] < 20, found
+    assert found["pairs"] == [[0, 1], [1, 2]], found
+    assert found["lost"]["disconnection"] >= 4 / 45 * found["unit"] * (1 - 1e-6)
+
+
+def test_a_moved_body_leaves_its_neighbours_as_the_functors_have_it(yade):
+    """Torn away in the middle of a run with drag: the loss that is booked is the functors', to the first order of the one small step by which forces lag."""
+    found = yade(
+        SCENE
+        + """
+def run(mover, step):
+    chain()
+    O.dt *= step
+    for b in O.bodies: b.material.viscoelasticTime = 1e-12
+    if mover == "functors": O.engines = functor_engines()
+    for _ in range(int(20 / step)): O.step()
+    before = energies()
+    O.bodies[3].state.pos += Vector3(0, 0.3e-7, 0)
+    for _ in range(int(20 / step)): O.step()
+    return positions(), energies()["disconnection"] - before["disconnection"]
+for step in (1.0, 0.25):
+    (x, lost), (y, booked) = run("functors", step), run("fused", step)
+    result.setdefault("moved", []).append(float(np.abs(x - y).max() / 1e-7))
+    result.setdefault("lost", []).append(booked / lost - 1)
+"""
+    )
+    assert found["moved"][1] < 0.5 * found["moved"][0] < 1e-2, found
+    assert max(map(abs, found["lost"])) < 1e-6, found
+
+
+def test_a_body_wrapped_into_the_cell_goes_on_unharmed(yade):
+    """A script brings a touching grain back into the periodic cell: its contacts are with the nearest images, as before."""
+    found = yade(
+        SCENE
+        + """
+def run(wrapped):
+    chain()
+    O.periodic = True
+    O.cell.setBox(1.5e-6, 1.5e-6, 1.5e-6)
+    for _ in range(100): O.step()
+    if wrapped: O.bodies[2].state.pos += Vector3(1.5e-6, 0, -3e-6)
+    for _ in range(100): O.step()
+    x = positions()
+    if wrapped: x[2] -= np.array([1.5e-6, 0, -3e-6])
+    return x, energies()
+(x, e), (y, f) = run(False), run(True)
+result.update(moved=float(np.abs(x - y).max() / 1e-7), lost=max(abs(e[n] - f[n]) for n in LOST), kinetic=e["kinetic"])
+"""
+    )
+    assert found["moved"] < 1e-9 and found["lost"] < 1e-9 * found["kinetic"], found
+
+
+def test_energies_may_be_asked_for_late_or_with_a_pause(yade):
+    """O.trackEnergy switched on, off and on again, and after loading: what O.energy then has is what it has when it was on all the time."""
+    found = yade(
+        SCENE
+        + """
+def run(on, load=False):
+    new_scene(0.1 * unit)
+    converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
+    fused_engine(subSteps=5)
+    O.dt *= 5
+    for k in range(60):
+        O.trackEnergy = on(k)
+        O.step()
+        if load and k == 35:
+            O.save("paused.yade")
+            O.load("paused.yade")
+    return energies()
+result["always"] = run(lambda k: True)
+result["late"] = run(lambda k: k > 40)
+result["paused"] = run(lambda k: k < 30 or k > 40)
+result["loaded late"] = run(lambda k: k > 40, load=True)
+"""
+    )
+    always = found.pop("always")
+    assert always["slidingDissipation"] > 0 and always["disconnection"] > 0
+    for name, energies in found.items():
+        assert energies == pytest.approx(always, rel=1e-9, abs=1e-12 * always["connection"]), name
+
+
+def test_an_engine_that_is_dead_for_a_while_continues(yade):
+    found = yade(
+        SCENE
+        + """
+def run(pause):
+    chain()
+    for k in range(60):
+        engine().dead = pause and 20 <= k < 40
+        if not (not pause and k >= 40): O.step()
+    return positions()
+result["same"] = bool((run(True) == run(False)).all())
+"""
+    )
+    assert found["same"]
+
+
+def test_threads_may_change(yade):
+    found = yade(
+        SCENE
+        + """
+def run(threads):
+    new_scene(0.1 * unit)
+    converging(64, 1, [ice()], [1e-7])
+    fused_engine()
+    for k in range(100):
+        engine().threads = threads(k)
+        O.step()
+    return positions()
+result["same"] = bool((run(lambda k: 1) == run(lambda k: 1 + k // 10 % 2)).all())
+"""
+    )
+    assert found["same"]
+
+
+# ---- what may not: refused ----
+
+
+@pytest.mark.parametrize(
+    "change,words",
+    [
+        ("O.bodies[2].shape.radius = 2e-7", ["the radius of body 2 was changed", "must stay"]),
+        ("O.bodies[2].shape = Sphere(radius=1e-7)", ["body 2 was given another shape"]),
+        ("O.bodies[2].state.mass *= 2", ["the mass of body 2 was changed", "must stay"]),
+        ("O.bodies[2].state.inertia *= 2", ["the moment of inertia of body 2 was changed", "must stay"]),
+        ("O.bodies[2].state.inertia = Vector3(I[0], I[1], 2 * I[2])", ["the moment of inertia of body 2 was changed"]),
+        ("O.bodies[2].state = State()", ["body 2 was given another state"]),
+        ("O.bodies[2].material = soft()", ["body 2 was given another material"]),
+        ("O.bodies[2].mask = 2", ["the mask of body 2 was changed", "must stay 1, not 2"]),
+        ("O.bodies[2].bounded = False", ["body 2: bounded or aspherical was changed"]),
+        ("O.bodies[2].material.young = 1e9", ["young of a material was changed", "must stay 7000000000"]),
+        ("O.bodies[2].material.density = 2000", ["density of a material was changed"]),
+        ("O.bodies[2].material.surfaceEnergy = 0", ["surfaceEnergy of a material was changed"]),
+        ("O.bodies[2].material.viscoelasticTime = 1e-12", ["viscoelasticTime of a material was changed", "must stay 0"]),
+        ("engine().linearDamping = 0.5", ["linearDamping was changed", "must stay 0, not 0.5"]),
+        ("engine().neck = 0.3", ["neck was changed"]),
+        ("engine().sliding = False", ["sliding was changed", "must stay True, not False"]),
+        ("engine().rolling = False", ["rolling was changed"]),
+        ("engine().twisting = False", ["twisting was changed"]),
+        ("engine().domains = 3", ["domains was changed", "must stay 2, not 3"]),
+        ("engine().instructions = 'portable'", ["instructions was changed", "must stay ''"]),
+        ("engine().orientations = True", ["orientations was changed"]),
+        ("engine().subSteps = 2", ["the small step O.dt/subSteps was changed", "must stay"]),
+        ("O.dt *= 0.5", ["the small step O.dt/subSteps was changed"]),
+        ("O.periodic = True", ["O.periodic was changed"]),
+        ("O.bodies.erase(1)", ["body 1 was erased after the start"]),
+        ("O.bodies.erase(3)", ["body 3 was erased after the start"]),
+        ("O.bodies.erase(1); O.bodies.insertAtId(utils.sphere((9e-7, 0, 0), 1e-7, material=ice()), 1)", ["body 1 was replaced by another"]),
+        ("O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=ice()))", ["there are 5 bodies, must be the 4 of the start"]),
+        ("O.bodies.clear()", ["there are 0 bodies, must be the 4 of the start"]),
+        ("O.bodies.clump([0, 1])", ["there are 5 bodies, must be the 4 of the start"]),
+        ("O.bodies[1].state.vel = Vector3(float('nan'), 0, 0)", ["body 1 was given a position or velocity that is not a finite number"]),
+        ("O.forces.addF(3, Vector3(0, 1e-9, 0))", ["O.forces has a force on body 3, (0, 1e-09, 0) N: it must be 0"]),
+        ("O.forces.addT(0, Vector3(0, 1e-19, 0))", ["O.forces has a torque on body 0, (0, 1e-19, 0) N m: it must be 0"]),
+        ("O.forces.setPermF(2, Vector3(1e-9, 0, 0))", ["O.forces has a force on body 2"]),
+        ("O.forces.setPermT(2, Vector3(1e-19, 0, 0))", ["O.forces has a torque on body 2"]),
+        ("O.engines = [GravityEngine(gravity=(0, 0, -10))] + O.engines", ["O.forces has a force on body 0"]),
+        ("O.engines = [ForceResetter(), GravityEngine(gravity=(0, 0, -10))] + O.engines", ["O.forces has a force on body 0"]),
+        ("O.engines += [NewtonIntegrator()]", ["NewtonIntegrator is among O.engines too"]),
+        ("O.engines = [engine(), engine()]", ["O.engines has 2 JKRWadaEngines: there must be one"]),
+        ("O.engines += [JKRWadaEngine()]", ["O.engines has 2 JKRWadaEngines: there must be one"]),
+        ("engine().threads = 0", ["threads = 0: must be 1 or more"]),
+        ("engine().linearDamping = float('nan')", ["linearDamping = nan: must be 0 (none) or more"]),
+    ],
+)  # fmt: skip
+def test_changes_in_the_middle_of_a_run_are_refused(yade, change, words):
+    """At once, and again while the change stands; the bodies are left as the script has them, and O.time as it was."""
+    found = refused(
+        yade,
+        f"""
+chain()
+for _ in range(20): O.step()
+I = O.bodies[2].state.inertia
+before, time = positions(), O.time
+{change}
+result["message"] = said(O.step)
+result["again"] = said(O.step) == result["message"]
+result["time"] = O.time == time
+result["bodies"] = [list(b.state.pos) for b in O.bodies if b]
+""",
+        *words,
+    )
+    assert found["again"] and found["time"]
+
+
+@pytest.mark.parametrize(
+    "change,words",
+    [
+        ("O.bodies[2].shape.radius = 2e-7", ["the radius of body 2 is another than in the checkpoint: it must be 9.99"]),
+        ("O.bodies[2].state.mass *= 2", ["the mass of body 2 is another than in the checkpoint"]),
+        ("O.bodies[2].state.inertia *= 2", ["the moment of inertia of body 2 is another than in the checkpoint"]),
+        ("O.bodies[2].material = soft()", ["the number of materials is another than in the checkpoint: it must be 1"]),
+        ("O.bodies[2].material.young = 1e9", ["young of material 0 is another than in the checkpoint: it must be 7000000000"]),
+        ("engine().linearDamping = 0.5", ["linearDamping is another than in the checkpoint: it must be 0"]),
+        ("engine().neck = 0.5", ["neck is another than in the checkpoint: it must be 0"]),
+        ("engine().sliding = False", ["sliding, rolling, twisting", "another than in the checkpoint"]),
+        ("engine().domains = 3", ["domains is another than in the checkpoint: it must be 2"]),
+        ("O.periodic = True", ["O.periodic is another than in the checkpoint: it must be 0"]),
+        ("O.bodies.erase(1)", ["body 1 was erased"]),
+        ("O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=O.bodies[0].material))", ["the number of bodies is another than in the checkpoint: it must be 4"]),
+        ("O.dt *= 0.5", ["the small step O.dt/subSteps was changed after the start"]),
+    ],
+)  # fmt: skip
+def test_changes_after_loading_are_refused(yade, change, words):
+    refused(
+        yade,
+        f"""
+chain()
+for _ in range(20): O.step()
+O.save("saved.yade")
+O.load("saved.yade")
+{change}
+result["message"] = said(O.step)
+""",
+        *words,
+    )
+
+
+@pytest.mark.parametrize("engine", ["JKRWadaEngine", "Ip2_JKRMat_JKRMat_JKRWadaPhys"])
+@pytest.mark.parametrize("value", ["-1.0", "float('nan')", "float('inf')"])
+def test_damping_out_of_range_is_refused(yade, engine, value):
+    """The engine refuses it at the step, the functor, which must not throw in YADE's loop, as soon as it is set."""
+    refused(
+        yade,
+        f"""
+chain()
+functor = {engine}()
+def use():
+    functor.linearDamping = {value}
+    O.engines = [functor]
+    O.step()
+result["message"] = said(use)
+result["given"] = said(lambda: {engine}(linearDamping={value}) and O.step())
+""",
+        "linearDamping = ",
+        "must be 0 (none) or more",
+    )
+
+
+@pytest.mark.parametrize("name", ["subSteps", "threads", "domains"])
+@pytest.mark.parametrize("value", [0, -3])
+def test_numbers_below_one_are_refused(yade, name, value):
+    refused(yade, f"chain({name}={value})\nresult['message'] = said(O.step)", f"{name} = {value}: must be 1 or more")
+
+
+@pytest.mark.parametrize(
+    "change,words",
+    [
+        ("O.bodies[1].mask = 2", ["body 1: mask = 2, must be 1"]),
+        ("O.bodies[1].bounded = False", ["body 1 must be bounded"]),
+        ("O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])", ["body 1: its three moments of inertia must be the same"]),
+        ("O.bodies.clump([0, 1])", ["body 4 must be a sphere of JKRMat"]),
+        ("O.bodies.erase(1)", ["body 1 was erased"]),
+        ("O.forces.setPermF(2, Vector3(1e-9, 0, 0))", ["O.forces has a force on body 2"]),
+    ],
+)  # fmt: skip
+def test_scenes_that_the_engine_cannot_move_are_refused_at_the_start(yade, change, words):
+    refused(yade, f"chain()\nI = O.bodies[1].state.inertia\n{change}\nresult['message'] = said(O.step)", *words)
+
+
+# ---- what used to end the process ----
+
+CALLS = [
+    "engine().exportInteractions = True; O.step()",
+    "e.writeInteractions()",
+    "e.handOver()",
+    "e.prepare()",
+    "contact_law.snapshot()",
+]
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_calls_after_a_body_was_erased_are_refused(yade, call):
+    refused(
+        yade,
+        f"""
+chain()
+for _ in range(20): O.step()
+e = engine()
+O.bodies.erase(1)
+def call():
+    {call}
+result["message"] = said(call)
+""",
+        "body 1 was erased after the start",
+    )
+
+
+@pytest.mark.parametrize("away", ["O.reset()", "O.switchScene()", "O.reset(); chain()", "O.switchScene(); chain()"])
+@pytest.mark.parametrize("call", ["O.engines = [e]; O.step()", *CALLS[1:4], "O.engines = [e]; contact_law.snapshot()"])
+def test_an_engine_is_refused_in_another_scene(yade, away, call):
+    refused(
+        yade,
+        f"""
+chain()
+for _ in range(20): O.step()
+e = engine()
+{away}
+def call():
+    {call}
+result["message"] = said(call)
+""",
+        "another scene",
+        "make a new one",
+    )
+
+
+def test_two_scenes_with_an_engine_each(yade):
+    found = yade(
+        SCENE
+        + """
+chain()
+for _ in range(40): O.step()
+straight = positions()
+chain()
+for _ in range(20): O.step()
+O.switchScene()
+chain(count=3)
+for _ in range(20): O.step()
+O.switchScene()
+for _ in range(20): O.step()
+result["same"] = bool((positions() == straight).all())
+"""
+    )
+    assert found["same"]
+
+
+@pytest.mark.parametrize("call", [*CALLS[1:], "e.statistics()", "O.save('while_running.yade')"])
+def test_calls_while_the_loop_runs_are_refused(yade, call):
+    found = refused(
+        yade,
+        f"""
+new_scene(0.1 * unit)
+converging(125, 1, [ice()], [1e-7])
+fused_engine(subSteps=50)
+O.dt *= 50
+e = engine()
+O.step()
+def call():
+    {call}
+O.run(-1)
+result["message"] = said(call)
+O.pause()
+O.wait()
+result["steps"] = O.iter
+if "handOver" not in {call!r}: result["at rest"] = said(call)
+O.step()
+""",
+        "while O.run() is under way",
+    )
+    assert found.get("at rest", "") == ""
+
+
+def test_a_pyrunner_may_call_the_engine_while_the_loop_runs(yade):
+    found = yade(
+        SCENE
+        + """
+chain()
+found = []
+def look():
+    engine().writeInteractions()
+    found.append([O.interactions.countReal(), len(contact_law.snapshot()["contact_pairs"]), engine().statistics()["contacts"]])
+    O.save("saved.yade")
+O.engines += [PyRunner(command="look()", iterPeriod=5, initRun=False)]
+O.run(20, True)
+result["found"] = found
+"""
+    )
+    assert len(found["found"]) >= 3 and all(row == [3, 3, 3] for row in found["found"])
+
+
+def test_a_checkpoint_of_another_format_is_refused(yade):
+    """Of as many numbers, but another header; and one that is cut off, or too long."""
+    found = yade(
+        SCENE
+        + """
+import re
+chain()
+for _ in range(20): O.step()
+O.save("saved.xml")
+saved = open("saved.xml").read()
+head, numbers, tail = re.fullmatch(r"(.*<savedState>\\s*<count>)(.*)(</savedState>.*)", saved, re.S).groups()
+items = re.findall(r"<item>.*?</item>", numbers)
+def load(change):
+    changed = list(items)
+    change(changed)
+    body = re.sub(r"^\\d+", str(len(changed)), re.sub(r"<item>.*</item>", lambda m: "".join(changed), numbers, flags=re.S))
+    open("changed.xml", "w").write(head + body + tail)
+    O.load("changed.xml")
+    return said(O.step)
+def first(k, value):
+    def change(items): items[k] = f"<item>{value}</item>"
+    return change
+result["same"] = load(lambda items: None)
+result["format"] = load(first(1, 3))
+result["headless"] = load(first(0, 4))
+result["short"] = load(lambda items: items.pop())
+result["long"] = load(lambda items: items.append(items[-1]))
+"""
+    )
+    assert found["same"] == ""
+    assert "is of format 3, which another version wrote: it must be 2" in found["format"]
+    assert "is of format 1, which another version wrote: it must be 2" in found["headless"]
+    assert "cut off" in found["short"] and "too long" in found["long"], found
