@@ -173,14 +173,10 @@ void JKRWadaEngine::takeChanges()
 }
 
 // The beginning of all that this engine does: afterwards there is a run, of this scene, and as scripts want it.
-void JKRWadaEngine::enter(const char* call, Moment moment)
+void JKRWadaEngine::enter(Moment moment)
 {
-	if (moment == Moment::BetweenSteps) {
-		requireLoopAtRest(std::string("JKRWadaEngine: ") + call);
-		requireOwnScene();
-		scene = Omega::instance().getScene().get();
-	}
 	requireOwnScene();
+	if (moment == Moment::BetweenSteps) scene = Omega::instance().getScene().get();
 	if (!failure.empty()) refuseInEngine(failure);
 	requireInRange();
 	if (!current) start(moment);
@@ -188,10 +184,18 @@ void JKRWadaEngine::enter(const char* call, Moment moment)
 	takeChanges();
 }
 
+// O.pause() ends O.run() while the last step is still being made: that is waited for.
+std::unique_lock<std::mutex> JKRWadaEngine::atRest(const char* call) const
+{
+	requireLoopAtRest(std::string("JKRWadaEngine: ") + call);
+	return std::unique_lock<std::mutex>(busy);
+}
+
 void JKRWadaEngine::action()
 {
+	const std::lock_guard<std::mutex> acting(busy);
 	requireAlone(*scene);
-	enter("", Moment::WithinStep);
+	enter(Moment::WithinStep);
 	requireNoForces(*scene, current->grains.size(), current->dynamics.threadCount());
 	current->cell.require(*scene, current->dynamics);
 	if (scene->dt / subSteps != smallStep)
@@ -229,7 +233,8 @@ void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 
 void JKRWadaEngine::prepare()
 {
-	enter("prepare()", Moment::BetweenSteps);
+	const auto rest = atRest("prepare()");
+	enter(Moment::BetweenSteps);
 	SceneCell::takeVelocityGradient(*scene, current->dynamics);
 	if (scene->isPeriodic) { // the mean velocity field is in the grains' velocities now
 		current->dynamics.read(current->now);
@@ -241,17 +246,18 @@ void JKRWadaEngine::prepare()
 
 void JKRWadaEngine::writeInteractions()
 {
-	enter("writeInteractions()", Moment::BetweenSteps);
+	const auto rest = atRest("writeInteractions()");
+	enter(Moment::BetweenSteps);
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
 }
 
 void JKRWadaEngine::handOver()
 {
-	requireLoopAtRest("JKRWadaEngine: handOver()");
+	const auto rest = atRest("handOver()");
 	if (!current) refuseInEngine("handOver() before the first step: there is nothing to hand over");
 	requireOwnScene();
 	if (inStep()) refuseInEngine("handOver() within an O.step: call it between two");
-	enter("handOver()", Moment::BetweenSteps);
+	enter(Moment::BetweenSteps);
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::AStepBehind); // with the orientations that go with it
 	for (std::size_t k = 0; k < current->now.size(); ++k)
 		current->now[k].orientation = motionOf(current->grains.stateOf(k)).orientation;
@@ -282,7 +288,7 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 
 void JKRWadaEngine::preSave(JKRWadaEngine&)
 {
-	requireLoopAtRest("JKRWadaEngine: O.save()");
+	const auto rest = atRest("O.save()");
 	const bool here = current && current->scene.lock() == Omega::instance().getScene();
 	savedState = here ? current->dynamics.save() : std::vector<Real>();
 }
@@ -308,7 +314,7 @@ bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& no
 boost::python::dict JKRWadaEngine::statistics() const
 {
 	boost::python::dict result;
-	requireLoopAtRest("JKRWadaEngine: statistics()");
+	const auto rest = atRest("statistics()");
 	if (!current) return result;
 	const Dynamics& dynamics = current->dynamics;
 	result["contacts"] = contactCount(dynamics);

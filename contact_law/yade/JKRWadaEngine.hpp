@@ -7,6 +7,7 @@
 #include <core/GlobalEngine.hpp>
 #include <boost/python.hpp>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace yade {
@@ -16,8 +17,9 @@ class JKRWadaEngine : public GlobalEngine {
 	std::shared_ptr<Run> current;
 	EnergyChannels channels;
 
-	long actedAt = -1;   // iteration
-	std::string failure; // why the run cannot be continued
+	mutable std::mutex busy; // held while this engine acts
+	long actedAt = -1;       // iteration
+	std::string failure;     // why the run cannot be continued
 
 	EngineSettings settings() const;
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
@@ -27,7 +29,7 @@ class JKRWadaEngine : public GlobalEngine {
 	void start(Moment);
 	void continueBooking();
 	void requireStable() const;
-	void enter(const char* call, Moment);
+	void enter(Moment);
 	void takeChanges();
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();
@@ -41,6 +43,8 @@ public:
 	void writeInteractions();
 	void handOver();
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
+	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
+	std::unique_lock<std::mutex> atRest(const char* call) const;
 	// Adds this engine's contacts to a snapshot (JKRWadaSnapshot), by the ids of their bodies; false before the first step.
 	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const;
 	boost::python::dict statistics() const;

@@ -87,6 +87,7 @@ boost::python::dict JKRWadaSnapshot::read() const
 	requireLoopAtRest("contact_law.snapshot()");
 	Scene& scene = *Omega::instance().getScene();
 	const auto* fused = fusedEngine(scene);
+	const auto rest = fused ? fused->atRest("contact_law.snapshot()") : std::unique_lock<std::mutex>();
 	const Grains grains = readGrains(scene, fused);
 	std::vector<int> pairs;
 	std::vector<double> normalForce;

@@ -9,8 +9,8 @@ namespace yade {
 
 class LedgerWatch {
 public:
-	// Scripts may give energy to grains, or take it: the sum is another from the next energies on.
-	void forgetSum() { known = false; }
+	// Scripts may give energy to grains, or take it, and tear contacts apart: sum and losses are others from the next energies on.
+	void forgetSum() { known = false, lostBefore = -1e300; }
 
 	// Empty, or what is wrong with the energies after a step. contactEnergy: of one contact, F_c delta_c [J]; bonded grains at rest have none but rounding's.
 	std::string wrong(const contact_law::Energies& e, double contactEnergy)
