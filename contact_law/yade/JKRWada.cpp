@@ -140,14 +140,6 @@ void JKRWadaPhys::set(
 	shearForce = -fromKernel(f.sliding);
 }
 
-void Ip2_JKRMat_JKRMat_JKRWadaPhys::postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&) const
-{
-	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
-		throw std::invalid_argument(
-		        "linearDamping = " + boost::lexical_cast<std::string>(linearDamping) + ": must be 0 (none) or more");
-	if (neck != 0) requireNeck(neck);
-}
-
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
         const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
 {

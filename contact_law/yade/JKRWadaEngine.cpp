@@ -55,11 +55,11 @@ EngineSettings JKRWadaEngine::settings() const
 void JKRWadaEngine::requireInRange() const
 {
 	const auto atLeastOne = [](const char* name, int value) {
-		if (value < 1) refuseInEngine(std::string(name) + " = " + text(value) + ": must be 1 or more");
+		if (value < 1) refuseInEngine(std::string(name) + " = " + text(value) + ": must be >= 1");
 	};
 	atLeastOne("subSteps", subSteps), atLeastOne("threads", threads), atLeastOne("domains", domains);
 	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
-		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be 0 (none) or more");
+		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
 	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
 		refuseInEngine("neck = " + text(neck) + ": must be 0 (no bonds), or up to 0.7 for sintered bonds");
 	if (neck != 0 && scene->isPeriodic)

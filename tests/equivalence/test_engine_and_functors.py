@@ -163,7 +163,7 @@ result["moved"] = (np.array(O.bodies[3].state.pos) - before) / O.dt
             "body 2 has a position or velocity that is not a finite number",
         ),
         ("O.engines += [NewtonIntegrator()]", "NewtonIntegrator is among O.engines too; this engine replaces it"),
-        ("O.engines[0].subSteps = 0", "subSteps = 0: must be 1 or more"),
+        ("O.engines[0].subSteps = 0", "subSteps = 0: must be >= 1"),
         ("O.engines[0].instructions = 'sse9'", "instructions = 'sse9': must be here"),
         (
             "O.periodic = True; O.cell.hSize = Matrix3(1, 0.1, 0, 0, 1, 0, 0, 0, 1)",
