@@ -13,6 +13,8 @@ def snapshot():
 
     Call it from a PyRunner that stands last among O.engines. NewtonIntegrator keeps velocities half a step apart from positions and
     has moved the grains on by then; the arrays are brought to the moment of the forces, which is also that of O.energy.
+
+    RuntimeError while O.run() is under way (but for PyRunners), and when JKRWadaEngine's grains are not the scene's bodies any more: erased, or of another scene.
     """
     from yade.wrapper import JKRWadaSnapshot
 

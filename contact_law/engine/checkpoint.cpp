@@ -2,6 +2,7 @@
  * Whoever changes what is transferred, or its order, raises formatNumber. */
 #include "checkpoint_archive.hpp"
 #include "dynamics.hpp"
+#include "material_list.hpp"
 
 namespace contact_law {
 
@@ -74,16 +75,6 @@ namespace {
 		for (ContactList& list : domain.contacts)
 			transferLanes<Contact>(archive, list, setting);
 	}
-
-	template <class Archive> void transferMaterial(Archive& archive, const Material& m, int kind)
-	{
-		const auto same = [&](double value, const char* name) {
-			archive.same(value, [&] { return std::string(name) + " of material " + std::to_string(kind); });
-		};
-		same(m.young, "young"), same(m.poisson, "poisson"), same(m.density, "density");
-		same(m.surfaceEnergy, "surfaceEnergy"), same(m.criticalRolling, "criticalRolling");
-		same(m.viscoelasticTime, "viscoelasticTime");
-	}
 }
 
 // What must be known before the grains can be laid out, and what must be as it was.
@@ -97,10 +88,14 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(setting.material.size(), named("the number of materials"));
 	archive.same(setting.linearDamping, named("linearDamping"));
 	archive.same(setting.neck, named("neck"));
-	archive.same(setting.mechanisms, named("the bits of sliding, rolling, twisting (1, 2, 4) and drag (8)"));
+	archive.same(bool(setting.mechanisms & Sliding), named("sliding"));
+	archive.same(bool(setting.mechanisms & Rolling), named("rolling"));
+	archive.same(bool(setting.mechanisms & Twisting), named("twisting"));
 	archive.same(setting.dt, named("the small step"));
 	for (std::size_t kind = 0; kind < setting.material.size(); ++kind)
-		transferMaterial(archive, setting.material[kind], int(kind));
+		for (const MaterialRow& row : materialList)
+			archive.same(setting.material[kind].*row.member,
+			        [&] { return std::string(row.name) + " of material " + std::to_string(kind); });
 	original.resize(count);
 	for (int& index : original) {
 		archive.number(index);

@@ -2,7 +2,7 @@
  * Numbers are doubles in a row, whole ones (below 2^53) and flags among them. */
 #pragma once
 #include "arrays.hpp"
-#include "orientations.hpp"
+#include "number_text.hpp"
 #include <array>
 #include <stdexcept>
 #include <string>
@@ -34,15 +34,15 @@ public:
 		const bool known = next() == magic;
 		const double saved = known ? next() : 1; // the first format had no header
 		if (saved != format)
-			throw std::invalid_argument("the checkpoint of the grains is of format " + text(saved)
-			        + ", which another version wrote: it must be " + text(format));
+			throw std::invalid_argument("the checkpoint of the grains is of format " + textOf(saved)
+			        + ", which another version wrote: it must be " + textOf(format));
 	}
 	template <class T> void number(T& value) { value = T(next()); }
 	template <class T, class What> void same(const T& value, What&& what)
 	{
 		const double saved = next();
 		if (saved != double(value))
-			throw std::invalid_argument(what() + " is another than in the checkpoint: it must be " + text(saved));
+			throw std::invalid_argument(what() + " is another than in the checkpoint: it must be " + textOf(saved));
 	}
 	bool atEnd() const { return at == from.size(); }
 
@@ -53,13 +53,6 @@ private:
 			throw std::invalid_argument("the checkpoint of the grains is cut off: it must be whole, as O.save wrote it");
 		return from[at++];
 	}
-	static std::string text(double number)
-	{
-		char digits[32];
-		std::snprintf(digits, sizeof digits, "%.17g", number);
-		return digits;
-	}
-
 	const std::vector<double>& from;
 	std::size_t at = 0;
 };

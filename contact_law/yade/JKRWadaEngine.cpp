@@ -78,7 +78,6 @@ void JKRWadaEngine::requireOwnScene() const
 contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
 {
 	Dynamics::Options options;
-	options.dt = scene->dt / subSteps;
 	options.linearDamping = linearDamping;
 	options.neck = neck;
 	options.domains = domains;
@@ -92,43 +91,46 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	return options;
 }
 
-void JKRWadaEngine::start(Moment moment)
+// The grains of the scene, with contacts from the checkpoint, from O.interactions, or where they overlap.
+std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment)
 {
-	requireAlone(*scene);
 	SceneGrains grains(*scene);
 	if (grains.size() == 0) refuseInEngine("there are no bodies");
 	const auto materials = grains.materials();
-	Dynamics::Options options = optionsFor(materials);
 	const bool continued = !savedState.empty();
-	if (continued) options.dt = smallStep;
+	Dynamics::Options options = optionsFor(materials);
+	options.dt = continued ? smallStep : scene->dt / subSteps;
 	SceneContacts contacts;
 	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
 	for (const auto& one : inherited.contacts)
 		if (one.bonded && neck == 0)
 			refuseInEngine("O.interactions has sintered bonds, and neck is 0: must be the neck they were made with");
-	const bool inherits = !continued && !inherited.contacts.empty();
-	if (inherits && inherited.stepBehind) scene->forces.reset(scene->iter); // those of the functors' last step
+	const bool inherits = !continued && !inherited.contacts.empty(), stepBehind = inherits && inherited.stepBehind;
+	if (stepBehind) scene->forces.reset(scene->iter); // those of the functors' last step
 	SceneCell cell;
-	options.cell = cell.start(*scene, moment, inherits && inherited.stepBehind, options.dt);
+	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);
 	const auto started = [&](auto&&... from) {
 		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(),
 		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene() });
 	};
+	return continued ? started(savedState) : inherits ? started(inherited) : started();
+}
+
+void JKRWadaEngine::start(Moment moment)
+{
+	requireAlone(*scene);
+	const bool continued = !savedState.empty();
+	std::shared_ptr<Run> run;
 	try {
-		current = continued ? started(savedState) : inherits ? started(inherited) : started();
-		smallStep = options.dt;
-		current->now = grains.motions();
-		const std::string tooSmall = SceneCell::tooSmall(options.cell, current->dynamics);
-		if (!tooSmall.empty()) refuseInEngine(tooSmall);
-		requireStable();
-	} catch (const std::invalid_argument& refusal) {
-		current.reset();
+		run = newRun(moment);
+	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
 		refuseInEngine(refusal.what());
-	} catch (...) {
-		current.reset();
-		throw;
 	}
+	requireSound(*run);
+	current = run;
+	smallStep = run->dynamics.state().dt;
+	current->now = current->grains.motions();
 	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
 		current->dynamics.read(current->now);
 		current->grains.setWritten(current->now);
@@ -150,13 +152,16 @@ void JKRWadaEngine::continueBooking()
 	writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
 }
 
-void JKRWadaEngine::requireStable() const
+void JKRWadaEngine::requireSound(const Run& run)
 {
-	const double unstable = contact_law::unstableStep(current->dynamics);
-	if (!(smallStep > 0 && smallStep < unstable))
-		refuseInEngine("the small step O.dt/subSteps is " + text(smallStep) + " s: must be above 0 and below " + text(unstable)
+	const Dynamics& dynamics = run.dynamics;
+	const std::string tooSmall = SceneCell::tooSmall(dynamics.cell(), dynamics);
+	if (!tooSmall.empty()) refuseInEngine(tooSmall);
+	const double step = dynamics.state().dt, unstable = contact_law::unstableStep(dynamics);
+	if (!(step > 0 && step < unstable))
+		refuseInEngine("the small step O.dt/subSteps is " + text(step) + " s: must be above 0 and below " + text(unstable)
 		        + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
-	const std::string deep = StepWatch::tooDeep(current->dynamics);
+	const std::string deep = StepWatch::tooDeep(dynamics);
 	if (!deep.empty()) refuseInEngine(deep + " at the start: must be at most 1");
 }
 
@@ -267,6 +272,7 @@ void JKRWadaEngine::handOver()
 	scene->iter += 1;
 	scene->dt = smallStep;
 	current.reset();
+	savedState.clear(); // of an earlier O.save
 }
 
 void JKRWadaEngine::writeBodies() { current->grains.write(current->now, orientations, current->dynamics.threadCount()); }
@@ -289,7 +295,8 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 void JKRWadaEngine::preSave(JKRWadaEngine&)
 {
 	const auto rest = atRest("O.save()");
-	const bool here = current && current->scene.lock() == Omega::instance().getScene();
+	if (!current) return; // before the first step: what was loaded, if anything, is saved again
+	const bool here = current->scene.lock() == Omega::instance().getScene();
 	savedState = here ? current->dynamics.save() : std::vector<Real>();
 }
 

@@ -26,9 +26,10 @@ class JKRWadaEngine : public GlobalEngine {
 	void requireInRange() const;
 	void requireOwnScene() const;
 
+	std::shared_ptr<Run> newRun(Moment);
 	void start(Moment);
 	void continueBooking();
-	void requireStable() const;
+	static void requireSound(const Run&);
 	void enter(Moment);
 	void takeChanges();
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");

@@ -1,6 +1,6 @@
 // One line for what the fused engine cannot do, and numbers in it.
 #pragma once
-#include <boost/lexical_cast.hpp>
+#include "../engine/number_text.hpp"
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -9,8 +9,8 @@ namespace yade {
 
 [[noreturn]] inline void refuseInEngine(const std::string& what) { throw std::runtime_error("JKRWadaEngine: " + what); }
 
-// All digits, of what a user gave; strings in quotes and bools as in Python.
-inline std::string text(double number) { return boost::lexical_cast<std::string>(number); }
+// As in Python: numbers by as many digits as they have, strings in quotes.
+inline std::string text(double number) { return contact_law::textOf(number); }
 inline std::string text(int number) { return std::to_string(number); }
 inline std::string text(bool is) { return is ? "True" : "False"; }
 inline std::string text(const std::string& string) { return "'" + string + "'"; }

@@ -1,4 +1,5 @@
 #include "SceneGrains.hpp"
+#include "../engine/material_list.hpp"
 #include <algorithm>
 
 namespace yade {
@@ -75,8 +76,8 @@ void requireNoForces(Scene& scene, std::size_t bodies, int threads)
 		const bool isForce = !force(id).isZero(0);
 		const Vector3r v = isForce ? force(id) : torque(id);
 		if (v.isZero(0)) continue;
-		refuseInEngine("O.forces has a " + std::string(isForce ? "force" : "torque") + " on " + bodyName(id) + ", (" + rounded(v[0]) + ", "
-		        + rounded(v[1]) + ", " + rounded(v[2]) + (isForce ? ") N" : ") N m")
+		refuseInEngine("O.forces has a " + std::string(isForce ? "force" : "torque") + " on " + bodyName(id) + ", (" + rounded(v[0])
+		        + ", " + rounded(v[1]) + ", " + rounded(v[2]) + (isForce ? ") N" : ") N m")
 		        + ": it must be 0, contacts are the only forces here (O.forces.reset() clears what others left)");
 	}
 }
@@ -201,18 +202,21 @@ void SceneGrains::refuseChange(std::size_t k) const
 	refuseInEngine(bodyName(k) + ": bounded or aspherical was changed after the start: it must stay as it was; make a new engine");
 }
 
+std::string SceneGrains::firstBodyOf(int kind) const
+{
+	const auto first = std::find_if(bodies.begin(), bodies.end(), [kind](const Kept& kept) { return kept.kind == kind; });
+	return bodyName(first - bodies.begin());
+}
+
 void SceneGrains::requireSameMaterials() const
 {
-	for (const Kind& kind : kinds) {
-		const auto require = [&](const char* name, Real was, Real is) {
-			if (was != is) refuseInEngine(changed(std::string(name) + " of a material", was, is));
-		};
-		const contact_law::Material now = kind.material->forKernel(), &was = kind.values;
-		require("young", was.young, now.young), require("poisson", was.poisson, now.poisson),
-		        require("density", was.density, now.density);
-		require("surfaceEnergy", was.surfaceEnergy, now.surfaceEnergy);
-		require("criticalRolling", was.criticalRolling, now.criticalRolling);
-		require("viscoelasticTime", was.viscoelasticTime, now.viscoelasticTime);
+	for (std::size_t k = 0; k < kinds.size(); ++k) {
+		const Kind& kind = kinds[k];
+		const contact_law::Material now = kind.material->forKernel();
+		for (const contact_law::MaterialRow& row : contact_law::materialList)
+			if (now.*row.member != kind.values.*row.member)
+				refuseInEngine(changed(row.name + std::string(" of the material of ") + firstBodyOf(int(k)),
+				        kind.values.*row.member, now.*row.member));
 	}
 }
 

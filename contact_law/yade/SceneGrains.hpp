@@ -51,6 +51,7 @@ private:
 
 	Kept read(const shared_ptr<Body>&, std::size_t id);
 	int kindOf(const shared_ptr<JKRMat>&);
+	std::string firstBodyOf(int kind) const;
 	bool isThere(const Scene& scene, std::size_t k) const { return (*scene.bodies)[k] == bodies[k].body; }
 	bool sameBody(std::size_t k) const;
 	[[noreturn]] void refuseChange(std::size_t k) const;
