@@ -208,12 +208,12 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 	const auto wait = [&] { barrier.wait(); };
 	const Vec3<double> rate = (1 / setting.dt) * growth;
 	double sinceFar = travelSinceFar, sinceNear = travelSinceNear, gap = nearGap;
-	const double allowed = fastestAllowed();
+	const double fastest = fastestThatHolds();
 	mine([](Domain& domain, int) { domain.integrate(); });
 	for (long step = 1; step <= steps; ++step) {
 		barrier.wait();
 		const VelocityRange range = velocities();
-		if (range.fastestComponent() > allowed) return step - 1;
+		if (range.fastestComponent() > fastest) return step - 1;
 		mine([&](Domain& domain, int) { domain.cell.advance(sizeAtEnd - double(steps - step) * growth, rate); });
 		const Vec3<double> across = Images<double>::times(mostCells, growth); // an image moves with its cell
 		const double approach = setting.dt * range.diagonal() + std::sqrt(dot(across, across));
@@ -292,7 +292,7 @@ long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 }
 
 // In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
-double Dynamics::fastestAllowed() const { return 0.5 * setting.smallestRadius / setting.dt; }
+double Dynamics::fastestThatHolds() const { return 0.5 * setting.smallestRadius / setting.dt; }
 
 void Dynamics::read(std::vector<GrainMotion>& grains) const
 {

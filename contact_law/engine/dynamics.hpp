@@ -1,6 +1,6 @@
 /* Many grains through many steps: leapfrog over the domains, neighbour lists, threads. Knows nothing of YADE.
  * What is only read from a run stands beside it, in free functions: contacts.hpp (contacts and bonds as they are now), exchange.hpp (contacts of other owners),
- * stability.hpp (the longest step), diagnosis.hpp (what went wrong). */
+ * stability.hpp (the longest step), diagnosis.hpp (why a run broke down). */
 #pragma once
 #include "barrier.hpp"
 #include "domain.hpp"
@@ -115,7 +115,7 @@ private:
 	long runEvenly(long steps, const Vec3<double>& sizeAtEnd);
 	long runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier&);
 	Domain& domainOf(int index);
-	double fastestAllowed() const;    // velocity component
+	double fastestThatHolds() const;  // velocity component that a step may have
 	VelocityRange velocities() const; // of all grains through the latest drift
 	double nearGapFor(double approach) const;
 

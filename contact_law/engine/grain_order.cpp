@@ -1,4 +1,4 @@
-// The order in which grains lie in memory: along a space-filling curve, of which each domain takes a stretch.
+// The order in which grains are stored: along a space-filling curve, of which each domain takes a stretch.
 #include "dynamics.hpp"
 #include <algorithm>
 #include <numeric>

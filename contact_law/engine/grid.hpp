@@ -1,5 +1,5 @@
 /* Grains sorted into cells, to find neighbours. Made in parts that threads share: each stretch of grains counts and places its own.
- * Where the cells around all grains would be far more than grains (fragments apart), cells share places in a table of some four places a grain: neighbours are then
+ * Where the cells around all grains would be far more than grains (fragments apart), several cells take the same place in a table of some four places a grain: neighbours are then
  * looked for among a few strangers too, and may be met twice. */
 #pragma once
 #include "arrays.hpp"

@@ -24,7 +24,7 @@ def law(): return O.engines[2].lawDispatcher.functors[0]
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_engine_and_functors_agree_step_by_step(yade, kind):
-    """27 bonded grains break up: bonds of every mode, births, slips. Rounding grows as trajectories part."""
+    """27 bonded grains break up: bonds of every mode, contacts that form, slips. Rounding grows as trajectories part."""
     found = yade(
         SCENE
         + """

@@ -16,7 +16,7 @@ def start(kind, count=27, seed=1, damping=0):
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_engine_and_functors_agree_step_by_step(yade, kind):
-    """27 grains fly together: births, slips, breaks. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
+    """27 grains fly together: contacts form, slip and break. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
     found = yade(
         SCENE
         + """

@@ -123,7 +123,7 @@ result["same"] = [bool((plain == full).all()), bool((positions() == full).all())
 
 
 def test_orientations_are_those_of_the_functors(yade):
-    """To rounding, whatever the sub-steps, with births, slips and fast spins."""
+    """To rounding, whatever the sub-steps, with contacts that form, slips and fast spins."""
     found = yade(
         SCENE
         + """

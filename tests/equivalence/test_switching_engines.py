@@ -1,4 +1,4 @@
-"""From the functors to JKRWadaEngine and back in the middle of a run: the trajectory and the ledger go on as if nothing had been."""
+"""From the functors to JKRWadaEngine and back in the middle of a run: trajectory and ledger continue as if nothing had been."""
 
 import pytest
 
@@ -25,7 +25,7 @@ def difference(a, b):
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_functors_then_engine_then_functors_is_one_run(yade, kind):
-    """A collision whose hundred steps in the middle are the engine's, in sub-steps. There are strained springs, births and slips in the middle."""
+    """A collision whose hundred steps in the middle are the engine's, in sub-steps. There are strained springs, and contacts that form and slip, in the middle."""
     first = 700 if kind == "unlike" else 100
     found = yade(
         SCENE
@@ -60,14 +60,14 @@ result["contacts"] = [contacts, O.interactions.countReal()]
         first + 200, rel=1e-12
     )
     assert found["lost"]["slidingDissipation"] > 0
-    # with drag, grains whose contacts were born or broke in the functors' last step are taken over to second order only
+    # with drag, grains whose contacts formed or broke in the functors' last step are taken over to second order only
     tolerance = 1e-6 if kind == "drag" else 1e-9
     assert max(found["differences"]) < tolerance, found["differences"]
     assert max(map(abs, found["energies"].values())) < tolerance, found["energies"]
     assert found["contacts"][0] == found["contacts"][1]
 
 
-def test_a_saved_scene_of_the_functors_goes_on_with_the_engine(yade):
+def test_a_saved_scene_of_the_functors_continues_with_the_engine(yade):
     found = yade(
         SCENE
         + """

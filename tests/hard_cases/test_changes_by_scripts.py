@@ -188,7 +188,7 @@ for step in (1.0, 0.25):
     assert abs(found["lost"][1]) < 0.5 * abs(found["lost"][0]) < 1e-3, found
 
 
-def test_a_body_wrapped_into_the_cell_goes_on_unharmed(yade):
+def test_a_body_wrapped_into_the_cell_keeps_its_contacts(yade):
     """A script brings a touching grain back into the periodic cell: its contacts are with the nearest images, as before."""
     found = yade(
         SCENE
@@ -417,7 +417,7 @@ for case in parameters["cases"]:
     )
 
 
-# ---- what used to end the process ----
+# ---- calls that find another scene, or a running loop ----
 
 CALLS = ["e.writeInteractions()", "e.handOver()", "e.prepare()", "contact_law.snapshot()"]
 

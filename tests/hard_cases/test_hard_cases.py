@@ -146,7 +146,7 @@ result["turn"] = 5e9 * 0.02 * unit
 
 @BOTH
 def test_contacts_flickering_at_pull_off(yade, mover):
-    """A chain pulled apart again and again by its grains' vibration: many births and breaks, none lost to the ledger."""
+    """A chain pulled apart again and again by its grains' vibration: many contacts form and break, all of them in the ledger."""
     found = yade(
         SCENE
         + """

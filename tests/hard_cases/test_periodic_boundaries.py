@@ -53,7 +53,7 @@ result["lost"] = sums
 
 
 def test_neighbours_are_found_in_cells_of_few_grains(yade):
-    """The smallest cell allowed, one grid cell an axis at times: as many contacts as all pairs' nearest images have."""
+    """The smallest cell that may be, one grid cell an axis at times: as many contacts as all pairs' nearest images have."""
     found = yade(
         SCENE
         + """

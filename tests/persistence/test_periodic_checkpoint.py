@@ -1,4 +1,4 @@
-"""Checkpoints of JKRWadaEngine in a shrinking periodic cell go on to the same bits, and scenes change between engine and functors there."""
+"""Checkpoints of JKRWadaEngine in a shrinking periodic cell resume to the same bits, and scenes change between engine and functors there."""
 
 import pytest
 
@@ -55,7 +55,7 @@ result["statistics"] = [straight[2], O.engines[0].statistics()]
 
 @pytest.mark.parametrize("homo,drag", [(0, 0.0), (0, 2e-12), (1, 0.0), (2, 0.0)])
 def test_functors_then_engine_then_functors_is_one_run(yade, homo, drag):
-    """To rounding, with one small step in an O.step (with more, the engine's cell goes along chords of YADE's exponential). NewtonIntegrator remembers the velocity gradient that it gave the grains; a new one must be told (prevVelGrad)."""
+    """To rounding, with one small step in an O.step (with more, the engine's cell goes along chords of YADE's exponential). NewtonIntegrator keeps the velocity gradient that it gave the grains; a new one must be told (prevVelGrad)."""
     found = yade(
         SCENE
         + """
@@ -82,7 +82,7 @@ result["work"] = O.energy["boundaryWork"] / work - 1
     )
     assert found["steps"] == pytest.approx(400, rel=1e-12) and found["events"] > 8
     assert found["contacts"][0] == found["contacts"][1] > 8
-    # with drag, grains whose contacts were born or broke in the functors' last step are taken over to second order only
+    # with drag, grains whose contacts formed or broke in the functors' last step are taken over to second order only
     assert found["size"] == 0 and max(found["differences"]) < (1e-4 if drag else 1e-9), found
     if homo < 2:  # the functors know nothing of the convective term's work
         assert abs(found["work"]) < 1e-4, found

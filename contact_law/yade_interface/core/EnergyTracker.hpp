@@ -13,7 +13,7 @@ public:
 	~EnergyTracker() override;
 	YADE_INTERFACE_OVERRIDES_(EnergyTracker)
 
-	// id is the caller's memory of the name and starts at -1; reset: the sum starts anew each step. Exported by libpkg_dem. Not safe against
+	// id is kept by the caller for the name, and starts at -1; reset: the sum starts anew each step. Exported by libpkg_dem. Not safe against
 	// concurrent first calls of a name, and ids are stale after O.energy.clear().
 	void add(const Real& value, const std::string& name, int& id, bool reset = false);
 	// id stays negative for a name that isn't there, unless newIfNotFound
