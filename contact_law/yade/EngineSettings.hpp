@@ -5,6 +5,8 @@
 
 namespace yade {
 
+constexpr const char* otherEngine = "; a new JKRWadaEngine, made after writeInteractions(), takes the contacts over";
+
 struct EngineSettings {
 	int domains;
 	std::string instructions;
@@ -29,7 +31,7 @@ struct EngineSettings {
 		each(*this, now, [](const char* name, const auto& was, const auto& is) {
 			if (was != is)
 				refuseInEngine(std::string(name) + " was changed after the start: it must stay " + text(was) + ", not "
-				        + text(is) + "; make a new engine");
+				        + text(is) + otherEngine);
 		});
 	}
 };

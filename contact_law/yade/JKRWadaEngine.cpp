@@ -175,6 +175,7 @@ void JKRWadaEngine::takeChanges()
 		current->watch.motionsChanged();
 	};
 	current->grains.eachChange(*scene, orientations, current->dynamics.threadCount(), set);
+	if (exportInteractions) current->contacts.requireKept(*scene);
 }
 
 // The beginning of all that this engine does: afterwards there is a run, of this scene, and as scripts want it.
@@ -205,7 +206,7 @@ void JKRWadaEngine::action()
 	current->cell.require(*scene, current->dynamics);
 	if (scene->dt / subSteps != smallStep)
 		refuseInEngine("the small step O.dt/subSteps was changed after the start: it must stay " + text(smallStep) + " s, not "
-		        + text(scene->dt / subSteps) + " s; make a new engine");
+		        + text(scene->dt / subSteps) + " s" + otherEngine);
 	const std::string wrongCell = current->cell.wrong(*scene, current->dynamics, subSteps);
 	if (!wrongCell.empty()) fail(scene->time + scene->dt, wrongCell, "");
 	const contact_law::Vec3<double> cellAtEnd = SceneCell::now(*scene);

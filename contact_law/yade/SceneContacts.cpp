@@ -1,5 +1,6 @@
 #include "SceneContacts.hpp"
 #include "../kernel/turning.hpp"
+#include "Refusal.hpp"
 #include <core/Body.hpp>
 #include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -122,7 +123,7 @@ bool SceneContacts::inOrder(Scene& scene, const std::vector<Place>& places) cons
 	if (held.size() != places.size() || there.size() != places.size()) return false;
 	for (size_t k = 0; k < places.size(); ++k) {
 		const Ids ids(*held[k]);
-		if (there[k] != held[k] || ids.low != places[k].id1 || ids.high != places[k].id2) return false;
+		if (!held[k]->isReal() || there[k] != held[k] || ids.low != places[k].id1 || ids.high != places[k].id2) return false;
 	}
 	return true;
 }
@@ -152,7 +153,7 @@ void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
 		};
 		while (known != held.end() && before(**known))
 			++known;
-		if (known != held.end() && Ids(**known).low == place.id1 && Ids(**known).high == place.id2)
+		if (known != held.end() && (*known)->isReal() && Ids(**known).low == place.id1 && Ids(**known).high == place.id2)
 			now.push_back(*known);
 		else
 			now.push_back(nullptr);
@@ -178,6 +179,16 @@ void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, S
 #pragma omp parallel for num_threads(dynamics.threadCount())
 	for (size_t k = 0; k < places.size(); ++k)
 		writeContact(scene, now(k, held[k]->getId1()), stage, *held[k]);
+}
+
+void SceneContacts::requireKept(const Scene& scene) const
+{
+	const InteractionContainer& there = *scene.interactions;
+	const size_t real = std::count_if(held.begin(), held.end(), [](const auto& interaction) { return interaction->isReal(); });
+	const size_t left = std::min(there.size(), real);
+	if (left < held.size())
+		refuseInEngine("O.interactions has " + std::to_string(left) + " contacts, must be the " + std::to_string(held.size())
+		        + " that were written: this engine's contacts cannot be erased there");
 }
 
 void SceneContacts::withdraw(Scene& scene)

@@ -18,6 +18,9 @@ public:
 	 * that continue stay the same objects. */
 	void write(Scene&, const contact_law::Dynamics&, Stage);
 
+	// Throws std::runtime_error when a script has erased some of what was written.
+	void requireKept(const Scene&) const;
+
 	// Empties O.interactions of what was written before and is no longer so.
 	void withdraw(Scene&);
 

@@ -317,6 +317,8 @@ CHANGES = {
     "O.engines += [NewtonIntegrator()]": ["NewtonIntegrator is among O.engines too"],
     "O.engines = [engine(), engine()]": ["O.engines has 2 JKRWadaEngines: there must be one"],
     "O.engines += [JKRWadaEngine()]": ["O.engines has 2 JKRWadaEngines: there must be one"],
+    "engine().exportInteractions = True; O.step(); O.interactions.erase(0, 1)": ["O.interactions has 2 contacts, must be the 3"],
+    "engine().exportInteractions = True; O.step(); O.interactions.clear()": ["O.interactions has 0 contacts, must be the 3"],
     "engine().threads = 0": ["threads = 0: must be >= 1"],
     "engine().linearDamping = float('nan')": ["linearDamping = nan: must be >= 0"],
 }  # fmt: skip
@@ -330,8 +332,9 @@ def test_changes_in_the_middle_of_a_run_are_refused(yade):
 for case in parameters["cases"]:
     chain()
     for _ in range(20): O.step()
-    I, time = O.bodies[2].state.inertia, O.time
+    I = O.bodies[2].state.inertia
     exec(case)
+    time = O.time
     result[case] = said(O.step)
     result["again: " + case] = bool(said(O.step)) and O.time == time
 """,
@@ -453,6 +456,26 @@ for case in parameters["cases"]:
         {case: ["another scene", "make a new one"] for case in [*CALLS, "O.step()"]},
         away=away,
     )
+
+
+def test_interactions_that_a_script_erased_are_written_again(yade):
+    """writeInteractions() writes all contacts, whatever was written and erased before; without it O.interactions are the script's own."""
+    found = yade(
+        SCENE
+        + """
+chain()
+for _ in range(20): O.step()
+for erase in ("O.interactions.erase(0, 1)", "O.interactions.clear()", "O.interactions.eraseNonReal()"):
+    engine().writeInteractions()
+    exec(erase)
+    engine().writeInteractions()
+    result.setdefault("contacts", []).append(O.interactions.countReal())
+    exec(erase)
+    O.step()
+    result.setdefault("left", []).append(len(O.interactions))
+"""
+    )
+    assert found["contacts"] == [3, 3, 3] and found["left"] == [0, 0, 0]
 
 
 def test_two_scenes_with_an_engine_each(yade):
