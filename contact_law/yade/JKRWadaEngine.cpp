@@ -26,7 +26,6 @@ struct JKRWadaEngine::Run {
 	std::vector<GrainMotion> now {};
 	StepWatch watch {};
 	bool constrained = false; // at any time: the scene then has the channel
-	bool booked = false;      // O.energy has this run's energies
 };
 
 namespace {
@@ -135,7 +134,8 @@ void JKRWadaEngine::start(Moment moment)
 		current->dynamics.read(current->now);
 		current->grains.setWritten(current->now);
 		continueBooking();
-	}
+	} else
+		booked = false;
 	if (moment == Moment::BetweenSteps)
 		SceneCell::takeVelocityGradient(*scene, current->dynamics);
 	else
@@ -148,7 +148,8 @@ void JKRWadaEngine::continueBooking()
 {
 	int kinetic = -1;
 	scene->energy->findId("kinetic", kinetic, false, false);
-	if (kinetic < 0) return;
+	booked = booked && kinetic >= 0; // unless a script has cleared it
+	if (!booked) return;
 	writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
 }
 
@@ -281,8 +282,8 @@ void JKRWadaEngine::writeBodies() { current->grains.write(current->now, orientat
 void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking booking)
 {
 	const bool known = booking == Booking::AlreadyInOEnergy;
-	if (!known && !current->booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
-	current->booked = true;
+	if (!booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
+	booked = true;
 	const contact_law::Dissipation& d = now.dissipated;
 	channels.set(*scene,
 	        { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling,

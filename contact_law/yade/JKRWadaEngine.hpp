@@ -77,6 +77,7 @@ public:
 		((bool, orientations, false, , "Whether to follow the bodies' orientations (State.ori); otherwise they stay as they were."))
 		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
+		((bool, booked, false, Attr::readonly|Attr::hidden, "Whether O.energy has the energies of this run."))
 		((std::vector<Real>, savedState, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint (engine/checkpoint.cpp).")),
 		,
 		.def("prepare", &JKRWadaEngine::prepare, "Read the bodies and compute forces and energies without moving anything, so that O.energy and contact_law.snapshot() have the start.")

@@ -239,6 +239,36 @@ result["loaded late"] = run(lambda k: k > 40, load=True)
         assert energies == pytest.approx(always, rel=1e-9, abs=1e-12 * always["connection"]), name
 
 
+@pytest.mark.parametrize("tracked", ["functors", "both"])
+def test_energies_after_the_functors_and_a_checkpoint(yade, tracked):
+    """The functors' losses stay booked, and the engine's come on top, whether the engine was saved in between, or asked for energies at the end only."""
+    found = yade(
+        SCENE
+        + """
+def run(load):
+    new_scene(0.1 * unit)
+    converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
+    for _ in range(150): O.step()
+    fused_engine(subSteps=5)
+    O.dt *= 5
+    O.trackEnergy = parameters["tracked"] == "both"
+    for k in range(20):
+        O.step()
+        if load and k == 10:
+            O.save("between.yade")
+            O.load("between.yade")
+    O.trackEnergy = True
+    O.step()
+    return energies()
+result["runs"] = [run(False), run(True)]
+""",
+        {"tracked": tracked},
+    )
+    straight, loaded = found["runs"]
+    assert straight["slidingDissipation"] > 0 and straight["connection"] > 0
+    assert loaded == pytest.approx(straight, rel=1e-9, abs=1e-12 * straight["connection"])
+
+
 def test_an_engine_that_is_dead_for_a_while_continues(yade):
     found = yade(
         SCENE
