@@ -47,14 +47,6 @@ struct Inherited {
 	std::vector<Vec3<double>> previous;
 };
 
-struct Energies {
-	double kinetic = 0; // 1/2 m v(-dt/2) v(+dt/2): what a leapfrog conserves together with the stored energies (MODEL.md)
-	StoredEnergy<double> stored { 0, 0, 0, 0 };
-	Dissipation dissipated;
-	double constraintWork = 0; // done by contacts on blocked degrees of freedom, since the start
-	double boundaryWork = 0;   // done against a periodic cell's boundaries and mean velocity field, since the start
-};
-
 class Dynamics {
 public:
 	struct Options {

@@ -95,9 +95,9 @@ std::vector<double> Dynamics::remember() const
 	}
 	for (const auto& domain : domains) {
 		const Dissipation& d = domain->sums.dissipated;
-		to.insert(to.end(),
-		        { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, domain->sums.eventWork,
-		                double(domain->events), double(domain->sortedBlocks) });
+		for (const auto& channel : lostChannels)
+			to.push_back(d.*channel.member);
+		to.insert(to.end(), { domain->sums.eventWork, double(domain->events), double(domain->sortedBlocks) });
 		const BoundaryWork& b = domain->sums.boundary;
 		to.insert(to.end(), { b.done, domain->sums.meanField });
 		contact_law::remember(to, b.kicks);
@@ -105,7 +105,6 @@ std::vector<double> Dynamics::remember() const
 		to.insert(to.end(), { domain->constraints.work, double(domain->constraints.grains.size()) });
 		for (const Constrained& c : domain->constraints.grains)
 			to.insert(to.end(), { c.force.x, c.force.y, c.force.z, c.torque.x, c.torque.y, c.torque.z });
-		to.insert(to.end(), d.bondBreaking.begin(), d.bondBreaking.end());
 		to.insert(to.end(), domain->broken.begin(), domain->broken.end());
 		for (const BondList& list : domain->bonds) {
 			to.push_back(list.size());
@@ -164,9 +163,9 @@ void Dynamics::recall(const std::vector<double>& memory)
 	}
 	for (auto& domain : domains) {
 		Dissipation& d = domain->sums.dissipated;
-		for (double* number :
-		        { &d.sliding, &d.rolling, &d.twisting, &d.connection, &d.disconnection, &d.drag, &domain->sums.eventWork })
-			*number = from.next();
+		for (const auto& channel : lostChannels)
+			d.*channel.member = from.next();
+		domain->sums.eventWork = from.next();
 		domain->events = long(from.next());
 		domain->sortedBlocks = from.integer();
 		domain->cell = cell;
@@ -180,8 +179,6 @@ void Dynamics::recall(const std::vector<double>& memory)
 		for (Constrained& c : domain->constraints.grains)
 			for (double* number : { &c.force.x, &c.force.y, &c.force.z, &c.torque.x, &c.torque.y, &c.torque.z })
 				*number = from.next();
-		for (double& energy : d.bondBreaking)
-			energy = from.next();
 		for (long& number : domain->broken)
 			number = long(from.next());
 		recallBonds(from, *domain, setting);

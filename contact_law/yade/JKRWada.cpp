@@ -54,55 +54,28 @@ void JKRMat::requireInRange() const
 	        "0 or a positive number [s]");
 }
 
+// The attributes from and to the kernel's constants, one by one.
+#define CONTACT_LAW_TO_KERNEL(name, ...) c.name = name;
+#define CONTACT_LAW_FROM_KERNEL(name, ...) name = c.name;
+
 PairConstants<double> JKRWadaConstants::forKernel() const
 {
-	return { radius1, radius2, reducedRadius, reducedMass, reducedYoung, reducedShear, equilibriumContactRadius, equilibriumOverlap,
-		pullOffOverlap, pullOffForce, rollingStiffness, slidingStiffness, twistingStiffness, criticalSliding, criticalRolling,
-		criticalTwisting, dragPerContactRadius, linearDrag, timeUnit, 1 / equilibriumOverlap };
+	PairConstants<double> c;
+	CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_TO_KERNEL)
+	c.complete();
+	return c;
 }
 
-void JKRWadaConstants::set(const PairConstants<double>& c)
-{
-	radius1 = c.radius1;
-	radius2 = c.radius2;
-	reducedRadius = c.reducedRadius;
-	reducedMass = c.reducedMass;
-	reducedYoung = c.reducedYoung;
-	reducedShear = c.reducedShear;
-	equilibriumContactRadius = c.equilibriumContactRadius;
-	equilibriumOverlap = c.equilibriumOverlap;
-	pullOffOverlap = c.pullOffOverlap;
-	pullOffForce = c.pullOffForce;
-	rollingStiffness = c.rollingStiffness;
-	slidingStiffness = c.slidingStiffness;
-	twistingStiffness = c.twistingStiffness;
-	criticalSliding = c.criticalSliding;
-	criticalRolling = c.criticalRolling;
-	criticalTwisting = c.criticalTwisting;
-	dragPerContactRadius = c.dragPerContactRadius;
-	linearDrag = c.linearDrag;
-	timeUnit = c.timeUnit;
-}
+void JKRWadaConstants::set(const PairConstants<double>& c) { CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_FROM_KERNEL) }
 
 contact_law::BondConstants<double> JKRWadaBond::forKernel() const
 {
-	return { radius1, radius2, reducedRadius, neckRadius, neckLength, normalStiffness, slidingStiffness, rollingStiffness,
-		twistingStiffness, breakingEnergy };
+	contact_law::BondConstants<double> c;
+	CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_TO_KERNEL)
+	return c;
 }
 
-void JKRWadaBond::set(const contact_law::BondConstants<double>& b)
-{
-	radius1 = b.radius1;
-	radius2 = b.radius2;
-	reducedRadius = b.reducedRadius;
-	neckRadius = b.neckRadius;
-	neckLength = b.neckLength;
-	normalStiffness = b.normalStiffness;
-	slidingStiffness = b.slidingStiffness;
-	rollingStiffness = b.rollingStiffness;
-	twistingStiffness = b.twistingStiffness;
-	breakingEnergy = b.breakingEnergy;
-}
+void JKRWadaBond::set(const contact_law::BondConstants<double>& c) { CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_FROM_KERNEL) }
 
 void JKRWadaPhys::setConstants(const shared_ptr<JKRWadaConstants>& c)
 {
@@ -259,21 +232,9 @@ ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, c
 
 void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
 {
-	using C = EnergyChannels;
 	channels.prepare(*scene);
-	const auto add = [this](C::Channel channel, double energy) { channels.add(*scene, channel, energy); };
-	add(C::Kinetic, r.workBefore);
-	add(C::Normal, r.stored.normal);
-	add(C::Sliding, r.stored.sliding);
-	add(C::Rolling, r.stored.rolling);
-	add(C::Twisting, r.stored.twisting);
-	add(C::SlidingDissipation, r.dissipated.sliding);
-	add(C::RollingDissipation, r.dissipated.rolling);
-	add(C::TwistingDissipation, r.dissipated.twisting);
-	add(C::Connection, r.dissipated.connection);
-	add(C::Disconnection, r.dissipated.disconnection);
-	add(C::Drag, r.dissipated.drag);
-	add(C::BondBreaking, r.dissipated.bonds());
+	channels.addKinetic(*scene, r.workBefore);
+	channels.add(*scene, r.stored, r.dissipated);
 }
 
 } // namespace yade

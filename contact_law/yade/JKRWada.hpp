@@ -32,6 +32,10 @@ public:
 };
 REGISTER_SERIALIZABLE(JKRMat);
 
+// The constants of the kernel's lists as YADE attributes.
+#define CONTACT_LAW_PAIR_ATTRIBUTE(name, readByForces, documentation) ((Real, name, 0, Attr::readonly, documentation))
+#define CONTACT_LAW_BOND_ATTRIBUTE(name, documentation) ((Real, name, 0, Attr::readonly, documentation))
+
 class JKRWadaConstants : public Serializable {
 public:
 	contact_law::PairConstants<double> forKernel() const;
@@ -40,25 +44,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaConstants, Serializable,
 		"What two materials and two radii make of a contact: derived once, shared by all contacts of the same kind. Symbols and sources: contact_law/MODEL.md.",
-		((Real, radius1, 0, Attr::readonly, "Radius of the first grain [m]."))
-		((Real, radius2, 0, Attr::readonly, "Radius of the second grain [m]."))
-		((Real, reducedRadius, 0, Attr::readonly, "R = r1 r2/(r1+r2) [m]."))
-		((Real, reducedMass, 0, Attr::readonly, "m* = m1 m2/(m1+m2) of solid spheres [kg]."))
-		((Real, reducedYoung, 0, Attr::readonly, "E* [Pa]: 1/E* = sum of (1-nu^2)/E."))
-		((Real, reducedShear, 0, Attr::readonly, "G* [Pa]: 1/G* = sum of (2-nu)/G."))
-		((Real, equilibriumContactRadius, 0, Attr::readonly, "a0 [m]."))
-		((Real, equilibriumOverlap, 0, Attr::readonly, "delta0 [m]: overlap at which the normal force vanishes."))
-		((Real, pullOffOverlap, 0, Attr::readonly, "delta_c [m]: the contact ends when the overlap falls below -delta_c."))
-		((Real, pullOffForce, 0, Attr::readonly, "F_c [N]: the largest pull."))
-		((Real, rollingStiffness, 0, Attr::readonly, "k_r [N/m]."))
-		((Real, slidingStiffness, 0, Attr::readonly, "k_s [N/m]."))
-		((Real, twistingStiffness, 0, Attr::readonly, "k_t [N m]."))
-		((Real, criticalSliding, 0, Attr::readonly, "zeta_crit [m]."))
-		((Real, criticalRolling, 0, Attr::readonly, "xi_crit [m]."))
-		((Real, criticalTwisting, 0, Attr::readonly, "phi_crit [rad]."))
-		((Real, dragPerContactRadius, 0, Attr::readonly, "2 T_vis E*/nu^2 [N s/m^2]."))
-		((Real, linearDrag, 0, Attr::readonly, "k_n m0/t0 [N s/m]."))
-		((Real, timeUnit, 0, Attr::readonly, "t0 [s]."))
+		CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_PAIR_ATTRIBUTE)
 	);
 	// clang-format on
 };
@@ -72,16 +58,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaBond, Serializable,
 		"Constants of sintered bonds (Sirono & Ueno 2017), shared by all bonds of the same kind. Symbols and sources: contact_law/MODEL.md.",
-		((Real, radius1, 0, Attr::readonly, "Radius of the first grain before sintering [m]."))
-		((Real, radius2, 0, Attr::readonly, "Radius of the second grain before sintering [m]."))
-		((Real, reducedRadius, 0, Attr::readonly, "R = r1 r2/(r1+r2) of these [m]."))
-		((Real, neckRadius, 0, Attr::readonly, "a [m]."))
-		((Real, neckLength, 0, Attr::readonly, "d [m]."))
-		((Real, normalStiffness, 0, Attr::readonly, "k_ss [N/m]."))
-		((Real, slidingStiffness, 0, Attr::readonly, "k_st [N/m]."))
-		((Real, rollingStiffness, 0, Attr::readonly, "k_sr/R^2 [N/m], on the rolling displacement R(n1+n2)."))
-		((Real, twistingStiffness, 0, Attr::readonly, "k_sw [N m]."))
-		((Real, breakingEnergy, 0, Attr::readonly, "pi a^2 gamma [J]: the bond breaks when one mode holds it."))
+		CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_BOND_ATTRIBUTE)
 	);
 	// clang-format on
 };

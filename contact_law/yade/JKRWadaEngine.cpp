@@ -286,14 +286,8 @@ void JKRWadaEngine::writeBodies()
 
 void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 {
-	const contact_law::Dissipation& d = now.dissipated;
-	channels.set(*scene,
-	        { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling,
-	                d.twisting, d.connection, d.disconnection, d.drag, d.bonds() },
-	        known);
 	current->constrained = current->constrained || current->dynamics.constrained();
-	if (current->constrained) channels.setExtra(*scene, EnergyChannels::ConstraintWork, now.constraintWork, known);
-	if (scene->isPeriodic) channels.setExtra(*scene, EnergyChannels::BoundaryWork, now.boundaryWork, known);
+	channels.set(*scene, now, known, current->constrained);
 }
 
 void JKRWadaEngine::preSave(JKRWadaEngine&) { memory = current ? current->dynamics.remember() : std::vector<Real>(); }
@@ -325,7 +319,7 @@ boost::python::dict JKRWadaEngine::statistics() const
 		"brokenByTwisting" };
 	for (int mode = 0; mode < contact_law::bondModes; ++mode) {
 		result[modes[mode]] = broken[mode];
-		result[modes[mode] + std::string("Energy")] = lost.bondBreaking[mode];
+		result[modes[mode] + std::string("Energy")] = lost.*contact_law::bondBreakingBy[mode];
 	}
 	result["contactUpdates"] = current->dynamics.contactUpdates;
 	result["events"] = current->dynamics.events();
