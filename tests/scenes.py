@@ -1,14 +1,12 @@
 """Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path)."""
 
+import contact_law
 import numpy as np
 from yade import utils
 from yade.wrapper import *
 
-CHANNELS = (
-    "kinetic normal sliding rolling twisting slidingDissipation rollingDissipation twistingDissipation "
-    "connection disconnection drag bondBreaking"
-).split()
-LOST = CHANNELS[5:]
+CHANNELS = [name for name, kind in contact_law.channels if kind != "work"]
+LOST = [name for name, kind in contact_law.channels if kind == "lost"]
 
 
 def ice(**other):

@@ -58,6 +58,8 @@ constexpr ChannelRow<DissipationOf<T>, T> lostChannelsOf[] = {
 using Dissipation = DissipationOf<double>;
 inline constexpr auto& storedChannels = storedChannelsOf<double>;
 inline constexpr auto& lostChannels = lostChannelsOf<double>;
+static_assert(sizeof(StoredEnergy<double>) == std::size(storedChannels) * sizeof(double) && sizeof(Dissipation) == std::size(lostChannels) * sizeof(double),
+        "a member that no row lists would be left out of everything");
 
 // The mode by which a sintered bond breaks, and what that took.
 enum BondMode { ByStretching, BySliding, ByRolling, ByTwisting, bondModes };
@@ -158,6 +160,14 @@ constexpr int channelNumber(const char* name)
 		if (channel_numbers::same(channels[k].name, name)) return k;
 	return -1;
 }
+
+constexpr bool numbersAgree()
+{
+	for (int k = 0; k < channelCount; ++k)
+		if (channelNumber(channels[k].name) != k) return false;
+	return true;
+}
+static_assert(numbersAgree(), "rows of one channel must stand together, and names of channels differ");
 
 // visit(number of the channel, energy), of every row; rows of one channel one after the other.
 template <class Visit> inline void eachRow(const StoredEnergy<double>& stored, const Dissipation& lost, Visit&& visit)
