@@ -231,9 +231,9 @@ template <class Pack> struct Passes {
 	        const PairConstants<Pack>& c, DragBlock& d, const BatchBuffer& buffer, unsigned events, int at, DissipationOf<Pack>& lost)
 	{
 		const auto plain = maskOf(~events);
-		const drag::Moment<Pack> before { Pack::load(d.drag + at), Pack::load(d.overlap + at) };
-		const drag::Moment<Pack> now { Pack::load(buffer.drag + at), Pack::load(buffer.overlap + at) };
-		drag::book(c, before, now, plain, lost);
+		const DragMoment<Pack> before { Pack::load(d.drag + at), Pack::load(d.overlap + at) };
+		const DragMoment<Pack> now { Pack::load(buffer.drag + at), Pack::load(buffer.overlap + at) };
+		bookDrag(c, before, now, plain, lost);
 		choose(plain, now.force, before.force).store(d.drag + at);
 		choose(plain, now.overlap, before.overlap).store(d.overlap + at);
 	}

@@ -50,6 +50,22 @@ template <class T> inline StoredEnergy<T> storedEnergy(const PairConstants<T>& c
 		rolling::energy(c, f.rollingDisplacement), twisting::energy(c, twist) };
 }
 
+// ---- what drag dissipates ----
+
+// Over a step, of lanes that are `counted`.
+template <class T>
+inline void bookDrag(
+        const PairConstants<T>& c, const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted, DissipationOf<T>& lost)
+{
+	drag::book(c, before, now, counted, lost);
+}
+// Over a fraction of a step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or broke inside the step.
+inline void bookDragFraction(
+        const PairConstants<double>& c, double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
+{
+	drag::bookFraction(c, fraction, at, closing, lost);
+}
+
 // ---- limits ----
 
 template <class T> struct Displacements {

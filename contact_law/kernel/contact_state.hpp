@@ -61,6 +61,11 @@ template <class T> struct ContactForces {
 	}
 };
 
+// What the ledger needs of a moment to book drag: the force along the normal, and the overlap along which it works.
+template <class T> struct DragMoment {
+	T force, overlap;
+};
+
 struct ContactMotion {
 	Vec3<double> separation;   // x1 - x2 now
 	Vec3<double> velocity;     // v1 - v2 through the step, of their images nearest to each other

@@ -45,7 +45,7 @@ inline ContactStepResult keptContact(const PairConstants<double>& c, const Conta
 	ContactStepResult r;
 	r.geometry = g;
 	evaluateNow<mechanisms>(c, m, before, drag::velocityNow(m.velocity, before.velocity), history, r);
-	drag::book(c, { before.drag, before.overlap }, { r.now.drag, g.overlap }, true, r.dissipated);
+	bookDrag<double>(c, { before.drag, before.overlap }, { r.now.drag, g.overlap }, true, r.dissipated);
 	setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, r);
 	return r;
 }
@@ -69,7 +69,7 @@ inline ContactStepResult newContact(const PairConstants<double>& c, const Contac
 	const double normalBefore = normal::forceSinceFormation(c, r.stored.normal, closing) + f * r.now.drag;
 	const double impulseBefore = normalBefore * m.dt, impulseAfter = 0.5 * (r.now.normalForce + r.now.drag) * m.dt;
 	r.dissipated.connection = normal::connection(c, impulseBefore, impulseAfter, m.inverseMass);
-	drag::bookFraction(c, f, { r.now.drag, g.overlap }, closing, r.dissipated);
+	bookDragFraction(c, f, { r.now.drag, g.overlap }, closing, r.dissipated);
 	setKicks(m, normalBefore, f / 2, r);
 	return r;
 }
@@ -93,7 +93,7 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	r.workBefore = events::work(m, r.force, r.torque1, r.torque2);
 	r.dissipated.disconnection = normal::disconnection(c, push * m.dt, m.inverseMass);
 	addSpringRelease<mechanisms>(c, before, f, h.twist, fraction, r.dissipated);
-	drag::bookFraction(c, fraction, { before.drag, before.overlap }, -opening, r.dissipated);
+	bookDragFraction(c, fraction, { before.drag, before.overlap }, -opening, r.dissipated);
 	return r;
 }
 

@@ -21,20 +21,16 @@ namespace drag {
 		return -(c.dragPerContactRadius * contactRadius + c.linearDrag) * dot(velocity, normal);
 	}
 
-	// What the ledger needs of a moment: the drag force, and the overlap along which it works.
-	template <class T> struct Moment {
-		T force, overlap;
-	};
-
 	// Dissipated over a step: the mean of the two forces times the way. Only lanes that are `counted` are booked.
 	template <class T>
-	inline void book(
-	        const PairConstants<T>&, const Moment<T>& before, const Moment<T>& now, const MaskOf<T>& counted, DissipationOf<T>& lost)
+	inline void book(const PairConstants<T>&, const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted,
+	        DissipationOf<T>& lost)
 	{
 		lost.drag = lost.drag + choose(counted, T(0.5) * (before.force + now.force) * (now.overlap - before.overlap), T(0.));
 	}
 	// Over a fraction of the step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or broke inside the step.
-	inline void bookFraction(const PairConstants<double>&, double fraction, const Moment<double>& at, double closing, Dissipation& lost)
+	inline void bookFraction(
+	        const PairConstants<double>&, double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
 	{
 		lost.drag += fraction * at.force * closing;
 	}

@@ -58,7 +58,8 @@ constexpr ChannelRow<DissipationOf<T>, T> lostChannelsOf[] = {
 using Dissipation = DissipationOf<double>;
 inline constexpr auto& storedChannels = storedChannelsOf<double>;
 inline constexpr auto& lostChannels = lostChannelsOf<double>;
-static_assert(sizeof(StoredEnergy<double>) == std::size(storedChannels) * sizeof(double) && sizeof(Dissipation) == std::size(lostChannels) * sizeof(double),
+static_assert(sizeof(StoredEnergy<double>) == std::size(storedChannels) * sizeof(double)
+                && sizeof(Dissipation) == std::size(lostChannels) * sizeof(double),
         "a member that no row lists would be left out of everything");
 
 // The mode by which a sintered bond breaks, and what that took.
