@@ -1,9 +1,10 @@
 """Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path)."""
 
-import contact_law
 import numpy as np
 from yade import utils
 from yade.wrapper import *
+
+import contact_law
 
 CHANNELS = [name for name, kind in contact_law.channels if kind != "work"]
 LOST = [name for name, kind in contact_law.channels if kind == "lost"]

@@ -17,14 +17,15 @@ class JKRMat : public ElastMat {
 public:
 	contact_law::Material forKernel() const { return { young, poisson, density, surfaceEnergy, criticalRolling, viscoelasticTime }; }
 	void requireInRange() const; // throws std::invalid_argument
+	void postLoad(JKRMat&);      // likewise: when the material is made or loaded, and when an attribute below is set
 	virtual ~JKRMat() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRMat, ElastMat,
 		"Adhesive elastic grains that obey the JKR contact law with Wada's tangential springs (Wada et al. 2007; Arakawa et al. 2022, Table 1). "
 		"The defaults of the attributes below are those of water ice; young (7e9 Pa), poisson (0.25) and density (1000 kg/m^3) are YADE's own and must be given.",
-		((Real, surfaceEnergy, 0.1, , "Surface energy gamma [J/m^2]. A pair takes the geometric mean."))
-		((Real, criticalRolling, 8e-10, , "Rolling displacement xi_crit beyond which grains roll irreversibly [m]. A pair takes the arithmetic mean."))
-		((Real, viscoelasticTime, 0, , "Viscoelastic time T_vis of the normal drag 2 T_vis E*/nu^2 a v [s]; 0: no drag. A pair takes the arithmetic mean of T_vis/nu^2.")),
+		((Real, surfaceEnergy, 0.1, Attr::triggerPostLoad, "Surface energy gamma [J/m^2]. A pair takes the geometric mean."))
+		((Real, criticalRolling, 8e-10, Attr::triggerPostLoad, "Rolling displacement xi_crit beyond which grains roll irreversibly [m]. A pair takes the arithmetic mean."))
+		((Real, viscoelasticTime, 0, Attr::triggerPostLoad, "Viscoelastic time T_vis of the normal drag 2 T_vis E*/nu^2 a v [s]; 0: no drag. A pair takes the arithmetic mean of T_vis/nu^2.")),
 		createIndex();
 	);
 	// clang-format on
@@ -124,7 +125,11 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
 	SharedBonds bonds;
 
+	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
+
 public:
+	void requireInRange() const;                   // throws std::invalid_argument
+	void postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&); // likewise: within a step, YADE's threads could not pass an exception on
 	void go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
 	        const shared_ptr<Interaction>& interaction) override;
 	boost::python::dict pairConstants(
@@ -136,8 +141,8 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_JKRMat_JKRMat_JKRWadaPhys, IPhysFunctor,
 		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains. With a neck, grains that touch at the start are sintered (Sirono & Ueno 2017): a linear elastic bond holds them "
 		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by what they gave to two necks each.",
-		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
-		((Real, neck, 0, , "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
+		((Real, linearDamping, 0, Attr::triggerPostLoad, "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
+		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
 		,
 		.def("pairConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
