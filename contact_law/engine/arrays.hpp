@@ -1,4 +1,5 @@
-// What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the eight side by side.
+// What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the
+// eight side by side.
 #pragma once
 #include "../kernel/contact_step.hpp"
 #include "periodic_cell.hpp"
@@ -72,8 +73,8 @@ template <class T> constexpr std::array<T PairConstants<T>::*, keptCount> makeKe
 		if (constant.readByForces) kept[at++] = constant.member;
 	return kept;
 }
-/* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces read (pair_constants.hpp), since reading them is what such scenes are
- * slower for; the rest are derived anew where they are wanted. */
+/* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces read (pair_constants.hpp), since
+ * reading them is what such scenes are slower for; the rest are derived anew where they are wanted. */
 template <class T> constexpr auto keptConstants = makeKeptConstants<T>();
 struct alignas(64) ConstantsBlock {
 	double field[keptCount][lanes];
@@ -116,7 +117,8 @@ struct ForcePass {
 	void (*batchDone)(void* owner, int batch);
 };
 
-// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(). Lanes beyond the third: room for a register.
+// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(). Lanes beyond the
+// third: room for a register.
 struct alignas(64) VelocityRange {
 	double least[lanes], most[lanes];
 
@@ -148,7 +150,8 @@ struct alignas(64) VelocityRange {
 struct BondPass;        // bond_list.hpp
 struct NeighbourSearch; // grid.hpp
 
-// One instruction set's compiled passes, by mechanisms (contact_state.hpp), whether all pairs are of one kind, and (forces) whether the scene is periodic.
+// One instruction set's compiled passes, by mechanisms (contact_state.hpp), whether all pairs are of one kind, and (forces) whether the
+// scene is periodic.
 struct InstructionSet {
 	const char* name;
 	void (*forces[mechanismSets][2][2])(const ForcePass&);

@@ -1,4 +1,5 @@
-// The pass over sintered bonds, for one pack type: included by each instruction set's file after force_pass.hpp. One sweep, since a linear bond needs little room.
+// The pass over sintered bonds, for one pack type: included by each instruction set's file after force_pass.hpp. One sweep, since a linear
+// bond needs little room.
 #pragma once
 #include "bond_list.hpp"
 #include "force_pass.hpp"

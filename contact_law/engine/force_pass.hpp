@@ -1,6 +1,7 @@
 // The passes over contacts and grains that make a step, for one pack type: included once by each instruction set's file, which also brings
-// gather() and scatterAdd() for its packs. The formulas are the kernel's, evaluated with packs of contacts. What contactStep() of the kernel does for one contact at a time is
-// repeated here, in sweeps, for contacts that stay: the turning of pointers, the velocity that drag sees, the displacements before a slip, the booking of drag and slips.
+// gather() and scatterAdd() for its packs. The formulas are the kernel's, evaluated with packs of contacts. What contactStep() of the
+// kernel does for one contact at a time is repeated here, in sweeps, for contacts that stay: the turning of pointers, the velocity that
+// drag sees, the displacements before a slip, the booking of drag and slips.
 // tests/equivalence holds it to the functors and to tests/reference_law.py. Contacts that form or break go through contactStep() itself.
 #pragma once
 #include "../kernel/contact.hpp"
@@ -98,8 +99,8 @@ template <class Pack> struct Passes {
 		return drag::velocityNow(velocity, load(before, at));
 	}
 
-	/* Grains and blocks that later batches need are fetched a few at a time between the blocks of this one: asked for at once they would wait for each
-	 * other (a fifth of the speed at 40 grain radii; measured). */
+	/* Grains and blocks that later batches need are fetched a few at a time between the blocks of this one: asked for at once they
+	 * would wait for each other (a fifth of the speed at 40 grain radii; measured). */
 	static void fetchGrains(const ForcePass& pass, int index)
 	{
 		if (index >= pass.endBlock) return;
@@ -158,7 +159,8 @@ template <class Pack> struct Passes {
 		}
 	}
 
-	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before` keeps the history before the step.
+	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before`
+	// keeps the history before the step.
 	template <unsigned mechanisms>
 	static void sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer,
 	        ContactBlock& before, int at, DissipationOf<Pack>& lost)

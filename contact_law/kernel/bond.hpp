@@ -1,4 +1,5 @@
-// Sintered bonds (Sirono & Ueno 2017, "S17", section 3; MODEL.md, "Sintered bonds"): an elastic disk between two rigid grains, which breaks at once.
+// Sintered bonds (Sirono & Ueno 2017, "S17", section 3; MODEL.md, "Sintered bonds"): an elastic disk between two rigid grains, which breaks
+// at once.
 // Constants, displacements, forces, energies, the limit of each mode, and the stability of a step.
 #pragma once
 #include "contact.hpp"
@@ -8,8 +9,9 @@
 
 namespace contact_law {
 
-/* The constants of a bond, listed once: name and what it is. From this list follow the members below, the attributes of JKRWadaBond, their copying, and what the engine holds
- * of bonds in scenes with several kinds of pairs (engine/bond_list.hpp). Names that the mechanisms read are those of PairConstants. */
+/* The constants of a bond, listed once: name and what it is. From this list follow the members below, the attributes of JKRWadaBond,
+ * their copying, and what the engine holds of bonds in scenes with several kinds of pairs (engine/bond_list.hpp). Names that the
+ * mechanisms read are those of PairConstants. */
 #define CONTACT_LAW_BOND_CONSTANTS(_)                                                                                                      \
 	_(radius1, "Radius of the first grain before sintering [m].")                                                                      \
 	_(radius2, "Radius of the second grain before sintering [m].")                                                                     \
@@ -33,7 +35,8 @@ constexpr T BondConstants<T>::*bondConstantsOf[] = {
 #undef CONTACT_LAW_ROW
 };
 
-/* S17 (1)-(6). Unlike grains: R_g = 2 r1 r2/(r1 + r2), half of the disk of either material (1/E = mean of 1/E_i, G likewise), gamma as for any contact. */
+/* S17 (1)-(6). Unlike grains: R_g = 2 r1 r2/(r1 + r2), half of the disk of either material (1/E = mean of 1/E_i, G likewise), gamma as
+ * for any contact. */
 inline BondConstants<double> deriveBond(const Material& material1, double radius1, const Material& material2, double radius2, double beta)
 {
 	const double E1 = material1.young, E2 = material2.young;
@@ -73,7 +76,8 @@ inline StoredEnergy<T> bondEnergy(const BondConstants<T>& b, const ContactGeomet
 
 // ---- breaking ----
 
-// Limit: a bond breaks when one mode alone holds what the neck's surfaces cost, whether the neck is stretched or pressed (S17 section 3.1, eq 6).
+// Limit: a bond breaks when one mode alone holds what the neck's surfaces cost, whether the neck is stretched or pressed (S17 section 3.1,
+// eq 6).
 template <class T> inline MaskOf<T> bondBreaks(const BondConstants<T>& b, const StoredEnergy<T>& e)
 {
 	return (b.breakingEnergy < e.normal) | (b.breakingEnergy < e.sliding) | (b.breakingEnergy < e.rolling)
@@ -116,7 +120,8 @@ namespace bonds {
 
 // ---- stability ----
 
-/* The fastest vibration of two equal grains with one bond between them [1/s]: leapfrog is unstable for it, and for it in any packing, at steps of 2 over this.
+/* The fastest vibration of two equal grains with one bond between them [1/s]: leapfrog is unstable for it, and for it in any packing, at
+ * steps of 2 over this.
  * The two against each other along the normal; across it, both turning with the motion, or against each other's turning (tilt, twist). */
 inline double fastestVibration(const BondConstants<double>& b, double inverseMass, double inverseInertia)
 {

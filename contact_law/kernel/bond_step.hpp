@@ -1,4 +1,5 @@
-// One bond through one time step of a kick-drift-kick integrator: its springs, and its breaking as an event located inside the step (as formation and breaking of contacts in contact_step.hpp).
+// One bond through one time step of a kick-drift-kick integrator: its springs, and its breaking as an event located inside the step (as
+// formation and breaking of contacts in contact_step.hpp).
 #pragma once
 #include "bond.hpp"
 #include "contact_step.hpp"
@@ -34,9 +35,10 @@ namespace bonds {
 		}
 	};
 
-	/* The bond broke after a fraction of the step: its last kicks covered half a step, what is missing to the fraction follows now. Shrunk grains that overlap
-	 * now touch since then, or since they overlapped, with unstrained springs: S17's new contact. What disappears is all that the bond held, less what the
-	 * new contact holds and what the kicks take out of the step, less what unequal half kicks lose in a leapfrog (contact_step.hpp). */
+	/* The bond broke after a fraction of the step: its last kicks covered half a step, what is missing to the fraction follows now.
+	 * Shrunk grains that overlap now touch since then, or since they overlapped, with unstrained springs: S17's new contact. What
+	 * disappears is all that the bond held, less what the new contact holds and what the kicks take out of the step, less what
+	 * unequal half kicks lose in a leapfrog (contact_step.hpp). */
 	template <unsigned mechanisms>
 	inline BondStepResult broken(const BondConstants<double>& b, const PairConstants<double>& c, const BondMotion& motion,
 	        const ContactBefore& before, const ContactGeometry<double>& bondGeometry, const ContactForces<double>& bond,
@@ -86,8 +88,9 @@ inline double newBond(const Vec3<double>& separation, ContactHistory<double>& hi
 	return distance;
 }
 
-/* One bond for one step. `before`: displacements a step ago, overlap = rest - distance; `history` as for contactStep(). When it breaks and the shrunk grains of `c`
- * overlap, result and history are those of the ordinary contact that takes its place. `mechanisms` are those of ordinary contacts; a bond has all springs, and no drag. */
+/* One bond for one step. `before`: displacements a step ago, overlap = rest - distance; `history` as for contactStep(). When it breaks
+ * and the shrunk grains of `c` overlap, result and history are those of the ordinary contact that takes its place. `mechanisms` are
+ * those of ordinary contacts; a bond has all springs, and no drag. */
 template <unsigned mechanisms>
 inline BondStepResult bondStep(const BondConstants<double>& b, const PairConstants<double>& c, const BondMotion& motion,
         const ContactBefore& before, double rest, ContactHistory<double>& history)

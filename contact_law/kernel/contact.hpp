@@ -1,5 +1,5 @@
-// The contact law at one instant: the one place where mechanisms are put together. contactForces() is the one entry that both the YADE functors (with T = double) and the
-// fused engine (with packs of doubles) evaluate. Each mechanism's formulas stand in its own file.
+// The contact law at one instant: the one place where mechanisms are put together. contactForces() is the one entry that both the YADE
+// functors (with T = double) and the fused engine (with packs of doubles) evaluate. Each mechanism's formulas stand in its own file.
 #pragma once
 #include "drag.hpp"
 #include "normal.hpp"
@@ -9,8 +9,8 @@
 
 namespace contact_law {
 
-/* Forces from the displacements as they are: limits, formation and breaking are events, which contact_step.hpp handles. In two parts, because the
- * engine takes them in two sweeps over its contacts.
+/* Forces from the displacements as they are: limits, formation and breaking are events, which contact_step.hpp handles. In two parts,
+ * because the engine takes them in two sweeps over its contacts.
  * Along the normal: elastic force and drag. `velocity` is v1 - v2 at this instant; only drag reads it. */
 template <unsigned mechanisms, class T>
 inline void normalForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const Vec3<T>& velocity, ContactForces<T>& f)
@@ -59,7 +59,8 @@ inline void bookDrag(
 {
 	drag::book(c, before, now, counted, lost);
 }
-// Over a fraction of a step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or broke inside the step.
+// Over a fraction of a step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or broke
+// inside the step.
 inline void bookDragFraction(
         const PairConstants<double>& c, double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
 {
@@ -83,8 +84,10 @@ template <unsigned mechanisms, class T> inline MaskOf<T> beyondLimits(const Pair
 	return beyond;
 }
 
-/* Return the displacements of `h` that are beyond their limits to them, and book what that dissipates (of lanes that are `counted`); true where pointers moved.
- * `before`: the displacements a step ago, `t`: the way from there. Returning one displacement changes the other a little (second order in the pointers' angles):
+/* Return the displacements of `h` that are beyond their limits to them, and book what that dissipates (of lanes that are `counted`);
+ * true where pointers moved.
+ * `before`: the displacements a step ago, `t`: the way from there. Returning one displacement changes the other a little (second order
+ * in the pointers' angles):
  * that too is work, and goes with the slip. */
 template <unsigned mechanisms, class T>
 inline MaskOf<T> returnToLimits(const PairConstants<T>& c, const Vec3<T>& normal, const Displacements<T>& before, const Turning<T>& t,

@@ -1,8 +1,10 @@
-// One contact through one time step of a kick-drift-kick integrator: limits, formation and breaking as events located in the step, and the energy ledger.
+// One contact through one time step of a kick-drift-kick integrator: limits, formation and breaking as events located in the step, and the
+// energy ledger.
 //
-// The ledger books the work that the integrator takes out of the grains. Over a step the grains move by velocity * dt, and the kicks are half the
-// forces before and half the forces after it. A contact that forms (or breaks) inside the step acted for a fraction of the step only: its kick is the integral of
-// its force over that fraction, which keeps the trajectory and the ledger of second order in dt. MODEL.md, "The integrator and the ledger", derives each line.
+// The ledger books the work that the integrator takes out of the grains. Over a step the grains move by velocity * dt, and the kicks are
+// half the forces before and half the forces after it. A contact that forms (or breaks) inside the step acted for a fraction of the step
+// only: its kick is the integral of its force over that fraction, which keeps the trajectory and the ledger of second order in dt.
+// MODEL.md, "The integrator and the ledger", derives each line.
 #pragma once
 #include "contact.hpp"
 #include "events.hpp"
@@ -11,7 +13,8 @@
 
 namespace contact_law {
 
-/* The kicks of a contact that touches now: what belongs before this instant (`normalBefore` along the normal, a fraction of the springs' forces), and half a step's forces after it.
+/* The kicks of a contact that touches now: what belongs before this instant (`normalBefore` along the normal, a fraction of the springs'
+ * forces), and half a step's forces after it.
  * r.now is the contact at this instant. */
 inline void setKicks(const ContactMotion& m, double normalBefore, double springsBefore, ContactStepResult& r)
 {
@@ -97,8 +100,9 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	return r;
 }
 
-/* The whole law for one contact and one step. `history` holds the pointers as the grains carried them to this instant, and the twist of the step before;
- * it comes back as it is after slips (and made anew for a contact that forms). touching = false in the result: no contact now, forget the history. */
+/* The whole law for one contact and one step. `history` holds the pointers as the grains carried them to this instant, and the twist of
+ * the step before; it comes back as it is after slips (and made anew for a contact that forms). touching = false in the result: no
+ * contact now, and the history has no meaning. */
 template <unsigned mechanisms>
 inline ContactStepResult contactStep(
         const PairConstants<double>& c, const ContactMotion& m, const ContactBefore& before, ContactHistory<double>& history)

@@ -1,4 +1,5 @@
-// Drag: normal forces against the relative velocity, the viscoelastic one of A22 (eq 7) and the linear one of K13 (eq 4), and what they dissipate.
+// Drag: normal forces against the relative velocity, the viscoelastic one of A22 (eq 7) and the linear one of K13 (eq 4), and what they
+// dissipate.
 #pragma once
 #include "pair_constants.hpp"
 #include "contact_state.hpp"
@@ -12,8 +13,8 @@ namespace drag {
 		return velocity + T(0.5) * (velocity - before);
 	}
 
-	/* Along n_c on grain 1: F_D = (2 A E* a + k_n m0/t0) v_rel, v_rel = -(v1 - v2).n_c, positive when approaching. contactRadiusRoot: u = (a/a0)^(1/2);
-	 * velocity: v1 - v2 at this instant. */
+	/* Along n_c on grain 1: F_D = (2 A E* a + k_n m0/t0) v_rel, v_rel = -(v1 - v2).n_c, positive when approaching.
+	 * contactRadiusRoot: u = (a/a0)^(1/2); velocity: v1 - v2 at this instant. */
 	template <class T>
 	inline T force(const PairConstants<T>& c, const Vec3<T>& normal, const Vec3<T>& velocity, const T& contactRadiusRoot)
 	{
@@ -28,7 +29,8 @@ namespace drag {
 	{
 		lost.drag = lost.drag + choose(counted, T(0.5) * (before.force + now.force) * (now.overlap - before.overlap), T(0.));
 	}
-	// Over a fraction of the step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or broke inside the step.
+	// Over a fraction of the step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or
+	// broke inside the step.
 	inline void bookFraction(
 	        const PairConstants<double>&, double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
 	{

@@ -1,5 +1,6 @@
-// The energy channels, listed once: name, where the energy stands, and whether it is stored, lost or work. Everything that adds up, books, saves or shows energies
-// walks these lists. A new channel of dissipation is a member of DissipationOf and a row of lostChannelsOf (and its label and colour in analysis/runs/format.py).
+// The energy channels, listed once: name, where the energy stands, and whether it is stored, lost or work. Everything that adds up, books,
+// saves or shows energies walks these lists. A new channel of dissipation is a member of DissipationOf and a row of lostChannelsOf (and its
+// label and colour in analysis/runs/format.py).
 #pragma once
 #include <array>
 #include <cstddef>

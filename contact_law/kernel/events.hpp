@@ -1,4 +1,5 @@
-// Events inside a step: when a contact forms or breaks, with which pointers it forms, and the work of kicks. MODEL.md, "The integrator and the ledger", derives each line.
+// Events inside a step: when a contact forms or breaks, with which pointers it forms, and the work of kicks. MODEL.md, "The integrator and
+// the ledger", derives each line.
 #pragma once
 #include "contact_state.hpp"
 #include "pair_constants.hpp"
@@ -24,7 +25,7 @@ namespace events {
 	// Of grains that touch now and did not a step ago.
 	struct Formation {
 		double overlapBefore;
-		bool inStep;     // otherwise they overlapped a step ago already: somebody placed them there
+		bool inStep;     // otherwise they overlapped a step ago already: they were placed there
 		double fraction; // of the step for which the contact has existed
 	};
 	inline Formation formationOf(const ContactMotion& m, double sumOfRadii, double overlap)

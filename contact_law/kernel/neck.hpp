@@ -27,8 +27,8 @@ namespace neck {
 	inline double shrunkRadius(double beta) { return beta > 0 ? std::cbrt(1 - 2 * volume(beta)) : 1; }
 }
 
-/* Ordinary contacts between grains that sintering has shrunk, r1 and r2 their radii before (beta = 0: as they are). Mass is conserved: what the necks took
- * counts as if it were in the grains still. */
+/* Ordinary contacts between grains that sintering has shrunk, r1 and r2 their radii before (beta = 0: as they are). Mass is conserved:
+ * what the necks took counts as if it were in the grains still. */
 inline PairConstants<double> deriveShrunkPair(
         Material material1, double radius1, Material material2, double radius2, double linearDamping, double beta)
 {

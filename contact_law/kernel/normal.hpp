@@ -1,5 +1,7 @@
-// Normal motion of two adhesive elastic spheres (Johnson, Kendall & Roberts 1971): elastic force, energy, and the contact's formation and pull-off.
-// In units that make it one function for all pairs: overlap/delta0, force/F_c, energy/(F_c delta_c), each through u = (a/a0)^(1/2). A22 eqs 2, 5, 8; A24 eqs 5, 6.
+// Normal motion of two adhesive elastic spheres (Johnson, Kendall & Roberts 1971): elastic force, energy, and the contact's formation and
+// pull-off.
+// In units that make it one function for all pairs: overlap/delta0, force/F_c, energy/(F_c delta_c), each through u = (a/a0)^(1/2). A22 eqs
+// 2, 5, 8; A24 eqs 5, 6.
 #pragma once
 #include "contact_radius_coefficients.hpp"
 #include "contact_state.hpp"
@@ -60,9 +62,9 @@ namespace normal {
 	constexpr double energyAtConnection = -0.8466138943830397; // -(8/15) 2^(2/3), A22 eq 9
 	constexpr double energyAtPullOff = 4. / 45.;               // A22 eq 10
 
-	/* Just before pull-off the force is F(-delta_c) + pullOffSlope F_c (x/delta0)^(1/2), x = overlap + delta_c. A sum over steps h that ends at x = fraction * h
- * (trapezoidal rule) misses the integral of x^(1/2) by h^(3/2) times the value returned here, whatever the steps before
- * (Euler-Maclaurin at a branch point; Hurwitz's zeta(-1/2, fraction) is summed over its first terms). */
+	/* Just before pull-off the force is F(-delta_c) + pullOffSlope F_c (x/delta0)^(1/2), x = overlap + delta_c. A sum over steps h
+	 * that ends at x = fraction * h (trapezoidal rule) misses the integral of x^(1/2) by h^(3/2) times the value returned here,
+	 * whatever the steps before (Euler-Maclaurin at a branch point; Hurwitz's zeta(-1/2, fraction) is summed over its first terms). */
 	constexpr double pullOffSlope = -1.0376956216346809; // -8 u/18^(1/2) at u = 6^(-1/3)
 	inline double sumMinusIntegralAtPullOff(double fraction)
 	{
@@ -95,20 +97,23 @@ namespace normal {
 		return g.overlap < -c.pullOffOverlap;
 	}
 
-	// Force times the fraction of a step since a contact formed, whose overlap changed by `closing` in the whole step: from the energy stored since, f F = [U(delta) - U(0)]/closing.
+	// Force times the fraction of a step since a contact formed, whose overlap changed by `closing` in the whole step: from the energy
+	// stored since, f F = [U(delta) - U(0)]/closing.
 	inline double forceSinceFormation(const PairConstants<double>& c, double stored, double closing)
 	{
 		return (stored - energyUnit(c) * energyAtConnection) / closing;
 	}
-	// What connection takes: -U(0), and what a leapfrog loses when the half kicks (impulses) before and after this instant are not equal.
+	// What connection takes: -U(0), and what a leapfrog loses when the half kicks (impulses) before and after this instant are not
+	// equal.
 	inline double connection(const PairConstants<double>& c, double impulseBefore, double impulseAfter, double inverseMass)
 	{
 		return -energyUnit(c) * energyAtConnection
 		        + (impulseAfter * impulseAfter - impulseBefore * impulseBefore) * inverseMass / 2;
 	}
 
-	/* Of a contact that breaks after a fraction of the step in which its overlap falls by `opening`: the force times that fraction, from the energy (which the branch point
-	 * at pull-off leaves smooth), less the half step that was given a step ago; and what the steps before missed of the force's last rise. */
+	/* Of a contact that breaks after a fraction of the step in which its overlap falls by `opening`: the force times that fraction,
+	 * from the energy (which the branch point at pull-off leaves smooth), less the half step that was given a step ago; and what the
+	 * steps before missed of the force's last rise. */
 	struct Breaking {
 		double force, missed;
 	};

@@ -17,8 +17,9 @@ struct Material {
 	double viscoelasticTime; // T_vis [s]
 };
 
-/* The constants of a contact, listed once: name, whether a step's forces read it, and what it is. From this list follow the members below, the attributes of JKRWadaConstants,
- * their copying, and what the engine holds of a contact in scenes with several kinds of pairs (engine/arrays.hpp). */
+/* The constants of a contact, listed once: name, whether a step's forces read it, and what it is. From this list follow the members
+ * below, the attributes of JKRWadaConstants, their copying, and what the engine holds of a contact in scenes with several kinds of pairs
+ * (engine/arrays.hpp). */
 #define CONTACT_LAW_PAIR_CONSTANTS(_)                                                                                                      \
 	_(radius1, true, "Radius of the first grain [m].")                                                                                 \
 	_(radius2, true, "Radius of the second grain [m].")                                                                                \

@@ -1,11 +1,12 @@
-// What sliding and rolling share: contact pointers that turn with the grains and are moved when a displacement is returned to its limit (Wada et al. 2007).
+// What sliding and rolling share: contact pointers that turn with the grains and are moved when a displacement is returned to its limit
+// (Wada et al. 2007).
 #pragma once
 #include "contact_state.hpp"
 
 namespace contact_law {
 
-/* A pointer moved along the unit vector e by move/radius. Renormalising undoes (n.e)^2 of a move (Wada et al. 2007): it goes that much further;
- * both are done at once, and without a division. */
+/* A pointer moved along the unit vector e by move/radius. Renormalising undoes (n.e)^2 of a move (Wada et al. 2007): it goes that much
+ * further; both are done at once, and without a division. */
 template <class T> inline Vec3<T> movedPointer(const Vec3<T>& pointer, const T& move, const T& radius, const Vec3<T>& e)
 {
 	const T along = dot(pointer, e);
@@ -33,17 +34,17 @@ template <class T> inline Vec3<T> normalRate(const Vec3<T>& normal, const T& inv
 }
 
 /* The energy that a slip dissipates in one step of a kick-drift-kick integrator. The kicks use the forces before the step (displacement
- * `before`) and after the return to the limit (`after`), so that the motion loses k/2 (before + after).(trial - before), of which
- * k/2 (after^2 - before^2) is stored. The last kick's lever arms are those of the pointers returned: over the step their displacement would have
- * changed by `further` more than the one that was returned, and that too the kick takes. */
+ * `before`) and after the return to the limit (`after`), so that the motion loses k/2 (before + after).(trial - before), of which k/2
+ * (after^2 - before^2) is stored. The last kick's lever arms are those of the pointers returned: over the step their displacement would
+ * have changed by `further` more than the one that was returned, and that too the kick takes. */
 template <class T>
 inline T slipDissipation(const T& stiffness, const Vec3<T>& before, const Vec3<T>& trial, const Vec3<T>& after, const Vec3<T>& further)
 {
 	return T(0.5) * stiffness * (dot(before + after, trial - after) + dot(after, further));
 }
 
-/* What a spring gives up when its contact breaks after a fraction of the step: what it stored a step ago (displacement `before`), and the work of its half kick
- * then and of the rest of it now (displacement `now`). */
+/* What a spring gives up when its contact breaks after a fraction of the step: what it stored a step ago (displacement `before`), and
+ * the work of its half kick then and of the rest of it now (displacement `now`). */
 inline double product(double a, double b) { return a * b; }
 inline double product(const Vec3<double>& a, const Vec3<double>& b) { return dot(a, b); }
 template <class Displacement>

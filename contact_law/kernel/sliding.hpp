@@ -1,4 +1,5 @@
-// Sliding: a spring on how far the contact points of two grains have moved past each other (Wada et al. 2007; A24 appendix A, eqs A1, A5, A8), with a limit (A22 eq 19).
+// Sliding: a spring on how far the contact points of two grains have moved past each other (Wada et al. 2007; A24 appendix A, eqs A1, A5,
+// A8), with a limit (A22 eq 19).
 // k_s: A22 eq 18. n1, n2: contact pointers; n: from grain 2 to grain 1.
 #pragma once
 #include "pair_constants.hpp"
@@ -20,8 +21,10 @@ namespace sliding {
 		return r1 * cross(t.spin1, p.n1) - r2 * cross(t.spin2, p.n2) - dot(separation(p, r1, r2), n) * t.normalRate;
 	}
 
-	/* Displacement, force (A24 eq A8) and torques (A24 eq A5, any radii), with the radii and stiffness of c (PairConstants, or a bond's). Torques are written without zeta:
-	 * M_s1 = -r1 k_s n1 x zeta = r1 k_s (r2 n1 x n2 + z n1 x n_c),  z = zeta0.n_c.  The first part is left to the caller: returned is its factor of n1 x n2. */
+	/* Displacement, force (A24 eq A8) and torques (A24 eq A5, any radii), with the radii and stiffness of c (PairConstants, or a
+	 * bond's). Torques are written without zeta:
+	 * M_s1 = -r1 k_s n1 x zeta = r1 k_s (r2 n1 x n2 + z n1 x n_c),  z = zeta0.n_c.  The first part is left to the caller: returned
+	 * is its factor of n1 x n2. */
 	template <class Constants, class T>
 	inline T addForces(const Constants& c, const ContactGeometry<T>& g, const Pointers<T>& p, ContactForces<T>& f)
 	{
@@ -54,7 +57,8 @@ namespace sliding {
 		const Vec3<T> e = inverse * zeta;
 		return { movedPointer(p.n1, -excess, r1 + r2, e), movedPointer(p.n2, excess, r1 + r2, e) };
 	}
-	// What the return of displacement `trial` to pointers p, which moved them by `moved`, dissipates; `before`: the displacement a step ago.
+	// What the return of displacement `trial` to pointers p, which moved them by `moved`, dissipates; `before`: the displacement a step
+	// ago.
 	template <class T>
 	inline T dissipation(const PairConstants<T>& c, const Vec3<T>& normal, const Vec3<T>& before, const Vec3<T>& trial,
 	        const Pointers<T>& p, const Pointers<T>& moved, const Turning<T>& t)

@@ -1,4 +1,5 @@
-// Twisting: a spring on the angle phi by which two grains have turned against each other about the normal (A24 appendix A, eqs A4, A7), with a limit (A22 eq 24).
+// Twisting: a spring on the angle phi by which two grains have turned against each other about the normal (A24 appendix A, eqs A4, A7),
+// with a limit (A22 eq 24).
 // k_t: A22 eq 23.
 #pragma once
 #include "pair_constants.hpp"

@@ -10,7 +10,8 @@ namespace yade {
 
 class EnergyChannels {
 public:
-	// EnergyTracker forgets its names when it is cleared, and may give them out from one thread only: to be called once a step before adding.
+	// EnergyTracker loses its names when it is cleared, and may give them out from one thread only: to be called once a step before
+	// adding.
 	void prepare(Scene& scene)
 	{
 		if (preparedAt == scene.iter) return;
@@ -34,9 +35,10 @@ public:
 	void addKinetic(Scene& scene, double energy) { add(scene, 0, energy); }
 	void addBoundaryWork(Scene& scene, double work) { add(scene, boundaryWork, work); }
 
-	// ---- for an engine that replaces ForceResetter, so that nobody empties channels between steps ----
+	// ---- for an engine that replaces ForceResetter, so that nothing empties channels between steps ----
 
-	/* The channels' values at present. known: O.energy holds them already, from a checkpoint. constrained: the scene has blocked degrees of freedom. */
+	/* The channels' values at present. known: O.energy holds them already, from a checkpoint. constrained: the scene has blocked
+	 * degrees of freedom. */
 	void set(Scene& scene, const contact_law::Energies& energies, bool known, bool constrained)
 	{
 		int kinetic = -1;
@@ -52,7 +54,8 @@ public:
 			last[channel] = values[channel];
 		}
 	}
-	// When the engine starts in a scene where others booked before: what they lost stays booked, what they had stored is stored here from now on.
+	// When the engine starts in a scene where others booked before: what they lost stays booked, what they had stored is stored here
+	// from now on.
 	void takeOver(Scene& scene)
 	{
 		for (int channel = 0; channel < count; ++channel) {
@@ -67,7 +70,8 @@ private:
 	static constexpr int count = contact_law::channelCount, boundaryWork = contact_law::channelNumber("boundaryWork");
 
 	static const char* nameOf(int channel) { return contact_law::channels[channel].name; }
-	// Whether O.energy has a channel anew each step: energies held now are, losses and works add up. (YADE's ForceResetter is what empties those.)
+	// Whether O.energy has a channel anew each step: energies held now are, losses and works add up. (YADE's ForceResetter is what
+	// empties those.)
 	static bool perStep(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Stored; }
 	// Channels only of scenes that have blocked degrees of freedom, or a periodic cell.
 	static bool isWork(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Work; }

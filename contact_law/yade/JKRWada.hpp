@@ -140,7 +140,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_JKRMat_JKRMat_JKRWadaPhys, IPhysFunctor,
 		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains. With a neck, grains that touch at the start are sintered (Sirono & Ueno 2017): a linear elastic bond holds them "
-		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by what they gave to two necks each.",
+		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by the volume of two necks each.",
 		((Real, linearDamping, 0, Attr::triggerPostLoad, "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
@@ -169,8 +169,8 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_JKRWadaPhys_JKRWada, LawFunctor,
 		"JKR normal force, Wada's sliding, rolling and twisting springs with their limits, and viscous drag, between grains of any radii and materials. "
-		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: stored ones (normal, sliding, rolling, twisting) "
-		"and what was lost since the start (slidingDissipation, rollingDissipation, twistingDissipation, connection, disconnection, drag, bondBreaking). "
+		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: those stored now, "
+		"and what was dissipated since the start by slips, connection and disconnection of contacts, drag and the breaking of bonds (contact_law.channels has all names). "
 		"O.energy['kinetic'] is brought from half a step ago, where NewtonIntegrator takes it, to the moment of the stored energies, so that the sum is constant. Use NewtonIntegrator(damping=0).",
 		((bool, sliding, true, , "Whether contacts resist sliding."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))

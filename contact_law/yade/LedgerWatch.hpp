@@ -12,7 +12,8 @@ public:
 	// Scripts may give energy to grains, or take it: the sum is another from the next energies on.
 	void forgetSum() { known = false; }
 
-	// Empty, or what the energies after a step show. contactEnergy: of one contact, F_c delta_c [J]; bonded grains at rest have none but rounding's.
+	// Empty, or what the energies after a step show. contactEnergy: of one contact, F_c delta_c [J]; bonded grains at rest have none
+	// but rounding's.
 	std::string wrong(const contact_law::Energies& e, double contactEnergy)
 	{
 		const auto values = contact_law::byChannel(e);
