@@ -32,7 +32,7 @@ struct BondPass {
 	double dt;
 	void* owner;
 	// bonds of a block (bits of `which`) that break: history before the step, forces to be replaced
-	void (*breaks)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
+	void (*breaking)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
 };
 
 class BondList {

@@ -63,16 +63,11 @@ template <class Pack> struct BondPasses {
 			for (int at = 0; at < lanes; at += width)
 				broken |= sweep(pass, index, at, before, out);
 			const BondBlock& block = pass.blocks[index];
-			if (__builtin_expect(broken != 0, 0)) pass.breaks(pass.owner, index, broken, before, out);
+			if (__builtin_expect(broken != 0, 0)) pass.breaking(pass.owner, index, broken, before, out);
 			const int* to1 = pass.addFirst ? block.i : trash;
 			const int* to2 = pass.addSecond ? block.j : trash;
-			for (int at = 0; at < lanes; at += width) {
-				const Vec3<Pack> f = P::load(out.force, at), t1 = P::load(out.torque1, at), t2 = P::load(out.torque2, at);
-				const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z },
-				        onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
-				scatterAdd(pass.grains, to1 + at, onFirst);
-				scatterAdd(pass.grains, to2 + at, onSecond);
-			}
+			for (int at = 0; at < lanes; at += width)
+				P::scatter(pass.grains, to1, to2, out, at);
 		}
 	}
 

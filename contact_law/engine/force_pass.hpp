@@ -256,6 +256,16 @@ template <class Pack> struct Passes {
 		return load(pass.constants[index], at);
 	}
 
+	// The kicks of `width` contacts to their grains; returns the forces on the first ones.
+	static Vec3<Pack> scatter(Grain* grains, const int* to1, const int* to2, const LaneForces& out, int at)
+	{
+		const Vec3<Pack> f = load(out.force, at), t1 = load(out.torque1, at), t2 = load(out.torque2, at);
+		const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z }, onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
+		scatterAdd(grains, to1 + at, onFirst);
+		scatterAdd(grains, to2 + at, onSecond);
+		return f;
+	}
+
 	template <unsigned mechanisms, bool uniform, bool periodic> [[gnu::flatten]] static void forces(const ForcePass& pass)
 	{
 		BatchBuffer buffers[batchSize];
@@ -295,14 +305,9 @@ template <class Pack> struct Passes {
 				const int* to1 = pass.addFirst ? blocks[b].i : trash;
 				const int* to2 = pass.addSecond ? blocks[b].j : trash;
 				for (int at = 0; at < lanes; at += width) {
-					const Vec3<Pack> f = load(buffers[b].out.force, at), t1 = load(buffers[b].out.torque1, at),
-					                 t2 = load(buffers[b].out.torque2, at);
+					const Vec3<Pack> f = scatter(pass.grains, to1, to2, buffers[b].out, at);
 					if constexpr (periodic)
 						crossing.kicks = crossing.kicks + Images<Pack>::times(load(crossing.shift[b], at), f);
-					const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z },
-					        onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
-					scatterAdd(pass.grains, to1 + at, onFirst);
-					scatterAdd(pass.grains, to2 + at, onSecond);
 				}
 			}
 			if (pass.batchDone) pass.batchDone(pass.owner, batch);
