@@ -27,14 +27,14 @@ def tracks(start, steps, damping, neck):
     start()
     result["given"] = {**given(), "damping": damping, "neck": neck}
     x, e = record(steps + 1)
-    result["functors"] = x[:steps], [[one[name] for name in CHANNELS] for one in e[1:]]  # their energies are of the positions a step ago
+    result["functors"] = x[:steps], [[one[name] for name in parameters["channels"]] for one in e[1:]]  # their energies are of the positions a step ago
     if neck:
         law = O.engines[2].lawDispatcher.functors[0]
         result["broken"] = [law.brokenByStretching, law.brokenBySliding, law.brokenByRolling, law.brokenByTwisting]
     start()
     fused_engine(linearDamping=damping, neck=neck)
     x, e = record(steps)
-    result["engine"] = x, [[one[name] for name in CHANNELS] for one in e]
+    result["engine"] = x, [[one[name] for name in parameters["channels"]] for one in e]
 """
 
 
@@ -118,7 +118,8 @@ def start():
     new_scene({step} * unit, damping={damping}, neck={neck})
     {grains}
 tracks(start, {steps}, {damping}, {neck})
-"""
+""",
+        {"channels": CHANNELS},
     )
     differences, last = compared(found, steps)
     print(case, differences, last, found.get("broken"))
