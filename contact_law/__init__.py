@@ -4,7 +4,8 @@
 in ``yade.wrapper``, in ``yade``, in the script's namespace, and as attributes of this package. With ``YADE_PREFIX`` set to the overlay
 in build/, YADE has loaded them already, and the import only finds them.
 
-``contact_law.commit`` is the git commit the plugin was built from, or "unknown"; ``contact_law.__all__`` names its classes.
+``contact_law.commit`` is the git commit the plugin was built from, or "unknown"; ``contact_law.__all__`` names its classes;
+``contact_law.channels`` are the energy channels that it books, (name, "stored", "lost" or "work") each.
 """
 
 import ctypes
@@ -86,7 +87,7 @@ def _publish(yade, names):
 
 
 def _start():
-    """Everything that importing does. Returns the names of the classes and the commit."""
+    """Everything that importing does. Returns the names of the classes, the commit and the energy channels."""
     yade = _running_yade()
     if not hasattr(yade.wrapper, "ContactLawPlugin"):
         _load(yade)
@@ -96,8 +97,8 @@ def _start():
         raise ImportError(plugin.refusal)
     names = list(plugin.classNames)
     _publish(yade, names)
-    return names, plugin.commit
+    return names, plugin.commit, plugin.channels
 
 
-__all__, commit = _start()
+__all__, commit, channels = _start()
 __all__.append("snapshot")

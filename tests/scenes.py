@@ -4,11 +4,10 @@ import numpy as np
 from yade import utils
 from yade.wrapper import *
 
-CHANNELS = (
-    "kinetic normal sliding rolling twisting slidingDissipation rollingDissipation twistingDissipation "
-    "connection disconnection drag bondBreaking"
-).split()
-LOST = CHANNELS[5:]
+import contact_law
+
+CHANNELS = [name for name, kind in contact_law.channels if kind != "work"]
+LOST = [name for name, kind in contact_law.channels if kind == "lost"]
 
 
 def ice(**other):

@@ -1,8 +1,10 @@
-// What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the eight side by side.
+// What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the
+// eight side by side.
 #pragma once
 #include "../kernel/contact_step.hpp"
 #include "periodic_cell.hpp"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -55,20 +57,30 @@ struct alignas(64) ContactBlock {
 	int i[lanes], j[lanes]; // grains; a dead lane points to the domain's two dummies
 };
 
-/* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces take, since reading them is what such scenes are
- * slower for; the rest are derived anew where they are wanted. The last three are for drag. */
-template <class T>
-constexpr T PairConstants<T>::*keptConstants[] = { &PairConstants<T>::radius1, &PairConstants<T>::radius2, &PairConstants<T>::reducedRadius,
-	&PairConstants<T>::inverseEquilibriumOverlap, &PairConstants<T>::pullOffForce, &PairConstants<T>::rollingStiffness,
-	&PairConstants<T>::slidingStiffness, &PairConstants<T>::twistingStiffness, &PairConstants<T>::criticalSliding,
-	&PairConstants<T>::criticalRolling, &PairConstants<T>::equilibriumContactRadius, &PairConstants<T>::dragPerContactRadius,
-	&PairConstants<T>::linearDrag };
-constexpr int keptCount = sizeof(keptConstants<double>) / sizeof(keptConstants<double>[0]);
+constexpr int countKept()
+{
+	int count = 0;
+	for (const auto& constant : pairConstantsOf<double>)
+		count += constant.readByForces;
+	return count;
+}
+constexpr int keptCount = countKept();
+template <class T> constexpr std::array<T PairConstants<T>::*, keptCount> makeKeptConstants()
+{
+	std::array<T PairConstants<T>::*, keptCount> kept {};
+	int at = 0;
+	for (const auto& constant : pairConstantsOf<T>)
+		if (constant.readByForces) kept[at++] = constant.member;
+	return kept;
+}
+/* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces read (pair_constants.hpp), since
+ * reading them is what such scenes are slower for; the rest are derived anew where they are wanted. */
+template <class T> constexpr auto keptConstants = makeKeptConstants<T>();
 struct alignas(64) ConstantsBlock {
 	double field[keptCount][lanes];
 };
 
-// What drag needs of the step before: the ledger takes the mean of two forces.
+// What drag needs of the step before (kernel/drag.hpp).
 struct alignas(64) DragBlock {
 	double drag[lanes], overlap[lanes];
 };
@@ -86,10 +98,10 @@ struct alignas(64) LaneForces {
 struct ForcePass {
 	Grain* grains;
 	ContactBlock* blocks;
-	const ConstantsBlock* constants; // null when all pairs are alike
-	const PairConstants<double>* alike;
-	DragBlock* drags;                 // null in scenes without drag
-	const PreviousVelocity* previous; // likewise
+	const ConstantsBlock* constants;      // null when all pairs are of one kind
+	const PairConstants<double>* uniform; // the constants then
+	DragBlock* drags;                     // null in scenes without drag
+	const PreviousVelocity* previous;     // likewise
 	const PeriodicCell* cell;
 	int firstBlock, endBlock;
 	int addFirst, addSecond; // whether the first / second grain of each contact is this domain's
@@ -105,7 +117,8 @@ struct ForcePass {
 	void (*batchDone)(void* owner, int batch);
 };
 
-// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(). Lanes beyond the third: room for a register.
+// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(). Lanes beyond the
+// third: room for a register.
 struct alignas(64) VelocityRange {
 	double least[lanes], most[lanes];
 
@@ -137,11 +150,12 @@ struct alignas(64) VelocityRange {
 struct BondPass;        // bond_list.hpp
 struct NeighbourSearch; // grid.hpp
 
-// One instruction set's compiled passes, by mechanisms (contact.hpp), whether all pairs are alike, and (forces) whether the scene is periodic.
+// One instruction set's compiled passes, by mechanisms (contact_state.hpp), whether all pairs are of one kind, and (forces) whether the
+// scene is periodic.
 struct InstructionSet {
 	const char* name;
-	void (*forces[16][2][2])(const ForcePass&);
-	void (*energies[16][2])(const ForcePass&, StoredEnergy<double>&);
+	void (*forces[mechanismSets][2][2])(const ForcePass&);
+	void (*energies[mechanismSets][2])(const ForcePass&, StoredEnergy<double>&);
 	double (*sumOfProduct)(
 	        double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);

@@ -9,7 +9,7 @@ struct alignas(64) BondBlock : ContactBlock {
 	double rest[lanes];
 };
 
-constexpr int bondConstantCount = sizeof(BondConstants<double>) / sizeof(double);
+constexpr int bondConstantCount = std::size(bondConstantsOf<double>);
 struct alignas(64) BondConstantsBlock {
 	double field[bondConstantCount][lanes];
 };
@@ -25,27 +25,27 @@ struct Bond { // one lane, taken out
 struct BondPass {
 	Grain* grains;
 	BondBlock* blocks;
-	const BondConstantsBlock* constants; // null when all pairs are alike
-	const BondConstants<double>* alike;
+	const BondConstantsBlock* constants;  // null when all pairs are of one kind
+	const BondConstants<double>* uniform; // the constants then
 	int endBlock;
 	int addFirst, addSecond, trash;
 	double dt;
 	void* owner;
 	// bonds of a block (bits of `which`) that break: history before the step, forces to be replaced
-	void (*breaks)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
+	void (*breaking)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
 };
 
 class BondList {
 public:
-	BondList(bool alike_, int dummy_)
-	        : alike(alike_)
+	BondList(bool uniform_, int dummy_)
+	        : uniform(uniform_)
 	        , dummy(dummy_)
 	{
 	}
 	int size() const { return used; } // lanes, dead ones among them
 	int blockCount() const { return int(blocks.size()); }
 	BondBlock* data() { return blocks.data(); }
-	const BondConstantsBlock* constantsData() const { return alike ? nullptr : constants.data(); }
+	const BondConstantsBlock* constantsData() const { return uniform ? nullptr : constants.data(); }
 	int first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
 	int second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
 	bool alive(int lane) const { return first(lane) != dummy; }
@@ -70,7 +70,7 @@ public:
 	{
 		const BondBlock& b = blocks[lane / lanes];
 		const int k = lane % lanes;
-		return { b.i[k], b.j[k], ContactList::history(b, k), b.rest[k], alike ? common : readConstants(lane) };
+		return { b.i[k], b.j[k], ContactList::history(b, k), b.rest[k], uniform ? common : readConstants(lane) };
 	}
 	void writeHistory(int lane, const ContactHistory<double>& h) { ContactList::writeHistory(blocks[lane / lanes], lane % lanes, h); }
 	int aliveCount() const
@@ -102,7 +102,7 @@ private:
 	void addDeadBlock()
 	{
 		blocks.emplace_back();
-		if (!alike) constants.emplace_back();
+		if (!uniform) constants.emplace_back();
 		for (int k = 0; k < lanes; ++k)
 			kill(int(blocks.size() - 1) * lanes + k);
 	}
@@ -114,23 +114,21 @@ private:
 		b.j[k] = bond.j;
 		b.rest[k] = bond.rest;
 		writeHistory(lane, bond.history);
-		if (alike) return;
-		const double* from = reinterpret_cast<const double*>(&bond.constants);
+		if (uniform) return;
 		for (int n = 0; n < bondConstantCount; ++n)
-			constants[lane / lanes].field[n][k] = from[n];
+			constants[lane / lanes].field[n][k] = bond.constants.*bondConstantsOf<double>[n];
 	}
 	BondConstants<double> readConstants(int lane) const
 	{
 		BondConstants<double> c;
-		double* to = reinterpret_cast<double*>(&c);
 		for (int n = 0; n < bondConstantCount; ++n)
-			to[n] = constants[lane / lanes].field[n][lane % lanes];
+			c.*bondConstantsOf<double>[n] = constants[lane / lanes].field[n][lane % lanes];
 		return c;
 	}
 	Aligned<BondBlock> blocks;
 	Aligned<BondConstantsBlock> constants;
 	Bond dead {};
-	bool alike;
+	bool uniform;
 	int dummy, used = 0;
 };
 

@@ -1,4 +1,5 @@
-// The pass over sintered bonds, for one pack type: included by each instruction set's file after force_pass.hpp. One sweep, since a linear bond needs little room.
+// The pass over sintered bonds, for one pack type: included by each instruction set's file after force_pass.hpp. One sweep, since a linear
+// bond needs little room.
 #pragma once
 #include "bond_list.hpp"
 #include "force_pass.hpp"
@@ -11,11 +12,15 @@ template <class Pack> struct BondPasses {
 
 	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at)
 	{
+		return constantsOf(pass, index, at, std::make_index_sequence<bondConstantCount>());
+	}
+	template <std::size_t... k>
+	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at, std::index_sequence<k...>)
+	{
 		BondConstants<Pack> to;
-		Pack* field = reinterpret_cast<Pack*>(&to);
-		const double* same = reinterpret_cast<const double*>(pass.alike);
-		for (int k = 0; k < bondConstantCount; ++k)
-			field[k] = pass.constants ? Pack::load(pass.constants[index].field[k] + at) : Pack(same[k]);
+		((to.*bondConstantsOf<Pack>[k] = pass.constants ? Pack::load(pass.constants[index].field[k] + at)
+		                                                : Pack(pass.uniform->*bondConstantsOf<double>[k])),
+		        ...);
 		return to;
 	}
 
@@ -58,22 +63,17 @@ template <class Pack> struct BondPasses {
 			for (int at = 0; at < lanes; at += width)
 				broken |= sweep(pass, index, at, before, out);
 			const BondBlock& block = pass.blocks[index];
-			if (__builtin_expect(broken != 0, 0)) pass.breaks(pass.owner, index, broken, before, out);
+			if (__builtin_expect(broken != 0, 0)) pass.breaking(pass.owner, index, broken, before, out);
 			const int* to1 = pass.addFirst ? block.i : trash;
 			const int* to2 = pass.addSecond ? block.j : trash;
-			for (int at = 0; at < lanes; at += width) {
-				const Vec3<Pack> f = P::load(out.force, at), t1 = P::load(out.torque1, at), t2 = P::load(out.torque2, at);
-				const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z },
-				        onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
-				scatterAdd(pass.grains, to1 + at, onFirst);
-				scatterAdd(pass.grains, to2 + at, onSecond);
-			}
+			for (int at = 0; at < lanes; at += width)
+				P::scatter(pass.grains, to1, to2, out, at);
 		}
 	}
 
 	[[gnu::flatten]] static void energies(const BondPass& pass, StoredEnergy<double>& sums)
 	{
-		StoredEnergy<Pack> total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
+		StoredEnergy<Pack> sum { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
 		for (int index = 0; index < pass.endBlock; ++index)
 			for (int at = 0; at < lanes; at += width) {
 				const BondBlock& block = pass.blocks[index];
@@ -82,14 +82,9 @@ template <class Pack> struct BondPasses {
 				        geometryOf(P::gatherPair(pass.grains, block, at).separation, Pack::load(block.rest + at));
 				const ContactHistory<Pack> h = historyOf(block, at);
 				const StoredEnergy<Pack> e = bondEnergy(c, g, bondForces(c, g, h), h.twist);
-				alignas(64) double counts[lanes];
-				for (int lane = 0; lane < width; ++lane)
-					counts[lane] = block.i[at + lane] != pass.trash; // a dead lane's dummies
-				const Pack mine = Pack::load(counts);
-				total = { total.normal + mine * e.normal, total.sliding + mine * e.sliding,
-					total.rolling + mine * e.rolling, total.twisting + mine * e.twisting };
+				P::addLiving(e, block, at, pass.trash, sum);
 			}
-		sums = { P::sumOf(total.normal), P::sumOf(total.sliding), P::sumOf(total.rolling), P::sumOf(total.twisting) };
+		P::sumLanes(sum, sums);
 	}
 
 	// An instruction set's passes with those over bonds.

@@ -75,9 +75,8 @@ template <class Archive> void transfer(Archive& archive, ContactHistory<double>&
 }
 template <class Archive> void transfer(Archive& archive, Dissipation& d)
 {
-	transferNumbers(archive, d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag);
-	for (double& energy : d.bondBreaking)
-		archive.number(energy);
+	for (const auto& channel : lostChannels)
+		archive.number(d.*channel.member);
 }
 template <class Archive> void transfer(Archive& archive, PeriodicCell& cell)
 {

@@ -15,8 +15,8 @@ struct Contact { // one lane, taken out
 
 class ContactList {
 public:
-	ContactList(bool alike_, bool drag_, int dummy_)
-	        : alike(alike_)
+	ContactList(bool uniform_, bool drag_, int dummy_)
+	        : uniform(uniform_)
 	        , hasDrag(drag_)
 	        , dummy(dummy_)
 	{
@@ -24,7 +24,7 @@ public:
 	int size() const { return used; } // lanes, dead ones among them
 	int blockCount() const { return int(blocks.size()); }
 	ContactBlock* data() { return blocks.data(); }
-	ConstantsBlock* constantsData() { return alike ? nullptr : constants.data(); }
+	ConstantsBlock* constantsData() { return uniform ? nullptr : constants.data(); }
 
 	DragBlock* dragData() { return hasDrag ? drags.data() : nullptr; }
 
@@ -38,7 +38,7 @@ public:
 		blocks[lane / lanes].i[lane % lanes] = dummy;
 		blocks[lane / lanes].j[lane % lanes] = dummy + 1;
 		writeHistory(lane, deadHistory());
-		if (!alike) writeConstants(lane, deadConstants);
+		if (!uniform) writeConstants(lane, deadConstants);
 		if (hasDrag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
 	}
 	int first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
@@ -113,7 +113,7 @@ private:
 	void addDeadBlock()
 	{
 		blocks.emplace_back();
-		if (!alike) constants.emplace_back();
+		if (!uniform) constants.emplace_back();
 		if (hasDrag) drags.emplace_back();
 		for (int k = 0; k < lanes; ++k)
 			kill(int(blocks.size() - 1) * lanes + k);
@@ -124,7 +124,7 @@ private:
 		blocks[here / lanes].j[here % lanes] = from.second(lane);
 		writeHistory(here, history(from.blocks[lane / lanes], lane % lanes));
 		if (hasDrag) writeDrag(here, from.drag(lane), from.drags[lane / lanes].overlap[lane % lanes]);
-		for (int k = 0; !alike && k < keptCount; ++k)
+		for (int k = 0; !uniform && k < keptCount; ++k)
 			constants[here / lanes].field[k][here % lanes] = from.constants[lane / lanes].field[k][lane % lanes];
 	}
 	void set(int lane, const Contact& contact)
@@ -132,7 +132,7 @@ private:
 		blocks[lane / lanes].i[lane % lanes] = contact.i;
 		blocks[lane / lanes].j[lane % lanes] = contact.j;
 		writeHistory(lane, contact.history);
-		if (!alike) writeConstants(lane, contact.constants);
+		if (!uniform) writeConstants(lane, contact.constants);
 		writeDrag(lane, contact.drag, contact.overlap);
 	}
 	void writeConstants(int lane, const PairConstants<double>& c)
@@ -144,7 +144,7 @@ private:
 	Aligned<ConstantsBlock> constants;
 	Aligned<DragBlock> drags;
 	PairConstants<double> deadConstants {};
-	bool alike, hasDrag;
+	bool uniform, hasDrag;
 	int dummy, used = 0;
 };
 

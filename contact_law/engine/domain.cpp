@@ -327,7 +327,7 @@ void Domain::placeOverlapping()
 			const ContactMotion m { separation, { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
 			const double overlap = s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation));
 			if (overlap <= 0) continue;
-			contacts[sort].append({ p.i, p.j, contact_law::events::bornHistory(m, 0), s.constantsOf(p.i, p.j), 0, overlap });
+			contacts[sort].append({ p.i, p.j, contact_law::events::formedHistory(m, 0), s.constantsOf(p.i, p.j), 0, overlap });
 			touching[sort][index] = 1;
 		}
 }

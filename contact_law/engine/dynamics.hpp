@@ -21,14 +21,6 @@ struct GrainInput : GrainMotion {
 	int kind;                     // index of its material
 };
 
-struct Energies {
-	double kinetic = 0; // 1/2 m v(-dt/2) v(+dt/2): what a leapfrog conserves together with the stored energies (MODEL.md)
-	StoredEnergy<double> stored { 0, 0, 0, 0 };
-	Dissipation dissipated;
-	double constraintWork = 0; // done by contacts on blocked degrees of freedom, since the start
-	double boundaryWork = 0;   // done against a periodic cell's boundaries and mean velocity field, since the start
-};
-
 struct Inherited; // exchange.hpp
 
 void copyMotion(const GrainMotion&, Grain&); // all but orientation and blocked degrees of freedom, which grains don't carry

@@ -1,7 +1,10 @@
 // The passes over contacts and grains that make a step, for one pack type: included once by each instruction set's file, which also brings
-// gather() and scatterAdd() for its packs. No physics of its own: contactForces() of the kernel is evaluated with packs of contacts.
+// gather() and scatterAdd() for its packs. The formulas are the kernel's, evaluated with packs of contacts. What contactStep() of the
+// kernel does for one contact at a time is repeated here, in sweeps, for contacts that stay: the turning of pointers, the velocity that
+// drag sees, the displacements before a slip, the booking of drag and slips.
+// tests/equivalence holds it to the functors and to tests/reference_law.py. Contacts that form or break go through contactStep() itself.
 #pragma once
-#include "../kernel/slip.hpp"
+#include "../kernel/contact.hpp"
 #include "../kernel/turning.hpp"
 #include "arrays.hpp"
 #include <type_traits>
@@ -50,11 +53,9 @@ template <class Pack> struct Passes {
 
 	static PairConstants<Pack> spread(const PairConstants<double>& c)
 	{
-		const double* from = reinterpret_cast<const double*>(&c);
 		PairConstants<Pack> to;
-		Pack* field = reinterpret_cast<Pack*>(&to);
-		for (std::size_t k = 0; k < sizeof c / sizeof(double); ++k)
-			field[k] = Pack(from[k]);
+		for (std::size_t k = 0; k < std::size(pairConstantsOf<Pack>); ++k)
+			to.*pairConstantsOf<Pack>[k].member = Pack(c.*pairConstantsOf<double>[k].member);
 		return to;
 	}
 	static PairConstants<Pack> load(const ConstantsBlock& c, int at) { return loadKept(c, at, std::make_index_sequence<keptCount>()); }
@@ -62,7 +63,7 @@ template <class Pack> struct Passes {
 	{
 		PairConstants<Pack> to {};
 		((to.*keptConstants<Pack>[k] = Pack::load(c.field[k] + at)), ...);
-		to.pullOffOverlap = Pack(normal::pullOffOverlap) / to.inverseEquilibriumOverlap;
+		to.pullOffOverlap = Pack(normal::pullOffRatio) / to.inverseEquilibriumOverlap;
 		to.criticalTwisting = Pack(criticalTwistingAngle);
 		return to;
 	}
@@ -95,11 +96,11 @@ template <class Pack> struct Passes {
 			const PreviousVelocity &a = previous[block.i[k]], &b = previous[block.j[k]];
 			before[0][k] = a.x - b.x, before[1][k] = a.y - b.y, before[2][k] = a.z - b.z;
 		}
-		return velocity + Pack(0.5) * (velocity - load(before, at));
+		return drag::velocityNow(velocity, load(before, at));
 	}
 
-	/* Grains and blocks that later batches need are fetched a few at a time between the blocks of this one: asked for at once they would wait for each
-	 * other (a fifth of the speed at 40 grain radii; measured). */
+	/* Grains and blocks that later batches need are fetched a few at a time between the blocks of this one: asked for at once they
+	 * would wait for each other (a fifth of the speed at 40 grain radii; measured). */
 	static void fetchGrains(const ForcePass& pass, int index)
 	{
 		if (index >= pass.endBlock) return;
@@ -108,11 +109,11 @@ template <class Pack> struct Passes {
 			__builtin_prefetch(&pass.grains[j].wz);
 		}
 	}
-	template <bool alike> static void fetchBlock(const ForcePass& pass, int index)
+	template <bool uniform> static void fetchBlock(const ForcePass& pass, int index)
 	{
 		if (index >= pass.endBlock) return;
 		fetch(&pass.blocks[index]);
-		if constexpr (!alike) fetch(&pass.constants[index]);
+		if constexpr (!uniform) fetch(&pass.constants[index]);
 	}
 	template <class Block> static void fetch(const Block* block)
 	{
@@ -129,7 +130,8 @@ template <class Pack> struct Passes {
 		if constexpr (periodic) store(toImages(crossing.images, pair), crossing.shift[(index - pass.firstBlock) % batchSize], at);
 		const ContactGeometry<Pack> g = geometryOf(pair.separation, c.radius1 + c.radius2);
 		const Pack inUnits = g.overlap * c.inverseEquilibriumOverlap;
-		const typename Pack::Mask care = (inUnits < Pack(-normal::pullOffOverlap)) | (Pack(largestFittedOverlap) < inUnits);
+		// normal::beyondPullOff() without a division; where the two differ by rounding, contactStep() decides
+		const typename Pack::Mask care = (inUnits < Pack(-normal::pullOffRatio)) | (Pack(largestFittedOverlap) < inUnits);
 		ContactForces<Pack> f;
 		Vec3<Pack> velocity {};
 		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, pass.blocks[index], pair.velocity, at);
@@ -157,34 +159,26 @@ template <class Pack> struct Passes {
 		}
 	}
 
-	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before` keeps the history before the step.
+	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before`
+	// keeps the history before the step.
 	template <unsigned mechanisms>
 	static void sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer,
-	        ContactBlock& before, int at, Pack& dragWork)
+	        ContactBlock& before, int at, DissipationOf<Pack>& lost)
 	{
 		ContactBlock& block = pass.blocks[index];
 		const Pack dt(pass.dt);
-		const Vec3<Pack> none { Pack(0.), Pack(0.), Pack(0.) };
-		ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
+		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
 		const ContactHistory<Pack> old { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 		ContactHistory<Pack> h = old;
-		typename Pack::Mask care = Pack(1.) < Pack(0.);
 		if constexpr (bool(mechanisms & (Sliding | Rolling)))
 			h.pointers = { turnedALittle(h.pointers.n1, dt * load(buffer.spin1, at)),
 				turnedALittle(h.pointers.n2, dt * load(buffer.spin2, at)) };
-		if constexpr (bool(mechanisms & Twisting)) {
-			h.twist = h.twist + Pack::load(buffer.twistIncrement + at);
-			care = care | (c.criticalTwisting < absolute(h.twist));
-		}
-		ContactForces<Pack> f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
+		if constexpr (bool(mechanisms & Twisting)) h.twist = h.twist + Pack::load(buffer.twistIncrement + at);
+		ContactForces<Pack> f = ContactForces<Pack>::none();
 		tangentialForces<mechanisms>(c, g, h, f);
-		if constexpr (bool(mechanisms & Sliding))
-			care = care | (c.criticalSliding * c.criticalSliding < dot(f.slidingDisplacement, f.slidingDisplacement));
-		if constexpr (bool(mechanisms & Rolling))
-			care = care | (c.criticalRolling * c.criticalRolling < dot(f.rollingDisplacement, f.rollingDisplacement));
 		storeForces(g, f, buffer, at);
-		const unsigned events = buffer.events >> at & allLanes, slips = bitsOf(care) & ~events;
-		if constexpr (bool(mechanisms & Drag)) keepDrag(pass.drags[index], buffer, events, at, dragWork);
+		const unsigned events = buffer.events >> at & allLanes, slips = bitsOf(beyondLimits<mechanisms>(c, f, h.twist)) & ~events;
+		if constexpr (bool(mechanisms & Drag)) keepDrag(c, pass.drags[index], buffer, events, at, lost);
 		if (__builtin_expect((events | slips) != 0, 0)) keep(old, before, at);
 		buffer.slips |= slips << at;
 		keep(h, block, at);
@@ -197,10 +191,10 @@ template <class Pack> struct Passes {
 		store(f.torque2, buffer.out.torque2, at);
 	}
 
-	// Lanes that slip, again: their displacements put back, the forces that follow, and what it took.
+	// Lanes that slip, again: their displacements returned to the limits, the forces that follow, and what that dissipates.
 	template <unsigned mechanisms>
 	static void sweepSlips(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer,
-	        const ContactBlock& before, int at, Slip<Pack>& lost)
+	        const ContactBlock& before, int at, DissipationOf<Pack>& lost)
 	{
 		const unsigned slipping = buffer.slips >> at & allLanes;
 		if (!slipping) return;
@@ -209,22 +203,18 @@ template <class Pack> struct Passes {
 		const Vec3<Pack> velocity = load(buffer.velocity, at),
 		                 then = g.normal - (Pack(pass.dt) * g.inverseDistance) * velocity; // over the distance now
 		const Pointers<Pack> old { load(before.n1, at), load(before.n2, at) };
-		const Vec3<Pack> none { Pack(0.), Pack(0.), Pack(0.) };
+		// the functors save these; here they follow from the pointers before they turned, as in aStepAgo() of domain.hpp
 		const Displacements<Pack> aStepAgo { sliding::displacement(old, c.radius1, c.radius2, inverseRoot(dot(then, then)) * then),
 			rolling::displacement(old, c.reducedRadius), Pack::load(before.twist + at) };
 		ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
-		ContactForces<Pack> f { Pack(0.), Pack(0.), none, none, none, Pack(0.), none, none };
-		const Slip<Pack> slipped = slip<mechanisms>(c, g.normal, aStepAgo,
+		returnToLimits<mechanisms>(c, g.normal, aStepAgo,
 		        { normalRate(g.normal, g.inverseDistance, velocity), load(buffer.spin1, at), load(buffer.spin2, at),
 		                Pack(pass.dt) },
-		        h);
+		        h, maskOf(slipping), lost);
+		ContactForces<Pack> f = ContactForces<Pack>::none();
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
 		keep(h, block, at);
-		const typename Pack::Mask those = maskOf(slipping);
-		lost.sliding = lost.sliding + choose(those, slipped.sliding, Pack(0.));
-		lost.rolling = lost.rolling + choose(those, slipped.rolling, Pack(0.));
-		lost.twisting = lost.twisting + choose(those, slipped.twisting, Pack(0.));
 		*pass.slips += __builtin_popcount(slipping);
 	}
 
@@ -239,14 +229,15 @@ template <class Pack> struct Passes {
 	}
 
 	// Events keep the step before, which they need.
-	static void keepDrag(DragBlock& d, const BatchBuffer& now, unsigned events, int at, Pack& dragWork)
+	static void keepDrag(
+	        const PairConstants<Pack>& c, DragBlock& d, const BatchBuffer& buffer, unsigned events, int at, DissipationOf<Pack>& lost)
 	{
 		const auto plain = maskOf(~events);
-		const Pack dragBefore = Pack::load(d.drag + at), overlapBefore = Pack::load(d.overlap + at);
-		const Pack drag = Pack::load(now.drag + at), overlap = Pack::load(now.overlap + at);
-		dragWork = dragWork + choose(plain, Pack(0.5) * (dragBefore + drag) * (overlap - overlapBefore), Pack(0.));
-		choose(plain, drag, dragBefore).store(d.drag + at);
-		choose(plain, overlap, overlapBefore).store(d.overlap + at);
+		const DragMoment<Pack> before { Pack::load(d.drag + at), Pack::load(d.overlap + at) };
+		const DragMoment<Pack> now { Pack::load(buffer.drag + at), Pack::load(buffer.overlap + at) };
+		bookDrag(c, before, now, plain, lost);
+		choose(plain, now.force, before.force).store(d.drag + at);
+		choose(plain, now.overlap, before.overlap).store(d.overlap + at);
 	}
 
 	static void keep(const ContactHistory<Pack>& h, ContactBlock& block, int at)
@@ -265,12 +256,21 @@ template <class Pack> struct Passes {
 		return load(pass.constants[index], at);
 	}
 
-	template <unsigned mechanisms, bool alike, bool periodic> [[gnu::flatten]] static void forces(const ForcePass& pass)
+	// The kicks of `width` contacts to their grains; returns the forces on the first ones.
+	static Vec3<Pack> scatter(Grain* grains, const int* to1, const int* to2, const LaneForces& out, int at)
+	{
+		const Vec3<Pack> f = load(out.force, at), t1 = load(out.torque1, at), t2 = load(out.torque2, at);
+		const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z }, onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
+		scatterAdd(grains, to1 + at, onFirst);
+		scatterAdd(grains, to2 + at, onSecond);
+		return f;
+	}
+
+	template <unsigned mechanisms, bool uniform, bool periodic> [[gnu::flatten]] static void forces(const ForcePass& pass)
 	{
 		BatchBuffer buffers[batchSize];
-		const PairConstants<Pack> same = spread(*pass.alike);
-		Pack dragWork(0.);
-		Slip<Pack> lost { Pack(0.), Pack(0.), Pack(0.), {} };
+		const PairConstants<Pack> same = spread(*pass.uniform);
+		DissipationOf<Pack> lost;
 		Crossing<Pack, periodic> crossing(pass);
 		int trash[lanes];
 		for (int& t : trash)
@@ -284,17 +284,17 @@ template <class Pack> struct Passes {
 				buffers[b].events = buffers[b].slips = 0;
 				for (int at = 0; at < lanes; at += width)
 					sweepNormal<mechanisms, periodic>(pass, crossing,
-					        constants(pass, same, first + b, at, std::bool_constant<alike>()), first + b, buffers[b],
+					        constants(pass, same, first + b, at, std::bool_constant<uniform>()), first + b, buffers[b],
 					        at);
 			}
 			for (int b = 0; b < count; ++b) {
-				fetchBlock<alike>(pass, first + b + blocksAhead);
+				fetchBlock<uniform>(pass, first + b + blocksAhead);
 				ContactBlock before;
 				const auto c = [&](int at) -> decltype(auto) {
-					return constants(pass, same, first + b, at, std::bool_constant<alike>());
+					return constants(pass, same, first + b, at, std::bool_constant<uniform>());
 				};
 				for (int at = 0; at < lanes; at += width)
-					sweepTangential<mechanisms>(pass, c(at), first + b, buffers[b], before, at, dragWork);
+					sweepTangential<mechanisms>(pass, c(at), first + b, buffers[b], before, at, lost);
 				if (__builtin_expect(buffers[b].slips != 0, 0))
 					for (int at = 0; at < lanes; at += width)
 						sweepSlips<mechanisms>(pass, c(at), first + b, buffers[b], before, at, lost);
@@ -305,51 +305,56 @@ template <class Pack> struct Passes {
 				const int* to1 = pass.addFirst ? blocks[b].i : trash;
 				const int* to2 = pass.addSecond ? blocks[b].j : trash;
 				for (int at = 0; at < lanes; at += width) {
-					const Vec3<Pack> f = load(buffers[b].out.force, at), t1 = load(buffers[b].out.torque1, at),
-					                 t2 = load(buffers[b].out.torque2, at);
+					const Vec3<Pack> f = scatter(pass.grains, to1, to2, buffers[b].out, at);
 					if constexpr (periodic)
 						crossing.kicks = crossing.kicks + Images<Pack>::times(load(crossing.shift[b], at), f);
-					const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z },
-					        onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
-					scatterAdd(pass.grains, to1 + at, onFirst);
-					scatterAdd(pass.grains, to2 + at, onSecond);
 				}
 			}
 			if (pass.batchDone) pass.batchDone(pass.owner, batch);
 		}
-		pass.dissipated->sliding += sumOf(lost.sliding);
-		pass.dissipated->rolling += sumOf(lost.rolling);
-		pass.dissipated->twisting += sumOf(lost.twisting);
-		pass.dissipated->drag += sumOf(dragWork);
+		for (std::size_t k = 0; k < std::size(lostChannels); ++k)
+			pass.dissipated->*lostChannels[k].member += sumOf(lost.*lostChannelsOf<Pack>[k].member);
 		if constexpr (periodic)
 			*pass.crossing =
 			        *pass.crossing + Vec3<double> { sumOf(crossing.kicks.x), sumOf(crossing.kicks.y), sumOf(crossing.kicks.z) };
 	}
 
-	template <unsigned mechanisms, bool alike> [[gnu::flatten]] static void energies(const ForcePass& pass, StoredEnergy<double>& sums)
+	template <unsigned mechanisms, bool uniform>
+	[[gnu::flatten]] static void energies(const ForcePass& pass, StoredEnergy<double>& sums)
 	{
-		const PairConstants<Pack> same = spread(*pass.alike);
+		const PairConstants<Pack> same = spread(*pass.uniform);
 		const Images<Pack> images(*pass.cell); // once a step at most: open scenes have their images here too, without a shift
-		StoredEnergy<Pack> total { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
+		StoredEnergy<Pack> sum { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
 		for (int b = pass.firstBlock; b < pass.endBlock; ++b) {
 			ContactBlock& block = pass.blocks[b];
 			for (int at = 0; at < lanes; at += width) {
-				const PairConstants<Pack> c = constants(pass, same, b, at, std::bool_constant<alike>());
+				const PairConstants<Pack> c = constants(pass, same, b, at, std::bool_constant<uniform>());
 				Pair pair = gatherPair(pass.grains, block, at);
 				toImages(images, pair);
 				const ContactGeometry<Pack> g = geometryOf(pair.separation, c.radius1 + c.radius2);
 				const ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 				const StoredEnergy<Pack> e =
 				        storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
-				alignas(64) double counts[lanes];
-				for (int lane = 0; lane < width; ++lane)
-					counts[lane] = block.i[at + lane] != pass.trash; // a dead lane's dummies
-				const Pack mine = Pack::load(counts);
-				total = { total.normal + mine * e.normal, total.sliding + mine * e.sliding,
-					total.rolling + mine * e.rolling, total.twisting + mine * e.twisting };
+				addLiving(e, block, at, pass.trash, sum);
 			}
 		}
-		sums = { sumOf(total.normal), sumOf(total.sliding), sumOf(total.rolling), sumOf(total.twisting) };
+		sumLanes(sum, sums);
+	}
+
+	// The energies of lanes that are contacts: not those of dead lanes' dummies.
+	static void addLiving(const StoredEnergy<Pack>& e, const ContactBlock& block, int at, int trash, StoredEnergy<Pack>& sum)
+	{
+		alignas(64) double counts[lanes];
+		for (int lane = 0; lane < width; ++lane)
+			counts[lane] = block.i[at + lane] != trash;
+		const Pack mine = Pack::load(counts);
+		for (const auto& row : storedChannelsOf<Pack>)
+			sum.*row.member = sum.*row.member + mine * (e.*row.member);
+	}
+	static void sumLanes(const StoredEnergy<Pack>& from, StoredEnergy<double>& to)
+	{
+		for (std::size_t k = 0; k < std::size(storedChannels); ++k)
+			to.*storedChannels[k].member = sumOf(from.*storedChannelsOf<Pack>[k].member);
 	}
 
 	static double sumOf(const Pack& p)
@@ -372,11 +377,11 @@ template <class Pack> struct Passes {
 private:
 	static double sumOfProduct(double a, double b, double c) { return a * b + c; }
 
-	template <unsigned mechanisms, bool alike> static void fill(InstructionSet& set)
+	template <unsigned mechanisms, bool uniform> static void fill(InstructionSet& set)
 	{
-		set.forces[mechanisms][alike][false] = &forces<mechanisms, alike, false>;
-		set.forces[mechanisms][alike][true] = &forces<mechanisms, alike, true>;
-		set.energies[mechanisms][alike] = &energies<mechanisms, alike>;
+		set.forces[mechanisms][uniform][false] = &forces<mechanisms, uniform, false>;
+		set.forces[mechanisms][uniform][true] = &forces<mechanisms, uniform, true>;
+		set.energies[mechanisms][uniform] = &energies<mechanisms, uniform>;
 	}
 	template <unsigned mechanisms> static void fill(InstructionSet& set)
 	{

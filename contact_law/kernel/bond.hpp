@@ -1,55 +1,42 @@
-// Sintered bonds (Sirono & Ueno 2017, "S17"; MODEL.md, "Sintered bonds"): an elastic disk between two rigid grains, which breaks at once. Geometry, constants, forces and energies.
+// Sintered bonds (Sirono & Ueno 2017, "S17", section 3; MODEL.md, "Sintered bonds"): an elastic disk between two rigid grains, which breaks
+// at once.
+// Constants, displacements, forces, energies, the limit of each mode, and the stability of a step.
 #pragma once
 #include "contact.hpp"
+#include "events.hpp"
+#include "neck.hpp"
+#include <algorithm>
 
 namespace contact_law {
 
-constexpr double largestNeck = 0.7; // S17's; the fillet's circle grows without bound towards 1
+/* The constants of a bond, listed once: name and what it is. From this list follow the members below, the attributes of JKRWadaBond,
+ * their copying, and what the engine holds of bonds in scenes with several kinds of pairs (engine/bond_list.hpp). Names that the
+ * mechanisms read are those of PairConstants. */
+#define CONTACT_LAW_BOND_CONSTANTS(_)                                                                                                      \
+	_(radius1, "Radius of the first grain before sintering [m].")                                                                      \
+	_(radius2, "Radius of the second grain before sintering [m].")                                                                     \
+	_(reducedRadius, "R = r1 r2/(r1+r2) of these [m].")                                                                                \
+	_(neckRadius, "a [m].")                                                                                                            \
+	_(neckLength, "d [m].")                                                                                                            \
+	_(normalStiffness, "k_ss [N/m].")                                                                                                  \
+	_(slidingStiffness, "k_st [N/m].")                                                                                                 \
+	_(rollingStiffness, "k_sr/R^2 [N/m], on the rolling displacement R(n1+n2), whose length is R times the angle of the tilt.")        \
+	_(twistingStiffness, "k_sw [N m].")                                                                                                \
+	_(breakingEnergy, "pi a^2 gamma [J]: the bond breaks when one mode holds it.")
 
-// Of a neck whose radius is beta times that of its grains; lengths in units of that radius R_g.
-namespace neck {
-	inline double filletRadius(double beta) { return beta * beta / (2 * (1 - beta)); } // x, S17 (1)
-	inline double length(double beta)                                                  // d, S17 (2)
-	{
-		const double x = filletRadius(beta);
-		return 2 * x / (1 + x);
-	}
-	// What the fillet adds between two touching spheres, over the volume of one.
-	inline double volume(double beta)
-	{
-		const double x = filletRadius(beta), h = length(beta) / 2, c = beta + x; // the circle's centre lies c from the axis
-		const double fillet =
-		        2 * (h * c * c - c * (h * std::sqrt(x * x - h * h) + x * x * std::asin(h / x)) + x * x * h - h * h * h / 3);
-		const double spheres = 2 * h * h * (1 - h / 3);
-		return 0.75 * (fillet - spheres);
-	}
-	// R'/R_g: what is left of a grain's radius when it has given two necks (S17 section 3.3, Fig. 4)
-	inline double shrunkRadius(double beta) { return beta > 0 ? std::cbrt(1 - 2 * volume(beta)) : 1; }
-}
-
-/* Ordinary contacts between grains that sintering has shrunk, r1 and r2 their radii before (beta = 0: as they are). Mass is conserved: what the necks took
- * counts as if it were in the grains still. */
-inline PairConstants<double> deriveShrunkPair(
-        Material material1, double radius1, Material material2, double radius2, double linearDamping, double beta)
-{
-	const double shrunk = neck::shrunkRadius(beta), volume = shrunk * shrunk * shrunk;
-	material1.density /= volume;
-	material2.density /= volume;
-	return derivePair(material1, shrunk * radius1, material2, shrunk * radius2, linearDamping);
-}
-
-// Derived once for each kind of pair. Names that tangentialForces() reads are those of PairConstants.
 template <class T> struct BondConstants {
-	T radius1, radius2, reducedRadius; // before the grains shrank [m]
-	T neckRadius, neckLength;          // a, d [m]
-	T normalStiffness;                 // k_ss [N/m]
-	T slidingStiffness;                // k_st [N/m]
-	T rollingStiffness;                // k_sr/R^2 [N/m]: on xi = R(n1 + n2), whose length is R times the angle of the tilt
-	T twistingStiffness;               // k_sw [N m]
-	T breakingEnergy;                  // pi a^2 gamma [J]
+#define CONTACT_LAW_MEMBER(name, ...) T name;
+	CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_MEMBER)
+};
+template <class T>
+constexpr T BondConstants<T>::*bondConstantsOf[] = {
+#define CONTACT_LAW_ROW(name, ...) &BondConstants<T>::name,
+	CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_ROW)
+#undef CONTACT_LAW_ROW
 };
 
-/* S17 (1)-(6). Unlike grains: R_g = 2 r1 r2/(r1 + r2), half of the disk of either material (1/E = mean of 1/E_i, G likewise), gamma as for any contact. */
+/* S17 (1)-(6). Unlike grains: R_g = 2 r1 r2/(r1 + r2), half of the disk of either material (1/E = mean of 1/E_i, G likewise), gamma as
+ * for any contact. */
 inline BondConstants<double> deriveBond(const Material& material1, double radius1, const Material& material2, double radius2, double beta)
 {
 	const double E1 = material1.young, E2 = material2.young;
@@ -74,8 +61,7 @@ inline BondConstants<double> deriveBond(const Material& material1, double radius
  * g: geometryOf(separation, rest), so that its overlap is how far the bond is pressed together. */
 template <class T> inline ContactForces<T> bondForces(const BondConstants<T>& b, const ContactGeometry<T>& g, const ContactHistory<T>& h)
 {
-	const Vec3<T> none { T(0.), T(0.), T(0.) };
-	ContactForces<T> f { T(0.), T(0.), none, none, none, T(0.), none, none };
+	ContactForces<T> f = ContactForces<T>::none();
 	f.normalForce = b.normalStiffness * g.overlap;
 	tangentialForces<AllSprings>(b, g, h, f);
 	return f;
@@ -84,17 +70,65 @@ template <class T> inline ContactForces<T> bondForces(const BondConstants<T>& b,
 template <class T>
 inline StoredEnergy<T> bondEnergy(const BondConstants<T>& b, const ContactGeometry<T>& g, const ContactForces<T>& f, const T& twist)
 {
-	return { T(0.5) * b.normalStiffness * g.overlap * g.overlap,
-		T(0.5) * b.slidingStiffness * dot(f.slidingDisplacement, f.slidingDisplacement),
-		T(0.5) * b.rollingStiffness * dot(f.rollingDisplacement, f.rollingDisplacement),
-		T(0.5) * b.twistingStiffness * twist * twist };
+	return { T(0.5) * b.normalStiffness * g.overlap * g.overlap, sliding::energy(b, f.slidingDisplacement),
+		rolling::energy(b, f.rollingDisplacement), twisting::energy(b, twist) };
 }
 
-// Whether a bond breaks: when one mode alone holds what the neck's surfaces cost (S17 section 3.1).
+// ---- breaking ----
+
+// Limit: a bond breaks when one mode alone holds what the neck's surfaces cost, whether the neck is stretched or pressed (S17 section 3.1,
+// eq 6).
 template <class T> inline MaskOf<T> bondBreaks(const BondConstants<T>& b, const StoredEnergy<T>& e)
 {
 	return (b.breakingEnergy < e.normal) | (b.breakingEnergy < e.sliding) | (b.breakingEnergy < e.rolling)
 	        | (b.breakingEnergy < e.twisting);
+}
+
+namespace bonds {
+	struct Breaking {
+		int mode = -1;       // none
+		double fraction = 2; // of the step, after which it broke
+	};
+
+	// The mode that reaches its limit first within the step; g, f, twist: at its end.
+	inline Breaking firstBreaking(const BondConstants<double>& b, const ContactBefore& before, const ContactGeometry<double>& g,
+	        const ContactForces<double>& f, double twist)
+	{
+		Breaking first;
+		const auto look = [&](int mode, double stiffness, const Vec3<double>& then, const Vec3<double>& now) {
+			if (0.5 * stiffness * dot(now, now) <= b.breakingEnergy) return;
+			const double fraction = events::fractionUntilLength(then, now, 2 * b.breakingEnergy / stiffness);
+			if (fraction < first.fraction) first = { mode, fraction };
+		};
+		look(ByStretching, b.normalStiffness, { before.overlap, 0, 0 }, { g.overlap, 0, 0 });
+		look(BySliding, b.slidingStiffness, before.sliding, f.slidingDisplacement);
+		look(ByRolling, b.rollingStiffness, before.rolling, f.rollingDisplacement);
+		look(ByTwisting, b.twistingStiffness, { before.twist, 0, 0 }, { twist, 0, 0 });
+		return first;
+	}
+
+	// Stored a step ago, less the work of the springs' half kick then over the step.
+	inline double heldAfterHalfKick(const BondConstants<double>& b, const ContactBefore& before, const ContactGeometry<double>& g,
+	        const ContactForces<double>& f, double twist)
+	{
+		return 0.5
+		        * (b.normalStiffness * before.overlap * g.overlap + b.slidingStiffness * dot(before.sliding, f.slidingDisplacement)
+		                + b.rollingStiffness * dot(before.rolling, f.rollingDisplacement)
+		                + b.twistingStiffness * before.twist * twist);
+	}
+}
+
+// ---- stability ----
+
+/* The fastest vibration of two equal grains with one bond between them [1/s]: leapfrog is unstable for it, and for it in any packing, at
+ * steps of 2 over this.
+ * The two against each other along the normal; across it, both turning with the motion, or against each other's turning (tilt, twist). */
+inline double fastestVibration(const BondConstants<double>& b, double inverseMass, double inverseInertia)
+{
+	const double r = b.radius1, R = b.reducedRadius;
+	const double along = 2 * b.normalStiffness * inverseMass, across = 2 * b.slidingStiffness * (inverseMass + r * r * inverseInertia);
+	const double tilt = 2 * b.rollingStiffness * R * R * inverseInertia, twist = 2 * b.twistingStiffness * inverseInertia;
+	return std::sqrt(std::max({ along, across, tilt, twist }));
 }
 
 } // namespace contact_law

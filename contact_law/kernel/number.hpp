@@ -1,4 +1,5 @@
-// What the kernel asks of a number type: +, -, *, /, <, and these functions. double has them here; the engine's packs of doubles bring their own.
+// What the kernel asks of a number type: +, -, *, /, <, and these functions. double has them here; the engine's packs of doubles bring
+// their own.
 #pragma once
 #include <cmath>
 

@@ -17,26 +17,49 @@ struct Material {
 	double viscoelasticTime; // T_vis [s]
 };
 
+/* The constants of a contact, listed once: name, whether a step's forces read it, and what it is. From this list follow the members
+ * below, the attributes of JKRWadaConstants, their copying, and what the engine holds of a contact in scenes with several kinds of pairs
+ * (engine/arrays.hpp). */
+#define CONTACT_LAW_PAIR_CONSTANTS(_)                                                                                                      \
+	_(radius1, true, "Radius of the first grain [m].")                                                                                 \
+	_(radius2, true, "Radius of the second grain [m].")                                                                                \
+	_(reducedRadius, true, "R = r1 r2/(r1+r2) [m].")                                                                                   \
+	_(reducedMass, false, "m* = m1 m2/(m1+m2) of solid spheres [kg].")                                                                 \
+	_(reducedYoung, false, "E* [Pa]: 1/E* = sum of (1-nu^2)/E.")                                                                       \
+	_(reducedShear, false, "G* [Pa]: 1/G* = sum of (2-nu)/G.")                                                                         \
+	_(equilibriumContactRadius, true, "a0 [m].")                                                                                       \
+	_(equilibriumOverlap, false, "delta0 [m]: overlap at which the normal force vanishes.")                                            \
+	_(pullOffOverlap, false, "delta_c [m]: the contact ends when the overlap falls below -delta_c.")                                   \
+	_(pullOffForce, true, "F_c [N]: the largest pull.")                                                                                \
+	_(rollingStiffness, true, "k_r [N/m].")                                                                                            \
+	_(slidingStiffness, true, "k_s [N/m].")                                                                                            \
+	_(twistingStiffness, true, "k_t [N m].")                                                                                           \
+	_(criticalSliding, true, "zeta_crit [m].")                                                                                         \
+	_(criticalRolling, true, "xi_crit [m].")                                                                                           \
+	_(criticalTwisting, false, "phi_crit [rad].")                                                                                      \
+	_(dragPerContactRadius, true, "2 T_vis E*/nu^2 [N s/m^2].")                                                                        \
+	_(linearDrag, true, "k_n m0/t0 [N s/m].")                                                                                          \
+	_(timeUnit, false, "t0 [s].")
+
 template <class T> struct PairConstants {
-	T radius1, radius2;          // [m]
-	T reducedRadius;             // R = r1 r2/(r1 + r2) [m]
-	T reducedMass;               // m* [kg]
-	T reducedYoung;              // E* [Pa]
-	T reducedShear;              // G* [Pa]
-	T equilibriumContactRadius;  // a0 [m]
-	T equilibriumOverlap;        // delta0 [m]
-	T pullOffOverlap;            // delta_c [m]: a contact ends when the overlap falls below -delta_c
-	T pullOffForce;              // F_c [N]
-	T rollingStiffness;          // k_r [N/m]
-	T slidingStiffness;          // k_s [N/m]
-	T twistingStiffness;         // k_t [N m]
-	T criticalSliding;           // zeta_crit [m]
-	T criticalRolling;           // xi_crit [m]
-	T criticalTwisting;          // phi_crit
-	T dragPerContactRadius;      // 2 T_vis E*/nu^2 [N s/m^2]
-	T linearDrag;                // k_n m0/t0 [N s/m]
-	T timeUnit;                  // t0 [s]
-	T inverseEquilibriumOverlap; // 1/delta0 [1/m], because a division is dear
+#define CONTACT_LAW_MEMBER(name, ...) T name;
+	CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_MEMBER)
+	T inverseEquilibriumOverlap; // 1/delta0 [1/m], because a division is expensive; no attribute of its own
+
+	void complete() { inverseEquilibriumOverlap = 1 / equilibriumOverlap; } // from the attributes
+};
+
+// A constant, and whether a step's forces read it.
+template <class T> struct PairConstant {
+	T PairConstants<T>::*member;
+	bool readByForces;
+};
+template <class T>
+constexpr PairConstant<T> pairConstantsOf[] = {
+#define CONTACT_LAW_ROW(name, readByForces, ...) { &PairConstants<T>::name, readByForces },
+	CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_ROW)
+#undef CONTACT_LAW_ROW
+	        { &PairConstants<T>::inverseEquilibriumOverlap, true },
 };
 
 /* Unlike grains. The elastic moduli follow from contact mechanics: 1/E* = sum (1 - nu^2)/E, 1/G* = sum (2 - nu)/G,
@@ -82,7 +105,7 @@ inline PairConstants<double> derivePair(
 	// K13 (2) with E* for E (see MODEL.md)
 	c.timeUnit = 0.95 * std::sqrt(density) * std::pow(radius, 7. / 6.) / (std::cbrt(c.reducedYoung) * std::pow(gamma, 1. / 6.));
 	c.linearDrag = linearDamping * mass / c.timeUnit; // K13 (4)
-	c.inverseEquilibriumOverlap = 1 / c.equilibriumOverlap;
+	c.complete();
 	return c;
 }
 

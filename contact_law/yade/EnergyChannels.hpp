@@ -1,5 +1,6 @@
-// The energy channels in O.energy, by the names that all of the project uses.
+// The energy channels in O.energy, by the names that all of the project uses (kernel/energy_channels.hpp).
 #pragma once
+#include "../kernel/energy_channels.hpp"
 #include <core/EnergyTracker.hpp>
 #include <core/Scene.hpp>
 #include <array>
@@ -9,31 +10,8 @@ namespace yade {
 
 class EnergyChannels {
 public:
-	enum Extra {
-		ConstraintWork,
-		BoundaryWork,
-		extraCount
-	}; // channels only of scenes that have blocked degrees of freedom, or a periodic cell
-	enum Channel {
-		Kinetic,
-		Normal,
-		Sliding,
-		Rolling,
-		Twisting,
-		SlidingDissipation,
-		RollingDissipation,
-		TwistingDissipation,
-		Connection,
-		Disconnection,
-		Drag,
-		BondBreaking,
-		count
-	};
-
-	// Whether add() books a channel anew each step: energies held now are, losses add up. (YADE's ForceResetter is what empties those.)
-	static bool perStep(int channel) { return channel <= Twisting; }
-
-	// EnergyTracker forgets its names when it is cleared, and may give them out from one thread only: to be called once a step before adding.
+	// EnergyTracker loses its names when it is cleared, and may give them out from one thread only: to be called once a step before
+	// adding.
 	void prepare(Scene& scene)
 	{
 		if (preparedAt == scene.iter) return;
@@ -41,70 +19,70 @@ public:
 		if (preparedAt != scene.iter) {
 			for (int channel = 0; channel < count; ++channel) {
 				ids[channel] = -1;
-				scene.energy->add(0., names()[channel], ids[channel], perStep(channel));
+				if (isWork(channel) && !(scene.isPeriodic && channel == boundaryWork)) continue;
+				scene.energy->add(0., nameOf(channel), ids[channel], perStep(channel));
 			}
-			boundaryId = -1;
-			if (scene.isPeriodic) scene.energy->add(0., extraNames()[BoundaryWork], boundaryId, false);
 			preparedAt = scene.iter;
 		}
 	}
-	/* For an engine that replaces ForceResetter, so that nobody empties channels between steps: the channels' values at present. `known`: O.energy
-	 * holds them already, from a checkpoint. */
-	void set(Scene& scene, const std::array<double, count>& values, bool known = false)
+
+	// ---- for the functors: what one contact did, from any thread, after prepare() ----
+
+	void add(Scene& scene, const contact_law::StoredEnergy<double>& stored, const contact_law::Dissipation& lost)
+	{
+		contact_law::eachRow(stored, lost, [&](int channel, double energy) { add(scene, channel, energy); });
+	}
+	void addKinetic(Scene& scene, double energy) { add(scene, 0, energy); }
+	void addBoundaryWork(Scene& scene, double work) { add(scene, boundaryWork, work); }
+
+	// ---- for an engine that replaces ForceResetter, so that nothing empties channels between steps ----
+
+	/* The channels' values at present. known: O.energy holds them already, from a checkpoint. constrained: the scene has blocked
+	 * degrees of freedom. */
+	void set(Scene& scene, const contact_law::Energies& energies, bool known, bool constrained)
 	{
 		int kinetic = -1;
-		scene.energy->findId("kinetic", kinetic, false, false);
-		if (kinetic < 0) last.fill(0), lastExtra.fill(0); // O.energy is new, or was cleared
+		scene.energy->findId(nameOf(0), kinetic, false, false);
+		if (kinetic < 0) last.fill(0); // O.energy is new, or was cleared
 		preparedAt = -2;
 		prepare(scene);
-		for (int channel = 0; channel < count; ++channel)
+		const auto values = contact_law::byChannel(energies);
+		for (int channel = 0; channel < count; ++channel) {
+			if (isWork(channel) && !(channel == boundaryWork ? scene.isPeriodic : constrained)) continue;
 			if (!known && values[channel] != last[channel])
-				scene.energy->add(values[channel] - last[channel], "", ids[channel], perStep(channel));
-		last = values;
+				scene.energy->add(values[channel] - last[channel], nameOf(channel), ids[channel], perStep(channel));
+			last[channel] = values[channel];
+		}
 	}
-	// For an engine that starts in a scene where others booked before: what they lost stays booked, what they had stored is stored here from now on.
+	// When the engine starts in a scene where others booked before: what they lost stays booked, what they had stored is stored here
+	// from now on.
 	void takeOver(Scene& scene)
 	{
 		for (int channel = 0; channel < count; ++channel) {
 			int id = -1;
-			if (perStep(channel)) scene.energy->findId(names()[channel], id, true, false);
-			if (id >= 0) scene.energy->setItem_py(names()[channel], 0);
+			if (perStep(channel)) scene.energy->findId(nameOf(channel), id, true, false);
+			if (id >= 0) scene.energy->setItem_py(nameOf(channel), 0);
 		}
 		last.fill(0);
 	}
-	// Work since the start, against whatever holds grains with blocked degrees of freedom, or against a periodic cell's boundaries.
-	void setExtra(Scene& scene, Extra which, double work, bool known)
-	{
-		int id = -1;
-		if (!known && work != lastExtra[which]) scene.energy->add(work - lastExtra[which], extraNames()[which], id, false);
-		lastExtra[which] = work;
-	}
-	void addBoundaryWork(Scene& scene, double work)
-	{
-		if (work != 0) scene.energy->add(work, "", boundaryId, false);
-	}
-	void add(Scene& scene, Channel channel, double energy)
+
+private:
+	static constexpr int count = contact_law::channelCount, boundaryWork = contact_law::channelNumber("boundaryWork");
+
+	static const char* nameOf(int channel) { return contact_law::channels[channel].name; }
+	// Whether O.energy has a channel anew each step: energies held now are, losses and works add up. (YADE's ForceResetter is what
+	// empties those.)
+	static bool perStep(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Stored; }
+	// Channels only of scenes that have blocked degrees of freedom, or a periodic cell.
+	static bool isWork(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Work; }
+
+	void add(Scene& scene, int channel, double energy)
 	{
 		if (energy != 0) scene.energy->add(energy, "", ids[channel], perStep(channel));
 	}
 
-private:
-	static const char* const* extraNames()
-	{
-		static const char* const all[extraCount] = { "constraintWork", "boundaryWork" };
-		return all;
-	}
-	static const char* const* names()
-	{
-		static const char* const all[count] = { "kinetic", "normal", "sliding", "rolling", "twisting", "slidingDissipation",
-			"rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag", "bondBreaking" };
-		return all;
-	}
-
 	std::array<int, count> ids {};
 	std::array<double, count> last {};
-	std::array<double, extraCount> lastExtra {};
-	int boundaryId = -1;
 	std::atomic<long> preparedAt { -2 };
 };
 

@@ -5,6 +5,7 @@
 #include <core/Cell.hpp>
 #include <core/EnergyTracker.hpp>
 #include <core/State.hpp>
+#include <sstream>
 
 namespace yade {
 
@@ -23,86 +24,66 @@ namespace {
 	Vec3d toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 	Vector3r fromKernel(const Vec3d& v) { return Vector3r(v.x, v.y, v.z); }
 
-	void require(bool fine, const char* name, Real value, const char* allowed)
+	// One line: what, its value, and what it must be. ValueError in Python.
+	void require(bool fine, const std::string& what, Real value, const char* must)
 	{
-		if (!fine)
-			throw std::invalid_argument(
-			        "JKRMat: " + std::string(name) + " = " + boost::lexical_cast<std::string>(value) + ", allowed: " + allowed);
+		std::ostringstream text;
+		text << what << " = " << value << ": must be " << must;
+		if (!fine) throw std::invalid_argument(text.str());
 	}
-
-	void requireNeck(Real neck)
+	void requirePositive(const std::string& what, Real value, const std::string& unit)
 	{
-		if (!(neck > 0 && neck <= contact_law::largestNeck))
-			throw std::invalid_argument("neck = " + boost::lexical_cast<std::string>(neck)
-			        + ", allowed: 0 (no bonds), or up to 0.7 for sintered bonds");
+		require(value > 0 && std::isfinite(value), what, value, ("> 0 [" + unit + "]").c_str());
 	}
-	void requireRadius(Real radius)
+	void requireNotNegative(const std::string& what, Real value, const std::string& unit)
 	{
-		require(radius > 0 && std::isfinite(radius), "radius of the grain", radius, "a positive number [m]");
+		require(value >= 0 && std::isfinite(value), what, value, (">= 0" + unit).c_str());
 	}
 }
 
 void JKRMat::requireInRange() const
 {
-	require(young > 0 && std::isfinite(young), "young", young, "a positive number [Pa]");
-	require(poisson >= 0 && poisson <= 0.5 && (poisson > 0 || viscoelasticTime == 0), "poisson", poisson,
-	        "0 to 0.5, and above 0 with drag");
-	require(density > 0 && std::isfinite(density), "density", density, "a positive number [kg/m^3]");
-	require(surfaceEnergy > 0 && std::isfinite(surfaceEnergy), "surfaceEnergy", surfaceEnergy, "a positive number [J/m^2]");
-	require(criticalRolling > 0 && std::isfinite(criticalRolling), "criticalRolling", criticalRolling, "a positive number [m]");
-	require(viscoelasticTime >= 0 && std::isfinite(viscoelasticTime), "viscoelasticTime", viscoelasticTime,
-	        "0 or a positive number [s]");
+	requirePositive("JKRMat: young", young, "Pa");
+	require(poisson >= 0 && poisson <= 0.5 && (poisson > 0 || viscoelasticTime == 0), "JKRMat: poisson", poisson,
+	        "from 0 to 0.5, and above 0 with drag");
+	requirePositive("JKRMat: density", density, "kg/m^3");
+	requirePositive("JKRMat: surfaceEnergy", surfaceEnergy, "J/m^2");
+	requirePositive("JKRMat: criticalRolling", criticalRolling, "m");
+	requireNotNegative("JKRMat: viscoelasticTime", viscoelasticTime, " [s]");
 }
+
+void JKRMat::postLoad(JKRMat&) { requireInRange(); }
+
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange() const
+{
+	requireNotNegative("linearDamping", linearDamping, "");
+	require(neck >= 0 && neck <= contact_law::largestNeck, "neck", neck, "0 (no bonds), or up to 0.7 for sintered bonds");
+}
+
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&) { requireInRange(); }
+
+// The attributes from and to the kernel's constants, one by one.
+#define CONTACT_LAW_TO_KERNEL(name, ...) c.name = name;
+#define CONTACT_LAW_FROM_KERNEL(name, ...) name = c.name;
 
 PairConstants<double> JKRWadaConstants::forKernel() const
 {
-	return { radius1, radius2, reducedRadius, reducedMass, reducedYoung, reducedShear, equilibriumContactRadius, equilibriumOverlap,
-		pullOffOverlap, pullOffForce, rollingStiffness, slidingStiffness, twistingStiffness, criticalSliding, criticalRolling,
-		criticalTwisting, dragPerContactRadius, linearDrag, timeUnit, 1 / equilibriumOverlap };
+	PairConstants<double> c;
+	CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_TO_KERNEL)
+	c.complete();
+	return c;
 }
 
-void JKRWadaConstants::set(const PairConstants<double>& c)
-{
-	radius1 = c.radius1;
-	radius2 = c.radius2;
-	reducedRadius = c.reducedRadius;
-	reducedMass = c.reducedMass;
-	reducedYoung = c.reducedYoung;
-	reducedShear = c.reducedShear;
-	equilibriumContactRadius = c.equilibriumContactRadius;
-	equilibriumOverlap = c.equilibriumOverlap;
-	pullOffOverlap = c.pullOffOverlap;
-	pullOffForce = c.pullOffForce;
-	rollingStiffness = c.rollingStiffness;
-	slidingStiffness = c.slidingStiffness;
-	twistingStiffness = c.twistingStiffness;
-	criticalSliding = c.criticalSliding;
-	criticalRolling = c.criticalRolling;
-	criticalTwisting = c.criticalTwisting;
-	dragPerContactRadius = c.dragPerContactRadius;
-	linearDrag = c.linearDrag;
-	timeUnit = c.timeUnit;
-}
+void JKRWadaConstants::set(const PairConstants<double>& c) { CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_FROM_KERNEL) }
 
 contact_law::BondConstants<double> JKRWadaBond::forKernel() const
 {
-	return { radius1, radius2, reducedRadius, neckRadius, neckLength, normalStiffness, slidingStiffness, rollingStiffness,
-		twistingStiffness, breakingEnergy };
+	contact_law::BondConstants<double> c;
+	CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_TO_KERNEL)
+	return c;
 }
 
-void JKRWadaBond::set(const contact_law::BondConstants<double>& b)
-{
-	radius1 = b.radius1;
-	radius2 = b.radius2;
-	reducedRadius = b.reducedRadius;
-	neckRadius = b.neckRadius;
-	neckLength = b.neckLength;
-	normalStiffness = b.normalStiffness;
-	slidingStiffness = b.slidingStiffness;
-	rollingStiffness = b.rollingStiffness;
-	twistingStiffness = b.twistingStiffness;
-	breakingEnergy = b.breakingEnergy;
-}
+void JKRWadaBond::set(const contact_law::BondConstants<double>& c) { CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_FROM_KERNEL) }
 
 void JKRWadaPhys::setConstants(const shared_ptr<JKRWadaConstants>& c)
 {
@@ -147,7 +128,6 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	const auto& first = *YADE_CAST<JKRMat*>(material1.get());
 	const auto& second = *YADE_CAST<JKRMat*>(material2.get());
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
-	if (neck != 0) requireNeck(neck);
 	const auto derived =
 	        contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping, neck);
 	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
@@ -158,15 +138,20 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	interaction->phys = phys;
 }
 
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const
+{
+	requireInRange();
+	material1.requireInRange();
+	material2.requireInRange();
+	requirePositive("radius1", radius1, "m");
+	requirePositive("radius2", radius2, "m");
+}
+
 boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(
         const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
 {
-	material1->requireInRange();
-	material2->requireInRange();
-	requireRadius(radius1);
-	requireRadius(radius2);
+	requireInRange(*material1, radius1, *material2, radius2);
 	JKRWadaConstants constants;
-	if (neck != 0) requireNeck(neck);
 	constants.set(contact_law::deriveShrunkPair(material1->forKernel(), radius1, material2->forKernel(), radius2, linearDamping, neck));
 	return constants.pyDict();
 }
@@ -174,11 +159,8 @@ boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(
 boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(
         const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const
 {
-	material1->requireInRange();
-	material2->requireInRange();
-	requireRadius(radius1);
-	requireRadius(radius2);
-	requireNeck(neck);
+	requireInRange(*material1, radius1, *material2, radius2);
+	require(neck > 0, "neck", neck, "> 0: without one there are no bonds");
 	JKRWadaBond bond;
 	bond.set(contact_law::deriveBond(material1->forKernel(), radius1, material2->forKernel(), radius2, neck));
 	return bond.pyDict();
@@ -259,21 +241,9 @@ ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, c
 
 void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
 {
-	using C = EnergyChannels;
 	channels.prepare(*scene);
-	const auto add = [this](C::Channel channel, double energy) { channels.add(*scene, channel, energy); };
-	add(C::Kinetic, r.workBefore);
-	add(C::Normal, r.stored.normal);
-	add(C::Sliding, r.stored.sliding);
-	add(C::Rolling, r.stored.rolling);
-	add(C::Twisting, r.stored.twisting);
-	add(C::SlidingDissipation, r.dissipated.sliding);
-	add(C::RollingDissipation, r.dissipated.rolling);
-	add(C::TwistingDissipation, r.dissipated.twisting);
-	add(C::Connection, r.dissipated.connection);
-	add(C::Disconnection, r.dissipated.disconnection);
-	add(C::Drag, r.dissipated.drag);
-	add(C::BondBreaking, r.dissipated.bonds());
+	channels.addKinetic(*scene, r.workBefore);
+	channels.add(*scene, r.stored, r.dissipated);
 }
 
 } // namespace yade

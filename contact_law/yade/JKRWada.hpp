@@ -17,20 +17,25 @@ class JKRMat : public ElastMat {
 public:
 	contact_law::Material forKernel() const { return { young, poisson, density, surfaceEnergy, criticalRolling, viscoelasticTime }; }
 	void requireInRange() const; // throws std::invalid_argument
+	void postLoad(JKRMat&);      // likewise: when the material is made or loaded, and when an attribute below is set
 	virtual ~JKRMat() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRMat, ElastMat,
 		"Adhesive elastic grains that obey the JKR contact law with Wada's tangential springs (Wada et al. 2007; Arakawa et al. 2022, Table 1). "
 		"The defaults of the attributes below are those of water ice; young (7e9 Pa), poisson (0.25) and density (1000 kg/m^3) are YADE's own and must be given.",
-		((Real, surfaceEnergy, 0.1, , "Surface energy gamma [J/m^2]. A pair takes the geometric mean."))
-		((Real, criticalRolling, 8e-10, , "Rolling displacement xi_crit beyond which grains roll irreversibly [m]. A pair takes the arithmetic mean."))
-		((Real, viscoelasticTime, 0, , "Viscoelastic time T_vis of the normal drag 2 T_vis E*/nu^2 a v [s]; 0: no drag. A pair takes the arithmetic mean of T_vis/nu^2.")),
+		((Real, surfaceEnergy, 0.1, Attr::triggerPostLoad, "Surface energy gamma [J/m^2]. A pair takes the geometric mean."))
+		((Real, criticalRolling, 8e-10, Attr::triggerPostLoad, "Rolling displacement xi_crit beyond which grains roll irreversibly [m]. A pair takes the arithmetic mean."))
+		((Real, viscoelasticTime, 0, Attr::triggerPostLoad, "Viscoelastic time T_vis of the normal drag 2 T_vis E*/nu^2 a v [s]; 0: no drag. A pair takes the arithmetic mean of T_vis/nu^2.")),
 		createIndex();
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(JKRMat, ElastMat);
 };
 REGISTER_SERIALIZABLE(JKRMat);
+
+// The constants of the kernel's lists as YADE attributes.
+#define CONTACT_LAW_PAIR_ATTRIBUTE(name, readByForces, documentation) ((Real, name, 0, Attr::readonly, documentation))
+#define CONTACT_LAW_BOND_ATTRIBUTE(name, documentation) ((Real, name, 0, Attr::readonly, documentation))
 
 class JKRWadaConstants : public Serializable {
 public:
@@ -40,25 +45,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaConstants, Serializable,
 		"What two materials and two radii make of a contact: derived once, shared by all contacts of the same kind. Symbols and sources: contact_law/MODEL.md.",
-		((Real, radius1, 0, Attr::readonly, "Radius of the first grain [m]."))
-		((Real, radius2, 0, Attr::readonly, "Radius of the second grain [m]."))
-		((Real, reducedRadius, 0, Attr::readonly, "R = r1 r2/(r1+r2) [m]."))
-		((Real, reducedMass, 0, Attr::readonly, "m* = m1 m2/(m1+m2) of solid spheres [kg]."))
-		((Real, reducedYoung, 0, Attr::readonly, "E* [Pa]: 1/E* = sum of (1-nu^2)/E."))
-		((Real, reducedShear, 0, Attr::readonly, "G* [Pa]: 1/G* = sum of (2-nu)/G."))
-		((Real, equilibriumContactRadius, 0, Attr::readonly, "a0 [m]."))
-		((Real, equilibriumOverlap, 0, Attr::readonly, "delta0 [m]: overlap at which the normal force vanishes."))
-		((Real, pullOffOverlap, 0, Attr::readonly, "delta_c [m]: the contact ends when the overlap falls below -delta_c."))
-		((Real, pullOffForce, 0, Attr::readonly, "F_c [N]: the largest pull."))
-		((Real, rollingStiffness, 0, Attr::readonly, "k_r [N/m]."))
-		((Real, slidingStiffness, 0, Attr::readonly, "k_s [N/m]."))
-		((Real, twistingStiffness, 0, Attr::readonly, "k_t [N m]."))
-		((Real, criticalSliding, 0, Attr::readonly, "zeta_crit [m]."))
-		((Real, criticalRolling, 0, Attr::readonly, "xi_crit [m]."))
-		((Real, criticalTwisting, 0, Attr::readonly, "phi_crit [rad]."))
-		((Real, dragPerContactRadius, 0, Attr::readonly, "2 T_vis E*/nu^2 [N s/m^2]."))
-		((Real, linearDrag, 0, Attr::readonly, "k_n m0/t0 [N s/m]."))
-		((Real, timeUnit, 0, Attr::readonly, "t0 [s]."))
+		CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_PAIR_ATTRIBUTE)
 	);
 	// clang-format on
 };
@@ -72,16 +59,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaBond, Serializable,
 		"Constants of sintered bonds (Sirono & Ueno 2017), shared by all bonds of the same kind. Symbols and sources: contact_law/MODEL.md.",
-		((Real, radius1, 0, Attr::readonly, "Radius of the first grain before sintering [m]."))
-		((Real, radius2, 0, Attr::readonly, "Radius of the second grain before sintering [m]."))
-		((Real, reducedRadius, 0, Attr::readonly, "R = r1 r2/(r1+r2) of these [m]."))
-		((Real, neckRadius, 0, Attr::readonly, "a [m]."))
-		((Real, neckLength, 0, Attr::readonly, "d [m]."))
-		((Real, normalStiffness, 0, Attr::readonly, "k_ss [N/m]."))
-		((Real, slidingStiffness, 0, Attr::readonly, "k_st [N/m]."))
-		((Real, rollingStiffness, 0, Attr::readonly, "k_sr/R^2 [N/m], on the rolling displacement R(n1+n2)."))
-		((Real, twistingStiffness, 0, Attr::readonly, "k_sw [N m]."))
-		((Real, breakingEnergy, 0, Attr::readonly, "pi a^2 gamma [J]: the bond breaks when one mode holds it."))
+		CONTACT_LAW_BOND_CONSTANTS(CONTACT_LAW_BOND_ATTRIBUTE)
 	);
 	// clang-format on
 };
@@ -147,7 +125,11 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
 	SharedBonds bonds;
 
+	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
+
 public:
+	void requireInRange() const;                   // throws std::invalid_argument
+	void postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&); // likewise: within a step, YADE's threads could not pass an exception on
 	void go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
 	        const shared_ptr<Interaction>& interaction) override;
 	boost::python::dict pairConstants(
@@ -158,9 +140,9 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_JKRMat_JKRMat_JKRWadaPhys, IPhysFunctor,
 		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains. With a neck, grains that touch at the start are sintered (Sirono & Ueno 2017): a linear elastic bond holds them "
-		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by what they gave to two necks each.",
-		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
-		((Real, neck, 0, , "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
+		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by the volume of two necks each.",
+		((Real, linearDamping, 0, Attr::triggerPostLoad, "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
+		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
 		,
 		.def("pairConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
@@ -187,8 +169,8 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_JKRWadaPhys_JKRWada, LawFunctor,
 		"JKR normal force, Wada's sliding, rolling and twisting springs with their limits, and viscous drag, between grains of any radii and materials. "
-		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: stored ones (normal, sliding, rolling, twisting) "
-		"and what was lost since the start (slidingDissipation, rollingDissipation, twistingDissipation, connection, disconnection, drag, bondBreaking). "
+		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: those stored now, "
+		"and what was dissipated since the start by slips, connection and disconnection of contacts, drag and the breaking of bonds (contact_law.channels has all names). "
 		"O.energy['kinetic'] is brought from half a step ago, where NewtonIntegrator takes it, to the moment of the stored energies, so that the sum is constant. Use NewtonIntegrator(damping=0).",
 		((bool, sliding, true, , "Whether contacts resist sliding."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))

@@ -284,14 +284,8 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 	const bool known = booking == Booking::AlreadyInOEnergy;
 	if (!booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
 	booked = true;
-	const contact_law::Dissipation& d = now.dissipated;
-	channels.set(*scene,
-	        { now.kinetic, now.stored.normal, now.stored.sliding, now.stored.rolling, now.stored.twisting, d.sliding, d.rolling,
-	                d.twisting, d.connection, d.disconnection, d.drag, d.bonds() },
-	        known);
 	current->constrained = current->constrained || contact_law::constrained(current->dynamics);
-	if (current->constrained) channels.setExtra(*scene, EnergyChannels::ConstraintWork, now.constraintWork, known);
-	if (scene->isPeriodic) channels.setExtra(*scene, EnergyChannels::BoundaryWork, now.boundaryWork, known);
+	channels.set(*scene, now, known, current->constrained);
 }
 
 void JKRWadaEngine::preSave(JKRWadaEngine&)
@@ -334,7 +328,7 @@ boost::python::dict JKRWadaEngine::statistics() const
 		"brokenByTwisting" };
 	for (int mode = 0; mode < contact_law::bondModes; ++mode) {
 		result[modes[mode]] = broken[mode];
-		result[modes[mode] + std::string("Energy")] = lost.bondBreaking[mode];
+		result[modes[mode] + std::string("Energy")] = lost.*contact_law::bondBreakingBy[mode];
 	}
 	result["contactUpdates"] = dynamics.counters().contactUpdates;
 	result["events"] = eventCount(dynamics);

@@ -1,6 +1,6 @@
-// Notices from the energies that a run has gone wrong, while all numbers are finite still.
+// Notices from the energies that a run is unstable, while all numbers are finite still.
 #pragma once
-#include "../engine/dynamics.hpp"
+#include "../kernel/energy_channels.hpp"
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -12,18 +12,16 @@ public:
 	// Scripts may give energy to grains, or take it, and tear contacts apart: sum and losses are others from the next energies on.
 	void forgetSum() { known = false, lostBefore = -1e300; }
 
-	// Empty, or what is wrong with the energies after a step. contactEnergy: of one contact, F_c delta_c [J]; bonded grains at rest have none but rounding's.
+	// Empty, or what the energies after a step show. contactEnergy: of one contact, F_c delta_c [J]; bonded grains at rest have none
+	// but rounding's.
 	std::string wrong(const contact_law::Energies& e, double contactEnergy)
 	{
-		const contact_law::Dissipation& d = e.dissipated;
-		const double losses[] { d.sliding, d.rolling, d.twisting, d.connection, d.disconnection, d.drag, d.bonds() };
-		const double stored[] { e.kinetic, e.stored.normal, e.stored.sliding, e.stored.rolling, e.stored.twisting, e.constraintWork,
-			e.boundaryWork };
+		const auto values = contact_law::byChannel(e);
 		double lost = 0, sum = 0, scale = 0;
-		for (const double x : losses)
-			lost += x, sum += x, scale += std::abs(x);
-		for (const double x : stored)
-			sum += x, scale += std::abs(x);
+		for (int channel = 0; channel < contact_law::channelCount; ++channel) {
+			sum += values[channel], scale += std::abs(values[channel]);
+			if (contact_law::channels[channel].kind == contact_law::ChannelKind::Lost) lost += values[channel];
+		}
 		if (!std::isfinite(scale)) return "the energies are not finite";
 		scale = std::max(scale, negligible * contactEnergy);
 		if (lost < lostBefore - lossRegained * scale)

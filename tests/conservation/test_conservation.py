@@ -55,7 +55,7 @@ for step in (0.1, 0.025):
 
 def test_ledger_of_sustained_slip_has_second_order(yade):
     """Two touching grains whose spins rub their surfaces against each other slip in every step until they stand: what a kick's lever arms change by
-    when the pointers are put back is of first order in the step, and a ledger that leaves it out has a ratio of 8 here; second order has 64."""
+    when the pointers are returned to the limit is of first order in the step, and a ledger that leaves it out has a ratio of 8 here; second order has 64."""
     found = yade("""
 from scenes import *
 def rubbed(step, axis):

@@ -9,11 +9,6 @@ import numpy as np
 import pytest
 
 HERE = Path(__file__).resolve().parent
-NAMES = (
-    "radius1 radius2 reducedRadius reducedMass reducedYoung reducedShear equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce "
-    "rollingStiffness slidingStiffness twistingStiffness criticalSliding criticalRolling criticalTwisting dragPerContactRadius linearDrag timeUnit inverseEquilibriumOverlap"
-).split()
-BOND_NAMES = "radius1 radius2 reducedRadius neckRadius neckLength normalStiffness slidingStiffness rollingStiffness twistingStiffness breakingEnergy".split()
 ICE = (7e9, 0.25, 1000.0, 0.1, 0.8e-9, 0.0)
 SILICATE = (54e9, 0.17, 2650.0, 0.02, 2e-9, 0.0)
 VISCOUS = (3e9, 0.33, 1300.0, 0.05, 1.1e-9, 4e-12)
@@ -30,8 +25,12 @@ class Kernel:
 
     def __init__(self, library):
         self.library = library
-        assert library.numberOfConstants() == len(NAMES)
-        assert library.numberOfBondConstants() == len(BOND_NAMES)
+        self.constant_names = self.names("constantNames")
+        self.bond_constant_names = self.names("bondConstantNames")
+
+    def names(self, function):
+        getattr(self.library, function).restype = ctypes.c_char_p
+        return getattr(self.library, function)().decode().split()
 
     def call(self, name, *arguments):
         converted = [
@@ -45,11 +44,11 @@ class Kernel:
         getattr(self.library, name)(*converted)
 
     def constants(self, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7, damping=0.0):
-        out = np.empty(len(NAMES))
+        out = np.empty(len(self.constant_names))
         self.call(
             "pairConstants", array(material1), float(radius1), array(material2), float(radius2), float(damping), out
         )
-        return SimpleNamespace(array=out, **dict(zip(NAMES, out)))
+        return SimpleNamespace(array=out, **dict(zip(self.constant_names, out)))
 
     def normal_law(self, overlap):
         overlap = array(overlap)
@@ -62,9 +61,9 @@ class Kernel:
         self.call("contactAt", constants.array, array([*separation, *n1, *n2, *velocity, twist]), out)
         return SimpleNamespace(force=out[:3], drag=out[3], torque1=out[4:7], torque2=out[7:10], energies=out[10:])
 
-    def put_back(self, constants, normal, n1, n2, which, limit):
+    def return_to_limit(self, constants, normal, n1, n2, which, limit):
         pointers = array([*n1, *n2])
-        self.call("putBack", constants.array, array(normal), pointers, which, float(limit))
+        self.call("returnToLimit", constants.array, array(normal), pointers, which, float(limit))
         return pointers[:3], pointers[3:]
 
     def neck(self, beta):
@@ -73,9 +72,9 @@ class Kernel:
         return SimpleNamespace(fillet=out[0], length=out[1], volume=out[2], shrunk_radius=out[3])
 
     def bond_constants(self, beta, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7):
-        out = np.empty(len(BOND_NAMES))
+        out = np.empty(len(self.bond_constant_names))
         self.call("bondConstants", array(material1), float(radius1), array(material2), float(radius2), float(beta), out)
-        return SimpleNamespace(array=out, **dict(zip(BOND_NAMES, out)))
+        return SimpleNamespace(array=out, **dict(zip(self.bond_constant_names, out)))
 
     def bond(self, constants, rest, separation, n1, n2, twist=0.0):
         out = np.empty(14)

@@ -1,22 +1,24 @@
 // The kernel's functions for Python (ctypes): plain arrays in, plain arrays out. Built by conftest.py.
 #include "../../contact_law/kernel/bond_step.hpp"
-#include <cstring>
 
 using namespace contact_law;
 
 namespace {
 Vec3<double> vector(const double* p) { return { p[0], p[1], p[2] }; }
 void write(double*& out, const Vec3<double>& v) { *out++ = v.x, *out++ = v.y, *out++ = v.z; }
+// constants in the order of their lists
 PairConstants<double> constantsFrom(const double* p)
 {
 	PairConstants<double> c;
-	std::memcpy(&c, p, sizeof c);
+	for (const auto& constant : pairConstantsOf<double>)
+		c.*constant.member = *p++;
 	return c;
 }
 BondConstants<double> bondFrom(const double* p)
 {
 	BondConstants<double> b;
-	std::memcpy(&b, p, sizeof b);
+	for (const auto member : bondConstantsOf<double>)
+		b.*member = *p++;
 	return b;
 }
 Material material(const double* p) { return { p[0], p[1], p[2], p[3], p[4], p[5] }; }
@@ -24,12 +26,15 @@ Material material(const double* p) { return { p[0], p[1], p[2], p[3], p[4], p[5]
 
 extern "C" {
 
-int numberOfConstants() { return sizeof(PairConstants<double>) / sizeof(double); }
+#define NAME(name, ...) #name " "
+const char* constantNames() { return CONTACT_LAW_PAIR_CONSTANTS(NAME) "inverseEquilibriumOverlap"; }
+const char* bondConstantNames() { return CONTACT_LAW_BOND_CONSTANTS(NAME); }
 
 void pairConstants(const double* material1, double radius1, const double* material2, double radius2, double linearDamping, double* out)
 {
 	const PairConstants<double> c = derivePair(material(material1), radius1, material(material2), radius2, linearDamping);
-	std::memcpy(out, &c, sizeof c);
+	for (const auto& constant : pairConstantsOf<double>)
+		*out++ = c.*constant.member;
 }
 
 void normalLaw(int n, const double* overlap, double* u, double* force, double* energy)
@@ -56,20 +61,18 @@ void contactAt(const double* constants, const double* state, double* out)
 	*out++ = e.normal, *out++ = e.sliding, *out++ = e.rolling, *out++ = e.twisting;
 }
 
-// pointers: n1, n2, put back in place. which: 0 sliding, 1 rolling.
-void putBack(const double* constants, const double* normalVector, double* pointers, int which, double limit)
+// pointers: n1, n2, replaced by those with the displacement returned to the limit. which: 0 sliding, 1 rolling.
+void returnToLimit(const double* constants, const double* normalVector, double* pointers, int which, double limit)
 {
 	const auto c = constantsFrom(constants);
 	Pointers<double> p { vector(pointers), vector(pointers + 3) };
 	if (which == 0)
-		p = slidBack(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
+		p = sliding::returned(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
 	else
-		p = rolledBack(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
+		p = rolling::returned(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
 	write(pointers, p.n1);
 	write(pointers, p.n2);
 }
-
-int numberOfBondConstants() { return sizeof(BondConstants<double>) / sizeof(double); }
 
 // out: fillet radius, length, volume, radius of the shrunk grain, all relative to the grain
 void neckGeometry(double beta, double* out)
@@ -80,7 +83,8 @@ void neckGeometry(double beta, double* out)
 void bondConstants(const double* material1, double radius1, const double* material2, double radius2, double beta, double* out)
 {
 	const BondConstants<double> b = deriveBond(material(material1), radius1, material(material2), radius2, beta);
-	std::memcpy(out, &b, sizeof b);
+	for (const auto member : bondConstantsOf<double>)
+		*out++ = b.*member;
 }
 
 // state: separation, n1, n2 (9 numbers), twist. out: force on 1, torque1, torque2, the four stored energies, whether it breaks.

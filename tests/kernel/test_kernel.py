@@ -189,7 +189,7 @@ def test_drag_opposes_motion_and_has_the_coefficient_of_a22_eq_7(kernel):
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("which", [0, 1])
-def test_putting_back_reaches_the_limit_and_leaves_the_other_displacement(kernel, kind, which):
+def test_returning_reaches_the_limit_and_leaves_the_other_displacement(kernel, kind, which):
     """Errors must fall as the square of the pointers' angles: halving them quarters the errors."""
     c = kernel.constants(getattr(kernel, kind[0]), kind[1], getattr(kernel, kind[2]), kind[3])
     r1, r2, R = c.radius1, c.radius2, c.reducedRadius
@@ -210,7 +210,7 @@ def test_putting_back_reaches_the_limit_and_leaves_the_other_displacement(kernel
         mine, other = (slide, roll) if which == 0 else (roll, slide)
         target = slide if which == 0 else lambda a, b: R * (a + b)
         limit = 0.6 * np.linalg.norm(target(n1, n2))
-        m1, m2 = kernel.put_back(c, axis, n1, n2, which, limit)
+        m1, m2 = kernel.return_to_limit(c, axis, n1, n2, which, limit)
         assert np.linalg.norm(m1) == pytest.approx(1, abs=1e-15) and np.linalg.norm(m2) == pytest.approx(1, abs=1e-15)
         return (
             abs(np.linalg.norm(target(m1, m2)) - limit) / limit,

@@ -185,7 +185,7 @@ try: functor({neck}).pairConstants(ice(), 1e-7, ice(), 1e-7)
 except ValueError as error: result["message"] = str(error)
 """
     )
-    assert "neck = " in found["message"] and "allowed: 0 (no bonds), or up to 0.7" in found["message"]
+    assert "neck = " in found["message"] and "must be 0 (no bonds), or up to 0.7" in found["message"]
 
 
 def test_bonds_across_the_boundary_of_a_periodic_cell(yade):

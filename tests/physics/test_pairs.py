@@ -53,8 +53,8 @@ def test_sticking_velocity_with_drag(yade, picoseconds):
 
 @pytest.mark.parametrize("kind", ["elastic", "viscous", "unlike"])
 def test_rebound_converges_with_second_order(yade, kind):
-    """Rebound speed against a closed form (elastic) or an independent integration. Births and breaks fall anywhere within a step, so the error at
-    one step scatters: root mean square over twelve gaps. Births and breaks that are not located in time would give first order (ratio 2)."""
+    """Rebound speed against a closed form (elastic) or an independent integration. Contacts form and break anywhere within a step, so the error at
+    one step scatters: root mean square over twelve gaps. Events that are not located in time would give first order (ratio 2)."""
     speed = {"elastic": 9.0, "viscous": 40.0, "unlike": 9.0}[kind]
     material = {"elastic": "ice()", "viscous": "ice(viscoelasticTime=2e-12)", "unlike": "ice()"}[kind]
     other = "soft(), radius2=1.7e-7, other=soft()" if kind == "unlike" else ""

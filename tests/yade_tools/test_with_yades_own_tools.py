@@ -125,10 +125,10 @@ for name in ("JKRMat", "JKRWadaPhys", "Ip2_JKRMat_JKRMat_JKRWadaPhys", "Law2_ScG
 @pytest.mark.parametrize(
     "setting,message",
     [
-        ("surfaceEnergy=-1", "surfaceEnergy = -1, allowed: a positive number"),
-        ("poisson=0.6", "poisson = 0.59999999999999998, allowed: 0 to 0.5"),
-        ("poisson=0, viscoelasticTime=1e-12", "poisson = 0, allowed: 0 to 0.5, and above 0 with drag"),
-        ("criticalRolling=float('nan')", "criticalRolling = nan, allowed: a positive number"),
+        ("surfaceEnergy=-1", "surfaceEnergy = -1: must be > 0 [J/m^2]"),
+        ("poisson=0.6", "poisson = 0.6: must be from 0 to 0.5"),
+        ("poisson=0, viscoelasticTime=1e-12", "poisson = 0: must be from 0 to 0.5, and above 0 with drag"),
+        ("criticalRolling=float('nan')", "criticalRolling = nan: must be > 0 [m]"),
     ],
 )
 def test_materials_out_of_range_are_refused_in_one_line(yade, setting, message):
@@ -156,3 +156,43 @@ result["after"] = energies()
 """)
     assert found["before"]["connection"] > 0
     assert found["after"]["connection"] < found["before"]["connection"] and found["after"]["normal"] < 0
+
+
+@pytest.mark.parametrize(
+    "setting,message",
+    [
+        ("functor.neck = 2", "neck = 2: must be 0 (no bonds), or up to 0.7"),
+        ("functor.linearDamping = -1", "linearDamping = -1: must be >= 0"),
+        ("Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=float('nan'))", "linearDamping = nan: must be >= 0"),
+        ("material.surfaceEnergy = 0", "surfaceEnergy = 0: must be > 0 [J/m^2]"),
+        ("JKRMat(young=-1)", "young = -1: must be > 0 [Pa]"),
+    ],
+)
+def test_what_the_functors_cannot_do_is_refused_when_it_is_set(yade, setting, message):
+    """Within a step YADE's threads could not pass an exception on: it would end the process."""
+    found = yade(f"""
+from scenes import *
+functor, material = Ip2_JKRMat_JKRMat_JKRWadaPhys(), ice()
+try:
+    {setting}
+except ValueError as error:
+    result["message"] = str(error)
+""")
+    assert message in found["message"] and "\\n" not in found["message"]
+
+
+def test_a_functor_keeps_no_value_that_it_refused(yade):
+    """Where setting an attribute is refused, the one before stays."""
+    found = yade("""
+from scenes import *
+functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=0.5, neck=0.3)
+for name, value in (("linearDamping", -1), ("neck", 0.9)):
+    try:
+        setattr(functor, name, value)
+        result[name] = "not refused"
+    except ValueError as error:
+        result[name] = str(error)
+result["kept"] = [functor.linearDamping, functor.neck]
+""")
+    assert "linearDamping = -1" in found["linearDamping"] and "neck = 0.9" in found["neck"]
+    assert found["kept"] == [0.5, 0.3]

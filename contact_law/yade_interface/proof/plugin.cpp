@@ -1,4 +1,5 @@
 #include "plugin.hpp"
+#include "../../kernel/energy_channels.hpp"
 #include "layouts.hpp"
 #include <core/Omega.hpp>
 #include <dlfcn.h>
@@ -85,6 +86,15 @@ boost::python::list ContactLawPlugin::classNames()
 	for (const std::string& name : ownClasses())
 		names.append(name);
 	return names;
+}
+
+boost::python::tuple ContactLawPlugin::channels()
+{
+	const char* const kinds[] = { "stored", "lost", "work" };
+	boost::python::list all;
+	for (const contact_law::Channel& channel : contact_law::channels)
+		all.append(boost::python::make_tuple(channel.name, kinds[int(channel.kind)]));
+	return boost::python::tuple(all);
 }
 
 void ContactLawPlugin::checkPyClassRegistersItself(const std::string& className) const

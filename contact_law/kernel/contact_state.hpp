@@ -1,0 +1,99 @@
+// What a contact is at one instant, and what moves it through a step: the types that all mechanisms share.
+#pragma once
+#include "energy_channels.hpp"
+#include "number.hpp"
+#include "vector3.hpp"
+
+namespace contact_law {
+
+// What a scene's contacts do besides adhering; a template parameter, so that what a scene doesn't use costs nothing.
+enum Mechanism : unsigned {
+	Sliding = 1,
+	Rolling = 2,
+	Twisting = 4,
+	Drag = 8,
+	AllSprings = Sliding | Rolling | Twisting,
+	Everything = AllSprings | Drag
+};
+constexpr int mechanismSets = Everything + 1; // combinations of mechanisms
+
+constexpr unsigned mechanismsOf(bool sliding, bool rolling, bool twisting, bool drag)
+{
+	return (sliding ? unsigned(Sliding) : 0u) | (rolling ? unsigned(Rolling) : 0u) | (twisting ? unsigned(Twisting) : 0u)
+	        | (drag ? unsigned(Drag) : 0u);
+}
+
+// Contact pointers (Wada et al. 2007): unit vectors fixed in the grains, from their centres to the contact when it forms.
+template <class T> struct Pointers {
+	Vec3<T> n1, n2;
+};
+
+// What a contact carries from step to step, in the frame of the laboratory. The pointers are saved in the grains' frames.
+template <class T> struct ContactHistory {
+	Pointers<T> pointers;
+	T twist; // phi
+};
+
+template <class T> struct ContactGeometry {
+	Vec3<T> normal; // n_c, from the centre of grain 2 to that of grain 1
+	T inverseDistance;
+	T overlap; // delta = r1 + r2 - distance
+};
+
+template <class T> inline ContactGeometry<T> geometryOf(const Vec3<T>& separation, const T& sumOfRadii)
+{
+	const T squared = dot(separation, separation), inverse = inverseRoot(squared);
+	return { inverse * separation, inverse, sumOfRadii - squared * inverse };
+}
+
+template <class T> struct ContactForces {
+	T normalForce;   // elastic, along n_c on grain 1: positive when repulsive
+	T drag;          // viscous, likewise
+	Vec3<T> sliding; // on grain 1; minus it on grain 2
+	Vec3<T> torque1, torque2;
+	T contactRadiusRoot; // u = (a/a0)^(1/2)
+	Vec3<T> slidingDisplacement, rollingDisplacement;
+
+	static ContactForces none()
+	{
+		const Vec3<T> zero { T(0.), T(0.), T(0.) };
+		return { T(0.), T(0.), zero, zero, zero, T(0.), zero, zero };
+	}
+};
+
+// What the ledger needs of a moment to book drag: the force along the normal, and the overlap along which it works.
+template <class T> struct DragMoment {
+	T force, overlap;
+};
+
+struct ContactMotion {
+	Vec3<double> separation;   // x1 - x2 now
+	Vec3<double> velocity;     // v1 - v2 through the step, of their images nearest to each other
+	Vec3<double> spin1, spin2; // angular velocities through the step
+	double dt;
+	double inverseMass;                     // 1/m1 + 1/m2
+	Vec3<double> imageVelocity { 0, 0, 0 }; // of it, what is not the grains' own but the motion of a periodic cell's boundaries
+};
+
+// What the ledger and the drag need of the moment one step ago.
+struct ContactBefore {
+	bool touching = false;
+	double overlap = 0;
+	double drag = 0;
+	Vec3<double> sliding { 0, 0, 0 }, rolling { 0, 0, 0 }; // displacements
+	double twist = 0;
+	Vec3<double> velocity { 0, 0, 0 }; // v1 - v2 through the step before this one
+};
+
+struct ContactStepResult {
+	bool touching = false, pointersMoved = false;                             // moved by a slip, or new
+	Vec3<double> force { 0, 0, 0 }, torque1 { 0, 0, 0 }, torque2 { 0, 0, 0 }; // kicks over dt; minus `force` on grain 2
+	Vec3<double> forceBefore { 0, 0, 0 };                                     // the part of `force` that belongs before this instant
+	double workBefore = 0; // work of the part of the kicks that belongs before this instant: kinetic energy now minus half a step ago
+	ContactGeometry<double> geometry {};
+	ContactForces<double> now {}; // the forces at this instant
+	StoredEnergy<double> stored { 0, 0, 0, 0 };
+	Dissipation dissipated;
+};
+
+} // namespace contact_law

@@ -1,0 +1,56 @@
+// Events inside a step: when a contact forms or breaks, with which pointers it forms, and the work of kicks. MODEL.md, "The integrator and
+// the ledger", derives each line.
+#pragma once
+#include "contact_state.hpp"
+#include "pair_constants.hpp"
+#include "turning.hpp"
+
+namespace contact_law {
+namespace events {
+
+	// Of kicks at this instant, on the grains over the last step.
+	inline double work(const ContactMotion& m, const Vec3<double>& force, const Vec3<double>& torque1, const Vec3<double>& torque2)
+	{
+		return m.dt * (dot(force, m.velocity - m.imageVelocity) + dot(torque1, m.spin1) + dot(torque2, m.spin2));
+	}
+
+	// The history of a contact that formed a time `since` ago, carried to now.
+	inline ContactHistory<double> formedHistory(const ContactMotion& m, double since)
+	{
+		const Vec3<double> then = m.separation - since * m.velocity;
+		const Vec3<double> normal = (1 / std::sqrt(dot(then, then))) * then;
+		return { { turned(-normal, since * m.spin1), turned(normal, since * m.spin2) }, since * dot(m.spin1 - m.spin2, normal) };
+	}
+
+	// Of grains that touch now and did not a step ago.
+	struct Formation {
+		double overlapBefore;
+		bool inStep;     // otherwise they overlapped a step ago already: they were placed there
+		double fraction; // of the step for which the contact has existed
+	};
+	inline Formation formationOf(const ContactMotion& m, double sumOfRadii, double overlap)
+	{
+		const Vec3<double> aStepAgo = m.separation - m.dt * m.velocity;
+		const double before = sumOfRadii - std::sqrt(dot(aStepAgo, aStepAgo));
+		const bool inStep = before <= 0 && overlap > before;
+		return { before, inStep, inStep ? overlap / (overlap - before) : 0. };
+	}
+
+	// The fraction of the step after which the overlap passed -delta_c.
+	inline double fractionUntilPullOff(const PairConstants<double>& c, double overlapBefore, double opening)
+	{
+		return (overlapBefore + c.pullOffOverlap) / opening;
+	}
+
+	// The fraction of a step after which a displacement that goes evenly from `before` to `now` has the length whose square is given.
+	inline double fractionUntilLength(const Vec3<double>& before, const Vec3<double>& now, double lengthSquared)
+	{
+		const Vec3<double> way = now - before;
+		const double squared = dot(way, way), along = dot(before, way), missing = lengthSquared - dot(before, before);
+		if (missing <= 0 || squared == 0) return 0;
+		const double fraction = (std::sqrt(along * along + squared * missing) - along) / squared;
+		return fraction < 1 ? fraction : 1;
+	}
+
+} // namespace events
+} // namespace contact_law

@@ -1,0 +1,56 @@
+// What sliding and rolling share: contact pointers that turn with the grains and are moved when a displacement is returned to its limit
+// (Wada et al. 2007).
+#pragma once
+#include "contact_state.hpp"
+
+namespace contact_law {
+
+/* A pointer moved along the unit vector e by move/radius. Renormalising undoes (n.e)^2 of a move (Wada et al. 2007): it goes that much
+ * further; both are done at once, and without a division. */
+template <class T> inline Vec3<T> movedPointer(const Vec3<T>& pointer, const T& move, const T& radius, const Vec3<T>& e)
+{
+	const T along = dot(pointer, e);
+	const Vec3<T> moved = (radius * (T(1.) - along * along)) * pointer + move * e;
+	return inverseRoot(dot(moved, moved)) * moved;
+}
+
+template <class T> inline Pointers<T> choose(const MaskOf<T>& m, const Pointers<T>& yes, const Pointers<T>& no)
+{
+	const auto each = [&](const Vec3<T>& a, const Vec3<T>& b) {
+		return Vec3<T> { choose(m, a.x, b.x), choose(m, a.y, b.y), choose(m, a.z, b.z) };
+	};
+	return { each(yes.n1, no.n1), each(yes.n2, no.n2) };
+}
+
+// How the grains moved through the step.
+template <class T> struct Turning {
+	Vec3<T> normalRate, spin1, spin2; // dn/dt, angular velocities
+	T dt;
+};
+
+template <class T> inline Vec3<T> normalRate(const Vec3<T>& normal, const T& inverseDistance, const Vec3<T>& velocity)
+{
+	return inverseDistance * (velocity - dot(velocity, normal) * normal);
+}
+
+/* The energy that a slip dissipates in one step of a kick-drift-kick integrator. The kicks use the forces before the step (displacement
+ * `before`) and after the return to the limit (`after`), so that the motion loses k/2 (before + after).(trial - before), of which k/2
+ * (after^2 - before^2) is stored. The last kick's lever arms are those of the pointers returned: over the step their displacement would
+ * have changed by `further` more than the one that was returned, and that too the kick takes. */
+template <class T>
+inline T slipDissipation(const T& stiffness, const Vec3<T>& before, const Vec3<T>& trial, const Vec3<T>& after, const Vec3<T>& further)
+{
+	return T(0.5) * stiffness * (dot(before + after, trial - after) + dot(after, further));
+}
+
+/* What a spring gives up when its contact breaks after a fraction of the step: what it stored a step ago (displacement `before`), and
+ * the work of its half kick then and of the rest of it now (displacement `now`). */
+inline double product(double a, double b) { return a * b; }
+inline double product(const Vec3<double>& a, const Vec3<double>& b) { return dot(a, b); }
+template <class Displacement>
+inline double springRelease(double stiffness, const Displacement& before, const Displacement& now, double fraction)
+{
+	return stiffness / 2 * product(before, now) + stiffness * (fraction - 0.5) * product(now, now - before);
+}
+
+} // namespace contact_law

@@ -1,0 +1,300 @@
+"""The contact law of contact_law/MODEL.md once more, in plain Python, to be read beside the papers.
+
+It shares nothing with the plugin or the analysis, and is slow. tests/equivalence/test_reference_law.py holds functors and
+engine to it. A22, A24: Arakawa et al. 2022, 2024; K13: Kataoka et al. 2013; S17: Sirono & Ueno 2017; W07: Wada et al. 2007.
+SI units; vectors are arrays (3,). Of a contact: grains 1 and 2, n the unit vector from 2 to 1, delta the overlap.
+"""
+
+from math import asin, pi, sqrt
+from types import SimpleNamespace
+
+import numpy as np
+
+MODES = ("normal", "sliding", "rolling", "twisting")
+LOST = tuple(f"{mode}Dissipation" for mode in MODES[1:]) + ("connection", "disconnection", "drag", "bondBreaking")
+
+
+def cross(a, b):
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def turned(v, angle):
+    """v turned by |angle| about angle [rad]: Rodrigues' formula."""
+    size = sqrt(angle @ angle)
+    if size == 0:
+        return v
+    axis = angle / size
+    return v + np.sin(size) * cross(axis, v) + 2 * np.sin(size / 2) ** 2 * cross(axis, cross(axis, v))
+
+
+# ---- constants (MODEL.md, "Pair constants" and "Sintered bonds"); m: young, poisson, density, surfaceEnergy, ... ----
+
+
+def pair(m1, r1, m2, r2, damping, beta):
+    """Constants of a contact of grains with radii r1, r2, which necks (beta) have shrunk at constant mass."""
+    s = shrunk_radius(beta)
+    r1, r2, mass1, mass2 = s * r1, s * r2, *(4 / 3 * pi * m.density * r**3 for m, r in ((m1, r1), (m2, r2)))
+    G1, G2 = (m.young / (2 * (1 + m.poisson)) for m in (m1, m2))
+    E = 1 / sum((1 - m.poisson**2) / m.young for m in (m1, m2))
+    G, G_twist = 1 / ((2 - m1.poisson) / G1 + (2 - m2.poisson) / G2), 1 / (1 / G1 + 1 / G2)
+    gamma, R, m_star = sqrt(m1.surfaceEnergy * m2.surfaceEnergy), r1 * r2 / (r1 + r2), mass1 * mass2 / (mass1 + mass2)
+    a0 = (9 * pi * gamma * R**2 / E) ** (1 / 3)  # A22 (1)
+    c = SimpleNamespace(r1=r1, r2=r2, R=R, a0=a0, d0=a0**2 / (3 * R), Fc=3 * pi * gamma * R)  # A22 (2), (6)
+    c.dc = (9 / 16) ** (1 / 3) * c.d0  # A22 (3)
+    c.kr, c.ks, c.kt = 4 * c.Fc / R, 8 * a0 * G, 16 / 3 * G_twist * a0**3  # A22 (14), (18), (23)
+    c.zeta_crit, c.phi_crit = G_twist / G * a0 / (16 * pi), 1 / (16 * pi)  # A22 (19), (24)
+    c.xi_crit = (m1.criticalRolling + m2.criticalRolling) / 2
+    c.viscous = sum(m.viscoelasticTime / m.poisson**2 for m in (m1, m2)) * E  # A22 (7): 2 A E*
+    rho = 2 * m_star / (4 / 3 * pi * (2 * R) ** 3)
+    t0 = 0.95 * sqrt(rho) * (2 * R) ** (7 / 6) / (E ** (1 / 3) * gamma ** (1 / 6))  # K13 (2) with E*
+    c.damping = damping * 2 * m_star / t0  # K13 (4)
+    return c
+
+
+def shrunk_radius(beta):
+    """R'/R_g, by the volume between fillet and spheres of two necks (S17 section 3.3)."""
+    if beta == 0:
+        return 1.0
+    x = beta**2 / (2 * (1 - beta))  # S17 (1); the fillet is a circle of radius x about the distance c from the axis
+    h, c = x / (1 + x), beta + x  # half the length d, S17 (2)
+    fillet = 2 * pi * (h * c**2 - c * (h * sqrt(x**2 - h**2) + x**2 * asin(h / x)) + x**2 * h - h**3 / 3)
+    return (1 - 2 * (fillet - 2 * pi * h**2 * (1 - h / 3)) / (4 / 3 * pi)) ** (1 / 3)
+
+
+def bond(m1, r1, m2, r2, beta):
+    """Constants of a sintered bond of grains with radii r1, r2 before sintering."""
+    E, G = 2 / sum(1 / m.young for m in (m1, m2)), 2 / sum(2 * (1 + m.poisson) / m.young for m in (m1, m2))
+    R, x = r1 * r2 / (r1 + r2), beta**2 / (2 * (1 - beta))
+    a, d = beta * 2 * R, 2 * (2 * R) * x / (1 + x)  # S17 (2)
+    b = SimpleNamespace(r1=r1, r2=r2, R=R, kn=pi * a**2 * E / d, ks=pi * a**2 * G / d)  # S17 (3), (4)
+    b.kr, b.kt = pi * a**4 * E / (4 * d) / R**2, pi * a**4 * G / (2 * d)  # S17 (5), on xi; polar moment of the disk
+    b.breaking = pi * a**2 * sqrt(m1.surfaceEnergy * m2.surfaceEnergy)  # S17 (6)
+    return b
+
+
+# ---- normal motion: JKR ----
+
+U_AT_CONNECTION, U_AT_PULL_OFF = -8 / 15 * 2 ** (2 / 3), 4 / 45  # A22 (9), (10), in F_c delta_c
+
+
+def jkr(c, delta):
+    """(contact radius, force, energy) from delta/delta0 = 3u^4 - 2u, u = (a/a0)^(1/2) >= 6^(-1/3) (A22 2, 5, 8), by Newton's method."""
+    least, u = 6 ** (-1 / 3), sqrt(2 + abs(delta) / c.d0)  # from above
+    for _ in range(100):
+        slope = 12 * u**3 - 2
+        u, before = max(least, u - (3 * u**4 - 2 * u - delta / c.d0) / slope) if slope > 0 else least, u
+        if abs(u - before) < 1e-16 * u:
+            break
+    energy = 4 * 6 ** (1 / 3) * (4 / 5 * u**10 - 4 / 3 * u**7 + u**4 / 3)
+    return c.a0 * u**2, c.Fc * 4 * (u**6 - u**3), c.Fc * c.dc * energy
+
+
+def missed_at_pull_off(g, terms=8):
+    """Trapezoidal sum less integral of x^(1/2) over x = g, g + 1, g + 2, ...: Euler-Maclaurin's remainder after some
+    terms. With the plugin's eight it is exact to 1e-8."""
+    x = g + np.arange(terms + 1)
+    total = np.sqrt(x).sum() - (sqrt(g) + sqrt(x[-1])) / 2 - 2 / 3 * (x[-1] ** 1.5 - g**1.5)
+    return total - x[-1] ** -0.5 / 24 + x[-1] ** -2.5 / 1920
+
+
+# ---- springs (W07, A24 appendix A), of a contact or a bond; p: a contact now, with its pointers n1 and n2 and twist phi ----
+
+
+def displacements(c, p):
+    """(zeta, xi), A24 (A1), (A2)."""
+    zeta0 = c.r1 * p.n1 - c.r2 * p.n2
+    return zeta0 - (zeta0 @ p.n) * p.n, c.R * (p.n1 + p.n2)
+
+
+def springs(c, p):
+    """Force on grain 1 and torques on both: A24 (A5)-(A8)."""
+    zeta, xi = displacements(c, p)
+    z = (c.r1 * p.n1 - c.r2 * p.n2) @ p.n
+    torque1 = -c.r1 * c.ks * cross(p.n1, zeta) - c.R * c.kr * cross(p.n1, xi) - c.kt * p.phi * p.n
+    torque2 = c.r2 * c.ks * cross(p.n2, zeta) - c.R * c.kr * cross(p.n2, xi) + c.kt * p.phi * p.n
+    return c.ks * z * zeta / p.distance, torque1, torque2
+
+
+def move(p, displacement, limit, radius1, radius2):
+    """W07: pointers moved by the excess over a limit, each lengthened by 1/(1 - (n.e)^2) and of length 1 again."""
+    size = sqrt(displacement @ displacement)
+    e = displacement / size
+    moved = [n - (size - limit) / r / (1 - (n @ e) ** 2) * e for n, r in ((p.n1, radius1), (p.n2, radius2))]
+    p.n1, p.n2 = (n / sqrt(n @ n) for n in moved)
+
+
+def return_to_limits(c, p, before, dt, lost):
+    """Displacements beyond their limits return to them: twisting, then sliding, then rolling. Books what that dissipates."""
+    phi, p.phi = p.phi, min(max(p.phi, -c.phi_crit), c.phi_crit)
+    lost["twistingDissipation"] += c.kt / 2 * (before.phi + p.phi) * (phi - p.phi)
+    trial1, trial2, (zeta, xi) = p.n1, p.n2, displacements(c, p)
+    slid, rolled = zeta @ zeta > c.zeta_crit**2, xi @ xi > c.xi_crit**2
+    if slid:
+        move(p, zeta, c.zeta_crit, c.r1 + c.r2, -(c.r1 + c.r2))
+    if rolled:
+        move(p, displacements(c, p)[1], c.xi_crit, c.r1, c.r2)
+    if not (slid or rolled):
+        return
+    d1, d2 = p.n1 - trial1, p.n2 - trial2
+    zeta_now, xi_now = displacements(c, p)
+    n_rate = (p.v - (p.v @ p.n) * p.n) / p.distance
+    zeta_rate = c.r1 * cross(p.w1, d1) - c.r2 * cross(p.w2, d2) - ((c.r1 * d1 - c.r2 * d2) @ p.n) * n_rate
+    xi_rate = c.R * (cross(p.w1, d1) + cross(p.w2, d2))
+    sliding = c.ks / 2 * ((before.zeta + zeta_now) @ (zeta - zeta_now) + dt * zeta_now @ zeta_rate)
+    rolling = c.kr / 2 * ((before.xi + xi_now) @ (xi - xi_now) + dt * xi_now @ xi_rate)
+    lost["slidingDissipation"] += sliding if slid and rolled else sliding + rolling if slid else 0
+    lost["rollingDissipation"] += rolling if slid and rolled else sliding + rolling if rolled else 0
+
+
+# ---- grains, contacts and bonds through time steps (MODEL.md, "The integrator and the ledger") ----
+
+
+class Scene:
+    """N grains in open space under a leapfrog. materials: a dict each, with the attributes of JKRMat; radii: (N,); x, v, w: (N, 3).
+    half_step: v and w are of half a step before x (YADE's functors), not of the same moment (the fused engine).
+    `energies`: by channel, at the present positions."""
+
+    def __init__(self, materials, radii, x, v, w, dt, damping=0.0, neck=0.0, half_step=False):
+        self.materials, self.radii = [SimpleNamespace(**m) for m in materials], np.array(radii)
+        self.x, self.v, self.w, self.dt = np.array(x), np.array(v), np.array(w), dt
+        self.mass = 4 / 3 * pi * np.array([m.density for m in self.materials])[:, None] * self.radii[:, None] ** 3
+        self.inertia = 0.4 * self.mass * self.radii[:, None] ** 2
+        self.damping, self.neck = damping, neck
+        self.contacts, self.constants, self.lost = {}, {}, dict.fromkeys(LOST, 0.0)
+        self.forces(dt if half_step else 0.0, start=True)
+        if not half_step:
+            self.v, self.w = self.v - dt / 2 * self.F / self.mass, self.w - dt / 2 * self.T / self.inertia
+            for (i, j), p in self.contacts.items():
+                p.v = self.v[i] - self.v[j]
+
+    def step(self):
+        self.v, self.w = self.v + self.dt * self.F / self.mass, self.w + self.dt * self.T / self.inertia
+        self.x = self.x + self.dt * self.v
+        self.forces(self.dt)
+
+    def forces(self, dt, start=False):
+        self.F, self.T, self.work, self.held = 0 * self.x, 0 * self.x, 0.0, dict.fromkeys(MODES, 0.0)
+        for i in range(len(self.x)):
+            for j in range(i + 1, len(self.x)):
+                x, old = self.x[i] - self.x[j], self.contacts.pop((i, j), None)
+                if old or x @ x < (self.radii[i] + self.radii[j]) ** 2:
+                    self.pair_step(i, j, x, old, dt, start)
+        kinetic = (self.mass * self.v**2).sum() / 2 + (self.inertia * self.w**2).sum() / 2
+        self.energies = {"kinetic": kinetic + self.work, **self.held, **self.lost}
+
+    def pair_step(self, i, j, x, old, dt, start):
+        if (i, j) not in self.constants:
+            grains = self.materials[i], self.radii[i], self.materials[j], self.radii[j], self.neck
+            self.constants[i, j] = pair(*grains[:4], self.damping, self.neck), bond(*grains) if self.neck else None
+        c, b = self.constants[i, j]
+        p = SimpleNamespace(i=i, j=j, x=x, v=self.v[i] - self.v[j], w1=self.w[i], w2=self.w[j], drag=0.0, bonded=False)
+        p.distance, p.mass = sqrt(x @ x), 1 / (1 / self.mass[i, 0] + 1 / self.mass[j, 0])
+        p.n, p.delta = x / p.distance, c.r1 + c.r2 - p.distance
+        if start and b:
+            old, dt = SimpleNamespace(n1=-p.n, n2=p.n, phi=0.0, rest=p.distance, bonded=True), 0.0
+        if old is None:
+            return self.form(c, p, dt) if p.delta > 0 else None
+        p.n1, p.n2 = turned(old.n1, dt * p.w1), turned(old.n2, dt * p.w2)
+        p.phi = old.phi + dt * (p.w1 - p.w2) @ (p.n - dt / 2 * (p.v - (p.v @ p.n) * p.n) / p.distance)  # A24 (A4)
+        if old.bonded:
+            p.bonded, p.rest, p.delta = True, old.rest, old.rest - p.distance
+            return self.keep_bond(b, p, old, dt)
+        if p.delta < -c.dc:
+            return self.break_contact(c, p, old, dt)
+        return_to_limits(c, p, old, dt, self.lost)
+        self.evaluate(c, p, p.v + (p.v - old.v) / 2)
+        self.lost["drag"] += (old.drag + p.drag) / 2 * (p.delta - old.delta)
+        self.kick(dt, [(p, 0.5 * (p.normal + p.drag), 0.5)], [(p, 0.5 * (p.normal + p.drag), 0.5)])
+
+    def evaluate(self, c, p, v):
+        """Forces and stored energies at this instant; v: relative velocity at it. The contact is there from now on."""
+        p.zeta, p.xi = displacements(c, p)
+        p.springs = springs(c, p)
+        if p.bonded:
+            p.normal, energy = c.kn * p.delta, c.kn / 2 * p.delta**2
+        else:
+            a, p.normal, energy = jkr(c, p.delta)
+            p.drag = -(c.viscous * a + c.damping) * v @ p.n  # A22 (7), K13 (4)
+        p.held = [energy, c.ks / 2 * p.zeta @ p.zeta, c.kr / 2 * p.xi @ p.xi, c.kt / 2 * p.phi**2]
+        if not (p.bonded and max(p.held) > c.breaking):
+            self.contacts[p.i, p.j] = p
+            self.held = {mode: self.held[mode] + energy for mode, energy in zip(MODES, p.held)}
+
+    def kick(self, dt, before, after=()):
+        """Kicks over dt at this instant, (contact, normal force, fraction of the springs' forces) each; the work of those that belong `before` it is part of
+        the kinetic energy now. Returns the sum of J^2/2m of what belongs after less before, torques included, and that work."""
+        p, squares, works = before[0][0], [], []
+        for kicks in (before, after):
+            force = sum((normal * q.n + part * q.springs[0] for q, normal, part in kicks), np.zeros(3))
+            torque1, torque2 = (sum((part * q.springs[k] for q, _, part in kicks), np.zeros(3)) for k in (1, 2))
+            self.F[p.i], self.F[p.j] = self.F[p.i] + force, self.F[p.j] - force
+            self.T[p.i], self.T[p.j] = self.T[p.i] + torque1, self.T[p.j] + torque2
+            turning = torque1 @ torque1 / self.inertia[p.i, 0] + torque2 @ torque2 / self.inertia[p.j, 0]
+            squares.append(dt**2 / 2 * (force @ force / p.mass + turning))
+            works.append(dt * (force @ p.v + torque1 @ p.w1 + torque2 @ p.w2))
+        self.work += works[0]
+        return squares[1] - squares[0], works[0]
+
+    def set_new(self, p, since):
+        """Pointers and twist of a contact that formed a time `since` ago."""
+        x = p.x - since * p.v
+        n = x / sqrt(x @ x)
+        p.n1, p.n2, p.phi = turned(-n, since * p.w1), turned(n, since * p.w2), since * (p.w1 - p.w2) @ n
+
+    def form(self, c, p, dt):
+        x = p.x - dt * p.v
+        closing = p.delta - (c.r1 + c.r2 - sqrt(x @ x))
+        inside = p.delta <= closing > 0  # the step; otherwise it was placed here, and nothing is booked
+        f = p.delta / closing if inside else 0.0  # fraction of the step for which it has existed
+        self.set_new(p, f * dt)
+        return_to_limits(c, p, SimpleNamespace(phi=0.0, zeta=np.zeros(3), xi=np.zeros(3)), dt, self.lost)
+        self.evaluate(c, p, p.v)
+        after, work = 0.5 * (p.normal + p.drag), p.held[0] - c.Fc * c.dc * U_AT_CONNECTION
+        if not inside:
+            return self.kick(dt, [(p, after, 0.5)], [(p, after, 0.5)])
+        ahead = work / closing + f * p.drag
+        self.kick(dt, [(p, ahead, f / 2)], [(p, after, 0.5)])
+        self.lost["connection"] += -c.Fc * c.dc * U_AT_CONNECTION + (after**2 - ahead**2) * dt**2 / (2 * p.mass)
+        self.lost["drag"] += f * p.drag * closing
+
+    def break_contact(self, c, p, old, dt):
+        opening = old.delta - p.delta
+        g = (old.delta + c.dc) / opening  # fraction of the step after which it broke
+        _, normal, energy = jkr(c, old.delta)
+        slope = -8 * 6 ** (-1 / 3) / sqrt(18)  # F = F(-delta_c) + slope F_c (x/delta0)^(1/2) before pull-off
+        missed = c.Fc * slope * sqrt(opening / c.d0) * missed_at_pull_off(g)
+        push = (energy - c.Fc * c.dc * U_AT_PULL_OFF) / opening - normal / 2 + (g - 0.5) * old.drag - missed
+        p.springs, (zeta, xi) = springs(c, p), displacements(c, p)
+        self.kick(dt, [(p, push, g - 0.5)])
+        lost = c.Fc * c.dc * U_AT_PULL_OFF - (push * dt) ** 2 / (2 * p.mass)
+        for k, then, now in ((c.ks, old.zeta, zeta), (c.kr, old.xi, xi), (c.kt, old.phi, p.phi)):
+            lost += k / 2 * np.dot(then, now) + k * (g - 0.5) * np.dot(now, now - then)
+        self.lost["disconnection"] += lost
+        self.lost["drag"] -= g * old.drag * opening
+
+    def keep_bond(self, b, p, old, dt):
+        self.evaluate(b, p, p.v)
+        if max(p.held) <= b.breaking:
+            return self.kick(dt, [(p, 0.5 * p.normal, 0.5)], [(p, 0.5 * p.normal, 0.5)])
+        modes = [(b.kn, old.delta, p.delta), (b.ks, old.zeta, p.zeta), (b.kr, old.xi, p.xi), (b.kt, old.phi, p.phi)]
+        lost = sum(k / 2 * np.dot(then, now) for k, then, now in modes)
+        g = 1.0  # fraction of the step after which the first mode held the breaking energy
+        for k, then, now in (mode for mode, energy in zip(modes, p.held) if energy > b.breaking):
+            s, along, missing = (
+                np.dot(now - then, now - then),
+                np.dot(then, now - then),
+                2 * b.breaking / k - np.dot(then, then),
+            )
+            g = min(g, (sqrt(along**2 + s * missing) - along) / s if missing > 0 else 0.0)
+        before, after = [(p, (g - 0.5) * p.normal, g - 0.5)], []
+        c, closing = self.constants[p.i, p.j][0], p.delta - old.delta
+        q = SimpleNamespace(**{**vars(p), "bonded": False, "delta": c.r1 + c.r2 - p.distance})
+        if q.delta > 0:  # an ordinary contact of the shrunk grains takes its place
+            f = min(1 - g, q.delta / closing if q.delta < closing else 1.0)
+            self.set_new(q, f * dt)
+            self.evaluate(c, q, q.v)
+            before, after = [*before, (q, f * (q.normal + q.drag), f / 2)], [(q, 0.5 * (q.normal + q.drag), 0.5)]
+            self.lost["drag"] += f * q.drag * closing
+            lost -= sum(q.held) + f * q.drag * closing
+        unequal, work = self.kick(dt, before, after)
+        self.lost["bondBreaking"] += lost - work + unequal
