@@ -14,7 +14,7 @@ import sys
 
 from .grain_arrays import snapshot  # noqa: F401 (of the package)
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 LIBRARY = os.path.join(TOP, "build/lib/x86_64-linux-gnu/yade-double/libcontact_law.so")

@@ -16,9 +16,9 @@ namespace {
 Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
         : begin(begin_)
         , end(end_)
-        , contacts { { setting.alike, setting.hasDrag(), dummy_ }, { setting.alike, setting.hasDrag(), dummy_ },
-	        { setting.alike, setting.hasDrag(), dummy_ } }
-        , bonds { { setting.alike, dummy_ }, { setting.alike, dummy_ }, { setting.alike, dummy_ } }
+        , contacts { { setting.uniform, setting.hasDrag(), dummy_ }, { setting.uniform, setting.hasDrag(), dummy_ },
+	        { setting.uniform, setting.hasDrag(), dummy_ } }
+        , bonds { { setting.uniform, dummy_ }, { setting.uniform, dummy_ }, { setting.uniform, dummy_ } }
         , s(setting)
         , dummy(dummy_)
 {
@@ -50,7 +50,7 @@ void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
 	pass.firstBlock = firstBlock;
 	pass.endBlock = endBlock;
 	if (behind) pass.batchDone = &Domain::moveBehind;
-	s.passes->forces[s.mechanisms][s.alike][cell.on](pass);
+	s.passes->forces[s.mechanisms][s.uniform][cell.on](pass);
 }
 
 void Domain::addFirstForces()
@@ -337,7 +337,7 @@ StoredEnergy<double> Domain::energies()
 	StoredEnergy<double> total { 0, 0, 0, 0 };
 	for (int sort = Both; sort <= First; ++sort) {
 		StoredEnergy<double> part { 0, 0, 0, 0 };
-		s.passes->energies[s.mechanisms][s.alike](passFor(sort), part);
+		s.passes->energies[s.mechanisms][s.uniform](passFor(sort), part);
 		total += part;
 	}
 	addBondEnergies(total);

@@ -22,8 +22,8 @@ struct Setting {
 	std::vector<unsigned> blocked;                           // likewise (kernel/blocked.hpp)
 	double linearDamping = 0;
 	double neck = 0; // radius of sintered bonds' necks over that of the grains; 0: none
-	bool alike = true;
-	PairConstants<double> common {};     // of the first grain with itself; of every pair when they are alike
+	bool uniform = true;
+	PairConstants<double> common {};     // of the first grain with itself; of every pair when all grains are equal
 	BondConstants<double> commonBond {}; // likewise
 	unsigned mechanisms = AllSprings;
 	double dt = 0, farGap = 0, smallestRadius = 0;
@@ -45,12 +45,13 @@ struct Setting {
 	}
 	PairConstants<double> constantsOf(int i, int j) const
 	{
-		return alike ? common
-		             : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);
+		return uniform
+		        ? common
+		        : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);
 	}
 	BondConstants<double> bondOf(int i, int j) const
 	{
-		return alike ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], neck);
+		return uniform ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], neck);
 	}
 };
 

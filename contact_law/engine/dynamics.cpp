@@ -64,7 +64,7 @@ void Dynamics::loadGrains(const Grains& grains)
 		if (options.orientations) setting.orientation.push_back(g.orientation);
 		setting.inverseMass.push_back(1 / g.mass);
 		setting.inverseInertia.push_back(1 / g.inertia);
-		setting.alike = setting.alike && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
+		setting.uniform = setting.uniform && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
 	}
 	const Material& m = setting.material[setting.kind[0]];
 	const double r = setting.grainRadius[0];

@@ -60,7 +60,7 @@ def draw_sizes(axis, speeds, results):
     for code in COLOURS:
         for threads, style in THREADS.items():
             radii = sorted(
-                {result["radius"] for result in results if result["code"] == code and result["kind"] == "alike"}
+                {result["radius"] for result in results if result["code"] == code and result["kind"] == "uniform"}
             )
             if not radii:
                 continue

@@ -2,11 +2,11 @@
 
 Two aggregates (A24 section 3) with their centres at -/+(R_agg + r), flying at each other. Kinds:
 
-alike      ice grains of 0.1 um, CPE, filling 0.4
+uniform    ice grains of 0.1 um, CPE, filling 0.4
 materials  the same packing, every other grain (at random) softer: E = 3 GPa, nu = 0.33, gamma = 0.05 J/m^2, so that three kinds of contact occur; their
            equilibrium overlaps differ by up to 7 %, so the packing starts close to rest
 radii      ice in a rock-salt lattice: grains of 0.1 um on the sites of CPE, grains 0.41 times as large in the gaps between them, every neighbour at
-           its equilibrium overlap, the same share of sites removed at random
+           its equilibrium overlap, the same fraction of sites removed at random
 """
 
 from dataclasses import dataclass, replace

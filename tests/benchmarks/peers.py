@@ -19,7 +19,7 @@ from analysis.theory import pair_constants
 TIME = 1e-9  # s
 SKIN = 0.3  # grain radii; 0.1 to 0.6 measured the same
 PHYSICS = {
-    "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; births and breaks at whole steps; no energy ledger.",
+    "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
     "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential history, rolling epsd2; no twisting, no energy ledger.",
 }
 
@@ -105,9 +105,9 @@ def version(code):
 
 
 def measure(code, scene, steps, cores=1):
-    """{contacts, grains, steps, seconds, rate, share} of a run of `steps` steps; rate: contact updates a second of the time loop.
+    """{contacts, grains, steps, seconds, rate, fraction} of a run of `steps` steps; rate: contact updates a second of the time loop.
 
-    share: processor seconds a second of the whole run, all processes together; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
+    fraction: processor seconds a second of the whole run, all processes together; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
     """
     program, text = PROGRAMS[code]
     with tempfile.TemporaryDirectory() as folder:
@@ -120,7 +120,7 @@ def measure(code, scene, steps, cores=1):
             command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores)] + command
         start, processor = time.perf_counter(), processor_seconds()
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
-        share = (processor_seconds() - processor) / (time.perf_counter() - start)
+        fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
     if done.returncode or not loop:
         raise PeerFailed(f"{' '.join(command)} failed:\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
@@ -136,7 +136,7 @@ def measure(code, scene, steps, cores=1):
         "steps": steps,
         "seconds": seconds,
         "rate": contacts * steps / seconds,
-        "share": share,
+        "fraction": fraction,
     }
 
 

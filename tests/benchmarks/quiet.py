@@ -3,7 +3,7 @@
 import os
 import time
 
-LOUD = 0.05  # share of the machine, or of its core, that a measurement may lack before the report warns
+LOUD = 0.05  # fraction of the machine, or of its core, that a measurement may lack before the report warns
 
 
 def share_of_others(seconds=1.0):

@@ -24,7 +24,7 @@ class Spread:
 
 def by_processor_time(result):
     """Contact updates a second of processor time: what a program does when others take part of the machine. One core only: waiting threads spin."""
-    return result["rate"] / result["share"]
+    return result["rate"] / result["fraction"]
 
 
 class Speeds:
@@ -33,7 +33,7 @@ class Speeds:
     def __init__(self, results, reference):
         self.results, self.reference = results, reference
 
-    def find(self, code, threads=1, radius=None, kind="alike", instructions=None):
+    def find(self, code, threads=1, radius=None, kind="uniform", instructions=None):
         wanted = {
             "code": code,
             "threads": threads,

@@ -20,7 +20,7 @@ OURS = {
     "functors": "This law, all channels of the energy ledger.",
     "stock": "CohFrictPhys with moments: linear springs with sliding, rolling and twisting, a bond between grains; no JKR, no energy ledger.",
 }
-KINDS = {"alike": "like grains", "materials": "two materials", "radii": "two sizes, 1 : 0.41"}
+KINDS = {"uniform": "like grains", "materials": "two materials", "radii": "two sizes, 1 : 0.41"}
 
 
 def text(how, found):
@@ -62,14 +62,14 @@ def head(found):
         "All codes are measured in turn, in rounds; rates are the median (least - most) of the rounds, ratios are taken within a round first.",
     ]
     if "speed" in found:
-        others, share = (
+        others, fraction = (
             found["speed"]["others"],
-            min(result["share"] for result in found["speed"]["results"] if result["threads"] == 1),
+            min(result["fraction"] for result in found["speed"]["results"] if result["threads"] == 1),
         )
         lines.append(
-            f"Other programs took up to {100 * others:.0f} % of the machine; measurements on one core got at least {100 * share:.0f} % of it."
+            f"Other programs took up to {100 * others:.0f} % of the machine; measurements on one core got at least {100 * fraction:.0f} % of it."
         )
-        if others > LOUD or share < 1 - LOUD:
+        if others > LOUD or fraction < 1 - LOUD:
             lines.append("**The machine was not quiet: ratios suffer, those with two cores most.**")
     return "\n".join(lines) + "\n"
 

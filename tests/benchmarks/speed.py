@@ -22,7 +22,7 @@ class Task:
     seconds: float
 
 
-def engine(settings, radius, threads, kind="alike", instructions=""):
+def engine(settings, radius, threads, kind="uniform", instructions=""):
     labels = {
         "code": "engine",
         "kind": kind,
@@ -38,21 +38,21 @@ def loop(settings, law, radius, threads):
     """YADE's own loop with this repository's law (functors) or with the stock one."""
     labels = {
         "code": {"jkr-wada": "functors", "stock": "stock"}[law],
-        "kind": "alike",
+        "kind": "uniform",
         "radius": radius,
         "threads": threads,
         "instructions": "",
     }
     return Task(
         labels,
-        (law, "alike", radius, threads),
+        (law, "uniform", radius, threads),
         {"do": "loop", "seconds": settings.loop_seconds},
         4 / 3 * settings.loop_seconds + 0.5,
     )
 
 
 def peer(settings, code, cores):
-    labels = {"code": code, "kind": "alike", "radius": settings.reference, "threads": cores, "instructions": ""}
+    labels = {"code": code, "kind": "uniform", "radius": settings.reference, "threads": cores, "instructions": ""}
     return Task(
         labels,
         None,
@@ -86,7 +86,9 @@ def tasks_of_a_round(settings):
     ]
     tasks += [loop(settings, "jkr-wada", settings.reference, threads) for threads in (1, 2)]
     tasks += codes[1]
-    tasks += [engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("alike",) for threads in (2, 1)]
+    tasks += [
+        engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("uniform",) for threads in (2, 1)
+    ]
     return tasks + codes[0]
 
 
@@ -109,13 +111,13 @@ def yades(tasks):
 
 
 def measure(settings, done):
-    """{"results": [labels, round and what was measured], "memory": {radius: ...}, "others": largest share of the machine that other programs took,
+    """{"results": [labels, round and what was measured], "memory": {radius: ...}, "others": largest fraction of the machine that other programs took,
     "failed": {peer: last words of one that ended with an error, and was not tried again}}.
 
     done(seconds) is called after each measurement with its estimated length.
     """
     tasks, results, others, failed = tasks_of_a_round(settings), [], 0.0, {}
-    peers_scene = measured_scenes.make("alike", settings.reference)
+    peers_scene = measured_scenes.make("uniform", settings.reference)
     with yades(tasks) as started:
         for process in started.values():
             process.wait()
@@ -131,7 +133,7 @@ def measure(settings, done):
                     )
                 done(task.seconds)
         memory = {
-            radius: started["jkr-wada", "alike", radius, 1].ask("memory")
+            radius: started["jkr-wada", "uniform", radius, 1].ask("memory")
             for radius in settings.radii
             if radius >= settings.reference
         }

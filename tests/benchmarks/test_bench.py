@@ -47,7 +47,7 @@ def test_measures_everything_and_says_what_it_goes_without(tiny):
         assert f"{program} is not installed (make bench-peers installs it)" in printed
     found = json.loads((folder / "bench.json").read_text())
     measured = {(r["code"], r["kind"], r["threads"]) for r in found["speed"]["results"]}
-    assert measured == {(code, "alike", n) for code in ("engine", "functors", "stock") for n in (1, 2)} | {
+    assert measured == {(code, "uniform", n) for code in ("engine", "functors", "stock") for n in (1, 2)} | {
         ("engine", kind, n) for kind in ("materials", "radii") for n in (1, 2)
     }
     assert all(result["rate"] > 0 for result in found["speed"]["results"])
@@ -76,7 +76,7 @@ def test_half_a_time_unit_is_shown_as_refused(tiny):
 
 def test_every_code_counts_the_same_contacts(tiny):
     found = json.loads((tiny[1] / "bench.json").read_text())["speed"]["results"]
-    expected = measured_scenes.touching(measured_scenes.make("alike", TINY.reference))
+    expected = measured_scenes.touching(measured_scenes.make("uniform", TINY.reference))
     for code in ("functors", "stock"):
         assert {r["contacts"] for r in found if r["code"] == code} == {expected}
 
@@ -86,7 +86,7 @@ def test_peers_run_the_scene(code):
     """Where they are installed: all grains, and the contacts that this repository counts."""
     if reason := peers.missing(code):
         pytest.skip(reason)
-    scene = measured_scenes.make("alike", 5)
+    scene = measured_scenes.make("uniform", 5)
     found = peers.measure(code, scene, 20)
     assert (
         found["contacts"] == measured_scenes.touching(scene) and found["grains"] == scene.grains and found["rate"] > 1e5
@@ -100,7 +100,7 @@ def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
         (tmp_path / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
     task, failed = speed.peer(TINY, "liggghts", 1), {}
-    scene = measured_scenes.make("alike", TINY.reference)
+    scene = measured_scenes.make("uniform", TINY.reference)
     assert speed.take(task, {}, scene, failed) is None and "no such library" in failed["liggghts on 1"]
     (tmp_path / "liggghts").unlink()
     assert speed.take(task, {}, scene, failed) is None
@@ -129,7 +129,7 @@ def test_ratios_are_taken_within_a_round():
             "code": code,
             "threads": 1,
             "radius": 40,
-            "kind": "alike",
+            "kind": "uniform",
             "instructions": "best" if code == "engine" else "",
             "rate": rate,
         }

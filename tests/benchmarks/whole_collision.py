@@ -24,7 +24,7 @@ def measure(settings, done):
 
 
 def collide(settings, radius, speed, duration):
-    calm, process = (YadeProcess("jkr-wada", "alike", radius, v) for v in (measured_scenes.SPEED, speed))
+    calm, process = (YadeProcess("jkr-wada", "uniform", radius, v) for v in (measured_scenes.SPEED, speed))
     try:
         calm.wait(), process.wait()
         before = {threads: calm.ask("fused", seconds=settings.seconds, threads=threads)["rate"] for threads in (1, 2)}

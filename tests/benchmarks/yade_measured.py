@@ -104,7 +104,7 @@ def loop():
 
 
 def timed(seconds, small_steps, contacts):
-    """Steps for at least that long, after a third of it unmeasured; contacts: function that counts them. share: processor seconds a second, all threads together.
+    """Steps for at least that long, after a third of it unmeasured; contacts: function that counts them. fraction: processor seconds a second, all threads together.
 
     Unmeasured: while other codes had their turn this process was idle, and some machines take the memory of such away: what came first of two measurements was slower by a tenth."""
     warm = time.perf_counter() + seconds / 3
@@ -122,7 +122,7 @@ def timed(seconds, small_steps, contacts):
         "steps": steps,
         "seconds": elapsed,
         "rate": mean * steps / elapsed,
-        "share": processor / elapsed,
+        "fraction": processor / elapsed,
     }
 
 
