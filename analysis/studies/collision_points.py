@@ -1,5 +1,5 @@
-"""What studies of collisions have in common: columns of a run's energy partition and outcome, and their statistics over
-the seeds of one parameter set."""
+"""What studies of collisions have in common: columns of a run's energy partition, return phase and outcome, and their
+statistics over the seeds of one parameter set."""
 
 from dataclasses import dataclass
 
@@ -8,9 +8,10 @@ import numpy as np
 from ..measures.ledger import fractions_at
 from ..measures.of_run import outcome_of_run
 from ..measures.outcome import STICKING, UNDECIDED, still_parting
+from ..measures.return_phase import largest_return_speed
 from ..runs.format import CHANNELS, LABELS
 from ..runs.table import Column
-from ..statistics import mean_and_error, mean_interval, wilson
+from ..statistics import mean_and_error, student_interval, wilson
 
 
 def at_maximum(channel):
@@ -18,20 +19,41 @@ def at_maximum(channel):
     return f"{channel}_at_maximum"
 
 
+def at_return(channel):
+    """Name of the column of a channel's change from the start to the largest return speed."""
+    return f"{channel}_at_return"
+
+
 def at_end(channel):
     """Name of the column of a channel's change from the start to the end."""
     return f"{channel}_at_end"
 
 
-PARTITION_COLUMNS = tuple(
-    Column(name(c), "K(0)", f"{LABELS[c]}, change from the start to {when} (kinetic: what is left)", absent=0.0)
-    for name, when in ((at_maximum, "t_max"), (at_end, "the end"))
-    for c in CHANNELS
+PARTITION_COLUMNS = (
+    *(
+        Column(name(c), "K(0)", f"{LABELS[c]}, change from the start to {when} (kinetic: what is left)", absent=0.0)
+        for name, when in ((at_maximum, "t_max"), (at_end, "the end"))
+        for c in CHANNELS
+    ),
+    *(
+        Column(
+            at_return(c),
+            "K(0)",
+            f"{LABELS[c]}, change from the start to return_time (kinetic: what is left)",
+            gaps=True,
+            absent=np.nan,
+        )
+        for c in CHANNELS
+    ),
 )
 OUTCOME_COLUMNS = (
     Column("outcome", "", f"as measures.outcome has it, or {UNDECIDED}: in one piece, but still parting", kind="O"),
     Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
     Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
+)
+RETURN_COLUMNS = (
+    Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
+    Column("return_time", "s", "its time", gaps=True, absent=np.nan),
 )
 
 
@@ -46,30 +68,69 @@ def outcome_values(run, velocity):
     }
 
 
-def energy_partition(history, time):
-    """{column: value} of PARTITION_COLUMNS, from a history (measures.ledger) and the time [s] of the largest
-    compression; K(0) must not be 0."""
+def return_values(history, time):
+    """{column: value} of RETURN_COLUMNS from a history and the time [s] of the largest compression; NaN where the halves
+    never part, or the record ends before their speed falls."""
+    speed, when = largest_return_speed(history["time"], history["v"], time)
+    return {"return_speed": _or_nan(speed), "return_time": _or_nan(when)}
+
+
+def energy_partition(history, time, return_time=np.nan):
+    """{column: value} of PARTITION_COLUMNS, from a history (measures.ledger), the time [s] of the largest compression and
+    that of the largest return speed (NaN: unknown); K(0) must not be 0."""
     middle, end = fractions_at(history, time), fractions_at(history, history["time"][-1])
-    return {**{at_maximum(c): middle[c] for c in CHANNELS}, **{at_end(c): end[c] for c in CHANNELS}}
+    known = np.isfinite(return_time)
+    back = fractions_at(history, return_time) if known else dict.fromkeys(CHANNELS, float("nan"))
+    return {
+        **{at_maximum(c): middle[c] for c in CHANNELS},
+        **{at_end(c): end[c] for c in CHANNELS},
+        **{at_return(c): back[c] for c in CHANNELS},
+    }
+
+
+def _or_nan(value):
+    return float("nan") if value is None else value
+
+
+@dataclass(frozen=True)
+class Phases:
+    """Change of the channels in the runs of one parameter set that end alike: outcome, seeds (their number);
+    compression (start to t_max), parting (t_max to the end), and where the largest return speed was measured (seeds in
+    `timed`) parting's two parts, release (t_max to it) and stretching (from it to the end): by channel (mean, error) in
+    fractions of K(0); bulk and returned (mean, error): (v/v_col)^2 at the end and at the largest return speed. Nones
+    where no run was timed."""
+
+    outcome: str
+    seeds: int
+    timed: int
+    compression: dict
+    parting: dict
+    release: dict
+    stretching: dict
+    bulk: tuple
+    returned: tuple
 
 
 @dataclass(frozen=True)
 class CollisionPoint:
-    """Runs of one parameter set: parameters ({name: value}), seeds (their number); compression and parting: by channel
-    (mean, error) of its change in fractions of K(0), from the start to t_max and from there to the end; bulk (mean,
-    error): fraction of K(0) left in the motion of the halves; restitution (mean, low, high; 0 for sticking) and
-    sticking (fraction, low, high), of the runs that are decided, with 95 % intervals; that of sticking counts the
-    undecided both ways, since they are not a fair choice; outcomes ({kind: number}). None where one seed allows no
-    interval, or none is decided. Runs without a coefficient of restitution (fragmentation) don't count in its mean."""
+    """Runs of one parameter set: parameters ({name: value}), seeds (their number), outcomes ({kind: number}), phases
+    (Phases of each outcome); returned and bulk (mean, error) of all runs.
+
+    restitution, sticking: (low, high, lowest, highest): the mean with every undecided run counted as sticking or as
+    bouncing (sticking: the other way round), and the outer ends of their 95 % intervals, Student's for the restitution
+    and Wilson's for the sticking probability. A run that is undecided, if it bounces, does so with no more than the
+    speed at which its halves part at the end, which tension still slows. Runs without a coefficient of restitution
+    (fragmentation) don't count in its mean. None where it can't be told: no such run, or, for the interval of the
+    restitution, no scatter."""
 
     parameters: dict
     seeds: int
-    compression: dict
-    parting: dict
+    outcomes: dict
+    phases: tuple
     bulk: tuple
+    returned: tuple
     restitution: tuple
     sticking: tuple
-    outcomes: dict
 
     def __getattr__(self, name):
         # The parameters as attributes.
@@ -77,23 +138,74 @@ class CollisionPoint:
             return self.parameters[name]
         raise AttributeError(name)
 
+    @property
+    def undecided(self):
+        """Fraction of the runs that are undecided."""
+        return self.outcomes.get(UNDECIDED, 0) / self.seeds
+
 
 def collision_point(parameters, runs):
-    """CollisionPoint of the runs of one parameter set: a table (DataFrame) with PARTITION_COLUMNS and
-    OUTCOME_COLUMNS."""
-    total, decided = len(runs), runs[runs.outcome != UNDECIDED]
-    stuck = int((decided.outcome == STICKING).sum())
+    """CollisionPoint of the runs of one parameter set: a table (DataFrame) with PARTITION_COLUMNS, OUTCOME_COLUMNS,
+    RETURN_COLUMNS and `velocity` [m/s]."""
+    outcomes = {kind: int(number) for kind, number in runs.outcome.value_counts().sort_index().items()}
     return CollisionPoint(
         parameters=parameters,
-        seeds=total,
-        compression={c: mean_and_error(runs[at_maximum(c)] - (c == "kinetic")) for c in CHANNELS},
-        parting={c: mean_and_error(runs[at_end(c)] - runs[at_maximum(c)]) for c in CHANNELS},
+        seeds=len(runs),
+        outcomes=outcomes,
+        phases=tuple(_phases(kind, runs[runs.outcome == kind]) for kind in outcomes),
         bulk=mean_and_error(runs.bulk),
-        restitution=mean_interval(decided.restitution.dropna(), lowest=0.0),
-        sticking=(
-            stuck / len(decided) if len(decided) else None,
-            wilson(stuck, total)[0],
-            wilson(stuck + total - len(decided), total)[1],
-        ),
-        outcomes={kind: int(number) for kind, number in runs.outcome.value_counts().sort_index().items()},
+        returned=_returned(runs),
+        restitution=_restitution(runs),
+        sticking=_sticking(outcomes.get(STICKING, 0), outcomes.get(UNDECIDED, 0), len(runs)),
+    )
+
+
+def _phases(kind, runs):
+    timed = runs[runs.return_time.notna()]
+    end = {c: runs[at_end(c)] - runs[at_maximum(c)] for c in CHANNELS}
+    return Phases(
+        outcome=kind,
+        seeds=len(runs),
+        timed=len(timed),
+        compression={c: mean_and_error(runs[at_maximum(c)] - (c == "kinetic")) for c in CHANNELS},
+        parting={c: mean_and_error(change) for c, change in end.items()},
+        release=_changes(timed, at_maximum, at_return),
+        stretching=_changes(timed, at_return, at_end),
+        bulk=mean_and_error(runs.bulk),
+        returned=_returned(runs),
+    )
+
+
+def _changes(runs, since, until):
+    return {c: mean_and_error(runs[until(c)] - runs[since(c)]) for c in CHANNELS} if len(runs) else None
+
+
+def _returned(runs):
+    timed = runs[runs.return_speed.notna()]
+    return mean_and_error((timed.return_speed / timed.velocity) ** 2) if len(timed) else None
+
+
+def _restitution(runs):
+    undecided = runs.outcome == UNDECIDED
+    least = runs.restitution.where(~undecided, 0.0)
+    most = runs.restitution.where(~undecided, np.sqrt(runs.bulk))
+    known = least.notna()
+    if not known.any():
+        return None, None, None, None
+    ends = [student_interval(values[known]) for values in (least, most)]
+    lowest, highest = ends[0][0], ends[1][1]
+    return (
+        float(least[known].mean()),
+        float(most[known].mean()),
+        None if lowest is None else max(lowest, 0.0),
+        None if highest is None else min(highest, 1.0),
+    )
+
+
+def _sticking(stuck, undecided, total):
+    return (
+        stuck / total,
+        (stuck + undecided) / total,
+        wilson(stuck, total)[0],
+        wilson(stuck + undecided, total)[1],
     )

@@ -3,7 +3,7 @@
 from ...report.beside_paper import section_of_lines
 from ...report.section import Column, Section
 from ...statistics import RESAMPLES
-from ..collision_sections import energy_section, outcome_section
+from ..collision_sections import energy_section, outcome_section, return_section
 from .lines import compare
 
 LEGEND = (
@@ -28,6 +28,9 @@ def sections(results):
         yield section_of_lines(heading, lines)
     yield Section("how to read the tables", notes=LEGEND)
     yield outcome_section(results.bounces, _POINT)
+    returned = return_section(results.bounces, _POINT)
+    if returned:
+        yield returned
     yield energy_section(results.bounces, _POINT)
 
 

@@ -9,8 +9,17 @@ from ...measures.of_run import met
 from ...runs.arrays import RunFolderError
 from ...runs.format import HISTORY_FILE
 from ...runs.table import Column
-from ..collision_points import OUTCOME_COLUMNS, PARTITION_COLUMNS, energy_partition, outcome_values
+from ..collision_points import (
+    OUTCOME_COLUMNS,
+    PARTITION_COLUMNS,
+    RETURN_COLUMNS,
+    energy_partition,
+    outcome_values,
+    return_values,
+)
 from ..definition import NotMeasured
+from .start import COLUMNS as START_COLUMNS
+from .start import start_values
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.
 SKIN = 2.0  # grain radii
@@ -35,6 +44,8 @@ COLUMNS = (
     Column("coordination", "", "mean number of contacts of a grain at the start"),
     Column("inner_coordination", "", f"the same of the grains {SKIN:g} r below the surface", gaps=True),
     Column("closure", "", "largest error of the energy ledger over K(0)"),
+    *START_COLUMNS,
+    *RETURN_COLUMNS,
     *PARTITION_COLUMNS,
 )
 
@@ -50,6 +61,7 @@ def measure(run):
         raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
     scene = _scene(run)
     start, r = run.start, scene["grain_radius"]
+    returned = return_values(history, maximum.time)
     return {
         **scene,
         "offset": float(history["d"][0]) + 2.0 * r,
@@ -63,7 +75,9 @@ def measure(run):
         "coordination": mean_coordination(len(start.radius), start.contact_pairs),
         "inner_coordination": _inner_coordination(start, scene["radius"], r),
         "closure": closure(history),
-        **energy_partition(history, maximum.time),
+        **start_values(start.position, start.aggregate, start.contact_pairs, scene["radius"], r),
+        **returned,
+        **energy_partition(history, maximum.time, returned["return_time"]),
     }
 
 

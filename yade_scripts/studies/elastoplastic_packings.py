@@ -1,0 +1,90 @@
+"""What the packings of A24's study say before they collide. Needs no plugin, and runs nothing.
+
+    python3 yade_scripts/studies/elastoplastic_packings.py fill RUNS.csv
+        makes the packings of all rows again and writes what analysis.studies.elastoplastic.start measures of them into
+        the table, where it has no such values (rows of runs that were measured without them)
+    python3 yade_scripts/studies/elastoplastic_packings.py predict RUNS.csv PREDICTIONS.csv
+        writes the predicted d_max of the pairs of NEW, from their packings and the rows of RUNS.csv
+
+A packing is a function of filling, radius, overlap, seed and index, so that these are the packings of the runs: fill
+compares the offset of their centres of mass with the run's d(0), and stops where they differ.
+"""
+
+import os
+import sys
+
+import numpy as np
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
+from analysis.measures.compression import compression_length
+from analysis.runs.table import read_table, table_text
+from analysis.studies.elastoplastic import prediction
+from analysis.studies.elastoplastic.measure import COLUMNS
+from analysis.studies.elastoplastic.start import COLUMNS as START
+from analysis.studies.elastoplastic.start import start_values
+from yade_scripts.packings import contacts, cpe, moved
+
+# In no table so far, and not to be run before the predictions were committed.
+NEW = {"filling": (0.4, 0.3), "radius": 60, "seed": tuple(range(101, 109))}
+_SAME = 1e-9  # of the offset, in grain radii
+
+
+def before_contact(filling, radius, grain_radius, overlap, seed):
+    """(d(0) + 2 r [m], start.start_values) of the pair of aggregates of a seed; lengths in m."""
+    reach = radius + grain_radius
+    pair = [
+        moved(cpe(filling, radius, grain_radius, overlap, seed, index), (side * reach, 0.0, 0.0))
+        for index, side in ((0, -1), (1, 1))
+    ]
+    position = np.concatenate([packing.position for packing in pair])
+    aggregate = np.repeat([0, 1], [packing.grains for packing in pair])
+    pairs = np.concatenate([contacts(pair[0]), contacts(pair[1]) + pair[0].grains])
+    offset = compression_length(position[:, 0], radius) + 2.0 * grain_radius
+    return offset, start_values(position, aggregate, pairs, radius, grain_radius)
+
+
+def fill(file):
+    """Write the columns of start.COLUMNS into a table of runs that lacks them in places; the number of rows filled."""
+    table, head = read_table(file, COLUMNS)
+    names = [column.name for column in START]
+    lacking = table[names].isna().any(axis=1)
+    keys = ["filling", "radius", "grain_radius", "overlap", "seed"]
+    for key, rows in table[lacking].groupby(keys):
+        offset, values = before_contact(*key[:4], int(key[4]))
+        if np.any(np.abs(rows.offset - offset) > _SAME * key[2]):
+            sys.exit(f"{file}: seed {int(key[4])}: its packings are not those of {rows.run.iloc[0]}")
+        table.loc[rows.index, names] = [values[name] for name in names]
+    if lacking.any():
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(table_text(table, COLUMNS, head))
+    return int(lacking.sum())
+
+
+def predict(runs, file):
+    """Write predictions of the pairs of NEW from a table of runs; theirs, once they are there, are never among them."""
+    table, _ = read_table(runs, COLUMNS)
+    table = table[~table.seed.isin(NEW["seed"])]
+    first, rows, means = table.iloc[0], [], {}
+    radius = NEW["radius"] * first.grain_radius
+    for filling in NEW["filling"]:
+        model = prediction.fit(table, filling)
+        for seed in NEW["seed"]:
+            offset, values = before_contact(filling, radius, first.grain_radius, first.overlap, seed)
+            row = {"filling": filling, "radius": radius, "velocity": model.velocity, "seed": seed, "offset": offset}
+            rows.append({**row, **values, **prediction.predict(model, NEW["radius"], values["zone_filling"])})
+        zones = [row["zone_filling"] for row in rows if row["filling"] == filling]
+        means[filling] = prediction.predict_mean(model, NEW["radius"], zones)
+    prediction.write(file, rows, len(table), means)
+
+
+def main(arguments):
+    if len(arguments) == 2 and arguments[0] == "fill":
+        print(f"{fill(arguments[1])} rows filled")
+    elif len(arguments) == 3 and arguments[0] == "predict":
+        predict(*arguments[1:])
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,180 @@
+"""Writes elastoplastic-prediction.table and elastoplastic-referee.table: python3 yade_scripts/studies/elastoplastic_referee.py
+
+Runs that test what the gallery says of Arakawa et al. (2024), in blocks; each block's comment says what it decides and about
+how many core hours it takes. The first table holds the pairs whose d_max was predicted beforehand
+(analysis/gallery/elastoplastic/predictions.csv). Blocks are in the order in which they are worth having.
+"""
+
+import os
+from dataclasses import dataclass
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+STEP = 0.2  # t0, as the runs that are compared with these
+DEFAULT = "64.6*{radius}*1.936532021439599e-10"  # s, A24's 1000 ns at R = 80, in proportion to R
+SIZES = (0.4, 0.3)
+PREDICTED = range(101, 109)
+COLUMNS = (
+    "description",
+    "filling",
+    "radius",
+    "velocity",
+    "seed",
+    "viscoelasticTime",
+    "duration",
+    "stepFraction",
+    "threads",
+    "out",
+)
+
+
+LONG = "runs/elastoplastic-long"
+
+
+@dataclass(frozen=True)
+class Block:
+    """comment; fillings, radii, velocities (i of 10^(0.1 i) m/s), seeds; duration [s] (text, None: DEFAULT); drag [s];
+    folder of the run folders. LONG holds pairs that have run before, for longer: analysed by itself."""
+
+    comment: str
+    fillings: tuple
+    radii: tuple
+    velocities: tuple
+    seeds: range
+    duration: str = None
+    drag: tuple = ("0",)
+    folder: str = "runs/elastoplastic"
+
+    def scenes(self):
+        """(filling, radius, i, seed, drag) of the rows: all pairs of one scene follow each other."""
+        for filling in self.fillings:
+            for radius in self.radii:
+                for i in self.velocities:
+                    for drag in self.drag:
+                        for seed in self.seeds:
+                            yield filling, radius, i, seed, drag
+
+    def hours(self):
+        """Core hours, from the 6.55 h that the 172 runs of elastoplastic-desk.table took on one core each."""
+        return sum(
+            core_hours(filling, radius, float(self.duration) if self.duration else 12.5e-9 * radius)
+            for filling, radius, *_ in self.scenes()
+        )
+
+
+def core_hours(filling, radius, duration):
+    """Core hours of a run of duration [s] at STEP: steps times contacts times (grains)^0.07, which the cache costs."""
+    return 0.341 * (filling / 0.4) ** 2.07 * (radius / 80.0) ** 3.21 * duration / 1e-6
+
+
+PREDICTION = (
+    Block(
+        "Pairs whose d_max was predicted from their packings alone: analysis/gallery/elastoplastic/predictions.csv.",
+        SIZES,
+        (60,),
+        (5,),
+        PREDICTED,
+    ),
+)
+REFEREE = (
+    Block(
+        "Drag left on? The pairs of R = 40 at 3.162 m/s again with T_vis = 1, 3, 6 ps: paired differences of d_max and t_max.",
+        SIZES,
+        (40,),
+        (5,),
+        range(1, 11),
+        drag=("1e-12", "3e-12", "6e-12"),
+    ),
+    Block(
+        "A24's Fig. 4 and the scatter at R = 80: its ten seeds at 3.162 m/s (three have run).",
+        SIZES,
+        (80,),
+        (5,),
+        range(4, 11),
+    ),
+    Block("R = 70 of A24's Figs 5 and 6.", SIZES, (70,), (5,), range(1, 6)),
+    Block(
+        "Outcomes at R = 40, followed for 3 us: sticking at 1 to 2.5 m/s. Pairs that have run for less are among them:\n"
+        f"analyse {LONG} by itself.",
+        (0.4,),
+        (40,),
+        (0, 2, 4),
+        range(1, 21),
+        "3e-6",
+        folder=LONG,
+    ),
+    Block(
+        "E* at 0.4: R = 80 at 1 to 2 m/s, where tau v/delta differs most between elastic and rigid-plastic spheres; with 2 us\n"
+        "also the outcomes and v_min of the largest size.",
+        (0.4,),
+        (80,),
+        (0, 1, 2, 3),
+        range(1, 7),
+        "2e-6",
+    ),
+    Block(
+        "Outcomes at R = 60, followed for 3 us, beside those of R = 40 and 80.",
+        (0.4,),
+        (60,),
+        (0, 2, 4),
+        range(1, 11),
+        "3e-6",
+        folder=LONG,
+    ),
+)
+
+
+def rows(block):
+    """Cells (tuples of text) of a block's rows; run folders are named fFILLING-RRADIUS-iI-sSEED and what is special."""
+    for filling, radius, i, seed, drag in block.scenes():
+        special = (f"-T{float(drag) * 1e12:g}ps" if float(drag) else "") + (
+            f"-{float(block.duration) * 1e6:g}us" if block.duration else ""
+        )
+        name = f"f{filling:g}-R{radius:g}-i{i}-s{seed}{special}"
+        duration = block.duration or DEFAULT.format(radius=radius)
+        cells = name, f"{filling:g}", radius, f"10**(0.1*{i})", seed, drag, duration, STEP, 1, f"{block.folder}/{name}"
+        yield tuple(map(str, cells))
+
+
+def text(blocks, title):
+    """A table (str) of blocks, each after a comment with its core hours."""
+    table = [(block, list(rows(block))) for block in blocks]
+    widths = [
+        max(len(row[k]) for row in [COLUMNS, *(row for _, own in table for row in own)]) for k in range(len(COLUMNS))
+    ]
+    lines = [
+        f"# {title}",
+        "# Units: radius: grain radii; velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0.",
+    ]
+    lines += [
+        f"# Written by yade_scripts/studies/{os.path.basename(__file__)}; core hours are estimates.",
+        _line(COLUMNS, widths),
+    ]
+    for block, own in table:
+        lines += [f"# {part}" for part in block.comment.splitlines()]
+        lines += [f"# {len(own)} runs, {block.hours():.1f} core hours."]
+        lines += [_line(row, widths) for row in own]
+    return "\n".join(lines) + "\n"
+
+
+def _line(cells, widths):
+    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths)).rstrip()
+
+
+TABLES = {
+    "elastoplastic-prediction.table": (
+        PREDICTION,
+        "Arakawa et al. (2024): pairs whose largest compression was predicted before they ran.",
+    ),
+    "elastoplastic-referee.table": (REFEREE, "Arakawa et al. (2024): what the comparison leaves open."),
+}
+
+
+def write_tables(folder):
+    """Write both tables into a folder."""
+    for name, (blocks, title) in TABLES.items():
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+            file.write(text(blocks, title))
+
+
+if __name__ == "__main__":
+    write_tables(HERE)
