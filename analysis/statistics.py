@@ -93,6 +93,15 @@ def pair_weights(pairs, resamples=RESAMPLES, random_seed=RANDOM_SEED):
     return np.random.default_rng(random_seed).exponential(size=(resamples, names.size))[:, index]
 
 
+def group_means(values, group, weights):
+    """Weighted means (B, n) of values (n,) over each one's group, labels (n,), for weights (B, n)."""
+    out = np.empty(weights.shape)
+    for name in np.unique(group):
+        own = group == name
+        out[:, own] = (weights[:, own] @ values[own] / weights[:, own].sum(axis=1))[:, None]
+    return out
+
+
 def smoothed_scatter(x, scatter, number):
     """Standard deviations (K,) of one run that follow a power of x, from each point's own (K,), x (K,) and the number
     of runs (K,): ln s^2 against ln x by least squares, weighted with the degrees of freedom and freed of its bias

@@ -17,12 +17,10 @@ def panels(rows, columns, width=5.2, height=4.2):
 
 
 def size_colours(radii):
-    """{radius: colour}, the smallest blue and the largest red, as A24 has them."""
-    radii = sorted(set(radii))
-    if len(radii) == 1:
-        return {radii[0]: _SIZE_COLOURS[-1]}
-    picks = np.linspace(0, len(_SIZE_COLOURS) - 1, len(radii)).round().astype(int)
-    return {radius: _SIZE_COLOURS[pick] for radius, pick in zip(radii, picks)}
+    """{radius [grain radii]: colour}: A24's 40 blue and 80 red, and every size of one colour in all figures; others lie
+    between, or take the nearest end's."""
+    places = np.linspace(40.0, 80.0, len(_SIZE_COLOURS))
+    return {radius: _SIZE_COLOURS[int(np.argmin(np.abs(places - radius)))] for radius in sorted(set(radii))}
 
 
 def letter(axes, text):

@@ -1,4 +1,4 @@
-"""Figures as PNG files."""
+"""Figures as PNG and PDF files."""
 
 import io
 
@@ -14,3 +14,8 @@ def save_small(figure, file):
     image = io.BytesIO()
     figure.savefig(image, dpi=DOTS_PER_INCH)
     Image.open(image).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(file, optimize=True)
+
+
+def save_vector(figure, file):
+    """Save a matplotlib Figure as a PDF, the same bytes each time."""
+    figure.savefig(file, format="pdf", metadata={"CreationDate": None})

@@ -5,13 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..statistics import student_chance
 from .section import Column, Section
 
 
 @dataclass(frozen=True)
 class Line:
     """quantity, unit ('' for numbers), ours with its standard error (None: no error), paper (None: it gives none),
-    paper_error (None: it gives none, and there is no estimate), note."""
+    paper_error (None: it gives none, and there is no estimate), note, freedom (degrees of freedom of the error, where it is
+    from so many runs less one; None: of more, or unknown)."""
 
     quantity: str
     unit: str
@@ -20,6 +22,13 @@ class Line:
     paper: float = None
     paper_error: float = None
     note: str = ""
+    freedom: int = None
+
+    @property
+    def chance(self):
+        """Chance of such a difference from our scatter alone, by Student's t; None without freedom."""
+        known = self.difference is not None and self.freedom
+        return student_chance(self.difference, self.freedom) if known else None
 
     @property
     def difference(self):
@@ -47,6 +56,7 @@ class Line:
             "paper_error",
             "difference",
             "combined_difference",
+            "chance",
             "note",
         )
         return {name: getattr(self, name) for name in names}
@@ -85,5 +95,6 @@ _COLUMNS = (
     Column("paper", lambda r: number(r["paper"])),
     Column("diff", lambda r: _sigma(r["difference"])),
     Column("diff*", lambda r: _sigma(r["combined_difference"])),
+    Column("p", lambda r: "-" if r["chance"] is None else f"{r['chance']:.2g}"),
     Column("note", lambda r: r["note"], beside=True),
 )

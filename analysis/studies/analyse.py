@@ -74,7 +74,7 @@ def _kept(found):
 def _draw(study, results, folder):
     """([(file name, caption)] of the figures that are there, [name] of those that need run folders)."""
     # matplotlib is slow to load, and the numbers do without it.
-    from ..figures.save import save_small
+    from ..figures.save import save_small, save_vector
 
     there, undrawn = [], []
     for figure in tqdm(figures(study.name), "drawing", disable=None, leave=False):
@@ -83,8 +83,11 @@ def _draw(study, results, folder):
             drawn = figure.draw(results)
             if drawn is None:
                 file.unlink(missing_ok=True)
+                file.with_suffix(".pdf").unlink(missing_ok=True)
             else:
                 save_small(drawn, file)
+                if figure.vector:
+                    save_vector(drawn, file.with_suffix(".pdf"))
         except NoRunFolder:
             # One of an earlier analysis stays.
             undrawn.append(figure.name)

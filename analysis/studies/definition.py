@@ -38,8 +38,10 @@ class Study:
 @dataclass(frozen=True)
 class StudyFigure:
     """A figure: file name without ending, caption, and draw: results -> matplotlib Figure, or None where the runs don't
-    suffice. A figure that needs run folders takes them by runs.table.run_folder."""
+    suffice. A figure that needs run folders takes them by runs.table.run_folder. vector: whether it is also saved as PDF;
+    not where tens of thousands of lines or pixels would make that large."""
 
     name: str
     caption: str
     draw: Callable
+    vector: bool = True

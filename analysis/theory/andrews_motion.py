@@ -12,6 +12,8 @@ from .andrews import (
     critical_compression,
     initial_kinetic_energy,
     largest_compression,
+    plastic_compression,
+    plastic_time,
     reduced_mass,
     restitution,
     return_compression,
@@ -47,6 +49,34 @@ class Motion:
     def velocity(self, time):
         """v (T,) [m/s] at times (T,) [s]."""
         return self._speed(np.clip(np.asarray(time, dtype=float), 0.0, self.time_of_parting))
+
+
+@dataclass(frozen=True)
+class RigidMotion:
+    """The same of spheres without elasticity (E* = inf): a quarter of a harmonic oscillation, and rest."""
+
+    largest: float
+    time_of_largest: float
+    restitution: float
+    _velocity: float
+
+    def compression(self, time):
+        """delta (T,) [m] at times (T,) [s]."""
+        time = np.asarray(time, dtype=float)
+        phase = 0.5 * np.pi * np.clip(time / self.time_of_largest, 0.0, 1.0)
+        return np.where(time < 0, self._velocity * time, self.largest * np.sin(phase))
+
+    def velocity(self, time):
+        """v (T,) [m/s] at times (T,) [s]."""
+        phase = 0.5 * np.pi * np.clip(np.asarray(time, dtype=float) / self.time_of_largest, 0.0, 1.0)
+        return self._velocity * np.where(phase < 0.5 * np.pi, np.cos(phase), 0.0)
+
+
+def rigid_motion(velocity, spheres):
+    """RigidMotion of spheres (andrews.Spheres of floats with E* = inf) that collide at velocity [m/s]: with eq 26 and
+    delta_crit = 0 the force is that of a spring, pi R* sigma, until v = 0 (eqs 31, 33)."""
+    largest = float(plastic_compression(velocity, spheres))
+    return RigidMotion(largest, float(plastic_time(velocity, spheres)), 0.0, float(velocity))
 
 
 def motion(velocity, spheres):

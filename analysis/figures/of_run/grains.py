@@ -14,13 +14,13 @@ _LARGEST_VIEW = 2.0  # half height of the view in aggregate sizes: fragments tha
 
 
 @styled
-def grains_figure(run):
+def grains_figure(run, times=None):
     """Figure of the grains at the start, at the largest compression and at the end (those of them that are
     different states), cut along the plane z = 0 through the collision axis, to one scale in grain radii.
-    RunFolderError if there is no state."""
+    times [s]: of the states to show instead, the nearest of each. RunFolderError if there is no state."""
     run.start  # says so when there is no state
     unit = run.derived["grainRadius"]
-    chosen = _chosen_states(run)
+    chosen = _chosen_states(run, times)
     states = [run.states[i] for i in chosen]
     window = _window(states, unit)
     pixel = max((window[1] - window[0]) / _PIXELS_ACROSS, 0.02)
@@ -38,7 +38,9 @@ def grains_figure(run):
 FIGURE, KINDS = grains_figure, (COLLISION.name,)
 
 
-def _chosen_states(run):
+def _chosen_states(run, times):
+    if times is not None:
+        return sorted({run.states.nearest(time) for time in times})
     maximum = maximum_of_run(run)
     middle = [] if maximum is None else [run.states.nearest(maximum.time)]
     return sorted({0, *middle, len(run.states) - 1})

@@ -7,14 +7,12 @@ from ...statistics import mean_and_error
 from ...theory.aggregates import bulk_modulus, cpe_coordination
 from ...theory.andrews import Spheres, restitution, stress_if_rigid
 from . import paper
-from .size_fit import errors_of_design
+from .results import PAPER_RADII
+from .size_fit import errors_of_design, pooled_scatter
 from .velocity_fit import degenerate_curve, fitted_sizes, moduli_errors_of_design, reduced_radius
 
 MEGA = 1e6
-# A24 gives neither errors nor the list of its sizes; with ten seeds at each of these its fit has about the errors
-# that our scatter would give such a set.
-PAPER_RADII = (40, 50, 60, 70, 80)
-# Its moduli are from these sizes and velocities (Figs. 8, 9), also with ten seeds each.
+# A24's moduli are from these sizes and velocities (Figs. 8, 9), also with ten seeds each.
 PAPER_MODULI_RADII, PAPER_VELOCITIES = (40, 80), tuple(10.0 ** (0.1 * i) for i in range(8))
 
 
@@ -42,13 +40,10 @@ def _paper_errors(filling):
     """{name: error} that the paper's line should have, from our scatter of d_max at that velocity; {}
     without."""
     at = filling.points.velocity == filling.size_fit.velocity
-    own, number = filling.points.raw_d_scatter[at], filling.points.number[at]
-    known = np.isfinite(own)
+    scatter, _ = pooled_scatter(filling.points.raw_d_scatter[at] / filling.grain_radius, filling.points.number[at])
     line = paper.line(filling.factor)
-    if not known.any() or line is None or not _is_papers(filling):
+    if scatter is None or line is None or not _is_papers(filling):
         return {}
-    freedom = number[known] - 1
-    scatter = np.sqrt(np.average(own[known] ** 2, weights=freedom)) / filling.grain_radius
     return errors_of_design(scatter, PAPER_RADII, paper.SEEDS, *line)
 
 
@@ -69,6 +64,7 @@ def _size_lines(filling):
         if name == "c1":
             note = f"{fit.runs} runs, R = {_list(fit.radii)}" + ("; " + note if note else "")
         lines.append(Line(quantity, unit, fit.values[name], fit.errors[name], printed[name], expected.get(name), note))
+    lines += _joint_lines(filling)
     for definition, other in list(filling.size_fits.items())[1:]:
         for name in ("offset", "ratio"):
             lines.append(
@@ -84,29 +80,52 @@ def _size_lines(filling):
     return lines
 
 
+def _joint_lines(filling):
+    """(c1, c2) together: the four numbers above are strongly correlated, so that they are one difference, not four."""
+    for definition, joint in filling.differences.items():
+        if joint is not None:
+            name = "c1 and c2 together, chi^2(2)" + (
+                "" if definition == next(iter(filling.differences)) else f", d_max {definition}"
+            )
+            note = (
+                f"p = {joint.chance:.2g}; {joint.chance_estimated:.2g} with the scatter estimated from {joint.freedom} degrees of "
+                "freedom. Both lines with our pooled scatter, A24's with ten seeds at R = 40, 50, 60, 70, 80"
+            )
+            yield Line(name, "", joint.chi_square, note=note)
+
+
+def paper_line_at(filling, radius):
+    """(A24's line, the error that it should have) at a radius [grain radii]; Nones without."""
+    line = paper.line(filling.factor) if _is_papers(filling) else None
+    return (
+        (None, None)
+        if line is None
+        else (line[0] * radius - line[1], _line_error(radius, filling, _paper_errors(filling)))
+    )
+
+
 def _d_max_lines(results, filling):
     unit, points, lines = results.grain_radius, filling.points, []
-    line = paper.line(filling.factor) if _is_papers(filling) else None
-    expected = _paper_errors(filling)
-    for k in np.flatnonzero(points.velocity == filling.size_fit.velocity):
+    at = np.flatnonzero(points.velocity == filling.size_fit.velocity)
+    pooled, freedom = pooled_scatter(points.raw_d_scatter[at] / unit, points.number[at])
+    for k in at:
         radius = points.radius[k] / unit
-        theirs = line[0] * radius - line[1] if line else None
-        error = _line_error(radius, filling, expected)
+        theirs, error = paper_line_at(filling, radius)
         fix = filling.corrections[k]
-        name = f"d_max, R = {radius:g}"
-        lines.append(Line(name, "r", fix.mean, fix.error, theirs, error, f"{fix.seeds} seeds; paper's value: its line"))
-        if fix.corrected is not None:
-            by = "of these seeds" if fix.own_slope else "of all points of this filling"
-            note = (
-                f"slope on the offset {fix.slope:.2f} +- {fix.slope_error:.2f} ({by}), mean offset "
-                f"{fix.mean_offset:+.3f} r"
-            )
+        name, few = f"d_max, R = {radius:g}", fix.seeds - 1
+        lines.append(
+            Line(name, "r", fix.mean, fix.error, theirs, error, f"{fix.seeds} seeds; paper's value: its line", few)
+        )
+        if pooled:
+            note = f"scatter of all sizes, {pooled:.2f} r"
             lines.append(
-                Line(name + ", read off at d(0) = -2 r", "r", fix.corrected, fix.corrected_error, theirs, error, note)
+                Line(name + ", pooled error", "r", fix.mean, pooled / np.sqrt(fix.seeds), theirs, error, note, freedom)
             )
-        lines.append(Line(name + ", less d(0) + 2 r", "r", fix.shifted, fix.shifted_error, theirs, error))
+        lines.append(Line(name + ", less d(0) + 2 r", "r", fix.shifted, fix.shifted_error, theirs, error, freedom=few))
         own = results.runs(filling.factor, points.radius[k], points.velocity[k]).label_d_max / unit
-        lines.append(Line(name + ", by each aggregate's own grains", "r", *mean_and_error(own), theirs, error))
+        lines.append(
+            Line(name + ", by each aggregate's own grains", "r", *mean_and_error(own), theirs, error, freedom=few)
+        )
     return lines
 
 
@@ -116,7 +135,7 @@ def _line_error(radius, filling, expected):
         return None
     radii = np.array(PAPER_RADII, dtype=float)
     scatter = expected["c1"] * np.sqrt(paper.SEEDS * np.sum((radii - radii.mean()) ** 2))
-    return float(np.hypot(scatter / np.sqrt(paper.SEEDS * radii.size), expected["c1"] * (radius - radii.mean())))
+    return np.hypot(scatter / np.sqrt(paper.SEEDS * radii.size), expected["c1"] * (radius - radii.mean()))
 
 
 def _moduli_lines(results, filling):
@@ -128,7 +147,8 @@ def _moduli_lines(results, filling):
             continue
         note = (
             f"{fit.runs} runs, R = {_list(fit.radii)}; delta_offset = {fit.offset / results.grain_radius:.3f} r "
-            f"({fit.offset_source}); chi^2 = {fit.chi_square:.1f} at {fit.freedom} degrees of freedom"
+            f"({fit.offset_source}); chi^2 = {fit.chi_square:.1f}, pairs that obey the model give {fit.expected:.1f} "
+            f"(p = {fit.chance:.2g})"
         )
         if fit.correlation is not None:
             note += f"; correlation of the two {fit.correlation:.2f}"
@@ -145,6 +165,7 @@ def _moduli_lines(results, filling):
                     "; ".join(filter(None, notes)),
                 )
             )
+    lines += _joint_moduli_lines(filling, theirs)
     fit = filling.velocity_fit
     lines += _curve_lines(results, filling)
     radius = reduced_radius(max(fit.radii) * results.grain_radius, fit.offset)
@@ -158,6 +179,37 @@ def _moduli_lines(results, filling):
         )
     )
     return lines
+
+
+def _joint_moduli_lines(filling, theirs):
+    """sigma, E* and delta_offset fitted together. The three hang together along a curve, and E* may have no upper bound, so
+    that errors stand in the notes: no difference in units of them means anything."""
+    fit = filling.joint
+    if fit.reason:
+        return
+    note = (
+        f"{fit.runs} runs of {fit.pairs} pairs, R = {_list(fit.radii)}, {fit.velocities} velocities; chi^2 = "
+        f"{fit.chi_square:.1f}, pairs that obey the model give {fit.expected:.1f} (p = {fit.chance:.2g})"
+    )
+    if fit.paper_excess is not None:
+        note += f"; A24's three values are worse by {fit.paper_excess:.1f} (p = {fit.paper_chance:.2g}, A24's errors not counted)"
+    for i, (quantity, unit, scale) in enumerate(
+        (("sigma_plastic", "MPa", MEGA), ("E*", "MPa", MEGA), ("delta_offset", "r", 1.0))
+    ):
+        low, high = (end / scale for end in fit.limits[i])
+        limits = "" if fit.errors[i] is None else f"+- {fit.errors[i] / scale:.2g}; "
+        limits += f"95 %: {low:.3g} to {high:.3g}" if np.isfinite(high) else f"95 %: {low:.3g} or more, no upper bound"
+        if i < 2 and fit.unbounded[i]:
+            limits += f" (none in {fit.unbounded[i]:.1%} of the resamples)"
+        value = (theirs[0], theirs[1], paper.OFFSET.get(filling.factor))[i]
+        yield Line(
+            f"{quantity}, all three together",
+            unit,
+            fit.values[i] / scale,
+            None,
+            None if value is None else value / scale,
+            note="; ".join(filter(None, (limits, note if i == 0 else ""))),
+        )
 
 
 def _paper_moduli_errors(results, filling):
@@ -204,9 +256,9 @@ def _curve_lines(results, filling):
     theirs = (paper.LEAST_YIELD_STRESS, paper.ELASTIC_FROM, paper.YOUNG_IF_ELASTIC)
     known = filling.factor == 0.4 and _is_papers(filling)
     names = (
-        "least sigma_plastic (rigid plastic, eq 31)",
-        "sigma_plastic from which nothing yields",
-        "E* if nothing yields (eq 30)",
+        "least sigma_plastic (rigid plastic, eq 31; restates c1)",
+        "sigma_plastic from which nothing yields (restates c1)",
+        "E* if nothing yields (eq 30; restates c1)",
     )
     ours = ends(filling.size_fit.ratio)
     slope = (ends(filling.size_fit.ratio * 1.001) - ours) / (0.001 * filling.size_fit.ratio)
@@ -242,7 +294,7 @@ def _constant_lines(results, filling):
             "MPa",
             measured / MEGA,
             None if z_error is None else measured * z_error / z / MEGA,
-            paper.BULK_MODULUS / MEGA if here else None,
+            note=f"the paper's {paper.BULK_MODULUS / MEGA:g} is rounded: no difference" if here else "",
         ),
     ]
     if filling.poisson[0] is not None:

@@ -11,21 +11,19 @@ from ...theory.andrews import (
     plastic_time,
     time_of_largest_compression,
 )
+from .levenberg import least_squares
 
 # sigma and E* where the search begins, in rho v^2 (A24's are at 1,100 and 7,900).
 _GRID = (np.geomspace(10.0, 3e4, 45), np.geomspace(50.0, 1e7, 55))
 _CHUNK = 50  # sets of data compared with the grid at a time, for the memory
-_STEPS = 60
-_DIFFERENCE = 1e-6  # of ln sigma and ln E* in the derivatives
-_ENOUGH = 1e-7  # change of ln sigma and ln E* at which the search ends
 # A limit of the model is taken where its chi square is no higher than that of the best finite moduli by more:
 # towards it chi square is flat, so that the search stops anywhere.
-_NO_WORSE = 2e-3
+NO_WORSE = 2e-3
 
 
 class ModuliSearch:
     """The best (sigma, E*) at fixed velocities [m/s] (K,) and density [kg/m^3] of the aggregates: the best
-    place of a wide grid first, then Levenberg's and Marquardt's method in ln sigma, ln E*."""
+    place of a wide grid first, then levenberg.least_squares in ln sigma, ln E*."""
 
     def __init__(self, velocity, density):
         self.velocity, self.density = velocity, density
@@ -52,7 +50,7 @@ class ModuliSearch:
             model = shape * scale
             factor = np.sum(model * data, axis=1) / np.sum(model**2, axis=1)
             limit = np.sum((factor[:, None] * model - data) ** 2, axis=1)
-            take = (limit <= chi_square + _NO_WORSE) & (factor > 0)
+            take = (limit <= chi_square + NO_WORSE) & (factor > 0)
             moduli[take, i] = np.inf
             moduli[take, 1 - i] = factor[take] ** power
             chi_square = np.where(take, limit, chi_square)
@@ -84,23 +82,4 @@ class ModuliSearch:
         def residuals(place):
             return np.concatenate(self._model(place, 1.0), axis=1) * scale - data
 
-        damping = np.full(len(x), 1e-3)
-        rest = residuals(x)
-        chi_square = np.sum(rest**2, axis=1)
-        for _ in range(_STEPS):
-            slope = np.stack([residuals(x + _DIFFERENCE * unit) - rest for unit in np.eye(2)], axis=2) / _DIFFERENCE
-            normal = np.einsum("bki,bkj->bij", slope, slope)
-            size = np.trace(normal, axis1=1, axis2=2) + 1e-30
-            damped = normal + np.eye(2) * (damping * size)[:, None, None]
-            step = -np.linalg.solve(damped, np.einsum("bki,bk->bi", slope, rest)[:, :, None])[:, :, 0]
-            new = np.clip(x + np.clip(step, -1.0, 1.0), low, high)
-            new_rest = residuals(new)
-            new_chi_square = np.sum(new_rest**2, axis=1)
-            better = new_chi_square < chi_square
-            moved = np.where(better, np.abs(new - x).max(axis=1), 0.0)
-            x, rest = np.where(better[:, None], new, x), np.where(better[:, None], new_rest, rest)
-            chi_square = np.where(better, new_chi_square, chi_square)
-            damping = np.clip(np.where(better, damping / 5.0, damping * 10.0), 1e-12, 1e6)
-            if np.all((moved < _ENOUGH) & (better | (damping > 1e3))):
-                break
-        return x, chi_square
+        return least_squares(residuals, x, low, high)

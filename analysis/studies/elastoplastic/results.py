@@ -10,10 +10,12 @@ from ...statistics import mean_and_error, percentile_error
 from ...theory.aggregates import bulk_modulus, cpe_coordination, poisson_ratio
 from ..collision_points import collision_point
 from . import paper
+from .joint_fit import JointFit, joint_fit
 from .points import Points, parameter_sets, points_of, resampled
-from .size_fit import SizeFit, fit_sizes, size_velocity
+from .size_fit import SizeFit, adjusted_difference, fit_sizes, joint_difference, size_velocity
 from .start_offset import common_slope, correct
 from .velocity_fit import VelocityFit, fit_velocities
+from .zone_fit import COVARIATES, adjust, fit_slope
 
 # What d_max may be taken for, of a table of runs; the first is A24's.
 DEFINITIONS = {
@@ -23,6 +25,9 @@ DEFINITIONS = {
 }
 
 # Columns that are the same for all runs.
+# A24 gives neither errors nor the list of its sizes; its line is taken to have ten seeds at each of these.
+PAPER_RADII = (40, 50, 60, 70, 80)
+
 CONSTANTS = ("grain_radius", "grain_density", "overlap", "pull_off_force")
 
 
@@ -30,8 +35,10 @@ CONSTANTS = ("grain_radius", "grain_density", "overlap", "pull_off_force")
 class Filling:
     """Results at one filling factor: factor, points with resamples (d_max, t_max), size_fits (SizeFit by
     DEFINITIONS), offset [m] and offset_source, velocity_fits (VelocityFit by what is special about it; ''
-    comes first), slope (of d_max on the start's offset, its error), corrections ({index of point: Correction}
-    in grain radii), coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson
+    comes first), joint (JointFit), differences ({definition: size_fit.JointDifference from A24's line, None without}),
+    covariates ({zone_fit.COVARIATES: Slope, None without}), adjusted ([zone_fit.Adjusted] of the sizes), slope (of d_max on
+    the start's offset at the velocity of the size fit, its error), corrections ({index of point there: Correction} in grain
+    radii), coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson
     (value, error), grain_radius [m]."""
 
     factor: float
@@ -41,6 +48,10 @@ class Filling:
     offset: float
     offset_source: str
     velocity_fits: Mapping
+    joint: JointFit
+    differences: Mapping
+    covariates: Mapping
+    adjusted: list
     slope: tuple
     corrections: Mapping
     coordination: tuple
@@ -109,7 +120,10 @@ def _filling(filling, table):
     own = next(iter(DEFINITIONS))
     offset = _offset(filling, size_fits[own], r)
     fits = _velocity_fits(points[own], draws[own], offset, size_fits[own], r, density)
-    slope, corrections = _corrections(points[own], table)
+    velocity = size_fits[own].velocity
+    at_velocity = table[(table.velocity / velocity - 1.0).abs() < 1e-6]
+    slope, corrections = _corrections(points[own], table, velocity)
+    covariates, adjusted = _covariates(at_velocity)
     modulus = float(bulk_modulus(filling, cpe_coordination(filling, r, overlap), r, overlap, force))
     return Filling(
         filling,
@@ -119,9 +133,14 @@ def _filling(filling, table):
         offset[0],
         offset[2],
         fits,
+        joint_fit(points[own], draws[own], r, density, _papers_values(filling)),
+        _differences(filling, size_fits, points, at_velocity, covariates, r),
+        covariates,
+        adjusted,
         slope,
         corrections,
-        mean_and_error(table.inner_coordination),
+        # A pair has the same packings at every velocity.
+        mean_and_error(table.drop_duplicates(["radius", "seed"]).inner_coordination),
         modulus,
         _poisson(fits[""], modulus),
         r,
@@ -154,12 +173,45 @@ def _velocity_fits(points, draws, offset, size_fit, grain_radius, grain_density)
     return fits
 
 
-def _corrections(points, table):
+def _papers_values(filling):
+    values = paper.YIELD_STRESS.get(filling), paper.YOUNG.get(filling), paper.OFFSET.get(filling)
+    return None if None in values else values
+
+
+def _differences(filling, fits, points, table, covariates, grain_radius):
+    """differences of Filling; the last one adjusted for the filling of the zones, from the table at the size fit's velocity."""
+    own, zone = next(iter(fits.values())), next(iter(covariates.values()))
+    line = paper.line(filling)
+    if own.reason is not None or line is None or abs(own.velocity / paper.VELOCITY - 1.0) > 1e-3:
+        return {}
+    design = PAPER_RADII, paper.SEEDS
+    found = {name: joint_difference(fit, points[name], line, *design, grain_radius) for name, fit in fits.items()}
+    if zone is not None:
+        radius, d_max = (table[name].to_numpy() / grain_radius for name in ("radius", "d_max"))
+        away = table.zone_filling.to_numpy() - 1.0
+        found["adjusted for the filling of the zones"] = adjusted_difference(
+            radius, d_max, away, line, *design, zone.total
+        )
+    return found
+
+
+def _covariates(table):
+    """(covariates, adjusted) of Filling from the runs at one velocity."""
+    slopes = {name: fit_slope(table, column) for name, column in COVARIATES.items()}
+    zone = next(iter(slopes.values()))
+    return slopes, [] if zone is None else adjust(table, zone)
+
+
+def _corrections(points, table, velocity):
+    """Of the points at one velocity, where each pair of aggregates occurs once."""
     unit = table.grain_radius.iloc[0]
     offsets = points_of(table, lambda runs: runs.offset)
-    groups = [(o[0] / unit, d[0] / unit) for o, d in zip(offsets.samples, points.samples)]
-    slope = common_slope([group for group in groups if len(group[0]) > 1])
-    return slope, {k: correct(*group, slope) for k, group in enumerate(groups)}
+    groups = {
+        k: (offsets.samples[k][0] / unit, points.samples[k][0] / unit, [f"{k} {seed}" for seed in points.seeds[k]])
+        for k in np.flatnonzero(points.velocity == velocity)
+    }
+    slope = common_slope([group for group in groups.values() if len(group[0]) > 1])
+    return slope, {k: correct(*group[:2], slope) for k, group in groups.items()}
 
 
 def _poisson(fit, modulus):

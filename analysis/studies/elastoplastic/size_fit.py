@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2, f
 
 from ...statistics import resampling_error
 
@@ -105,3 +106,67 @@ def errors_of_design(scatter, radii, seeds, c1, c2):
     by_c1, by_c2 = c2 / (2.0 - c1) ** 2, 1.0 / (2.0 - c1)
     offset = by_c1**2 * variance1 + by_c2**2 * variance2 + 2.0 * by_c1 * by_c2 * both
     return {"c1": variance1**0.5, "c2": variance2**0.5, "offset": offset**0.5, "ratio": 2.0 * variance1**0.5}
+
+
+@dataclass(frozen=True)
+class JointDifference:
+    """(c1, c2) of two lines together: chi_square with 2 degrees of freedom, its chance if the scatter were known
+    (chance), and as it is, estimated with `freedom` degrees of freedom (chance_estimated: the F distribution)."""
+
+    chi_square: float
+    freedom: int
+
+    @property
+    def chance(self):
+        return float(chi2.sf(self.chi_square, 2))
+
+    @property
+    def chance_estimated(self):
+        return float(f.sf(0.5 * self.chi_square, 2, self.freedom))
+
+
+def line_covariance(radii, number, scatter):
+    """Covariance (2, 2) of (c1, c2) of a line through `number` (K,) runs at radii (K,) [grain radii] when one run
+    scatters by `scatter` [grain radii]."""
+    design = np.stack([np.asarray(radii, dtype=float), -np.ones(len(radii))], axis=1)
+    return scatter**2 * np.linalg.inv(design.T @ (design * np.broadcast_to(number, len(radii))[:, None]))
+
+
+def pooled_scatter(own, number):
+    """(standard deviation of one run, its degrees of freedom) from those of K points (nan: one run) with `number` runs."""
+    known = np.isfinite(own) & (np.asarray(number) > 1)
+    freedom = np.asarray(number)[known] - 1
+    return (
+        (float(np.sqrt(np.average(np.square(own[known]), weights=freedom))), int(freedom.sum()))
+        if known.any()
+        else (None, 0)
+    )
+
+
+def joint_difference(fit, points, line, design, seeds, grain_radius):
+    """JointDifference of a SizeFit of points (points.Points) and a paper's line (c1, c2); None where there is no scatter.
+
+    Both lines scatter as ours: one scatter of a run, pooled over the sizes; the paper's line has `seeds` runs at each radius
+    of `design` [grain radii], since it states no errors."""
+    at = points.velocity == fit.velocity
+    scatter, freedom = pooled_scatter(points.raw_d_scatter[at] / grain_radius, points.number[at])
+    if not scatter:
+        return None
+    ours = line_covariance(points.radius[at] / grain_radius, points.number[at], scatter)
+    theirs = line_covariance(design, seeds, scatter)
+    return _difference((fit.values["c1"], fit.values["c2"]), ours + theirs, line, freedom)
+
+
+def adjusted_difference(radius, d_max, covariate, line, design, seeds, total):
+    """JointDifference of A24's line and d_max = c1 R - c2 + b R x by least squares over runs: radius, d_max [grain radii],
+    covariate x (n,); the scatter of a run is that about this fit, A24's, which has no covariate, `total`."""
+    matrix = np.stack([radius, -np.ones(len(radius)), radius * covariate], axis=1)
+    values, rest, _, _ = np.linalg.lstsq(matrix, d_max, rcond=None)
+    freedom = len(radius) - 3
+    ours = rest[0] / freedom * np.linalg.inv(matrix.T @ matrix)[:2, :2]
+    return _difference(values[:2], ours + line_covariance(design, seeds, total), line, freedom)
+
+
+def _difference(values, covariance, line, freedom):
+    away = np.array(values) - np.array(line)
+    return JointDifference(float(away @ np.linalg.solve(covariance, away)), freedom)

@@ -1,15 +1,15 @@
 """How much of d_max comes from where the aggregates' centres of mass lie at the start.
 
 A24 places the centres of the spheres at -+(R + r), so that d should start at -2 r; the centres of mass lie
-off by chance, and d(0) + 2 r is known for every run. As a control variate it takes that part of the scatter
-away: d_max is regressed on it and read off at zero (where a mere shift of the zero of d gives a slope of
-1)."""
+off by chance, and d(0) + 2 r is known for every run. d_max is regressed on it and read off at zero (a mere shift of the
+zero of d gives a slope of 1). The offset is in the paper's d too and has mean 0, so that this can't explain a difference
+of means; how little of the scatter it explains, zone_fit tells."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...statistics import mean_and_error
+from ...statistics import group_means, mean_and_error, pair_weights, resampling_error
 
 FEWEST_FOR_SLOPE = 4
 
@@ -34,19 +34,33 @@ class Correction:
 
 
 def common_slope(groups):
-    """(slope, its error) of d_max on offset, common to groups of (offset (n,), d_max (n,)), each with a mean
-    of its own; (None, None) when too few runs are left for an error."""
-    x = np.concatenate([o - o.mean() for o, _ in groups]) if groups else np.zeros(0)
-    y = np.concatenate([d - d.mean() for _, d in groups]) if groups else np.zeros(0)
-    freedom = x.size - len(groups) - 1
-    square = x @ x
-    # All offsets of each group the same, but for rounding: no slope.
-    largest = max((np.abs(o).max() for o, _ in groups), default=0.0)
-    if freedom < 1 or not square > x.size * (1e-12 * largest) ** 2:
+    """(slope, its error) of d_max on offset, common to groups of (offset (n,), d_max (n,), pairs (n,)), each with a mean
+    of its own; (None, None) when too few runs are left for an error.
+
+    pairs: labels of the pairs of aggregates. Where each occurs once the error is that of least squares; where one recurs,
+    as it does at other velocities, its runs are not independent, and the error is from resampled pairs."""
+    if not groups:
         return None, None
-    slope = x @ y / square
-    rest = y - slope * x
-    return float(slope), float(np.sqrt(rest @ rest / freedom / square))
+    group = np.concatenate([np.full(len(o), k) for k, (o, _, _) in enumerate(groups)])
+    x, y = (np.concatenate([np.asarray(g[i], dtype=float) for g in groups]) for i in (0, 1))
+    pairs = np.concatenate([np.asarray(g[2]).astype(str) for g in groups])
+    freedom = np.unique(pairs).size - len({tuple(sorted(set(g[2]))) for g in groups}) - 1
+    slopes, squares = _slopes(x, y, group, np.ones((1, x.size)))
+    # All offsets of each group the same, but for rounding: no slope.
+    if freedom < 1 or not squares[0] > x.size * (1e-12 * np.abs(x).max()) ** 2:
+        return None, None
+    slope = float(slopes[0])
+    if np.unique(pairs).size < x.size:
+        return slope, resampling_error(_slopes(x, y, group, pair_weights(pairs))[0])
+    rest = (y - slope * x) - group_means(y - slope * x, group, np.ones((1, x.size)))[0]
+    return slope, float(np.sqrt(rest @ rest / (x.size - len(groups) - 1) / squares[0]))
+
+
+def _slopes(x, y, group, weights):
+    """(slope, sum of squares of x) (B,) about the means of the groups."""
+    dx, dy = x - group_means(x, group, weights), y - group_means(y, group, weights)
+    square = np.sum(weights * dx**2, axis=1)
+    return np.sum(weights * dx * dy, axis=1) / np.where(square > 0, square, np.nan), square
 
 
 def correct(offset, d_max, slope_of_filling=(None, None)):
@@ -54,7 +68,7 @@ def correct(offset, d_max, slope_of_filling=(None, None)):
     FEWEST_FOR_SLOPE runs on, with that of the filling (slope, error) otherwise."""
     n = len(d_max)
     own = n >= FEWEST_FOR_SLOPE
-    slope, slope_error = common_slope([(offset, d_max)]) if own else slope_of_filling
+    slope, slope_error = common_slope([(offset, d_max, range(n))]) if own else slope_of_filling
     shifted = d_max - offset
     corrected = corrected_error = None
     if slope is not None:

@@ -3,7 +3,10 @@
 Weighted least squares over all runs of a filling at the sizes that have several velocities. The weight of a
 run is 1/s^2, with s the standard deviation of d_max (of t_max) over the seeds of its point, smoothed over the
 velocities of that size (statistics.smoothed_scatter); `raw` takes each point's own s instead, where it has three
-seeds or more."""
+seeds or more. A24 does not say what its weights are: these are our choice.
+
+The same pairs of aggregates recur at all velocities, and d_max and t_max of a run go together, so that chi square has far
+fewer degrees of freedom than numbers: what it should be is told by resampled pairs that obey the model."""
 
 from dataclasses import dataclass
 
@@ -12,7 +15,11 @@ import numpy as np
 from ...statistics import percentile_error
 from ...theory.andrews import (
     Spheres,
+    elastic_compression,
+    elastic_time,
     largest_compression,
+    plastic_compression,
+    plastic_time,
     stress_if_rigid,
     time_of_largest_compression,
     young_if_elastic,
@@ -26,7 +33,8 @@ FEWEST_VELOCITIES = 3
 class VelocityFit:
     """values (sigma_plastic, E*) [Pa], inf where spheres that never yield (rigid ones) fit as well; their
     errors [Pa], None where too many resamples have no bound; resamples (B, 2); correlation of the logarithms;
-    chi_square of the points' means with its degrees of freedom; radii [grain radii] and number of runs that
+    chi_square of the points' means, what pairs that obey the model would give on average (expected), and the chance of as
+    much or more; radii [grain radii] and number of runs that
     were fitted; offset (delta_offset) [m] used, and where it is from; unbounded: the fraction of resamples
     in which a modulus is inf. All None where `reason` says why nothing was fitted."""
 
@@ -36,7 +44,8 @@ class VelocityFit:
     resamples: np.ndarray = None
     correlation: float = None
     chi_square: float = None
-    freedom: int = None
+    expected: float = None
+    chance: float = None
     radii: tuple = ()
     runs: int = 0
     offset: float = None
@@ -54,6 +63,19 @@ def effective(d_max, t_max, velocity, offset, grain_radius):
     """(delta_max, tau_max): d_max + 2 delta_offset, and t_max less the time until contact, (2 r - 2
     delta_offset)/v (A24 eqs 17, 22; separation of the spheres at the start: 2 r)."""
     return d_max + 2.0 * offset, t_max - 2.0 * (grain_radius - offset) / velocity
+
+
+def predicted(velocity, radius, grain_radius, density, sigma, young, offset):
+    """(d_max [m], t_max [s]) of Andrews's spheres at velocity [m/s] and radius [m] of the aggregates, for density [kg/m^3],
+    moduli [Pa] (inf: none) and delta_offset [m]; arrays that broadcast."""
+    spheres = Spheres(reduced_radius(radius, offset), density, sigma, young)
+    if np.all(np.isinf(young)):
+        delta, tau = plastic_compression(velocity, spheres), plastic_time(velocity, spheres)
+    elif np.all(np.isinf(sigma)):
+        delta, tau = elastic_compression(velocity, spheres), elastic_time(velocity, spheres)
+    else:
+        delta, tau = largest_compression(velocity, spheres), time_of_largest_compression(velocity, spheres)
+    return delta - 2.0 * offset, tau + 2.0 * (grain_radius - offset) / velocity
 
 
 def fitted_sizes(points):
@@ -91,6 +113,12 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
     moduli, chi_square = (result[0] for result in fit(used.d_max[None], used.t_max[None], offset))
     shifts = np.broadcast_to(resampled_offset, len(resampled[0]))
     ends, _ = fit(resampled[0][:, mask], resampled[1][:, mask], shifts[:, None])
+    null = fit(
+        *_obeying(
+            used, (resampled[0][:, mask], resampled[1][:, mask]), moduli, offset, filling * grain_density, grain_radius
+        ),
+        offset,
+    )[1]
     sane = ends[np.all(np.isfinite(ends), axis=1)]
     return VelocityFit(
         filling=filling,
@@ -98,7 +126,8 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
         resamples=ends,
         chi_square=float(chi_square),
         errors=tuple(percentile_error(ends[:, i]) for i in (0, 1)),
-        freedom=2 * len(used) - 2,
+        expected=float(null.mean()),
+        chance=float(np.mean(null >= chi_square)),
         correlation=float(np.corrcoef(np.log(sane.T))[0, 1]) if len(sane) > 2 else None,
         radii=tuple(np.unique(used.radius) / grain_radius),
         runs=int(used.number.sum()),
@@ -106,6 +135,13 @@ def fit_velocities(points, resampled, offset, resampled_offset, source, grain_ra
         offset_source=source,
         unbounded=1.0 - len(sane) / len(ends),
     )
+
+
+def _obeying(points, resampled, moduli, offset, density, grain_radius):
+    """(d_max, t_max) (B, K) [m, s] that obey the model with these moduli and scatter as the resampled pairs do."""
+    model = predicted(points.velocity, points.radius, grain_radius, density, *moduli, offset)
+    means = points.d_max, points.t_max
+    return tuple(draws - mean + obeyed for draws, mean, obeyed in zip(resampled, means, model))
 
 
 def _scatter(points, own, smooth, raw):

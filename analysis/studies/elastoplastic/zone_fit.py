@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...statistics import RESAMPLES, pair_weights, resampling_error
+from ...statistics import RESAMPLES, group_means, pair_weights, resampling_error
 
 FEWEST = 4  # runs of a filling that are left beyond its sizes and the slope
 COVARIATES = {
@@ -75,7 +75,7 @@ def fit_slope(table, covariate="zone_filling"):
     sizes = np.unique(group).size
     if np.isnan(x).any() or len(x) - sizes - 1 < FEWEST:
         return None
-    dx, dy = (values - _by_group(values, group, np.ones((1, len(x))))[0] for values in (x, y))
+    dx, dy = (values - group_means(values, group, np.ones((1, len(x))))[0] for values in (x, y))
     if not np.abs(dx).max() > 1e-9 * np.abs(x).max():
         return None
     weights = pair_weights([f"{g} {s}" for g, s in zip(group, table.seed)], RESAMPLES)
@@ -128,17 +128,8 @@ def adjust(table, slope):
     return found
 
 
-def _by_group(values, group, weights):
-    """Weighted mean (B, n) of values (n,) over each one's group, for weights (B, n)."""
-    out = np.empty(weights.shape)
-    for g in np.unique(group):
-        own = group == g
-        out[:, own] = (weights[:, own] @ values[own] / weights[:, own].sum(axis=1))[:, None]
-    return out
-
-
 def _moments(x, y, group, weights):
     """(slope, correlation) (B,) of y on x about the means of the groups."""
-    dx, dy = x - _by_group(x, group, weights), y - _by_group(y, group, weights)
+    dx, dy = x - group_means(x, group, weights), y - group_means(y, group, weights)
     xx, yy, xy = (np.sum(weights * product, axis=1) for product in (dx * dx, dy * dy, dx * dy))
     return xy / xx, xy / np.sqrt(xx * yy)

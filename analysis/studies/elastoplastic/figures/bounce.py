@@ -35,7 +35,7 @@ def outcome_figure(results):
     colours = size_colours(b.radius for b in own)
     for number, (radius, colour) in enumerate(colours.items()):
         series = [b for b in own if b.radius == radius]
-        x = [b.velocity * 1.012 ** (number - 0.5 * len(colours)) for b in series]
+        x = [b.velocity * 1.02 ** (number - 0.5 * len(colours)) for b in series]
         _series(axes[:, 0], x, series, colour, f"$R$ = {radius:g} $r$")
     for number, (other, colour) in enumerate(zip(results.by_filling, _FILLING_COLOURS)):
         series = _at_size_velocity(results, other)
@@ -158,9 +158,9 @@ def _energy_figure(results, choose, xlabel):
     for row, filling in zip(axes, fillings):
         chosen, names, fixed = choose(results, filling)
         _stack(row[0], [_all_outcomes(b) for b in chosen], names)
-        apart = [(p, f"{name}\n{p.seeds} {p.outcome[:6]}.") for b, name in zip(chosen, names) for p in b.phases]
+        apart = [(p, f"{name}, {p.seeds} {p.outcome}") for b, name in zip(chosen, names) for p in b.phases]
         _stack(row[1], [phases.parting for phases, _ in apart], [name for _, name in apart])
-        row[1].tick_params(axis="x", labelsize=5.5 if len(apart) > 12 else 7)
+        row[1].tick_params(axis="x", labelsize=8, rotation=90)
         for place, title in zip(row, ("start to $t_{max}$", "$t_{max}$ to end, by outcome")):
             place.set_xlabel(xlabel)
             place.set_title(title, loc="left", fontsize=11)

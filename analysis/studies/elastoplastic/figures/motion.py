@@ -4,16 +4,19 @@
 import numpy as np
 
 from ....figures.of_run.forces import forces_figure
+from ....figures.of_run.grains import grains_figure
 from ....figures.style import NANO, styled
 from ....runs.table import run_folder
 from ....theory.andrews import Spheres
-from ....theory.andrews_motion import motion
+from ....theory.andrews_motion import motion, rigid_motion
 from ...definition import StudyFigure
 from .. import paper
 from ..velocity_fit import reduced_radius
 from .common import MEGA, OURS, PAPER, filling_text, legend, letter, main_filling, panels
 
 _RED, _GREY, _ENOUGH = "#c62828", "0.6", 3
+_FORCE_TIMES = (250e-9, 300e-9, 350e-9, 400e-9)  # s, A24 Fig. 13
+_SNAPSHOT_TIMES = tuple(k * 100e-9 for k in range(6))  # s, A24 Fig. 3
 
 
 def shown_rows(results):
@@ -79,7 +82,8 @@ def andrews_figure(results):
         last = max(last, history["time"][-1])
     for moduli, offset, colour, style, label in _models(filling, results):
         density = filling.factor * results.grain_density
-        model = motion(row.velocity, Spheres(reduced_radius(row.radius, offset), density, *moduli))
+        spheres = Spheres(reduced_radius(row.radius, offset), density, *moduli)
+        model = (motion if np.isfinite(moduli[1]) else rigid_motion)(row.velocity, spheres)
         contact = 2.0 * (results.grain_radius - offset) / row.velocity
         time = np.linspace(0.0, last, 1500)
         place.plot(
@@ -88,7 +92,7 @@ def andrews_figure(results):
             style,
             color=colour,
             linewidth=1.8,
-            label=f"Andrews, {label}: {moduli[0] / MEGA:.3g}, {moduli[1] / MEGA:.3g} MPa",
+            label=f"Andrews, {label}: {moduli[0] / MEGA:.3g}, {moduli[1] / MEGA:.3g} MPa, {offset / results.grain_radius:.2f} $r$",
         )
     place.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
     place.set_xlabel("time $t$  [ns]")
@@ -100,25 +104,36 @@ def andrews_figure(results):
 
 def _models(filling, results):
     """(moduli, offset [m], colour, style, label) of the models to draw."""
-    fit = filling.velocity_fit
-    if fit.reason is None and np.all(np.isfinite(fit.values)):
-        yield fit.values, fit.offset, OURS, "-", "our fit"
+    fit, unit = filling.joint, results.grain_radius
+    if fit.reason is None and np.isfinite(fit.values[0]):
+        yield fit.values[:2], fit.values[2] * unit, OURS, "-", "our fit"
     if filling.factor in paper.YOUNG:
-        yield (
-            (paper.YIELD_STRESS[filling.factor], paper.YOUNG[filling.factor]),
-            paper.OFFSET[filling.factor] * results.grain_radius,
-            PAPER,
-            "--",
-            "A24's fit",
-        )
+        moduli = paper.YIELD_STRESS[filling.factor], paper.YOUNG[filling.factor]
+        yield moduli, paper.OFFSET[filling.factor] * unit, PAPER, "--", "A24's fit"
 
 
 def chains_figure(results):
-    """Contact forces of the first seed shown, around the largest compression: Fig. 13."""
-    return forces_figure(run_folder(shown_rows(results)[0]))
+    """Contact forces of the first seed shown, in compression and in tension: Fig. 13. At A24's times where the scene is A24's,
+    otherwise at the same fractions of t_max."""
+    row = shown_rows(results)[0]
+    return forces_figure(run_folder(row), _FORCE_TIMES if _is_papers_scene(row) else None)
+
+
+def snapshots_figure(results):
+    """Grains of the first seed shown, every 100 ns from 0 to 500 ns where the scene is A24's, otherwise at the start, at the
+    largest compression and at the end: Fig. 3."""
+    row = shown_rows(results)[0]
+    return grains_figure(run_folder(row), _SNAPSHOT_TIMES if _is_papers_scene(row) else None)
+
+
+def _is_papers_scene(row):
+    """Whether a run is of the scene of A24's Figs. 3, 4, 12, 13: filling 0.4, R = 80 r, 10^0.5 m/s."""
+    scene = round(row.filling, 6), round(row.radius / row.grain_radius, 3)
+    return scene == (0.4, 80.0) and abs(row.velocity / paper.VELOCITY - 1.0) < 1e-3
 
 
 FIGURES = (
+    StudyFigure("fig03_snapshots", "A24 Fig. 3: snapshots of a collision.", snapshots_figure, vector=False),
     StudyFigure(
         "fig04_motion",
         "A24 Fig. 4: compression length and mutual velocity, all seeds (first in red).",
@@ -129,5 +144,5 @@ FIGURES = (
         "A24 Fig. 12: mutual velocity beside Andrews's model with its return phase.",
         andrews_figure,
     ),
-    StudyFigure("fig13_forces", "A24 Fig. 13: contact forces around the largest compression.", chains_figure),
+    StudyFigure("fig13_forces", "A24 Fig. 13: contact forces, compression and tension.", chains_figure, vector=False),
 )

@@ -1,14 +1,17 @@
-"""d_max, delta_max and tau_max against size: A24 Figs. 5, 6, 7."""
+"""d_max and t_max against size: A24 Figs. 5, 6, 7. What was measured is plotted, and each curve has its own delta_offset:
+delta_max and tau_max of two papers with two offsets don't belong on one axis."""
 
 import numpy as np
 
 from ....figures.style import NANO, styled
-from ....theory.andrews import Spheres, elastic_time, plastic_time, stress_if_rigid, young_if_elastic
+from ....theory.andrews import stress_if_rigid, young_if_elastic
 from ...definition import StudyFigure
 from .. import paper
-from ..velocity_fit import effective, reduced_radius
+from ..lines import paper_line_at
+from ..velocity_fit import predicted
 from .common import (
     ELASTIC,
+    MEGA,
     OURS,
     PAPER,
     RIGID,
@@ -20,14 +23,12 @@ from .common import (
     of_other_filling,
     panels,
     scatter_of_seeds,
+    size_colours,
 )
-
-_RED = "#c62828"
 
 
 def size_points(results, filling):
-    """(radius [grain radii], d_max (n,) [grain radii], t_max (n,) [s]) of the sizes at the velocity of the
-    size fit."""
+    """(radius [grain radii], d_max (n,) [grain radii], t_max (n,) [s]) of the sizes at the velocity of the size fit."""
     points = filling.points
     for k in np.flatnonzero(points.velocity == filling.size_fit.velocity):
         d_max, t_max = points.samples[k]
@@ -36,113 +37,109 @@ def size_points(results, filling):
 
 @styled
 def size_figure(results, filling):
-    """d_max against R with the line, and delta_max against R* where there is an offset: Figs. 5, 6."""
-    fit, unit = filling.size_fit, results.grain_radius
+    """(a) d_max against R with both lines, (b) the same less A24's line, with the error that line should have: Figs. 5, 6."""
+    fit = filling.size_fit
     theirs = paper.line(filling.factor) if is_papers_velocity(fit.velocity) else None
     sizes = list(size_points(results, filling))
     figure, axes = panels(1, 2)
     left, right = axes[0]
-    radii = np.array([0.0, 1.08 * max(max(radius for radius, *_ in sizes), 80.0 if theirs else 0.0)])
+    radii = np.linspace(0.0, 1.08 * max(max(radius for radius, *_ in sizes), 80.0 if theirs else 0.0), 60)
+    colours = size_colours(radius for radius, *_ in sizes)
     for radius, d_max, _ in sizes:
-        scatter_of_seeds(left, radius, d_max, _RED)
+        scatter_of_seeds(left, radius, d_max, colours[radius])
     if fit.reason is None:
-        left.plot(
-            radii,
-            fit.values["c1"] * radii - fit.values["c2"],
-            color=OURS,
-            label=f"fit: $c_1$ = {fit.values['c1']:.4f}, $c_2$ = {fit.values['c2']:.3f}",
-        )
+        label = f"fit: $c_1$ = {fit.values['c1']:.4f}, $c_2$ = {fit.values['c2']:.3f}"
+        left.plot(radii, fit.values["c1"] * radii - fit.values["c2"], color=OURS, label=label)
     if theirs:
-        left.plot(
-            radii,
-            theirs[0] * radii - theirs[1],
-            "--",
-            color=PAPER,
-            label=f"A24: $c_1$ = {theirs[0]:.4f}, $c_2$ = {theirs[1]:.3f}",
-        )
-    left.set_xlabel("aggregate radius $R$  [grain radii]")
-    left.set_ylabel("largest compression length $d_{max}$  [grain radii]")
-    if filling.offset is not None:
-        _draw_effective(right, filling, theirs, sizes, unit, radii)
+        label = f"A24: $c_1$ = {theirs[0]:.4f}, $c_2$ = {theirs[1]:.3f}"
+        left.plot(radii, theirs[0] * radii - theirs[1], "--", color=PAPER, label=label)
+        _draw_difference(right, filling, theirs, sizes, radii[radii > 30.0], colours)
     else:
         right.set_axis_off()
+    left.set_ylabel("largest compression length $d_{max}$  [grain radii]")
+    left.set_xlim(0.0, None)
+    left.set_ylim(min(0.0, left.get_ylim()[0]), None)
     for place in (left, right):
-        place.set_xlim(0.0, None)
-        place.set_ylim(min(0.0, place.get_ylim()[0]), None)
-        legend(place, loc="upper left")
+        place.set_xlabel("aggregate radius $R$  [grain radii]")
+        legend(place, loc="upper left", fontsize=9)
     letter(axes, filling_text(filling.factor, fit.velocity))
     return figure
 
 
-def _draw_effective(axes, filling, theirs, sizes, unit, radii):
-    offset = filling.offset / unit
+def _draw_difference(axes, filling, theirs, sizes, radii, colours):
+    """d_max less A24's line."""
     for radius, d_max, _ in sizes:
-        scatter_of_seeds(axes, reduced_radius(radius, offset), d_max + 2.0 * offset, _RED)
-    half = 0.5 * radii
+        scatter_of_seeds(axes, radius, d_max - (theirs[0] * radius - theirs[1]), colours[radius])
+    error = paper_line_at(filling, radii)[1]
+    axes.axhline(0.0, color=PAPER, linestyle="--", label="A24's line")
+    if error is not None:
+        axes.fill_between(
+            radii, -error, error, color=PAPER, alpha=0.15, linewidth=0, label="its error, with our scatter"
+        )
     if filling.size_fit.reason is None:
-        ratio = filling.size_fit.values["ratio"]
-        axes.plot(
-            half, ratio * half, color=OURS, label=f"fit: {ratio:.4f} $R^*$, $\\delta_{{offset}}$ = {offset:.3f} $r$"
-        )
-    if theirs:
-        axes.plot(
-            half,
-            2.0 * theirs[0] * half,
-            "--",
-            color=PAPER,
-            label=f"A24: {paper.RATIO[filling.factor]:g} $R^*$, $\\delta_{{offset}}$ = "
-            f"{paper.OFFSET[filling.factor]:g} $r$",
-        )
-    axes.set_xlabel("reduced radius $R^*$  [grain radii]")
-    axes.set_ylabel("largest compression $\\delta_{max}$  [grain radii]")
+        own = filling.size_fit.values
+        axes.plot(radii, (own["c1"] - theirs[0]) * radii - own["c2"] + theirs[1], color=OURS, label="fit")
+    for each in filling.adjusted:
+        value = each.adjusted - (theirs[0] * each.radius - theirs[1])
+        label = "adjusted for the zones that meet" if each is filling.adjusted[0] else None
+        options = {"fmt": "s", "capsize": 3, "markerfacecolor": "none", "color": OURS, "label": label}
+        axes.errorbar([each.radius + 1.2], [value], yerr=[each.adjusted_error], **options)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.35 * (high - low))
+    axes.set_ylabel("$d_{max}$ less A24's line  [grain radii]")
 
 
 @styled
 def time_figure(results, filling):
-    """tau_max against R* with the elastic and the rigid-plastic limit of the ratio delta_max/R*: Fig. 7."""
+    """t_max against R with fits and limits, each with the delta_offset that belongs to it: Fig. 7."""
     fit, unit = filling.size_fit, results.grain_radius
-    figure, axes = panels(1, 1, 6.0, 4.6)
+    figure, axes = panels(1, 1, 6.4, 4.8)
     place = axes[0, 0]
-    largest = 0.0
-    for radius, d_max, t_max in size_points(results, filling):
-        tau = effective(d_max * unit, t_max, fit.velocity, filling.offset, unit)[1]
-        half = reduced_radius(radius, filling.offset / unit)
-        scatter_of_seeds(place, half, tau * NANO, _RED)
-        largest = max(largest, half)
-    line = np.array([0.0, 1.08 * largest])
-    if fit.ratio is not None:
-        _draw_limits(place, line, fit.ratio, fit.velocity, filling, results, unit, "our")
-    if filling.factor in paper.RATIO and is_papers_velocity(fit.velocity):
-        _draw_limits(place, line, paper.RATIO[filling.factor], fit.velocity, filling, results, unit, "A24's")
+    sizes = list(size_points(results, filling))
+    colours = size_colours(radius for radius, *_ in sizes)
+    for radius, _, t_max in sizes:
+        scatter_of_seeds(place, radius, t_max * NANO, colours[radius])
+    radii = np.linspace(0.0, 1.08 * max(radius for radius, *_ in sizes), 30)
+    for moduli, offset, colour, style, label in _models(results, filling):
+        density = filling.factor * results.grain_density
+        _, t = predicted(fit.velocity, radii * unit, unit, density, *moduli, offset)
+        place.plot(radii, t * NANO, style, color=colour, label=label)
     place.set_xlim(0.0, None)
     place.set_ylim(0.0, None)
-    place.set_xlabel("reduced radius $R^*$  [grain radii]")
-    place.set_ylabel("time to the largest compression $\\tau_{max}$  [ns]")
-    legend(place)
+    place.set_xlabel("aggregate radius $R$  [grain radii]")
+    place.set_ylabel("time of the largest compression $t_{max}$  [ns]")
+    legend(place, fontsize=8.5)
     letter(axes, filling_text(filling.factor, fit.velocity))
     return figure
 
 
-def _draw_limits(axes, line, ratio, velocity, filling, results, unit, whose):
-    density = filling.factor * results.grain_density
-    young = young_if_elastic(ratio, velocity, density)
-    sigma = stress_if_rigid(ratio, velocity, density)
-    style = "--" if whose == "A24's" else "-"
-    for time, colour, name in ((elastic_time, ELASTIC, "elastic"), (plastic_time, RIGID, "rigid plastic")):
-        slope = float(time(velocity, Spheres(1.0, density, sigma, young)))
-        axes.plot(
-            line,
-            slope * line * unit * NANO,
-            style,
-            color=colour,
-            label=f"{name}, {whose} $\\delta_{{max}}/R^*$ = {ratio:.3g}",
-        )
+def _models(results, filling):
+    """(moduli [Pa], offset [m], colour, style, label)."""
+    fit, unit, factor = filling.size_fit, results.grain_radius, filling.factor
+    density = factor * results.grain_density
+    if filling.joint.reason is None:
+        *moduli, offset = filling.joint.values
+        text = f"our fit to all runs: {moduli[0] / MEGA:.3g}, {moduli[1] / MEGA:.3g} MPa, {offset:.2f} $r$"
+        yield moduli, offset * unit, OURS, "-", text
+    if factor in paper.YOUNG and is_papers_velocity(fit.velocity):
+        moduli, offset = (paper.YIELD_STRESS[factor], paper.YOUNG[factor]), paper.OFFSET[factor]
+        text = f"A24's fit: {moduli[0] / MEGA:g}, {moduli[1] / MEGA:g} MPa, {offset:g} $r$"
+        yield moduli, offset * unit, PAPER, "--", text
+    ratios = [(fit.ratio, filling.offset, "-", "our")]
+    if factor in paper.RATIO and is_papers_velocity(fit.velocity):
+        ratios.append((paper.RATIO[factor], paper.OFFSET[factor] * unit, ":", "A24's"))
+    for ratio, offset, style, whose in ratios:
+        if ratio is not None and offset is not None:
+            name = f"{whose} $\\delta_{{max}}/R^*$ = {ratio:.3g}, {offset / unit:.2f} $r$"
+            yield (np.inf, young_if_elastic(ratio, fit.velocity, density)), offset, ELASTIC, style, f"elastic, {name}"
+            sigma = stress_if_rigid(ratio, fit.velocity, density)
+            yield (sigma, np.inf), offset, RIGID, style, f"rigid plastic, {name}"
 
 
 FIGURES = (
     StudyFigure("fig05_size", "A24 Fig. 5: largest compression against size.", of_main_filling(size_figure, False)),
     StudyFigure("fig06_size", "A24 Fig. 6: the same at the other filling.", of_other_filling(size_figure, False)),
     StudyFigure(
-        "fig07_time", "A24 Fig. 7: time to the largest compression against size.", of_main_filling(time_figure)
+        "fig07_time", "A24 Fig. 7: time of the largest compression against size.", of_main_filling(time_figure)
     ),
 )

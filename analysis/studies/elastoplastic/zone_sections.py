@@ -1,0 +1,107 @@
+"""What the packings explain of d_max, and what they predicted of it: sections of the report."""
+
+from ...report.section import Column, Section
+from . import prediction
+
+
+def zone_sections(results):
+    """Sections: what each covariate explains, the means adjusted for the filling of the zones, predictions beside runs."""
+    rows = tuple(_explained(results))
+    if rows:
+        yield Section("what explains the scatter of d_max", _EXPLAINED, rows, intro=_EXPLAINED_INTRO)
+        yield Section(
+            "d_max adjusted for the filling of the zones", _ADJUSTED, tuple(_adjusted(results)), intro=_ADJUSTED_INTRO
+        )
+    predictions = prediction.read()
+    if predictions is not None:
+        compared = prediction.compare(predictions, results.table)
+        yield Section(
+            "d_max predicted beforehand", _PREDICTED, tuple(vars(each) for each in compared), intro=_PREDICTED_INTRO
+        )
+
+
+_EXPLAINED_INTRO = (
+    "At the velocity of the size fit, about the means of each size; errors by resampling pairs. explained: fraction of the "
+    "variance of d_max, less what a covariate of no use would take (it can be negative). worth: how many seeds without the "
+    "covariate one with it is worth. slope: of d_max on R times the covariate (on the offset itself). The zone was chosen on "
+    "these pairs: what it explains of them flatters it."
+)
+_ADJUSTED_INTRO = (
+    "Lengths in grain radii. zone: mean filling of the two zones that meet, less that of the aggregates. adjusted: read off "
+    "where both are equal, with the common slope and the common scatter about it."
+)
+_PREDICTED_INTRO = (
+    "predictions.csv, written before these pairs were run, beside their runs as far as they are in the table. within: in the "
+    "95 % interval; gain: mean square error without the covariate over that with it; bias: measured less predicted."
+)
+_EXPLAINED = (
+    Column("filling", lambda b: f"{b['filling']:g}"),
+    Column("covariate", lambda b: b["covariate"]),
+    Column("runs", lambda b: str(b["runs"])),
+    Column("correlation", lambda b: f"{b['correlation'][0]:.2f} +- {b['correlation'][1]:.2f}"),
+    Column("by size", lambda b: b["by_size"]),
+    Column("explained", lambda b: f"{100 * b['explained']:.0f} %"),
+    Column("slope", lambda b: f"{b['slope'][0]:.3f} +- {b['slope'][1]:.3f}"),
+    Column("scatter [r]", lambda b: f"{b['scatter']:.3f} of {b['total']:.3f}"),
+    Column("worth", lambda b: f"{b['worth']:.1f}"),
+)
+_ADJUSTED = (
+    Column("filling", lambda b: f"{b['filling']:g}"),
+    Column("R [r]", lambda b: f"{b['radius']:g}"),
+    Column("seeds", lambda b: str(b["seeds"])),
+    Column(
+        "zone [%]",
+        lambda b: f"{100 * b['zone']:+.1f}" + (f" +- {100 * b['zone_error']:.1f}" if b["zone_error"] else ""),
+    ),
+    Column("d_max", lambda b: f"{b['mean']:.3f} +- {b['error']:.3f}"),
+    Column("adjusted", lambda b: f"{b['adjusted']:.3f} +- {b['adjusted_error']:.3f}"),
+    Column("paper's line", lambda b: "-" if b["paper"] is None else f"{b['paper']:.3f} +- {b['paper_error']:.3f}"),
+    Column("diff*", lambda b: _both(b, "mean", "error")),
+    Column("adjusted diff*", lambda b: _both(b, "adjusted", "adjusted_error")),
+)
+_PREDICTED = (
+    Column("filling", lambda b: f"{b['filling']:g}"),
+    Column("R [r]", lambda b: f"{b['radius']:g}"),
+    Column("predicted", lambda b: str(b["predicted"])),
+    Column("run", lambda b: str(b["run"])),
+    Column("within", lambda b: "-" if b["within"] is None else str(b["within"])),
+    Column("gain", lambda b: "-" if b["gain"] is None else f"{b['gain']:.2f}"),
+    Column("correlation", lambda b: "-" if b["correlation"] is None else f"{b['correlation']:.2f}"),
+    Column("bias [r]", lambda b: "-" if b["bias"] is None else f"{b['bias']:+.3f}"),
+)
+
+
+def _explained(results):
+    for factor, filling in results.by_filling.items():
+        sizes = ", ".join(f"{a.correlation:.2f}" if a.correlation is not None else "-" for a in filling.adjusted)
+        for number, (name, slope) in enumerate(filling.covariates.items()):
+            if slope is None:
+                continue
+            yield {
+                "filling": factor,
+                "covariate": name,
+                "runs": slope.runs,
+                "correlation": (slope.correlation, slope.correlation_error),
+                "by_size": "" if number else sizes,
+                "explained": slope.explained,
+                "slope": (slope.slope, slope.slope_error),
+                "scatter": slope.scatter,
+                "total": slope.total,
+                "worth": slope.worth,
+            }
+
+
+def _adjusted(results):
+    from .lines import paper_line_at
+
+    for factor, filling in results.by_filling.items():
+        for each in filling.adjusted:
+            theirs, error = paper_line_at(filling, each.radius)
+            yield {"filling": factor, **vars(each), "paper": theirs, "paper_error": error}
+
+
+def _both(row, mean, error):
+    if row["paper"] is None:
+        return "-"
+    both = (row[error] ** 2 + (row["paper_error"] or 0.0) ** 2) ** 0.5
+    return f"{(row[mean] - row['paper']) / both:+.1f}"
