@@ -93,6 +93,12 @@ def pair_weights(pairs, resamples=RESAMPLES, random_seed=RANDOM_SEED):
     return np.random.default_rng(random_seed).exponential(size=(resamples, names.size))[:, index]
 
 
+def stretch(pairs, fitted):
+    """Factor of a standard error from pair_weights where `fitted` numbers were fitted to so many pairs: without it the errors
+    of few pairs come out too small. For a mean (fitted = 1) it is that of weighted_deviations."""
+    return float(np.sqrt((pairs + 1.0) / (pairs - fitted)))
+
+
 def group_means(values, group, weights):
     """Weighted means (B, n) of values (n,) over each one's group, labels (n,), for weights (B, n)."""
     out = np.empty(weights.shape)

@@ -29,12 +29,8 @@ def at_end(channel):
     return f"{channel}_at_end"
 
 
+# Columns without gaps come last, so that a row that was cut short is noticed.
 PARTITION_COLUMNS = (
-    *(
-        Column(name(c), "K(0)", f"{LABELS[c]}, change from the start to {when} (kinetic: what is left)", absent=0.0)
-        for name, when in ((at_maximum, "t_max"), (at_end, "the end"))
-        for c in CHANNELS
-    ),
     *(
         Column(
             at_return(c),
@@ -43,6 +39,11 @@ PARTITION_COLUMNS = (
             gaps=True,
             absent=np.nan,
         )
+        for c in CHANNELS
+    ),
+    *(
+        Column(name(c), "K(0)", f"{LABELS[c]}, change from the start to {when} (kinetic: what is left)", absent=0.0)
+        for name, when in ((at_maximum, "t_max"), (at_end, "the end"))
         for c in CHANNELS
     ),
 )

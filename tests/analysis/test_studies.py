@@ -91,7 +91,7 @@ def test_a_study_of_its_own_folder_is_run(tiny, capsys):
     answer = json.loads(said.out)
     assert answer["sections"] == [{"heading": "sticking", "rows": [{"velocity": 3.0, "sticking": 0.75}]}]
     assert answer["provenance"]["runs"] == 4 and "late: has not ended, left out" in said.err
-    names = {"comparison.md", "comparison.json", "runs.csv", "sticking.png"}
+    names = {"comparison.md", "comparison.json", "runs.csv", "sticking.png", "sticking.pdf"}
     assert {file.name for file in (tiny / "out").iterdir()} == names
     page = (tiny / "out" / "comparison.md").read_text()
     assert page.startswith("# Sticking against velocity\n") and "| 3 | 0.75 |" in page and "(sticking.png)" in page

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pandas
 import pytest
 from made_collisions import MODULI, line_of, made_run
 from written_runs import RADIUS
@@ -81,17 +82,27 @@ def lines(answer, heading):
 
 
 def points(answer):
-    """Rows of the two tables with a row a parameter set, joined."""
-    ends, energy = (
-        section["rows"] for section in answer["sections"] if section["heading"].startswith(("how", "where"))
-    )
-    assert [row["velocity"] for row in ends] == [row["velocity"] for row in energy]
-    return [{**one, **other} for one, other in zip(ends, energy)]
+    """Rows of the table of outcomes, with those of the energy by outcome."""
+    (ends,) = (s["rows"] for s in answer["sections"] if s["heading"] == "how collisions end")
+    (energy,) = (s["rows"] for s in answer["sections"] if s["heading"] == "where the energy goes")
+    found = []
+    for row in ends:
+        own = [e for e in energy if (e["radius"], e["velocity"]) == (row["radius"], row["velocity"])]
+        assert {e["outcome"]: e["seeds"] for e in own} == row["outcomes"]
+        found.append({**row, "energy": {e["outcome"]: e for e in own}})
+    assert sum(len(row["energy"]) for row in found) == len(energy)
+    return found
 
 
 def rows(folder):
     """Rows of the table of runs as dicts."""
     return read_table(folder / "runs.csv", COLUMNS)[0].to_dict("records")
+
+
+def rows_of(folder):
+    """{seed: row} of the table of the runs in a folder."""
+    table = pandas.read_csv(io.StringIO(analyse(*folder.iterdir(), "--format", "csv").stdout), comment="#")
+    return {row["seed"]: row for row in table.to_dict("records")}
 
 
 def test_the_truth_is_recovered_within_the_stated_errors(answer):
@@ -121,9 +132,12 @@ def test_rows_points_and_ledger(answer, gallery):
         )
     assert len(points(answer)) == 6
     for point in points(answer):
-        assert point["sticking"][0] == 0.25 and point["sticking"][1] < 0.25 < point["sticking"][2]
-        assert point["compression"]["kinetic"][0] == pytest.approx(-1.0, abs=1e-3)
+        low, high, lowest, highest = point["sticking"]
+        assert low == high == 0.25 and lowest < 0.25 < highest and set(point["energy"]) == {"sticking", "bouncing"}
+        for energy in point["energy"].values():
+            assert energy["compression"]["kinetic"][0] == pytest.approx(-1.0, abs=1e-3)
         assert point["restitution"][0] == pytest.approx((0.75 * point["bulk"][0]) ** 0.5, rel=0.01)
+        assert point["restitution"][2] < point["restitution"][0] == point["restitution"][1] < point["restitution"][3]
 
 
 def test_runs_that_still_part_at_the_end_are_undecided(tmp_path):
@@ -131,13 +145,16 @@ def test_runs_that_still_part_at_the_end_are_undecided(tmp_path):
         made_run(tmp_path / f"s{seed}", 80.0, 10**0.5, seed, 0.0, sticks=True, settles=seed != 3)
     (point,) = points(json.loads(analyse("--json", *tmp_path.iterdir()).stdout))
     assert point["outcomes"] == {"sticking": 2, "undecided": 1}
-    assert point["sticking"] == [1.0, wilson(2, 3)[0], 1.0]
+    assert point["sticking"] == [2 / 3, 1.0, wilson(2, 3)[0], 1.0]
+    # The undecided one may yet bounce, with what is left of its speed.
+    parting = rows_of(tmp_path)[3]["bulk"] ** 0.5
+    assert point["restitution"][:2] == [0.0, pytest.approx(parting / 3)] and parting > 0.2
     for path in tmp_path.iterdir():
         if path.name != "s3":
             shutil.rmtree(path)
     (point,) = points(json.loads(analyse("--json", *tmp_path.iterdir()).stdout))
-    assert point["outcomes"] == {"undecided": 1} and point["restitution"][0] is None
-    assert point["sticking"] == [None, 0.0, 1.0]
+    assert point["outcomes"] == {"undecided": 1} and point["restitution"] == [0.0, pytest.approx(parting), None, None]
+    assert point["sticking"] == [0.0, 1.0, 0.0, 1.0]
 
 
 def test_text_names_everything(runs):
@@ -161,6 +178,7 @@ def test_gallery(runs, gallery, answer):
     assert drawn == {
         f"{name}.png"
         for name in (
+            "fig03_snapshots",
             "fig04_motion",
             "fig05_size",
             "fig07_time",
@@ -170,12 +188,16 @@ def test_gallery(runs, gallery, answer):
             "fig12_andrews",
             "fig13_forces",
             "outcome",
+            "returned",
             "energy_velocity",
             "energy_size",
             "start_offset",
         )
     }
     assert all((gallery / name).read_bytes().startswith(b"\x89PNG") for name in drawn)
+    vector = {file.stem for file in gallery.glob("*.pdf")}
+    assert vector == {Path(name).stem for name in drawn} - {"fig03_snapshots", "fig13_forces"}
+    assert all((gallery / f"{name}.pdf").read_bytes().startswith(b"%PDF") for name in vector)
     page = (gallery / "comparison.md").read_text()
     assert all(f"({name})" in page for name in drawn) and str(runs) not in page
     assert json.loads((gallery / "comparison.json").read_text()) == answer
@@ -188,7 +210,7 @@ def test_the_table_of_runs_gives_the_same_comparison_and_figures(gallery, answer
     assert again.returncode == 0 and json.loads(again.stdout) == answer
     assert again.stderr.splitlines() == [
         f"analysis: {name}: not drawn: it needs the run folders, a table has only their numbers"
-        for name in ("fig04_motion", "fig12_andrews", "fig13_forces")
+        for name in ("fig03_snapshots", "fig04_motion", "fig12_andrews", "fig13_forces")
     ]
     assert {file.name for file in folder.iterdir()} == {file.name for file in gallery.iterdir()}
     assert [file.name for file in folder.iterdir() if file.read_bytes() != (gallery / file.name).read_bytes()] == []

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...statistics import group_means, mean_and_error, pair_weights, resampling_error
+from ...statistics import group_means, mean_and_error, pair_weights, resampling_error, stretch
 
 FEWEST_FOR_SLOPE = 4
 
@@ -43,7 +43,7 @@ def common_slope(groups):
         return None, None
     group = np.concatenate([np.full(len(o), k) for k, (o, _, _) in enumerate(groups)])
     x, y = (np.concatenate([np.asarray(g[i], dtype=float) for g in groups]) for i in (0, 1))
-    pairs = np.concatenate([np.asarray(g[2]).astype(str) for g in groups])
+    pairs = np.concatenate([np.asarray(list(g[2])).astype(str) for g in groups])
     freedom = np.unique(pairs).size - len({tuple(sorted(set(g[2]))) for g in groups}) - 1
     slopes, squares = _slopes(x, y, group, np.ones((1, x.size)))
     # All offsets of each group the same, but for rounding: no slope.
@@ -51,7 +51,8 @@ def common_slope(groups):
         return None, None
     slope = float(slopes[0])
     if np.unique(pairs).size < x.size:
-        return slope, resampling_error(_slopes(x, y, group, pair_weights(pairs))[0])
+        number = np.unique(pairs).size
+        return slope, resampling_error(_slopes(x, y, group, pair_weights(pairs))[0]) * stretch(number, number - freedom)
     rest = (y - slope * x) - group_means(y - slope * x, group, np.ones((1, x.size)))[0]
     return slope, float(np.sqrt(rest @ rest / (x.size - len(groups) - 1) / squares[0]))
 

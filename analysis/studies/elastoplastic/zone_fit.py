@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...statistics import RESAMPLES, group_means, pair_weights, resampling_error
+from ...statistics import RESAMPLES, group_means, pair_weights, resampling_error, stretch
 
 FEWEST = 4  # runs of a filling that are left beyond its sizes and the slope
 COVARIATES = {
@@ -86,9 +86,9 @@ def fit_slope(table, covariate="zone_filling"):
     scatter, total = np.sqrt(rest @ rest / freedom), np.sqrt(dy @ dy / (freedom + 1))
     return Slope(
         slope,
-        resampling_error(slopes),
+        resampling_error(slopes) * stretch(len(x), sizes + 1),
         correlation,
-        resampling_error(correlations),
+        resampling_error(correlations) * stretch(len(x), sizes + 1),
         float(1.0 - (scatter / total) ** 2),
         len(x),
         sizes,

@@ -14,6 +14,8 @@ def zone_sections(results):
         )
     predictions = prediction.read()
     if predictions is not None:
+        predictions = predictions[predictions.filling.round(6).isin(list(results.by_filling))]
+    if predictions is not None and len(predictions):
         compared = prediction.compare(predictions, results.table)
         yield Section(
             "d_max predicted beforehand", _PREDICTED, tuple(vars(each) for each in compared), intro=_PREDICTED_INTRO

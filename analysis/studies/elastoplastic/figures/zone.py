@@ -38,7 +38,7 @@ def zone_figure(results):
             reach, slope.slope * reach, color=OURS, label=f"slope {slope.slope:.3f} $\\pm$ {slope.slope_error:.3f}"
         )
         _draw_predictions(place, filling, results)
-        place.set_xlabel("$R$ (filling of the zones that meet, less its mean)  [grain radii]")
+        place.set_xlabel("$R$ (zone filling less its mean)  [grain radii]")
         place.set_ylabel("$d_{max}$ less its mean  [grain radii]")
         place.set_title(
             f"correlation {slope.correlation:.2f} $\\pm$ {slope.correlation_error:.2f}", loc="left", fontsize=10
