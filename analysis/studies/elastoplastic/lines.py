@@ -175,7 +175,7 @@ def _moduli_lines(results, filling):
             f"restitution of Andrews's model at {paper.VELOCITY:.4g} m/s",
             "",
             float(restitution(paper.VELOCITY, spheres)),
-            note="measured: the table of outcomes",
+            note="with sigma and E* of the first two lines; 0 for E* = inf, so that it is known no better than E*",
         )
     )
     return lines

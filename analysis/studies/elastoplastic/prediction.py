@@ -13,7 +13,8 @@ from ...statistics import CONFIDENCE, student
 from . import paper
 from .zone_fit import Slope, fit_slope
 
-PREDICTIONS = Path(__file__).resolve().parents[2] / "gallery" / "elastoplastic" / "predictions.csv"
+GALLERY = Path(__file__).resolve().parents[2] / "gallery" / "elastoplastic"
+PREDICTIONS = GALLERY / "predictions.csv"
 _HEAD = """\
 # d_max predicted from the packings alone, before these pairs were run: d_max = mean + R b (zone_filling - mean zone_filling),
 # mean and mean zone_filling of the runs of the same filling, radius and velocity, b the common slope of all sizes (zone_fit).

@@ -76,12 +76,12 @@ def _series(axes, x, series, colour, label):
 
 
 def _draw_theory(axes, results, factor, velocities):
-    filling = results.by_filling[factor]
+    """Andrews's restitution with A24's moduli, and with ours where E* has an upper limit: without one it may be anything from
+    that of the lower limit to 0."""
+    joint, density = results.by_filling[factor].joint, factor * results.grain_density
     v = np.geomspace(velocities.min(), velocities.max(), 60)
-    density = factor * results.grain_density
-    if filling.velocity_fit.reason is None:
-        e = restitution(v, Spheres(1.0, density, *filling.velocity_fit.values))
-        axes.plot(v, np.broadcast_to(e, v.shape), color=OURS, label="Andrews, our moduli")
+    if joint.reason is None and np.all(np.isfinite(joint.limits[1])):
+        axes.plot(v, restitution(v, Spheres(1.0, density, *joint.values[:2])), color=OURS, label="Andrews, our moduli")
     if factor in paper.YOUNG:
         spheres = Spheres(1.0, density, paper.YIELD_STRESS[factor], paper.YOUNG[factor])
         axes.plot(v, restitution(v, spheres), "--", color=PAPER, label="Andrews, A24's moduli")
