@@ -95,7 +95,7 @@ def _or_nan(value):
 
 @dataclass(frozen=True)
 class Phases:
-    """Change of the channels in the runs of one parameter set that end alike: outcome, seeds (their number);
+    """Change of the channels in the runs of one parameter set and outcome: outcome, seeds (their number);
     compression (start to t_max), parting (t_max to the end), and where the largest return speed was measured (seeds in
     `timed`) parting's two parts, release (t_max to it) and stretching (from it to the end): by channel (mean, error) in
     fractions of K(0); bulk and returned (mean, error): (v/v_col)^2 at the end and at the largest return speed. Nones

@@ -99,7 +99,7 @@ def energy_section(points, parameters):
         ),
         rows,
         intro="Change of each channel in per cent of K(0), from the start to t_max | from t_max to the end; mean over "
-        "the seeds that end alike. The end is that of the record, in an undecided run in the middle of parting.",
+        "the seeds of that outcome. The end is that of the record, in an undecided run in the middle of parting.",
     )
 
 

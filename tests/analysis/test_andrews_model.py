@@ -14,7 +14,7 @@ from scipy.integrate import quad, solve_ivp
 from analysis.studies.elastoplastic.velocity_fit import degenerate_curve
 from analysis.theory import andrews
 from analysis.theory.andrews import Spheres
-from analysis.theory.andrews_motion import motion
+from analysis.theory.andrews_motion import motion, rigid_motion
 
 V = 10**0.5
 PAPER = Spheres(0.5 * 80.271e-7, 400.0, 2.25e6, 15.7e6)
@@ -157,3 +157,15 @@ def test_numbers_of_the_paper():
     assert sigma[0] == pytest.approx(1.67e6, abs=0.005e6) and young[-1] == pytest.approx(elastic_young, rel=1e-6)
     on_curve = andrews.largest_compression(V, Spheres(1.0, 400.0, sigma, young))
     assert on_curve == pytest.approx(np.full(sigma.size, 0.113), rel=1e-9)
+
+
+def test_motion_without_elasticity_is_the_limit_of_a_large_modulus():
+    """E* = 1e3 sigma: the same d and v until the largest compression to 1e-4, which is of the order of delta_crit; then rest."""
+    rigid, stiff = Spheres(4e-6, 400.0, 2e6, np.inf), Spheres(4e-6, 400.0, 2e6, 2e9)
+    limit, near = rigid_motion(3.0, rigid), motion(3.0, stiff)
+    assert (limit.largest, limit.time_of_largest) == pytest.approx((near.largest, near.time_of_largest), rel=1e-4)
+    time = np.linspace(-0.5, 1.0, 40) * limit.time_of_largest
+    assert limit.compression(time) == pytest.approx(near.compression(time), abs=1e-3 * near.largest)
+    assert limit.velocity(time) == pytest.approx(near.velocity(time), abs=3e-3)
+    assert limit.velocity(2 * limit.time_of_largest) == 0.0 and limit.restitution == 0.0
+    assert limit.compression(2 * limit.time_of_largest) == limit.largest

@@ -91,3 +91,12 @@ def test_painted_area_is_that_of_a_disc():
 def test_a_grain_smaller_than_a_pixel_is_seen():
     image = paint_spheres(np.zeros((1, 3)), np.full(1, 0.01), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.5)
     assert np.any(image[..., 1] == 0.0)
+
+
+def test_states_are_shown_at_the_times_asked_for(run):
+    """The nearest state to each time, once; more than three in two columns."""
+    times = [run.states.times[k] + 1e-13 for k in (0, 2, 3, 5)]
+    expected = [f"$t$ = {run.states.times[k] * 1e9:.1f} ns" for k in (0, 2, 3, 5)]
+    for make in (grains_figure, forces_figure):
+        figure = make(run, [*times, times[-1]])
+        assert [axes.get_title(loc="left") for axes in figure.axes] == expected

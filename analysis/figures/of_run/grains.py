@@ -10,6 +10,7 @@ from ..style import AGGREGATE_COLOURS, NANO, new_figure, run_title, styled
 
 # More pixels than this across would only cost time: the figure is about 1,300 wide.
 _PIXELS_ACROSS = 1500
+_ONE_COLUMN = 3  # as many panels stand below each other
 _LARGEST_VIEW = 2.0  # half height of the view in aggregate sizes: fragments that flew farther are left outside
 
 
@@ -24,12 +25,20 @@ def grains_figure(run, times=None):
     states = [run.states[i] for i in chosen]
     window = _window(states, unit)
     pixel = max((window[1] - window[0]) / _PIXELS_ACROSS, 0.02)
-    width = 8.6
-    panel = width * 0.88 * (window[3] - window[2]) / (window[1] - window[0])
-    figure = new_figure(width, len(states) * (panel + 0.35) + 0.75, constrained_layout=True)
-    for axes, state in zip(figure.subplots(len(states), 1, sharex=True, squeeze=False)[:, 0], states):
-        _draw(axes, state, unit, window, pixel)
-    axes.set_xlabel("$x$  [grain radii]")
+    columns = 1 if len(states) <= _ONE_COLUMN else 2
+    rows = -(-len(states) // columns)
+    width = 8.6 if columns == 1 else 12.0
+    panel = width / columns * 0.88 * (window[3] - window[2]) / (window[1] - window[0])
+    figure = new_figure(width, rows * (panel + 0.35) + 0.75, constrained_layout=True)
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for place, state in zip(axes.flat, states):
+        _draw(place, state, unit, window, pixel)
+    for place in axes.flat[len(states) :]:
+        place.remove()
+    for place in axes[:, 0]:
+        place.set_ylabel("$y$  [grain radii]")
+    for column in range(columns):
+        [p for p in axes[:, column] if p.figure][-1].set_xlabel("$x$  [grain radii]")
     figure.get_layout_engine().set(w_pad=0.1)
     figure.suptitle(run_title(run, "grains behind the plane $z$ = 0"), fontsize=10, color="0.3")
     return figure
@@ -63,5 +72,4 @@ def _draw(axes, state, unit, window, pixel):
     colour = np.array(AGGREGATE_COLOURS)[state.aggregate[behind]]
     image = paint_spheres(position, state.radius[behind] / unit, colour, window, pixel)
     axes.imshow(image, extent=window, origin="lower", interpolation="antialiased")
-    axes.set_ylabel("$y$  [grain radii]")
     axes.set_title(f"$t$ = {state.time * NANO:.1f} ns", loc="left")

@@ -112,7 +112,7 @@ def returned_figure(results):
     axes[0, 1].set_xlabel("aggregate radius  [grain radii]")
     for place in axes[0]:
         place.set_ylabel("returned bulk motion  [% of $K(0)$]")
-        place.set_ylim(0.0, None)
+        place.set_ylim(0.0, 1.15 * place.get_ylim()[1])
         legend(place, fontsize=9)
     letter(axes, filling_text(filling))
     return figure
