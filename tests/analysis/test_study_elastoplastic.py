@@ -21,7 +21,7 @@ from analysis.measures.compression import first_compression
 from analysis.runs.format import CHANNELS
 from analysis.runs.table import read_table
 from analysis.statistics import wilson
-from analysis.studies.collision_points import at_end, at_maximum
+from analysis.studies.collision_points import at_end, at_maximum, at_return
 from analysis.studies.elastoplastic.comparison import LEGEND
 from analysis.studies.elastoplastic.measure import COLUMNS
 
@@ -130,6 +130,12 @@ def test_rows_points_and_ledger(answer, gallery):
         assert (row["outcome"], row["restitution"] == 0.0) == (
             ("sticking", True) if row["seed"] == 1 else ("bouncing", False)
         )
+        # Spheres that bounce part fastest at the end of their contact, and keep that speed.
+        if row["outcome"] == "bouncing":
+            assert row["return_speed"] / row["velocity"] == pytest.approx(row["restitution"], rel=0.01)
+        assert row["return_time"] > row["t_max"] and sum(row[at_return(c)] for c in CHANNELS) == pytest.approx(1.0)
+    (back,) = (section["rows"] for section in answer["sections"] if section["heading"] == "what comes back")
+    assert sum(row["seeds"] for row in back) == 24
     assert len(points(answer)) == 6
     for point in points(answer):
         low, high, lowest, highest = point["sticking"]

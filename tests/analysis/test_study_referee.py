@@ -70,7 +70,8 @@ def test_all_three_are_recovered_within_their_errors():
         points = made_points(random, 10, (40.0, 60.0, 80.0), VELOCITIES, 0.1)
         fit = joint_fit(points, resampled(points, 60, k), RADIUS, 1000.0, tuple(truth))
         pulls.append((np.array(fit.values) - truth) / fit.errors)
-        chances.append((fit.chance, fit.paper_chance))
+        chances.append((fit.chance, fit.paper_chance, fit.young_chance))
+        assert 0 <= fit.young_excess <= fit.paper_excess
         assert all(low <= value <= high for value, (low, high) in zip(fit.values, fit.limits))
     assert np.all(np.abs(np.sqrt(np.mean(np.square(pulls), axis=0)) - 1.2) < 0.6)
     assert np.all(np.mean(np.array(chances) < 0.05, axis=0) < 0.4) and np.all(np.max(chances, axis=0) > 0.3)

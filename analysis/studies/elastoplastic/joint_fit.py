@@ -29,7 +29,8 @@ class JointFit:
     the same, None where too many resamples have no bound; limits: ((low, high) of each) at 95 %, inf without bound; resamples
     (B, 3); unbounded: fraction of resamples in which a modulus is inf; chi_square with what pairs that obey the model
     would give on average (expected) and the chance of as much or more; runs, pairs (their numbers), radii [grain radii],
-    velocities (number); paper_excess: how much larger chi square is at A24's three values, with its chance (None: it has
+    velocities (number); paper_excess: how much larger chi square is at A24's three values, with its chance, young_excess and young_chance: the same with
+    A24's E* alone, sigma and delta_offset free (None: it has
     none). All None where `reason` says why nothing was fitted."""
 
     values: tuple = (None, None, None)
@@ -46,6 +47,8 @@ class JointFit:
     velocities: int = 0
     paper_excess: float = None
     paper_chance: float = None
+    young_excess: float = None
+    young_chance: float = None
     reason: str = None
 
 
@@ -94,13 +97,24 @@ class JointSearch:
             chi_square = np.where(take, limit_chi, chi_square)
         return values, chi_square
 
+    def at_young(self, d, t, young, start):
+        """Chi square (B,) of B sets d [m], t [s] (B, K) with E* [Pa] held at one value (inf: none), sigma and offset free."""
+        data = np.concatenate([d, t], axis=1) / self.error
+        begin = np.tile([np.log(start[0]), np.log(start[1]), start[2]], (len(data), 1))
+        low, high = np.array([_LEAST, _LEAST, -_LARGEST_OFFSET]), np.array([_MOST, _MOST, _LARGEST_OFFSET])
+        return self._holding(1, young, data, begin, low, high)[1]
+
     def _without(self, absent, data, begin, low, high):
         """The same without one modulus (its number)."""
-        other = 1 - absent
+        return self._holding(absent, np.inf, data, begin, low, high)
+
+    def _holding(self, held, value, data, begin, low, high):
+        """The same with one modulus (its number) held at a value [Pa]."""
+        other = 1 - held
 
         def split(x):
             moduli = [None, None]
-            moduli[absent], moduli[other] = np.full(len(x), np.inf), np.exp(x[:, 0])
+            moduli[held], moduli[other] = np.full(len(x), float(value)), np.exp(x[:, 0])
             return (*moduli, x[:, 1])
 
         keep = [other, 2]
@@ -132,6 +146,7 @@ def joint_fit(points, resampled, grain_radius, grain_density, papers=None):
     obeying = _obeying(search, points, resampled, values)
     _, null = search.best(*obeying, start)
     excess, chance = _excess(search, points, obeying, values, null, chi_square, papers)
+    young_excess, young_chance = _young_excess(search, points, obeying, values, start, null, chi_square, papers)
     names = {(round(r, 12), seed) for r, seeds in zip(points.radius, points.seeds) for seed in seeds}
     return JointFit(
         values=tuple(map(float, values)),
@@ -148,6 +163,8 @@ def joint_fit(points, resampled, grain_radius, grain_density, papers=None):
         velocities=int(np.unique(points.velocity).size),
         paper_excess=excess,
         paper_chance=chance,
+        young_excess=young_excess,
+        young_chance=young_chance,
     )
 
 
@@ -169,3 +186,11 @@ def _excess(search, points, obeying, values, null, chi_square, papers):
 
     excess = float(at(points.d_max[None], points.t_max[None], papers)[0] - chi_square)
     return excess, float(np.mean(at(*obeying, values) - null >= excess))
+
+
+def _young_excess(search, points, obeying, values, start, null, chi_square, papers):
+    """The same with A24's E* alone: the chance is that at the true E*."""
+    if papers is None or papers[1] is None:
+        return None, None
+    excess = float(search.at_young(points.d_max[None], points.t_max[None], papers[1], start)[0] - chi_square)
+    return excess, float(np.mean(search.at_young(*obeying, values[1], start) - null >= excess))

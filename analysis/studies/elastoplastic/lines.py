@@ -192,7 +192,7 @@ def _joint_moduli_lines(filling, theirs):
         f"{fit.chi_square:.1f}, pairs that obey the model give {fit.expected:.1f} (p = {fit.chance:.2g})"
     )
     if fit.paper_excess is not None:
-        note += f"; A24's three values are worse by {fit.paper_excess:.1f} (p = {fit.paper_chance:.2g}, A24's errors not counted)"
+        note += f"; A24's three values are worse by {fit.paper_excess:.1f} ({_chance(fit.paper_chance, fit)}, A24's errors not counted)"
     for i, (quantity, unit, scale) in enumerate(
         (("sigma_plastic", "MPa", MEGA), ("E*", "MPa", MEGA), ("delta_offset", "r", 1.0))
     ):
@@ -201,6 +201,10 @@ def _joint_moduli_lines(filling, theirs):
         limits += f"95 %: {low:.3g} to {high:.3g}" if np.isfinite(high) else f"95 %: {low:.3g} or more, no upper bound"
         if i < 2 and fit.unbounded[i]:
             limits += f" (none in {fit.unbounded[i]:.1%} of the resamples)"
+        if i == 1 and fit.young_excess is not None:
+            limits += (
+                f"; with A24's E* alone chi^2 is larger by {fit.young_excess:.1f} ({_chance(fit.young_chance, fit)})"
+            )
         value = (theirs[0], theirs[1], paper.OFFSET.get(filling.factor))[i]
         yield Line(
             f"{quantity}, all three together",
@@ -210,6 +214,12 @@ def _joint_moduli_lines(filling, theirs):
             None if value is None else value / scale,
             note="; ".join(filter(None, (limits, note if i == 0 else ""))),
         )
+
+
+def _chance(value, fit):
+    """A chance that was counted among resamples, which know none below one of them."""
+    least = 1.0 / len(fit.resamples)
+    return f"p = {value:.2g}" if value >= least else f"p < {least:.2g}"
 
 
 def _paper_moduli_errors(results, filling):

@@ -2,6 +2,7 @@
 
 from ...report.section import Column, Section
 from . import prediction
+from .lines import paper_line_at
 
 
 def zone_sections(results):
@@ -94,8 +95,6 @@ def _explained(results):
 
 
 def _adjusted(results):
-    from .lines import paper_line_at
-
     for factor, filling in results.by_filling.items():
         for each in filling.adjusted:
             theirs, error = paper_line_at(filling, each.radius)
