@@ -60,7 +60,11 @@ GOOD = np.array([[0.0, 0, 0], [2 * RADIUS - OVERLAP, 0, 0]])
         (GOOD, [RADIUS, -RADIUS], "radius of grain 1 is -1e-07; must be > 0"),
         (GOOD[:, :2], [RADIUS] * 2, r"position has the shape \(2, 2\), radius \(2,\); must be \(N, 3\)"),
         (GOOD[:1], [RADIUS], "N >= 2"),
-        (GOOD * 0.99, [RADIUS] * 2, "grains 0 and 1 overlap by 3.01e-09 m; must be at most 1.1 of the equilibrium overlap"),
+        (
+            GOOD * 0.99,
+            [RADIUS] * 2,
+            "grains 0 and 1 overlap by 3.01e-09 m; must be at most 1.1 of the equilibrium overlap",
+        ),
         (GOOD * 0, [RADIUS] * 2, "grains 0 and 1 overlap by 2e-07 m"),
         (GOOD * 6, [6 * RADIUS] * 2, "made of grains of 6e-07 m, not 1e-07 m; must be"),
     ],

@@ -190,7 +190,9 @@ def place(parameters, overlap):
 def _with_size(parameters, pair):
     """The parameters with radius, filling and grains of the aggregates that were made or read."""
     if parameters.neck and len(np.unique([radius for packing in pair for radius in packing.radius])) > 1:
-        raise ParameterError(f"neck = {parameters.neck:g}: given with grains of unlike size in {parameters.file}; must be 0")
+        raise ParameterError(
+            f"neck = {parameters.neck:g}: given with grains of unlike size in {parameters.file}; must be 0"
+        )
     extents = [packings.extent(packing) / parameters.grainRadius for packing in pair]
     radius, grains = max(extents), pair[int(np.argmax(extents))].grains
     filling = grains / radius ** (2 if parameters.planar else 3)
@@ -256,7 +258,9 @@ def estimate(parameters):
         radius = parameters.radius or _typical_radius(parameters.packing, max(grains), planar)
         touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
         duration = default_duration(radius, constants["timeUnit"], touch)
-    return Estimate(sum(grains), sum(grains) * neighbours / 2, duration / constants["timeUnit"] / _step(parameters, constants))
+    return Estimate(
+        sum(grains), sum(grains) * neighbours / 2, duration / constants["timeUnit"] / _step(parameters, constants)
+    )
 
 
 def expected(parameters, run):

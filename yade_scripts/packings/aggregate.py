@@ -46,7 +46,9 @@ class AggregateParameters(GrainParameters):
         None, Check("a packing that make_packing.py wrote", lambda text: text != ""), "packing of packing = file"
     )
     sizes: str = parameter(
-        EQUAL, one_of(SIZES), "radii of the grains of a bcca or bpca aggregate: all of grainRadius, two radii, log-normal"
+        EQUAL,
+        one_of(SIZES),
+        "radii of the grains of a bcca or bpca aggregate: all of grainRadius, two radii, log-normal",
     )
     sizeRatio: float | None = parameter(
         None, between(0.1, 10.0), "sizes = two: radius of the others over grainRadius", "1"
@@ -84,7 +86,9 @@ class AggregateParameters(GrainParameters):
             raise ParameterError(f"sizes = {self.sizes}: given with packing = {self.packing}; must be {EQUAL}")
         for name, of in OF_SIZES.items():
             if self.sizes != of and getattr(self, name) is not None:
-                raise ParameterError(f"{name} = {getattr(self, name):g}: given with sizes = {self.sizes}; must be left out")
+                raise ParameterError(
+                    f"{name} = {getattr(self, name):g}: given with sizes = {self.sizes}; must be left out"
+                )
         if self.sizes == TWO and self.sizeFraction is None:
             return self._required("sizeRatio").changed(sizeFraction=0.5)
         return self._required({TWO: "sizeRatio", LOGNORMAL: "sizeSpread"}.get(self.sizes))
@@ -144,9 +148,7 @@ class AggregateParameters(GrainParameters):
 def require_growable(packing, name, grains):
     """Raise ParameterError when an aggregate that grows grain by grain would take too long."""
     if grains > MOST_GROWN[packing]:
-        raise ParameterError(
-            f"{name} = {grains}: too many for packing = {packing}; must be 2 to {MOST_GROWN[packing]}"
-        )
+        raise ParameterError(f"{name} = {grains}: too many for packing = {packing}; must be 2 to {MOST_GROWN[packing]}")
 
 
 def make(parameters, overlap, index):
