@@ -121,7 +121,7 @@ STATE = (
 COLLISION = RunKind(
     "collision",
     (
-        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11); NaN with all grains on one side", gaps=True),
+        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11) of equal aggregates; NaN with all grains on one side", gaps=True),
         Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13), positive while approaching", gaps=True),
         Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates", "i"),
         Quantity("formed", ("T",), "", "contacts formed since the start (A22 N_con)", "i", optional=True),

@@ -10,7 +10,7 @@ from .results import picoseconds
 
 LEGEND = (
     f"error: standard error from the scatter of the seeds (bootstrap of pairs of aggregates, {RESAMPLES} resamples, joint "
-    "where numbers share pairs; otherwise of the mean); -: one seed only.",
+    "where numbers come from the same pairs; otherwise of the mean); -: one seed only.",
     "diff: (ours - paper)/error. diff*: in units of both errors, where the paper's could be told.",
     "The paper has one run of each parameter set and states no errors: its numbers scatter as one seed of ours.",
 )
