@@ -22,7 +22,7 @@ DURATION = "6.34e-6"  # s: the last time of Fig. 1
 STATES = 21  # every 0.317 us: the times of Figs 1, 10 and 11 are among them
 
 # {grains of an aggregate: (exponents i, seeds)}
-DESK = {500: (EXPONENTS, 4), 2000: (range(15, 20), 3)}
+DESK = {500: (EXPONENTS, 4), 2000: (range(16, 21), 3)}
 STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for the aggregates of DESK: its ledger closes to 1e-3 of K(0)
 
 

@@ -11,6 +11,7 @@ from .results import picoseconds
 LEGEND = (
     f"error: standard error from the scatter of the seeds (bootstrap of pairs of aggregates, {RESAMPLES} resamples, joint "
     "where numbers come from the same pairs; otherwise of the mean); -: one seed only.",
+    "An error from n seeds is itself uncertain by the fraction [2 (n - 1)]^(-1/2): 0.7 of it for two, 0.4 for four.",
     "diff: (ours - paper)/error. diff*: in units of both errors, where the paper's could be told.",
     "The paper has one run of each parameter set and states no errors: its numbers scatter as one seed of ours.",
 )

@@ -10,12 +10,13 @@ from .common import letter, one_run_each, own_times, panels, run_folder, time_la
 
 MICRO = 1e6
 PIXELS = 420  # across a panel
-VIEW = 4.5  # half width of a panel in characteristic radii: what flew farther is left outside
+VIEW = 4.5  # half width of a panel in characteristic radii, and more at the end if
+HELD = 0.95  # that fraction of the grains reaches farther: the rest is left outside
 
 
 @styled
 def snapshots(results):
-    """Grains without drag at A22's times (own_times), and at the end for every T_vis: Fig. 1, seen along z."""
+    """Grains without drag at A22's times (own_times), and at the end for every T_vis, to one scale a row: Fig. 1, seen along z."""
     shown = one_run_each(results)
     if not shown:
         return None
@@ -25,14 +26,21 @@ def snapshots(results):
     late = [(run_folder(row).last, time_label(time)) for time, row in shown]
     columns = max(len(early), len(late))
     figure, axes = panels(2, columns, 3.3, 3.4)
-    half = VIEW * shown[0][1].characteristic_radius / shown[0][1].grain_radius
+    unit = first.derived["grainRadius"]
+    least = VIEW * shown[0][1].characteristic_radius / unit
     for places, states in zip(axes, (early, late)):
+        half = least if states is early else max([least] + [_reach(state) / unit for state, _ in states])
         for place, (state, name) in zip(places, states):
-            _draw(place, state, first.derived["grainRadius"], half, name)
+            _draw(place, state, unit, half, name)
         for place in places[len(states) :]:
             place.set_axis_off()
     letter([place for row in axes for place in row if place.axison], "")
     return figure
+
+
+def _reach(state):
+    """Half width [m] of a square around the origin that holds HELD of the grains."""
+    return float(np.quantile(np.abs(state.position[:, :2]).max(axis=1), HELD))
 
 
 def _draw(place, state, unit, half, name):
