@@ -1,4 +1,4 @@
-"""Collide two dust aggregates of equal size and write a run folder.
+"""Collide two dust aggregates and write a run folder.
 
     yade -n -x yade_scripts/collide.py                     A24's scene at 20 grain radii
     yade -n -x yade_scripts/collide.py velocity=10 seed=3  any parameter by its name

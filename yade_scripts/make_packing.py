@@ -1,6 +1,7 @@
 """Make aggregates and save them as .npz; needs no YADE.
 
     python3 yade_scripts/make_packing.py a.npz b.npz filling=0.4 radius=20 seed=3
+    python3 yade_scripts/make_packing.py a.npz packing=bpca grains=50000
 
 The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py. Parameters that a packing
 doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
@@ -25,7 +26,11 @@ def make_packing(file, parameters, index):
     packing = make(parameters, constants["equilibriumOverlap"], index)
     packings.save(file, packing)
     coordination = 2 * len(packings.contacts(packing)) / packing.grains
-    print(f"{file}: {packing.grains} grains, mean coordination number {coordination:.3f}")
+    characteristic = packings.characteristic_radius(packing) / parameters.grainRadius
+    print(
+        f"{file}: {packing.grains} grains, mean coordination number {coordination:.3f}, characteristic radius "
+        f"{characteristic:.4g} grain radii"
+    )
 
 
 def main(arguments):
@@ -38,6 +43,8 @@ def main(arguments):
         if name in texts:
             raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
     parameters = AggregateParameters.parse(texts)
+    if parameters.packing == "file":
+        raise ParameterError("packing = file: there is nothing to make; must be cpe, bcca or bpca")
     for index, file in enumerate(files):
         make_packing(file, parameters, index)
     return 0

@@ -54,23 +54,26 @@ class GrainParameters(Parameters):
         return super(GrainParameters, grains).filled_in()
 
 
-def pair_constants(grains):
+def pair_constants(grains, radii=None):
     """{name: value} of a contact of two of these grains (SI), by the plugin's names, where no YADE runs.
 
-    grains: anything with the attributes of Material, and viscoelasticTime [s] if there is drag. A run takes the
-    constants from the plugin; a test holds the two together. Sources: analysis.theory.
+    grains: anything with the attributes of Material, and viscoelasticTime [s] if there is drag; radii: of the two [m],
+    both grainRadius when left out. A run takes the constants from the plugin; a test holds the two together. Sources:
+    analysis.theory.
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]
-    return dict(_pair_constants(*properties, getattr(grains, "viscoelasticTime", 0.0), grains.grainRadius))
+    radii = radii or (grains.grainRadius, grains.grainRadius)
+    return dict(_pair_constants(*properties, getattr(grains, "viscoelasticTime", 0.0), *radii))
 
 
 @lru_cache
-def _pair_constants(*properties_and_radius):
+def _pair_constants(*properties_and_radii):
     from analysis import theory  # takes a moment, and runs within YADE do without
 
-    *properties, radius = properties_and_radius
-    pair = theory.pair_constants(theory.Material(*properties), radius)
+    *properties, radius1, radius2 = properties_and_radii
+    material = theory.Material(*properties)
+    pair = theory.pair_constants(material, radius1, material, radius2)
     return {_camel_case(name): value for name, value in vars(pair).items()}
 
 

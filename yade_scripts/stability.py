@@ -26,6 +26,7 @@ smaller.
 
 import math
 
+from yade_scripts.materials import pair_constants
 from yade_scripts.packings.filling import maximum_filling
 from yade_scripts.parameters import ParameterError
 
@@ -78,16 +79,31 @@ def step_limit(constants, filling):
 def equivalent_filling(packing, filling, planar, constants):
     """Filling factor of the CPE packing in space whose grains meet as much resistance when all turn in phase.
 
-    packing: "cpe" or "bcca"; filling: of a cpe packing. Of 12 contacts of a site in space two thirds resist, of 6 in a
-    plane all (a fraction of 3/4); of a BCCA aggregate four are taken (1/2), which is more than most grains have.
+    packing: "cpe", "bcca", "bpca" or "file"; filling: of a cpe packing. Of 12 contacts of a site in space two thirds
+    resist, of 6 in a plane all (a fraction of 3/4); of a BCCA or BPCA aggregate four are taken (1/2), which is more than
+    most grains have; a packing from a file may be as dense as the lattice.
     """
     radius, overlap = 2 * constants["reducedRadius"], constants["equilibriumOverlap"]
     full = maximum_filling(radius, overlap)
-    if packing == "bcca":
+    if packing in ("bcca", "bpca"):
         return 0.5 * full
+    if packing == "file":
+        return full
     if planar:
         return 0.75 * full * filling / maximum_filling(radius, overlap, planar=True)
     return filling
+
+
+def limit_of_unlike(grains, constants, radius_range):
+    """Largest stable stepFraction [t0 of constants] of aggregates of grains of unlike size.
+
+    grains: as for materials.pair_constants; radius_range: (smallest, largest) [m]. The fastest vibration is that of the
+    smallest grain among the largest ones: its contacts are stiffer than among its own kind.
+    """
+    stiffest = pair_constants(grains, radius_range)
+    smallest = pair_constants(grains, (radius_range[0], radius_range[0]))
+    stiffest.update(reducedMass=smallest["reducedMass"], timeUnit=constants["timeUnit"])
+    return step_limit(stiffest, equivalent_filling("bpca", None, False, stiffest))
 
 
 def require_stable(step, limit, depends_on):

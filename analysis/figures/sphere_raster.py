@@ -6,11 +6,12 @@ import numpy as np
 _LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
 
 
-def paint_spheres(position, radius, colour, window, pixel, background=(1.0, 1.0, 1.0)):
+def paint_spheres(position, radius, colour, window, pixel, background=(1.0, 1.0, 1.0), fading=4.0):
     """Image (H,W,3) of floats 0 to 1, row 0 at the smallest y, of spheres seen from large z (orthographic).
 
     position (N,3), radius (N,), window (x0, x1, y0, y1) and pixel (edge length) in one unit; colour (N,3) 0
-    to 1. Spheres are shaded by a light from the upper left, and darker the deeper they lie."""
+    to 1. Spheres are shaded by a light from the upper left, and darker the deeper they lie: over `fading` radii of the
+    largest."""
     x0, x1, y0, y1 = window
     width, height = max(1, int(round((x1 - x0) / pixel))), max(1, int(round((y1 - y0) / pixel)))
     depth, owner = _depth_and_owner(position, radius, (x0, y0), (width, height), pixel)
@@ -18,7 +19,7 @@ def paint_spheres(position, radius, colour, window, pixel, background=(1.0, 1.0,
     image[:] = background
     hit = np.flatnonzero(owner >= 0)
     if hit.size:
-        image[hit] = _shade(hit, depth[hit], owner[hit], position, radius, colour, (x0, y0), width, pixel)
+        image[hit] = _shade(hit, depth[hit], owner[hit], position, radius, colour, (x0, y0), width, pixel, fading)
     return image.reshape(height, width, 3)
 
 
@@ -50,7 +51,7 @@ def _depth_and_owner(position, radius, origin, size, pixel):
     return depth, owner
 
 
-def _shade(hit, depth, owner, position, radius, colour, origin, width, pixel):
+def _shade(hit, depth, owner, position, radius, colour, origin, width, pixel, fading):
     centre = np.stack(
         [origin[0] + (hit % width + 0.5) * pixel, origin[1] + (hit // width + 0.5) * pixel, depth], axis=1
     )
@@ -58,6 +59,6 @@ def _shade(hit, depth, owner, position, radius, colour, origin, width, pixel):
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     light = 0.45 + 0.55 * np.clip(normal @ _LIGHT, 0.0, 1.0)
     front, back = depth.max(), depth.min()
-    # Four grain radii behind the front, a sphere has lost most of its light.
-    fade = 0.30 + 0.70 * np.exp(-(front - depth) / (4.0 * radius.max())) if front > back else 1.0
+    # So far behind the front, a sphere has lost most of its light.
+    fade = 0.30 + 0.70 * np.exp(-(front - depth) / (fading * radius.max())) if front > back else 1.0
     return np.clip(colour[owner] * (light * fade)[:, None], 0.0, 1.0)

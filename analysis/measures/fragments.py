@@ -54,3 +54,39 @@ def growth_efficiency(largest, target, projectile):
     1.0
     """
     return (largest - target) / projectile
+
+
+def cumulative_number(sizes, numbers):
+    """Z_cum(>= N) (G,): fragments of N grains or more, from the fragments' grains `sizes` (K,) at N = numbers (G,): A22
+    eq 31.
+
+    >>> cumulative_number([5, 1, 1], [1, 2, 6]).tolist()
+    [3, 1, 0]
+    """
+    sizes = np.sort(sizes)
+    return len(sizes) - np.searchsorted(sizes, np.ceil(numbers), side="left")
+
+
+def cumulative_grains(sizes, numbers):
+    """N_cum(<= N) (G,): grains in fragments of at most N grains; arguments as cumulative_number. A22 eq 32.
+
+    >>> cumulative_grains([5, 1, 1], [1, 4.9, 5]).tolist()
+    [2.0, 2.0, 7.0]
+    """
+    return _up_to(sizes, np.asarray(sizes, dtype=float), numbers)
+
+
+def cumulative_cross_section(sizes, numbers):
+    """S_cum(<= N)/S_1 (G,): cross-sections N^(2/3) of the fragments of at most N grains, in units of one grain's pi r_1^2;
+    arguments as cumulative_number. A22 eq 33.
+
+    >>> cumulative_cross_section([8, 1, 1], [1, 8]).tolist()
+    [2.0, 6.0]
+    """
+    return _up_to(sizes, np.cbrt(np.asarray(sizes, dtype=float)) ** 2, numbers)
+
+
+def _up_to(sizes, values, numbers):
+    order = np.argsort(sizes, kind="stable")
+    sums = np.concatenate([[0.0], np.cumsum(values[order])])
+    return sums[np.searchsorted(np.asarray(sizes)[order], np.floor(numbers), side="right")]

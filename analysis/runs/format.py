@@ -2,7 +2,7 @@
 
 Scripts write what stands here and the analysis reads it. All quantities are in SI units. A folder holds
 
-    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome
+    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached
     history.npz         time series, arrays (T,)
     states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts
     ended               empty: the run came to its planned end
@@ -121,9 +121,11 @@ STATE = (
 COLLISION = RunKind(
     "collision",
     (
-        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11); NaN with all grains on one side", gaps=True),
+        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11) of equal aggregates; NaN with all grains on one side", gaps=True),
         Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13), positive while approaching", gaps=True),
         Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates", "i"),
+        Quantity("formed", ("T",), "", "contacts formed since the start (A22 N_con)", "i", optional=True),
+        Quantity("broken", ("T",), "", "contacts broken since the start (A22 N_cut)", "i", optional=True),
     ),
     aggregates=2,
 )

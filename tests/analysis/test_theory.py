@@ -226,3 +226,27 @@ def test_motion_of_a_pair_ends_in_the_same_rebound():
 def test_impact_velocity_must_be_positive(velocity):
     with pytest.raises(ValueError, match="impact velocity must be positive"):
         theory.collide_pair(velocity, ICE)
+
+
+@pytest.mark.parametrize("picoseconds, scale", [(0.5, 1), (2, 1), (4.5, 1), (6, 1), (3, 2)])
+def test_sticking_at_several_viscous_times_against_the_equation_as_printed(picoseconds, scale):
+    """A22 eqs 4, 7, 30 in SI units by another integrator: at a thousandth less than the threshold a pair sticks, at a
+    thousandth more it parts; grains of `scale` times 0.1 um."""
+    time, radius = picoseconds * 1e-12, scale * 1e-7
+    pair = theory.pair_constants(replace(theory.ICE, viscoelastic_time=time), radius)
+    threshold = theory.sticking_velocity(pair)
+
+    def motion(_, state):
+        contact = theory.contact_radius(state[0], pair)
+        drag = 2 * time * pair.reduced_young / 0.25**2 * contact * state[1]
+        return state[1], -(theory.normal_force(state[0], pair) + drag) / pair.reduced_mass
+
+    def parts(_, state):
+        return state[0] + pair.pull_off_overlap
+
+    parts.terminal, parts.direction = True, -1
+    for factor, bounces in ((0.999, False), (1.001, True)):
+        path = solve_ivp(
+            motion, (0.0, 2e-9 * scale), (0.0, factor * threshold), "LSODA", events=parts, rtol=1e-9, atol=(1e-18, 1e-9)
+        )
+        assert bool(len(path.t_events[0])) is bounces

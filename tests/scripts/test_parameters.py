@@ -44,7 +44,13 @@ def test_defaults_are_the_scene_of_the_demo():
     assert given.velocity == 10**0.5 and given.out == "runs/collide-ice-f0.4-R20-v3.162-s1"
     found = complete({})
     assert found.threads == 1 and [name for name, value in found.as_dict().items() if value is None] == [
+        "projectileGrains",
+        "projectileFile",
         "duration",
+        "file",
+        "sizeRatio",
+        "sizeFraction",
+        "sizeSpread",
         "tolerance",
     ]
 

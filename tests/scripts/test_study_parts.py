@@ -12,7 +12,7 @@ from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constant
 from yade_scripts.run import agreement, table
 from yade_scripts.runner import cost, rows, view
 from yade_scripts.runner.screen import Screen
-from yade_scripts.studies import elastoplastic
+from yade_scripts.studies import elastoplastic, viscous
 
 STUDIES = os.path.join(TOP, "yade_scripts", "studies")
 TABLES = sorted(name for name in os.listdir(STUDIES) if name.endswith(".table"))
@@ -51,12 +51,33 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
     assert [row.cells for row in back] == [{"radius": "4", "!THREADS": "1"}, {"velocity": "10**0.5"}]
 
 
-def test_committed_tables_are_what_the_generator_writes(tmp_path):
-    elastoplastic.write_tables(tmp_path)
-    assert sorted(os.listdir(tmp_path)) == ["elastoplastic-desk.table", "elastoplastic-full.table"]
+@pytest.mark.parametrize("study", [elastoplastic, viscous], ids=["elastoplastic", "viscous"])
+def test_committed_tables_are_what_the_generator_writes(tmp_path, study):
+    study.write_tables(tmp_path)
+    own = study.__name__.rpartition(".")[2]
+    assert sorted(os.listdir(tmp_path)) == [f"{own}-desk.table", f"{own}-full.table"]
     for name in os.listdir(tmp_path):
         with open(os.path.join(STUDIES, name)) as file:
-            assert file.read() == (tmp_path / name).read_text(), f"{name}: run yade_scripts/studies/elastoplastic.py"
+            assert file.read() == (tmp_path / name).read_text(), f"{name}: run yade_scripts/studies/{own}.py"
+
+
+def test_the_viscous_tables_hold_the_papers_runs():
+    """A22 section 2.4: 13 B_off^2, 8 velocities, 4 T_vis; desk has that grid with several seeds of smaller aggregates."""
+    full, desk = (rows.read(os.path.join(STUDIES, f"viscous-{size}.table")) for size in ("full", "desk"))
+    assert not any(row.error for row in full + desk)
+    full, desk = ([row.parameters for row in table_rows] for table_rows in (full, desk))
+    scenes = {(round(p.impact**2 * 12, 9), p.velocity, p.viscoelasticTime) for p in full}
+    assert len(full) == len(scenes) == 416 == 13 * 8 * 4
+    assert {p.grains for p in full} == {50_000} and {p.stepFraction for p in full} == {0.1}
+    assert {t for *_, t in scenes} == {0.0, 1e-12, 3e-12, 6e-12} and {b for b, *_ in scenes} == set(range(13))
+    assert {v for _, v, _ in scenes} == {10 ** (0.1 * i) for i in range(13, 21)}
+    for p in full + desk:
+        assert p.packing == "bpca" and p.duration == 6.34e-6 and p.endWhenApart == 1
+    of_size = lambda grains: [p for p in desk if p.grains == grains]
+    assert {(p.viscoelasticTime, p.velocity) for p in of_size(50_000)} == {(t, 10 ** (0.1 * 17)) for t in (0.0, 6e-12)}
+    assert {round(p.impact**2 * 12, 9) for p in of_size(50_000)} == {3}
+    small = {(round(p.impact**2 * 12, 9), p.velocity, p.viscoelasticTime, p.seed) for p in of_size(500)}
+    assert small == {(*scene, seed) for scene in scenes for seed in (1, 2, 3, 4)}
 
 
 def test_the_tables_hold_the_papers_runs():

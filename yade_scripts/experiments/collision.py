@@ -1,4 +1,4 @@
-"""Collisions of two aggregates of equal size: parameters, scene, series, estimate (A24 section 3; A22 eq 27; S17)."""
+"""Collisions of two aggregates: parameters, scene, series, estimate (A24 section 3; A22 section 2.4; S17)."""
 
 from dataclasses import dataclass, replace
 from math import sqrt
@@ -6,12 +6,16 @@ from math import sqrt
 import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
+from analysis.measures.free_flight import has_come_to_rest
 from analysis.runs.format import COLLISION
 from yade_scripts import packings, stability
 from yade_scripts.materials import pair_constants, require_small_contacts
-from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.approach import first_touch
-from yade_scripts.parameters import POSITIVE, Check, ParameterError, between, parameter
+from yade_scripts.packings.grain_sizes import EQUAL
+from yade_scripts.packings.offset_pair import START_GAP, offset_pair
+from yade_scripts.packings.packing import PackingError
+from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, between, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 from yade_scripts.stability import AUTO
@@ -19,6 +23,7 @@ from yade_scripts.stability import AUTO
 # A24 follows aggregates of 80 grain radii for 1000 ns: 12.5 ns per grain radius, in units of ice's t0.
 DURATION_PER_RADIUS = 64.6
 LARGEST_NECK = 0.7  # the largest of S17
+BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
@@ -28,7 +33,16 @@ class CollisionParameters(AggregateParameters, RunParameters):
 
     velocity: float = parameter(10**0.5, POSITIVE, "relative velocity of the aggregates", "m/s")
     impact: float = parameter(
-        0.0, between(0, 1), "impact parameter B_off in units of the sum of the radii (A22 eq 27)", "1"
+        0.0,
+        between(0, 1),
+        "impact parameter B_off in units of the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' radii)",
+        "1",
+    )
+    projectileGrains: int | None = parameter(
+        None, between(2, MOST_GRAINS), "grains of the projectile, with packing = bcca or bpca (as many as grains)"
+    )
+    projectileFile: str | None = parameter(
+        None, Check("a packing that make_packing.py wrote", lambda text: text != ""), "the projectile's packing (file)"
     )
     neck: float = parameter(
         0.0,
@@ -46,10 +60,34 @@ class CollisionParameters(AggregateParameters, RunParameters):
         "aggregates' radius: 12.5 ns for ice)",
         "s",
     )
+    endWhenApart: int = parameter(
+        0,
+        SWITCH,
+        "1: the run ends earlier than duration as soon as no pieces can meet until then (straight lines of the spheres "
+        "around them) and no piece is in motion within itself that could break it",
+    )
+
+    def filled_in(self):
+        """As AggregateParameters, with the projectile's size."""
+        found = super().filled_in()
+        for name, packings_with_it in (("projectileGrains", MOST_GROWN), ("projectileFile", ("file",))):
+            value = getattr(found, name)
+            if value is not None and found.packing not in packings_with_it:
+                raise ParameterError(f"{name} = {value}: given with packing = {found.packing}; must be left out")
+        if found.projectileGrains is not None:
+            require_growable(found.packing, "projectileGrains", found.projectileGrains)
+        if found.neck and found.sizes != EQUAL:
+            raise ParameterError(f"sizes = {found.sizes}: given with neck = {found.neck:g}; must be {EQUAL}")
+        return found
+
+    def of_projectile(self):
+        """The parameters from which the projectile is made."""
+        return self.changed(grains=self.projectileGrains or self.grains, file=self.projectileFile or self.file)
 
     def title(self):
         """collide-ice-f0.4-R20-v3.162-s1 or collide-ice-bcca-N1024-v3.162-s1, and the names of what is in it."""
-        size = f"bcca-N{self.grains}" if self.packing == "bcca" else f"f{self.filling:g}-R{self.radius:.4g}"
+        size = f"f{self.filling:g}-R{self.radius:.4g}" if self.packing == "cpe" else self.packing
+        size += f"-N{self.grains}" if self.is_grown else ""
         in_name = ("material", "packing", "filling", "radius", "grains", "velocity", "seed")
         return f"collide-{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", in_name
 
@@ -60,6 +98,9 @@ def complete(parameters, constants, threads):
     constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
     """
     require_small_contacts(constants)
+    if parameters.sizes != EQUAL:
+        smallest = parameters.radius_range()[0]
+        require_small_contacts(pair_constants(parameters, (smallest, smallest)))
     _require_sintered(parameters.neck, constants)
     limit = step_limit(parameters, constants)
     if parameters.stepFraction == AUTO:
@@ -74,7 +115,10 @@ def complete(parameters, constants, threads):
 def step_limit(parameters, constants):
     """Largest stable stepFraction [t0] of a collision."""
     filling = stability.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
-    return stability.step_limit(constants, filling)
+    limit = stability.step_limit(constants, filling)
+    if parameters.sizes == EQUAL:
+        return limit
+    return min(limit, stability.limit_of_unlike(parameters, constants, parameters.radius_range()))
 
 
 def step_choice(parameters, constants):
@@ -90,7 +134,7 @@ def default_duration(radius, time_unit, touch):
 
 
 def placements(radius, grain_radius, velocity, impact):
-    """Centre and velocity, ((3,), (3,)), of both aggregates: A24 section 3, offset as in A22 eq 27.
+    """Centre and velocity, ((3,), (3,)), of both CPE aggregates: A24 section 3, offset as in A22 eq 27.
 
     Centres at -/+(R_agg + r) in x and -/+ impact (R_agg + r) in y; velocities +/- velocity/2 in x. radius: R_agg in
     grain radii; grain_radius: r [m]; velocity [m/s].
@@ -111,34 +155,69 @@ def prepare(parameters, threads):
     touch = _time_of_touch(pair, velocities, constants["bond"])
     parameters = with_duration(parameters, constants["timeUnit"], touch)
     aggregate_radius = parameters.radius * parameters.grainRadius
-    derived = {"aggregateRadius": aggregate_radius, "grainsPerAggregate": parameters.grains}
     material = yade_scene.material_of(parameters)
     return Scene(
         parameters=parameters,
         constants=constants,
-        derived=derived if touch is None else {**derived, "firstTouch": touch},
+        derived={**_sizes(aggregate_radius, pair), **({} if touch is None else {"firstTouch": touch})},
         aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
         build=lambda: yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar)),
         series=lambda state: series(state, aggregate_radius),
         law={"neck": parameters.neck},
         step_choice=step_choice(parameters, constants),
+        has_ended=_at_rest(parameters, constants) if parameters.endWhenApart else None,
     )
 
 
 def place(parameters, overlap):
     """(parameters with the size of the aggregates, the two packings in their places, their velocities).
 
-    overlap: of touching grains [m]. Radius and filling of BCCA aggregates are of the larger of the two.
+    overlap: of touching grains [m]. Radius and filling of other than CPE aggregates are of the larger of the two.
     """
-    pair = [make(parameters, overlap, index) for index in (0, 1)]
-    if parameters.packing == "bcca":
-        radius = max(map(packings.extent, pair)) / parameters.grainRadius
-        dimensions = 2 if parameters.planar else 3
-        parameters = parameters.changed(radius=radius, filling=parameters.grains / radius**dimensions)
-    where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
-    pair = [packings.moved(packing, centre) for packing, (centre, _) in zip(pair, where)]
+    pair = [make(parameters, overlap, 0), make(parameters.of_projectile(), overlap, 1)]
+    if parameters.packing == "cpe":
+        where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
+        pair = [packings.moved(packing, centre) for packing, (centre, _) in zip(pair, where)]
+        packings.require_apart(*pair)
+        return parameters, pair, [velocity for _, velocity in where]
+    parameters = _with_size(parameters, pair)
+    placed = offset_pair(*pair, parameters.velocity, parameters.impact)
+    pair = [found.packing for found in placed]
     packings.require_apart(*pair)
-    return parameters, pair, [velocity for _, velocity in where]
+    return parameters, pair, [found.velocity for found in placed]
+
+
+def _with_size(parameters, pair):
+    """The parameters with radius, filling and grains of the aggregates that were made or read."""
+    if parameters.neck and len(np.unique([radius for packing in pair for radius in packing.radius])) > 1:
+        raise ParameterError(
+            f"neck = {parameters.neck:g}: given with grains of unlike size in {parameters.file}; must be 0"
+        )
+    extents = [packings.extent(packing) / parameters.grainRadius for packing in pair]
+    radius, grains = max(extents), pair[int(np.argmax(extents))].grains
+    filling = grains / radius ** (2 if parameters.planar else 3)
+    return parameters.changed(radius=radius, filling=filling, grains=pair[0].grains)
+
+
+def _sizes(aggregate_radius, pair):
+    """What run.json tells of the two aggregates."""
+    found = {"aggregateRadius": aggregate_radius, "grainsPerAggregate": pair[0].grains}
+    for name, packing in zip(("target", "projectile"), pair):
+        found[f"{name}Grains"] = packing.grains
+        found[f"{name}GyrationRadius"] = packings.gyration_radius(packing)
+        found[f"{name}CharacteristicRadius"] = packings.characteristic_radius(packing)
+    return found
+
+
+def _at_rest(parameters, constants):
+    """Scene.has_ended of endWhenApart."""
+    breaking = BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"]
+
+    def has_ended(state):
+        mass = 4 / 3 * np.pi * parameters.density * state["radius"] ** 3
+        return has_come_to_rest(state, mass, breaking, parameters.duration - state["time"])
+
+    return has_ended
 
 
 def with_duration(parameters, time_unit, touch):
@@ -165,19 +244,23 @@ def series(state, aggregate_radius):
 def estimate(parameters):
     """Estimate of a run, without its packings: contacts of a CPE packing by A24 eq 39, in BCCA two a grain."""
     constants = pair_constants(parameters)
-    planar, bcca = bool(parameters.planar), parameters.packing == "bcca"
-    if bcca:
+    planar = bool(parameters.planar)
+    grains = _grain_numbers(parameters)
+    if parameters.packing == "file":
+        neighbours = NEIGHBOURS / 2
+    elif parameters.is_grown:
         neighbours = 2
     else:
         full = packings.maximum_filling(parameters.grainRadius, constants["equilibriumOverlap"], planar)
         neighbours = parameters.filling / full * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
     duration = parameters.duration
     if duration is None:
-        radius = _typical_bcca_radius(parameters.grains, planar) if bcca else parameters.radius
-        touch = _typical_way(radius, parameters.impact, bcca) * parameters.grainRadius / parameters.velocity
+        radius = parameters.radius or _typical_radius(parameters.packing, max(grains), planar)
+        touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
         duration = default_duration(radius, constants["timeUnit"], touch)
-    grains = 2 * parameters.grains
-    return Estimate(grains, grains * neighbours / 2, duration / constants["timeUnit"] / _step(parameters, constants))
+    return Estimate(
+        sum(grains), sum(grains) * neighbours / 2, duration / constants["timeUnit"] / _step(parameters, constants)
+    )
 
 
 def expected(parameters, run):
@@ -186,7 +269,8 @@ def expected(parameters, run):
     Runs of format 1 didn't count the time until the first touch.
     """
     held, derived = run.get("parameters", {}), run.get("derived", {})
-    found = {name: held.get(name) for name in ("radius", "filling") if getattr(parameters, name) is None}
+    open_names = ("radius", "filling", "grains")
+    found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
     touch = derived.get("firstTouch") if run.get("format", 1) > 1 else 0.0
     if parameters.duration is None and None not in (touch, held.get("radius"), derived.get("timeUnit")):
         found["duration"] = default_duration(held["radius"], derived["timeUnit"], touch)
@@ -227,16 +311,30 @@ def _time_of_touch(pair, velocities, bond):
     return first_touch(*pair, velocities[1] - velocities[0])
 
 
-def _typical_bcca_radius(grains, planar):
-    """In grain radii: a fit to aggregates of 32 to 4096 grains."""
+def _grain_numbers(parameters):
+    """Grains of both aggregates; of files that can't be read, which the run will say, as if they held one each."""
+    if parameters.packing != "file":
+        return parameters.grains, parameters.of_projectile().grains
+    try:
+        return tuple(packings.load(p.file).grains for p in (parameters, parameters.of_projectile()))
+    except PackingError:
+        return 1, 1
+
+
+def _typical_radius(packing, grains, planar):
+    """Extent in grain radii: fits to BCCA of 32 to 4096 grains and BPCA of 300 to 50,000; packings of files as CPE."""
+    if packing == "bpca":
+        return 2.6 * grains ** (1 / 2.97)
+    if packing == "file":
+        return (grains / 0.4) ** (1 / 3)
     return 1.6 * grains ** (1 / 1.5) if planar else 1.9 * grains ** (1 / 1.9)
 
 
-def _typical_way(radius, impact, bcca):
-    """Grain radii until the first touch: of spheres and 1.4 more, or (BCCA) half of the distance of the centres."""
-    if bcca:
-        return radius + 1
-    return 2 * (radius + 1) * (1 - sqrt(1 - impact**2)) + 1.4
+def _typical_way(parameters):
+    """Grain radii until the first touch: of spheres and 1.4 more, or the gap at which aggregates of any shape start."""
+    if parameters.packing != "cpe":
+        return START_GAP
+    return 2 * (parameters.radius + 1) * (1 - sqrt(1 - parameters.impact**2)) + 1.4
 
 
 KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected)

@@ -4,21 +4,30 @@ import math
 from dataclasses import dataclass
 
 from yade_scripts.materials import GrainParameters
+from yade_scripts.packings import grain_sizes
 from yade_scripts.packings.bcca import bcca
+from yade_scripts.packings.bpca import bpca
 from yade_scripts.packings.filling import grain_number
+from yade_scripts.packings.from_file import packing_from_file
+from yade_scripts.packings.grain_sizes import EQUAL, LOGNORMAL, SIZES, TWO
 from yade_scripts.packings.lattice import cpe
+from yade_scripts.packings.packing import random_stream
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
 
 MOST_GRAINS = 5_000_000
-MOST_BCCA_GRAINS = 100_000  # made in a minute
+MOST_GROWN = {"bcca": 100_000, "bpca": 2_000_000}  # made in a minute, in minutes
+GRAINS_GROWN = 1024
+OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
 
 
 @dataclass(frozen=True)
 class AggregateParameters(GrainParameters):
-    """The aggregates. Radius and filling of a bcca aggregate follow when it is made."""
+    """The aggregates. Radius and filling of a bcca, bpca or file aggregate follow when it is made."""
 
     packing: str = parameter(
-        "cpe", one_of(["cpe", "bcca"]), "how they are made: close-packed and extracted, or cluster-cluster aggregation"
+        "cpe",
+        one_of(["cpe", "bcca", "bpca", "file"]),
+        "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, or read from file",
     )
     filling: float | None = parameter(
         None,
@@ -30,26 +39,90 @@ class AggregateParameters(GrainParameters):
         None, POSITIVE, "radius of a cpe aggregate (20 if grains is not given either)", "grain radii"
     )
     grains: int | None = parameter(
-        None, between(2, MOST_GRAINS), "grains of an aggregate, instead of radius (bcca: 1024)"
+        None, between(2, MOST_GRAINS), f"grains of an aggregate, instead of radius (bcca, bpca: {GRAINS_GROWN})"
     )
     planar: int = parameter(0, SWITCH, "1: grains confined to a plane")
+    file: str | None = parameter(
+        None, Check("a packing that make_packing.py wrote", lambda text: text != ""), "packing of packing = file"
+    )
+    sizes: str = parameter(
+        EQUAL,
+        one_of(SIZES),
+        "radii of the grains of a bcca or bpca aggregate: all of grainRadius, two radii, log-normal",
+    )
+    sizeRatio: float | None = parameter(
+        None, between(0.1, 10.0), "sizes = two: radius of the others over grainRadius", "1"
+    )
+    sizeFraction: float | None = parameter(
+        None, between(0.0, 1.0), "sizes = two: how many of the grains are the others (0.5)", "1"
+    )
+    sizeSpread: float | None = parameter(
+        None,
+        Check("> 0 and at most 0.7", lambda x: 0 < x <= 0.7),
+        "sizes = lognormal: standard deviation of ln r around ln grainRadius, "
+        f"cut off at {grain_sizes.WIDEST:g} of it",
+        "1",
+    )
     seed: int = parameter(1, NOT_NEGATIVE, "of the random packings")
 
     def filled_in(self):
-        """Radius from grains or grains from radius and filling (cpe); for bcca only grains."""
-        sized = self._of_bcca() if self.packing == "bcca" else self._of_cpe()
-        return super(AggregateParameters, sized).filled_in()
+        """What follows from the way of packing: radius from grains or grains from radius and filling (cpe)."""
+        if self.packing != "file" and self.file is not None:
+            raise ParameterError(f"file = {self.file}: given with packing = {self.packing}; must be left out")
+        sized = {"cpe": self._of_cpe, "file": self._of_file}.get(self.packing, self._grown)()
+        return super(AggregateParameters, sized._with_sizes()).filled_in()
 
-    def _of_bcca(self):
+    @property
+    def is_grown(self):
+        """Whether grains come together one by one, so that they may be of unlike size."""
+        return self.packing in MOST_GROWN
+
+    def radius_range(self):
+        """(smallest, largest) radius [m] that a grain of these sizes may have."""
+        return grain_sizes.radius_range(self.sizes, self.grainRadius, self.sizeRatio, self.sizeSpread)
+
+    def _with_sizes(self):
+        if self.sizes != EQUAL and not self.is_grown:
+            raise ParameterError(f"sizes = {self.sizes}: given with packing = {self.packing}; must be {EQUAL}")
+        for name, of in OF_SIZES.items():
+            if self.sizes != of and getattr(self, name) is not None:
+                raise ParameterError(
+                    f"{name} = {getattr(self, name):g}: given with sizes = {self.sizes}; must be left out"
+                )
+        if self.sizes == TWO and self.sizeFraction is None:
+            return self._required("sizeRatio").changed(sizeFraction=0.5)
+        return self._required({TWO: "sizeRatio", LOGNORMAL: "sizeSpread"}.get(self.sizes))
+
+    def _required(self, name):
+        if name is not None and getattr(self, name) is None:
+            raise ParameterError(f"{name}: not given with sizes = {self.sizes}; {self.columns()[name].must}")
+        return self
+
+    def _refuse(self, *names):
+        for name in names:
+            value = getattr(self, name)
+            if value != self.columns()[name].default:
+                raise ParameterError(
+                    f"{name} = {value:g}: given with packing = {self.packing}, on which it has no effect; must be left out"
+                )
+
+    def _grown(self):
         for name in ("filling", "radius"):
             if getattr(self, name) is not None:
                 raise ParameterError(
-                    f"{name} = {getattr(self, name):g}: given with packing = bcca; must be grains only"
+                    f"{name} = {getattr(self, name):g}: given with packing = {self.packing}; must be grains only"
                 )
-        grains = 1024 if self.grains is None else self.grains
-        if grains > MOST_BCCA_GRAINS:
-            raise ParameterError(f"grains = {grains}: too many for packing = bcca; must be 2 to {MOST_BCCA_GRAINS}")
+        if self.packing == "bpca" and self.planar:
+            raise ParameterError("planar = 1: given with packing = bpca, which is made in space; must be 0")
+        grains = GRAINS_GROWN if self.grains is None else self.grains
+        require_growable(self.packing, "grains", grains)
         return self.changed(grains=grains)
+
+    def _of_file(self):
+        if self.file is None:
+            raise ParameterError("file: not given with packing = file; must be a packing that make_packing.py wrote")
+        self._refuse("filling", "radius", "grains", "seed")
+        return self
 
     def _of_cpe(self):
         dimensions = 2 if self.planar else 3
@@ -72,12 +145,30 @@ class AggregateParameters(GrainParameters):
         return self.changed(filling=filling, radius=radius, grains=grains)
 
 
+def require_growable(packing, name, grains):
+    """Raise ParameterError when an aggregate that grows grain by grain would take too long."""
+    if grains > MOST_GROWN[packing]:
+        raise ParameterError(f"{name} = {grains}: too many for packing = {packing}; must be 2 to {MOST_GROWN[packing]}")
+
+
 def make(parameters, overlap, index):
     """Aggregate number index of a run, around the origin.
 
-    parameters: AggregateParameters; overlap: of touching grains [m]. Raises PackingError.
+    parameters: AggregateParameters; overlap: of touching grains of grainRadius [m]. Raises PackingError.
     """
     radius, seed, planar = parameters.grainRadius, parameters.seed, bool(parameters.planar)
-    if parameters.packing == "bcca":
-        return bcca(parameters.grains, radius, overlap, seed, index, planar)
-    return cpe(parameters.filling, parameters.radius * radius, radius, overlap, seed, index, planar)
+    if parameters.packing == "file":
+        return packing_from_file(parameters.file, radius, overlap, planar)
+    if parameters.packing == "cpe":
+        return cpe(parameters.filling, parameters.radius * radius, radius, overlap, seed, index, planar)
+    radii = _radii(parameters, index)
+    if parameters.packing == "bpca":
+        return bpca(parameters.grains, radius, overlap, seed, index, radii)
+    return bcca(parameters.grains, radius, overlap, seed, index, planar, radii)
+
+
+def _radii(parameters, index):
+    """Radii [m] of a grown aggregate, from a stream of their own: with equal grains the packing stays the same."""
+    p, stream = parameters, random_stream(parameters.seed, index, 1)
+    found = grain_sizes.radii(p.sizes, p.grains, p.grainRadius, stream, p.sizeRatio, p.sizeFraction, p.sizeSpread)
+    return found

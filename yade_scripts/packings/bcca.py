@@ -9,33 +9,39 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from yade_scripts.packings.packing import Packing, random_stream
+from yade_scripts.packings.grain_sizes import touching_distance
+from yade_scripts.packings.packing import Packing, centred, random_stream
 
 
-def bcca(grains, grain_radius, overlap, seed, index=0, planar=False):
+def bcca(grains, grain_radius, overlap, seed, index=0, planar=False, radii=None):
     """A BCCA aggregate of `grains` grains, its centre of mass at the origin; planar: all in the plane z = 0.
 
-    grain_radius, overlap (of touching grains) in m. Every cluster is of two of half its size (a power of two, or
-    sizes that differ by one grain). The packing is a function of the arguments.
+    grain_radius, overlap (of two such grains at rest) in m; radii (grains,) [m], all of grain_radius when left out.
+    Every cluster is of two of half its number of grains (a power of two, or numbers that differ by one). The packing is
+    a function of the arguments.
     """
     stream = random_stream(seed, index)
-    position = _cluster(grains, 2 * grain_radius - overlap, stream, planar)
+    radii = np.full(grains, float(grain_radius)) if radii is None else np.asarray(radii, dtype=float)
+
+    def touching(first, second):
+        return touching_distance(first, second, grain_radius, overlap)
+
     return Packing(
-        position,
-        np.full(grains, float(grain_radius)),
+        _cluster(radii, touching, stream, planar),
+        radii,
         seed,
         dict(packing="bcca", grains=grains, grainRadius=grain_radius, overlap=overlap, index=index, planar=int(planar)),
     )
 
 
-def _cluster(grains, reach, stream, planar):
+def _cluster(radii, touching, stream, planar):
+    grains = len(radii)
     if grains == 1:
         return np.zeros((1, 3))
-    halves = [
-        _turned(_cluster(size, reach, stream, planar), stream, planar) for size in (grains - grains // 2, grains // 2)
-    ]
-    joined = np.concatenate([halves[0], _met(*halves, reach, stream, planar)])
-    return joined - joined.mean(axis=0)
+    parts = np.split(radii, [grains - grains // 2])
+    halves = [_turned(_cluster(part, touching, stream, planar), stream, planar) for part in parts]
+    joined = np.concatenate([halves[0], _met(*halves, *parts, touching, stream, planar)])
+    return centred(joined, radii)
 
 
 def _turned(position, stream, planar):
@@ -44,9 +50,10 @@ def _turned(position, stream, planar):
     return Rotation.random(random_state=stream).apply(position)
 
 
-def _met(target, projectile, reach, stream, planar):
+def _met(target, projectile, target_radii, projectile_radii, touching, stream, planar):
     """The projectile where it first touches the target, having come along -x; offsets that miss are drawn again."""
     across = slice(1, 2) if planar else slice(1, 3)
+    reach = touching(target_radii.max(), projectile_radii.max())
     limit = reach + sum(np.linalg.norm(p[:, across], axis=1).max() for p in (target, projectile))
     tree = cKDTree(target[:, across])
     while True:
@@ -56,6 +63,8 @@ def _met(target, projectile, reach, stream, planar):
             continue
         moved = projectile + offset
         near = tree.sparse_distance_matrix(cKDTree(moved[:, across]), reach, output_type="coo_matrix")
-        if near.nnz:
-            stops = target[near.row, 0] - moved[near.col, 0] + np.sqrt(reach**2 - near.data**2)
-            return moved + (stops.max(), 0, 0)
+        square = touching(target_radii[near.row], projectile_radii[near.col]) ** 2 - near.data**2
+        meets = square >= 0
+        if meets.any():
+            stops = target[near.row, 0] - moved[near.col, 0] + np.sqrt(np.maximum(square, 0.0))
+            return moved + (stops[meets].max(), 0, 0)

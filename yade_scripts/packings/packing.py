@@ -3,6 +3,7 @@
 import json
 import zipfile
 from dataclasses import dataclass, field
+from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -29,9 +30,26 @@ class Packing:
         return len(self.radius)
 
 
-def random_stream(seed, index):
-    """numpy Generator of one aggregate of a seed, number index of what SeedSequence(seed).spawn() gives."""
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index,)))
+def random_stream(seed, index, *more):
+    """numpy Generator of one aggregate of a seed, number index of what SeedSequence(seed).spawn() gives; more: numbers
+    of independent streams of the same aggregate."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index, *more)))
+
+
+def centred(position, radius):
+    """Positions (N,3) relative to the centre of mass of grains of one density; radius (N,)."""
+    return position - np.average(position, axis=0, weights=(radius / radius.max()) ** 3)
+
+
+def gyration_radius(packing):
+    """r_gyr [m]: root of the mean square distance of the mass from its centre; grains of one density, as points."""
+    mass = (packing.radius / packing.radius.max()) ** 3
+    return float(np.sqrt(np.average((centred(packing.position, packing.radius) ** 2).sum(axis=1), weights=mass)))
+
+
+def characteristic_radius(packing):
+    """r_c = (5/3)^(1/2) r_gyr [m] (Mukai et al. 1992; A22 section 2.4): of a homogeneous sphere its radius."""
+    return sqrt(5.0 / 3.0) * gyration_radius(packing)
 
 
 def contacts(packing):
@@ -66,7 +84,8 @@ def moved(packing, shift):
 
 
 def save(path, packing):
-    """Write a packing as .npz: position (N,3), radius (N,) in m, seed, parameters (a JSON text)."""
+    """Write a packing as .npz: position (N,3), radius (N,) in m, seed, parameters (a JSON text); gyration_radius and
+    characteristic_radius [m] beside them, for whoever reads the file."""
     write_atomically(
         path,
         lambda file: np.savez(
@@ -75,6 +94,8 @@ def save(path, packing):
             radius=packing.radius,
             seed=packing.seed,
             parameters=json.dumps(packing.parameters),
+            gyration_radius=gyration_radius(packing),
+            characteristic_radius=characteristic_radius(packing),
         ),
     )
 
@@ -83,8 +104,11 @@ def load(path):
     """Read a packing that save() wrote; raises PackingError when the file is missing or isn't one."""
     try:
         with np.load(path) as file:
-            return Packing(file["position"], file["radius"], int(file["seed"]), json.loads(str(file["parameters"])))
-    except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
+            parameters = json.loads(str(file["parameters"]))
+            if not isinstance(parameters, dict):
+                raise ValueError("parameters is no JSON object")
+            return Packing(file["position"], file["radius"], int(file["seed"]), parameters)
+    except (OSError, KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
         reason = " ".join(str(error).split())
         raise PackingError(
             f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"

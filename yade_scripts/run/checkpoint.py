@@ -74,7 +74,8 @@ class Checkpoint:
         differs = difference(kind, parameters, self.run)
         if differs:
             self._refuse(f"of a run with {differs}")
-        if self.columns != [quantity.name for quantity in kind.format.history]:
+        history = kind.format.history
+        if self.columns != [q.name for q in history if not q.optional or q.name in self.columns]:
             self._refuse("of a history with other columns")
 
     def load_scene(self):

@@ -30,6 +30,7 @@ class Scene:
     series(state): {name: value} of the kind's own series, state as contact_law.snapshot() with `aggregate`;
     law: attributes of the contact law, the same words for JKRWadaEngine and Ip2_JKRMat_JKRMat_JKRWadaPhys;
     energy_is_conserved: whether all channels together are constant (not with moving boundaries and the functors);
+    has_ended(state): whether nothing can change any more, so that the run ends before its duration (None: never);
     step_choice: how stepFraction came about, in one line.
     """
 
@@ -42,6 +43,7 @@ class Scene:
     law: Mapping = field(default_factory=dict)
     energy_is_conserved: bool = True
     step_choice: str = "as given"
+    has_ended: Callable[[Mapping], bool] | None = None
 
     @property
     def time_step(self):

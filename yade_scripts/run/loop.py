@@ -11,7 +11,8 @@ def run(steps, recorder, runner, begin, checkpoints):
 
     recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
     taken, with a checkpoint and one more step that records where it stopped; the outcome is then
-    "interrupted". A scene from a checkpoint has taken some of the steps.
+    "interrupted". A scene from a checkpoint has taken some of the steps; one that has ended before its time
+    (recorder.finished) takes no more.
     """
     omega, stop = Omega(), StopSignals()
     progress = progress_bar(steps, omega.iter)
@@ -22,6 +23,8 @@ def run(steps, recorder, runner, begin, checkpoints):
             progress.update()
             if recorder.error:
                 return f"failed: {one_line(recorder.error)}", 1
+            if recorder.finished:
+                break
             checkpoints.save_if_due()
             if stop.received and step < steps:
                 checkpoints.save()

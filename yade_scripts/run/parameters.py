@@ -47,6 +47,9 @@ class RunParameters(Parameters):
         "of the processor: 1 or 2 for the fused engine; for the functors those that yade -j or yade-batch set",
         of_consequence=False,
     )
+    states: int = parameter(
+        22, between(2, 10_000), "states written, evenly in time, start and end among them", of_consequence=False
+    )
     out: str | None = parameter(
         None,
         Check("a folder that can be written", lambda text: text != ""),

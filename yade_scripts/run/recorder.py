@@ -3,41 +3,56 @@
 import time
 
 import numpy as np
-from yade.wrapper import Omega
+from yade.wrapper import JKRWadaEngine, Omega
 
 import contact_law
 from analysis.runs.format import CHANNEL_TABLE, CHANNELS, WORK
 from yade_scripts.run.diagnosis import RunFailed, suspects
 
 SECONDS_BETWEEN_WRITES = 10
+CHECKS = 100  # times in a run that it is asked whether it has ended
 LARGEST_LEDGER_ERROR = 0.1  # of the energies at the start and the work done since: beyond, a run isn't worth its time
 WORK_CHANNELS = [channel.name for channel in CHANNEL_TABLE if channel.kind == WORK]
+
+
+def engine_counts():
+    """statistics() of the fused engine; {} where YADE's own loop steps."""
+    engine = Omega().engines[0]
+    return engine.statistics() if isinstance(engine, JKRWadaEngine) else {}
 
 
 class Recorder:
     """sample() takes one row of the history, and some states: for a PyRunner that is the last engine.
 
     kind_format: a RunKind of analysis.runs.format, which names the columns; scene: of run.kind, for its series, the
-    grains' aggregates and whether its energy is conserved.
+    grains' aggregates, whether its energy is conserved and whether it has ended before its time (.finished, then).
+    Optional series are those of the kind's that the scene or the engine's statistics() have at the first sample.
     An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
     """
 
     def __init__(self, folder, schedule, kind_format, scene):
         self.folder, self.schedule, self.scene = folder, schedule, scene
         self.history, self.states = kind_format.history, kind_format.states
-        self.columns = [quantity.name for quantity in self.history]
+        self.columns = None  # until the first sample, or those of the checkpoint
         self.error = None
-        self.ending = False
+        self.ending = self.finished = False
+        self._checked_every = max(1, schedule.samples // CHECKS)
         self._rows, self._written = [], 0
         self._last_good = None  # state of the last sample, unless it is written already
         self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
 
     def rows(self):
         """The history so far, (T, columns), for a checkpoint."""
-        return np.array(self._rows, dtype=float).reshape(-1, len(self.columns))
+        return np.array(self._rows, dtype=float).reshape(-1, len(self.columns or self.history))
 
-    def resume(self, rows):
+    @property
+    def time(self):
+        """Time [s] of the last sample; None before the first."""
+        return self._rows[-1][0] if self._rows else None
+
+    def resume(self, rows, columns):
         """Have these rows, of a checkpoint, as the history so far; later states of the folder are removed."""
+        self.columns = list(columns)
         self._rows = [tuple(row) for row in rows.tolist()]
         self._written = sum(number < len(rows) for number in self.schedule.states)
         self.folder.keep_states(self._written)
@@ -56,8 +71,8 @@ class Recorder:
 
     def write_history(self):
         """Write all samples so far."""
-        series = dict(zip(self.columns, self.rows().T))
-        whole = [quantity.name for quantity in self.history if quantity.kind == "i"]
+        series = dict(zip(self.columns or [quantity.name for quantity in self.history], self.rows().T))
+        whole = [quantity.name for quantity in self.history if quantity.kind == "i" and quantity.name in series]
         self.folder.write_history({**series, **{name: series[name].astype(int) for name in whole}})
 
     def _sample(self):
@@ -66,11 +81,16 @@ class Recorder:
         energies = {channel: booked.get(channel, 0.0) for channel in CHANNELS}  # none of it so far: no entry
         self._require_sound(state, energies)
         contacts = len(state["contact_pairs"])
-        sample = {"time": state["time"], **energies, "contacts": contacts, **self.scene.series(state)}
+        counts = engine_counts()
+        sample = {**counts, "time": state["time"], **energies, "contacts": contacts, **self.scene.series(state)}
+        if self.columns is None:
+            self.columns = [q.name for q in self.history if not q.optional or q.name in sample]
         number = len(self._rows)
         self._rows.append(tuple(sample[name] for name in self.columns))
         self._last_good = state
-        if self.ending or number in self.schedule.states:
+        if self.scene.has_ended and number and number % self._checked_every == 0:
+            self.finished = bool(self.scene.has_ended(state))
+        if self.ending or self.finished or number in self.schedule.states:
             self._write_state(state)
         if time.monotonic() >= self._next_write:
             self.write_history()

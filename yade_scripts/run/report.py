@@ -44,8 +44,10 @@ class Report:
         """Seconds that the run has taken, those before interruptions included."""
         return time.monotonic() - self.start
 
-    def end(self, outcome):
-        """Write the outcome and, if the run came to its planned end, the mark of that; print one line."""
+    def end(self, outcome, time):
+        """Write the outcome, the time that was reached [s] (None: none) and, if the run came to its end, the mark of that;
+        print one line."""
+        self.run["timeReached"] = time
         self._write(outcome)
         if outcome == "completed":
             self.folder.write_ended()

@@ -16,6 +16,11 @@ class Schedule:
     interval: int
     states: frozenset
 
+    @property
+    def samples(self):
+        """Number of intervals between samples."""
+        return self.steps // self.interval
+
     @classmethod
     def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22):
         """At most `interval` steps between samples, and at least `fewest_samples` if the steps suffice.

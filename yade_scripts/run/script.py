@@ -29,8 +29,8 @@ def main(kind, description):
         scene = kind.prepare(parameters, Omega().numThreads)
         _require_finite(scene.parameters, scene.constants["timeUnit"])
         folder, saved = _open(kind, scene)
-    outcome, status, report = _carry_out(kind, scene, folder, saved, begun)
-    report.end(outcome)
+    outcome, status, time_reached, report = _carry_out(kind, scene, folder, saved, begun)
+    report.end(outcome, time_reached)
     sys.exit(status)
 
 
@@ -53,7 +53,7 @@ def _open(kind, scene):
 
 
 def _carry_out(kind, scene, folder, saved, begun):
-    """(outcome, exit status, report) of the run."""
+    """(outcome, exit status, time reached [s], report) of the run."""
     from yade_scripts.run import checkpoint, loop
     from yade_scripts.run import scene as yade_scene
     from yade_scripts.run.recorder import Recorder
@@ -61,10 +61,10 @@ def _carry_out(kind, scene, folder, saved, begun):
     from yade_scripts.run.schedule import Schedule
 
     parameters = scene.parameters
-    schedule = Schedule.of(parameters.duration, scene.time_step)
+    schedule = Schedule.of(parameters.duration, scene.time_step, states=parameters.states)
     recorder = Recorder(folder, schedule, kind.format, scene)
     if saved:
-        recorder.resume(saved.rows)
+        recorder.resume(saved.rows, saved.columns)
         steps, runner, begin = yade_scene.resume(scene, schedule, recorder, saved)
     else:
         steps, runner, begin = yade_scene.start(scene, schedule, recorder)
@@ -80,4 +80,4 @@ def _carry_out(kind, scene, folder, saved, begun):
         print(f"step: {scene.step_choice}", flush=True)
     outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
     recorder.write_history()
-    return outcome, status, report
+    return outcome, status, recorder.time, report

@@ -1,0 +1,67 @@
+"""What this study's figures have in common: colours of T_vis and B_off, the runs that A22 shows most."""
+
+import numpy as np
+
+from ....figures.panels import PAPER, legend, letter, panels, velocity_axis
+from ....runs.table import run_folder
+from ....statistics import mean_and_error
+from .. import paper
+from ..results import picoseconds
+
+__all__ = [
+    "PAPER",
+    "impact_colour",
+    "legend",
+    "letter",
+    "mean_points",
+    "one_run_each",
+    "own_times",
+    "panels",
+    "run_folder",
+    "time_colours",
+    "time_label",
+    "velocity_axis",
+]
+
+_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#7b3fa0", "#8c5a2b")
+
+
+def time_colours(table):
+    """{T_vis [s]: colour} of a table's runs, no drag in blue."""
+    times = sorted(set(table.viscoelasticTime.round(16)))
+    return {float(time): _COLOURS[i % len(_COLOURS)] for i, time in enumerate(times)}
+
+
+def time_label(time):
+    """Name of T_vis in a legend."""
+    return f"$T_{{vis}}$ = {picoseconds(time)} ps"
+
+
+def impact_colour(square):
+    """Colour of B_off^2, from dark (head-on) to light."""
+    return tuple(np.array((0.10, 0.15, 0.40)) + square * np.array((0.80, 0.60, 0.10)))
+
+
+def mean_points(axes, x, samples, colour, label=None, marker="o", line="-"):
+    """Means with standard errors of samples [(n,)] at x (K,), joined by a line."""
+    means, errors = zip(*(mean_and_error(sample) for sample in samples))
+    errors = [error or 0.0 for error in errors]
+    axes.errorbar(x, means, yerr=errors, fmt=marker + line, color=colour, markersize=4, capsize=2, lw=1.3, label=label)
+
+
+def one_run_each(results):
+    """[(T_vis, row)] of the collision that A22 shows most (50.1 m/s, B_off^2 = 3/12) at the largest size, the first seed of
+    each T_vis; [] without any."""
+    runs = results.reference
+    runs = runs[runs.grains == results.reference_size].sort_values("seed", kind="stable") if len(runs) else runs
+    times = runs.viscoelasticTime.round(16)
+    return [(float(t), next(runs[times == t].itertuples())) for t in sorted(times.unique())]
+
+
+def own_times(times, row):
+    """The paper's times [s] for aggregates of another size: in proportion to their characteristic radius; those of the
+    paper's own number of grains as they are. row: of the table."""
+    if row.grains == paper.GRAINS:
+        return times
+    scale = row.characteristic_radius / row.grain_radius / np.mean(paper.CHARACTERISTIC_RADII)
+    return tuple(float(time * scale) for time in times)

@@ -1,0 +1,220 @@
+"""Growth efficiency and thresholds: A22 Figs. 2 to 5."""
+
+import numpy as np
+
+from ....figures.style import styled
+from ...definition import StudyFigure
+from .. import paper
+from ..impact_mean import at_impacts
+from ..results import picoseconds
+from .common import PAPER, impact_colour, legend, letter, mean_points, panels, time_colours, time_label, velocity_axis
+
+
+@styled
+def growth_figure(results):
+    """f_gro against velocity for every B_off, and its mean over them, a panel for each T_vis: Fig. 2."""
+    grains, table = results.main_size, results.table
+    if grains is None:
+        return None
+    of_size = results.of_size(grains)
+    figure, axes = panels(1, len(of_size), 4.2, 4.4)
+    for place, growth in zip(axes[0], of_size):
+        runs = table[(table.grains == grains) & ((table.viscoelasticTime - growth.viscous_time).abs() < 1e-16)]
+        for square in np.unique((runs.impact**2).round(6)):
+            own = runs[((runs.impact**2) - square).abs() < 1e-5]
+            velocities = np.unique(own.velocity.round(6))
+            samples = [own.growth[own.velocity.round(6) == v] for v in velocities]
+            mean_points(place, velocities, samples, impact_colour(square), f"{12 * square:.3g}/12")
+        place.plot(growth.velocities, growth.mean, color="0.55", lw=4, zorder=0, label="mean (29)")
+        place.axhline(0.0, color="0.7", lw=0.8, zorder=0)
+        velocity_axis(place, table.velocity)
+        place.set_ylim(-1.05, 1.05)
+        place.text(0.03, 0.03, time_label(growth.viscous_time), transform=place.transAxes)
+    axes[0, 0].set_ylabel("growth efficiency $f_{gro}$")
+    legend(axes[0, -1], title="$B_{off}^2$", fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    letter(axes, f"{grains} grains each")
+    return figure
+
+
+@styled
+def mean_growth_figure(results):
+    """<f_gro> against velocity for every T_vis, a panel for each size: Fig. 3."""
+    if not results.sizes:
+        return None
+    figure, axes = panels(1, len(results.sizes), 5.0, 4.2)
+    colours = time_colours(results.table)
+    for place, grains in zip(axes[0], results.sizes):
+        for growth in results.of_size(grains):
+            colour = colours[growth.viscous_time]
+            error = np.nan_to_num(growth.error)
+            place.errorbar(
+                growth.velocities,
+                growth.mean,
+                error,
+                fmt="o-",
+                color=colour,
+                capsize=3,
+                label=time_label(growth.viscous_time),
+            )
+        place.axhline(0.0, color="0.6", lw=0.8)
+        place.axvspan(*paper.V_FRA, color=PAPER, alpha=0.12, lw=0, label="A22: $v_{fra}$")
+        velocity_axis(place, results.table.velocity)
+        place.text(0.03, 0.05, f"{grains} grains each", transform=place.transAxes)
+    axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
+    legend(axes[0, 0], fontsize=8)
+    letter(axes, "")
+    return figure
+
+
+@styled
+def head_on_figure(results):
+    """f_gro of head-on collisions against velocity: Fig. 4."""
+    table = results.table
+    runs = table[(table.impact == 0)]
+    if runs.empty:
+        return None
+    runs = runs[runs.grains == runs.grains.max()]
+    figure, axes = panels(1, 1)
+    for time, colour in time_colours(table).items():
+        own = runs[(runs.viscoelasticTime - time).abs() < 1e-16]
+        velocities = np.unique(own.velocity.round(6))
+        if len(velocities):
+            samples = [own.growth[own.velocity.round(6) == v] for v in velocities]
+            mean_points(axes[0, 0], velocities, samples, colour, time_label(time))
+    velocity_axis(axes[0, 0], table.velocity)
+    axes[0, 0].axhline(0.0, color="0.6", lw=0.8)
+    axes[0, 0].set_ylabel("$f_{gro}$ at $B_{off}$ = 0")
+    legend(axes[0, 0], fontsize=8)
+    letter(axes, f"{runs.grains.max()} grains each")
+    return figure
+
+
+@styled
+def thresholds_figure(results):
+    """v_stick and v_fra against T_vis, of every size: Fig. 5."""
+    figure, axes = panels(1, 1)
+    place = axes[0, 0]
+    known = results.table.drop_duplicates("viscoelasticTime").sort_values("viscoelasticTime")
+    place.plot(
+        known.viscoelasticTime * 1e12, known.sticking_velocity, "s--", color="0.35", label="$v_{stick}$, two grains"
+    )
+    shades = ("#9ecae1", "#4292c6", "#2166ac", "#08306b")
+    for i, grains in enumerate(results.sizes):
+        found = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
+        if found:
+            times = [growth.viscous_time * 1e12 for growth in found]
+            errors = [growth.v_fra_error or 0.0 for growth in found]
+            colour = shades[min(i, 3) if len(results.sizes) > 1 else 2]
+            label = f"$v_{{fra}}$, {grains} grains"
+            place.errorbar(times, [g.v_fra for g in found], errors, fmt="o-", capsize=3, color=colour, label=label)
+    place.axhspan(*paper.V_FRA, color=PAPER, alpha=0.12, lw=0, label="A22: $v_{fra}$")
+    place.set_yscale("log")
+    place.set_ylim(3, 200)
+    place.set_yticks([5, 10, 20, 50, 100], ["5", "10", "20", "50", "100"])
+    place.set_yticks([], minor=True)
+    place.set_xlabel("$T_{vis}$  [ps]")
+    place.set_ylabel("threshold velocity  [m/s]")
+    legend(place, fontsize=8)
+    return figure
+
+
+@styled
+def size_figure(results):
+    """v_fra against the size of the aggregates, for every T_vis, and against T_vis, for every size."""
+    known = [growth for growth in results.growth.values() if growth.v_fra is not None]
+    if not known:
+        return None
+    figure, axes = panels(1, 2, 4.8, 4.2)
+    colours = time_colours(results.table)
+    for time, colour in colours.items():
+        own = sorted((g for g in known if g.viscous_time == time), key=lambda growth: growth.grains)
+        if own:
+            errors = [g.v_fra_error or 0.0 for g in own]
+            x = [g.grains for g in own]
+            axes[0, 0].errorbar(
+                x, [g.v_fra for g in own], errors, fmt="o-", color=colour, capsize=3, label=time_label(time)
+            )
+    for i, grains in enumerate(results.sizes):
+        own = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
+        if own:
+            errors = [g.v_fra_error or 0.0 for g in own]
+            shade = str(0.7 - 0.6 * (i + 1) / len(results.sizes))
+            x = [g.viscous_time * 1e12 for g in own]
+            axes[0, 1].errorbar(
+                x, [g.v_fra for g in own], errors, fmt="o-", color=shade, capsize=3, label=f"{grains} grains"
+            )
+    axes[0, 0].plot([paper.GRAINS] * 2, paper.V_FRA, color=PAPER, lw=4, alpha=0.5, label="A22")
+    axes[0, 0].set_xscale("log")
+    axes[0, 0].set_xlabel("grains of an aggregate")
+    axes[0, 1].set_xlabel("$T_{vis}$  [ps]")
+    axes[0, 0].set_ylabel("$v_{fra}$  [m/s]")
+    for place in axes[0]:
+        legend(place, fontsize=8)
+    letter(axes, "")
+    return figure
+
+
+@styled
+def collapse_figure(results):
+    """<f_gro> against velocity, and against velocity over v_stick(T_vis): one curve if single contacts decided."""
+    grains = results.main_size
+    if grains is None:
+        return None
+    figure, axes = panels(1, 2, 4.8, 4.2)
+    colours = time_colours(results.table)
+    for growth in results.of_size(grains):
+        scaled = growth.velocities / growth.sticking_velocity
+        for place, x in zip(axes[0], (growth.velocities, scaled)):
+            label = f"{picoseconds(growth.viscous_time)} ps"
+            error = np.nan_to_num(growth.error)
+            place.errorbar(x, growth.mean, error, fmt="o-", color=colours[growth.viscous_time], capsize=3, label=label)
+            place.axhline(0.0, color="0.6", lw=0.8)
+    velocity_axis(axes[0, 0], results.table.velocity)
+    axes[0, 1].set_xscale("log")
+    axes[0, 1].set_xlabel("$v_{col}/v_{stick}(T_{vis})$")
+    axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
+    legend(axes[0, 0], fontsize=8, title="$T_{vis}$")
+    letter(axes, f"{grains} grains each")
+    return figure
+
+
+@styled
+def impact_figure(results):
+    """f_gro against B_off^2 at velocities around v_fra, for every T_vis."""
+    grains = results.main_size
+    if grains is None:
+        return None
+    table = results.table[results.table.grains == grains]
+    velocities = [v for v in np.unique(table.velocity.round(6)) if 30 < v < 101]
+    if not velocities:
+        return None
+    figure, axes = panels(1, len(velocities), 3.6, 3.8)
+    for place, velocity in zip(axes[0], velocities):
+        for time, colour in time_colours(table).items():
+            own = table[(table.velocity.round(6) == velocity) & ((table.viscoelasticTime - time).abs() < 1e-16)]
+            points = at_impacts(own, own.growth)
+            if points:
+                mean_points(place, [p[0] for p in points], [p[1] for p in points], colour, time_label(time))
+        place.axhline(0.0, color="0.6", lw=0.8)
+        place.set_ylim(-1.05, 1.05)
+        place.set_xlabel("$B_{off}^2$")
+        place.text(0.97, 0.95, f"{velocity:.3g} m/s", transform=place.transAxes, ha="right", va="top")
+    axes[0, 0].set_ylabel("$f_{gro}$")
+    legend(axes[0, 0], fontsize=8, loc="lower left")
+    letter(axes, "")
+    return figure
+
+
+FIGURES = (
+    StudyFigure("fig02_growth", "A22 Fig. 2: growth efficiency of every B_off and velocity.", growth_figure),
+    StudyFigure(
+        "fig03_mean_growth", "A22 Fig. 3: growth efficiency, mean over B_off, of every size.", mean_growth_figure
+    ),
+    StudyFigure("fig04_head_on", "A22 Fig. 4: growth efficiency of head-on collisions.", head_on_figure),
+    StudyFigure("fig05_thresholds", "A22 Fig. 5: v_stick of two grains and v_fra of aggregates.", thresholds_figure),
+    StudyFigure("size", "v_fra against size and T_vis.", size_figure),
+    StudyFigure(
+        "collapse", "Growth efficiency with speeds scaled by v_stick(T_vis): no theory of one contact.", collapse_figure
+    ),
+    StudyFigure("impact", "Growth efficiency against B_off^2 around v_fra.", impact_figure),
+)

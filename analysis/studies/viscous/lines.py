@@ -1,0 +1,289 @@
+"""Our numbers beside A22's, as lines of tables, each group with what it can and cannot tell."""
+
+import numpy as np
+
+from ...report.beside_paper import Line
+from ...statistics import mean_and_error, resampling_error, scatter
+from . import paper
+from .measure import DISSIPATION
+from .results import by_time, picoseconds, total_dissipation
+
+CLOSE = 2e-3  # relative: velocities that count as the same
+
+
+def compare(results):
+    """Yields (heading, [Line], (notes)) of results.Results."""
+    for group in (_aggregates, _sticking, _thresholds, _growth, _largest, _head_on, _dissipation, _events):
+        yield from group(results)
+    yield from _fragments(results)
+    yield from _pair_speeds(results)
+    yield from _collapse(results)
+
+
+def _aggregates(results):
+    lines = []
+    for grains, runs in results.table.groupby("grains"):
+        pairs = runs.drop_duplicates("seed")
+        own = pairs.characteristic_radius / pairs.grain_radius
+        theirs = np.array(paper.CHARACTERISTIC_RADII)
+        papers = grains == paper.GRAINS
+        lines.append(
+            Line(
+                f"characteristic radius, {grains} grains",
+                "r",
+                *mean_and_error(own),
+                theirs.mean() if papers else None,
+                scatter(theirs) / 2**0.5 if papers else None,
+                f"{len(pairs)} pairs of aggregates, filling N (r/r_c)^3 = {grains / own.mean() ** 3:.4f}",
+            )
+        )
+    yield "the aggregates", lines, ("The error is of the mean over pairs; the paper's, of its two aggregates.",)
+
+
+def _sticking(results):
+    lines = []
+    per_time = results.table.drop_duplicates("viscoelasticTime").sort_values("viscoelasticTime")
+    known = {round(t, 16): v for t, v in zip(per_time.viscoelasticTime, per_time.sticking_velocity)}
+    for time, velocity in known.items():
+        lines.append(Line(f"v_stick, T_vis = {picoseconds(time)} ps", "m/s", float(velocity)))
+    if {0.0, 6e-12} <= set(known):
+        ratio = float(known[6e-12] / known[0.0])
+        lines.append(Line("v_stick(6 ps)/v_stick(0)", "", ratio, None, paper.STICKING_RATIO, None, "paper: about 10"))
+    notes = ("Integrated (A22 eq 30), so without error; tells nothing of aggregates. The paper prints only the ratio.",)
+    yield "two grains head-on", lines, notes
+
+
+def _thresholds(results):
+    lines, middle = [], float(np.mean(paper.V_FRA))
+    for growth in results.growth.values():
+        covered = f"{len(growth.velocities)} velocities"
+        note = f"paper: 50 to 60 m/s at {paper.GRAINS} grains; {covered}, {_seeds(results, growth)}"
+        if growth.v_fra is None:
+            end = "above" if growth.mean[-1] > 0 else "below" if growth.mean[0] <= 0 else "not within"
+            note = f"{end} the velocities of the runs; {covered}"
+        half = 0.5 * (paper.V_FRA[1] - paper.V_FRA[0])
+        lines.append(Line(_name("v_fra", growth), "m/s", growth.v_fra, growth.v_fra_error, middle, half, note))
+    lines += list(_v_fra_ratios(results))
+    notes = (
+        "v_fra: where <f_gro> first falls through 0, linear in ln v between velocities a quarter apart; the error is from "
+        "resampling pairs of aggregates, joint over B_off, velocities and T_vis.",
+        "The paper's half width of 5 m/s is the range that it quotes, not an error. Its points are one pair of aggregates "
+        "each, so that its v_fra scatters as one of our seeds does: by the error here times the root of the number of "
+        "seeds.",
+        "Smaller aggregates than the paper's have fewer contacts for the same B_off: their v_fra tells how it depends on "
+        "size, and does not test the paper's number.",
+    )
+    yield "threshold velocity of fragmentation", lines, notes
+
+
+def _v_fra_ratios(results):
+    """v_fra at the largest T_vis over that at the smallest, with joint errors."""
+    for grains in results.sizes:
+        known = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
+        if len(known) > 1:
+            low, high = known[0], known[-1]
+            ratio = high.v_fra_resamples / low.v_fra_resamples
+            error = resampling_error(ratio) if low.v_fra_error and high.v_fra_error else None
+            times = f"{picoseconds(high.viscous_time)} ps)/v_fra({picoseconds(low.viscous_time)} ps"
+            note = f"v_stick: ratio {high.sticking_velocity / low.sticking_velocity:.3g}"
+            lost = float(np.mean(~np.isfinite(ratio)))
+            note += f"; no v_fra within the velocities in {lost:.0%} of the resamples" if lost > 0.01 else ""
+            yield Line(
+                f"v_fra({times}), {grains} grains", "", high.v_fra / low.v_fra, error, 1.0, None, f"paper: 1; {note}"
+            )
+
+
+def _growth(results):
+    """<f_gro> at the two velocities around v_fra, positive at 50 m/s and negative at 63 m/s in the paper."""
+    lines = []
+    for growth in results.growth.values():
+        for velocity in (paper.VELOCITY, 10**1.8):
+            k = np.flatnonzero(np.abs(growth.velocities / velocity - 1) < CLOSE)
+            if len(k):
+                error = None if np.isnan(growth.error[k[0]]) else float(growth.error[k[0]])
+                sign = "paper: > 0 below 50 m/s" if velocity < 60 else "paper: < 0 above 60 m/s"
+                name = _name(f"<f_gro> at {velocity:.3g} m/s", growth)
+                lines.append(Line(name, "", float(growth.mean[k[0]]), error, note=sign))
+    lines += list(_growth_differences(results))
+    if lines:
+        notes = (
+            "Mean over B_off by A22 eq 29, trapezoidal rule in B_off^2. The paper draws it and prints signs only.",
+        )
+        yield "growth efficiency", lines, notes
+
+
+def _growth_differences(results):
+    """<f_gro> with the most drag less that with the least, at 50 m/s, with joint errors: the same pairs of aggregates."""
+    for grains in results.sizes:
+        low, high = results.of_size(grains)[0], results.of_size(grains)[-1]
+        if low is high:
+            continue
+        at = [np.flatnonzero(np.abs(g.velocities / paper.VELOCITY - 1) < CLOSE) for g in (low, high)]
+        if len(at[0]) and len(at[1]):
+            k, m = int(at[0][0]), int(at[1][0])
+            error = resampling_error(high.resamples[:, m] - low.resamples[:, k])
+            name = f"{picoseconds(high.viscous_time)} ps less {picoseconds(low.viscous_time)} ps"
+            yield Line(
+                f"<f_gro> at 50.1 m/s, {name}, {grains} grains",
+                "",
+                float(high.mean[m] - low.mean[k]),
+                error if low.has_errors and high.has_errors else None,
+                0.0,
+                None,
+                "paper: hardly any difference",
+            )
+
+
+def _largest(results):
+    runs = results.reference
+    runs = runs[runs.grains == paper.GRAINS]
+    if not len(runs):
+        return
+    lines = []
+    for time, mean, error, number in by_time(runs, runs.largest):
+        own = runs.largest[(runs.viscoelasticTime - time).abs() < 1e-16]
+        spread = scatter(own) if number > 1 else None
+        lines.append(
+            Line(
+                f"N_lar, T_vis = {picoseconds(time)} ps",
+                "",
+                mean,
+                error,
+                paper.LARGEST.get(time),
+                spread,
+                f"{number} seeds; the paper's error: the scatter of one of our runs"
+                if spread
+                else "one seed: no error",
+            )
+        )
+    notes = (
+        "50.1 m/s, B_off^2 = 3/12, the paper's own size. Its four numbers are of one pair of aggregates; the difference of "
+        "43,957 and 47,919 says something about T_vis only if it is larger than what another pair would give.",
+    )
+    yield "largest fragment at full size", lines, notes
+
+
+def _head_on(results):
+    lines = []
+    low, high = paper.HEAD_ON
+    table = results.table
+    runs = table[(table.impact == 0) & (table.velocity > low * (1 - CLOSE)) & (table.velocity < high * (1 + CLOSE))]
+    for grains, own in runs.groupby("grains"):
+        for time, mean, error, number in by_time(own, own.growth):
+            name = f"f_gro, B_off = 0, 20 to 100 m/s, T_vis = {picoseconds(time)} ps, {grains} grains"
+            lines.append(Line(name, "", mean, error, 1.0, None, f"{number} runs; paper: about 1 below 100 m/s"))
+    if lines:
+        notes = (
+            "Mean over velocities and seeds; the error takes runs for independent, which the same pair at several "
+            "velocities is not quite.",
+        )
+        yield "head-on collisions", lines, notes
+
+
+def _dissipation(results):
+    for grains, runs in results.reference.groupby("grains"):
+        lines, total = [], total_dissipation(runs)
+        parts = {**{name: runs[name] for name in DISSIPATION if not name.endswith("connection")}}
+        parts["connection and disconnection"] = runs.connection + runs.disconnection
+        for name, part in parts.items():
+            for time, mean, error, number in by_time(runs, part / total):
+                label = f"{name.removesuffix('Dissipation')}, T_vis = {picoseconds(time)} ps"
+                lines.append(Line(label, "of all that is lost", mean, error, note=f"{number} runs"))
+        unit = 2 * runs.grains * runs.energy_unit
+        for time, mean, error, number in by_time(runs, parts["connection and disconnection"] / unit):
+            label = f"E_dis,c/(N_tot F_c delta_c), T_vis = {picoseconds(time)} ps"
+            lines.append(Line(label, "", mean, error, 1.0, None, 'paper: "on the order of 1"'))
+        notes = (
+            "Changes from the start to the end at 50.1 m/s, B_off^2 = 3/12. The paper's finding: rolling is the largest of "
+            "the five for every T_vis, connection and disconnection the smallest but for drag without drag; it prints no "
+            "numbers. What is lost when contacts break includes the energy of their tangential springs, as in A22.",
+        )
+        yield f"where the energy goes, {grains} grains", lines, notes
+
+
+def _events(results):
+    for grains, runs in results.reference.groupby("grains"):
+        runs = runs[np.isfinite(runs.formed.astype(float))]
+        lines = []
+        for quantity, values, theirs in (("N_con", runs.formed, 1.0), ("N_cut", runs.broken, None)):
+            for time, mean, error, number in by_time(runs, values.astype(float) / (2 * runs.grains)):
+                note = f"{number} runs; paper: " + ("about 1" if theirs else "less than 1")
+                lines.append(
+                    Line(f"{quantity}/N_tot, T_vis = {picoseconds(time)} ps", "", mean, error, theirs, None, note)
+                )
+        if lines:
+            notes = (
+                "50.1 m/s, B_off^2 = 3/12, all contacts that formed and broke since the start, those between grains of one "
+                "aggregate too, and a contact that chatters as often as it does. The paper reads its numbers off Fig. 15.",
+            )
+            yield f"connections and disconnections, {grains} grains", lines, notes
+
+
+def _fragments(results):
+    lines = []
+    for growth in results.growth.values():
+        for velocity, distribution in growth.distributions.items():
+            if min(abs(velocity / v - 1) for v in (paper.VELOCITY, 100.0)) > CLOSE:
+                continue
+            law, name = distribution.power_law, _name(f"{velocity:.3g} m/s", growth)
+            theirs = (paper.EXPONENT, paper.AMPLITUDE) if growth.viscous_time > 0 else (None, None)
+            lines.append(
+                Line(f"alpha, {name}", "", law.exponent, law.exponent_error, theirs[0], note="f(N) = c N^-alpha")
+            )
+            lines.append(Line(f"c, {name}", "", law.amplitude, law.amplitude_error, theirs[1]))
+    if lines:
+        notes = (
+            "Fitted to <N_cum(<= N)> up to 5 % of all grains, least squares of the logarithms; errors joint from "
+            "resampling pairs of aggregates. The paper draws N_cum = N for 6 ps by eye.",
+            "Fragments larger than that are too few for a law, and in small aggregates the range is short.",
+        )
+        yield "size distribution of fragments", lines, notes
+
+
+def _pair_speeds(results):
+    lines = []
+    for grains, runs in results.reference.groupby("grains"):
+        for time, mean, error, number in by_time(runs, runs.pair_speed):
+            note = f"{number} runs" + ("; paper: below 1 m/s" if time else "")
+            lines.append(
+                Line(
+                    f"largest rms of v_rel, T_vis = {picoseconds(time)} ps, {grains} grains",
+                    "m/s",
+                    mean,
+                    error,
+                    note=note,
+                )
+            )
+    if lines:
+        notes = (
+            "Pairs nearer than 2.2 r at 50.1 m/s, B_off^2 = 3/12; the largest over the states, so that a peak between two of "
+            "them is missed. Small aggregates are over before the paper's 0.3 us.",
+        )
+        yield "velocities between neighbours", lines, notes
+
+
+def _collapse(results):
+    lines = []
+    for grains in results.sizes:
+        for growth in results.of_size(grains):
+            if growth.v_fra is not None and np.isfinite(growth.sticking_velocity):
+                ratio = growth.v_fra / growth.sticking_velocity
+                error = None if growth.v_fra_error is None else growth.v_fra_error / growth.sticking_velocity
+                lines.append(Line(_name("v_fra/v_stick", growth), "", ratio, error))
+    if lines:
+        notes = (
+            "If single contacts decided, as a theory of two grains has it, <f_gro> would be one curve of v/v_stick(T_vis) "
+            "and these ratios equal at all T_vis. Where they fall as v_stick rises, v_fra does not follow v_stick: what "
+            "grains lose by rolling, sliding and twisting, which T_vis does not change, is what has to be paid.",
+        )
+        yield "does f_gro collapse with v/v_stick?", lines, notes
+
+
+def _name(quantity, growth):
+    return f"{quantity}, T_vis = {picoseconds(growth.viscous_time)} ps, {growth.grains} grains"
+
+
+def _seeds(results, growth):
+    table = results.table
+    own = table[(table.grains == growth.grains) & ((table.viscoelasticTime - growth.viscous_time).abs() < 1e-16)]
+    return f"{own.seed.nunique()} seeds"

@@ -1,0 +1,139 @@
+"""One row of numbers for each collision."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from ...measures.fragments import fragment_labels, fragment_sizes, growth_efficiency
+from ...measures.ledger import closure, initial_kinetic_energy
+from ...measures.of_run import met
+from ...measures.pair_velocities import NEAR, pair_velocities, root_mean_square
+from ...runs.arrays import RunFolderError
+from ...runs.table import Column
+from ...theory import Material, pair_constants, sticking_velocity
+from ..definition import NotMeasured
+from . import paper
+
+# A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
+DISSIPATION = ("rollingDissipation", "slidingDissipation", "twistingDissipation", "connection", "disconnection", "drag")
+
+COLUMNS = (
+    Column("grains", "", "grains of each aggregate", kind="i"),
+    Column("impact", "", "B_off (A22 eq 27)"),
+    Column("velocity", "m/s", "collision velocity"),
+    Column("viscoelasticTime", "s", "T_vis"),
+    Column("seed", "", "random seed of the pair of aggregates", kind="i"),
+    Column("grain_radius", "m", "radius of a grain"),
+    Column("energy_unit", "J", "F_c delta_c"),
+    Column("sticking_velocity", "m/s", "v_stick of two such grains head-on (A22 eq 30); inf where they always stick"),
+    Column("characteristic_radius", "m", "mean r_c of the two aggregates"),
+    Column("met", "", "whether the aggregates touched", kind="b"),
+    Column("largest", "", "N_lar: grains of the largest fragment", kind="i"),
+    Column("growth", "", "f_gro (A22 eq 28)"),
+    Column("fragments", "", "their grains at the end, as NUMBERxGRAINS, the largest first", kind="O"),
+    Column("kinetic_at_start", "J", "K(0)"),
+    *(Column(name, "J", "change from the start to the end") for name in DISSIPATION),
+    Column("formed", "", "N_con: contacts formed", gaps=True),
+    Column("broken", "", "N_cut: contacts broken", gaps=True),
+    Column(
+        "pair_speed",
+        "m/s",
+        f"largest rms over the states of v_rel of pairs nearer than {NEAR:g} r (50.1 m/s, B_off^2 = 3/12)",
+        gaps=True,
+    ),
+    Column("closure", "", "largest error of the energy ledger over K(0)"),
+    Column("time", "s", "time at the end"),
+)
+
+
+def measure(run):
+    """{column: value} of a RunFolder of A22's scene that has ended. NotMeasured where the two aggregates are not equally
+    large, RunFolderError where something is missing."""
+    start, end, history = run.start, run.last, run.history
+    numbers = np.bincount(start.aggregate, minlength=2)
+    if numbers[0] != numbers[1]:
+        raise NotMeasured(f"{run.path}: aggregates of {numbers[0]} and {numbers[1]} grains, A22's are equal")
+    sizes = fragment_sizes(fragment_labels(len(end.radius), end.contact_pairs))
+    largest = int(sizes.max())
+    return {
+        **_scene(run, int(numbers[0])),
+        "met": met(run),
+        "largest": largest,
+        "growth": growth_efficiency(largest, int(numbers[0]), int(numbers[1])),
+        "fragments": sizes_text(sizes),
+        "kinetic_at_start": initial_kinetic_energy(history),
+        **{name: float(history[name][-1] - history[name][0]) for name in DISSIPATION},
+        **{name: _last(history, name) for name in ("formed", "broken")},
+        "pair_speed": largest_pair_speed(run) if is_reference(run.parameters) else float("nan"),
+        "closure": closure(history),
+        "time": float(history["time"][-1]),
+    }
+
+
+def is_reference(parameters):
+    """Whether it is the collision that A22 looks at most: 50.1 m/s, B_off^2 = 3/12; parameters: mapping or row."""
+    velocity, impact = parameters["velocity"], parameters["impact"]
+    return abs(velocity / paper.VELOCITY - 1) < 2e-3 and abs(impact**2 - paper.SQUARE) < 1e-3
+
+
+def largest_pair_speed(run):
+    """Largest root mean square of v_rel [m/s] over the states of a RunFolder (A22 Fig. 12)."""
+    return float(np.nanmax([speed for _, speed in pair_speeds(run)]))
+
+
+def pair_speeds(run):
+    """[(time [s], root mean square of v_rel [m/s])] of the states of a RunFolder."""
+    distance = NEAR * run.derived["grainRadius"]
+    found = []
+    for k, time in enumerate(run.states.times):
+        arrays = run.states.arrays(k, ("position", "velocity"))
+        found.append((float(time), root_mean_square(pair_velocities(arrays["position"], arrays["velocity"], distance))))
+    return found
+
+
+def sizes_text(sizes):
+    """Fragments' grains (K,) as text: '1x43957 2x12 30x1'.
+
+    >>> sizes_text([1, 5, 1])
+    '1x5 2x1'
+    """
+    grains, number = np.unique(sizes, return_counts=True)
+    return " ".join(f"{n}x{g}" for g, n in zip(grains[::-1], number[::-1]))
+
+
+def sizes_from_text(text):
+    """The sizes (K,) int that sizes_text wrote; ValueError where it is something else.
+
+    >>> sizes_from_text("1x5 2x1").tolist()
+    [5, 1, 1]
+    """
+    pairs = [part.split("x") for part in text.split()]
+    return np.repeat([int(grains) for _, grains in pairs], [int(number) for number, _ in pairs])
+
+
+def _scene(run, grains):
+    derived, parameters = run.derived, run.parameters
+    try:
+        radius = float(derived["grainRadius"])
+        names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling", "viscoelasticTime")
+        pair = pair_constants(Material(*(float(derived[name]) for name in names)), radius)
+        characteristic = [float(derived[f"{name}CharacteristicRadius"]) for name in ("target", "projectile")]
+    except (KeyError, TypeError, ValueError) as error:
+        raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
+    return {
+        "grains": grains,
+        **{name: float(parameters[name]) for name in ("impact", "velocity", "viscoelasticTime")},
+        "seed": int(parameters["seed"]),
+        "grain_radius": radius,
+        "energy_unit": pair.pull_off_force * pair.pull_off_overlap,
+        "sticking_velocity": _sticking_velocity(pair),
+        "characteristic_radius": float(np.mean(characteristic)),
+    }
+
+
+# Integrated once for each kind of grain: PairConstants are hashable.
+_sticking_velocity = lru_cache(sticking_velocity)
+
+
+def _last(history, name):
+    return float(history[name][-1]) if name in history else float("nan")

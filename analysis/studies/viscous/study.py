@@ -1,0 +1,22 @@
+"""The study of A22's collisions."""
+
+from ...runs.collect import Scene
+from ..definition import Study
+from .comparison import remarks, sections
+from .measure import COLUMNS, measure
+from .results import make_results
+
+STUDY = Study(
+    title="Viscous dissipation, oblique collisions and fragments beside A22",
+    # Collisions of equal BPCA aggregates of equal ice grains, without bonds.
+    scene=Scene(
+        name="A22's scene",
+        values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal"},
+        numbers=("grains", "impact", "velocity", "viscoelasticTime", "seed"),
+    ),
+    columns=COLUMNS,
+    measure=measure,
+    results=make_results,
+    sections=sections,
+    remarks=remarks,
+)

@@ -1,0 +1,159 @@
+"""Aggregates by ballistic particle-cluster aggregation (A22 section 2.4): geometry, size, isotropy, unlike grains."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+from scipy.stats import kstest
+
+from yade_scripts import packings
+from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
+from yade_scripts.packings import grain_sizes
+from yade_scripts.packings.aggregate import AggregateParameters, make
+
+ICE = MATERIALS["ice"]
+RADIUS = ICE.grainRadius
+OVERLAP = equilibrium_overlap(ICE)
+UNLIKE = {
+    "two": dict(sizes="two", ratio=2.5, fraction=0.3),
+    "lognormal": dict(sizes="lognormal", spread=0.4),
+}
+
+
+def unlike_radii(name, grains, seed=1):
+    options = dict(UNLIKE[name])
+    return grain_sizes.radii(options.pop("sizes"), grains, RADIUS, np.random.default_rng(seed), **options)
+
+
+def distances_over_rest(packing, reach=1.0):
+    """(pairs (M,2), distance over that at which the two rest against each other (M,)) of the pairs nearer than `reach` of the
+    largest distance at rest."""
+    radius = packing.radius
+    pairs = cKDTree(packing.position).query_pairs(2 * radius.max() * reach, output_type="ndarray")
+    distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
+    rest = grain_sizes.touching_distance(radius[pairs[:, 0]], radius[pairs[:, 1]], RADIUS, OVERLAP)
+    return pairs, distance / rest
+
+
+def require_ballistic(packing):
+    """No overlap beyond that of rest, and each grain touches one that came before it."""
+    pairs, relative = distances_over_rest(packing)
+    assert relative.min() > 1 - 1e-12
+    touching = np.sort(pairs[np.abs(relative - 1) < 1e-11], axis=1)
+    assert np.array_equal(np.unique(touching[:, 1]), np.arange(1, packing.grains))
+    return touching
+
+
+@pytest.mark.parametrize("grains, seed", [(2, 1), (300, 2), (5000, 3)])
+def test_every_grain_rests_against_one_that_came_before(grains, seed):
+    packing = packings.bpca(grains, RADIUS, OVERLAP, seed)
+    # A grain that touches two at once has probability zero.
+    assert len(require_ballistic(packing)) == grains - 1
+    assert packing.grains == grains and np.all(packing.radius == RADIUS)
+    assert np.abs(packing.position.mean(axis=0)).max() < 1e-12 * packings.extent(packing)
+
+
+@pytest.mark.parametrize("name", UNLIKE)
+@pytest.mark.parametrize("make_one", [packings.bpca, packings.bcca], ids=["bpca", "bcca"])
+def test_grains_of_unlike_size(name, make_one):
+    grains = 1000
+    radii = unlike_radii(name, grains)
+    packing = make_one(grains, RADIUS, OVERLAP, 4, radii=radii)
+    assert np.array_equal(packing.radius, radii)
+    pairs, relative = distances_over_rest(packing)
+    assert relative.min() > 1 - 1e-12
+    assert np.count_nonzero(np.abs(relative - 1) < 1e-11) == grains - 1
+    mass = radii**3
+    assert np.abs(mass @ packing.position / mass.sum()).max() < 1e-12 * packings.extent(packing)
+    if make_one is packings.bpca:
+        require_ballistic(packing)
+
+
+def test_distance_at_rest_is_the_equilibrium_of_each_pair():
+    for first, second in ((1e-7, 1e-7), (1e-7, 3e-7), (0.5e-7, 4e-7)):
+        expected = first + second - pair_constants(ICE, (first, second))["equilibriumOverlap"]
+        assert grain_sizes.touching_distance(first, second, RADIUS, OVERLAP) == pytest.approx(expected, rel=1e-13)
+
+
+def test_radii_that_were_asked_for():
+    two = unlike_radii("two", 1000)
+    assert np.count_nonzero(two == 2.5 * RADIUS) == 300 and np.count_nonzero(two == RADIUS) == 700
+    logarithm = np.log(unlike_radii("lognormal", 20000) / RADIUS)
+    assert np.abs(logarithm).max() <= 0.4 * grain_sizes.WIDEST
+    # the standard deviation of a normal distribution cut off at 2.5 of it is 0.9545 of it
+    assert logarithm.std() == pytest.approx(0.4 * 0.9545, rel=0.02) and abs(logarithm.mean()) < 4 * 0.4 / 20000**0.5
+    for name, options in UNLIKE.items():
+        low, high = grain_sizes.radius_range(options["sizes"], RADIUS, options.get("ratio"), options.get("spread"))
+        drawn = unlike_radii(name, 5000)
+        assert low <= drawn.min() and drawn.max() <= high
+
+
+def test_same_seed_same_aggregate_other_seed_or_index_another():
+    one = packings.bpca(400, RADIUS, OVERLAP, 5)
+    assert np.array_equal(one.position, packings.bpca(400, RADIUS, OVERLAP, 5).position)
+    for seed, index in ((6, 0), (5, 1)):
+        assert not np.allclose(one.position[1:], packings.bpca(400, RADIUS, OVERLAP, seed, index).position[1:])
+
+
+def test_unlike_sizes_leave_equal_grains_as_they_are():
+    """Sizes come from a stream of their own."""
+    plain = make(AggregateParameters.parse(dict(packing="bpca", grains=200, seed=3)), OVERLAP, 0)
+    assert np.array_equal(plain.position, packings.bpca(200, RADIUS, OVERLAP, 3).position)
+    cells = dict(packing="bpca", grains=200, seed=3, sizes="two", sizeRatio=2, sizeFraction=0.25)
+    unlike = make(AggregateParameters.parse(cells), OVERLAP, 0)
+    assert np.count_nonzero(unlike.radius == 2 * RADIUS) == 50
+    assert np.array_equal(unlike.radius, make(AggregateParameters.parse(cells), OVERLAP, 0).radius)
+
+
+def test_characteristic_radius_is_that_of_a22():
+    """72.29 and 72.25 grain radii for two aggregates of 50,000 grains (A22 section 2.4). One aggregate's scatters by a
+    fraction that falls as N^(-1/2): known from many of 2,000."""
+    small = [packings.characteristic_radius(packings.bpca(2000, RADIUS, OVERLAP, seed)) for seed in range(16)]
+    scatter = np.std(small, ddof=1) / np.mean(small) * (2000 / 50000) ** 0.5
+    assert 0.001 < scatter < 0.01
+    large = packings.characteristic_radius(packings.bpca(50000, RADIUS, OVERLAP, 1)) / RADIUS
+    assert abs(large / 72.27 - 1) < 4 * scatter * (1 + 1 / 2) ** 0.5
+
+
+def test_filling_falls_slowly_with_size():
+    """BPCA has the dimension 3: N (r/r_c)^3 tends to a constant, 0.13 (A22's aggregates: 0.1324)."""
+    filling = {
+        grains: np.mean(
+            [
+                grains * (RADIUS / packings.characteristic_radius(packings.bpca(grains, RADIUS, OVERLAP, seed))) ** 3
+                for seed in range(8)
+            ]
+        )
+        for grains in (500, 4000, 16000)
+    }
+    assert filling[500] > filling[4000] > filling[16000] > 0.12
+    assert filling[16000] == pytest.approx(50000 / 72.27**3, rel=0.04)
+
+
+def test_radii_of_a_single_pair_by_hand():
+    """Two grains at +-d/2: r_gyr = d/2; unlike ones with masses m, M at the distance d: r_gyr = d (m M)^(1/2)/(m + M)."""
+    pair = packings.bpca(2, RADIUS, OVERLAP, 1)
+    assert packings.gyration_radius(pair) == pytest.approx((2 * RADIUS - OVERLAP) / 2, rel=1e-12)
+    assert packings.characteristic_radius(pair) == pytest.approx((5 / 3) ** 0.5 * (2 * RADIUS - OVERLAP) / 2, rel=1e-12)
+    unlike = packings.bpca(2, RADIUS, OVERLAP, 1, radii=[RADIUS, 2 * RADIUS])
+    distance = grain_sizes.touching_distance(RADIUS, 2 * RADIUS, RADIUS, OVERLAP)
+    assert packings.gyration_radius(unlike) == pytest.approx(distance * 8**0.5 / 9, rel=1e-12)
+
+
+def test_isotropy():
+    """Directions of first contacts are uniform on the sphere, and so are the aggregates' longest axes: each component
+    uniform in [-1, 1] (Archimedes), at 99.9 % confidence together, of fixed seeds."""
+    first, longest = [], []
+    for seed in range(300):
+        position = packings.bpca(60, RADIUS, OVERLAP, seed).position
+        first.append((position[1] - position[0]) / np.linalg.norm(position[1] - position[0]))
+        axis = np.linalg.eigh(position.T @ position)[1][:, 2]
+        longest.append(axis * np.random.default_rng(seed).choice([-1, 1]))
+    p_values = [kstest(c, "uniform", args=(-1, 2)).pvalue for axes in (first, longest) for c in np.transpose(axes)]
+    assert min(p_values) > 1e-3 / len(p_values)
+
+
+def test_contacts_at_the_start_beyond_those_that_rest():
+    """What README says of the start: about 0.5 % more contacts than grains, nearer than 2 r but not resting."""
+    packing = packings.bpca(20000, RADIUS, OVERLAP, 2)
+    more = len(packings.contacts(packing)) - (packing.grains - 1)
+    assert 0.004 < more / packing.grains < 0.0065

@@ -1,0 +1,77 @@
+"""Two aggregates of any shape in their places (A22 section 2.4, eq 27): offset, momentum, the first touch; graze and miss."""
+
+import numpy as np
+import pytest
+
+from yade_scripts import packings
+from yade_scripts.experiments.collision import CollisionParameters, place
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.packings.approach import first_touch
+from yade_scripts.packings.offset_pair import START_GAP, offset_pair
+
+RADIUS = MATERIALS["ice"].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
+
+
+def centre(packing):
+    return np.average(packing.position, axis=0, weights=packing.radius**3)
+
+
+@pytest.mark.parametrize("kind", [packings.bpca, packings.bcca])
+@pytest.mark.parametrize("impact", [0.0, 0.4, 0.7])
+@pytest.mark.parametrize("grains", [(120, 120), (200, 40)])
+def test_offset_is_that_of_the_characteristic_radii(kind, impact, grains):
+    pair = [kind(number, RADIUS, OVERLAP, 5, index) for index, number in enumerate(grains)]
+    target, projectile = offset_pair(*pair, 30.0, impact)
+    apart = centre(projectile.packing) - centre(target.packing)
+    expected = impact * sum(map(packings.characteristic_radius, pair))
+    assert apart[1] == pytest.approx(expected, rel=1e-9, abs=1e-18) and abs(apart[2]) < 1e-18 and apart[0] > 0
+    assert projectile.velocity - target.velocity == pytest.approx([-30.0, 0, 0])
+    mass = [(packing.radius**3).sum() for packing in pair]
+    momentum = mass[0] * target.velocity + mass[1] * projectile.velocity
+    assert np.abs(momentum).max() < 1e-12 * 30 * sum(mass)
+    both = mass[0] * centre(target.packing) + mass[1] * centre(projectile.packing)
+    assert np.abs(both).max() / sum(mass) < 1e-9 * RADIUS
+    touch = first_touch(target.packing, projectile.packing, projectile.velocity - target.velocity)
+    if touch is not None:
+        assert touch * 30.0 == pytest.approx(START_GAP * RADIUS, rel=1e-6)
+    packings.require_apart(target.packing, projectile.packing)
+
+
+def spheres(*centres):
+    return packings.Packing(np.array(centres), np.full(len(centres), RADIUS), 0)
+
+
+@pytest.mark.parametrize("fraction, meets", [(0.999, True), (1.001, False)])
+def test_graze_and_miss_of_two_pairs(fraction, meets):
+    """Pairs of grains along z, r_c = (5/3)^(1/2) r: they touch when their offset is less than 2 r."""
+    pair = spheres([0, 0, RADIUS], [0, 0, -RADIUS])
+    reach = 2 * packings.characteristic_radius(pair)
+    assert reach == pytest.approx(2 * (5 / 3) ** 0.5 * RADIUS)
+    target, projectile = offset_pair(pair, pair, 10.0, fraction * 2 * RADIUS / reach)
+    touch = first_touch(target.packing, projectile.packing, projectile.velocity - target.velocity)
+    assert (touch is not None) is meets
+    if meets:
+        assert touch == pytest.approx(START_GAP * RADIUS / 10.0)
+    else:  # they start where the spheres around them touch in x
+        apart = centre(projectile.packing) - centre(target.packing)
+        assert apart[0] == pytest.approx(4 * RADIUS)
+
+
+def test_equal_aggregates_of_cpe_stay_where_they_were():
+    """A24 section 3: centres at -/+(R + r), the offset in units of 2 (R + r)."""
+    cells = dict(packing="cpe", radius=6, filling=0.4, impact=0.5, seed=2)
+    _, pair, velocities = place(CollisionParameters.parse(cells), OVERLAP)
+    for index, sign in ((0, -1), (1, 1)):
+        made = packings.cpe(0.4, 6 * RADIUS, RADIUS, OVERLAP, 2, index)
+        assert np.allclose(pair[index].position - made.position, sign * 7 * RADIUS * np.array([1, 0.5, 0]), rtol=1e-9)
+    assert velocities[0][0] == -velocities[1][0] == 10**0.5 / 2
+
+
+def test_two_sizes_of_aggregates_and_of_grains():
+    cells = dict(packing="bcca", grains=90, projectileGrains=30, sizes="lognormal", sizeSpread=0.2, seed=4)
+    parameters, pair, _ = place(CollisionParameters.parse(cells), OVERLAP)
+    assert [packing.grains for packing in pair] == [90, 30]
+    assert len(np.unique(pair[0].radius)) == 90
+    largest = max(np.linalg.norm(p.position - centre(p), axis=1).max() for p in pair)
+    assert parameters.radius == pytest.approx(largest / RADIUS)

@@ -1,0 +1,118 @@
+"""Saved packings in a run: read back to the bit, and what is wrong with one said in one line before anything runs."""
+
+import json
+
+import numpy as np
+import pytest
+
+from yade_scripts import packings
+from yade_scripts.experiments.collision import KIND, CollisionParameters, place
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.packings.from_file import packing_from_file
+from yade_scripts.parameters import ParameterError
+
+RADIUS = MATERIALS["ice"].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
+
+
+@pytest.fixture
+def files(tmp_path):
+    names = []
+    for index, grains in enumerate((80, 40)):
+        names.append(str(tmp_path / f"{index}.npz"))
+        packings.save(names[-1], packings.bpca(grains, RADIUS, OVERLAP, 3, index))
+    return names
+
+
+def test_a_run_of_files_is_that_of_their_packings(files):
+    of_files, pair, velocities = place(
+        CollisionParameters.parse(dict(packing="file", file=files[0], projectileFile=files[1], impact=0.3)), OVERLAP
+    )
+    made, expected, of_made = place(
+        CollisionParameters.parse(dict(packing="bpca", grains=80, projectileGrains=40, seed=3, impact=0.3)), OVERLAP
+    )
+    for one, other in zip(pair, expected):
+        assert np.abs(one.position - other.position).max() < 1e-9 * RADIUS
+    assert np.allclose(velocities, of_made) and of_files.grains == made.grains == 80
+    assert KIND.estimate(CollisionParameters.parse(dict(packing="file", file=files[0], duration=1e-7))).grains == 160
+
+
+def test_the_file_says_how_large_the_aggregate_is(files):
+    with np.load(files[0]) as file:
+        packing = packings.load(files[0])
+        assert float(file["gyration_radius"]) == packings.gyration_radius(packing)
+        assert float(file["characteristic_radius"]) == packings.characteristic_radius(packing)
+
+
+def write(path, position, radius, **parameters):
+    np.savez(path, position=position, radius=radius, seed=1, parameters=json.dumps(parameters))
+    return str(path)
+
+
+GOOD = np.array([[0.0, 0, 0], [2 * RADIUS - OVERLAP, 0, 0]])
+
+
+@pytest.mark.parametrize(
+    "position, radius, message",
+    [
+        (GOOD * (np.nan, 1, 1), [RADIUS] * 2, "position holds what is no finite number; must be finite"),
+        (GOOD, [RADIUS, np.inf], "radius holds what is no finite number"),
+        (GOOD, [RADIUS, -RADIUS], "radius of grain 1 is -1e-07; must be > 0"),
+        (GOOD[:, :2], [RADIUS] * 2, r"position has the shape \(2, 2\), radius \(2,\); must be \(N, 3\)"),
+        (GOOD[:1], [RADIUS], "N >= 2"),
+        (
+            GOOD * 0.99,
+            [RADIUS] * 2,
+            "grains 0 and 1 overlap by 3.01e-09 m; must be at most 1.1 of the equilibrium overlap",
+        ),
+        (GOOD * 0, [RADIUS] * 2, "grains 0 and 1 overlap by 2e-07 m"),
+        (GOOD * 6, [6 * RADIUS] * 2, "made of grains of 6e-07 m, not 1e-07 m; must be"),
+    ],
+)
+def test_what_is_wrong_with_a_file(tmp_path, position, radius, message):
+    path = write(tmp_path / "a.npz", position, np.array(radius))
+    with pytest.raises(packings.PackingError, match=message) as error:
+        packing_from_file(path, RADIUS, OVERLAP)
+    assert str(error.value).startswith(path) and "\n" not in str(error.value)
+
+
+def test_parameters_that_are_none(tmp_path):
+    np.savez(tmp_path / "a.npz", position=GOOD, radius=[RADIUS] * 2, seed=1, parameters="[1, 2]")
+    with pytest.raises(packings.PackingError, match="parameters is no JSON object"):
+        packing_from_file(str(tmp_path / "a.npz"), RADIUS, OVERLAP)
+    path = write(tmp_path / "b.npz", GOOD, np.array([RADIUS] * 2), grainRadius="thick")
+    with pytest.raises(packings.PackingError, match="grainRadius among its parameters is 'thick'; must be a number"):
+        packing_from_file(path, RADIUS, OVERLAP)
+
+
+def test_a_planar_run_takes_planar_packings_only(tmp_path):
+    path = write(tmp_path / "a.npz", GOOD @ np.array([[0, 0, 1], [0, 1, 0], [1, 0, 0]]), np.array([RADIUS] * 2))
+    packing_from_file(path, RADIUS, OVERLAP)
+    with pytest.raises(packings.PackingError, match="must all be in it with planar = 1"):
+        packing_from_file(path, RADIUS, OVERLAP, planar=True)
+
+
+@pytest.mark.parametrize(
+    "cells, message",
+    [
+        (dict(packing="file"), "file: not given with packing = file"),
+        (dict(packing="file", file="a", grains=5), "grains = 5: given with packing = file, on which it has no effect"),
+        (dict(packing="file", file="a", seed=2), "seed = 2: given with packing = file"),
+        (dict(packing="file", file="a", projectileGrains=9), "projectileGrains = 9: given with packing = file"),
+        (dict(file="a"), "file = a: given with packing = cpe; must be left out"),
+        (dict(packing="bpca", projectileFile="a"), "projectileFile = a: given with packing = bpca"),
+        (dict(projectileGrains=9), "projectileGrains = 9: given with packing = cpe"),
+        (dict(packing="bpca", planar=1), "planar = 1: given with packing = bpca, which is made in space; must be 0"),
+        (dict(packing="bpca", grains=3_000_000), "grains = 3000000: too many for packing = bpca; must be 2 to 2000000"),
+        (dict(packing="bcca", projectileGrains=200_000), "projectileGrains = 200000: too many for packing = bcca"),
+        (dict(sizes="two", sizeRatio=2), "sizes = two: given with packing = cpe; must be equal"),
+        (dict(packing="bpca", sizes="two"), "sizeRatio: not given with sizes = two; must be 0.1 to 10"),
+        (dict(packing="bpca", sizes="lognormal"), "sizeSpread: not given with sizes = lognormal; must be > 0"),
+        (dict(packing="bpca", sizeSpread=0.1), "sizeSpread = 0.1: given with sizes = equal; must be left out"),
+        (dict(packing="bcca", sizes="two", sizeRatio=2, neck=0.5), "sizes = two: given with neck = 0.5; must be equal"),
+    ],
+)
+def test_parameters_that_contradict(cells, message):
+    with pytest.raises(ParameterError) as error:
+        CollisionParameters.parse(cells)
+    assert message in str(error.value) and "\n" not in str(error.value)

@@ -1,0 +1,63 @@
+"""Aggregates that were saved as packings, checked before anything runs."""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from yade_scripts.packings.grain_sizes import touching_distance
+from yade_scripts.packings.packing import PackingError, centred, load, moved
+
+DEEPEST = 1.1  # equilibrium overlaps: what grains pressed together a little may have, and no more
+
+
+def packing_from_file(path, grain_radius, overlap, planar=False):
+    """The packing that save() wrote to a file, its centre of mass at the origin.
+
+    grain_radius: that of the run, overlap: of two such grains at rest, in m. Raises PackingError, one line, when the
+    file is none, an array has another shape or is not finite, it was made of grains of another radius, grains overlap
+    more deeply than DEEPEST of the equilibrium, or lie beside the plane z = 0 of a planar run.
+    """
+    packing = load(path)
+    _require_arrays(path, packing.position, packing.radius)
+    _require_radius(path, packing, grain_radius)
+    _require_contacts(path, packing, grain_radius, overlap)
+    if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
+        raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
+    return moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
+
+
+def _require_arrays(path, position, radius):
+    if radius.ndim != 1 or len(radius) < 2 or position.shape != (len(radius), 3):
+        raise PackingError(
+            f"{path}: position has the shape {position.shape}, radius {radius.shape}; must be (N, 3) and (N,), N >= 2"
+        )
+    for name, array in (("position", position), ("radius", radius)):
+        if array.dtype.kind not in "fiu" or not np.all(np.isfinite(array)):
+            raise PackingError(f"{path}: {name} holds what is no finite number; must be finite [m]")
+    if radius.min() <= 0:
+        raise PackingError(f"{path}: radius of grain {radius.argmin()} is {radius.min():g}; must be > 0 [m]")
+
+
+def _require_radius(path, packing, grain_radius):
+    made_of = packing.parameters.get("grainRadius", float(np.median(packing.radius)))
+    if not isinstance(made_of, (int, float)):
+        raise PackingError(f"{path}: grainRadius among its parameters is {made_of!r}; must be a number [m]")
+    if not np.isclose(made_of, grain_radius, rtol=1e-6, atol=0):
+        raise PackingError(
+            f"{path}: made of grains of {made_of:g} m, not {grain_radius:g} m; must be a packing of such grains, or "
+            f"grainRadius = {made_of:g}"
+        )
+
+
+def _require_contacts(path, packing, grain_radius, overlap):
+    position, radius = packing.position, packing.radius
+    first, second = cKDTree(position).query_pairs(2 * radius.max(), output_type="ndarray").T
+    deep = radius[first] + radius[second] - np.linalg.norm(position[first] - position[second], axis=1)
+    at_rest = radius[first] + radius[second] - touching_distance(radius[first], radius[second], grain_radius, overlap)
+    if not len(deep):
+        return
+    worst = np.argmax(deep / at_rest)
+    if deep[worst] > DEEPEST * at_rest[worst]:
+        raise PackingError(
+            f"{path}: grains {first[worst]} and {second[worst]} overlap by {deep[worst]:.3g} m; must be at most "
+            f"{DEEPEST:g} of the equilibrium overlap of {at_rest[worst]:.3g} m"
+        )

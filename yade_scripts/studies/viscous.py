@@ -1,0 +1,96 @@
+"""Writes the tables of the study of Arakawa et al. (2022): python3 yade_scripts/studies/viscous.py
+
+full is the paper's section 2.4: 416 collisions of BPCA aggregates of 50,000 grains each, one seed. desk is an evening on
+two cores: the whole grid of B_off, speed and T_vis with aggregates of 500 grains and several seeds, the speeds around
+v_fra with 2,000, both at twice the step, and the paper's own size where Fig. 1 is. Rows are in the order in which they are worth
+having: the paper's size first, then whole grids of one seed after another.
+"""
+
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
+from yade_scripts.run import table
+
+TWELFTHS = range(13)  # B_off^2 in twelfths
+EXPONENTS = range(13, 21)  # i of 10^(0.1 i) m/s
+PICOSECONDS = (0, 1, 3, 6)  # T_vis
+FULL_GRAINS = 50_000
+REFERENCE = (3, 17)  # twelfths and i of Fig. 1: B_off^2 = 3/12, 50.1 m/s
+DURATION = "6.34e-6"  # s: the last time of Fig. 1
+STATES = 21  # every 0.317 us: the times of Figs 1, 10 and 11 are among them
+
+# {grains of an aggregate: (exponents i, seeds)}
+DESK = {500: (EXPONENTS, 4), 2000: (range(16, 21), 3)}
+STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for the aggregates of DESK: its ledger closes to 1e-3 of K(0)
+
+
+def grid(grains, exponents, seed):
+    """[(grains, twelfths, i, picoseconds, seed)] of every B_off, speed and T_vis."""
+    return [
+        (grains, twelfths, i, time, seed) for i in reversed(exponents) for time in PICOSECONDS for twelfths in TWELFTHS
+    ]
+
+
+def desk():
+    """Scenes of the small study: the paper's size, then size by size every seed in turn."""
+    scenes = [(FULL_GRAINS, *REFERENCE, time, 1) for time in (0, 6)]
+    most = max(seeds for _, seeds in DESK.values())
+    for seed in range(1, most + 1):
+        for grains, (exponents, seeds) in DESK.items():
+            scenes += grid(grains, exponents, seed) if seed <= seeds else []
+    return scenes
+
+
+def full():
+    """Scenes of the paper, those of Fig. 1 first."""
+    scenes = grid(FULL_GRAINS, EXPONENTS, 1)
+    return sorted(scenes, key=lambda scene: scene[1:3] != REFERENCE)
+
+
+def rows(scenes, folder):
+    """A table's rows, with run folders FOLDER/nGRAINS-vI-bTWELFTHS-tPS-sSEED."""
+    found = []
+    for grains, twelfths, i, time, seed in scenes:
+        name = f"n{grains}-v{i}-b{twelfths}-t{time}-s{seed}"
+        found.append(
+            {
+                "description": name,
+                "packing": "bpca",
+                "grains": grains,
+                "impact": f"({twelfths}/12)**0.5",
+                "velocity": f"10**(0.1*{i})",
+                "viscoelasticTime": f"{time}e-12",
+                "seed": seed,
+                "duration": DURATION,
+                "endWhenApart": 1,
+                "states": STATES,
+                "stepFraction": STEP if grains == FULL_GRAINS else LONGER_STEP,
+                "threads": 1,
+                "out": f"{folder}/{name}",
+            }
+        )
+    return found
+
+
+HEAD = """Arakawa et al. (2022), section 2.4: collisions of two equal BPCA aggregates of ice grains, B_off^2 = 0 to 1. {which}
+Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/viscous.py."""
+
+
+def write_tables(folder):
+    """Write viscous-desk.table and viscous-full.table into a folder."""
+    table.write(
+        os.path.join(folder, "viscous-desk.table"),
+        rows(desk(), "runs/viscous"),
+        HEAD.format(which="Smaller aggregates, and two collisions of the paper's size."),
+    )
+    table.write(
+        os.path.join(folder, "viscous-full.table"),
+        rows(full(), "runs/viscous-full"),
+        HEAD.format(which="All of the paper's."),
+    )
+
+
+if __name__ == "__main__":
+    write_tables(HERE)
