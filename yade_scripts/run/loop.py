@@ -7,7 +7,7 @@ from yade_scripts.run.stop_signals import StopSignals
 
 
 def run(steps, recorder, runner, begin, checkpoints):
-    """Call begin(), step until that many O.steps are taken, and return (outcome, exit status).
+    """Call begin(), step until that many O.steps are taken or the scene is at its end; return (outcome, exit status).
 
     recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
     taken, with a checkpoint and one more step that records where it stopped; the outcome is then
@@ -22,6 +22,8 @@ def run(steps, recorder, runner, begin, checkpoints):
             progress.update()
             if recorder.error:
                 return f"failed: {one_line(recorder.error)}", 1
+            if recorder.finished:
+                break
             checkpoints.save_if_due()
             if stop.received and step < steps:
                 checkpoints.save()

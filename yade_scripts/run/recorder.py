@@ -18,7 +18,7 @@ class Recorder:
     """sample() takes one row of the history, and some states: for a PyRunner that is the last engine.
 
     kind_format: a RunKind of analysis.runs.format, which names the columns; scene: of run.kind, for its series, the
-    grains' aggregates and whether its energy is conserved.
+    grains' aggregates, whether its energy is conserved, and when it ends: .finished is true from then on.
     An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
     """
 
@@ -27,7 +27,7 @@ class Recorder:
         self.history, self.states = kind_format.history, kind_format.states
         self.columns = [quantity.name for quantity in self.history]
         self.error = None
-        self.ending = False
+        self.ending = self.finished = False
         self._rows, self._written = [], 0
         self._last_good = None  # state of the last sample, unless it is written already
         self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
@@ -35,6 +35,16 @@ class Recorder:
     def rows(self):
         """The history so far, (T, columns), for a checkpoint."""
         return np.array(self._rows, dtype=float).reshape(-1, len(self.columns))
+
+    def recent(self, name, duration=0.0):
+        """(K,) values of a column over the last `duration` [s], the last sample always."""
+        time, column = self.columns.index("time"), self.columns.index(name)
+        since, values = self._rows[-1][time] - duration, []
+        for row in reversed(self._rows):
+            if values and row[time] < since:
+                break
+            values.append(row[column])
+        return np.array(values[::-1])
 
     def resume(self, rows):
         """Have these rows, of a checkpoint, as the history so far; later states of the folder are removed."""
@@ -70,7 +80,8 @@ class Recorder:
         number = len(self._rows)
         self._rows.append(tuple(sample[name] for name in self.columns))
         self._last_good = state
-        if self.ending or number in self.schedule.states:
+        self.finished = self.scene.control(self)
+        if self.ending or self.finished or number in self.schedule.states:
             self._write_state(state)
         if time.monotonic() >= self._next_write:
             self.write_history()
