@@ -32,7 +32,13 @@ def run_of(folder, damping, step, seed):
     path = Path(folder) / f"k{damping:g}-step{step:g}-s{seed}"
     if not (path / "ended").exists():
         given = {**SCENE, "linearDamping": damping, "stepFraction": step, "seed": seed, "out": path, "overwrite": 1}
-        command = ["yade", "-n", "-x", str(TOP / "yade_scripts" / "compress.py"), *(f"{k}={v}" for k, v in given.items())]
+        command = [
+            "yade",
+            "-n",
+            "-x",
+            str(TOP / "yade_scripts" / "compress.py"),
+            *(f"{k}={v}" for k, v in given.items()),
+        ]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return open_run(path)
 
@@ -71,9 +77,10 @@ def lines(folder):
 def main(folder):
     for damping, step, seed in product(DAMPING, STEPS[::-1], SEEDS):
         run_of(folder, damping, step, seed)
+    about = machine()
     head = (
         f"Compression of {SCENE['grains']} grains of ice at C_v = {SCENE['strainRate']:g} to a filling of 0.5, mean of "
-        f"{len(SEEDS)} seeds. Measured on: {machine()}.\n\nledger: largest error of the sum of all channels over the work of "
+        f"{len(SEEDS)} seeds. Measured on: {about['cpu']}, commit {about['commit']}.\n\nledger: largest error of the sum of all channels over the work of "
         f"the boundaries; P: mean of ln(P/P at a step of {STEPS[0]:g} t0) over bins of the filling, with its standard error "
         "from the seeds.\n\n| k_n | step [t0] | ledger, filling < 0.1 | ledger, to 0.5 | ln P ratio, 0.03-0.1 | ln P ratio, "
         "0.1-0.5 |\n|---:|---:|---:|---:|---:|---:|\n"

@@ -18,7 +18,7 @@ from yade_scripts.run.parameters import RunParameters
 
 RANDOM_CLOSE_PACKING = 0.64  # of spheres that do not overlap
 FINAL_FILLING = 0.5
-LOOSE = 0.5  # filling at which stretching ends, over that at which it begins
+LOOSE = 0.3  # filling at which stretching ends, over that at which it begins; stress is largest at about 0.5 (T19)
 SMALLEST_EDGE = 5.7  # grain radii: below, a grain could meet two images of another (the engine stops at 5.6)
 BETWEEN_SAMPLES = 20.0  # t0
 AVERAGED = 1000.0  # t0 over which K13 averages the pressure
@@ -126,9 +126,7 @@ def prepare(parameters, threads):
 
     constants = yade_scene.pair_constants(parameters, linearDamping=parameters.linearDamping)
     parameters = complete(parameters, constants, threads)
-    cluster = packings.bcca(
-        parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed
-    )
+    cluster = packings.bcca(parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed)
     edge = _first_edge(parameters, cluster)
     parameters = parameters.changed(initialFilling=filling_factor(cluster.radius, np.full(3, edge)))
     _require_order(parameters)
