@@ -4,7 +4,9 @@
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
-#             Stop it at will; called again it goes on. make study-status tells from another shell how far it is.
+#             Stop it at will; called again it resumes. make study-status tells from another shell how far it is.
+# make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: five to six hours on two cores, or
+#             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status NAME=compression
 # make test   builds what is needed and passes the tests
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make deps   installs what is missing from Debian's packages
@@ -149,20 +151,23 @@ test: all
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
 JOBS  ?= $(shell nproc)
-STUDY := yade_scripts/studies/elastoplastic-$(SIZE).table
-RUNS  := runs/elastoplastic$(filter-out -desk,-$(SIZE))
+STUDIES := elastoplastic compression
+NAME  ?= elastoplastic
+table = yade_scripts/studies/$1-$(SIZE).table
+runs  = runs/$1$(filter-out -desk,-$(SIZE))
 
-.PHONY: study-elastoplastic study-status gallery-elastoplastic
-study-elastoplastic: all
-	@$(PYTHON) yade_scripts/study.py $(STUDY) -j $(JOBS)
-	@$(PYTHON) -m analysis study elastoplastic $(RUNS) --figures $(RUNS)/figures
+.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status
+$(STUDIES:%=study-%): study-%: all
+	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
+	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures
 
+# of the study NAME
 study-status:
-	@$(PYTHON) yade_scripts/study.py $(STUDY) -j $(JOBS) --status
+	@$(PYTHON) yade_scripts/study.py $(call table,$(NAME)) -j $(JOBS) --status
 
 # the comparison and figures that the repository keeps, of the runs that are there
-gallery-elastoplastic:
-	@$(PYTHON) -m analysis study elastoplastic $(RUNS) --figures analysis/gallery/elastoplastic
+$(STUDIES:%=gallery-%): gallery-%:
+	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures analysis/gallery/$*
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
 .PHONY: bench bench-peers

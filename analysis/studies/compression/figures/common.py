@@ -7,7 +7,7 @@ from ....theory.compression import compressive_strength, compressive_strength_de
 
 __all__ = ["OURS", "PAPER", "colours_of", "legend", "letter", "panels", "pressure_axes", "draw_formulae"]
 
-_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#8c5a2b", "#c62828", "#7b3fa0")
+_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#8c5a2b", "#c62828", "#4d4d4d")
 
 
 def colours_of(groups):
