@@ -6,7 +6,7 @@
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
 #             Stop it at will; called again it resumes. make study-status tells from another shell how far it is.
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: five to six hours on two cores, or
-#             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status NAME=compression
+#             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
 # make test   builds what is needed and passes the tests
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make deps   installs what is missing from Debian's packages
@@ -152,7 +152,7 @@ test: all
 SIZE  ?= desk
 JOBS  ?= $(shell nproc)
 STUDIES := elastoplastic compression
-NAME  ?= elastoplastic
+STUDY ?= elastoplastic
 table = yade_scripts/studies/$1-$(SIZE).table
 runs  = runs/$1$(filter-out -desk,-$(SIZE))
 
@@ -161,9 +161,9 @@ $(STUDIES:%=study-%): study-%: all
 	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
 	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures
 
-# of the study NAME
+# of STUDY
 study-status:
-	@$(PYTHON) yade_scripts/study.py $(call table,$(NAME)) -j $(JOBS) --status
+	@$(PYTHON) yade_scripts/study.py $(call table,$(STUDY)) -j $(JOBS) --status
 
 # the comparison and figures that the repository keeps, of the runs that are there
 $(STUDIES:%=gallery-%): gallery-%:

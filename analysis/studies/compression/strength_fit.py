@@ -35,7 +35,7 @@ def fit_strength(filling, pressure, low, high):
     """StrengthFit of pressure (S, K) [Pa] of S seeds at filling factors (K,): least squares of the logarithm of the mean
     over the seeds (K13 takes the arithmetic mean), over the bins from low to high in which every seed has a value."""
     pressure = np.asarray(pressure, dtype=float)
-    used = (filling >= low) & (filling <= high) & np.isfinite(pressure).all(axis=0)
+    used = (filling >= low * (1 - 1e-9)) & (filling <= high * (1 + 1e-9)) & np.isfinite(pressure).all(axis=0)
     used &= pressure.mean(axis=0) > 0
     runs, bins = len(pressure), int(used.sum())
     if bins < FEWEST_BINS:
