@@ -21,6 +21,7 @@ FINAL_FILLING = 0.5
 LOOSE = 0.3  # filling at which stretching ends, over that at which it begins; stress is largest at about 0.5 (T19)
 SMALLEST_EDGE = 5.7  # grain radii: below, a grain could meet two images of another (the engine stops at 5.6)
 BETWEEN_SAMPLES = 40.0  # t0; a sample takes as long as 20 steps
+FINEST_FILLING = 0.005  # by this fraction the filling factor grows between samples, at most
 AVERAGED = 1000.0  # t0 over which K13 averages the pressure
 STATES = 60
 FASTEST = 1e-3  # 1/t0: beyond, boundaries pass a grain within a few oscillations of a contact
@@ -145,7 +146,7 @@ def prepare(parameters, threads):
         law={"linearDamping": parameters.linearDamping},
         energy_is_conserved=parameters.engine == "fused",
         control=Ending(parameters, constants["timeUnit"], rate),
-        interval=max(1, round(BETWEEN_SAMPLES / parameters.stepFraction)) if _is_number(parameters) else 1,
+        interval=_interval(parameters),
         states=STATES,
     )
 
@@ -155,8 +156,12 @@ def _rolling(parameters):
     return parameters.surfaceEnergy * parameters.grainRadius * parameters.criticalRolling
 
 
-def _is_number(parameters):
-    return parameters.stepFraction != stability.AUTO  # refused before anything runs
+def _interval(parameters):
+    """Steps between samples."""
+    if parameters.stepFraction == stability.AUTO:
+        return 1  # refused before anything runs
+    between = min(BETWEEN_SAMPLES, FINEST_FILLING / (6 * parameters.strainRate))
+    return max(1, round(between / parameters.stepFraction))
 
 
 def _first_edge(parameters, cluster):

@@ -58,7 +58,9 @@ def read_periodic_state(path):
         overlap = float(record["derived"]["equilibriumOverlap"])
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RunFolderError) as error:
         reason = " ".join(str(error).split())
-        raise PackingError(f"from = {path}: {reason}; must be a state of a compression, RUN/states/NNNNNN.npz") from None
+        raise PackingError(
+            f"from = {path}: {reason}; must be a state of a compression, RUN/states/NNNNNN.npz"
+        ) from None
     if state.cell_size is None:
         raise PackingError(f"from = {path}: not of a periodic cell; must be a state of a compression")
     return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap)

@@ -1,0 +1,78 @@
+"""Pressure of periodic cells by the virial against closed forms: strained crystals, and a contact that crosses the boundary."""
+
+import numpy as np
+import pytest
+
+from analysis.theory import ICE, normal_force, pair_constants
+
+PAIR = pair_constants(ICE, 1e-7)
+
+CRYSTAL = """
+from scenes import *
+from analysis.measures.virial import contact_pressure
+def pressure_of(sites, edge):
+    new_scene(1e-11)
+    O.periodic = True
+    O.cell.setBox(edge, edge, edge)
+    for site in sites:
+        grain(site, 1e-7, ice())
+    fused_engine()
+    O.engines[0].prepare()
+    shot = contact_law.snapshot()
+    return [contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"]), len(shot["contact_pairs"])]
+"""
+
+
+@pytest.mark.parametrize("strain", [-0.004, 0.0, 0.01])
+def test_strained_crystals(yade, strain):
+    """Simple cubic: F/a^2; face-centred cubic: 2 sqrt(2) F/a^2, a the distance of neighbours (12 n a F/6, n = sqrt(2)/a^3)."""
+    apart = (2e-7 - PAIR.equilibrium_overlap) * (1 - strain)
+    force = float(normal_force(2e-7 - apart, PAIR))
+    found = yade(
+        CRYSTAL
+        + """
+a = parameters["apart"]
+cubic = a * np.stack(np.meshgrid(*3 * [np.arange(4)], indexing="ij"), axis=-1).reshape(-1, 3)
+result["cubic"] = pressure_of(cubic, 4 * a)
+corner = np.stack(np.meshgrid(*3 * [np.arange(3)], indexing="ij"), axis=-1).reshape(-1, 1, 3)
+fcc = (corner + np.array([[0, 0, 0], [0, .5, .5], [.5, 0, .5], [.5, .5, 0]])).reshape(-1, 3) * 2**.5 * a
+result["fcc"] = pressure_of(fcc, 3 * 2**.5 * a)
+""",
+        {"apart": apart},
+    )
+    scale = 1e-6 * PAIR.pull_off_force / apart**2
+    for lattice, contacts, expected in (("cubic", 192, force / apart**2), ("fcc", 648, 8**0.5 * force / apart**2)):
+        pressure, number = found[lattice]
+        # Without strain a contact has no force, and rounding of its overlap is all there is.
+        assert number == (contacts if 2e-7 > apart else 0)
+        if number:
+            assert pressure == pytest.approx(expected, rel=1e-6, abs=scale), lattice
+
+
+def test_a_contact_that_crosses_the_boundary(yade):
+    """A vibrating pair that flies through the boundary has the pressure of one that stays in the middle, at every step."""
+    found = yade("""
+from scenes import *
+from analysis.measures.virial import contact_pressure
+def series(start):
+    new_scene(1e-11)
+    O.periodic = True
+    O.cell.setBox(8e-7, 8e-7, 8e-7)
+    for side in (-1, 1):
+        grain(np.array(start) + [side * 0.99e-7, 0, 0], 1e-7, ice(), (10, 3, 0))
+    fused_engine(subSteps=10)
+    O.dt *= 10
+    O.engines[0].prepare()
+    rows = []
+    for _ in range(400):
+        O.step()
+        shot = contact_law.snapshot()
+        rows.append([contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"]), shot["position"][0, 0]])
+    return np.array(rows).T.tolist()
+result["middle"] = series((2e-7, 2e-7, 4e-7))
+result["across"] = series((7.5e-7, 7.6e-7, 4e-7))
+""")
+    (middle, _), (across, x) = found["middle"], found["across"]
+    assert min(x) < 8e-7 < max(x)  # and the other grain 2e-7 ahead
+    assert np.ptp(middle) > 1e3
+    assert across == pytest.approx(middle, abs=1e-6 * np.ptp(middle))
