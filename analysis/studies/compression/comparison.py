@@ -54,7 +54,7 @@ def label(group):
     p = group.parameters
     return (
         f"{p['material']}, N = {p['grains']}, C_v = {p['strainRate']:g}, k_n = {p['linearDamping']:g}, "
-        f"xi_crit = {p['criticalRolling'] * 1e10:.3g} A, step {p['stepFraction']:g} t0"
+        f"xi_crit = {p['criticalRolling'] * 1e10:.3g} Å, step {p['stepFraction']:g} t0"
     )
 
 
@@ -93,7 +93,7 @@ def _dependence(results):
         Column("N", lambda r: f"{r['grains']}"),
         Column("C_v", lambda r: f"{r['strainRate']:g}"),
         Column("k_n", lambda r: f"{r['linearDamping']:g}"),
-        Column("xi_crit [A]", lambda r: f"{r['criticalRolling'] * 1e10:.3g}"),
+        Column("xi_crit [Å]", lambda r: f"{r['criticalRolling'] * 1e10:.3g}"),
         Column("step [t0]", lambda r: f"{r['stepFraction']:g}"),
         Column("runs", lambda r: f"{r['runs']}"),
         Column("n", lambda r: _with_error(r["exponent"], r["exponent_error"])),
@@ -136,7 +136,7 @@ def _channels(results):
         Column("N", lambda r: f"{r['grains']}"),
         Column("C_v", lambda r: f"{r['strainRate']:g}"),
         Column("k_n", lambda r: f"{r['linearDamping']:g}"),
-        Column("xi_crit [A]", lambda r: f"{r['criticalRolling'] * 1e10:.3g}"),
+        Column("xi_crit [Å]", lambda r: f"{r['criticalRolling'] * 1e10:.3g}"),
         Column("filling", lambda r: f"{r['filling']:g}"),
         Column("rolling", lambda r: f"{r['rollingDissipation']:.3f}"),
         Column("twisting", lambda r: f"{r['twistingDissipation']:.3f}"),
@@ -146,8 +146,8 @@ def _channels(results):
         Column("largest of the three", lambda r: r["largest"]),
     )
     intro = (
-        "K13 sections 3.4, 3.5: rolling below a filling of 0.1 where xi_crit is 8 A or less; twisting above, and "
-        "everywhere at 32 A."
+        "K13 sections 3.4, 3.5: rolling below a filling of 0.1 where xi_crit is 8 Å or less; twisting above, and "
+        "everywhere at 32 Å."
     )
     return Section("where the energy goes", columns, tuple(records), intro, CHANNEL_NOTES)
 
@@ -210,7 +210,7 @@ def _tensile(results):
         start = float(runs.largest_filling.mean())
         theirs = float(tensile_strength(start, surface, radius)) if axes == 1 else None
         place = f"{runs.tensile_filling.mean() / start:.2f} of the filling before"
-        note = f"{material}, N = {grains}, C_v = {rate:g}, {len(runs)} runs, along {axes} axes; largest at {place}"
+        note = f"{material}, N = {grains}, C_v = {rate:g}, {len(runs)} runs, along {_axes(axes)}; largest at {place}"
         lines.append(Line(f"tensile strength from a filling of {start:.3g}", "Pa", ours, error, theirs, note=note))
     if lines:
         notes = (
@@ -218,6 +218,10 @@ def _tensile(results):
             "phi^1.8 for ice, along one axis; its largest tension is at about half of the filling.",
         )
         yield section_of_lines("tensile strength", lines, notes)
+
+
+def _axes(number_of_them):
+    return "one axis" if number_of_them == 1 else f"{number_of_them} axes"
 
 
 def _over(value, scale, relative=1.0):

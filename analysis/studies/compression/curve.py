@@ -90,6 +90,7 @@ def tension(history, width):
     time, work = history["time"][after], history["boundaryWork"][after]
     volume = np.prod([history[f"edge_{axis}"][after] for axis in "xyz"], axis=0)
     filling = history["filling"][after]
-    edges = [(a, b) for a, b in windows(time, width) if b - a > 1]
-    stress = [-(work[b - 1] - work[a]) / (volume[b - 1] - volume[a]) for a, b in edges]
-    return np.array([filling[a:b].mean() for a, b in edges]), np.array(stress)
+    # From the first sample of a window to that of the next.
+    edges = [(a, min(b, len(time) - 1)) for a, b in windows(time, width) if a < len(time) - 1]
+    stress = [-(work[b] - work[a]) / (volume[b] - volume[a]) for a, b in edges]
+    return np.array([filling[a : b + 1].mean() for a, b in edges]), np.array(stress)

@@ -11,6 +11,7 @@ import numpy as np
 from .paper import EXPONENT
 
 FEWEST_BINS = 3
+ROUNDING = 1e-12  # of ln P0 and n: seeds that agree to this agree
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ def fit_strength(filling, pressure, low, high):
     away = rest - rest.mean(axis=0)
     covariance = (runs - 1) / runs * away.T @ away
     error = np.sqrt(np.diag(covariance))
+    error[error < ROUNDING] = 0.0
     correlation = float(covariance[0, 1] / (error[0] * error[1])) if error[0] * error[1] > 0 else None
     return StrengthFit(
         (low, high),

@@ -12,14 +12,21 @@ from ..curve import AVERAGED, tension
 from ..measure import ORIGINS, state_at
 from .common import PAPER, colours_of, legend, letter, panels
 
+_AXES = {1: "one axis", 2: "two axes", 3: "three axes"}
+
+
+def _states(run):
+    """{filling: state} of the paper's filling factors that a run has."""
+    states = {filling: state_at(run, filling) for filling in paper.STRUCTURE_FILLINGS}
+    return {filling: state for filling, state in states.items() if state is not None}
+
 
 @styled
 def structure_figure(results):
     """N(< r) of one run of the main group at the paper's filling factors."""
     group = results.main
-    run = run_folder(next(group.table.itertuples()))
-    states = {filling: state_at(run, filling) for filling in paper.STRUCTURE_FILLINGS}
-    states = {filling: state for filling, state in states.items() if state is not None}
+    found = [_states(run_folder(row)) for row in group.table.itertuples()]
+    states = max(found, key=len)
     if not states:
         return None
     figure, axes = panels(1, 1, 6.4, 4.8)
@@ -56,7 +63,7 @@ def tension_figure(results):
             fillings / row.largest_filling,
             stress,
             linewidth=0.8,
-            label=f"from {row.largest_filling:.2g}, {row.stretched_axes} axes",
+            label=f"from {row.largest_filling:.2g}, along {_AXES[row.stretched_axes]}",
         )
         right.plot(
             [row.largest_filling],
