@@ -5,7 +5,7 @@
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
 #             Stop it at will; called again it resumes. make study-status tells from another shell how far it is.
-# make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: five to six hours on two cores, or
+# make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
 # make test   builds what is needed and passes the tests
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
