@@ -36,7 +36,7 @@ def runs(tmp_path_factory):
         made_compression(folder / f"base-s{seed}", seed, power(factor))
     for seed in (1, 2):
         made_compression(folder / f"xi-s{seed}", seed, power(2.0), criticalRolling=1.6e-9, states=False)
-    made_compression(folder / "k0-s1", 1, power(), linearDamping=0.0, states=False)
+    made_compression(folder / "k0-s1", 1, power(), linearDamping=0.0, stepFraction=0.1, states=False)
     silicate = made_compression(
         folder / "silicate-s1",
         1,
@@ -147,3 +147,18 @@ def test_what_is_left_out(runs, tmp_path):
     assert any("covers no bin of the filling factor" in line for line in lines)
     assert any("the same grains" in line for line in lines)
     assert any("viscoelasticTime = 1e-12" in line for line in lines)
+
+
+def test_families_of_one_parameter(runs):
+    """Of k_n, with a longer step for one of its values, and of xi_crit; none of the strain rate."""
+    from analysis.studies.analyse import analyse as analyse_runs
+    from analysis.studies.compression.results import family
+    from analysis.studies.find import find
+
+    results = analyse_runs(find("compression"), [runs]).results
+    damping = family(results, "linearDamping")
+    assert [group.parameters["linearDamping"] for group in damping] == [0.0, 0.01]
+    assert [group.seeds for group in damping] == [1, 4]
+    assert [group.parameters["criticalRolling"] for group in family(results, "criticalRolling")] == [0.8e-9, 1.6e-9]
+    assert family(results, "strainRate") == ()
+    assert results.main is damping[1]

@@ -74,14 +74,15 @@ class Results:
 
 
 def family(results, name):
-    """Groups that differ in one parameter of KEYS only, sorted by it: of several families the largest, then the one of
-    the most runs; () where no two groups are such."""
+    """Groups that differ in one parameter of KEYS only, one for each of its values, sorted by it: of several families the
+    largest, then the one of the most runs; () where no two groups are such. The step may differ too: of groups with the
+    same value that of the most runs is taken."""
     families = {}
-    for group in results.groups:
-        rest = tuple(value for key, value in group.parameters.items() if key != name)
-        families.setdefault(rest, []).append(group)
-    largest = max(families.values(), key=lambda groups: (len(groups), sum(group.seeds for group in groups)))
-    return tuple(sorted(largest, key=lambda group: group.parameters[name])) if len(largest) > 1 else ()
+    for group in sorted(results.groups, key=lambda group: group.seeds):
+        rest = tuple(value for key, value in group.parameters.items() if key not in (name, "stepFraction"))
+        families.setdefault(rest, {})[group.parameters[name]] = group
+    largest = max(families.values(), key=lambda groups: (len(groups), sum(group.seeds for group in groups.values())))
+    return tuple(largest[value] for value in sorted(largest)) if len(largest) > 1 else ()
 
 
 def make_results(table):
