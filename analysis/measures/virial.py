@@ -42,7 +42,7 @@ def contact_stress(position, pairs, force, cell_size):
 def cell_velocity(position, velocity, cell_size, rate):
     """Velocity (N,3) [m/s] of each grain's image in the cell around the origin (K13 eqs 8-11).
 
-    rate (3,) [1/s]: of the edges' logarithms, d(ln L)/dt; position and velocity of a grain that is not put back."""
+    rate (3,) [1/s]: of the edges' logarithms, d(ln L)/dt; position and velocity of a grain that stays outside of the cell."""
     return velocity - rate * cell_size * np.round(position / cell_size)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...measures.ledger import total_energy
+from ...measures.ledger import work_closure
 from ...measures.structure import fractal_dimension, grains_within
 from ...runs.arrays import RunFolderError
 from ...runs.format import CHANNEL_TABLE, LOST
@@ -71,7 +71,7 @@ def measure(run):
         **scene,
         "initial_filling": float(history["filling"][0]),
         "largest_filling": float(history["filling"].max()),
-        "closure": ledger_error(history),
+        "closure": work_closure(history) or 0.0,
         "filling_at_300": filling_at_pressure(history, paper.SILICATE_PRESSURE, width),
         "tensile_strength": strength,
         "tensile_filling": strength_filling,
@@ -81,12 +81,6 @@ def measure(run):
         **{name: at_filling(history, channel, filling) for (channel, filling), name in ENERGIES.items()},
         **{name: _dimension(run, filling) for name, filling in DIMENSIONS.items()},
     }
-
-
-def ledger_error(history):
-    """Largest change of the sum of all channels over the largest work of the boundaries on the grains."""
-    total = total_energy(history)
-    return float(np.abs(total - total[0]).max() / np.abs(history["boundaryWork"]).max())
 
 
 def state_at(run, filling):
