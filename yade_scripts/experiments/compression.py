@@ -277,8 +277,10 @@ class Ending:
         return not axes
 
     def _pressed(self, recorder):
-        limit = self.parameters.finalPressure
-        return limit is not None and recorder.recent("pressure", AVERAGED * self.time_unit).mean() >= limit
+        limit, window = self.parameters.finalPressure, AVERAGED * self.time_unit
+        if limit is None or recorder.recent("time")[-1] < window:
+            return False
+        return recorder.recent("pressure", window).mean() >= limit
 
 
 def estimate(parameters):
@@ -308,7 +310,10 @@ def expected(parameters, run):
     """What a run's run.json should hold of parameters that are left open and follow from the cluster."""
     held, derived = run.get("parameters", {}), run.get("derived", {})
     found = {"initialFilling": held.get("initialFilling")} if parameters.initialFilling is None else {}
-    ends = _with_ends(parameters, pair_constants(parameters))
+    try:
+        ends = _with_ends(parameters, pair_constants(parameters))
+    except ParameterError:  # the run will say what is wrong
+        return found
     found["finalFilling"] = ends.finalFilling
     if parameters.duration is None and None not in (held.get("initialFilling"), derived.get("timeUnit")):
         whole = ends.changed(initialFilling=held["initialFilling"])
