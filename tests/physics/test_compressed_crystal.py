@@ -76,3 +76,30 @@ result["across"] = series((7.5e-7, 7.6e-7, 4e-7))
     assert min(x) < 8e-7 < max(x)  # and the other grain 2e-7 ahead
     assert np.ptp(middle) > 1e3
     assert across == pytest.approx(middle, abs=1e-6 * np.ptp(middle))
+
+
+def test_normal_forces_are_all_that_presses(yade):
+    """In a compressed cluster, whose contacts slide, roll and twist, the pressure of normal forces alone is a third of the
+    trace of YADE's stress of all forces (which is positive in tension)."""
+    found = yade("""
+from analysis.measures.virial import contact_pressure
+from yade_scripts.experiments.compression import KIND
+scene = KIND.prepare(KIND.parse(dict(grains=64, strainRate=1e-4, stepFraction=0.2, threads=1)), 1)
+scene.build()
+O.dt = 20 * scene.time_step
+O.trackEnergy = True
+O.engines = [JKRWadaEngine(subSteps=20, threads=1, **scene.law)]
+O.engines[0].prepare()
+result["rows"] = []
+while O.cell.hSize[0, 0] ** 3 > 64 * 4.19e-21 / 0.4:
+    O.run(200, True)
+    shot = contact_law.snapshot()
+    O.engines[0].writeInteractions()
+    stress = np.array(utils.getStress())
+    pressure = contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"])
+    result["rows"].append([pressure, -np.trace(stress) / 3, np.abs(stress - stress.T).max(), np.abs(np.diag(stress)).max()])
+result["lost"] = dict(O.energy.items())["rollingDissipation"]
+""")
+    ours, theirs, _, largest = np.array(found["rows"]).T
+    assert found["lost"] > 0 and len(ours) > 3 and largest.max() > 1e4
+    assert ours == pytest.approx(theirs, abs=1e-8 * largest.max())

@@ -174,8 +174,8 @@ def _first_edge(parameters, cluster):
         require_apart_from_images(cluster, edge)
     except packings.PackingError as problem:
         raise ParameterError(
-            f"initialFilling = {parameters.initialFilling:g}: {problem}; {volume / smallest**3:.4g} is small enough for "
-            f"seed {parameters.seed}"
+            f"initialFilling = {parameters.initialFilling:g}: {problem}, as with {volume / smallest**3:.4g} for seed "
+            f"{parameters.seed}"
         ) from None
     return edge
 
@@ -273,8 +273,10 @@ class Ending:
         if not (filling >= self.parameters.finalFilling or self._pressed(recorder)):
             return False
         axes = AXES[self.parameters.stretch]
+        if not axes:
+            return True
         _deform([self.rate * (axis in axes) for axis in range(3)])
-        return not axes
+        return False
 
     def _pressed(self, recorder):
         limit, window = self.parameters.finalPressure, AVERAGED * self.time_unit
