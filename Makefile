@@ -7,6 +7,8 @@
 #             Stop it at will; called again it resumes. make study-status tells from another shell how far it is.
 # make study-viscous  the collisions of Arakawa et al. (2022), in runs/viscous: five hours on two cores, or SIZE=full: all
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
+# make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
+#             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
 # make test   builds what is needed and passes the tests
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make deps   installs what is missing from Debian's packages
@@ -151,7 +153,7 @@ test: all
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
 JOBS  ?= $(shell nproc)
-STUDIES := elastoplastic viscous
+STUDIES := $(patsubst analysis/studies/%/study.py,%,$(wildcard analysis/studies/*/study.py))
 STUDY ?= elastoplastic
 table = yade_scripts/studies/$1-$(SIZE).table
 runs  = runs/$1$(filter-out -desk,-$(SIZE))

@@ -2,6 +2,7 @@
 
     python3 yade_scripts/make_packing.py a.npz b.npz filling=0.4 radius=20 seed=3
     python3 yade_scripts/make_packing.py a.npz packing=bpca grains=50000
+    python3 yade_scripts/make_packing.py a.npz from=RUN/states/000059.npz radius=8     cut out of a compression
 
 The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py. Parameters that a packing
 doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
@@ -13,6 +14,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run.arguments import from_arguments
 
@@ -23,10 +25,13 @@ def make_packing(file, parameters, index):
     """Make aggregate number index, save it, print one line about it."""
     constants = materials.pair_constants(parameters)
     materials.require_small_contacts(constants)
-    packing = make(parameters, constants["equilibriumOverlap"], index)
+    _save(file, make(parameters, constants["equilibriumOverlap"], index))
+
+
+def _save(file, packing):
     packings.save(file, packing)
     coordination = 2 * len(packings.contacts(packing)) / packing.grains
-    characteristic = packings.characteristic_radius(packing) / parameters.grainRadius
+    characteristic = packings.characteristic_radius(packing) / packing.radius.mean()
     print(
         f"{file}: {packing.grains} grains, mean coordination number {coordination:.3f}, characteristic radius "
         f"{characteristic:.4g} grain radii"
@@ -36,9 +41,15 @@ def make_packing(file, parameters, index):
 def main(arguments):
     files = [argument for argument in arguments if "=" not in argument]
     if "--help" in arguments or not 1 <= len(files) <= 2:
-        print(__doc__ + "\n" + AggregateParameters.help_text())
+        print(f"{__doc__}\n{AggregateParameters.help_text()}\n\nWith from=:\n{CutParameters.help_text()}")
         return 0 if "--help" in arguments else 2
     texts = from_arguments(argument for argument in arguments if "=" in argument)
+    if "from" in texts:
+        state = read_periodic_state(texts.pop("from"))
+        parameters = CutParameters.parse(texts)
+        for index, file in enumerate(files):
+            _save(file, cut(state, parameters, index))
+        return 0
     for name in WITHOUT_EFFECT:
         if name in texts:
             raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")

@@ -14,6 +14,7 @@ def figures_of(run):
         name: module.FIGURE
         for name, module in modules.items()
         if run.kind.name in getattr(module, "KINDS", (run.kind.name,))
+        and run.kind.name not in getattr(module, "NOT_OF", ())
     }
 
 

@@ -30,6 +30,13 @@ def closure(history):
     return None if error is None else float(np.abs(error).max())
 
 
+def work_closure(history):
+    """max over t of |E(t) - E(0)| over the largest work of the boundaries, of a cell that starts almost at rest; None
+    where they did none."""
+    total, work = total_energy(history), float(np.abs(history["boundaryWork"]).max())
+    return float(np.abs(total - total[0]).max()) / work if work > 0 else None
+
+
 def final_values(history):
     """Last value [J] of every channel, by name, in the order of CHANNELS."""
     return {name: float(history[name][-1]) for name in CHANNELS}

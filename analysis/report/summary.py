@@ -2,10 +2,10 @@
 
 import textwrap
 
-from ..measures.ledger import closure, final_values, fractions, initial_kinetic_energy
+from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure
 from ..measures.of_run import maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
-from ..runs.format import CHANNELS, COLLISION, LABELS
+from ..runs.format import CHANNELS, COLLISION, COMPRESSION, LABELS
 
 _PARAMETERS = (
     ("packing", ""),
@@ -37,7 +37,7 @@ def summarise(run):
     run (path), ended, time (of the last sample), d_max, d_max_error, t_max, t_max_error, maximum_inside
     (False: d_max is only a bound, see compression.Maximum), restitution (None where there is none, see
     measures.outcome), outcome, mass_fractions, largest_fragment [grains], fragments, growth_efficiency (A22 eq 28),
-    energy_closure (max |E(t) - E(0)|/K(0)), initial_kinetic_energy, and the final value of every channel [J] under
+    energy_closure (max |E(t) - E(0)|/K(0); of a compression over the largest work of the boundaries), initial_kinetic_energy, and the final value of every channel [J] under
     its name. What only collisions have is None for other kinds of run. RunFolderError when a state is missing or
     damaged."""
     history = run.history
@@ -46,7 +46,7 @@ def summarise(run):
     numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
     numbers.update(_compression(maximum))
     numbers.update(_outcome(run) if collision else dict.fromkeys(OUTCOME))
-    numbers["energy_closure"] = closure(history)
+    numbers["energy_closure"] = (work_closure if run.kind is COMPRESSION else closure)(history)
     numbers["initial_kinetic_energy"] = initial_kinetic_energy(history)
     numbers.update(final_values(history))
     return numbers
@@ -99,8 +99,26 @@ def _measures(run, numbers):
         yield from _collision_measures(run, numbers)
     else:
         yield "kind", f"a run of the kind {run.kind.name}"
-    closed = numbers["energy_closure"]
-    yield "energy closure", ("undefined: no kinetic energy at the start" if closed is None else f"{closed:.3g} of K(0)")
+    if run.kind is COMPRESSION:
+        yield from _compression_measures(run.history)
+    closed, (_, unit) = numbers["energy_closure"], _energy_unit(run, numbers)
+    yield "energy closure", (f"undefined: no {unit}" if closed is None else f"{closed:.3g} of {unit}")
+
+
+def _energy_unit(run, numbers):
+    """(energy [J], its name) that changes of energy are told in."""
+    if run.kind is COMPRESSION:
+        return float(abs(run.history["boundaryWork"]).max()), "W"
+    return numbers["initial_kinetic_energy"], "K(0)"
+
+
+def _compression_measures(history):
+    largest = history["filling"].argmax()
+    yield "filling factor", f"{history['filling'][0]:.4g} to {history['filling'][largest]:.4g}"
+    if largest + 1 < len(history["filling"]):
+        yield "stretched to", f"{history['filling'][-1]:.4g}"
+    yield "coordination", f"{history['coordination'][0]:.4g} to {history['coordination'][largest]:.4g}"
+    yield "pressure", f"{history['pressure'][largest]:.4g} Pa at the largest filling factor"
 
 
 def _collision_measures(run, numbers):
@@ -139,11 +157,12 @@ def _t_max(numbers):
 
 
 def _channel_table(run, numbers):
-    parts = fractions(run.history)
-    rows = [f"  {'energy':<24}{'final [J]':>14}{'change [J]':>14}{'change/K(0)':>14}"]
+    unit, name_of_unit = _energy_unit(run, numbers)
+    rows = [f"  {'energy':<24}{'final [J]':>14}{'change [J]':>14}{f'change/{name_of_unit}':>14}"]
     for name in CHANNELS:
         change = numbers[name] - run.history[name][0]
-        fraction = "-" if parts is None else f"{change / numbers['initial_kinetic_energy']:.3%}"
+        fraction = f"{change / unit:.3%}" if unit > 0 else "-"
         rows.append(f"  {LABELS[name]:<24}{numbers[name]:>14.5g}{change:>14.4g}{fraction:>14}")
-    rows.append(f"  K(0) = {numbers['initial_kinetic_energy']:.5g} J")
+    about = ", the largest work of the boundaries" if name_of_unit == "W" else ""
+    rows.append(f"  {name_of_unit} = {unit:.5g} J{about}")
     return "\n".join(rows)

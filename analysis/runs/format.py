@@ -130,9 +130,21 @@ COLLISION = RunKind(
     aggregates=2,
 )
 
+COMPRESSION = RunKind(
+    "compression",
+    (
+        Quantity("filling", ("T",), "1", "volume filling factor of the cell (K13 eq 22)"),
+        Quantity("pressure", ("T",), "Pa", "pressure by the virial (K13 eq 21), at that moment"),
+        Quantity("kinetic_pressure", ("T",), "Pa", "the part of it that is kinetic, 2 K/(3 V)"),
+        Quantity("coordination", ("T",), "1", "mean number of contacts of a grain"),
+        *(Quantity(f"edge_{axis}", ("T",), "m", f"edge of the cell along {axis}") for axis in "xyz"),
+    ),
+    aggregates=1,
+)
+
 # The kinds that come with the package. A script may have a kind of its own: the analysis then reads what every run has,
 # and its series as they are.
-RUN_KINDS = {kind.name: kind for kind in (COLLISION,)}
+RUN_KINDS = {kind.name: kind for kind in (COLLISION, COMPRESSION)}
 
 # Derived constants of run.json that every analysis may divide by.
 POSITIVE_CONSTANTS = ("grainRadius", "pullOffForce")

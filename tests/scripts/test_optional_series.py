@@ -28,10 +28,10 @@ O.engines = [JKRWadaEngine(subSteps=10, threads=1)]
 own = {"d": 0.0, "v": 0.0, "contacts_between": 0}
 counted = iter([{"formed": 0, "broken": 0}, {"formed": 3, "broken": 1}, {"formed": 4, "broken": 1}])
 
-def recorded(counts, ends=None):
+def recorded(counts, control=lambda recorder, state: False):
     if counts:
         module.engine_counts = lambda: next(counted)
-    scene = types.SimpleNamespace(series=lambda state: own, aggregate=np.array([0, 1]), energy_is_conserved=True, has_ended=ends)
+    scene = types.SimpleNamespace(series=lambda state: own, aggregate=np.array([0, 1]), energy_is_conserved=True, control=control)
     folder = Folder()
     recorder = module.Recorder(folder, Schedule(200, 1, frozenset([0])), COLLISION, scene)
     return folder, recorder
@@ -39,7 +39,7 @@ def recorded(counts, ends=None):
 folder, recorder = recorded(False)
 O.step(); recorder.sample(); recorder.write_history()
 result["plain"] = sorted(folder.series)
-folder, recorder = recorded(True, lambda state: state["time"] > 2.5e-10)
+folder, recorder = recorded(True, lambda recorder, state: recorder.is_one_of(100) and state["time"] > 2.5e-10)
 for _ in range(2):
     O.step(); recorder.sample()
 result["unfinished"] = bool(recorder.finished)

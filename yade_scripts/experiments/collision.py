@@ -24,6 +24,7 @@ from yade_scripts.stability import AUTO
 DURATION_PER_RADIUS = 64.6
 LARGEST_NECK = 0.7  # the largest of S17
 BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
+CHECKS = 100  # times in a run that it is looked whether pieces are apart
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
@@ -165,7 +166,7 @@ def prepare(parameters, threads):
         series=lambda state: series(state, aggregate_radius),
         law={"neck": parameters.neck},
         step_choice=step_choice(parameters, constants),
-        has_ended=_at_rest(parameters, constants) if parameters.endWhenApart else None,
+        **({"control": _end_when_apart(parameters, constants)} if parameters.endWhenApart else {}),
     )
 
 
@@ -209,15 +210,17 @@ def _sizes(aggregate_radius, pair):
     return found
 
 
-def _at_rest(parameters, constants):
-    """Scene.has_ended of endWhenApart."""
+def _end_when_apart(parameters, constants):
+    """Scene.control of endWhenApart."""
     breaking = BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"]
 
-    def has_ended(state):
+    def control(recorder, state):
+        if not recorder.is_one_of(CHECKS):
+            return False
         mass = 4 / 3 * np.pi * parameters.density * state["radius"] ** 3
         return has_come_to_rest(state, mass, breaking, parameters.duration - state["time"])
 
-    return has_ended
+    return control
 
 
 def with_duration(parameters, time_unit, touch):

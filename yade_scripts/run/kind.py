@@ -30,7 +30,9 @@ class Scene:
     series(state): {name: value} of the kind's own series, state as contact_law.snapshot() with `aggregate`;
     law: attributes of the contact law, the same words for JKRWadaEngine and Ip2_JKRMat_JKRMat_JKRWadaPhys;
     energy_is_conserved: whether all channels together are constant (not with moving boundaries and the functors);
-    has_ended(state): whether nothing can change any more, so that the run ends before its duration (None: never);
+    control(recorder, state): called after each sample, may change the scene (a cell's velGrad); True: the run is at its
+    end, before `duration` is over. It must follow from the recorder's history, the state and the scene alone, so that
+    a run resumes. interval: small steps between samples, at most;
     step_choice: how stepFraction came about, in one line.
     """
 
@@ -42,8 +44,9 @@ class Scene:
     series: Callable[[Mapping], Mapping[str, Any]]
     law: Mapping = field(default_factory=dict)
     energy_is_conserved: bool = True
+    control: Callable[[Any, Mapping], bool] = lambda recorder, state: False
+    interval: int = 50
     step_choice: str = "as given"
-    has_ended: Callable[[Mapping], bool] | None = None
 
     @property
     def time_step(self):

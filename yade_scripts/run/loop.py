@@ -7,7 +7,7 @@ from yade_scripts.run.stop_signals import StopSignals
 
 
 def run(steps, recorder, runner, begin, checkpoints):
-    """Call begin(), step until that many O.steps are taken, and return (outcome, exit status).
+    """Call begin(), step until that many O.steps are taken or the scene is at its end; return (outcome, exit status).
 
     recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
     taken, with a checkpoint and one more step that records where it stopped; the outcome is then

@@ -10,7 +10,6 @@ from analysis.runs.format import CHANNEL_TABLE, CHANNELS, WORK
 from yade_scripts.run.diagnosis import RunFailed, suspects
 
 SECONDS_BETWEEN_WRITES = 10
-CHECKS = 100  # times in a run that it is asked whether it has ended
 LARGEST_LEDGER_ERROR = 0.1  # of the energies at the start and the work done since: beyond, a run isn't worth its time
 WORK_CHANNELS = [channel.name for channel in CHANNEL_TABLE if channel.kind == WORK]
 
@@ -25,7 +24,7 @@ class Recorder:
     """sample() takes one row of the history, and some states: for a PyRunner that is the last engine.
 
     kind_format: a RunKind of analysis.runs.format, which names the columns; scene: of run.kind, for its series, the
-    grains' aggregates, whether its energy is conserved and whether it has ended before its time (.finished, then).
+    grains' aggregates, whether its energy is conserved, and when it ends: .finished is true from then on.
     Optional series are those of the kind's that the scene or the engine's statistics() have at the first sample.
     An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
     """
@@ -36,7 +35,6 @@ class Recorder:
         self.columns = None  # until the first sample, or those of the checkpoint
         self.error = None
         self.ending = self.finished = False
-        self._checked_every = max(1, schedule.samples // CHECKS)
         self._rows, self._written = [], 0
         self._last_good = None  # state of the last sample, unless it is written already
         self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
@@ -49,6 +47,20 @@ class Recorder:
     def time(self):
         """Time [s] of the last sample; None before the first."""
         return self._rows[-1][0] if self._rows else None
+
+    def is_one_of(self, times):
+        """Whether the last sample is one of so many, spread evenly over the run; the first is none of them."""
+        return len(self._rows) > 1 and (len(self._rows) - 1) % max(1, self.schedule.samples // times) == 0
+
+    def recent(self, name, duration=0.0):
+        """(K,) values of a column over the last `duration` [s], the last sample always."""
+        time, column = self.columns.index("time"), self.columns.index(name)
+        since, values = self._rows[-1][time] - duration, []
+        for row in reversed(self._rows):
+            if values and row[time] < since:
+                break
+            values.append(row[column])
+        return np.array(values[::-1])
 
     def resume(self, rows, columns):
         """Have these rows, of a checkpoint, as the history so far; later states of the folder are removed."""
@@ -88,8 +100,7 @@ class Recorder:
         number = len(self._rows)
         self._rows.append(tuple(sample[name] for name in self.columns))
         self._last_good = state
-        if self.scene.has_ended and number and number % self._checked_every == 0:
-            self.finished = bool(self.scene.has_ended(state))
+        self.finished = bool(self.scene.control(self, state))
         if self.ending or self.finished or number in self.schedule.states:
             self._write_state(state)
         if time.monotonic() >= self._next_write:

@@ -61,7 +61,7 @@ def _carry_out(kind, scene, folder, saved, begun):
     from yade_scripts.run.schedule import Schedule
 
     parameters = scene.parameters
-    schedule = Schedule.of(parameters.duration, scene.time_step, states=parameters.states)
+    schedule = Schedule.of(parameters.duration, scene.time_step, scene.interval, states=parameters.states)
     recorder = Recorder(folder, schedule, kind.format, scene)
     if saved:
         recorder.resume(saved.rows, saved.columns)

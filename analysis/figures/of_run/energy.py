@@ -4,7 +4,7 @@ import numpy as np
 
 from ...measures.ledger import closure, closure_history, fractions
 from ...runs.arrays import RunFolderError
-from ...runs.format import CHANNELS, COLOURS, HISTORY_FILE, LABELS
+from ...runs.format import CHANNELS, COLOURS, COMPRESSION, HISTORY_FILE, LABELS
 from ..style import NANO, new_figure, run_title, styled
 
 
@@ -37,6 +37,7 @@ def energy_figure(run):
 
 
 FIGURE = energy_figure
+NOT_OF = (COMPRESSION.name,)  # which begins almost at rest: compression.py draws where the boundaries' work goes
 
 
 def _stack(axes, time, parts, names):

@@ -1,0 +1,62 @@
+"""A compression: pressure, coordination number, and where the boundaries' work goes, against the filling factor."""
+
+import numpy as np
+
+from ...runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, COMPRESSION, LABELS, WORK
+from ...theory.aggregates import bcca_coordination
+from ...theory.compression import compressive_strength, compressive_strength_dense, strength_scale
+from ..panels import OURS, PAPER, legend, letter, panels
+from ..style import run_title, styled
+
+KINDS = (COMPRESSION.name,)
+AVERAGED = 25  # samples
+
+
+@styled
+def compression_figure(run):
+    """Figure of pressure (means of AVERAGED samples) beside K13 eq 25 and T23, coordination beside A24 eq 45, and every
+    channel's change over the work of the boundaries so far, all while the cell shrinks."""
+    history = run.history
+    part = slice(0, int(np.argmax(history["filling"])) + 1)
+    filling = history["filling"][part]
+    figure, axes = panels(1, 3, 4.8, 4.2)
+    strength, contacts, energy = axes[0]
+    _draw_pressure(strength, filling, history["pressure"][part], run.derived)
+    contacts.plot(filling, history["coordination"][part], color=OURS)
+    contacts.plot(filling, bcca_coordination(filling), "--", color=PAPER, label="A24 eq 45")
+    contacts.set_ylabel("coordination number $Z$")
+    _draw_channels(energy, filling, history, part)
+    for place in (strength, contacts, energy):
+        place.set_xscale("log")
+        place.set_xlabel("filling factor $\\phi$")
+        legend(place, loc="upper left", fontsize=8, ncol=2 if place is energy else 1)
+    letter(axes, run_title(run))
+    return figure
+
+
+def _draw_pressure(axes, filling, pressure, derived):
+    groups = np.array_split(np.arange(len(filling)), max(1, len(filling) // AVERAGED))
+    mean = np.array([pressure[group].mean() for group in groups])
+    where = np.array([filling[group].mean() for group in groups])
+    axes.plot(where[mean > 0], mean[mean > 0], color=OURS)
+    if "rollingEnergy" in derived:
+        scale = strength_scale(derived["rollingEnergy"], derived["grainRadius"])
+        axes.plot(filling, compressive_strength(filling, scale), "--", color=PAPER, label="K13 eq 25")
+        axes.plot(filling, compressive_strength_dense(filling, scale), ":", color=PAPER, label="Tatsuuma et al. (2023)")
+    axes.set_yscale("log")
+    axes.set_ylabel("pressure $P$  [Pa]")
+
+
+def _draw_channels(axes, filling, history, part):
+    work = {channel.name for channel in CHANNEL_TABLE if channel.kind == WORK}
+    done = -(history["boundaryWork"][part] - history["boundaryWork"][0])
+    shown = done > 1e-4 * done.max() if done.max() > 0 else np.zeros(len(done), bool)
+    for name in CHANNELS:
+        change = history[name][part][shown] - history[name][0]
+        if name not in work and len(change) and np.abs(change / done[shown]).max() > 0.01:
+            axes.plot(filling[shown], change / done[shown], color=COLOURS[name], label=LABELS[name])
+    axes.set_ylim(-1.0, 1.6)
+    axes.set_ylabel("part of the boundaries' work so far")
+
+
+FIGURE = compression_figure

@@ -1,0 +1,1 @@
+"""The study's figures, one file a subject; K13's formulae stand in them as dashed lines."""

@@ -1,0 +1,139 @@
+"""One row of numbers for each compression: what the fits, tables and figures are made of."""
+
+import numpy as np
+
+from ...measures.ledger import work_closure
+from ...measures.structure import fractal_dimension, grains_within
+from ...runs.arrays import RunFolderError
+from ...runs.format import CHANNEL_TABLE, LOST
+from ...runs.table import Column
+from ..definition import NotMeasured
+from . import paper
+from .curve import AVERAGED, FILLINGS, at_filling, binned, compressing, filling_at_pressure, pressure_at, tension
+
+ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.5)
+LOST_CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE if channel.kind == LOST)
+STRUCTURE_SCALE = (3.0, 10.0)  # grain radii between which the fractal dimension is taken
+NEAREST = 0.15  # of the filling factor: how far away the state may be
+ORIGINS = 2000
+
+PRESSURES = {f"P_{filling:.4f}": filling for filling in FILLINGS}
+COORDINATIONS = {f"Z_{filling:.4f}": filling for filling in FILLINGS}
+ENERGIES = {(name, filling): f"{name}_{filling:g}" for filling in ENERGY_FILLINGS for name in LOST_CHANNELS}
+DIMENSIONS = {f"D_{filling:g}": filling for filling in paper.STRUCTURE_FILLINGS}
+
+COLUMNS = (
+    Column("material", "", "material of the grains", kind="O"),
+    Column("grains", "", "number of grains N", kind="i"),
+    Column("strainRate", "1/t0", "C_v"),
+    Column("linearDamping", "", "k_n"),
+    Column("criticalRolling", "m", "xi_crit"),
+    Column("stepFraction", "t0", "time step"),
+    Column("finalFilling", "", "filling factor at which the compression was to end"),
+    Column("seed", "", "random seed of the cluster", kind="i"),
+    Column("grainRadius", "m", "radius of a grain"),
+    Column("rolling_energy", "J", "E_roll (K13 eq 1)"),
+    Column("surface_energy", "J/m^2", "gamma"),
+    Column("grain_mass", "kg", "mass of a grain"),
+    Column("time_unit", "s", "t0"),
+    Column("initial_filling", "", "filling factor of the first cell"),
+    Column("largest_filling", "", "largest filling factor that was reached"),
+    Column("closure", "", "largest error of the energy ledger over the largest work of the boundaries"),
+    Column("filling_at_300", "", "filling factor at 300 Pa", gaps=True),
+    Column("tensile_strength", "Pa", "largest tension while the cell is stretched", gaps=True),
+    Column("tensile_filling", "", "filling factor at which the tension is largest", gaps=True),
+    Column("stretched_axes", "", "number of axes along which the cell is stretched", kind="i"),
+    *(Column(name, "Pa", f"pressure at the filling {f:.4f}", gaps=True) for name, f in PRESSURES.items()),
+    *(Column(name, "", f"coordination number at the filling {f:.4f}", gaps=True) for name, f in COORDINATIONS.items()),
+    *(Column(name, "J", f"{c} until the filling {f:g}", gaps=True) for (c, f), name in ENERGIES.items()),
+    *(
+        Column(
+            name,
+            "",
+            f"fractal dimension at {STRUCTURE_SCALE[0]:g} to {STRUCTURE_SCALE[1]:g} r0, filling {f:g}",
+            gaps=True,
+        )
+        for name, f in DIMENSIONS.items()
+    ),
+)
+
+
+def measure(run):
+    """{column: value} of a RunFolder of the kind compression that has ended. NotMeasured where it covers no bin of the
+    filling factor, RunFolderError where something is missing."""
+    history, scene = run.history, _scene(run)
+    pressure = pressure_at(history)
+    if not np.isfinite(pressure).any():
+        raise NotMeasured(f"{run.path}: covers no bin of the filling factor")
+    width = AVERAGED * scene["time_unit"]
+    strength, strength_filling = _tensile(history, width)
+    return {
+        **scene,
+        "initial_filling": float(history["filling"][0]),
+        "largest_filling": float(history["filling"].max()),
+        "closure": work_closure(history) or 0.0,
+        "filling_at_300": filling_at_pressure(history, paper.SILICATE_PRESSURE, width),
+        "tensile_strength": strength,
+        "tensile_filling": strength_filling,
+        "stretched_axes": _stretched_axes(history),
+        **dict(zip(PRESSURES, map(float, pressure))),
+        **dict(zip(COORDINATIONS, map(float, binned(history, history["coordination"])))),
+        **{name: at_filling(history, channel, filling) for (channel, filling), name in ENERGIES.items()},
+        **{name: _dimension(run, filling) for name, filling in DIMENSIONS.items()},
+    }
+
+
+def state_at(run, filling):
+    """State of a RunFolder nearest to a filling factor while the cell shrinks; None where none is within NEAREST."""
+    part = compressing(run.history)
+    time = run.history["time"][part][np.argmin(np.abs(np.log(run.history["filling"][part] / filling)))]
+    if not len(run.states):
+        return None
+    state = run.states[run.states.nearest(time)]
+    if state.cell_size is None:
+        return None
+    there = np.interp(state.time, run.history["time"], run.history["filling"])
+    return state if abs(there / filling - 1.0) <= NEAREST else None
+
+
+def _dimension(run, filling):
+    state = state_at(run, filling)
+    if state is None:
+        return float("nan")
+    distance = np.array(STRUCTURE_SCALE) * state.radius.mean()
+    counts = grains_within(state.position, distance, state.cell_size, ORIGINS)
+    return float(fractal_dimension(distance, counts)[0])
+
+
+def _tensile(history, width):
+    fillings, stress = tension(history, width)
+    if not len(stress):
+        return float("nan"), float("nan")
+    largest = int(np.argmax(stress))
+    return float(stress[largest]), float(fillings[largest])
+
+
+def _stretched_axes(history):
+    largest = int(np.argmax(history["filling"]))
+    grown = [history[f"edge_{axis}"][-1] > history[f"edge_{axis}"][largest] * (1.0 + 1e-6) for axis in "xyz"]
+    return int(sum(grown))
+
+
+def _scene(run):
+    """The columns that say what was compressed."""
+    derived, parameters = run.derived, run.parameters
+    names = {
+        "criticalRolling": "criticalRolling",
+        "grainRadius": "grainRadius",
+        "rolling_energy": "rollingEnergy",
+        "surface_energy": "surfaceEnergy",
+        "grain_mass": "grainMass",
+        "time_unit": "timeUnit",
+    }
+    try:
+        constants = {column: float(derived[name]) for column, name in names.items()}
+    except (KeyError, TypeError, ValueError) as error:
+        raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
+    given = {name: float(parameters[name]) for name in ("strainRate", "linearDamping", "stepFraction", "finalFilling")}
+    whole = {name: int(parameters[name]) for name in ("grains", "seed")}
+    return {"material": str(parameters.get("material", "")), **whole, **given, **constants}

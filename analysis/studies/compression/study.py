@@ -1,0 +1,33 @@
+"""The study of K13's compressions."""
+
+from ...runs.collect import Scene
+from ...runs.format import COMPRESSION
+from ..definition import Study
+from .comparison import remarks, sections
+from .measure import COLUMNS, measure
+from .results import make_results
+
+STUDY = Study(
+    title="Static compression of fluffy aggregates beside K13",
+    # BCCA clusters in cells that shrink uniformly, without viscous drag.
+    scene=Scene(
+        name="K13's scene",
+        values={"viscoelasticTime": 0.0, "packing": "bcca"},
+        numbers=(
+            "grains",
+            "strainRate",
+            "linearDamping",
+            "criticalRolling",
+            "grainRadius",
+            "stepFraction",
+            "finalFilling",
+            "seed",
+        ),
+        kind=COMPRESSION.name,
+    ),
+    columns=COLUMNS,
+    measure=measure,
+    results=make_results,
+    sections=sections,
+    remarks=remarks,
+)

@@ -1,0 +1,70 @@
+"""Made-up run folders of compressions, with the pressure that is wanted."""
+
+import numpy as np
+from written_runs import PAIR, RADIUS, record, state_arrays, write_run
+
+from analysis.runs.format import COMPRESSION
+from analysis.theory.compression import rolling_energy
+
+GRAINS = 512
+
+
+def compression_record(seed, **others):
+    """The dict of run.json of ice grains (or of others: parameters by name)."""
+    given = {
+        "material": "ice",
+        "grains": GRAINS,
+        "packing": "bcca",
+        "seed": seed,
+        "strainRate": 3e-7,
+        "linearDamping": 0.01,
+        "criticalRolling": 0.8e-9,
+        "grainRadius": RADIUS,
+        "stepFraction": 0.2,
+        "finalFilling": 0.5,
+        "viscoelasticTime": 0.0,
+        **others,
+    }
+    about = {**record(1.0, given), "kind": "compression", "seed": seed}
+    energy = rolling_energy(0.1, given["grainRadius"], given["criticalRolling"])
+    derived = {**about["derived"], "criticalRolling": given["criticalRolling"], "rollingEnergy": energy}
+    return {**about, "derived": {**derived, "grainRadius": given["grainRadius"]}}
+
+
+def compression_history(pressure, low=0.002, high=0.5, rate=3e-7, samples=3000, stretched=False):
+    """A history: pressure(filling) [Pa], a constant strain rate, rolling until a filling of 0.1 and twisting beyond; the
+    work that the pressure does."""
+    filling = np.geomspace(low, high, samples)
+    if stretched:
+        filling = np.concatenate([filling, np.geomspace(high, 0.4 * high, samples)[1:]])
+    time = np.arange(len(filling)) * np.log(high / low) / (samples - 1) / (6 * rate) * PAIR.time_unit
+    volume = GRAINS * 4 / 3 * np.pi * RADIUS**3 / filling
+    values = pressure(filling) * np.where(np.arange(len(filling)) < samples, 1.0, -1.0)
+    work = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(volume))])
+    history = {quantity.name: np.zeros(len(filling)) for quantity in COMPRESSION.history}
+    history.update(
+        time=time,
+        filling=filling,
+        pressure=values,
+        boundaryWork=work,
+        rollingDissipation=-np.where(filling < 0.1, work, work[np.searchsorted(filling[:samples], 0.1)]),
+        coordination=2.0 + 9.38 * filling**1.62,
+        contacts=np.full(len(filling), GRAINS),
+        **{f"edge_{axis}": volume ** (1 / 3) for axis in "xyz"},
+    )
+    history["twistingDissipation"] = -work - history["rollingDissipation"]
+    return history
+
+
+def made_compression(path, seed, pressure, states=True, stretched=False, **others):
+    """Write a run folder; its states are a simple cubic lattice in the cell."""
+    history = compression_history(pressure, stretched=stretched)
+    return write_run(path, compression_record(seed, **others), history, _states(history) if states else [])
+
+
+def _states(history):
+    site = np.stack(np.meshgrid(*3 * [np.arange(8)]), axis=-1).reshape(-1, 3)
+    for row in np.searchsorted(history["filling"][:3000], (0.003, 0.0101, 0.0305, 0.102)):
+        edge = history["edge_x"][row]
+        state = state_arrays(history["time"][row], site * edge / 8, np.zeros((GRAINS, 3)), np.zeros(GRAINS, int))
+        yield {**state, "cell_size": np.full(3, edge)}

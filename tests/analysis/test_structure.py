@@ -1,0 +1,40 @@
+"""N(< r) of lattices and fractals that are known."""
+
+import numpy as np
+import pytest
+
+from analysis.measures.structure import fractal_dimension, grains_within
+
+# Sites within sqrt(0), sqrt(1), sqrt(2), ... of a simple cubic lattice.
+SHELLS = {0.5: 1, 1.2: 7, 1.5: 19, 1.8: 27, 2.1: 33, 2.3: 57, 2.5: 81, 2.9: 93}
+
+
+def lattice(cells):
+    return np.stack(np.meshgrid(*3 * [np.arange(cells)]), axis=-1).reshape(-1, 3).astype(float)
+
+
+@pytest.mark.parametrize("cells", [1, 2, 5])
+def test_simple_cubic_lattice_with_images(cells):
+    """The same for any cell, also where the distance reaches over several images."""
+    counts = grains_within(lattice(cells), list(SHELLS), 3 * [float(cells)])
+    assert counts.tolist() == list(SHELLS.values())
+
+
+def test_position_may_be_outside_of_the_cell():
+    moved = lattice(3) + [7.25, -3.0, 0.1] + 3.0 * np.arange(27)[:, None]
+    assert grains_within(moved, list(SHELLS), 3 * [3.0]).tolist() == list(SHELLS.values())
+
+
+def test_open_space_and_few_origins():
+    line = np.arange(101.0)[:, None] * [1, 0, 0]
+    counts = grains_within(line, [2.5])
+    assert counts[0] == pytest.approx((97 * 5 + 2 * 4 + 2 * 3) / 101)
+    assert grains_within(line, [2.5], origins=11)[0] == pytest.approx((9 * 5 + 2 * 3) / 11)
+
+
+def test_dimensions_of_plane_and_space():
+    plane = np.stack(np.meshgrid(np.arange(60), np.arange(60), [0]), axis=-1).reshape(-1, 3).astype(float)
+    distance = np.array([10.5, 25.5])
+    assert fractal_dimension(distance, grains_within(plane, distance, [60, 60, 1e3]))[0] == pytest.approx(2, abs=0.05)
+    space = grains_within(lattice(30), distance, 3 * [30.0], origins=5)
+    assert fractal_dimension(distance, space)[0] == pytest.approx(3, abs=0.05)

@@ -1,0 +1,26 @@
+"""Compress an aggregate in a periodic cell whose edges shrink, as in Kataoka et al. (2013), and write a run folder.
+
+    yade -n -x yade_scripts/compress.py                           1024 grains of ice from K13's start to a filling of 0.5
+    yade -n -x yade_scripts/compress.py grains=4096 seed=3        any parameter by its name
+    yade -n -x yade_scripts/compress.py finalPressure=1e4         to a pressure [Pa]
+    yade -n -x yade_scripts/compress.py finalFilling=0.3 stretch=x    and then stretched along x: tensile strength
+    yade -n -x yade_scripts/compress.py table=yade_scripts/studies/compression-desk.table:6    one row of a table
+    python3 yade_scripts/study.py yade_scripts/studies/compression-desk.table                  all rows (with yade-batch)
+    yade -n -x yade_scripts/compress.py --help                    the parameters
+
+Numbers may be written as arithmetic: strainRate=3*10**-7.
+
+Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing
+was run), 1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder
+that can be read, with a checkpoint; a killed run leaves its last one. resume=1 resumes from it.
+"""
+
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
+from yade_scripts.experiments.compression import KIND
+from yade_scripts.run import script
+
+if __name__ == "__main__":
+    script.main(KIND, __doc__)

@@ -1,0 +1,328 @@
+"""Static compression of a BCCA cluster in a shrinking periodic cell, and its loosening: parameters, scene, series,
+estimate (K13 section 2)."""
+
+from dataclasses import dataclass
+from math import log, pi
+
+import numpy as np
+
+from analysis.measures.virial import contact_pressure, filling_factor, kinetic_pressure
+from analysis.runs.format import COMPRESSION
+from yade_scripts import packings, stability
+from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
+from yade_scripts.packings.aggregate import MOST_BCCA_GRAINS
+from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
+from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
+from yade_scripts.run.kind import Estimate, Kind, Scene
+from yade_scripts.run.parameters import RunParameters
+
+RANDOM_CLOSE_PACKING = 0.64  # of spheres that do not overlap
+FINAL_FILLING = 0.5
+LOOSE = 0.3  # filling at which stretching ends, over that at which it begins; stress is largest at about 0.5 (T19)
+SMALLEST_EDGE = 5.7  # grain radii: below, a grain could meet two images of another (the engine stops at 5.6)
+BETWEEN_SAMPLES = 40.0  # t0; a sample takes as long as 20 steps
+FINEST_FILLING = 0.005  # by this fraction the filling factor grows between samples, at most
+AVERAGED = 1000.0  # t0 over which K13 averages the pressure
+STATES = 60
+FASTEST = 1e-3  # 1/t0: beyond, boundaries pass a grain within a few oscillations of a contact
+EXTENT, EXTENT_EXPONENT = 2.45, 0.55  # edge of the first cell, in grain radii, against the number of grains: a fit
+AXES = {"no": (), "x": (0,), "xyz": (0, 1, 2)}
+
+
+@dataclass(frozen=True)
+class CompressionParameters(GrainParameters, RunParameters):
+    """The cell."""
+
+    grains: int = parameter(1024, between(2, MOST_BCCA_GRAINS), "grains of the cluster")
+    packing: str = parameter("bcca", one_of(["bcca"]), "how it is made: cluster-cluster aggregation")
+    seed: int = parameter(1, NOT_NEGATIVE, "of the cluster")
+    strainRate: float = parameter(
+        3e-7,
+        Check(f"> 0 and <= {FASTEST:g}", lambda x: 0 < x <= FASTEST),
+        "C_v: the edges follow L = L0 exp(-2 C_v t/t0) (K13 eq 7)",
+        "1/t0",
+    )
+    linearDamping: float = parameter(0.01, NOT_NEGATIVE, "k_n of the damping of the normal motion (K13 eq 4)", "1")
+    initialFilling: float | None = parameter(
+        None,
+        Check("> 0, and such that the cluster does not touch its images", lambda x: x > 0),
+        "volume filling factor of the cell at the start (the cluster's extent in x, y or z is the edge)",
+        "1",
+    )
+    finalFilling: float | None = parameter(
+        None,
+        Check("> initialFilling and at most that of random close packing", lambda x: x > 0),
+        f"filling factor at which the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)",
+        "1",
+    )
+    finalPressure: float | None = parameter(
+        None, POSITIVE, f"pressure, averaged over {AVERAGED:g} t0, at which it ends if that comes first", "Pa"
+    )
+    stretch: str = parameter(
+        "no", one_of(list(AXES)), "whether and along which axes the cell is stretched afterwards, at the same rate"
+    )
+    stretchFilling: float | None = parameter(
+        None,
+        Check("> 0 and below finalFilling", lambda x: x > 0),
+        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins)",
+        "1",
+    )
+    states: int = parameter(
+        STATES, between(2, 10_000), "states written, evenly in time, start and end among them", of_consequence=False
+    )
+    duration: float | None = parameter(
+        None, POSITIVE, "time that is simulated if the run does not end earlier (as long as that takes)", "s"
+    )
+
+    def title(self):
+        """compress-ice-N1024-Cv3e-07-s1, and the names of what is in it."""
+        name = f"compress-{self.material}-N{self.grains}-Cv{self.strainRate:g}-s{self.seed}"
+        return name, ("material", "grains", "strainRate", "seed")
+
+    def filled_in(self):
+        """Refuses an end of a stretching that is not wanted."""
+        if self.stretchFilling is not None and self.stretch == "no":
+            raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: given with stretch = no; must be left out")
+        return super().filled_in()
+
+
+def densest(constants):
+    """Filling factor of random close packing of grains that overlap as contacts at rest do (K13 eq 22 counts overlaps
+    twice)."""
+    diameter = 4 * constants["reducedRadius"]
+    return RANDOM_CLOSE_PACKING * (diameter / (diameter - constants["equilibriumOverlap"])) ** 3
+
+
+def complete(parameters, constants, threads):
+    """The parameters with what depends on the contact and on YADE's threads; constants: as run.scene.pair_constants()
+    gives them. Raises ParameterError."""
+    require_small_contacts(constants)
+    parameters = _with_ends(parameters, constants)
+    if parameters.stepFraction != stability.AUTO:
+        limit = stability.step_limit(constants, parameters.finalFilling)
+        stability.require_stable(parameters.stepFraction, limit, "final filling and damping")
+    return parameters.with_threads(threads)
+
+
+def _with_ends(parameters, constants):
+    limit, final = densest(constants), parameters.finalFilling
+    if final is None:
+        final = limit if parameters.finalPressure else FINAL_FILLING
+    if final > limit:
+        raise ParameterError(
+            f"finalFilling = {final:g}: beyond random close packing; must be at most {limit:.3f} for these grains"
+        )
+    fewest = final * SMALLEST_EDGE**3 / (4 / 3 * pi)
+    if parameters.grains < fewest:
+        raise ParameterError(
+            f"grains = {parameters.grains}: the cell would be too small at a filling of {final:.3g}; must be at least "
+            f"{fewest:.0f}, or finalFilling at most {parameters.grains / fewest * final:.3g}"
+        )
+    loose = parameters.stretchFilling
+    if loose is not None and loose >= final:
+        raise ParameterError(f"stretchFilling = {loose:g}: must be below finalFilling = {final:g}")
+    return parameters.changed(finalFilling=final)
+
+
+def prepare(parameters, threads):
+    """The Scene of a compression; called within YADE. Raises ParameterError and PackingError."""
+    from yade_scripts.run import scene as yade_scene
+
+    constants = yade_scene.pair_constants(parameters, linearDamping=parameters.linearDamping)
+    parameters = complete(parameters, constants, threads)
+    cluster = packings.bcca(parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed)
+    edge = _first_edge(parameters, cluster)
+    parameters = parameters.changed(initialFilling=filling_factor(cluster.radius, np.full(3, edge)))
+    _require_order(parameters)
+    if parameters.duration is None:
+        parameters = _with_duration(parameters, constants["timeUnit"])
+    mass = cluster.radius**3 * (4 / 3 * pi * parameters.density)
+    rate = 2 * parameters.strainRate / constants["timeUnit"]
+    material = yade_scene.material_of(parameters)
+    return Scene(
+        parameters=parameters,
+        constants=constants,
+        derived={"initialEdge": edge, "rollingEnergy": 6 * pi**2 * _rolling(parameters)},
+        aggregate=np.zeros(cluster.grains, dtype=int),
+        build=lambda: _build(cluster, edge, rate, material),
+        series=lambda state: series(state, mass),
+        law={"linearDamping": parameters.linearDamping},
+        energy_is_conserved=parameters.engine == "fused",
+        control=Ending(parameters, constants["timeUnit"], rate),
+        interval=_interval(parameters),
+    )
+
+
+def _rolling(parameters):
+    """gamma r0 xi_crit, of which 6 pi^2 times is the rolling energy (K13 eq 1)."""
+    return parameters.surfaceEnergy * parameters.grainRadius * parameters.criticalRolling
+
+
+def _interval(parameters):
+    """Steps between samples."""
+    if parameters.stepFraction == stability.AUTO:
+        return 1  # refused before anything runs
+    between = min(BETWEEN_SAMPLES, FINEST_FILLING / (6 * parameters.strainRate))
+    return max(1, round(between / parameters.stepFraction))
+
+
+def _first_edge(parameters, cluster):
+    smallest = smallest_edge(cluster)
+    if parameters.initialFilling is None:
+        return smallest
+    volume = parameters.grains * 4 / 3 * pi * parameters.grainRadius**3
+    edge = (volume / parameters.initialFilling) ** (1 / 3)
+    try:
+        require_apart_from_images(cluster, edge)
+    except packings.PackingError as problem:
+        raise ParameterError(
+            f"initialFilling = {parameters.initialFilling:g}: {problem}, as with {volume / smallest**3:.4g} for seed "
+            f"{parameters.seed}"
+        ) from None
+    return edge
+
+
+def _require_order(parameters):
+    if parameters.finalFilling <= parameters.initialFilling:
+        raise ParameterError(
+            f"finalFilling = {parameters.finalFilling:g}: must be above the {parameters.initialFilling:.4g} of the start"
+        )
+
+
+def _with_duration(parameters, time_unit):
+    duration = longest_duration(parameters, time_unit)
+    step = parameters.stepFraction
+    if step != stability.AUTO and duration > stability.MOST_STEPS * step * time_unit:
+        steps = duration / (step * time_unit)
+        raise ParameterError(
+            f"strainRate = {parameters.strainRate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
+            f"{parameters.strainRate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
+        )
+    return parameters.changed(duration=duration)
+
+
+def longest_duration(parameters, time_unit):
+    """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth more,
+    before which Ending ends the run."""
+    rate = 2 * parameters.strainRate / time_unit
+    time = log(parameters.finalFilling / parameters.initialFilling) / (3 * rate)
+    axes = len(AXES[parameters.stretch])
+    if axes:
+        loose = parameters.stretchFilling or LOOSE * parameters.finalFilling
+        time += log(parameters.finalFilling / loose) / (axes * rate)
+    return 1.01 * time
+
+
+def _build(cluster, edge, rate, material):
+    """Cluster and cell. homoDeform = 1 gives grains the mean flow when the rate changes (K13 eq 12), and leaves them to
+    themselves afterwards: only the boundaries move."""
+    from yade.wrapper import Omega
+
+    from yade_scripts.run import scene as yade_scene
+
+    omega = Omega()
+    omega.periodic = True
+    omega.cell.setBox(edge, edge, edge)
+    omega.cell.homoDeform = 1
+    yade_scene.add_bodies([cluster], [(0, 0, 0)], material)
+    _deform(3 * (-rate,))
+
+
+def _deform(rates):
+    """Have the edges along x, y, z follow dL/dt = rate L from now on."""
+    from yade.minieigenHP import Matrix3
+    from yade.wrapper import Omega
+
+    x, y, z = rates
+    Omega().cell.velGrad = Matrix3(x, 0, 0, 0, y, 0, 0, 0, z)
+
+
+def _rates():
+    """Present rates (3,) [1/s] of the edges' logarithms."""
+    from yade.wrapper import Omega
+
+    gradient = Omega().cell.velGrad
+    return np.array([gradient[axis, axis] for axis in range(3)])
+
+
+def series(state, mass):
+    """{name: value} of a compression's own series; state: as contact_law.snapshot(); mass (N,) [kg]."""
+    position, edges = state["position"], state["cell_size"]
+    contacts = contact_pressure(position, state["contact_pairs"], state["contact_normal_force"], edges)
+    kinetic = kinetic_pressure(mass, position, state["velocity"], edges, _rates())
+    return {
+        "filling": filling_factor(state["radius"], edges),
+        "pressure": contacts + kinetic,
+        "kinetic_pressure": kinetic,
+        "coordination": 2 * len(state["contact_pairs"]) / len(mass),
+        **{f"edge_{axis}": edge for axis, edge in zip("xyz", edges)},
+    }
+
+
+class Ending:
+    """Turns the compression into the stretching, and ends the run: Scene.control. time_unit: t0 [s]; rate [1/s]."""
+
+    def __init__(self, parameters, time_unit, rate):
+        self.parameters, self.time_unit, self.rate = parameters, time_unit, rate
+        self._loose = parameters.stretchFilling
+
+    def __call__(self, recorder, state):
+        filling = recorder.recent("filling")[-1]
+        if _rates().max() > 0:
+            if self._loose is None:
+                self._loose = LOOSE * recorder.recent("filling", np.inf).max()
+            return filling <= self._loose
+        if not (filling >= self.parameters.finalFilling or self._pressed(recorder)):
+            return False
+        axes = AXES[self.parameters.stretch]
+        if not axes:
+            return True
+        _deform([self.rate * (axis in axes) for axis in range(3)])
+        return False
+
+    def _pressed(self, recorder):
+        limit, window = self.parameters.finalPressure, AVERAGED * self.time_unit
+        if limit is None or recorder.recent("time")[-1] < window:
+            return False
+        return recorder.recent("pressure", window).mean() >= limit
+
+
+def estimate(parameters):
+    """Estimate of a run, without its cluster: two contacts a grain, more where it is dense (A24 eq 45)."""
+    from analysis.theory.aggregates import bcca_coordination
+
+    constants = pair_constants(parameters)
+    try:
+        ends = _with_ends(parameters, constants)
+    except ParameterError:  # the run will say what is wrong
+        ends = parameters.changed(finalFilling=FINAL_FILLING, stretch="no")
+    first = ends.initialFilling or typical_first_filling(ends.grains)
+    ends = ends.changed(initialFilling=min(first, 0.9 * ends.finalFilling))
+    duration = parameters.duration or longest_duration(ends, constants["timeUnit"])
+    fillings = np.exp(np.linspace(log(ends.initialFilling), log(ends.finalFilling), 50))
+    contacts = parameters.grains * float(bcca_coordination(fillings).mean()) / 2
+    step = 0.1 if parameters.stepFraction == stability.AUTO else parameters.stepFraction
+    return Estimate(parameters.grains, contacts, duration / constants["timeUnit"] / step)
+
+
+def typical_first_filling(grains):
+    """Filling factor of the first cell: a fit to clusters of 64 to 16,384 grains, which scatter by half of it."""
+    return grains * 4 / 3 * pi / (EXTENT * grains**EXTENT_EXPONENT) ** 3
+
+
+def expected(parameters, run):
+    """What a run's run.json should hold of parameters that are left open and follow from the cluster."""
+    held, derived = run.get("parameters", {}), run.get("derived", {})
+    found = {"initialFilling": held.get("initialFilling")} if parameters.initialFilling is None else {}
+    try:
+        ends = _with_ends(parameters, pair_constants(parameters))
+    except ParameterError:  # the run will say what is wrong
+        return found
+    found["finalFilling"] = ends.finalFilling
+    if parameters.duration is None and None not in (held.get("initialFilling"), derived.get("timeUnit")):
+        whole = ends.changed(initialFilling=held["initialFilling"])
+        found["duration"] = longest_duration(whole, derived["timeUnit"])
+    return found
+
+
+KIND = Kind(COMPRESSION, CompressionParameters, prepare, estimate, expected)
