@@ -8,7 +8,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 2;            // 1: without this header, up to version 0.1
+	constexpr int formatNumber = 3;            // 1: without this header, up to version 0.1; 2: without formed and broke
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
 	{
@@ -67,7 +67,7 @@ namespace {
 		transferNumbers(archive, domain.sums.eventWork, domain.sums.meanField);
 		transfer(archive, domain.sums.boundary);
 		transfer(archive, domain.constraints);
-		transferNumbers(archive, domain.events, domain.sortedBlocks);
+		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks);
 		for (long& number : domain.broken)
 			archive.number(number);
 		for (BondList& list : domain.bonds)

@@ -107,11 +107,11 @@ Dissipation dissipated(const Dynamics& dynamics)
 	return total;
 }
 
-long eventCount(const Dynamics& dynamics)
+Counts counts(const Dynamics& dynamics)
 {
-	long total = 0;
+	Counts total;
 	for (const auto& domain : dynamics.parts())
-		total += domain->events;
+		total.events += domain->events, total.formed += domain->formed, total.broken += domain->broke;
 	return total;
 }
 

@@ -63,6 +63,10 @@ bool constrained(const Dynamics&); // whether any grain has a blocked degree of 
 // Since the start:
 std::array<long, bondModes> brokenBonds(const Dynamics&); // by mode
 Dissipation dissipated(const Dynamics&);                  // [J]
-long eventCount(const Dynamics&);                         // contacts that formed, broke, and slips
+struct Counts {
+	long events = 0;             // contacts that formed, broke, and slips
+	long formed = 0, broken = 0; // contacts, bonds not among them
+};
+Counts counts(const Dynamics&);
 
 } // namespace contact_law

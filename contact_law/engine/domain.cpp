@@ -191,6 +191,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	write({ 0, 0, 0 }, forces.torque1, k);
 	write({ 0, 0, 0 }, forces.torque2, k);
 	list.kill(lane);
+	if (sort != Second) ++broke;
 	const int pair = pairIndex(sort, i, j);
 	if (pair < 0) return;
 	touching[sort][pair] = 0;
@@ -221,6 +222,7 @@ void Domain::formContact(int sort, int index)
 	c.drag = r.now.drag;
 	c.overlap = r.geometry.overlap;
 	touching[sort][index] = 1;
+	if (sort != Second) ++formed;
 	book(r, m, image, sort);
 	addAlone(sort, p.i, p.j, r, image);
 	contacts[sort].append(c);

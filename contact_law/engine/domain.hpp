@@ -103,6 +103,7 @@ public:
 	int begin, end;
 	VelocityRange velocities; // of own grains through the latest drift
 	long events = 0;
+	long formed = 0, broke = 0; // contacts (bonds not among them) so far; a border contact where its first grain lives
 	StepSums sums;
 	ContactList contacts[3];               // both grains own; the first; the second
 	int sortedBlocks = 0;                  // of the contacts with both grains own

@@ -331,7 +331,10 @@ boost::python::dict JKRWadaEngine::statistics() const
 		result[modes[mode] + std::string("Energy")] = lost.*contact_law::bondBreakingBy[mode];
 	}
 	result["contactUpdates"] = dynamics.counters().contactUpdates;
-	result["events"] = eventCount(dynamics);
+	const contact_law::Counts counts = contact_law::counts(dynamics);
+	result["events"] = counts.events;
+	result["formed"] = counts.formed;
+	result["broken"] = counts.broken;
 	result["farRebuilds"] = dynamics.counters().farRebuilds;
 	result["nearRebuilds"] = dynamics.counters().nearRebuilds;
 	result["instructions"] = dynamics.state().passes->name;

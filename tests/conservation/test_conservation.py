@@ -76,3 +76,30 @@ for step in (0.1, 0.0125):
     assert (coarse[:, 1] > 0.3).all()  # most of the slip's energy is lost
     ratio = np.sqrt(np.mean(coarse[:, 0] ** 2) / np.mean(fine[:, 0] ** 2))
     assert ratio > 30, (ratio, coarse, fine)
+
+
+def test_contacts_formed_less_contacts_broken_is_the_change_of_their_number(yade):
+    """Grains that fly together and partly apart again; across the border of two domains too, and after a checkpoint."""
+    found = yade("""
+from scenes import *
+unit = constants(ice(), 1e-7)["timeUnit"]
+new_scene(5 * unit)
+fused_engine(subSteps=50)
+converging(64, 4, [ice()], [1e-7], speed=12.0)
+engine = O.engines[0]
+engine.prepare()
+first = engine.statistics()["contacts"]
+for n in range(60):
+    O.step()
+    if n == 20:
+        O.save("middle.yade")
+        before = engine.statistics()
+        O.load("middle.yade")
+        engine = O.engines[0]
+        engine.prepare()
+        result["resumed"] = engine.statistics() == before
+now = engine.statistics()
+result.update(change=now["contacts"] - first, formed=now["formed"], broken=now["broken"])
+""")
+    assert found["resumed"] and found["formed"] > 50 and found["broken"] > 10
+    assert found["change"] == found["formed"] - found["broken"]
