@@ -10,7 +10,7 @@ from analysis.measures.virial import contact_pressure, filling_factor, kinetic_p
 from analysis.runs.format import COMPRESSION
 from yade_scripts import packings, stability
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
-from yade_scripts.packings.aggregate import MOST_BCCA_GRAINS
+from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
@@ -33,7 +33,7 @@ AXES = {"no": (), "x": (0,), "xyz": (0, 1, 2)}
 class CompressionParameters(GrainParameters, RunParameters):
     """The cell."""
 
-    grains: int = parameter(1024, between(2, MOST_BCCA_GRAINS), "grains of the cluster")
+    grains: int = parameter(1024, between(2, MOST_GROWN["bcca"]), "grains of the cluster")
     packing: str = parameter("bcca", one_of(["bcca"]), "how it is made: cluster-cluster aggregation")
     seed: int = parameter(1, NOT_NEGATIVE, "of the cluster")
     strainRate: float = parameter(
