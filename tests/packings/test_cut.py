@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 
+from analysis.runs.format import CHANNELS
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
@@ -116,6 +117,7 @@ def test_what_moves_when_a_cut_sphere_is_set_free(yade, run):
     found = yade(
         """
 from scenes import *
+from analysis.runs.format import CHANNELS
 from yade_scripts import packings
 packing = packings.load(parameters["file"])
 c = constants(ice(), 1e-7)
@@ -139,3 +141,26 @@ result["force"] = float(np.abs(start["contact_normal_force"]).max() / c["pullOff
     print(found)
     assert found["contacts"][0] == found["contacts"][1] > 100
     assert found["force"] < 5e-3 and found["moved"] < 5e-3 and found["kinetic"] < 1e-5
+
+
+def test_cut_spheres_collide(run):
+    """collide.py packing=file takes two of them; until they meet nothing moves in them."""
+    last = sorted(os.listdir(run / "run" / "states"))[-1]
+    assert make_packing(run, "d.npz", "e.npz", f"from=run/states/{last}", "radius=6", "seed=4").returncode == 0
+    script = os.path.join(TOP, "yade_scripts", "collide.py")
+    given = (
+        "packing=file",
+        "file=d.npz",
+        "projectileFile=e.npz",
+        "velocity=3",
+        "duration=5e-9",
+        "threads=1",
+        "out=met",
+    )
+    done = subprocess.run(["yade", "-n", "-x", script, *given], cwd=run, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    with np.load(run / "met" / "history.npz") as history:
+        assert np.ptp(history["contacts"]) == 0 and history["contacts"][0] > 100
+        total = sum(history[name] for name in CHANNELS)
+        assert np.abs(total - total[0]).max() < 1e-9 * history["kinetic"][0]
+        assert np.ptp(history["kinetic"]) < 1e-4 * history["kinetic"][0]
