@@ -16,7 +16,7 @@ def test_the_script_and_the_fused_line(yade):
     found = yade(f"""
 from yade import utils
 def two_grains():
-    O.bodies.clear(); O.interactions.clear(); O.energy.clear()
+    O.bodies.clear(); O.interactions.clear(); O.energy.clear(); O.forces.reset()
     for x, v in ((0, 1), (2.01e-7, -1)):
         body = utils.sphere((x, 0, 0), 1e-7, material=ice)
         body.state.vel = (v, 0, 0)
