@@ -35,7 +35,7 @@ YADE_VERSION ?= 2023.02a
 PYTHON := /usr/bin/python3
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
-            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest
+            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist
 
 # ---- flags ----
 
@@ -147,8 +147,9 @@ demo: all
 runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yade_scripts/studies/demo.table
 	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:4 out=runs/demo overwrite=1
 
+# A file's tests stay in one process: they share what they have run.
 test: all
-	@$(PYTHON) -m pytest -p no:cacheprovider tests
+	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk

@@ -597,13 +597,13 @@ def first(k, value):
     def change(items): items[k] = f"<item>{value}</item>"
     return change
 result["same"] = load(lambda items: None)
-result["format"] = load(first(1, 3))
+result["format"] = load(first(1, 99))
 result["headless"] = load(first(0, 4))
 result["short"] = load(lambda items: items.pop())
 result["long"] = load(lambda items: items.append(items[-1]))
 """
     )
     assert found["same"] == ""
-    assert "is of format 3, which another version wrote: it must be 2" in found["format"]
-    assert "is of format 1, which another version wrote: it must be 2" in found["headless"]
+    assert "is of format 99, which another version wrote: it must be 3" in found["format"]
+    assert "is of format 1, which another version wrote: it must be 3" in found["headless"]
     assert "cut off" in found["short"] and "too long" in found["long"], found
