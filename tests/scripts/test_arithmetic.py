@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from yade_scripts.arithmetic import NotANumber, evaluate
+from yade_scripts.parameters.arithmetic import NotANumber, evaluate
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from math import sqrt
 import numpy as np
 from scipy.spatial import cKDTree
 
-from yade_scripts.errors import InputError
+from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.atomic_write import write_atomically
 
 

@@ -15,7 +15,7 @@ import zipfile
 import numpy as np
 
 from analysis.runs.format import CHECKPOINT_FOLDER
-from yade_scripts.errors import InputError
+from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.agreement import difference
 from yade_scripts.run.atomic_write import write_atomically
 

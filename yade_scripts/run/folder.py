@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from analysis.runs.format import ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
-from yade_scripts.errors import InputError
+from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
 from yade_scripts.run.atomic_write import remove_unfinished, write_atomically
 

@@ -9,7 +9,7 @@ from typing import Any, Callable, Mapping, NamedTuple
 import numpy as np
 
 from analysis.runs.format import RunKind
-from yade_scripts.errors import InputError
+from yade_scripts.parameters.errors import InputError
 
 
 class Estimate(NamedTuple):

@@ -4,8 +4,8 @@ import os
 import sys
 import time
 
-from yade_scripts.errors import one_line_errors
 from yade_scripts.parameters import ParameterError
+from yade_scripts.parameters.errors import one_line_errors
 from yade_scripts.run.arguments import gather
 from yade_scripts.stability import AUTO, require_countable
 

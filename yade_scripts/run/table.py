@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from yade_scripts.errors import InputError
+from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.atomic_write import write_atomically
 
 

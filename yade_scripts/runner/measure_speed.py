@@ -14,7 +14,7 @@ import time
 
 top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
 sys.path.insert(0, top)
-from yade_scripts.errors import one_line_errors
+from yade_scripts.parameters.errors import one_line_errors
 from yade_scripts.run.arguments import from_arguments
 from yade_scripts.run.kind import kind_of
 

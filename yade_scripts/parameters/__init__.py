@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, fields, replace
 from textwrap import fill
 from typing import Any, Callable
 
-from yade_scripts.arithmetic import NotANumber, evaluate
-from yade_scripts.errors import InputError
+from yade_scripts.parameters.arithmetic import NotANumber, evaluate
+from yade_scripts.parameters.errors import InputError
 
 
 class ParameterError(InputError, ValueError):

@@ -1,0 +1,146 @@
+"""What a script may not change between two steps of JKRWadaEngine: one line says what, where, and what it must be."""
+
+from changes import refused
+
+CHANGES = {
+    "O.bodies[2].shape.radius = 2e-7": ["the radius of body 2 was changed", "must stay"],
+    "O.bodies[2].shape = Sphere(radius=1e-7)": ["body 2 was given another shape"],
+    "O.bodies[2].state.mass *= 2": ["the mass of body 2 was changed", "must stay"],
+    "O.bodies[2].state.inertia *= 2": ["the moment of inertia of body 2 was changed", "must stay"],
+    "O.bodies[2].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["the moment of inertia of body 2 was changed"],
+    "O.bodies[2].state = State()": ["body 2 was given another state"],
+    "O.bodies[2].material = soft()": ["body 2 was given another material"],
+    "O.bodies[2].mask = 2": ["the mask of body 2 was changed", "must stay 1, not 2"],
+    "O.bodies[2].bounded = False": ["body 2: bounded or aspherical was changed"],
+    "O.bodies[2].material.young = 1e9": ["young of the material of body 0 was changed", "must stay 7e+09"],
+    "O.bodies[2].material.density = 2000": ["density of the material of body 0 was changed"],
+    "O.bodies[2].material.surfaceEnergy = 0.2": ["surfaceEnergy of the material of body 0 was changed"],
+    "O.bodies[2].material.viscoelasticTime = 1e-12": ["viscoelasticTime of the material of body 0 was changed", "must stay 0"],
+    "engine().linearDamping = 0.5": ["linearDamping was changed", "must stay 0, not 0.5"],
+    "engine().neck = 0.3": ["neck was changed"],
+    "engine().sliding = False": ["sliding was changed", "must stay True, not False"],
+    "engine().rolling = False": ["rolling was changed"],
+    "engine().twisting = False": ["twisting was changed"],
+    "engine().domains = 3": ["domains was changed", "must stay 2, not 3"],
+    "engine().instructions = 'portable'": ["instructions was changed", "must stay ''"],
+    "engine().orientations = True": ["orientations was changed"],
+    "engine().subSteps = 2": ["the small step O.dt/subSteps was changed", "must stay"],
+    "O.dt *= 0.5": ["the small step O.dt/subSteps was changed"],
+    "O.periodic = True": ["O.periodic was changed"],
+    "O.bodies.erase(1)": ["body 1 was erased after the start"],
+    "O.bodies.erase(3)": ["body 3 was erased after the start"],
+    "O.bodies.erase(1); O.bodies.insertAtId(utils.sphere((9e-7, 0, 0), 1e-7, material=ice()), 1)": ["body 1 was replaced by another"],
+    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=ice()))": ["there are 5 bodies, must be the 4 of the start"],
+    "O.bodies.clear()": ["there are 0 bodies, must be the 4 of the start"],
+    "O.bodies.clump([0, 1])": ["there are 5 bodies, must be the 4 of the start"],
+    "O.bodies[1].state.vel = Vector3(float('nan'), 0, 0)": ["body 1 was given a position or velocity that is not a finite number"],
+    "O.forces.addF(3, Vector3(0, 1e-9, 0))": ["O.forces has a force on body 3, (0, 1e-09, 0) N: it must be 0"],
+    "O.forces.addT(0, Vector3(0, 1e-19, 0))": ["O.forces has a torque on body 0, (0, 1e-19, 0) N m: it must be 0"],
+    "O.forces.setPermF(2, Vector3(1e-9, 0, 0))": ["O.forces has a force on body 2"],
+    "O.forces.setPermT(2, Vector3(1e-19, 0, 0))": ["O.forces has a torque on body 2"],
+    "O.engines = [GravityEngine(gravity=(0, 0, -10))] + O.engines": ["O.forces has a force on body 0"],
+    "O.engines = [ForceResetter(), GravityEngine(gravity=(0, 0, -10))] + O.engines": ["O.forces has a force on body 0"],
+    "O.engines += [NewtonIntegrator()]": ["NewtonIntegrator is among O.engines too"],
+    "O.engines = [engine(), engine()]": ["O.engines has 2 JKRWadaEngines: there must be one"],
+    "O.engines += [JKRWadaEngine()]": ["O.engines has 2 JKRWadaEngines: there must be one"],
+    "engine().exportInteractions = True; O.step(); O.interactions.erase(0, 1)": ["O.interactions has 2 contacts, must be the 3"],
+    "engine().exportInteractions = True; O.step(); O.interactions.clear()": ["O.interactions has 0 contacts, must be the 3"],
+    "engine().threads = 0": ["threads = 0: must be >= 1"],
+    "engine().linearDamping = float('nan')": ["linearDamping = nan: must be >= 0"],
+}  # fmt: skip
+
+
+def test_changes_in_the_middle_of_a_run_are_refused(yade):
+    """At once, and again while the change stands; O.time stays as it was."""
+    found = refused(
+        yade,
+        """
+for case in parameters["cases"]:
+    chain()
+    for _ in range(20): O.step()
+    I = O.bodies[2].state.inertia
+    exec(case)
+    time = O.time
+    result[case] = said(O.step)
+    result["again: " + case] = bool(said(O.step)) and O.time == time
+""",
+        CHANGES,
+    )
+    assert all(found["again: " + case] for case in CHANGES), found
+
+
+CHANGES_AFTER_LOADING = {
+    "O.bodies[2].shape.radius = 2e-7": ["the radius of body 2 is another than in the checkpoint: it must be 1e-07"],
+    "O.bodies[2].state.mass *= 2": ["the mass of body 2 is another than in the checkpoint"],
+    "O.bodies[2].state.inertia *= 2": ["the moment of inertia of body 2 is another than in the checkpoint"],
+    "O.bodies[2].material = soft()": ["the number of materials is another than in the checkpoint: it must be 1"],
+    "O.bodies[2].material.young = 1e9": ["young of material 0 is another than in the checkpoint: it must be 7e+09"],
+    "engine().linearDamping = 0.5": ["linearDamping is another than in the checkpoint: it must be 0"],
+    "engine().neck = 0.5": ["neck is another than in the checkpoint: it must be 0"],
+    "engine().sliding = False": ["sliding is another than in the checkpoint: it must be 1"],
+    "engine().domains = 3": ["domains is another than in the checkpoint: it must be 2"],
+    "O.periodic = True": ["O.periodic is another than in the checkpoint: it must be 0"],
+    "O.bodies.erase(1)": ["body 1 was erased"],
+    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=O.bodies[0].material))": ["the number of bodies is another than in the checkpoint: it must be 4"],
+    "O.dt *= 0.5": ["the small step O.dt/subSteps was changed after the start"],
+}  # fmt: skip
+
+
+def test_changes_after_loading_are_refused(yade):
+    refused(
+        yade,
+        """
+chain()
+for _ in range(20): O.step()
+O.save("saved.yade")
+for case in parameters["cases"]:
+    O.load("saved.yade")
+    exec(case)
+    result[case] = said(O.step)
+""",
+        CHANGES_AFTER_LOADING,
+    )
+
+
+OUT_OF_RANGE = {
+    "linearDamping=-1.0": ["linearDamping = -1: must be >= 0"],
+    "linearDamping=float('nan')": ["linearDamping = nan: must be >= 0"],
+    "linearDamping=float('inf')": ["linearDamping = inf: must be >= 0"],
+    **{f"{name}={value}": [f"{name} = {value}: must be >= 1"] for name in ("subSteps", "threads", "domains") for value in (0, -3)},
+}  # fmt: skip
+
+
+def test_attributes_out_of_range_are_refused(yade):
+    refused(
+        yade,
+        """
+for case in parameters["cases"]:
+    exec(f"chain({case})")
+    result[case] = said(O.step)
+""",
+        OUT_OF_RANGE,
+    )
+
+
+SCENES = {
+    "O.bodies[1].mask = 2": ["body 1: mask = 2, must be 1"],
+    "O.bodies[1].bounded = False": ["body 1 must be bounded"],
+    "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["body 1: its three moments of inertia must be the same"],
+    "O.bodies.clump([0, 1])": ["body 4 must be a sphere of JKRMat"],
+    "O.bodies.erase(1)": ["body 1 was erased"],
+    "O.forces.setPermF(2, Vector3(1e-9, 0, 0))": ["O.forces has a force on body 2"],
+}  # fmt: skip
+
+
+def test_scenes_that_the_engine_cannot_move_are_refused_at_the_start(yade):
+    refused(
+        yade,
+        """
+for case in parameters["cases"]:
+    chain()
+    I = O.bodies[1].state.inertia
+    exec(case)
+    result[case] = said(O.step)
+""",
+        SCENES,
+    )
