@@ -26,6 +26,15 @@ CHANNEL_NOTES = (
     "together, is in the sum.",
 )
 
+# Of a family of runs, in every table.
+PARAMETERS = (
+    Column("material", lambda r: r["material"]),
+    Column("N", lambda r: f"{r['grains']}"),
+    Column("C_v", lambda r: f"{r['strainRate']:g}"),
+    Column("k_n", lambda r: f"{r['linearDamping']:g}"),
+    Column("xi_crit [Å]", lambda r: f"{r['criticalRolling'] * 1e10:.3g}"),
+)
+
 
 def sections(results):
     """Sections of results.Results."""
@@ -89,11 +98,7 @@ def _dependence(results):
         for group in results.groups
     ]
     columns = (
-        Column("material", lambda r: r["material"]),
-        Column("N", lambda r: f"{r['grains']}"),
-        Column("C_v", lambda r: f"{r['strainRate']:g}"),
-        Column("k_n", lambda r: f"{r['linearDamping']:g}"),
-        Column("xi_crit [Å]", lambda r: f"{r['criticalRolling'] * 1e10:.3g}"),
+        *PARAMETERS,
         Column("step [t0]", lambda r: f"{r['stepFraction']:g}"),
         Column("runs", lambda r: f"{r['runs']}"),
         Column("n", lambda r: _with_error(r["exponent"], r["exponent_error"])),
@@ -132,11 +137,7 @@ def _channels(results):
             modes = {name: fractions[f"{name}Dissipation"] for name in ("rolling", "twisting", "sliding")}
             records.append({**group.parameters, "filling": filling, **fractions, "largest": max(modes, key=modes.get)})
     columns = (
-        Column("material", lambda r: r["material"]),
-        Column("N", lambda r: f"{r['grains']}"),
-        Column("C_v", lambda r: f"{r['strainRate']:g}"),
-        Column("k_n", lambda r: f"{r['linearDamping']:g}"),
-        Column("xi_crit [Å]", lambda r: f"{r['criticalRolling'] * 1e10:.3g}"),
+        *PARAMETERS,
         Column("filling", lambda r: f"{r['filling']:g}"),
         Column("rolling", lambda r: f"{r['rollingDissipation']:.3f}"),
         Column("twisting", lambda r: f"{r['twistingDissipation']:.3f}"),

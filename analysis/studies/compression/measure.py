@@ -3,8 +3,8 @@
 import numpy as np
 
 from ...measures.ledger import work_closure
+from ...measures.of_run import derived_constants
 from ...measures.structure import fractal_dimension, grains_within
-from ...runs.arrays import RunFolderError
 from ...runs.format import CHANNEL_TABLE, LOST
 from ...runs.table import Column
 from ..definition import NotMeasured
@@ -121,7 +121,7 @@ def _stretched_axes(history):
 
 def _scene(run):
     """The columns that say what was compressed."""
-    derived, parameters = run.derived, run.parameters
+    parameters = run.parameters
     names = {
         "criticalRolling": "criticalRolling",
         "grainRadius": "grainRadius",
@@ -130,10 +130,7 @@ def _scene(run):
         "grain_mass": "grainMass",
         "time_unit": "timeUnit",
     }
-    try:
-        constants = {column: float(derived[name]) for column, name in names.items()}
-    except (KeyError, TypeError, ValueError) as error:
-        raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
+    constants = derived_constants(run, names)
     given = {name: float(parameters[name]) for name in ("strainRate", "linearDamping", "stepFraction", "finalFilling")}
     whole = {name: int(parameters[name]) for name in ("grains", "seed")}
     return {"material": str(parameters.get("material", "")), **whole, **given, **constants}

@@ -5,7 +5,7 @@ import numpy as np
 from ...measures.compression import compression_by_aggregate, compression_length, first_compression
 from ...measures.coordination import inner_coordination, mean_coordination
 from ...measures.ledger import closure, initial_kinetic_energy
-from ...measures.of_run import met
+from ...measures.of_run import derived_constants, met
 from ...runs.arrays import RunFolderError
 from ...runs.format import HISTORY_FILE
 from ...runs.table import Column
@@ -83,7 +83,7 @@ def measure(run):
 
 def _scene(run):
     """The columns that say what collided."""
-    derived, parameters = run.derived, run.parameters
+    parameters = run.parameters
     names = {
         "radius": "aggregateRadius",
         "grain_radius": "grainRadius",
@@ -91,10 +91,7 @@ def _scene(run):
         "pull_off_force": "pullOffForce",
         "overlap": "equilibriumOverlap",
     }
-    try:
-        constants = {column: float(derived[name]) for column, name in names.items()}
-    except (KeyError, TypeError, ValueError) as error:
-        raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
+    constants = derived_constants(run, names)
     given = {"filling": float(parameters["filling"]), "velocity": float(parameters["velocity"])}
     return {**given, "seed": int(parameters["seed"]), **constants}
 
