@@ -80,14 +80,9 @@ struct alignas(64) ConstantsBlock {
 	double field[keptCount][lanes];
 };
 
-// What drag needs of the step before (kernel/drag.hpp).
+// What drag needs of the step before (kernel/drag.hpp). velocity: of the first grain past the second, from which drag extrapolates to now.
 struct alignas(64) DragBlock {
-	double drag[lanes], overlap[lanes];
-};
-
-// Velocities of the step before the last, from which drag extrapolates to now; a quarter of it is padding.
-struct alignas(32) PreviousVelocity {
-	double x, y, z, spare;
+	double drag[lanes], overlap[lanes], velocity[3][lanes];
 };
 
 struct alignas(64) LaneForces {
@@ -101,7 +96,6 @@ struct ForcePass {
 	const ConstantsBlock* constants;      // null when all pairs are of one kind
 	const PairConstants<double>* uniform; // the constants then
 	DragBlock* drags;                     // null in scenes without drag
-	const PreviousVelocity* previous;     // likewise
 	const PeriodicCell* cell;
 	int firstBlock, endBlock;
 	int addFirst, addSecond; // whether the first / second grain of each contact is this domain's
@@ -117,27 +111,29 @@ struct ForcePass {
 	void (*batchDone)(void* owner, int batch);
 };
 
-// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(). Lanes beyond the
-// third: room for a register.
+// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(); and by how much kicks
+// changed each component at most. Lanes beyond the third: room for a register.
 struct alignas(64) VelocityRange {
-	double least[lanes], most[lanes];
+	double least[lanes], most[lanes], kick[lanes];
 
 	VelocityRange() { clear(); }
 	void clear()
 	{
 		for (int k = 0; k < lanes; ++k)
-			least[k] = 1e300, most[k] = -1e300;
+			least[k] = 1e300, most[k] = -1e300, kick[k] = 0;
 	}
 	void join(const VelocityRange& other)
 	{
 		for (int k = 0; k < 3; ++k)
-			least[k] = std::min(least[k], other.least[k]), most[k] = std::max(most[k], other.most[k]);
+			least[k] = std::min(least[k], other.least[k]), most[k] = std::max(most[k], other.most[k]),
+			kick[k] = std::max(kick[k], other.kick[k]);
 	}
 	double diagonal() const
 	{
 		const Vec3<double> d { most[0] - least[0], most[1] - least[1], most[2] - least[2] };
 		return std::sqrt(dot(d, d));
 	}
+	double largestKick() const { return std::sqrt(kick[0] * kick[0] + kick[1] * kick[1] + kick[2] * kick[2]); }
 	double fastestComponent() const
 	{
 		double fastest = 0;
@@ -148,7 +144,7 @@ struct alignas(64) VelocityRange {
 };
 
 struct BondPass;        // bond_list.hpp
-struct NeighbourSearch; // grid.hpp
+struct NeighbourSearch; // neighbour_search.hpp
 
 // One instruction set's compiled passes, by mechanisms (contact_state.hpp), whether all pairs are of one kind, and (forces) whether the
 // scene is periodic.
@@ -161,7 +157,7 @@ struct InstructionSet {
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
 	void (*bondForces)(const BondPass&);
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
-	int (*closeMembers[2])(const NeighbourSearch&, int* found); // by whether the scene is periodic (neighbour_search.hpp)
+	int (*closeGrains[2])(const NeighbourSearch&, int* found); // by whether the scene is periodic (neighbour_search.hpp)
 };
 
 } // namespace contact_law

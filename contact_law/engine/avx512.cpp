@@ -55,16 +55,17 @@ namespace avx512 {
 	{
 		const __m512i toVelocity =
 		        _mm512_set_epi64(6, 5, 4, 3, 2, 0, 0, 0); // line 2 is wz, -, f, t; velocities and wx, wy stand at 3 .. 7 of line 1
+		const __m512i underPositions = _mm512_set_epi64(0, 0, 0, 0, 0, 5, 4, 3); // where velocities go
 		const __m512d step = _mm512_set1_pd(dt);
-		__m512d least = _mm512_load_pd(range.least), most = _mm512_load_pd(range.most);
+		__m512d least = _mm512_load_pd(range.least), most = _mm512_load_pd(range.most), kicked = _mm512_setzero_pd();
 		for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {
 			const __m512d second = _mm512_load_pd(&g->wz);
 			const __m512d m = _mm512_set1_pd(*inverseMass * dt), i = _mm512_set1_pd(*inverseInertia * dt);
 			__m512d first = _mm512_load_pd(&g->x);
-			first = _mm512_mask3_fmadd_pd(
-			        _mm512_permutexvar_pd(toVelocity, second), _mm512_mask_blend_pd(0xc0, m, i), first, 0xf8);
-			const __m512d moved = _mm512_maskz_permutexvar_pd(
-			        0x07, _mm512_set_epi64(0, 0, 0, 0, 0, 5, 4, 3), first); // velocities under the positions
+			const __m512d kick = _mm512_mul_pd(_mm512_permutexvar_pd(toVelocity, second), _mm512_mask_blend_pd(0xc0, m, i));
+			kicked = _mm512_max_pd(kicked, _mm512_abs_pd(kick));
+			first = _mm512_mask_add_pd(first, 0xf8, first, kick);
+			const __m512d moved = _mm512_maskz_permutexvar_pd(0x07, underPositions, first);
 			first = _mm512_mask3_fmadd_pd(moved, step, first, 0x07);
 			_mm512_store_pd(&g->x, first);
 			// wz += tz dt/I, and forces to zero
@@ -73,6 +74,8 @@ namespace avx512 {
 			least = _mm512_min_pd(least, moved);
 			most = _mm512_max_pd(most, moved);
 		}
+		kicked = _mm512_maskz_permutexvar_pd(0x07, underPositions, kicked);
+		_mm512_store_pd(range.kick, _mm512_max_pd(kicked, _mm512_load_pd(range.kick)));
 		_mm512_store_pd(range.least, least);
 		_mm512_store_pd(range.most, most);
 	}

@@ -55,35 +55,30 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 	write({ 0, 0, 0 }, forces.torque1, k);
 	write({ 0, 0, 0 }, forces.torque2, k);
 	list.kill(lane);
+	++changed;
 	if (r.touching) {
-		contacts[sort].append({ i, j, h, constants, r.now.drag, r.geometry.overlap });
+		contacts[sort].append({ i, j, h, constants, r.now.drag, r.geometry.overlap, m.velocity });
 		return;
 	}
-	const int pair = pairIndex(sort, i, j);
-	if (pair < 0) return;
-	touching[sort][pair] = 0;
-	near[sort].push_back(pair);
+	lists.part(i, j);
 }
 
 void Domain::placeBonds()
 {
-	for (int sort = 0; sort < 3; ++sort)
-		for (int index = 0; index < int(far[sort].size()); ++index) {
-			const Pair p = far[sort][index];
-			Image image;
-			const Vec3<double> separation = motionOf(p.i, p.j, image).separation;
-			const double reach = s.grainRadius[p.i] + s.grainRadius[p.j];
-			if (dot(separation, separation) >= reach * reach) continue;
-			Bond bond { p.i, p.j, {}, 0, s.bondOf(p.i, p.j) };
-			bond.rest = newBond(separation, bond.history);
-			bonds[sort].append(bond);
-			touching[sort][index] = 1;
-		}
+	lists.each([this](int i, int j) {
+		const Vec3<double> separation = separationOf(s.grains[i], s.grains[j]);
+		const double reach = s.grainRadius[i] + s.grainRadius[j];
+		if (dot(separation, separation) >= reach * reach) return;
+		Bond bond { i, j, {}, 0, s.bondOf(i, j) };
+		bond.rest = newBond(separation, bond.history);
+		bonds[sortOf(i, j)].append(bond);
+	});
+	markTouching();
 }
 
 void Domain::place(const Bond& b)
 {
-	if (owns(b.i) || owns(b.j)) bonds[owns(b.i) && owns(b.j) ? Both : owns(b.i) ? First : Second].append(b);
+	if (owns(b.i) || owns(b.j)) bonds[sortOf(b.i, b.j)].append(b);
 }
 
 void Domain::addBondEnergies(StoredEnergy<double>& total)

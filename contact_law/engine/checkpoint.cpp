@@ -8,13 +8,14 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 3;            // 1: without this header, up to version 0.1; 2: without formed and broke
+	constexpr int formatNumber = 4;            // 1: without this header, up to version 0.1; 2, 3: version 0.2
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
 	{
 		transferNumbers(archive, c.i, c.j);
 		transfer(archive, c.history);
 		transferNumbers(archive, c.drag, c.overlap);
+		transfer(archive, c.velocity);
 		if (Archive::restoring) c.constants = setting.constantsOf(c.i, c.j);
 	}
 	template <class Archive> void transfer(Archive& archive, Bond& b, const Setting& setting)
@@ -67,7 +68,8 @@ namespace {
 		transferNumbers(archive, domain.sums.eventWork, domain.sums.meanField);
 		transfer(archive, domain.sums.boundary);
 		transfer(archive, domain.constraints);
-		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks);
+		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks, domain.changed,
+		        domain.stepsSinceSort);
 		for (long& number : domain.broken)
 			archive.number(number);
 		for (BondList& list : domain.bonds)
@@ -83,7 +85,7 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	const auto named = [](const char* name) { return [name] { return std::string(name); }; };
 	archive.header(magicNumber, formatNumber);
 	archive.same(count, named("the number of bodies"));
-	archive.same(std::max(1, std::min(options.domains, count)), named("domains"));
+	archive.same(domainCount(), named("domains"));
 	archive.same(int(options.cell.on), named("O.periodic"));
 	archive.same(setting.material.size(), named("the number of materials"));
 	archive.same(setting.linearDamping, named("linearDamping"));
@@ -115,16 +117,13 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 		same(setting.kind[k], "the number of the material");
 		archive.number(setting.blocked[k]);
 		transfer(archive, setting.grains[k]);
-		if (setting.hasDrag()) transfer(archive, setting.previous[k]);
 	}
 	bool moved = !setting.displaced.empty();
 	archive.number(moved);
 	if (moved) setting.displaced.resize(setting.grains.size());
 	for (Vec3<double>& by : setting.displaced)
 		transfer(archive, by);
-	transferNumbers(archive, travelSinceFar, travelSinceNear, nearGap);
-	transferNumbers(archive, counted.contactUpdates, counted.farRebuilds, counted.nearRebuilds);
-	transfer(archive, mostCells);
+	archive.number(contactUpdates);
 	transfer(archive, setting.convective);
 	for (auto& domain : domains)
 		transfer(archive, *domain, setting);
@@ -132,6 +131,7 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 
 std::vector<double> Dynamics::save()
 {
+	if (velocitiesSet) takeVelocities();
 	SavingArchive to;
 	transferLayout(to);
 	transferState(to);
@@ -150,13 +150,7 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 	if (!from.atEnd()) throw std::invalid_argument("the checkpoint of the grains is too long: it must be as O.save wrote it");
 	for (auto& domain : domains)
 		domain->findCompleted();
-	// The pairs may be others than before; the contacts' order and the contacts that will form are not.
-	const double sinceFar = travelSinceFar, sinceNear = travelSinceNear;
-	const Vec3<double> most = mostCells;
-	refreshLists(Lists::FarAndNear);
-	travelSinceFar = sinceFar;
-	travelSinceNear = sinceNear;
-	mostCells = most;
+	makeLists(); // the pairs may be others than before; the contacts' order and the contacts that will form are not
 }
 
 } // namespace contact_law

@@ -62,7 +62,6 @@ private:
 template <class Archive, class... Numbers> void transferNumbers(Archive& archive, Numbers&... numbers) { (archive.number(numbers), ...); }
 
 template <class Archive> void transfer(Archive& archive, Vec3<double>& v) { transferNumbers(archive, v.x, v.y, v.z); }
-template <class Archive> void transfer(Archive& archive, PreviousVelocity& v) { transferNumbers(archive, v.x, v.y, v.z); }
 template <class Archive> void transfer(Archive& archive, Grain& g)
 {
 	transferNumbers(archive, g.x, g.y, g.z, g.vx, g.vy, g.vz, g.wx, g.wy, g.wz, g.fx, g.fy, g.fz, g.tx, g.ty, g.tz);

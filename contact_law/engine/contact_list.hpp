@@ -10,7 +10,8 @@ struct Contact { // one lane, taken out
 	int i, j;
 	ContactHistory<double> history;
 	PairConstants<double> constants;
-	double drag = 0, overlap = 0; // a step ago; only in scenes with drag
+	double drag = 0, overlap = 0; // a step ago; these three only in scenes with drag
+	Vec3<double> velocity { 0, 0, 0 };
 };
 
 class ContactList {
@@ -39,7 +40,7 @@ public:
 		blocks[lane / lanes].j[lane % lanes] = dummy + 1;
 		writeHistory(lane, deadHistory());
 		if (!uniform) writeConstants(lane, deadConstants);
-		if (hasDrag) writeDrag(lane, 0, deadConstants.equilibriumOverlap);
+		writeDrag(lane, 0, deadConstants.equilibriumOverlap, { 0, 0, 0 });
 	}
 	int first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
 	int second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
@@ -50,15 +51,28 @@ public:
 		const ContactBlock& b = blocks[lane / lanes];
 		const int k = lane % lanes;
 		Contact c { b.i[k], b.j[k], history(b, k), pairConstants };
-		if (hasDrag) c.drag = drag(lane), c.overlap = drags[lane / lanes].overlap[k];
+		if (hasDrag) c.drag = drag(lane), c.overlap = drags[lane / lanes].overlap[k], c.velocity = velocityBefore(lane);
 		return c;
 	}
 	double drag(int lane) const { return drags[lane / lanes].drag[lane % lanes]; }
-	void writeDrag(int lane, double force, double overlap)
+	Vec3<double> velocityBefore(int lane) const
+	{
+		const auto& v = drags[lane / lanes].velocity;
+		const int k = lane % lanes;
+		return { v[0][k], v[1][k], v[2][k] };
+	}
+	void writeDrag(int lane, double force, double overlap, const Vec3<double>& velocity)
 	{
 		if (!hasDrag) return;
 		drags[lane / lanes].drag[lane % lanes] = force;
 		drags[lane / lanes].overlap[lane % lanes] = overlap;
+		writeVelocity(lane, velocity);
+	}
+	void writeVelocity(int lane, const Vec3<double>& v)
+	{
+		auto& to = drags[lane / lanes].velocity;
+		const int k = lane % lanes;
+		to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z;
 	}
 	void writeHistory(int lane, const ContactHistory<double>& h) { writeHistory(blocks[lane / lanes], lane % lanes, h); }
 	static void writeHistory(ContactBlock& b, int k, const ContactHistory<double>& h)
@@ -123,7 +137,7 @@ private:
 		blocks[here / lanes].i[here % lanes] = from.first(lane);
 		blocks[here / lanes].j[here % lanes] = from.second(lane);
 		writeHistory(here, history(from.blocks[lane / lanes], lane % lanes));
-		if (hasDrag) writeDrag(here, from.drag(lane), from.drags[lane / lanes].overlap[lane % lanes]);
+		if (hasDrag) writeDrag(here, from.drag(lane), from.drags[lane / lanes].overlap[lane % lanes], from.velocityBefore(lane));
 		for (int k = 0; !uniform && k < keptCount; ++k)
 			constants[here / lanes].field[k][here % lanes] = from.constants[lane / lanes].field[k][lane % lanes];
 	}
@@ -133,7 +147,7 @@ private:
 		blocks[lane / lanes].j[lane % lanes] = contact.j;
 		writeHistory(lane, contact.history);
 		if (!uniform) writeConstants(lane, contact.constants);
-		writeDrag(lane, contact.drag, contact.overlap);
+		writeDrag(lane, contact.drag, contact.overlap, contact.velocity);
 	}
 	void writeConstants(int lane, const PairConstants<double>& c)
 	{

@@ -1,5 +1,6 @@
 #include "domain.hpp"
 #include <algorithm>
+#include <tuple>
 
 namespace contact_law {
 
@@ -10,12 +11,15 @@ namespace {
 		g.fx += force.x, g.fy += force.y, g.fz += force.z;
 		g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
 	}
+	constexpr double sortingCost = 1; // of a contact, over what one costs a step more for being out of order (measured)
+
 	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
 }
 
 Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
         : begin(begin_)
         , end(end_)
+        , lists(setting, begin_, end_)
         , contacts { { setting.uniform, setting.hasDrag(), dummy_ }, { setting.uniform, setting.hasDrag(), dummy_ },
 	        { setting.uniform, setting.hasDrag(), dummy_ } }
         , bonds { { setting.uniform, dummy_ }, { setting.uniform, dummy_ }, { setting.uniform, dummy_ } }
@@ -38,7 +42,7 @@ ForcePass Domain::passFor(int sort)
 {
 	ContactList& list = contacts[sort];
 	const bool books = sort != Second; // both domains of a border contact compute it; the first grain's books it
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), &cell, 0,
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), &cell, 0,
 		list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation,
 		books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf,
 		nullptr };
@@ -56,6 +60,8 @@ void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
 void Domain::addFirstForces()
 {
 	sums.eventWork = 0;
+	lists.beginStep();
+	sortIfWorthwhile();
 	if (cell.on) sums.boundary.arrive(cell, s.dt);
 	constraints.begin();
 	addForces(First, 0, contacts[First].blockCount(), false);
@@ -67,7 +73,7 @@ void Domain::addFirstForces()
 
 void Domain::addOtherForces(bool behind)
 {
-	if (behind) velocities.clear(), moved = begin;
+	if (behind) beginMoving();
 	addForces(Both, 0, sortedBlocks, behind);
 	if (cell.on) sums.boundary.complete(cell, s.dt);
 	constraints.withhold(s.grains.data(), s.dt, end);
@@ -82,34 +88,57 @@ void Domain::moveBehind(void* owner, int batch)
 	domain.integrateUpTo(complete);
 }
 
+void Domain::beginMoving()
+{
+	velocities.clear(), movedLatest.clear();
+	kickExceeded = false;
+	moved = begin;
+}
+
 void Domain::integrate()
 {
-	velocities.clear(), moved = begin;
+	beginMoving();
 	integrateUpTo(end);
 }
 
 void Domain::integrateUpTo(int grain)
 {
-	if (s.hasDrag())
-		for (int g = moved; g < grain; ++g)
-			s.previous[g] = { s.grains[g].vx, s.grains[g].vy, s.grains[g].vz, 0 };
-	if (s.convects()) convect(moved, grain);
-	s.passes->integrate(s.grains.data() + moved, s.grains.data() + grain, s.inverseMass.data() + moved, s.inverseInertia.data() + moved,
-	        s.dt, velocities);
-	if (!s.orientation.empty()) turnOrientations(s.grains.data() + moved, s.grains.data() + grain, s.orientation.data() + moved, s.dt);
-	moved = grain;
+	while (moved < grain) {
+		Group& group = lists.group(moved);
+		const int to = std::min(grain, group.last);
+		if (s.convects()) convect(moved, to);
+		s.passes->integrate(s.grains.data() + moved, s.grains.data() + to, s.inverseMass.data() + moved,
+		        s.inverseInertia.data() + moved, s.dt, movedLatest);
+		if (!s.orientation.empty())
+			turnOrientations(s.grains.data() + moved, s.grains.data() + to, s.orientation.data() + moved, s.dt);
+		moved = to;
+		if (to == group.last) finishGroup(group);
+	}
+}
+
+void Domain::finishGroup(Group& group)
+{
+	const double kick = movedLatest.largestKick();
+	if (kick > group.kickBound) group.kickBound = 2 * kick, kickExceeded = true;
+	group.sinceCheck.join(movedLatest);
+	velocities.join(movedLatest);
+	movedLatest.clear();
 }
 
 // The part of the convective acceleration in the kick to come, and its work: the impulse times the mean of the velocities before and after the kick.
 void Domain::convect(int first, int last)
 {
+	Vec3<double> kicked { 0, 0, 0 };
 	for (int k = first; k < last; ++k) {
 		Grain& g = s.grains[k];
 		const Vec3<double> before = velocityOf(g), gain = s.dt * Images<double>::times(s.convective, before);
 		const Vec3<double> after = before + gain + (s.dt * s.inverseMass[k]) * Vec3<double> { g.fx, g.fy, g.fz };
 		sums.meanField -= 0.5 / s.inverseMass[k] * dot(gain, before + after);
 		g.vx += gain.x, g.vy += gain.y, g.vz += gain.z;
+		kicked.x = std::max(kicked.x, std::abs(gain.x)), kicked.y = std::max(kicked.y, std::abs(gain.y)),
+		kicked.z = std::max(kicked.z, std::abs(gain.z));
 	}
+	movedLatest.kick[0] += kicked.x, movedLatest.kick[1] += kicked.y, movedLatest.kick[2] += kicked.z;
 }
 
 ContactMotion Domain::motionOf(int i, int j, Image& image) const
@@ -169,8 +198,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 
 	ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, separationAStepAgo(i, j, m), h);
 	if (s.hasDrag()) {
-		const PreviousVelocity &a = s.previous[i], &b = s.previous[j];
-		before.velocity = Vec3<double> { a.x - b.x, a.y - b.y, a.z - b.z } + image.velocityBefore;
+		before.velocity = list.velocityBefore(lane);
 		before.drag = list.drag(lane);
 	}
 
@@ -182,7 +210,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	write(r.torque2, forces.torque2, k);
 	if (r.touching) {
 		list.writeHistory(lane, h);
-		list.writeDrag(lane, r.now.drag, r.geometry.overlap);
+		list.writeDrag(lane, r.now.drag, r.geometry.overlap, m.velocity);
 		return;
 	}
 	// this lane's kicks still go to its grains (scattered by index): add them here, and leave nothing for the dead lane's dummies
@@ -192,77 +220,68 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	write({ 0, 0, 0 }, forces.torque2, k);
 	list.kill(lane);
 	if (sort != Second) ++broke;
-	const int pair = pairIndex(sort, i, j);
-	if (pair < 0) return;
-	touching[sort][pair] = 0;
-	near[sort].push_back(pair);
+	++changed;
+	lists.part(i, j);
 }
 
 void Domain::formContacts()
 {
-	for (int sort = 0; sort < 3; ++sort) {
-		std::vector<int> forming;
-		for (const int index : near[sort]) {
-			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, 0)) forming.push_back(index);
-		}
-		std::sort(forming.begin(), forming.end()); // the order of pairs, whatever the order of the list
-		for (const int index : forming)
-			formContact(sort, index);
-	}
+	std::vector<NeighbourPair> forming = lists.overlapping(cell);
+	const auto key = [this](const NeighbourPair& p) { return std::make_tuple(sortOf(p.first(), p.second()), p.first(), p.second()); };
+	std::sort(forming.begin(), forming.end(), [&](const NeighbourPair& a, const NeighbourPair& b) { return key(a) < key(b); });
+	for (const NeighbourPair& pair : forming)
+		if (formContact(pair)) lists.touch(pair.first(), pair.second());
 }
 
-void Domain::formContact(int sort, int index)
+// Returns whether it did.
+bool Domain::formContact(const NeighbourPair& pair)
 {
-	const Pair p = far[sort][index];
+	const int i = pair.first(), j = pair.second(), sort = sortOf(i, j);
 	Image image;
-	const ContactMotion m = motionOf(p.i, p.j, image);
-	Contact c { p.i, p.j, {}, s.constantsOf(p.i, p.j) };
+	const ContactMotion m = motionOf(i, j, image);
+	Contact c { i, j, {}, s.constantsOf(i, j) };
 	const auto r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
-	if (!r.touching) return;
+	if (!r.touching) return false;
 	c.drag = r.now.drag;
 	c.overlap = r.geometry.overlap;
-	touching[sort][index] = 1;
+	c.velocity = m.velocity;
 	if (sort != Second) ++formed;
+	++changed;
 	book(r, m, image, sort);
-	addAlone(sort, p.i, p.j, r, image);
+	addAlone(sort, i, j, r, image);
 	contacts[sort].append(c);
+	return true;
 }
 
-void Domain::findPairs(const Grid& grid, double nearGap)
+void Domain::markTouching()
 {
-	for (auto& list : far)
-		list.clear();
-	std::vector<int> found;
-	for (int i = begin; i < end; ++i) {
-		const NeighbourSearch search = grid.search(&s.grains[i].x, s.radius[i], s.farGap, cell);
-		found.resize(std::max(found.size(), std::size_t(search.most())));
-		int* last = found.data() + s.passes->closeMembers[cell.on](search, found.data());
-		last = std::remove_if(found.data(), last, [&](int j) { return j == i || (j < i && owns(j)); });
-		std::sort(found.data(), last);
-		last = std::unique(found.data(), last);
-		for (const int* j = found.data(); j < last; ++j)
-			far[owns(*j) ? Both : i < *j ? First : Second].push_back(i < *j ? Pair { i, *j } : Pair { *j, i });
-	}
-	std::sort(far[Second].begin(), far[Second].end());
-	for (int sort = 0; sort < 3; ++sort) {
-		touching[sort].assign(far[sort].size(), 0);
-		const ContactList& list = contacts[sort];
-		std::size_t at = 0;
-		for (int lane = 0; lane < list.size(); ++lane) { // pairs and contacts run along together as long as contacts are sorted
+	const auto mark = [this](const auto& list) {
+		for (int lane = 0; lane < list.size(); ++lane)
+			if (list.alive(lane)) lists.touch(list.first(lane), list.second(lane));
+	};
+	for (const ContactList& list : contacts)
+		mark(list);
+	for (const BondList& list : bonds)
+		mark(list);
+}
+
+void Domain::takeVelocities()
+{
+	if (!s.hasDrag()) return;
+	for (ContactList& list : contacts)
+		for (int lane = 0; lane < list.size(); ++lane) {
 			if (!list.alive(lane)) continue;
-			const Pair pair { list.first(lane), list.second(lane) };
-			if (at > 0 && !(far[sort][at - 1] < pair))
-				at = std::lower_bound(far[sort].begin(), far[sort].end(), pair) - far[sort].begin();
-			while (at < far[sort].size() && far[sort][at] < pair)
-				++at;
-			if (at < far[sort].size() && !(pair < far[sort][at])) touching[sort][at] = 1;
+			Image image;
+			list.writeVelocity(lane, motionOf(list.first(lane), list.second(lane), image).velocity);
 		}
-		for (int lane = 0; lane < bonds[sort].size(); ++lane) {
-			const int pair = bonds[sort].alive(lane) ? pairIndex(sort, bonds[sort].first(lane), bonds[sort].second(lane)) : -1;
-			if (pair >= 0) touching[sort][pair] = 1;
-		}
-	}
-	findNearPairs(nearGap);
+}
+
+/* A contact that formed costs more until it is sorted in, sorting costs in proportion to all of them: both together least when the first sum has grown to the second. */
+void Domain::sortIfWorthwhile()
+{
+	++stepsSinceSort;
+	if (double(changed) * stepsSinceSort > sortingCost * (contacts[Both].size() + contacts[First].size() + contacts[Second].size()))
+		sortContacts();
 }
 
 void Domain::sortContacts()
@@ -272,6 +291,7 @@ void Domain::sortContacts()
 	for (BondList& list : bonds)
 		list.sort();
 	sortedBlocks = contacts[Both].blockCount();
+	changed = stepsSinceSort = 0;
 	findCompleted();
 	s.grains[dummy].fx = s.grains[dummy].fy = s.grains[dummy].fz = 0;
 }
@@ -289,49 +309,22 @@ void Domain::findCompleted()
 	}
 }
 
-void Domain::findNearPairs(double nearGap)
-{
-	for (int sort = 0; sort < 3; ++sort) {
-		near[sort].clear();
-		for (int index = 0; index < int(far[sort].size()); ++index)
-			if (!touching[sort][index] && closerThan(far[sort][index].i, far[sort][index].j, nearGap))
-				near[sort].push_back(index);
-	}
-}
-
-bool Domain::closerThan(int i, int j, double gap) const
-{
-	Vec3<double> d = positionOf(s.grains[i]) - positionOf(s.grains[j]);
-	if (cell.on) nearestImage(cell, d);
-	const double reach = s.radius[i] + s.radius[j] + gap;
-	return dot(d, d) <= reach * reach;
-}
-
-int Domain::pairIndex(int sort, int i, int j) const
-{
-	const Pair pair { i, j };
-	const auto found = std::lower_bound(far[sort].begin(), far[sort].end(), pair);
-	return found != far[sort].end() && !(pair < *found) ? int(found - far[sort].begin()) : -1;
-}
-
 void Domain::place(const Contact& c)
 {
-	if (owns(c.i) || owns(c.j)) contacts[owns(c.i) && owns(c.j) ? Both : owns(c.i) ? First : Second].append(c);
+	if (owns(c.i) || owns(c.j)) contacts[sortOf(c.i, c.j)].append(c);
 }
 
 void Domain::placeOverlapping()
 {
-	for (int sort = 0; sort < 3; ++sort)
-		for (const int index : near[sort]) {
-			const Pair p = far[sort][index];
-			Vec3<double> separation = positionOf(s.grains[p.i]) - positionOf(s.grains[p.j]);
-			nearestImage(cell, separation);
-			const ContactMotion m { separation, { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
-			const double overlap = s.radius[p.i] + s.radius[p.j] - std::sqrt(dot(m.separation, m.separation));
-			if (overlap <= 0) continue;
-			contacts[sort].append({ p.i, p.j, contact_law::events::formedHistory(m, 0), s.constantsOf(p.i, p.j), 0, overlap });
-			touching[sort][index] = 1;
-		}
+	lists.each([this](int i, int j) {
+		Vec3<double> separation = separationOf(s.grains[i], s.grains[j]);
+		nearestImage(cell, separation);
+		const ContactMotion m { separation, { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
+		const double overlap = s.radius[i] + s.radius[j] - std::sqrt(dot(separation, separation));
+		if (overlap <= 0) return;
+		contacts[sortOf(i, j)].append({ i, j, contact_law::events::formedHistory(m, 0), s.constantsOf(i, j), 0, overlap });
+	});
+	markTouching();
 }
 
 StoredEnergy<double> Domain::energies()

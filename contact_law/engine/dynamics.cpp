@@ -6,7 +6,10 @@
 namespace contact_law {
 
 namespace {
-	constexpr double stepsOfNearPairs = 16; // that lists of near pairs should last where grains are fast (measured)
+	constexpr double mostStepsToCheck = 8; // from one check of the neighbour lists to the next
+	constexpr int grainsInDomain = 6000, mostDomains = 64; // at least, and at most, where the scene decides
+	constexpr double leastKick = 1e-8;     // bound on kicks in r/dt: a pair a hundredth of a radius apart is then not looked at for a thousand steps
+	constexpr double boxMargin = 3;        // how much further groups are taken for nearby than they need be, over the largest radius
 }
 
 Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_)
@@ -16,7 +19,7 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 	orderGrains(grains);
 	loadGrains(grains);
 	makeDomains();
-	refreshLists(Lists::FarAndNear);
+	makeLists();
 	for (auto& domain : domains)
 		setting.neck > 0 ? domain->placeBonds() : domain->placeOverlapping();
 	firstForces();
@@ -55,6 +58,7 @@ void Dynamics::loadGrains(const Grains& grains)
 		const GrainInput& g = grains[original[k]];
 		indexHere[original[k]] = k;
 		smallest = std::min(smallest, shrunk * g.radius);
+		setting.largestRadius = std::max(setting.largestRadius, shrunk * g.radius);
 		setting.grains.push_back(Grain {});
 		copyMotion(g, setting.grains.back());
 		setting.radius.push_back(shrunk * g.radius);
@@ -70,8 +74,8 @@ void Dynamics::loadGrains(const Grains& grains)
 	const double r = setting.grainRadius[0];
 	setting.common = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
 	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.neck);
-	nearGap = nearGapFor(0);
 	setting.farGap = 0.8 * smallest;
+	setting.leastKick = leastKick * smallest / setting.dt;
 }
 
 void copyMotion(const GrainMotion& g, Grain& grain)
@@ -101,7 +105,8 @@ void Dynamics::set(int index, const GrainMotion& now)
 	copyMotion(now, p);
 	setting.displace(k, positionOf(p) - from);
 	kick(setting, p, k, -0.5 * setting.dt);
-	travelSinceFar = travelSinceNear = setting.farGap; // whatever the distance: look for neighbours anew
+	velocitiesSet = true;
+	outdateLists();
 }
 
 void kick(const Setting& setting, Grain& p, int k, double time)
@@ -114,14 +119,20 @@ void kick(const Setting& setting, Grain& p, int k, double time)
 	if (time < 0) p.vx /= 1 - time * c.x, p.vy /= 1 - time * c.y, p.vz /= 1 - time * c.z;
 }
 
+int Dynamics::domainCount() const
+{
+	if (options.domains > 0) return std::min(options.domains, count);
+	int domains = 2;
+	while (domains < mostDomains && count / (2 * domains) >= grainsInDomain)
+		domains *= 2;
+	return std::min(domains, count);
+}
+
 void Dynamics::makeDomains()
 {
-	const int domainCount = std::max(1, std::min(options.domains, count));
-	setting.grains.resize(count + 2 * domainCount);
-	if (setting.hasDrag()) setting.previous.assign(count + 2 * domainCount, PreviousVelocity {});
-	for (int d = 0; d < domainCount; ++d)
-		domains.push_back(std::make_unique<Domain>(
-		        setting, int(long(count) * d / domainCount), int(long(count) * (d + 1) / domainCount), count + 2 * d));
+	setting.grains.resize(count + 2 * domainCount());
+	for (int d = 0; d < domainCount(); ++d)
+		domains.push_back(std::make_unique<Domain>(setting, beginOf(d), beginOf(d + 1), count + 2 * d));
 	for (auto& domain : domains)
 		domain->cell = options.cell;
 	for (int k = 0; k < count; ++k)
@@ -136,58 +147,87 @@ Domain& Dynamics::domainOf(int index)
 	return *domains[d];
 }
 
-template <class Mine, class Wait> void Dynamics::buildGrid(bool firstThread, Mine&& mine, Wait&& wait)
+void Dynamics::makeLists()
 {
-	const Grain* grains = setting.grains.data();
-	if (firstThread) grid.begin(int(domains.size()), count);
-	wait();
-	mine([&](Domain& domain, int d) { grid.measure(d, grains, domain.begin, domain.end); });
-	wait();
-	if (firstThread) grid.layOut(reach(), cell());
-	wait();
-	mine([&](Domain&, int d) { grid.countGrains(d, grains); });
-	wait();
-	mine([&](Domain&, int d) { grid.sum(d); });
-	wait();
-	mine([&](Domain&, int d) { grid.findStarts(d); });
-	wait();
-	mine([&](Domain&, int d) { grid.place(d, grains, setting.radius.data()); });
+	for (auto& domain : domains)
+		domain->lists.measureBoxes();
+	setMostCells();
+	for (auto& domain : domains) {
+		domain->lists.findNearby(cell(), reach() + boxMargin * setting.largestRadius);
+		domain->lists.searchAll(cell());
+		domain->markTouching();
+	}
+	listAge = {};
 }
 
-void Dynamics::refreshLists(Lists which)
+void Dynamics::outdateLists()
 {
-	if (which == Lists::FarAndNear) {
-		const auto each = [&](auto&& what) {
-			for (std::size_t d = 0; d < domains.size(); ++d)
-				what(*domains[d], int(d));
-		};
-		buildGrid(true, each, [] {});
-		setMostCells();
-		each([&](Domain& domain, int) { domain.findPairs(grid, nearGap); });
-		travelSinceFar = 0;
-	} else {
-		for (auto& domain : domains)
-			domain->findNearPairs(nearGap);
+	for (Group& group : setting.groups)
+		group.approach = 2 * setting.farGap;
+	listAge.outdated = true;
+}
+
+/* After a step's drift, before its forces. Groups' ranges since the latest check tell how far each group's grains may have come closer to others; for the steps to come
+ * their kicks are bounded, and a kick beyond its bound brings the next check at once. */
+template <class Mine, class Wait>
+bool Dynamics::keepLists(ListAge& age, const VelocityRange& range, const Vec3<double>& growth, Mine&& mine, Wait&& wait)
+{
+	const Vec3<double> moved = Images<double>::times(mostCells, growth);
+	const double across = std::sqrt(dot(moved, moved)), approach = setting.dt * range.diagonal() + across; // an image moves with its cell
+	age.sinceBoxes += approach;
+	++age.sinceCheck;
+	const bool early = std::any_of(domains.begin(), domains.end(), [](const auto& domain) { return domain->mustCheck(); });
+	if (!(age.outdated || early || age.sinceCheck >= age.checkAfter)) return false;
+	const int next = int(std::max(1., std::min(mostStepsToCheck, 0.2 * setting.farGap / approach)));
+	const double margin = boxMargin * setting.largestRadius;
+	if (age.outdated || age.sinceBoxes > 0.5 * margin) {
+		mine([](Domain& domain, int) { domain.lists.measureBoxes(); });
+		wait();
+		mine([&](Domain& domain, int d) {
+			if (d == 0) setMostCells();
+			domain.lists.findNearby(domain.cell, reach() + margin);
+		});
+		age.sinceBoxes = 0;
 	}
-	travelSinceNear = 0;
+	mine([&](Domain& domain, int) { domain.lists.check(domain.cell, age.sinceCheck, next, across); });
+	age.sinceCheck = 0;
+	age.checkAfter = next;
+	age.outdated = false;
+	return true;
+}
+
+Dynamics::Counters Dynamics::counters() const
+{
+	Counters c;
+	c.contactUpdates = contactUpdates;
+	for (const auto& domain : domains) {
+		c.searches += double(domain->lists.searches) / double(setting.groups.size());
+		c.looks += domain->lists.looks;
+	}
+	return c;
 }
 
 /* The forces at the start, of contacts that have just been placed, without moving: a step of zero length books no event and turns nothing.
  * Then velocities go half a step back, where the leapfrog keeps them. */
 void Dynamics::firstForces()
 {
-	refreshLists(Lists::Near);
 	for (auto& domain : domains)
 		domain->sortContacts();
+	takeVelocities();
 	const double dt = setting.dt;
 	setting.dt = 0;
-	if (setting.hasDrag())
-		for (int g = 0; g < count; ++g)
-			setting.previous[g] = { setting.grains[g].vx, setting.grains[g].vy, setting.grains[g].vz, 0 };
 	addForces();
 	setting.dt = dt;
 	for (int g = 0; g < count; ++g)
 		kick(setting, setting.grains[g], g, -0.5 * dt);
+	takeVelocities();
+}
+
+void Dynamics::takeVelocities()
+{
+	for (auto& domain : domains)
+		domain->takeVelocities();
+	velocitiesSet = false;
 }
 
 void Dynamics::addForces()
@@ -205,9 +245,9 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 		for (std::size_t d = thread; d < domains.size(); d += threads)
 			what(*domains[d], int(d));
 	};
-	const auto wait = [&] { barrier.wait(); };
 	const Vec3<double> rate = (1 / setting.dt) * growth;
-	double sinceFar = travelSinceFar, sinceNear = travelSinceNear, gap = nearGap;
+	ListAge age = listAge;
+	if (std::sqrt(dot(mostCells, mostCells)) * std::sqrt(dot(rate - cell().rate, rate - cell().rate)) > setting.leastKick) age.outdated = true;
 	const double fastest = fastestThatHolds();
 	mine([](Domain& domain, int) { domain.integrate(); });
 	for (long step = 1; step <= steps; ++step) {
@@ -215,34 +255,13 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 		const VelocityRange range = velocities();
 		if (range.fastestComponent() > fastest) return step - 1;
 		mine([&](Domain& domain, int) { domain.cell.advance(sizeAtEnd - double(steps - step) * growth, rate); });
-		const Vec3<double> across = Images<double>::times(mostCells, growth); // an image moves with its cell
-		const double approach = setting.dt * range.diagonal() + std::sqrt(dot(across, across));
-		sinceFar += approach;
-		sinceNear += approach;
-		if (sinceNear > gap) {
-			gap = nearGapFor(approach);
-			const bool farToo = sinceFar + gap > setting.farGap;
-			if (farToo) {
-				buildGrid(thread == 0, mine, wait);
-				if (thread == 0) setMostCells();
-				mine([](Domain& domain, int) { domain.sortContacts(); });
-				barrier.wait();
-				mine([&](Domain& domain, int) { domain.findPairs(grid, gap); });
-				sinceFar = 0;
-			} else
-				mine([&](Domain& domain, int) { domain.findNearPairs(gap); });
-			sinceNear = 0;
-			if (thread == 0) ++(farToo ? counted.farRebuilds : counted.nearRebuilds);
-		}
+		const bool checked = keepLists(age, range, growth, mine, [&] { barrier.wait(); });
 		mine([](Domain& domain, int) { domain.addFirstForces(); });
 		barrier.wait();
+		if (checked) mine([](Domain& domain, int) { domain.lists.clearAfterCheck(); });
 		mine([=](Domain& domain, int) { domain.addOtherForces(step < steps); });
 	}
-	if (thread == 0) {
-		travelSinceFar = sinceFar;
-		travelSinceNear = sinceNear;
-		nearGap = gap;
-	}
+	if (thread == 0) listAge = age;
 	return steps;
 }
 
@@ -252,14 +271,6 @@ VelocityRange Dynamics::velocities() const
 	for (const auto& domain : domains)
 		all.join(domain->velocities);
 	return all;
-}
-
-/* Looking through the near pairs, each step, and finding them among the far ones, each time the grains may have come closer by the gap, should cost about
- * the same; given: by how much they may in a step. */
-double Dynamics::nearGapFor(double approach) const
-{
-	const double r = setting.smallestRadius;
-	return std::max(0.03 * r, std::min(stepsOfNearPairs * approach, 0.25 * r));
 }
 
 long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
@@ -278,6 +289,7 @@ long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 
 long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 {
+	if (velocitiesSet) takeVelocities();
 	const int threads = threadCount();
 	Barrier barrier(threads);
 	long made = steps;
@@ -287,7 +299,7 @@ long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 		const long here = runThread(steps, growth, to, omp_get_thread_num(), threads, barrier);
 		if (omp_get_thread_num() == 0) made = here;
 	}
-	counted.contactUpdates += made * contactCount(*this);
+	contactUpdates += made * contactCount(*this);
 	return made;
 }
 

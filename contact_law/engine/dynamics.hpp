@@ -28,20 +28,30 @@ void copyMotion(const Grain&, GrainMotion&);
 // A grain's velocities through the given time [s] with the forces as they are; back in time, it undoes what it does.
 void kick(const Setting&, Grain&, int index, double time);
 
+// How long ago the neighbour lists were looked after.
+struct ListAge {
+	double sinceBoxes = 0; // bound on how far any two grains have come closer since the groups' boxes were measured [m]
+	int sinceCheck = 0;    // steps
+	int checkAfter = 1;    // steps, or fewer when kicks exceed their bounds
+	bool outdated = false; // grains have been moved otherwise than by steps since
+};
+
 class Dynamics {
 public:
 	struct Options {
 		double dt = 0, linearDamping = 0;
 		double neck = 0; // of sintered bonds over the grains' radius; 0: none
 		unsigned mechanisms = AllSprings;
-		int domains = 2, threads = 1;
+		int domains = 0, threads = 1; // domains = 0: by the number of grains
 		std::string instructions;            // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool orientations = false;           // whether to follow the grains' orientations
 		PeriodicCell cell {};                // at the start's moment; off: open space
 		Vec3<double> convective { 0, 0, 0 }; // see setMeanField
 	};
 	struct Counters {
-		long contactUpdates = 0, farRebuilds = 0, nearRebuilds = 0;
+		long contactUpdates = 0;
+		double searches = 0; // for neighbours, of all grains or as many grains a part at a time
+		long looks = 0;      // at pairs that do not touch
 	};
 	using Grains = std::vector<GrainInput>;
 	using Materials = std::vector<Material>;
@@ -85,13 +95,15 @@ public:
 	int threadCount() const { return std::max(1, std::min(options.threads, int(domains.size()))); }
 	const PeriodicCell& cell() const { return domains[0]->cell; }
 	// What a periodic cell must hold twice along each axis: the largest distance of neighbours in the lists.
-	double reach() const { return 2 * *std::max_element(setting.radius.begin(), setting.radius.end()) + setting.farGap; }
-	const Counters& counters() const { return counted; }
+	double reach() const { return 2 * setting.largestRadius + setting.farGap; }
+	Counters counters() const;
 
 private:
 	void prepare(const Grains&, const Materials&);
 	void orderGrains(const Grains&);
 	void loadGrains(const Grains&);
+	int domainCount() const;
+	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
 	void makeDomains();
 	void inherit(const Inherited&);
 	void completeInheritedStep();
@@ -99,28 +111,27 @@ private:
 	template <class Archive> void transferState(Archive&);
 	void firstForces();
 	void addForces(); // of all domains, without moving
-	// mine(what) calls what(domain, its number) for a thread's domains, wait() lets the threads come together
-	template <class Mine, class Wait> void buildGrid(bool firstThread, Mine&&, Wait&&);
+	void takeVelocities();
 	void setMostCells();
-	enum class Lists { Near, FarAndNear };
-	void refreshLists(Lists);
+	void makeLists();
+	void outdateLists(); // grains have been moved otherwise than by a step
+	// mine(what) calls what(domain, its number) for a thread's domains, wait() lets the threads come together. Returns whether lists were checked.
+	template <class Mine, class Wait> bool keepLists(ListAge&, const VelocityRange&, const Vec3<double>& growth, Mine&&, Wait&&);
 	long runEvenly(long steps, const Vec3<double>& sizeAtEnd);
 	long runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier&);
 	Domain& domainOf(int index);
 	double fastestThatHolds() const;  // velocity component that a step may have
 	VelocityRange velocities() const; // of all grains through the latest drift
-	double nearGapFor(double approach) const;
 
 	Options options;
 	Setting setting;
-	Counters counted;
+	long contactUpdates = 0;
 	int count = 0;
 	std::vector<int> original, indexHere; // index given, by index here; and the other way round
 	std::vector<std::unique_ptr<Domain>> domains;
-	Grid grid;
-	double travelSinceFar = 0, travelSinceNear = 0; // bounds on how far any two grains have come closer
-	double nearGap = 0;                             // up to which untouching pairs are in the near lists
-	Vec3<double> mostCells { 0, 0, 0 };             // that a shift to the nearest image can be, periodic
+	ListAge listAge;
+	bool velocitiesSet = false; // otherwise than by a step since the latest one
+	Vec3<double> mostCells { 0, 0, 0 }; // that a shift to the nearest image can be, periodic
 };
 
 // Throws std::invalid_argument for one that is unknown or that this machine lacks.

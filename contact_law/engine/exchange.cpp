@@ -4,21 +4,22 @@ namespace contact_law {
 
 void Dynamics::inherit(const Inherited& inherited)
 {
+	const auto velocityBefore = [&](int i, int j) -> Vec3<double> {
+		if (!inherited.stepBehind || !setting.hasDrag()) return { 0, 0, 0 }; // firstForces() sets it
+		Vec3<double> separation = separationOf(setting.grains[i], setting.grains[j]);
+		const Image image = nearestImage(cell(), separation);
+		return inherited.previous[original[i]] - inherited.previous[original[j]] + image.velocityBefore;
+	};
 	for (const Inherited::One& one : inherited.contacts) {
 		const int a = indexHere[one.first], b = indexHere[one.second], i = std::min(a, b), j = std::max(a, b);
 		const ContactHistory<double> history = a < b ? one.history : swapped(one.history);
 		for (auto& domain : domains)
 			one.bonded ? domain->place(Bond { i, j, history, one.rest, setting.bondOf(i, j) })
-			           : domain->place(Contact { i, j, history, setting.constantsOf(i, j), one.drag, one.overlap });
+			           : domain->place(Contact { i, j, history, setting.constantsOf(i, j), one.drag, one.overlap, velocityBefore(i, j) });
 	}
 	for (auto& domain : domains)
 		domain->sortContacts();
-	if (inherited.stepBehind && setting.hasDrag())
-		for (int k = 0; k < count; ++k) {
-			const Vec3<double>& v = inherited.previous[original[k]];
-			setting.previous[k] = { v.x, v.y, v.z, 0 };
-		}
-	refreshLists(Lists::FarAndNear);
+	makeLists();
 	if (inherited.stepBehind) {
 		completeInheritedStep();
 		return;

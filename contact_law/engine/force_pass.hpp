@@ -88,17 +88,6 @@ template <class Pack> struct Passes {
 		return shift;
 	}
 
-	// v1 - v2 now, extrapolated from the two steps before (MODEL.md, drag).
-	static Vec3<Pack> velocityNow(const PreviousVelocity* previous, const ContactBlock& block, const Vec3<Pack>& velocity, int at)
-	{
-		alignas(64) double before[3][lanes];
-		for (int k = at; k < at + width; ++k) {
-			const PreviousVelocity &a = previous[block.i[k]], &b = previous[block.j[k]];
-			before[0][k] = a.x - b.x, before[1][k] = a.y - b.y, before[2][k] = a.z - b.z;
-		}
-		return drag::velocityNow(velocity, load(before, at));
-	}
-
 	/* Grains and blocks that later batches need are fetched a few at a time between the blocks of this one: asked for at once they
 	 * would wait for each other (a fifth of the speed at 40 grain radii; measured). */
 	static void fetchGrains(const ForcePass& pass, int index)
@@ -114,6 +103,7 @@ template <class Pack> struct Passes {
 		if (index >= pass.endBlock) return;
 		fetch(&pass.blocks[index]);
 		if constexpr (!uniform) fetch(&pass.constants[index]);
+		if (pass.drags) fetch(&pass.drags[index]);
 	}
 	template <class Block> static void fetch(const Block* block)
 	{
@@ -134,11 +124,7 @@ template <class Pack> struct Passes {
 		const typename Pack::Mask care = (inUnits < Pack(-normal::pullOffRatio)) | (Pack(largestFittedOverlap) < inUnits);
 		ContactForces<Pack> f;
 		Vec3<Pack> velocity {};
-		if constexpr (bool(mechanisms & Drag)) velocity = velocityNow(pass.previous, pass.blocks[index], pair.velocity, at);
-		if constexpr (periodic && bool(mechanisms & Drag))
-			velocity = velocity
-			        - Pack(0.5)
-			                * crossing.images.velocityBefore(load(crossing.shift[(index - pass.firstBlock) % batchSize], at));
+		if constexpr (bool(mechanisms & Drag)) velocity = drag::velocityNow(pair.velocity, load(pass.drags[index].velocity, at));
 		normalForces<mechanisms>(c, g, velocity, f);
 		Pack radial = f.normalForce;
 		if constexpr (bool(mechanisms & Drag)) radial = radial + f.drag;
@@ -236,6 +222,10 @@ template <class Pack> struct Passes {
 		const DragMoment<Pack> before { Pack::load(d.drag + at), Pack::load(d.overlap + at) };
 		const DragMoment<Pack> now { Pack::load(buffer.drag + at), Pack::load(buffer.overlap + at) };
 		bookDrag(c, before, now, plain, lost);
+		const Vec3<Pack> velocityBefore = load(d.velocity, at), velocity = load(buffer.velocity, at);
+		store({ choose(plain, velocity.x, velocityBefore.x), choose(plain, velocity.y, velocityBefore.y),
+		              choose(plain, velocity.z, velocityBefore.z) },
+		        d.velocity, at);
 		choose(plain, now.force, before.force).store(d.drag + at);
 		choose(plain, now.overlap, before.overlap).store(d.overlap + at);
 	}

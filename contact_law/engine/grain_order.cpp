@@ -1,4 +1,4 @@
-// The order in which grains are stored: along a space-filling curve, of which each domain takes a stretch.
+// The order in which grains are stored: the leaves of a k-d tree. Domains are its upper branches, groups lower ones.
 #include "dynamics.hpp"
 #include <algorithm>
 #include <numeric>
@@ -6,46 +6,58 @@
 namespace contact_law {
 
 namespace {
-	// Interleaved bits of three cell numbers: grains close in this order are close in space.
-	std::uint64_t spread(std::uint64_t x)
+	constexpr int leaf = 4;
+
+	struct Branch {
+		int firstDomain, lastDomain; // the last one not among them
+		int first, last;             // grains
+	};
+
+	int widestAxis(const std::vector<GrainInput>& grains, const int* first, const int* last)
 	{
-		x &= 0x1fffff;
-		x = (x | x << 32) & 0x1f00000000ffffULL;
-		x = (x | x << 16) & 0x1f0000ff0000ffULL;
-		x = (x | x << 8) & 0x100f00f00f00f00fULL;
-		x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
-		return (x | x << 2) & 0x1249249249249249ULL;
+		double widest = -1;
+		int axis = 0;
+		for (int k = 0; k < 3; ++k) {
+			double low = 1e300, high = -1e300;
+			for (const int* at = first; at < last; ++at) {
+				low = std::min(low, grains[*at].position[k]);
+				high = std::max(high, grains[*at].position[k]);
+			}
+			if (high - low > widest) widest = high - low, axis = k;
+		}
+		return axis;
+	}
+
+	// Where a branch within a domain is cut: between groups, then in the middle.
+	int cut(int first, int last)
+	{
+		const int size = last - first;
+		return first + (size > grainsInGroup ? (size / grainsInGroup + 1) / 2 * grainsInGroup : size / 2);
 	}
 }
 
-/* Cells of about a grain's diameter, a power of two of them along the longest axis: the order's halves then meet where that axis is halved, and of two
- * like aggregates each is a half. (Cells of just a diameter put 5 % of the contacts across the border of two domains.) */
+/* Branches are cut across their longest axis, the first of them so that each side has half of the grains: of two like aggregates each is a side, and no contact crosses the
+ * border between them. */
 void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
 {
-	double low[3], high[3], smallest = grains[0].radius;
-	for (int k = 0; k < 3; ++k)
-		low[k] = high[k] = grains[0].position[k];
-	for (const auto& g : grains) {
-		smallest = std::min(smallest, g.radius);
-		for (int k = 0; k < 3; ++k) {
-			low[k] = std::min(low[k], g.position[k]);
-			high[k] = std::max(high[k], g.position[k]);
-		}
-	}
-	const double longest = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
-	std::uint64_t cells = 1;
-	while (cells < (1u << 21) && double(cells) * 2.5 * smallest < longest)
-		cells *= 2;
-	const double cellsPerLength = longest > 0 ? double(cells) / longest : 0;
-	std::vector<std::uint64_t> keys(count);
-	for (int g = 0; g < count; ++g) {
-		keys[g] = 0;
-		for (int k = 0; k < 3; ++k)
-			keys[g] |= spread(std::min(std::uint64_t((grains[g].position[k] - low[k]) * cellsPerLength), cells - 1)) << k;
-	}
 	original.resize(count);
 	std::iota(original.begin(), original.end(), 0);
-	std::sort(original.begin(), original.end(), [&](int a, int b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+	std::vector<Branch> branches { { 0, domainCount(), 0, count } };
+	while (!branches.empty()) {
+		const Branch b = branches.back();
+		branches.pop_back();
+		const bool oneDomain = b.lastDomain - b.firstDomain == 1;
+		if (oneDomain && b.last - b.first <= leaf) continue;
+		const int middleDomain = (b.firstDomain + b.lastDomain) / 2;
+		const int middle = oneDomain ? cut(b.first, b.last) : beginOf(middleDomain);
+		const int axis = widestAxis(grains, original.data() + b.first, original.data() + b.last);
+		std::nth_element(original.begin() + b.first, original.begin() + middle, original.begin() + b.last, [&](int i, int j) {
+			const double x = grains[i].position[axis], y = grains[j].position[axis];
+			return x != y ? x < y : i < j;
+		});
+		branches.push_back({ b.firstDomain, oneDomain ? b.lastDomain : middleDomain, b.first, middle });
+		branches.push_back({ oneDomain ? b.firstDomain : middleDomain, b.lastDomain, middle, b.last });
+	}
 }
 
 } // namespace contact_law

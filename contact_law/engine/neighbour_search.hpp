@@ -1,43 +1,65 @@
-// Which members of a grid's rows lie close to a grain, for one pack type. Included by each instruction set's file.
+// Which of some grains lie close to a grain, for one pack type. Included by each instruction set's file.
 #pragma once
 #include "arrays.hpp"
-#include "grid.hpp"
 
 namespace contact_law {
+
+// Grains to choose from, by rising index; room for a whole pack behind the last one.
+struct Candidates {
+	Aligned<double> x, y, z, radius;
+	std::vector<int> grain;
+	int count = 0;
+
+	void clear() { count = 0; }
+	void add(int index, const Grain& g, double itsRadius)
+	{
+		if (std::size_t(count + lanes) > x.size()) {
+			for (auto* numbers : { &x, &y, &z, &radius })
+				numbers->resize(2 * count + 64 * lanes);
+			grain.resize(2 * count + 64 * lanes);
+		}
+		x[count] = g.x, y[count] = g.y, z[count] = g.z, radius[count] = itsRadius;
+		grain[count++] = index;
+	}
+};
+
+// A grain at a position, and the candidates from `first` up to, but not including, `last`.
+struct NeighbourSearch {
+	const Candidates& candidates;
+	const PeriodicCell& cell;
+	const Grain& at;
+	double reach; // its radius and the gap between surfaces
+	int first, last;
+};
 
 template <class Pack> struct NeighbourPasses {
 	static constexpr int width = Pack::width;
 
-	// Grains of the rows whose surfaces are closer than search.gap to the one at search.position, itself among them, by rising rows; returns how many.
-	template <bool periodic> static int closeMembers(const NeighbourSearch& search, int* found)
+	// Candidates whose surfaces are closer than the gap, by rising index; returns how many.
+	template <bool periodic> static int closeGrains(const NeighbourSearch& search, int* found)
 	{
-		const GridMembers& m = search.members;
-		const double* x = search.position;
-		const Vec3<Pack> here { Pack(x[0]), Pack(x[1]), Pack(x[2]) };
-		const Pack reach(search.radius + search.gap);
-		const Images<Pack> images(*search.cell);
+		const Candidates& c = search.candidates;
+		const Vec3<Pack> here { Pack(search.at.x), Pack(search.at.y), Pack(search.at.z) };
+		const Pack reach(search.reach);
+		const Images<Pack> images(search.cell);
 		int count = 0;
-		for (int row = 0; row < search.rowCount; ++row) {
-			const GridRow range = search.rows[row];
-			for (int at = range.first / width * width; at < range.last; at += width) {
-				Vec3<Pack> d { here.x - Pack::load(m.x + at), here.y - Pack::load(m.y + at),
-					here.z - Pack::load(m.z + at) };
-				if constexpr (periodic) d = d + images.distance(images.shift(d));
-				const Pack far = reach + Pack::load(m.radius + at);
-				unsigned bits = bitsOf(dot(d, d) < far * far);
-				if (at < range.first) bits &= ~0u << (range.first - at);
-				if (range.last - at < width) bits &= (1u << (range.last - at)) - 1;
-				for (; bits; bits &= bits - 1)
-					found[count++] = m.grain[at + __builtin_ctz(bits)];
-			}
+		for (int at = search.first / width * width; at < search.last; at += width) {
+			Vec3<Pack> d { here.x - Pack::load(&c.x[at]), here.y - Pack::load(&c.y[at]), here.z - Pack::load(&c.z[at]) };
+			if constexpr (periodic) d = d + images.distance(images.shift(d));
+			const Pack far = reach + Pack::load(&c.radius[at]);
+			unsigned bits = bitsOf(dot(d, d) < far * far);
+			if (at < search.first) bits &= ~0u << (search.first - at);
+			if (search.last - at < width) bits &= (1u << (search.last - at)) - 1;
+			for (; bits; bits &= bits - 1)
+				found[count++] = c.grain[at + __builtin_ctz(bits)];
 		}
 		return count;
 	}
 
 	static InstructionSet addTo(InstructionSet set)
 	{
-		set.closeMembers[false] = &closeMembers<false>;
-		set.closeMembers[true] = &closeMembers<true>;
+		set.closeGrains[false] = &closeGrains<false>;
+		set.closeGrains[true] = &closeGrains<true>;
 		return set;
 	}
 };

@@ -3,9 +3,19 @@
 
 namespace contact_law {
 
+// Until grains have moved by more than a radius or two.
 void Dynamics::setMostCells()
 {
-	if (cell().on) mostCells = { grid.mostCells(0), grid.mostCells(1), grid.mostCells(2) };
+	if (!cell().on) return;
+	double extent[3];
+	for (int k = 0; k < 3; ++k) {
+		double low = 1e300, high = -1e300;
+		for (const Group& group : setting.groups)
+			low = std::min(low, group.low[k]), high = std::max(high, group.high[k]);
+		extent[k] = high - low;
+	}
+	const Vec3<double>& size = cell().size;
+	mostCells = { extent[0] / size.x + 1, extent[1] / size.y + 1, extent[2] / size.z + 1 };
 }
 
 void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& convective)
@@ -20,6 +30,8 @@ void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& conve
 		p.vx += added.x * p.x, p.vy += added.y * p.y, p.vz += added.z * p.z;
 	}
 	setting.convective = convective;
+	velocitiesSet = true;
+	outdateLists();
 	for (int k = 0; k < count; ++k)
 		kick(setting, setting.grains[k], k, -0.5 * setting.dt);
 	for (auto& domain : domains) {

@@ -12,6 +12,9 @@ inline void integrateOneByOne(
 	VelocityRange met = range;
 	for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {
 		const double m = *inverseMass * dt, i = *inverseInertia * dt;
+		const double* f = &g->fx;
+		for (int k = 0; k < 3; ++k)
+			met.kick[k] = std::max(met.kick[k], std::abs(f[k] * m));
 		g->vx += g->fx * m, g->vy += g->fy * m, g->vz += g->fz * m;
 		g->wx += g->tx * i, g->wy += g->ty * i, g->wz += g->tz * i;
 		g->x += g->vx * dt, g->y += g->vy * dt, g->z += g->vz * dt;

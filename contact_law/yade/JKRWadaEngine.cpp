@@ -56,7 +56,8 @@ void JKRWadaEngine::requireInRange() const
 	const auto atLeastOne = [](const char* name, int value) {
 		if (value < 1) refuseInEngine(std::string(name) + " = " + text(value) + ": must be >= 1");
 	};
-	atLeastOne("subSteps", subSteps), atLeastOne("threads", threads), atLeastOne("domains", domains);
+	atLeastOne("subSteps", subSteps), atLeastOne("threads", threads);
+	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
 	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
 		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
 	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
@@ -330,13 +331,14 @@ boost::python::dict JKRWadaEngine::statistics() const
 		result[modes[mode]] = broken[mode];
 		result[modes[mode] + std::string("Energy")] = lost.*contact_law::bondBreakingBy[mode];
 	}
+	result["domains"] = dynamics.parts().size();
 	result["contactUpdates"] = dynamics.counters().contactUpdates;
 	const contact_law::Counts counts = contact_law::counts(dynamics);
 	result["events"] = counts.events;
 	result["formed"] = counts.formed;
 	result["broken"] = counts.broken;
-	result["farRebuilds"] = dynamics.counters().farRebuilds;
-	result["nearRebuilds"] = dynamics.counters().nearRebuilds;
+	result["searches"] = dynamics.counters().searches;
+	result["looks"] = dynamics.counters().looks;
 	result["instructions"] = dynamics.state().passes->name;
 	return result;
 }

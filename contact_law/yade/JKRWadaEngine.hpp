@@ -66,7 +66,7 @@ public:
 		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
 		((int, subSteps, 1, , "Small steps in one O.step."))
 		((int, threads, 1, , "Threads to use, at most as many as domains."))
-		((int, domains, 2, , "Parts that the grains are divided into, for the threads. Another number changes results by rounding."))
+		((int, domains, 0, , "Parts that the grains are divided into, for the threads. 0: by the number of bodies, 2 up to 24,000, then 4, 8 ... up to 64, so that results do not depend on the machine. Another number changes results by rounding."))
 		((std::string, instructions, "", , "Instruction set: 'avx512', 'avx2', 'portable', or '' for the best this machine has. Another one changes results by rounding."))
 		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
 		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that touch at the start are bonded, all others as shrunk as they "
@@ -84,7 +84,7 @@ public:
 		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
 		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors continue from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
-		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
+		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), searches (for neighbours, of all grains or as many a part at a time), looks (at pairs that do not touch), domains, instructions.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;

@@ -1,0 +1,244 @@
+#include "pair_lists.hpp"
+#include "setting.hpp"
+#include <algorithm>
+
+namespace contact_law {
+
+namespace {
+	// By how much a distance along an axis of a periodic cell (or not) is shorter than half the way around.
+	double nearest(double distance, double size, bool periodic)
+	{
+		return std::abs(periodic ? distance - size * std::nearbyint(distance / size) : distance);
+	}
+}
+
+PairLists::PairLists(Setting& setting, int begin_, int end_)
+        : s(setting)
+        , begin(begin_)
+        , end(end_)
+        , firstGroup(int(setting.groups.size()))
+{
+	for (int first = begin; first < end; first += grainsInGroup) {
+		s.groups.emplace_back();
+		s.groups.back().first = first;
+		s.groups.back().last = std::min(first + grainsInGroup, end);
+		s.groups.back().kickBound = s.leastKick;
+	}
+	endGroup = int(s.groups.size());
+}
+
+PairLists::Stretch PairLists::own() const { return { s.groups.data() + firstGroup, s.groups.data() + endGroup }; }
+Group& PairLists::group(int grain) { return s.groups[firstGroup + (grain - begin) / grainsInGroup]; }
+
+void PairLists::measureBoxes()
+{
+	for (Group& group : own())
+		for (int k = 0; k < 3; ++k) {
+			double low = 1e300, high = -1e300;
+			for (int i = group.first; i < group.last; ++i) {
+				low = std::min(low, (&s.grains[i].x)[k]);
+				high = std::max(high, (&s.grains[i].x)[k]);
+			}
+			group.low[k] = low, group.high[k] = high;
+		}
+}
+
+void PairLists::findNearby(const PeriodicCell& cell, double reach)
+{
+	const double size[3] = { cell.size.x, cell.size.y, cell.size.z };
+	for (Group& group : own()) {
+		group.nearby.clear();
+		for (const Group& other : s.groups) {
+			double squared = 0;
+			for (int k = 0; k < 3; ++k) {
+				const double centres = nearest(0.5 * (group.low[k] + group.high[k] - other.low[k] - other.high[k]), size[k], cell.on);
+				const double apart = centres - 0.5 * (group.high[k] - group.low[k] + other.high[k] - other.low[k]);
+				if (apart > 0) squared += apart * apart;
+			}
+			if (squared <= reach * reach) group.nearby.push_back(int(&other - s.groups.data()));
+		}
+	}
+}
+
+void PairLists::gatherCandidates(const Group& group, const PeriodicCell& cell)
+{
+	const double size[3] = { cell.size.x, cell.size.y, cell.size.z };
+	double centre[3], half[3];
+	for (int k = 0; k < 3; ++k) {
+		double low = 1e300, high = -1e300;
+		for (int i = group.first; i < group.last; ++i) {
+			low = std::min(low, (&s.grains[i].x)[k]);
+			high = std::max(high, (&s.grains[i].x)[k]);
+		}
+		centre[k] = 0.5 * (low + high);
+		half[k] = 0.5 * (high - low) + 2 * s.largestRadius + s.farGap;
+	}
+	candidates.clear();
+	for (const int g : group.nearby)
+		for (int i = s.groups[g].first; i < s.groups[g].last; ++i) {
+			const Grain& grain = s.grains[i];
+			if (nearest(grain.x - centre[0], size[0], cell.on) <= half[0] && nearest(grain.y - centre[1], size[1], cell.on) <= half[1]
+			    && nearest(grain.z - centre[2], size[2], cell.on) <= half[2])
+				candidates.add(i, grain, s.radius[i]);
+		}
+}
+
+void PairLists::search(Group& group, const PeriodicCell& cell)
+{
+	gatherCandidates(group, cell);
+	found.resize(std::max(found.size(), std::size_t(candidates.count + lanes)));
+	foundPairs.clear();
+	int lower = 0, above = 0; // candidates of domains before this one; up to the grain
+	while (lower < candidates.count && candidates.grain[lower] < begin)
+		++lower;
+	for (int i = group.first; i < group.last; ++i) {
+		while (above < candidates.count && candidates.grain[above] <= i)
+			++above;
+		const auto look = [&](int first, int last) {
+			const int count = s.passes->closeGrains[cell.on](
+			        { candidates, cell, s.grains[i], s.radius[i] + s.farGap, first, last }, found.data());
+			for (int k = 0; k < count; ++k)
+				foundPairs.push_back({ i, found[k] });
+		};
+		if (lower > 0) look(0, lower);
+		look(above, candidates.count);
+	}
+	foundNext.assign(foundPairs.size(), step);
+	std::size_t at = 0; // pairs that touch keep doing so
+	for (std::size_t k = 0; k < group.pairs.size(); ++k) {
+		if (group.next[k] != Group::never) continue;
+		while (at < foundPairs.size() && foundPairs[at] < group.pairs[k])
+			++at;
+		if (at < foundPairs.size() && !(group.pairs[k] < foundPairs[at])) foundNext[at] = Group::never;
+	}
+	group.pairs.swap(foundPairs);
+	group.next.swap(foundNext);
+	group.soonest = 0;
+	group.approach = 0;
+	++searches;
+}
+
+void PairLists::searchAll(const PeriodicCell& cell)
+{
+	for (Group& group : own())
+		search(group, cell);
+}
+
+void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across)
+{
+	holds = true;
+	for (Group& group : own()) {
+		VelocityRange around;
+		double kicks = 0;
+		for (const int g : group.nearby) {
+			around.join(s.groups[g].sinceCheck);
+			kicks = std::max(kicks, s.groups[g].kickBound);
+		}
+		const double perStep = s.dt * around.diagonal() + across;
+		const double ahead = (stepsToNext - 1) * (perStep + s.dt * 2 * stepsToNext * kicks);
+		group.approach += steps * perStep;
+		if (group.approach + ahead > s.farGap)
+			search(group, cell);
+		else if (kicks > group.kickNearby)
+			group.soonest = -1;
+		group.kickNearby = kicks;
+		holds = holds && ahead <= s.farGap;
+	}
+}
+
+void PairLists::clearAfterCheck()
+{
+	for (Group& group : own()) {
+		group.kickBound = std::max({ s.leastKick, 0.8 * group.kickBound, 2 * group.sinceCheck.largestKick() });
+		group.sinceCheck.clear();
+	}
+}
+
+const std::vector<NeighbourPair>& PairLists::overlapping(const PeriodicCell& cell)
+{
+	constexpr std::size_t ahead = 8;
+	findDue();
+	overlaps.clear();
+	for (std::size_t k = 0; k < due.size(); ++k) {
+		if (k + ahead < due.size()) {
+			const NeighbourPair& coming = due[k + ahead].group->pairs[due[k + ahead].index];
+			__builtin_prefetch(&s.grains[coming.own]);
+			__builtin_prefetch(&s.grains[coming.other]);
+		}
+		look(*due[k].group, due[k].index, cell);
+	}
+	looks += long(due.size());
+	return overlaps;
+}
+
+void PairLists::findDue()
+{
+	due.clear();
+	for (Group& group : own()) {
+		if (group.soonest > step) continue;
+		const int last = group.soonest < 0 ? Group::never - 1 : step; // all, or those whose time has come
+		int soonest = Group::never;
+		for (std::size_t k = 0; k < group.next.size(); ++k) {
+			const int next = group.next[k];
+			if (next <= last)
+				due.push_back({ &group, int(k) });
+			else
+				soonest = std::min(soonest, next);
+		}
+		group.soonest = soonest;
+	}
+}
+
+void PairLists::look(Group& group, int index, const PeriodicCell& cell)
+{
+	const NeighbourPair p = group.pairs[index];
+	Vec3<double> separation = separationOf(s.grains[p.own], s.grains[p.other]);
+	const Image image = nearestImage(cell, separation);
+	const Vec3<double> velocity = velocityOf(s.grains[p.own]) - velocityOf(s.grains[p.other]) + image.velocity;
+	const double squared = dot(separation, separation), reach = s.radius[p.own] + s.radius[p.other];
+	int next = step + 1;
+	if (squared <= reach * reach)
+		overlaps.push_back(p);
+	else {
+		const double distance = std::sqrt(squared);
+		next = step + stepsUntilTouch(group, distance - reach, -dot(separation, velocity) / distance);
+	}
+	group.next[index] = next;
+	group.soonest = std::min(group.soonest, next);
+}
+
+/* In k steps two grains come closer by k closing dt + k (k + 1) a dt at most, when no kick changes a velocity by more than a: the distance of two straight lines is convex
+ * in time, so the closing speed now is the largest there is without kicks. */
+int PairLists::stepsUntilTouch(const Group& group, double gap, double closing) const
+{
+	if (s.dt == 0) return 1; // the forces at the start
+	const double a = (group.kickNearby + s.leastKick) * s.dt, b = a + closing * s.dt;
+	const double root = std::sqrt(b * b + 4 * a * gap), steps = b > 0 ? 2 * gap / (b + root) : (root - b) / (2 * a);
+	return std::max(1, int(std::min(0.999999 * steps, 1e6)));
+}
+
+int* PairLists::nextOf(int i, int j)
+{
+	const bool ownFirst = i >= begin && i < end;
+	Group& g = group(ownFirst ? i : j);
+	const NeighbourPair pair = ownFirst ? NeighbourPair { i, j } : NeighbourPair { j, i };
+	const auto at = std::lower_bound(g.pairs.begin(), g.pairs.end(), pair);
+	if (at == g.pairs.end() || pair < *at) return nullptr;
+	return &g.next[at - g.pairs.begin()];
+}
+
+void PairLists::touch(int i, int j)
+{
+	if (int* next = nextOf(i, j)) *next = Group::never;
+}
+
+void PairLists::part(int i, int j)
+{
+	int* next = nextOf(i, j);
+	if (!next) return;
+	*next = step + 1;
+	Group& g = group(i >= begin && i < end ? i : j);
+	g.soonest = std::min(g.soonest, step + 1);
+}
+
+} // namespace contact_law

@@ -1,0 +1,77 @@
+/* Neighbours of a domain's grains, by groups, and when to look whether they touch.
+ * A group's pairs hold until its grains and those of groups nearby may have come closer by the far gap: then this group's are searched for anew, and no others. A pair that
+ * does not touch is looked at again when its gap, its closing speed and the bound on kicks nearby allow a touch.
+ * Nothing here changes a result: whatever the lists, a contact forms in the step in which two grains overlap. */
+#pragma once
+#include "groups.hpp"
+#include "neighbour_search.hpp"
+
+namespace contact_law {
+
+struct Setting;
+
+class PairLists {
+public:
+	PairLists(Setting& setting, int begin, int end);
+
+	Group& group(int grain); // that the grain, one of the domain's own, is in
+
+	// ---- searching: measureBoxes of all domains, then findNearby, then search ----
+
+	void measureBoxes();
+	void findNearby(const PeriodicCell&, double reach); // groups with boxes closer than this [m]
+	void searchAll(const PeriodicCell&);
+
+	/* The lists `steps` steps after the latest check, to hold for stepsToNext more (fewer when kicks exceed their bounds: then check at once). across: by how much
+	 * boundaries move images in a step [m]. */
+	void check(const PeriodicCell&, int steps, int stepsToNext, double across);
+	bool holdToNext() const { return holds; } // otherwise one step only
+	void clearAfterCheck();                   // ranges and bounds begin anew
+
+	// ---- looking ----
+
+	void beginStep() { ++step; }
+	// Pairs that overlap and do not touch, by rising indices; they are looked at again in the next step unless touch() is called for them.
+	const std::vector<NeighbourPair>& overlapping(const PeriodicCell&);
+	void touch(int i, int j); // both of some pair of this domain; nothing happens to one that is not listed
+	void part(int i, int j);
+
+	// visit(i, j), i < j, for all pairs that do not touch
+	template <class Visit> void each(Visit&& visit) const
+	{
+		for (const Group& group : own())
+			for (std::size_t k = 0; k < group.pairs.size(); ++k)
+				if (group.next[k] != Group::never) visit(group.pairs[k].first(), group.pairs[k].second());
+	}
+
+	long searches = 0, looks = 0; // groups searched for, pairs looked at so far
+
+private:
+	struct Stretch {
+		Group *from, *to;
+		Group* begin() const { return from; }
+		Group* end() const { return to; }
+	};
+	Stretch own() const;
+	void search(Group&, const PeriodicCell&);
+	void gatherCandidates(const Group&, const PeriodicCell&);
+	int* nextOf(int i, int j);
+	void findDue();
+	void look(Group&, int index, const PeriodicCell&);
+	int stepsUntilTouch(const Group&, double gap, double closing) const;
+
+	Setting& s;
+	int begin, end, firstGroup, endGroup;
+	int step = 0;
+	bool holds = false;
+	Candidates candidates;
+	std::vector<NeighbourPair> foundPairs, overlaps;
+	struct Due {
+		Group* group;
+		int index; // of the pair
+	};
+	std::vector<Due> due; // pairs to look at now
+	std::vector<int> foundNext, found;
+};
+
+} // namespace contact_law

@@ -1,0 +1,56 @@
+// What all domains share: grains, materials, constants, options.
+#pragma once
+#include "../kernel/contact_step.hpp"
+#include "bond_list.hpp"
+#include "contact_list.hpp"
+#include "groups.hpp"
+#include "orientations.hpp"
+
+namespace contact_law {
+
+struct Setting {
+	Aligned<Grain> grains;                                   // then, for each domain, two dummies that dead lanes point to
+	std::vector<Group> groups;                               // of all domains
+	std::vector<double> inverseMass, inverseInertia, radius; // radius: of the grain as contacts have it, shrunk where necks are
+	std::vector<double> grainRadius;                         // before
+	std::vector<Material> material;                          // kinds of material
+	std::vector<int> kind;                                   // of each grain
+	std::vector<Orientation> orientation;                    // likewise; none where the scene doesn't ask for them
+	std::vector<unsigned> blocked;                           // likewise (kernel/blocked.hpp)
+	double linearDamping = 0;
+	double neck = 0; // radius of sintered bonds' necks over that of the grains; 0: none
+	bool uniform = true;
+	PairConstants<double> common {};     // of the first grain with itself; of every pair when all grains are equal
+	BondConstants<double> commonBond {}; // likewise
+	unsigned mechanisms = AllSprings;
+	double dt = 0, farGap = 0, smallestRadius = 0, largestRadius = 0; // farGap: between the surfaces of pairs in the neighbour lists
+	double leastKick = 0; // least bound on the change of a velocity in a step [m/s] (pair_lists.hpp)
+	Vec3<double> convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
+	const InstructionSet* passes = nullptr;
+	std::vector<Vec3<double>> displaced; // of each grain, by a script since the latest step [m]; empty when none was
+
+	void displace(int grain, const Vec3<double>& by)
+	{
+		if (by.x == 0 && by.y == 0 && by.z == 0) return;
+		displaced.resize(grains.size(), Vec3<double> { 0, 0, 0 });
+		displaced[grain] = displaced[grain] + by;
+	}
+	bool hasDrag() const { return mechanisms & Drag; }
+	bool convects() const { return convective.x != 0 || convective.y != 0 || convective.z != 0; }
+	Contact contactOf(const ContactList& list, int lane) const
+	{
+		return list.get(lane, constantsOf(list.first(lane), list.second(lane)));
+	}
+	PairConstants<double> constantsOf(int i, int j) const
+	{
+		return uniform
+		        ? common
+		        : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);
+	}
+	BondConstants<double> bondOf(int i, int j) const
+	{
+		return uniform ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], neck);
+	}
+};
+
+} // namespace contact_law
