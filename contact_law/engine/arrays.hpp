@@ -128,6 +128,12 @@ struct alignas(64) VelocityRange {
 			least[k] = std::min(least[k], other.least[k]), most[k] = std::max(most[k], other.most[k]),
 			kick[k] = std::max(kick[k], other.kick[k]);
 	}
+	bool holds(const VelocityRange& other) const // its velocities, whatever the kicks
+	{
+		for (int k = 0; k < 3; ++k)
+			if (other.least[k] < least[k] || other.most[k] > most[k]) return false;
+		return true;
+	}
 	double diagonal() const
 	{
 		const Vec3<double> d { most[0] - least[0], most[1] - least[1], most[2] - least[2] };

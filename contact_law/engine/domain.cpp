@@ -91,7 +91,7 @@ void Domain::moveBehind(void* owner, int batch)
 void Domain::beginMoving()
 {
 	velocities.clear(), movedLatest.clear();
-	kickExceeded = false;
+	boundExceeded = false;
 	moved = begin;
 }
 
@@ -118,9 +118,7 @@ void Domain::integrateUpTo(int grain)
 
 void Domain::finishGroup(Group& group)
 {
-	const double kick = movedLatest.largestKick();
-	if (kick > group.kickBound) group.kickBound = 2 * kick, kickExceeded = true;
-	group.sinceCheck.join(movedLatest);
+	if (!group.keepsWithin(movedLatest)) boundExceeded = true;
 	velocities.join(movedLatest);
 	movedLatest.clear();
 }

@@ -56,9 +56,9 @@ public:
 
 	int begin, end;
 	VelocityRange velocities;  // of own grains through the latest drift
-	bool kickExceeded = false; // whether in it a group's kicks exceeded their bound
-	PairLists lists;           // neighbours that do not touch
-	bool mustCheck() const { return kickExceeded || !lists.holdToNext(); }
+	bool boundExceeded = false; // whether in it a group's grains left their bounds
+	PairLists lists;            // neighbours that do not touch
+	bool mustCheck() const { return boundExceeded || !lists.holdToNext(); }
 	long events = 0;
 	long formed = 0, broke = 0; // contacts (bonds not among them) so far; a border contact where its first grain lives
 	StepSums sums;

@@ -1,6 +1,7 @@
 // Grains in groups of neighbours: stretches of their order that are leaves of a k-d tree (grain_order.cpp).
 #pragma once
 #include "arrays.hpp"
+#include <algorithm>
 #include <vector>
 
 namespace contact_law {
@@ -17,18 +18,58 @@ struct NeighbourPair {
 /* What the neighbour lists know of a group (pair_lists.hpp). Its own domain writes all of it; other domains read ranges, bounds and boxes, in another part of a step
  * than that in which they are written. */
 struct alignas(64) Group {
-	VelocityRange sinceCheck; // of its grains since the latest check
-	double kickBound = 0;     // no kick of its grains has been larger [m/s]; raised at once when one is
+	VelocityRange sinceCheck;  // of its grains since the latest check
+	VelocityRange sinceTrial;  // since the bounds were last tried for being too wide
+	VelocityRange bound;       // in which all velocities of its grains have been; widened at once when one leaves it
+	double kickBound = 0;      // likewise for kicks [m/s]
+	int checksSinceTrial = 0;
 	int first, last;          // grains, the last one not among them
 	double low[3], high[3];   // around the grains' centres when boxes were measured
 	std::vector<int> nearby;  // groups whose grains may be neighbours of its own, itself among them, by rising number
-	double kickNearby = 0;    // largest of their bounds at the latest check
+	double kickNearby = 0;    // largest of their bounds on kicks at the latest check
+	double speedNearby = 0;   // bound on the relative velocity of its grains and theirs, likewise [m/s]
 	double approach = 0;      // bound on how far its grains and theirs have come closer since its pairs were found [m]
 	std::vector<NeighbourPair> pairs; // with a gap below Setting::farGap when they were found, in order
 	std::vector<int> next;            // by pair: the step in which to look at it again; never: it touches
 	int soonest = 0;                  // of these
 
 	static constexpr int never = 2147483647;
+
+	// After a step: its grains' velocities and kicks in it. Returns whether they keep within the bounds.
+	bool keepsWithin(const VelocityRange& latest)
+	{
+		sinceCheck.join(latest);
+		const double kick = latest.largestKick();
+		if (kick <= kickBound && bound.holds(latest)) return true;
+		kickBound = std::max(kickBound, 2 * kick);
+		bound.join(sinceCheck);
+		widen();
+		return false;
+	}
+	// Bounds that have become far too wide are drawn closer.
+	void clearAfterCheck(double leastKick)
+	{
+		sinceTrial.join(sinceCheck);
+		sinceCheck.clear();
+		if (++checksSinceTrial < 16) return;
+		checksSinceTrial = 0;
+		kickBound = std::max({ leastKick, 0.5 * kickBound, 2 * sinceTrial.largestKick() });
+		if (bound.diagonal() > 6 * sinceTrial.diagonal() + 32 * kickBound) {
+			bound = sinceTrial;
+			widen();
+		}
+		sinceTrial.clear();
+	}
+
+private:
+	// To twice the range, and by what kicks may add in a few steps.
+	void widen()
+	{
+		for (int k = 0; k < 3; ++k) {
+			const double by = 0.5 * (bound.most[k] - bound.least[k]) + 4 * kickBound;
+			bound.least[k] -= by, bound.most[k] += by;
+		}
+	}
 };
 
 } // namespace contact_law

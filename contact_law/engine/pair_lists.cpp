@@ -128,30 +128,31 @@ void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, doub
 {
 	holds = true;
 	for (Group& group : own()) {
-		VelocityRange around;
+		VelocityRange around, bound;
 		double kicks = 0;
 		for (const int g : group.nearby) {
 			around.join(s.groups[g].sinceCheck);
+			bound.join(s.groups[g].bound);
 			kicks = std::max(kicks, s.groups[g].kickBound);
 		}
+		const double speed = bound.diagonal() + across / s.dt;
 		const double perStep = s.dt * around.diagonal() + across;
 		const double ahead = (stepsToNext - 1) * (perStep + s.dt * 2 * stepsToNext * kicks);
 		group.approach += steps * perStep;
 		if (group.approach + ahead > s.farGap)
 			search(group, cell);
-		else if (kicks > group.kickNearby)
+		else if (kicks > group.kickNearby || speed > group.speedNearby)
 			group.soonest = -1;
 		group.kickNearby = kicks;
+		group.speedNearby = speed;
 		holds = holds && ahead <= s.farGap;
 	}
 }
 
 void PairLists::clearAfterCheck()
 {
-	for (Group& group : own()) {
-		group.kickBound = std::max({ s.leastKick, 0.8 * group.kickBound, 2 * group.sinceCheck.largestKick() });
-		group.sinceCheck.clear();
-	}
+	for (Group& group : own())
+		group.clearAfterCheck(s.leastKick);
 }
 
 const std::vector<NeighbourPair>& PairLists::overlapping(const PeriodicCell& cell)
@@ -208,13 +209,16 @@ void PairLists::look(Group& group, int index, const PeriodicCell& cell)
 }
 
 /* In k steps two grains come closer by k closing dt + k (k + 1) a dt at most, when no kick changes a velocity by more than a: the distance of two straight lines is convex
- * in time, so the closing speed now is the largest there is without kicks. */
+ * in time, so the closing speed now is the largest there is without kicks. And by no more than their largest relative velocity allows, to which a periodic cell's rate may
+ * add leastKick a step, from one O.step to the next. */
 int PairLists::stepsUntilTouch(const Group& group, double gap, double closing) const
 {
+	constexpr double most = 1000;
 	if (s.dt == 0) return 1; // the forces at the start
 	const double a = (group.kickNearby + s.leastKick) * s.dt, b = a + closing * s.dt;
-	const double root = std::sqrt(b * b + 4 * a * gap), steps = b > 0 ? 2 * gap / (b + root) : (root - b) / (2 * a);
-	return std::max(1, int(std::min(0.999999 * steps, 1e6)));
+	const double root = std::sqrt(b * b + 4 * a * gap), byKicks = b > 0 ? 2 * gap / (b + root) : (root - b) / (2 * a);
+	const double bySpeed = gap / (s.dt * (group.speedNearby + most * s.leastKick));
+	return std::max(1, int(0.999999 * std::min(most, std::max(byKicks, bySpeed))));
 }
 
 int* PairLists::nextOf(int i, int j)
