@@ -99,10 +99,11 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 			archive.same(setting.material[kind].*row.member,
 			        [&] { return std::string(row.name) + " of material " + std::to_string(kind); });
 	original.resize(count);
-	for (int& index : original) {
-		archive.number(index);
-		if (index < 0 || index >= count)
+	for (int k = 0; k < count; ++k) {
+		archive.number(original[k]);
+		if (original[k] < 0 || original[k] >= count)
 			throw std::invalid_argument("the checkpoint of the grains is damaged: their order must be of 0 to N - 1");
+		indexHere[original[k]] = k;
 	}
 }
 
@@ -123,7 +124,7 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 	if (moved) setting.displaced.resize(setting.grains.size());
 	for (Vec3<double>& by : setting.displaced)
 		transfer(archive, by);
-	archive.number(contactUpdates);
+	transferNumbers(archive, contactUpdates, sizesWhenOrdered, stepsSinceTrial, orders);
 	transfer(archive, setting.convective);
 	for (auto& domain : domains)
 		transfer(archive, *domain, setting);

@@ -251,6 +251,30 @@ bool Domain::formContact(const NeighbourPair& pair)
 	return true;
 }
 
+void Domain::takeOut(std::vector<Contact>& allContacts, std::vector<Bond>& allBonds, std::vector<Constrained>& allConstrained)
+{
+	for (int sort = Both; sort <= First; ++sort) {
+		for (int lane = 0; lane < contacts[sort].size(); ++lane)
+			if (contacts[sort].alive(lane)) allContacts.push_back(s.contactOf(contacts[sort], lane));
+		for (int lane = 0; lane < bonds[sort].size(); ++lane)
+			if (bonds[sort].alive(lane)) allBonds.push_back(bonds[sort].get(lane, s.commonBond));
+	}
+	for (ContactList& list : contacts)
+		list.clear();
+	for (BondList& list : bonds)
+		list.clear();
+	allConstrained.insert(allConstrained.end(), constraints.grains.begin(), constraints.grains.end());
+	constraints.grains.clear();
+}
+
+void Domain::place(const std::vector<Constrained>& all)
+{
+	for (const Constrained& c : all)
+		if (owns(c.grain)) constraints.grains.push_back(c);
+	std::sort(constraints.grains.begin(), constraints.grains.end(),
+	        [](const Constrained& a, const Constrained& b) { return a.grain < b.grain; });
+}
+
 void Domain::markTouching()
 {
 	const auto mark = [this](const auto& list) {

@@ -47,6 +47,9 @@ public:
 	void placeBonds();       // between all grains that touched before they shrank
 	void place(const Bond&);
 	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and markTouching()
+	void place(const std::vector<Constrained>&);
+	// All contacts and bonds of which this domain has the first grain, and its constrained grains; they are placed anew when grains have changed their order.
+	void takeOut(std::vector<Contact>&, std::vector<Bond>&, std::vector<Constrained>&);
 	void markTouching();        // in the neighbour lists, all that touch
 	void takeVelocities();      // as they are now, for drag in the next step
 	StoredEnergy<double> energies();

@@ -6,6 +6,16 @@
 namespace contact_law {
 
 namespace {
+	std::vector<Vec3<double>> positionsOf(const std::vector<GrainInput>& grains)
+	{
+		std::vector<Vec3<double>> positions;
+		for (const GrainInput& g : grains)
+			positions.push_back({ g.position[0], g.position[1], g.position[2] });
+		return positions;
+	}
+
+	constexpr long stepsBetweenTrials = 2000; // of the grains' order, which takes some fifty steps' time to make anew
+	constexpr double worn = 1.5;              // groups are put in order again when their edges have grown by this
 	constexpr double mostStepsToCheck = 8; // from one check of the neighbour lists to the next
 	constexpr int grainsInDomain = 6000, mostDomains = 64; // at least, and at most, where the scene decides
 	constexpr double leastKick = 1e-8;     // bound on kicks in r/dt: a pair a hundredth of a radius apart is then not looked at for a thousand steps
@@ -16,10 +26,11 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
         : options(options_)
 {
 	prepare(grains, materials);
-	orderGrains(grains);
+	orderGrains(positionsOf(grains));
 	loadGrains(grains);
 	makeDomains();
 	makeLists();
+	sizesWhenOrdered = groupSizes();
 	for (auto& domain : domains)
 		setting.neck > 0 ? domain->placeBonds() : domain->placeOverlapping();
 	firstForces();
@@ -29,16 +40,18 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
         : options(options_)
 {
 	prepare(grains, materials);
-	orderGrains(grains);
+	orderGrains(positionsOf(grains));
 	loadGrains(grains);
 	makeDomains();
 	inherit(inherited);
+	sizesWhenOrdered = groupSizes();
 }
 
 void Dynamics::prepare(const Grains& grains, const Materials& materials)
 {
 	if (grains.empty()) throw std::invalid_argument("no grains: at least one sphere is needed");
 	count = int(grains.size());
+	indexHere.resize(count);
 	setting.passes = &instructionSet(options.instructions);
 	setting.material = materials;
 	setting.linearDamping = options.linearDamping;
@@ -53,10 +66,8 @@ void Dynamics::loadGrains(const Grains& grains)
 	const double shrunk = neck::shrunkRadius(setting.neck);
 	double& smallest = setting.smallestRadius;
 	smallest = shrunk * grains[0].radius;
-	indexHere.resize(count);
 	for (int k = 0; k < count; ++k) {
 		const GrainInput& g = grains[original[k]];
-		indexHere[original[k]] = k;
 		smallest = std::min(smallest, shrunk * g.radius);
 		setting.largestRadius = std::max(setting.largestRadius, shrunk * g.radius);
 		setting.grains.push_back(Grain {});
@@ -200,6 +211,7 @@ Dynamics::Counters Dynamics::counters() const
 {
 	Counters c;
 	c.contactUpdates = contactUpdates;
+	c.orders = orders;
 	for (const auto& domain : domains) {
 		c.searches += double(domain->lists.searches) / double(setting.groups.size());
 		c.looks += domain->lists.looks;
@@ -276,15 +288,19 @@ VelocityRange Dynamics::velocities() const
 long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 {
 	const Vec3<double> from = cell().size, to = sizeAtEnd ? *sizeAtEnd : from;
-	if (setting.displaced.empty() || steps == 1) {
-		const long made = runEvenly(steps, to);
+	for (long made = 0; made < steps;) {
+		if (stepsSinceTrial >= stepsBetweenTrials) {
+			stepsSinceTrial = 0;
+			if (groupSizes() > worn * sizesWhenOrdered) reorder();
+		}
+		// what a script has moved is moved for the first step only
+		const long most = setting.displaced.empty() ? stepsBetweenTrials - stepsSinceTrial : 1, wanted = std::min(most, steps - made);
+		const long here = runEvenly(wanted, from + (double(made + wanted) / double(steps)) * (to - from));
 		setting.displaced.clear();
-		return made;
+		stepsSinceTrial += here, made += here;
+		if (here < wanted) return made;
 	}
-	// what a script has moved is moved for the first step only
-	const long first = runEvenly(1, from + (1. / double(steps)) * (to - from));
-	setting.displaced.clear();
-	return first < 1 ? first : first + runEvenly(steps - 1, to);
+	return steps;
 }
 
 long Dynamics::runEvenly(long steps, const Vec3<double>& to)

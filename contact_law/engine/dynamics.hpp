@@ -52,6 +52,7 @@ public:
 		long contactUpdates = 0;
 		double searches = 0; // for neighbours, of all grains or as many grains a part at a time
 		long looks = 0;      // at pairs that do not touch
+		long orders = 0;     // times that grains were put into a new order
 	};
 	using Grains = std::vector<GrainInput>;
 	using Materials = std::vector<Material>;
@@ -100,7 +101,9 @@ public:
 
 private:
 	void prepare(const Grains&, const Materials&);
-	void orderGrains(const Grains&);
+	void orderGrains(const std::vector<Vec3<double>>& positions); // as given
+	double groupSizes();                                          // sum of their edges [m]
+	void reorder();
 	void loadGrains(const Grains&);
 	int domainCount() const;
 	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
@@ -129,6 +132,9 @@ private:
 	int count = 0;
 	std::vector<int> original, indexHere; // index given, by index here; and the other way round
 	std::vector<std::unique_ptr<Domain>> domains;
+	double sizesWhenOrdered = 0; // groupSizes() when grains were put into their order
+	long stepsSinceTrial = 0;    // whether they need a new one
+	long orders = 0;
 	ListAge listAge;
 	bool velocitiesSet = false; // otherwise than by a step since the latest one
 	Vec3<double> mostCells { 0, 0, 0 }; // that a shift to the nearest image can be, periodic

@@ -1,5 +1,5 @@
 // The order in which grains are stored: the leaves of a k-d tree. Domains are its upper branches, groups lower ones.
-#include "dynamics.hpp"
+#include "contacts.hpp"
 #include <algorithm>
 #include <numeric>
 
@@ -13,15 +13,17 @@ namespace {
 		int first, last;             // grains
 	};
 
-	int widestAxis(const std::vector<GrainInput>& grains, const int* first, const int* last)
+	using Positions = std::vector<Vec3<double>>;
+
+	int widestAxis(const Positions& positions, const int* first, const int* last)
 	{
 		double widest = -1;
 		int axis = 0;
 		for (int k = 0; k < 3; ++k) {
 			double low = 1e300, high = -1e300;
 			for (const int* at = first; at < last; ++at) {
-				low = std::min(low, grains[*at].position[k]);
-				high = std::max(high, grains[*at].position[k]);
+				low = std::min(low, (&positions[*at].x)[k]);
+				high = std::max(high, (&positions[*at].x)[k]);
 			}
 			if (high - low > widest) widest = high - low, axis = k;
 		}
@@ -38,7 +40,7 @@ namespace {
 
 /* Branches are cut across their longest axis, the first of them so that each side has half of the grains: of two like aggregates each is a side, and no contact crosses the
  * border between them. */
-void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
+void Dynamics::orderGrains(const Positions& positions)
 {
 	original.resize(count);
 	std::iota(original.begin(), original.end(), 0);
@@ -50,14 +52,95 @@ void Dynamics::orderGrains(const std::vector<GrainInput>& grains)
 		if (oneDomain && b.last - b.first <= leaf) continue;
 		const int middleDomain = (b.firstDomain + b.lastDomain) / 2;
 		const int middle = oneDomain ? cut(b.first, b.last) : beginOf(middleDomain);
-		const int axis = widestAxis(grains, original.data() + b.first, original.data() + b.last);
+		const int axis = widestAxis(positions, original.data() + b.first, original.data() + b.last);
 		std::nth_element(original.begin() + b.first, original.begin() + middle, original.begin() + b.last, [&](int i, int j) {
-			const double x = grains[i].position[axis], y = grains[j].position[axis];
+			const double x = (&positions[i].x)[axis], y = (&positions[j].x)[axis];
 			return x != y ? x < y : i < j;
 		});
 		branches.push_back({ b.firstDomain, oneDomain ? b.lastDomain : middleDomain, b.first, middle });
 		branches.push_back({ oneDomain ? b.firstDomain : middleDomain, b.lastDomain, middle, b.last });
 	}
+	for (int k = 0; k < count; ++k)
+		indexHere[original[k]] = k;
+}
+
+double Dynamics::groupSizes()
+{
+	double sum = 0;
+	for (auto& domain : domains)
+		domain->lists.measureBoxes();
+	for (const Group& group : setting.groups)
+		for (int k = 0; k < 3; ++k)
+			sum += group.high[k] - group.low[k];
+	return sum;
+}
+
+namespace {
+	template <class Values> void arrange(Values& values, const std::vector<int>& from)
+	{
+		if (values.empty()) return;
+		const Values before = values;
+		for (std::size_t k = 0; k < from.size(); ++k)
+			values[k] = before[from[k]];
+	}
+
+	Contact renumbered(Contact c, int i, int j)
+	{
+		c.i = std::min(i, j), c.j = std::max(i, j);
+		if (i > j) {
+			c.history = swapped(c.history);
+			c.velocity = -c.velocity;
+			std::swap(c.constants.radius1, c.constants.radius2);
+		}
+		return c;
+	}
+	Bond renumbered(Bond b, int i, int j)
+	{
+		b.i = std::min(i, j), b.j = std::max(i, j);
+		if (i > j) {
+			b.history = swapped(b.history);
+			std::swap(b.constants.radius1, b.constants.radius2);
+		}
+		return b;
+	}
+}
+
+/* Where groups have spread (fragments that fly apart), grains are put into a new order: neighbours lie close again. Between two steps; nothing else changes but the order in
+ * which contacts add their forces. */
+void Dynamics::reorder()
+{
+	std::vector<Vec3<double>> positions(count);
+	for (int k = 0; k < count; ++k)
+		positions[original[k]] = positionOf(setting.grains[k]);
+	const std::vector<int> hereBefore = indexHere;
+	orderGrains(positions);
+	std::vector<int> from(count), to(count);
+	for (int k = 0; k < count; ++k)
+		from[k] = hereBefore[original[k]], to[from[k]] = k;
+	std::vector<Contact> contacts;
+	std::vector<Bond> bonds;
+	std::vector<Constrained> constrained;
+	for (auto& domain : domains)
+		domain->takeOut(contacts, bonds, constrained);
+	arrange(setting.grains, from);
+	for (auto* values : { &setting.inverseMass, &setting.inverseInertia, &setting.radius, &setting.grainRadius })
+		arrange(*values, from);
+	arrange(setting.kind, from);
+	arrange(setting.orientation, from);
+	arrange(setting.blocked, from);
+	for (Constrained& c : constrained)
+		c.grain = to[c.grain];
+	for (auto& domain : domains) {
+		for (const Contact& c : contacts)
+			domain->place(renumbered(c, to[c.i], to[c.j]));
+		for (const Bond& b : bonds)
+			domain->place(renumbered(b, to[b.i], to[b.j]));
+		domain->place(constrained);
+		domain->sortContacts();
+	}
+	makeLists();
+	sizesWhenOrdered = groupSizes();
+	++orders;
 }
 
 } // namespace contact_law

@@ -339,6 +339,7 @@ boost::python::dict JKRWadaEngine::statistics() const
 	result["broken"] = counts.broken;
 	result["searches"] = dynamics.counters().searches;
 	result["looks"] = dynamics.counters().looks;
+	result["orders"] = dynamics.counters().orders;
 	result["instructions"] = dynamics.state().passes->name;
 	return result;
 }

@@ -212,7 +212,7 @@ WRONG = [
         "collide.py: stepFraction = 0.3: unstable at this filling and drag; must be at most ",
     ),
     (["threads=2", "engine=functors"], "collide.py: threads = 2: YADE was started with 1; must be "),
-    (["threads=3"], "collide.py: threads = 3: more than the fused engine has domains; must be 1 to 2"),
+    (["threads=99999"], "collide.py: threads = 99999: more than this machine has cores; must be 1 to "),
     (["out=/dev/null/run"], "collide.py: out = /dev/null/run: Not a directory; must be a folder that can be written"),
     (["out=."], "collide.py: out = .: exists and is no run folder; must be "),
     (

@@ -1,5 +1,6 @@
 """Parameters of every kind of run: how it is stepped, where it is written."""
 
+import os
 from dataclasses import dataclass
 
 from yade_scripts.parameters import (
@@ -14,7 +15,7 @@ from yade_scripts.parameters import (
 )
 from yade_scripts.stability import AUTO, STABLE_STEP
 
-FUSED_THREADS = 2  # JKRWadaEngine's domains
+CORES = len(os.sched_getaffinity(0))
 TOLERANCE, TOLERANCES = 1e-4, (1e-7, 1e-2)  # with stepFraction=auto: default and range
 
 
@@ -89,10 +90,10 @@ class RunParameters(Parameters):
     def with_threads(self, of_yade):
         """The same with the number of threads; of_yade: those that YADE was started with."""
         if self.engine == "fused":
-            threads = self.threads or min(of_yade, FUSED_THREADS)
-            if threads > FUSED_THREADS:
+            threads = self.threads or min(of_yade, CORES)
+            if threads > CORES:
                 raise ParameterError(
-                    f"threads = {threads}: more than the fused engine has domains; must be 1 to {FUSED_THREADS}"
+                    f"threads = {threads}: more than this machine has cores; must be 1 to {CORES}"
                 )
             return self.changed(threads=threads)
         if self.threads not in (None, of_yade):

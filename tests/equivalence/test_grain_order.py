@@ -1,0 +1,88 @@
+"""Grains that have flown apart are put into a new order, among other domains: nothing changes but the order in which forces are added.
+Results do not depend on the number of threads, however many domains there are."""
+
+import pytest
+
+SCENE = """
+from scenes import *
+unit = constants(ice(), 1e-7)["timeUnit"]
+KINDS = {"like": ([ice()], [1e-7]), "unlike": ([ice(), soft()], [1e-7, 1.3e-7]), "drag": ([ice(viscoelasticTime=2e-12)], [1e-7])}
+def pairs_flying_apart(kind, count=20):
+    "Pairs about to touch, which then vibrate, roll, slide and twist; one grain of each third pair is held."
+    random = np.random.default_rng(5)
+    new_scene(0.1 * unit)
+    materials, radii = KINDS[kind]
+    for k in range(count):
+        a, b = materials[k % len(materials)], materials[-1]
+        ra, rb = radii[k % len(radii)], radii[-1]
+        place = 6e-7 * np.array([k % 3, k // 3 % 3, k // 9]) + 1e-8 * random.normal(size=3)
+        normal = random.normal(size=3)
+        normal /= np.linalg.norm(normal)
+        fly = 30 * random.normal(size=3)
+        grain(place, ra, a, fly + 0.1 * random.normal(size=3), 2e7 * random.normal(size=3))
+        grain(place + (ra + rb + 1e-10) * normal, rb, b, fly - 0.4 * normal, 2e7 * random.normal(size=3), "Y" if k % 3 == 0 else "")
+"""
+
+
+@pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
+def test_a_new_order_changes_nothing_but_rounding(yade, kind):
+    found = yade(
+        SCENE
+        + """
+pairs_flying_apart(parameters["kind"])
+O.run(4101, True)
+functors, functor_energies = positions(), energies()
+pairs_flying_apart(parameters["kind"])
+fused_engine(domains=8, threads=2)
+O.run(4100, True)
+engine, engine_energies = positions(), energies()
+result["orders"] = O.engines[0].statistics()["orders"]
+O.engines[0].handOver()
+result["difference"] = np.abs(functors - positions()).max() / 1e-7
+scale = engine_energies["kinetic"] + sum(abs(v) for v in engine_energies.values())
+result["energies"] = {n: abs(functor_energies[n] - engine_energies[n]) / scale for n in CHANNELS}
+result["lost"] = engine_energies
+""",
+        {"kind": kind},
+    )
+    assert found["orders"] >= 1
+    assert found["lost"]["slidingDissipation"] > 0
+    assert found["difference"] < 1e-9, found["difference"]
+    assert max(found["energies"].values()) < 1e-9, found["energies"]
+
+
+@pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
+def test_same_bits_on_any_number_of_threads_and_after_a_checkpoint(yade, kind):
+    found = yade(
+        SCENE
+        + """
+def start(threads):
+    new_scene(0.2 * unit)
+    converging(300, 1, *KINDS[parameters["kind"]], speed=12.0)
+    fused_engine(threads=threads, domains=8, subSteps=50)
+    O.dt *= 50
+def state():
+    statistics = O.engines[0].statistics()
+    return positions(), energies(), {k: statistics[k] for k in ("events", "formed", "orders", "domains")}
+def end(threads):
+    start(threads)
+    O.run(30, True)
+    if threads == 2: O.save("half.yade.gz")
+    O.run(90, True)
+    return state()
+one = end(1)
+others = [end(threads) for threads in (2, 3, 8)]
+O.load("half.yade.gz")
+O.engines[0].threads = 3
+O.run(90, True)
+others.append(state())
+result["same"] = [bool((one[0] == other[0]).all()) and one[2] == other[2] for other in others]
+result["energies"] = [one[1] == other[1] for other in others[:-1]]
+result["statistics"] = one[2]
+""",
+        {"kind": kind},
+    )
+    assert found["statistics"]["orders"] >= 1 and found["statistics"]["domains"] == 8
+    assert found["statistics"]["events"] > 1000
+    assert found["same"] == [True] * 4
+    assert found["energies"] == [True] * 3
