@@ -1,6 +1,7 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
 # make bench  measures speed beside other codes, and error against the time step
+# make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
@@ -135,6 +136,18 @@ build/overlay: Makefile
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
 
+# The engine without YADE, which runs scenes of files (build/harness --help).
+HARNESS_OBJECTS := $(patsubst tests/benchmarks/harness/%.cpp,$(OBJECTS_FOLDER)/harness/%.o,$(wildcard tests/benchmarks/harness/*.cpp))
+
+build/harness: $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) build/objects.list
+	@echo "link    $@"
+	@g++ -fopenmp $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) -o $@.new && mv $@.new $@
+
+$(HARNESS_OBJECTS): $(OBJECTS_FOLDER)/harness/%.o: tests/benchmarks/harness/%.cpp build/flags.list
+	@echo "compile $<"
+	@mkdir -p $(@D)
+	@g++ $(ENGINE_FLAGS) -c $< -o $@
+
 # ---- running it ----
 
 .PHONY: demo test
@@ -223,4 +236,4 @@ deps:
 clean:
 	rm -rf build
 
--include $(OBJECTS:.o=.d) $(PRECOMPILED).d
+-include $(OBJECTS:.o=.d) $(HARNESS_OBJECTS:.o=.d) $(PRECOMPILED).d
