@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 namespace {
@@ -20,10 +21,11 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
   together=50     small steps in one call of the engine, as subSteps of JKRWadaEngine
   warm=0          small steps before the first measurement
   out=            file for the scene at the end
+  control=        fifo of perf record --delay=-1 --control fifo:NAME, which then samples the measurements only
 )";
 
 struct Settings {
-	std::string scene, instructions, out;
+	std::string scene, instructions, out, control;
 	long steps = 500, rounds = 1, domains = 2, together = 50, warm = 0;
 	std::vector<long> threads { 1 };
 };
@@ -74,6 +76,8 @@ void take(Settings& settings, const std::string& argument)
 		settings.instructions = value;
 	else if (name == "out")
 		settings.out = value;
+	else if (name == "control")
+		settings.control = value;
 	else
 		throw std::invalid_argument(argument + ": no such parameter; build/harness --help lists them");
 }
@@ -88,15 +92,26 @@ struct Counted { // since the start
 	}
 };
 
+// Tells perf to begin or to end sampling.
+void tell(const Settings& settings, const char* command)
+{
+	if (settings.control.empty()) return;
+	std::ofstream control(settings.control);
+	control << command << std::endl;
+	if (!control) throw std::runtime_error(settings.control + ": must be a fifo that perf reads");
+}
+
 void measure(harness::Run& run, const Settings& settings, long threads)
 {
 	contact_law::Dynamics& dynamics = run.dynamics();
 	dynamics.setThreads(int(threads));
 	const Counted before(dynamics);
 	const double contacts = contact_law::contactCount(dynamics);
+	tell(settings, "enable");
 	const auto start = std::chrono::steady_clock::now();
 	run.run(settings.steps, settings.together);
 	const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+	tell(settings, "disable");
 	const Counted after(dynamics);
 	const double mean = 0.5 * (contacts + contact_law::contactCount(dynamics));
 	std::printf("{\"threads\": %d, \"steps\": %ld, \"msPerStep\": %.6g, \"contacts\": %.1f, \"contactUpdatesPerSecond\": %.5g, "
