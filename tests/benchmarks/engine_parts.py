@@ -31,7 +31,7 @@ def fractions(scene, together, steps):
     with tempfile.TemporaryDirectory() as folder:
         data, fifo = str(Path(folder) / "perf.data"), str(Path(folder) / "control")
         os.mkfifo(fifo)
-        sampler = ["perf", "record", "-q", "-F", "499", "--delay=-1", "--control", f"fifo:{fifo}", "-o", data]
+        sampler = ["perf", "record", "-q", "-F", "1999", "--delay=-1", "--control", f"fifo:{fifo}", "-o", data]
         run = [str(paper_scenes.HARNESS), str(scene), f"steps={steps}", f"together={together}", f"warm={together}"]
         if _run(*sampler, *run, f"control={fifo}") is None:
             return None

@@ -17,18 +17,18 @@ from analysis.theory import Material
 @dataclass(frozen=True)
 class Settings:
     """rounds; seconds: of one of their measurements; stretch: fraction of a run's small steps that measuring a moment may take; peer_steps, skins: of LAMMPS,
-    whose best skin [grain radii] counts; profile_steps: small steps in which the engine is sampled."""
+    whose best skin [grain radii] counts; sampled: seconds of one thread for the parts of the time."""
 
     rounds: int = 5
     seconds: float = 2.0
     stretch: float = 0.05
     peer_steps: int = 100
     skins: tuple = (0.3, 0.6, 1.0)
-    profile_steps: int = 400
+    sampled: float = 3.0
 
 
 FULL = Settings()
-QUICK = Settings(rounds=3, seconds=0.5, stretch=0.03, peer_steps=30, skins=(0.6,), profile_steps=100)
+QUICK = Settings(rounds=3, seconds=0.5, stretch=0.03, peer_steps=30, skins=(0.6,), sampled=1.0)
 
 
 def measure(name, moment, settings, scene=None, folder=paper_scenes.FOLDER):
@@ -40,13 +40,20 @@ def measure(name, moment, settings, scene=None, folder=paper_scenes.FOLDER):
     scene = scene or paper_scenes.SCENES[name]
     path = paper_scenes.path_of(name, moment, scene, folder)
     begin = paper_scenes.start_of(scene)
+    engine = measure_engine(path, begin, settings)
     return {
-        "engine": measure_engine(path, begin, settings),
-        "parts": engine_parts.fractions(path, begin.together, settings.profile_steps),
+        "engine": engine,
+        "parts": engine_parts.fractions(path, begin.together, steps_to_sample(engine, begin, settings)),
         "lammps": measure_lammps(path, scene, settings),
         "run": {"steps": begin.steps, "progress": begin.progress[moment], "compression": scene.kind == "compression"},
         "settings": settings_of(settings),
     }
+
+
+def steps_to_sample(engine, begin, settings):
+    """Small steps that take settings.sampled seconds, but no more than measuring takes."""
+    fastest = min(turn["seconds"] / turn["steps"] for turn in engine["turns"])
+    return max(begin.together, int(min(settings.sampled / fastest, settings.stretch * begin.steps)))
 
 
 def settings_of(settings):

@@ -1,26 +1,17 @@
-"""A scene of a file (scene_file.py) in YADE: bodies, contacts, cell, and the fused engine at its start. Imported within YADE, after contact_law."""
+"""A scene of a file (scene_file.py) in YADE: bodies, contacts, cell, and the fused engine at its start. Imported within YADE."""
 
 import numpy as np
-from yade import utils
+from yade import utils, wrapper
 from yade.minieigenHP import Matrix3, Vector3
-from yade.wrapper import (
-    Ig2_Sphere_Sphere_ScGeom,
-    InteractionLoop,
-    Ip2_JKRMat_JKRMat_JKRWadaPhys,
-    JKRMat,
-    JKRWadaEngine,
-    Law2_ScGeom_JKRWadaPhys_JKRWada,
-    Omega,
-)
 
-import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper)
+import contact_law  # noqa: F401  (puts the plugin's classes into wrapper)
 
 BLOCKED = {1: "x", 2: "y", 4: "z", 8: "X", 16: "Y", 32: "Z"}
 
 
 def build(scene, sub_steps, threads=1, domains=2):
     """The fused engine with a scene_file.SceneFile, prepared: O.step() makes sub_steps small steps."""
-    omega, head = Omega(), scene.head
+    omega, head = wrapper.Omega(), scene.head
     omega.trackEnergy = True
     omega.dt = float(head["step"]) * sub_steps
     if scene.periodic:
@@ -34,16 +25,16 @@ def build(scene, sub_steps, threads=1, domains=2):
     if scene.periodic:
         # by its name: "O.cell.velGrad = " would hold from the next step on, and the first forces be those of a cell at rest
         omega.cell.updateAttrs({"velGrad": Matrix3(*np.diag(head["strainRate"]).flatten().tolist())})
-    engine = JKRWadaEngine(subSteps=sub_steps, threads=threads, domains=domains, **law)
+    engine = wrapper.JKRWadaEngine(subSteps=sub_steps, threads=threads, domains=domains, **law)
     omega.engines = [engine]
     engine.prepare()
     return engine
 
 
 def add_bodies(scene):
-    omega = Omega()
+    omega = wrapper.Omega()
     for material in scene.materials:
-        omega.materials.append(JKRMat(**{name: float(material[name]) for name in material.dtype.names}))
+        omega.materials.append(wrapper.JKRMat(**{name: float(material[name]) for name in material.dtype.names}))
     grains = scene.grains
     columns = [grains[name].tolist() for name in grains.dtype.names]
     bodies = []
@@ -59,11 +50,11 @@ def add_bodies(scene):
 
 def add_contacts(contacts, law):
     """Interactions with the springs of contacts (CONTACT,), for the engine to take over; the functors serve to make them only."""
-    Omega().engines = [
-        InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=2)],
-            [Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
-            [Law2_ScGeom_JKRWadaPhys_JKRWada()],
+    wrapper.Omega().engines = [
+        wrapper.InteractionLoop(
+            [wrapper.Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=2)],
+            [wrapper.Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
+            [wrapper.Law2_ScGeom_JKRWadaPhys_JKRWada()],
         )
     ]
     columns = [contacts[name].tolist() for name in contacts.dtype.names]
