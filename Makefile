@@ -191,7 +191,7 @@ $(STUDIES:%=gallery-%): gallery-%:
 bench: all
 	@$(PYTHON) tests/benchmarks/bench.py $(BENCH)
 
-# Half an hour the first time, when the scenes are made; stopped at any time, it goes on where it was. SCENE=a22,k13: these only.
+# An hour the first time, when the scenes are made; stopped at any time, it resumes. SCENE=a22,k13: these only.
 bench-papers: all
 	@$(MAKE) --no-print-directory build/harness
 	@$(PYTHON) tests/benchmarks/bench_papers.py $(if $(SCENE),--scene $(SCENE)) $(BENCH)

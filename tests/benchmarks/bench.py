@@ -79,7 +79,7 @@ def main():
     done.progress.close()
     given.out.mkdir(parents=True, exist_ok=True)
     (given.out / "bench.json").write_text(json.dumps(found, indent=1))
-    text = paper_report.put_into(report.text(how, found), paper_report.text(paper_report.read(given.out)))
+    text = paper_report.with_section(report.text(how, found), paper_report.text(paper_report.read(given.out)))
     (given.out / "bench.md").write_text(text)
     figures.draw(how, found, given.out)
     print(text)

@@ -58,6 +58,7 @@ def is_done(result, settings):
 def measure(names, settings, folder, again):
     """Measure every moment of these scenes, and write papers.json after each. Moments without a file are left out, with a line."""
     for name in names:
+        begin = None
         for moment, path in ((one, paper_scenes.path_of(name, one)) for one in paper_scenes.SCENES[name].moments):
             found = read(folder)
             of_scene = found["scenes"].setdefault(name, {})
@@ -66,7 +67,8 @@ def measure(names, settings, folder, again):
                 continue
             if not again and is_done(of_scene.get(moment), settings):
                 continue
-            of_scene[moment] = result = paper_speed.measure(name, moment, settings)
+            begin = begin or paper_scenes.start_of(paper_scenes.SCENES[name])
+            of_scene[moment] = result = paper_speed.measure(name, moment, settings, begin)
             found["machine"] = machine()
             write(folder, found)
             one = paper_report.Moment(name, moment, result)
@@ -80,7 +82,7 @@ def report(folder):
     if not section:
         sys.exit(f"bench-papers: {folder / RESULT} holds no measurement: must be measured first (--only measure)")
     bench = folder / "bench.md"
-    bench.write_text(paper_report.put_into(bench.read_text() if bench.exists() else "", section))
+    bench.write_text(paper_report.with_section(bench.read_text() if bench.exists() else "", section))
     paper_figure.draw(found, folder)
     return section
 

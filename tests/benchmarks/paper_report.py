@@ -4,7 +4,7 @@ import json
 import statistics
 from dataclasses import dataclass
 
-from paper_scenes import SCENES
+from paper_scenes import FAST_STRAIN, RELAXED, SCENES
 from quiet import LOUD
 from ratios import Spread
 from targets import Target
@@ -113,7 +113,7 @@ def text(found):
     moments = moments_of(found)
     if not moments:
         return ""
-    tables = (targets_section, speed, beside_lammps, happening, solution)
+    tables = (targets_section, speed, beside_lammps, cost_of_drag, lists_and_events, solution)
     parts = [head(found, moments), *(table_of(moments) for table_of in tables)]
     return f"\n{TITLE}\n\n" + "\n\n".join(part for part in parts if part) + "\n"
 
@@ -121,13 +121,15 @@ def text(found):
 def head(found, moments):
     commits = sorted({moment.found["engine"]["commit"][:7] for moment in moments})
     about = found["machine"]
+    settings = moments[0].found["settings"]
+    skins = ", ".join(f"{skin:g}" for skin in settings["skins"])
     lines = [
         f"Measured on {about['cpu']}, {about['cores']} cores, commit {', '.join(commits)}, in YADE (with what an O.step adds to its small steps, but without "
         "the scripts' samples).",
-        "Later moments are reached by the engine itself and kept in files; the denser cells are made at C_v = 1e-5 and then follow the paper's C_v for 1000 t0.",
-        "One and two threads take turns in one run. ms a step: the best turn, and by how much the slowest was slower; ns: of the best turn. Steps: A22 0.2 t0, "
-        "K13 0.3 t0 (the paper's is 0.1 t0), the others 0.1 t0.",
-        "LAMMPS has its best skin of 0.3, 0.6 and 1 r, contacts without springs at the start, no drag, and its cell does not shrink.",
+        "Later moments are reached by the engine itself and kept in files. Aggregates in flight are moved back on their straight lines, for a flight long "
+        f"enough to measure. The denser cells are made at C_v = {FAST_STRAIN:g} and then follow the paper's C_v for {RELAXED:g} t0.",
+        "One and two threads take turns in one run. ms a step: the best turn, and by how much the slowest was slower; ns: of the best turn.",
+        f"LAMMPS has its best skin (of {skins} r), contacts without springs at the start, no drag, and its cell does not shrink.",
     ]
     fraction = min(turn["fraction"] for moment in moments for turn in moment.found["engine"]["turns"])
     if fraction < 1 - LOUD:
@@ -196,12 +198,30 @@ def beside_lammps(moments):
     return "\n\n".join([of_moments(measured, columns, cells), *notes])
 
 
-def happening(moments):
+def cost_of_drag(moments):
+    """The same scene with and without viscous drag, moment by moment."""
+    scenes = by_scene(moments)
+    without = {moment.name: moment for moment in scenes.get("a22", [])}
+    both = [(moment, without[moment.name]) for moment in scenes.get("a22-drag", []) if moment.name in without]
+    rows = [
+        [
+            drag.name,
+            *(f"{plain.best(n):.3g} → {drag.best(n):.3g}" for n in (1, 2)),
+            f"{drag.best(1) / plain.best(1):.2f}",
+        ]
+        for drag, plain in both
+    ]
+    return (
+        table("moment | A22 without → with drag: ms a step, one thread | two | ratio, one thread", rows) if rows else ""
+    )
+
+
+def lists_and_events(moments):
     def cells(moment):
         engine, steps, parts = moment.found["engine"], moment.steps(), moment.found["parts"] or {}
         slips = max(0, engine["events"] - engine["formed"] - engine["broken"])
         return [
-            *(every(steps, engine[name]) for name in ("farRebuilds", "nearRebuilds")),
+            *(interval_text(steps, engine[name]) for name in ("farRebuilds", "nearRebuilds")),
             *(f"{100 * parts[part]:.0f}" if part in parts else "-" for part in ("lists", "forces", "integration")),
             f"{100 * slips / engine['contactUpdates']:.2g}",
             *(f"{engine[name] / steps:.2g}" for name in ("formed", "broken")),
@@ -219,7 +239,7 @@ def happening(moments):
     return of_moments(moments, columns, cells) + "\n\n" + note
 
 
-def every(steps, times):
+def interval_text(steps, times):
     return f"{steps / times:.0f}" if times else f"> {steps}"
 
 
@@ -240,15 +260,16 @@ def solution(moments):
             [
                 title_of(scene),
                 ", ".join(f"{moment.name} {weight:.2f}" for moment, weight in zip(ones, weights(ones))),
+                f"{ones[0].found['run']['step']:g}",
                 f"{steps:.3g}",
                 *(number(60e3 * one / steps) for one in of_run),
                 *(number(one) for one in of_run + theirs),
             ]
         )
-    columns = "scene | weights | steps of the run | mean ms a step, one thread | two | minutes, one thread | two | LAMMPS, one core | two"
+    columns = "scene | weights | step [t0] | steps of the run | mean ms a step, one thread | two | minutes, one thread | two | LAMMPS, one core | two"
     note = (
         "Time to solution: the run's steps times the mean of the median ms a step over the moments, each with the fraction of the run that is nearest to it "
-        "(moments that were not measured are left out)."
+        "(moments that were not measured are left out). K13 itself takes steps of 0.1 t0."
     )
     return table(columns, rows) + "\n\n" + note
 
@@ -285,7 +306,7 @@ def targets(moments):
     return found
 
 
-def put_into(bench, section):
+def with_section(bench, section):
     """The text of bench.md with this section in the place of the one that it had."""
     before = bench.split(f"\n{TITLE}\n")[0]
     return before.rstrip("\n") + "\n" + section

@@ -52,12 +52,12 @@ K13 = {"grains": 16_384, "strainRate": "3e-7", "stepFraction": 0.3, "finalFillin
 DENSE = {"phi 0.03": 0.03, "phi 0.3": 0.3}
 CPE = {"packing": "cpe", "filling": 0.4, "stepFraction": 0.1}
 SCENES = {
-    "a22": PaperScene("A22: two BPCA of 50,000 at 50.1 m/s, B_off 0.5", "collision", A22, OF_A22, apart=0.3e-6),
+    "a22": PaperScene("A22: two BPCA of 50,000 at 50.1 m/s, B_off 0.5", "collision", A22, OF_A22, apart=0.5e-6),
     "a22-drag": PaperScene(
-        "A22: the same, T_vis 6 ps", "collision", {**A22, "viscoelasticTime": "6e-12"}, OF_A22, apart=0.3e-6
+        "A22: the same, T_vis 6 ps", "collision", {**A22, "viscoelasticTime": "6e-12"}, OF_A22, apart=0.5e-6
     ),
     "a22-slow": PaperScene(
-        "A22: the same grains at 0.5 m/s, T_vis 0", "collision", {**A22, "velocity": 0.5}, {"flying": 0.0}, apart=0.3e-6
+        "A22: the same grains at 0.5 m/s, T_vis 0", "collision", {**A22, "velocity": 0.5}, {"flying": 0.0}, apart=0.5e-6
     ),
     "k13": PaperScene("K13: BCCA of 16,384, C_v 3e-7", "compression", K13, {"phi 0.001": 0.001, **DENSE}),
     "k13-1024": PaperScene(
@@ -68,7 +68,7 @@ SCENES = {
         "collision",
         {"packing": "bcca", "grains": 1024, "planar": 1, "neck": 0.7, "velocity": 20, "stepFraction": 0.1},
         {"flying": 0.0, "touching": 0.5e-6, "later": 1.5e-6},
-        apart=0.05e-6,
+        apart=0.3e-6,
         lammps=False,  # no sintered bonds
     ),
     "a24": PaperScene(

@@ -14,9 +14,12 @@ from measured_on import HERE
 from analysis.theory import Material
 
 
+FEWEST_PEER_STEPS, PEER_UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
+
+
 @dataclass(frozen=True)
 class Settings:
-    """rounds; seconds: of one of their measurements; stretch: fraction of a run's small steps that measuring a moment may take; peer_steps, skins: of LAMMPS,
+    """rounds; seconds: of one of their measurements; stretch: fraction of a run's small steps that measuring a moment may take; peer_steps (at most), skins: of LAMMPS,
     whose best skin [grain radii] counts; sampled: seconds of one thread for the parts of the time."""
 
     rounds: int = 5
@@ -31,21 +34,27 @@ FULL = Settings()
 QUICK = Settings(rounds=3, seconds=0.5, stretch=0.03, peer_steps=30, skins=(0.6,), sampled=1.0)
 
 
-def measure(name, moment, settings, scene=None, folder=paper_scenes.FOLDER):
-    """What was measured at a moment of a scene, whose file must be there (paper_scenes.make):
+def measure(name, moment, settings, begin=None, scene=None, folder=paper_scenes.FOLDER):
+    """What was measured at a moment of a scene, whose file must be there (paper_scenes.make); begin: its Start, if that has been made already:
 
     {"engine": answer of yade_papers.py, "parts": {part: fraction of the time of one thread} or None,
-    "lammps": {threads: {"msPerStep", "contacts", "skin"}} or {"missing": why not}, "settings": of Settings}.
+    "lammps": {threads: {"msPerStep", "contacts", "skin"}} or {"missing": why not},
+    "run": {"steps": of the whole run, "step" [t0], "progress": how far along the moment is, "compression"}, "settings": of Settings}.
     """
     scene = scene or paper_scenes.SCENES[name]
     path = paper_scenes.path_of(name, moment, scene, folder)
-    begin = paper_scenes.start_of(scene)
+    begin = begin or paper_scenes.start_of(scene)
     engine = measure_engine(path, begin, settings)
     return {
         "engine": engine,
         "parts": engine_parts.fractions(path, begin.together, steps_to_sample(engine, begin, settings)),
         "lammps": measure_lammps(path, scene, settings),
-        "run": {"steps": begin.steps, "progress": begin.progress[moment], "compression": scene.kind == "compression"},
+        "run": {
+            "steps": begin.steps,
+            "step": round(float(begin.scene.head["step"]) / begin.time_unit, 6),
+            "progress": begin.progress[moment],
+            "compression": scene.kind == "compression",
+        },
         "settings": settings_of(settings),
     }
 
@@ -79,9 +88,10 @@ def measure_lammps(path, scene, settings):
     if reason:
         return {"missing": reason}
     grains, found = scene_of_peers(scene_file.load(path)), {}
+    steps = min(settings.peer_steps, max(FEWEST_PEER_STEPS, int(PEER_UPDATES / grains.grains)))
     try:
         for cores in peers.core_counts():
-            runs = {skin: peers.measure("lammps", grains, settings.peer_steps, cores, skin) for skin in settings.skins}
+            runs = {skin: peers.measure("lammps", grains, steps, cores, skin) for skin in settings.skins}
             skin, best = max(runs.items(), key=lambda one: one[1]["rate"])
             ms = 1e3 * best["seconds"] / best["steps"]
             found[str(cores)] = {"msPerStep": ms, "contacts": best["contacts"], "skin": skin}

@@ -37,7 +37,7 @@ def measured(tmp_path_factory):
     subprocess.run(["make", "build/harness"], cwd=TOP, check=True, capture_output=True)
     folder = tmp_path_factory.mktemp("papers")
     paper_scenes.make("small", SCENE, folder, say=lambda *_, **__: None)
-    moments = {name: paper_speed.measure("small", name, LITTLE, SCENE, folder) for name in SCENE.moments}
+    moments = {name: paper_speed.measure("small", name, LITTLE, None, SCENE, folder) for name in SCENE.moments}
     return folder, {"machine": {"cpu": "a processor", "cores": 2}, "scenes": {"small": moments}}
 
 
@@ -69,7 +69,9 @@ def test_files_that_are_there_are_not_made_again(measured):
 def test_the_report_holds_what_was_measured(measured):
     text = paper_report.text(measured[1])
     assert text.startswith("\n## Scenes of the papers\n") and text.count("| small | start |") >= 2
-    assert re.search(r"\| start 0\.\d\d, denser 0\.\d\d \| 4\.14e\+05 \|", text)  # weights, and steps of the run
+    assert re.search(
+        r"\| start 0\.\d\d, denser 0\.\d\d \| 0\.3 \| 4\.14e\+05 \|", text
+    )  # weights, and steps of the run
     lines = [line for line in text.splitlines() if line.startswith("|")]
     widths = [line.count("|") for line in lines]
     assert all(a == b for a, b, line in zip(widths, widths[1:], lines[1:]) if not line.startswith("| scene"))
@@ -86,8 +88,14 @@ def result(ms, contacts=1000, progress=0.0, steps=10_000, lammps=None):
     engine = {"grains": 500, "contacts": contacts, "turns": turns, "commit": "c" * 40, "boundaryWork": 0.0}
     engine.update(farRebuilds=0, nearRebuilds=4, events=900, formed=200, broken=100, contactUpdates=200_000)
     engine.update(energyChange=1e-6, kinetic=1.0)
-    run = {"steps": steps, "progress": progress, "compression": False}
-    return {"engine": engine, "parts": None, "lammps": lammps or {"missing": "it is not here"}, "run": run}
+    run = {"steps": steps, "step": 0.2, "progress": progress, "compression": False}
+    return {
+        "engine": engine,
+        "parts": None,
+        "lammps": lammps or {"missing": "it is not here"},
+        "run": run,
+        "settings": {"skins": [0.3]},
+    }
 
 
 def test_numbers_of_a_moment():
@@ -124,11 +132,11 @@ def test_the_section_of_a_report_by_hand():
 
 
 def test_the_section_replaces_its_own_place():
-    first = paper_report.put_into("# Bench\n\nSpeed.\n", f"\n{paper_report.TITLE}\n\nold\n")
-    assert paper_report.put_into(first, f"\n{paper_report.TITLE}\n\nnew\n") == (
+    first = paper_report.with_section("# Bench\n\nSpeed.\n", f"\n{paper_report.TITLE}\n\nold\n")
+    assert paper_report.with_section(first, f"\n{paper_report.TITLE}\n\nnew\n") == (
         f"# Bench\n\nSpeed.\n\n{paper_report.TITLE}\n\nnew\n"
     )
-    assert paper_report.put_into("Speed.\n", "") == "Speed.\n"
+    assert paper_report.with_section("Speed.\n", "") == "Speed.\n"
 
 
 def test_only_another_plugin_or_setting_is_measured_again(monkeypatch, tmp_path):
@@ -142,12 +150,13 @@ def test_only_another_plugin_or_setting_is_measured_again(monkeypatch, tmp_path)
     assert not bench_papers.is_done(done, paper_speed.FULL) and not bench_papers.is_done(None, LITTLE)
 
 
-def test_measuring_goes_on_where_it_was(monkeypatch, tmp_path, capsys):
+def test_measuring_resumes(monkeypatch, tmp_path, capsys):
     """A stop after the first moment: what was measured is kept, and measured no more; moments without a file are named."""
     commit = (TOP / "build/commit.list").read_text().strip()
     asked = []
 
-    def measure(name, moment, settings):
+    def measure(name, moment, settings, begin):
+        assert begin == "begin of small"
         asked.append(moment)
         if len(asked) == 2:
             raise KeyboardInterrupt
@@ -160,6 +169,7 @@ def test_measuring_goes_on_where_it_was(monkeypatch, tmp_path, capsys):
     scene = PaperScene("", "compression", {}, dict.fromkeys(here))
     monkeypatch.setattr(paper_scenes, "SCENES", {"small": scene})
     monkeypatch.setattr(paper_scenes, "path_of", lambda name, moment: here[moment])
+    monkeypatch.setattr(paper_scenes, "start_of", lambda scene: "begin of small")
     monkeypatch.setattr(paper_speed, "measure", measure)
     monkeypatch.setattr(bench_papers, "is_done", lambda result, settings: bool(result))
     with pytest.raises(KeyboardInterrupt):
@@ -188,12 +198,16 @@ def test_parts_of_the_time():
 
 def test_every_scene_of_the_papers_can_be_started():
     """The quick ones are made; of all: moments in their order, names and numbers that the papers give."""
-    for name in ("s17", "k13-1024", "cpe-fast"):
+    for name in ("s17", "k13-1024", "cpe-fast", "cpe"):
         begin = paper_scenes.start_of(paper_scenes.SCENES[name])
         progress = list(begin.progress.values())
         assert (
             progress == sorted(progress) and progress[0] == 0 and progress[-1] <= 1 and len(begin.scene.contacts) == 0
         )
+        if begin.scene.head["cellSize"][0] == 0:  # a flight as long as measuring it takes
+            assert paper_scenes.SCENES[name].apart > 1.2 * paper_speed.FULL.stretch * begin.duration
+    for name in ("a22", "a22-drag", "a22-slow"):
+        assert paper_scenes.SCENES[name].apart > 1.2 * paper_speed.FULL.stretch * 6.34e-6
     k13 = paper_scenes.start_of(paper_scenes.SCENES["k13-1024"])
     assert k13.scene.strain_rate * k13.time_unit == pytest.approx(-6e-7) and k13.scene.periodic
     assert k13.scene.grains["velocity"] == pytest.approx(k13.scene.strain_rate * k13.scene.grains["position"])

@@ -1,4 +1,4 @@
-"""Runs inside YADE: how fast the fused engine goes on from a scene of a file. yade -n -x yade_papers.py REQUEST (JSON), answers with a line "ANSWER " + JSON.
+"""Runs inside YADE: the speed of the fused engine from a scene of a file on. yade -n -x yade_papers.py REQUEST (JSON), answers with a line "ANSWER " + JSON.
 
 REQUEST: {"scene": file, "together": small steps in an O.step, "rounds", "seconds": of one measurement, "most": small steps of all measurements}.
 One and two threads take turns within one run, so that both do the same work; each turn is timed by itself.

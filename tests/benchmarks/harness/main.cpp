@@ -123,7 +123,7 @@ void measure(harness::Run& run, const Settings& settings, long threads)
 	std::fflush(stdout);
 }
 
-void go(const Settings& settings)
+void runScene(const Settings& settings)
 {
 	if (settings.scene.empty()) throw std::invalid_argument("no scene: must be given first; build/harness --help says more");
 	harness::Run run(harness::readScene(settings.scene), int(settings.domains), int(settings.threads[0]), settings.instructions);
@@ -150,7 +150,7 @@ int main(int count, char** arguments)
 			if (!std::strcmp(arguments[k], "--help") || !std::strcmp(arguments[k], "-h")) return std::fputs(usage, stdout) < 0;
 			take(settings, arguments[k]);
 		}
-		go(settings);
+		runScene(settings);
 	} catch (const std::exception& error) {
 		std::fprintf(stderr, "harness: %s\n", error.what());
 		return 1;

@@ -103,7 +103,7 @@ Run::Run(const Scene& scene_, int domains, int threads, const std::string& instr
 		throw std::invalid_argument("the scene's periodic cell is too small: must be at least twice the reach of a pair");
 }
 
-// As YADE's cell goes on through an O.step.
+// As YADE's cell changes in an O.step.
 void Run::advanceCell(double time, Vec3<double>& size) const
 {
 	size = size + time * contact_law::Images<double>::times(vector(scene.head.strainRate), size);
