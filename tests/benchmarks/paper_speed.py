@@ -13,7 +13,6 @@ from measured_on import HERE
 
 from analysis.theory import Material
 
-
 FEWEST_PEER_STEPS, PEER_UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
 
 
