@@ -17,10 +17,11 @@ from measured_on import RESULTS, TOP, machine
 
 sys.path.insert(0, str(TOP))
 import paper_figure  # noqa: E402
+import paper_moments  # noqa: E402
 import paper_report  # noqa: E402
 import paper_scenes  # noqa: E402
 import paper_speed  # noqa: E402
-from paper_report import RESULT, read  # noqa: E402
+from paper_moments import RESULT, read  # noqa: E402
 
 PARTS = ("make", "measure", "report")
 
@@ -71,7 +72,7 @@ def measure(names, settings, folder, again):
             of_scene[moment] = result = paper_speed.measure(name, moment, settings, begin)
             found["machine"] = machine()
             write(folder, found)
-            one = paper_report.Moment(name, moment, result)
+            one = paper_moments.Moment(name, moment, result)
             print(f"bench-papers: {name}, {moment}: {one.best(1):.3g} and {one.best(2):.3g} ms a step", flush=True)
 
 

@@ -2,7 +2,7 @@
 
 import matplotlib
 import numpy as np
-from paper_report import moments_of, title_of
+from paper_moments import moments_of, title_of
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402

@@ -1,111 +1,11 @@
 """The section "Scenes of the papers" of bench.md, out of what paper_speed.py measured."""
 
-import json
-import statistics
-from dataclasses import dataclass
-
-from paper_scenes import FAST_STRAIN, RELAXED, SCENES
+from paper_moments import by_scene, is_whole, minutes, moments_of, title_of, weights
+from paper_scenes import FAST_STRAIN, RELAXED
+from paper_targets import targets
 from quiet import LOUD
-from ratios import Spread
-from targets import Target
 
 TITLE = "## Scenes of the papers"
-RESULT = "papers.json"
-
-
-def read(folder):
-    """What papers.json of a folder holds, or nothing yet."""
-    path = folder / RESULT
-    return json.loads(path.read_text()) if path.exists() else {"scenes": {}}
-
-
-@dataclass(frozen=True)
-class Moment:
-    """A scene at a moment: what was measured there."""
-
-    scene: str
-    name: str
-    found: dict
-
-    @property
-    def contacts(self):
-        return self.found["engine"]["contacts"]
-
-    @property
-    def grains(self):
-        return self.found["engine"]["grains"]
-
-    def turns(self, threads):
-        """ms a small step of each measurement with so many threads."""
-        turns = self.found["engine"]["turns"]
-        return [1e3 * turn["seconds"] / turn["steps"] for turn in turns if turn["threads"] == threads]
-
-    def best(self, threads):
-        """ms a small step."""
-        return min(self.turns(threads))
-
-    def median(self, threads):
-        return statistics.median(self.turns(threads))
-
-    def rate(self, threads):
-        """Spread of the million contact updates a second."""
-        return Spread.of([self.contacts / ms / 1e3 for ms in self.turns(threads)])
-
-    def lammps(self, cores):
-        """ms a step, or None."""
-        run = self.found["lammps"].get(str(cores))
-        return run["msPerStep"] if run else None
-
-    def against_lammps(self, cores):
-        """Spread of LAMMPS's ms a step over the engine's; a contact counts as much in either. None where LAMMPS was not measured."""
-        run = self.found["lammps"].get(str(cores))
-        if not run:
-            return None
-        theirs = run["msPerStep"] / run["contacts"]
-        return Spread.of([theirs / (ms / self.contacts) for ms in self.turns(cores)])
-
-    def steps(self):
-        """Small steps of all measurements."""
-        return sum(turn["steps"] for turn in self.found["engine"]["turns"])
-
-
-def moments_of(found):
-    """[Moment], in the order of the scenes and of time."""
-    return [
-        Moment(name, moment, found["scenes"][name][moment])
-        for name in [*SCENES, *(name for name in found["scenes"] if name not in SCENES)]
-        if name in found["scenes"]
-        for moment in sorted(found["scenes"][name], key=lambda one: found["scenes"][name][one]["run"]["progress"])
-    ]
-
-
-def by_scene(moments):
-    """{scene: its Moments}"""
-    found = {}
-    for moment in moments:
-        found.setdefault(moment.scene, []).append(moment)
-    return found
-
-
-def title_of(scene):
-    return SCENES[scene].title if scene in SCENES else scene
-
-
-def weights(moments):
-    """Fraction of the run's steps that each of a scene's moments stands for: those nearer to it than to another (of a compression in the logarithm of the
-    filling, in which its time is even)."""
-    at = [moment.found["run"]["progress"] for moment in moments]
-    ends = [0.0, *((a + b) / 2 for a, b in zip(at, at[1:])), 1.0]
-    return [end - begin for begin, end in zip(ends, ends[1:])]
-
-
-def minutes(moments, ms):
-    """Of the whole run; ms: function of a Moment. None where it is not known of all."""
-    each = [ms(moment) for moment in moments]
-    if None in each:
-        return None
-    mean = sum(weight * one for weight, one in zip(weights(moments), each))
-    return mean * moments[0].found["run"]["steps"] / 60e3
 
 
 def text(found):
@@ -253,6 +153,8 @@ def ledger_text(moment):
 def solution(moments):
     rows = []
     for scene, ones in by_scene(moments).items():
+        if not is_whole(ones):
+            continue
         of_run = [minutes(ones, lambda moment, n=n: moment.median(n)) for n in (1, 2)]
         theirs = [minutes(ones, lambda moment, n=n: moment.lammps(n)) for n in (1, 2)]
         steps = ones[0].found["run"]["steps"]
@@ -268,10 +170,10 @@ def solution(moments):
         )
     columns = "scene | weights | step [t0] | steps of the run | mean ms a step, one thread | two | minutes, one thread | two | LAMMPS, one core | two"
     note = (
-        "Time to solution: the run's steps times the mean of the median ms a step over the moments, each with the fraction of the run that is nearest to it "
-        "(moments that were not measured are left out). K13 itself takes steps of 0.1 t0."
+        "Time to solution: the run's steps times the mean of the median ms a step over the moments, each with the fraction of the run that is nearest to it. "
+        "Of scenes that were measured at all their moments. K13 itself takes steps of 0.1 t0."
     )
-    return table(columns, rows) + "\n\n" + note
+    return table(columns, rows) + "\n\n" + note if rows else ""
 
 
 def targets_section(moments):
@@ -279,31 +181,6 @@ def targets_section(moments):
     return (
         "\n".join(["| two threads unless said | wanted | measured | |", "|---|---|---|---|", *lines]) if lines else ""
     )
-
-
-def targets(moments):
-    """Of what was measured."""
-    scenes, found = by_scene(moments), []
-    bounds = {"a22": 6, "a22-drag": 6, "k13": 40}  # minutes
-    for scene, bound in bounds.items():
-        if scene in scenes:
-            turns = [minutes(scenes[scene], lambda moment, pick=pick: pick(moment.turns(2))) for pick in (min, max)]
-            median = minutes(scenes[scene], lambda moment: moment.median(2))
-            spread = Spread(median, *turns)
-            found.append(Target(f"minutes for a run, {title_of(scene)}", bound, spread, at_least=False))
-    for scene in ("a22", "a22-drag"):
-        ratios = [moment.against_lammps(2) for moment in scenes.get(scene, [])]
-        if ratios and None not in ratios:
-            worst = min(ratios, key=lambda spread: spread.median)
-            found.append(Target(f"slowest moment / LAMMPS on two cores, {title_of(scene)}", 8, worst))
-    if "a22" in scenes and "a22-slow" in scenes:
-        flying, slow = scenes["a22"][0].rate(2), scenes["a22-slow"][0].rate(2)
-        ratio = Spread(flying.median / slow.median, flying.least / slow.most, flying.most / slow.least)
-        found.append(Target("flying at 50.1 m/s / the same grains at 0.5 m/s", 0.9, ratio))
-    for threads, bound in ((1, 100), (2, 190)) if "cpe" in scenes else ():
-        words = f"million contact updates a second, two CPE, R 40, {'one thread' if threads == 1 else 'two threads'}"
-        found.append(Target(words, bound, scenes["cpe"][0].rate(threads)))
-    return found
 
 
 def with_section(bench, section):

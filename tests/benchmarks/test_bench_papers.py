@@ -11,6 +11,7 @@ import bench_papers
 import engine_parts
 import measured_scenes
 import numpy as np
+import paper_moments
 import paper_report
 import paper_scenes
 import paper_speed
@@ -18,7 +19,7 @@ import peers
 import pytest
 import scene_file
 from measured_on import TOP
-from paper_report import Moment
+from paper_moments import Moment
 from paper_scenes import PaperScene
 
 HERE = Path(__file__).resolve().parent
@@ -107,17 +108,24 @@ def test_numbers_of_a_moment():
 
 
 def test_time_to_solution_weighs_the_moments():
-    """Moments at 0, 0.2 and 0.6 of the run stand for 0.1, 0.3 and 0.6 of its steps."""
+    """Moments at 0, 0.2 and 0.6 of the run stand for 0.1, 0.3 and 0.6 of its steps; a run with a moment missing has no time."""
     ms = {"flying": (0.0, 1.0), "compressing": (0.2, 3.0), "later": (0.6, 2.0)}
-    moments = [Moment("a22", name, result({1: [one], 2: [one / 2]}, progress=at)) for name, (at, one) in ms.items()]
-    assert paper_report.weights(moments) == pytest.approx([0.1, 0.3, 0.6])
-    assert paper_report.minutes(moments, lambda m: m.median(1)) == pytest.approx(10_000 * 2.2 / 60e3)
-    assert paper_report.minutes(moments, lambda m: m.lammps(1)) is None
+    moments = [Moment("small", name, result({1: [one], 2: [one / 2]}, progress=at)) for name, (at, one) in ms.items()]
+    assert paper_moments.weights(moments) == pytest.approx([0.1, 0.3, 0.6])
+    assert paper_moments.minutes(moments, lambda m: m.median(1)) == pytest.approx(10_000 * 2.2 / 60e3)
+    assert paper_moments.minutes(moments, lambda m: m.lammps(1)) is None
+    of_a22 = [Moment("a22", one.name, one.found) for one in moments]
+    assert paper_moments.minutes(of_a22, lambda m: m.median(1)) is None  # without its fragments
 
 
 def test_the_section_of_a_report_by_hand():
     found = {"machine": {"cpu": "a processor", "cores": 2}, "scenes": {}}
-    found["scenes"]["a22"] = {"flying": result({1: [2.0], 2: [1.0]}, steps=163_695)}
+    each = {
+        name: result({1: [2.0], 2: [1.0]}, progress=time / 6.34e-6, steps=163_695)
+        for name, time in paper_scenes.SCENES["a22"].moments.items()
+    }
+    found["scenes"]["a22"] = each
+    found["scenes"]["k13"] = {"phi 0.03": result({1: [2.0], 2: [1.0]})}
     found["scenes"]["a22-slow"] = {"flying": result({1: [2.0], 2: [0.8]})}
     text = paper_report.text(found)
     assert (

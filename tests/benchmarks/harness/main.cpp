@@ -134,9 +134,10 @@ void runScene(const Settings& settings)
 			measure(run, settings, threads);
 	const harness::Scene end = run.sceneNow();
 	if (!settings.out.empty()) harness::writeScene(settings.out, end);
-	std::printf("{\"grains\": %zu, \"contacts\": %zu, \"time\": %.9g, \"ledger\": %.3g, \"instructions\": \"%s\", \"domains\": %zu, "
+	std::printf("{\"grains\": %zu, \"contacts\": %zu, \"time\": %.9g, \"energyChange\": %.6g, \"kinetic\": %.6g, \"instructions\": "
+	            "\"%s\", \"domains\": %zu, "
 	            "\"hash\": \"%016llx\"}\n",
-	        end.grains.size(), end.contacts.size(), end.head.time, (run.totalEnergy() - energy) / kinetic,
+	        end.grains.size(), end.contacts.size(), end.head.time, run.totalEnergy() - energy, kinetic,
 	        run.dynamics().state().passes->name, run.dynamics().parts().size(), static_cast<unsigned long long>(run.hash()));
 }
 
