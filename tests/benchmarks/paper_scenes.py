@@ -213,10 +213,12 @@ def _make_compression(scene, begin, paths, say):
             _save(path, begin.scene)
             continue
         say(f"making {path.name}", flush=True)
-        time = log(filling / filling_of(scene_file.load(here))) / (-3 * fast[0])
-        advance(here, here, time / step, begin.together)
+        relaxing = RELAXED * begin.time_unit
+        growth = log(filling / filling_of(scene_file.load(here)))
+        growth += 3 * own[0] * relaxing  # less what the relaxation brings
+        advance(here, here, growth / (-3 * fast[0]) / step, begin.together)
         _save(path.with_suffix(".own"), scene_file.load(here).with_strain_rate(own))
-        advance(path.with_suffix(".own"), path, RELAXED * begin.time_unit / step, begin.together)
+        advance(path.with_suffix(".own"), path, relaxing / step, begin.together)
         path.with_suffix(".own").unlink()
     here.unlink()
 
