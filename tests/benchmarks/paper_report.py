@@ -134,7 +134,7 @@ def lists_and_events(moments):
     )
     note = (
         "Parts of the time are of one thread, sampled by perf. Ledger's error: the change of all channels together through the measurements, over K of their "
-        "beginning, or (w) over the boundaries' work in them."
+        "beginning, or over the boundaries' work in them where that is larger."
     )
     return of_moments(moments, columns, cells) + "\n\n" + note
 
@@ -145,9 +145,8 @@ def interval_text(steps, times):
 
 def ledger_text(moment):
     engine = moment.found["engine"]
-    work = moment.found["run"]["compression"]
-    scale = abs(engine["boundaryWork"]) if work else engine["kinetic"]
-    return f"{abs(engine['energyChange']) / scale:.1e}{' (w)' * work}" if scale else "-"
+    scale = max(engine["kinetic"], abs(engine["boundaryWork"]))
+    return f"{abs(engine['energyChange']) / scale:.1e}" if scale else "-"
 
 
 def solution(moments):

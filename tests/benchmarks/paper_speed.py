@@ -38,7 +38,7 @@ def measure(name, moment, settings, begin=None, scene=None, folder=paper_scenes.
 
     {"engine": answer of yade_papers.py, "parts": {part: fraction of the time of one thread} or None,
     "lammps": {threads: {"msPerStep", "contacts", "skin"}} or {"missing": why not},
-    "run": {"steps": of the whole run, "step" [t0], "progress": how far along the moment is, "compression"}, "settings": of Settings}.
+    "run": {"steps": of the whole run, "step" [t0], "progress": how far along the moment is}, "settings": of Settings}.
     """
     scene = scene or paper_scenes.SCENES[name]
     path = paper_scenes.path_of(name, moment, scene, folder)
@@ -52,7 +52,6 @@ def measure(name, moment, settings, begin=None, scene=None, folder=paper_scenes.
             "steps": begin.steps,
             "step": round(float(begin.scene.head["step"]) / begin.time_unit, 6),
             "progress": begin.progress[moment],
-            "compression": scene.kind == "compression",
         },
         "settings": settings_of(settings),
     }
