@@ -1,6 +1,8 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
 # make bench  measures speed beside other codes, and error against the time step
+# make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
+# make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
 #             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
@@ -135,6 +137,18 @@ build/overlay: Makefile
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
 
+# The engine without YADE, which runs scenes of files (build/harness --help).
+HARNESS_OBJECTS := $(patsubst tests/benchmarks/harness/%.cpp,$(OBJECTS_FOLDER)/harness/%.o,$(wildcard tests/benchmarks/harness/*.cpp))
+
+build/harness: $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) build/objects.list
+	@echo "link    $@"
+	@g++ -fopenmp $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) -o $@.new && mv $@.new $@
+
+$(HARNESS_OBJECTS): $(OBJECTS_FOLDER)/harness/%.o: tests/benchmarks/harness/%.cpp build/flags.list
+	@echo "compile $<"
+	@mkdir -p $(@D)
+	@g++ $(ENGINE_FLAGS) -c $< -o $@
+
 # ---- running it ----
 
 .PHONY: demo test
@@ -173,9 +187,14 @@ $(STUDIES:%=gallery-%): gallery-%:
 	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures analysis/gallery/$*
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
-.PHONY: bench bench-peers
+.PHONY: bench bench-papers bench-peers
 bench: all
 	@$(PYTHON) tests/benchmarks/bench.py $(BENCH)
+
+# An hour the first time, when the scenes are made; stopped at any time, it resumes. SCENE=a22,k13: these only.
+bench-papers: all
+	@$(MAKE) --no-print-directory build/harness
+	@$(PYTHON) tests/benchmarks/bench_papers.py $(if $(SCENE),--scene $(SCENE)) $(BENCH)
 
 # One by one: the bench measures those that could be installed, and says which could not.
 bench-peers:
@@ -223,4 +242,4 @@ deps:
 clean:
 	rm -rf build
 
--include $(OBJECTS:.o=.d) $(PRECOMPILED).d
+-include $(OBJECTS:.o=.d) $(HARNESS_OBJECTS:.o=.d) $(PRECOMPILED).d

@@ -17,6 +17,8 @@ from measured_on import RESULTS, TOP, machine
 sys.path.insert(0, str(TOP))
 import errors  # noqa: E402
 import figures  # noqa: E402
+import paper_moments  # noqa: E402
+import paper_report  # noqa: E402
 import peers  # noqa: E402
 import report  # noqa: E402
 import settings  # noqa: E402
@@ -78,7 +80,7 @@ def main():
     done.progress.close()
     given.out.mkdir(parents=True, exist_ok=True)
     (given.out / "bench.json").write_text(json.dumps(found, indent=1))
-    text = report.text(how, found)
+    text = paper_report.with_section(report.text(how, found), paper_report.text(paper_moments.read(given.out)))
     (given.out / "bench.md").write_text(text)
     figures.draw(how, found, given.out)
     print(text)

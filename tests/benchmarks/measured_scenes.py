@@ -27,7 +27,8 @@ SEED = 1
 
 @dataclass(frozen=True)
 class Scene:
-    """position, velocity (N,3) [m, m/s]; radius (N,) [m]; material (N,) index into materials; time step [s]."""
+    """position, velocity (N,3) [m, m/s]; radius (N,) [m]; material (N,) index into materials; time step [s]; spin (N,3) [rad/s], None: 0; edge [m] of a
+    periodic cubic cell, 0: open space."""
 
     position: np.ndarray
     velocity: np.ndarray
@@ -35,6 +36,8 @@ class Scene:
     material: np.ndarray
     materials: tuple
     step: float
+    spin: np.ndarray = None
+    edge: float = 0.0
 
     @property
     def grains(self):

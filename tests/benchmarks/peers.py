@@ -14,6 +14,8 @@ import time
 from math import pi
 from pathlib import Path
 
+import numpy as np
+
 from analysis.theory import pair_constants
 
 TIME = 1e-9  # s
@@ -35,7 +37,7 @@ run {steps}
 LAMMPS_INPUT = (
     """units lj
 atom_style sphere
-boundary f f f
+boundary {boundary}
 newton off
 {processors}
 comm_modify vel yes
@@ -50,7 +52,7 @@ neigh_modify delay 0 every 1 check yes
 LIGGGHTS_INPUT = (
     """units si
 atom_style granular
-boundary f f f
+boundary {boundary}
 newton off
 {processors}
 communicate single vel yes
@@ -104,16 +106,22 @@ def version(code):
     return next(group for group in found.groups() if group) if found else "unknown"
 
 
-def measure(code, scene, steps, cores=1):
+def measure(code, scene, steps, cores=1, skin=SKIN):
     """{contacts, grains, steps, seconds, rate, fraction} of a run of `steps` steps; rate: contact updates a second of the time loop.
 
-    fraction: processor seconds a second of the whole run, all processes together; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
+    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
     """
     program, text = PROGRAMS[code]
     with tempfile.TemporaryDirectory() as folder:
         write_grains(Path(folder) / "grains.data", scene)
         (Path(folder) / "input").write_text(
-            text.format(steps=steps, skin=SKIN, processors=f"processors {cores} 1 1", **scaled_constants(scene))
+            text.format(
+                steps=steps,
+                skin=skin,
+                boundary="p p p" if scene.edge else "f f f",
+                processors=f"processors {cores} 1 1",
+                **scaled_constants(scene),
+            )
         )
         command = [program, "-in", "input", "-log", "none"]
         if cores > 1:
@@ -171,15 +179,16 @@ def write_grains(path, scene):
     """A data file that both read: id, type, diameter, density, position; id, velocity, spin."""
     r = scene.radius[0]
     assert len(scene.materials) == 1 and (scene.radius == r).all(), "peers are measured on like grains"
-    edge = 2 * abs(scene.position).max() / r
+    reach = 2 * abs(scene.position).max() / r
+    low, high, position = (
+        (0, scene.edge / r, scene.position % scene.edge) if scene.edge else (-reach, reach, scene.position)
+    )
+    spin = np.zeros_like(scene.velocity) if scene.spin is None else scene.spin
+    moving = np.hstack([scene.velocity * TIME / r, spin * TIME])
     with open(path, "w") as file:
         file.write(f"grains\n\n{scene.grains} atoms\n1 atom types\n\n")
-        file.writelines(f"{-edge} {edge} {axis}lo {axis}hi\n" for axis in "xyz")
+        file.writelines(f"{low} {high} {axis}lo {axis}hi\n" for axis in "xyz")
         file.write("\nAtoms\n\n")
-        file.writelines(
-            f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((scene.position / r).tolist(), 1)
-        )
+        file.writelines(f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((position / r).tolist(), 1))
         file.write("\nVelocities\n\n")
-        file.writelines(
-            f"{k} {x!r} {y!r} {z!r} 0 0 0\n" for k, (x, y, z) in enumerate((scene.velocity * TIME / r).tolist(), 1)
-        )
+        file.writelines(f"{k} " + " ".join(map(repr, row)) + "\n" for k, row in enumerate(moving.tolist(), 1))

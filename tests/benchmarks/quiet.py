@@ -6,8 +6,8 @@ import time
 LOUD = 0.05  # fraction of the machine, or of its core, that a measurement may lack before the report warns
 
 
-def share_of_others(seconds=1.0):
-    """Share of all processors' time [0, 1] that other programs use, while this one only waits."""
+def fraction_of_others(seconds=1.0):
+    """Fraction of all processors' time [0, 1] that other programs use, while this one only waits."""
     before = _busy()
     time.sleep(seconds)
     return max(0.0, (_busy() - before) / (seconds * os.cpu_count()))

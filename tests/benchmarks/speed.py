@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import measured_scenes
 import peers
-from quiet import share_of_others
+from quiet import fraction_of_others
 from yade_process import YadeProcess
 
 SLOWER_SETS = ("avx2", "portable")
@@ -123,7 +123,7 @@ def measure(settings, done):
             process.wait()
         done(estimate(settings) - settings.rounds * (1 + sum(task.seconds for task in tasks)))
         for turn in range(settings.rounds):
-            others = max(others, share_of_others())
+            others = max(others, fraction_of_others())
             done(1)
             for task in tasks:
                 answer = take(task, started, peers_scene, failed)

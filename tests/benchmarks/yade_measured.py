@@ -81,7 +81,7 @@ def fused(threads, instructions=""):
 
 
 def loop():
-    """YADE's own loop, with this repository's law or the stock one; goes on where it was after the last request for it."""
+    """YADE's own loop, with this repository's law or the stock one; continues from where it was after the last request for it."""
     if any(engine.label == "measured loop" for engine in O.engines):  # YADE starts with engines of its own
         return
     restart()

@@ -1,0 +1,171 @@
+#include "run.hpp"
+#include "../../../contact_law/engine/diagnosis.hpp"
+#include "../../../contact_law/engine/stability.hpp"
+#include <cstring>
+#include <stdexcept>
+
+namespace harness {
+
+using contact_law::ContactNow;
+using contact_law::Dynamics;
+using contact_law::GrainInput;
+using contact_law::GrainMotion;
+using contact_law::Inherited;
+using contact_law::Vec3;
+
+namespace {
+	Vec3<double> vector(const double (&x)[3]) { return { x[0], x[1], x[2] }; }
+	void set(double (&x)[3], const Vec3<double>& v) { x[0] = v.x, x[1] = v.y, x[2] = v.z; }
+
+	template <class From, class To> void copyMoving(const From& from, To& to)
+	{
+		std::memcpy(to.position, from.position, sizeof to.position);
+		std::memcpy(to.velocity, from.velocity, sizeof to.velocity);
+		std::memcpy(to.angularVelocity, from.angularVelocity, sizeof to.angularVelocity);
+	}
+
+	Dynamics::Materials materialsOf(const Scene& scene)
+	{
+		Dynamics::Materials materials;
+		for (const MaterialRecord& m : scene.materials)
+			materials.push_back({ m.young, m.poisson, m.density, m.surfaceEnergy, m.criticalRolling, m.viscoelasticTime });
+		return materials;
+	}
+
+	Dynamics::Grains grainsOf(const Scene& scene)
+	{
+		Dynamics::Grains grains;
+		for (const GrainRecord& record : scene.grains) {
+			GrainInput grain {};
+			copyMoving(record, grain);
+			grain.blocked = unsigned(record.blocked);
+			grain.radius = record.radius, grain.mass = record.mass, grain.inertia = record.inertia;
+			grain.kind = int(record.material);
+			grains.push_back(grain);
+		}
+		return grains;
+	}
+
+	Inherited contactsOf(const Scene& scene)
+	{
+		Inherited inherited;
+		for (const ContactRecord& c : scene.contacts)
+			inherited.contacts.push_back({ int(c.first), int(c.second), { { vector(c.pointer1), vector(c.pointer2) }, c.twist },
+			        c.overlap, c.drag, c.bonded != 0, c.rest });
+		return inherited;
+	}
+
+	Dynamics::Options optionsOf(const Scene& scene, int domains, int threads, const std::string& instructions)
+	{
+		Dynamics::Options options;
+		options.dt = scene.head.step;
+		options.linearDamping = scene.head.linearDamping;
+		options.neck = scene.head.neck;
+		options.domains = domains;
+		options.threads = threads;
+		options.instructions = instructions;
+		bool drag = options.linearDamping > 0;
+		for (const MaterialRecord& material : scene.materials)
+			drag = drag || material.viscoelasticTime > 0;
+		options.mechanisms = contact_law::mechanismsOf(true, true, true, drag);
+		if (scene.periodic()) {
+			const Vec3<double> size = vector(scene.head.cellSize), strain = vector(scene.head.strainRate);
+			options.cell = contact_law::PeriodicCell::box(size, contact_law::Images<double>::times(strain, size));
+		}
+		return options;
+	}
+
+	ContactRecord recordOf(const ContactNow& c)
+	{
+		ContactRecord record {};
+		record.first = c.first, record.second = c.second, record.bonded = c.bonded;
+		set(record.pointer1, c.history.pointers.n1);
+		set(record.pointer2, c.history.pointers.n2);
+		record.twist = c.history.twist;
+		record.overlap = c.geometry.overlap, record.drag = c.forces.drag, record.rest = c.rest;
+		return record;
+	}
+}
+
+Run::Run(const Scene& scene_, int domains, int threads, const std::string& instructions)
+        : scene(scene_)
+{
+	const auto options = optionsOf(scene, domains, threads, instructions);
+	const auto grains = grainsOf(scene);
+	const auto materials = materialsOf(scene);
+	engine = scene.contacts.empty() ? std::make_unique<Dynamics>(grains, materials, options)
+	                                : std::make_unique<Dynamics>(grains, materials, options, contactsOf(scene));
+	const double unstable = contact_law::unstableStep(*engine);
+	if (!(scene.head.step > 0 && scene.head.step < unstable))
+		throw std::invalid_argument("the scene's step is " + std::to_string(scene.head.step * 1e9)
+		        + " ns: must be above 0 and below " + std::to_string(unstable * 1e9) + " ns");
+	if (scene.periodic() && !engine->cell().holds(engine->reach()))
+		throw std::invalid_argument("the scene's periodic cell is too small: must be at least twice the reach of a pair");
+}
+
+// As YADE's cell changes in an O.step.
+void Run::advanceCell(double time, Vec3<double>& size) const
+{
+	size = size + time * contact_law::Images<double>::times(vector(scene.head.strainRate), size);
+}
+
+void Run::run(long steps, long together)
+{
+	for (long left = steps; left > 0; left -= together) {
+		const long now = std::min(left, together);
+		Vec3<double> size = engine->cell().size;
+		advanceCell(double(now) * scene.head.step, size);
+		if (engine->run(now, scene.periodic() ? &size : nullptr) < now) {
+			const contact_law::Diagnosis what = contact_law::diagnoseGrain(*engine);
+			throw std::runtime_error("the run broke down: grain " + std::to_string(what.grain) + " moves at "
+			        + std::to_string(what.speed) + " m/s");
+		}
+		scene.head.time += double(now) * scene.head.step;
+	}
+}
+
+Scene Run::sceneNow() const
+{
+	Scene now = scene;
+	std::vector<GrainMotion> motions;
+	engine->read(motions);
+	for (std::size_t k = 0; k < motions.size(); ++k)
+		copyMoving(motions[k], now.grains[k]);
+	if (scene.periodic()) set(now.head.cellSize, engine->cell().size);
+	now.contacts.clear();
+	contact_law::eachContactLane(*engine, [&](const auto& list, int lane, int, int) {
+		now.contacts.push_back(recordOf(contact_law::contactNow(*engine, list, lane)));
+	});
+	contact_law::eachBondLane(*engine, [&](const auto& list, int lane, int, int) {
+		now.contacts.push_back(recordOf(contact_law::contactNow(*engine, list, lane)));
+	});
+	return now;
+}
+
+std::uint64_t Run::hash() const
+{
+	std::vector<GrainMotion> motions;
+	engine->read(motions);
+	std::uint64_t hash = 14695981039346656037u;
+	for (const GrainMotion& g : motions)
+		for (const auto* numbers : { &g.position, &g.velocity, &g.angularVelocity })
+			for (const double number : *numbers) {
+				unsigned char bytes[sizeof number];
+				std::memcpy(bytes, &number, sizeof number);
+				for (const unsigned char byte : bytes)
+					hash = (hash ^ byte) * 1099511628211u;
+			}
+	return hash;
+}
+
+double Run::totalEnergy()
+{
+	double sum = 0;
+	for (const double energy : contact_law::byChannel(engine->energies()))
+		sum += energy;
+	return sum;
+}
+
+double Run::kineticEnergy() { return engine->energies().kinetic; }
+
+} // namespace harness

@@ -1,0 +1,174 @@
+"""The harness runs the engine as YADE does: the same grains after the same steps, whatever the scene; any number of threads, the same bits."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import paper_scenes
+import pytest
+import scene_file
+from conftest import run_yade
+from measured_on import TOP
+from paper_scenes import PaperScene
+
+HERE = Path(__file__).resolve().parent
+STEPS = 300
+
+# Small ones of the papers' kinds: drag; a periodic cell with damping; sintered bonds in a plane, some of which break.
+SMALL = {
+    "drag": PaperScene(
+        "",
+        "collision",
+        {"packing": "bpca", "grains": 300, "velocity": 60, "viscoelasticTime": "6e-12", "stepFraction": 0.2},
+        {"flying": 0.0, "compressing": 30e-9},
+    ),
+    "cell": PaperScene(
+        "",
+        "compression",
+        {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1},
+        {"start": None, "denser": 0.03},
+    ),
+    "bonds": PaperScene(
+        "",
+        "collision",
+        {"packing": "bcca", "grains": 64, "planar": 1, "neck": 0.3, "velocity": 60, "stepFraction": 0.1},
+        {"flying": 0.0, "broken": 60e-9},
+    ),
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def harness_is_built():
+    subprocess.run(["make", "build/harness"], cwd=TOP, check=True, capture_output=True)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("scenes")
+
+
+def moments(name, folder):
+    """[(moment, its file)] of one of SMALL, made when missing."""
+    scene = SMALL[name]
+    paper_scenes.make(name, scene, folder, say=lambda *_, **__: None)
+    return [(moment, paper_scenes.path_of(name, moment, scene, folder)) for moment in scene.moments]
+
+
+def harness(*arguments):
+    return subprocess.run([str(paper_scenes.HARNESS), *map(str, arguments)], capture_output=True, text=True)
+
+
+def run_harness(*arguments):
+    """(measurements, the last line) of a run that must succeed."""
+    done = harness(*arguments)
+    assert done.returncode == 0, done.stderr
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    return lines[:-1], lines[-1]
+
+
+YADE = f"""
+sys.path.insert(0, {str(HERE)!r})
+import scene_file, yade_scene
+engine = yade_scene.build(scene_file.load(parameters["scene"]), 50)
+result["before"] = engine.statistics()
+for _ in range(parameters["steps"] // 50):
+    O.step()
+now = contact_law.snapshot()
+result.update({{name: now[name] for name in ("position", "velocity", "angular_velocity", "contact_pairs", "contact_bonded")}})
+result["statistics"] = engine.statistics()
+result["cell"] = list(O.cell.size) if O.periodic else [0, 0, 0]
+"""
+
+
+@pytest.mark.parametrize("name", list(SMALL))
+def test_the_same_as_in_yade(name, folder):
+    """From a start without contacts, and from a moment whose contacts have springs: positions to 1e-12 of a radius, the same contacts."""
+    for moment, path in moments(name, folder):
+        end = folder / "end.scene"
+        run_harness(path, f"steps={STEPS}", f"out={end}")
+        ours, yade = scene_file.load(end), run_yade(YADE, {"scene": str(path), "steps": STEPS})
+        radius, speed = ours.grains["radius"][0], np.ptp(ours.grains["velocity"], axis=0).max()
+        assert np.abs(ours.grains["position"] - yade["position"]).max() < 1e-12 * radius, moment
+        assert np.abs(ours.grains["velocity"] - yade["velocity"]).max() < 1e-12 * speed, moment
+        spin = np.abs(ours.grains["angularVelocity"]).max()
+        assert np.abs(ours.grains["angularVelocity"] - yade["angular_velocity"]).max() <= 1e-12 * spin, moment
+        pairs = np.sort(np.column_stack([ours.contacts["first"], ours.contacts["second"]]), axis=1)
+        assert {tuple(pair) for pair in pairs.tolist()} == {tuple(sorted(pair)) for pair in yade["contact_pairs"]}
+        assert ours.contacts["bonded"].sum() == sum(yade["contact_bonded"])
+        assert ours.head["cellSize"] == pytest.approx(yade["cell"], rel=1e-12)
+
+
+def test_the_scenes_have_what_they_are_for(folder):
+    """Drag forces, stretched contacts, a cell that has shrunk, broken bonds: otherwise the comparison would show nothing of them."""
+    drag, cell, bonds = (scene_file.load(moments(name, folder)[1][1]) for name in ("drag", "cell", "bonds"))
+    assert np.abs(drag.contacts["drag"]).max() > 0 and drag.contacts["overlap"].min() < 0
+    assert paper_scenes.filling_of(cell) == pytest.approx(0.03, rel=0.02) and len(cell.contacts) > 127
+    assert 0 < bonds.contacts["bonded"].sum() < 126 and bonds.contacts["rest"].max() > 0
+
+
+def test_as_many_threads_as_wanted_give_the_same_bits(folder):
+    path = moments("drag", folder)[1][1]
+    hashes = {run_harness(path, "steps=200", "domains=8", f"threads={n}")[1]["hash"] for n in (1, 2, 3, 8)}
+    assert len(hashes) == 1
+    assert run_harness(path, "steps=250", "domains=8")[1]["hash"] not in hashes
+
+
+def test_what_it_prints(folder):
+    measured, end = run_harness(
+        moments("drag", folder)[1][1], "steps=100", "threads=1,2", "rounds=2", "domains=4", "instructions=portable"
+    )
+    assert [m["threads"] for m in measured] == [1, 2, 1, 2]
+    assert all(m["msPerStep"] > 0 and m["steps"] == 100 and m["contacts"] > 500 for m in measured)
+    assert end["instructions"] == "portable" and end["domains"] == 4 and end["grains"] == 600
+    assert abs(end["energyChange"]) < 1e-3 * end["kinetic"] and end["time"] == pytest.approx(
+        30e-9 + 400 * 0.2 * 1.9365e-10, rel=0.05
+    )
+
+
+def test_files_come_back_as_they_were(folder):
+    scene = scene_file.load(moments("cell", folder)[1][1])
+    scene_file.save(folder / "copy.scene", scene)
+    assert (folder / "copy.scene").read_bytes() == moments("cell", folder)[1][1].read_bytes()
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["none.scene"], "none.scene: must be a scene that"),
+        (["{path}", "steps=0"], "steps = 0: must be a whole number of at least 1"),
+        (["{path}", "threads=1,x"], "threads = x: must be a whole number"),
+        (["{path}", "colour=red"], "colour=red: no such parameter"),
+        (["{path}", "instructions=mmx"], "instructions = 'mmx': must be"),
+        (["{short}"], "must be as long as its head says"),
+        ([], "no scene: must be given first"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(arguments, words, folder):
+    path, short = moments("drag", folder)[1][1], folder / "short.scene"
+    short.write_bytes(path.read_bytes()[:-8])
+    done = harness(*(argument.format(path=path, short=short) for argument in arguments))
+    assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
+    assert done.stdout == ""
+
+
+def test_a_run_that_breaks_down_says_so(folder):
+    path = moments("drag", folder)[0][1]
+    scene = scene_file.load(path)
+    grains = scene.grains.copy()
+    grains["velocity"][0] = (1e5, 0, 0)
+    scene_file.save(folder / "wild.scene", replace(scene, grains=grains))
+    done = harness(folder / "wild.scene", "steps=10")
+    assert done.returncode == 1 and "the run broke down: grain 0 moves at " in done.stderr
+
+
+def test_another_strain_rate_brings_its_mean_flow(folder):
+    scene = scene_file.load(moments("cell", folder)[1][1])
+    faster = scene.with_strain_rate(2 * scene.strain_rate)
+    assert faster.grains["velocity"] - scene.grains["velocity"] == pytest.approx(
+        scene.strain_rate * scene.grains["position"]
+    )
+    assert (faster.strain_rate == 2 * scene.strain_rate).all()
+    assert sys.byteorder == "little"  # as the files are

@@ -1,0 +1,77 @@
+"""A scene of a file (scene_file.py) in YADE: bodies, contacts, cell, and the fused engine at its start. Imported within YADE."""
+
+import numpy as np
+from yade import utils, wrapper
+from yade.minieigenHP import Matrix3, Vector3
+
+import contact_law  # noqa: F401  (puts the plugin's classes into wrapper)
+
+BLOCKED = {1: "x", 2: "y", 4: "z", 8: "X", 16: "Y", 32: "Z"}
+
+
+def build(scene, sub_steps, threads=1, domains=2):
+    """The fused engine with a scene_file.SceneFile, prepared: O.step() makes sub_steps small steps."""
+    omega, head = wrapper.Omega(), scene.head
+    omega.trackEnergy = True
+    omega.dt = float(head["step"]) * sub_steps
+    if scene.periodic:
+        omega.periodic = True
+        omega.cell.setBox(*head["cellSize"].tolist())
+        omega.cell.homoDeform = 0  # the mean flow is in the velocities
+    add_bodies(scene)
+    law = {"linearDamping": float(head["linearDamping"]), "neck": float(head["neck"])}
+    if len(scene.contacts):
+        add_contacts(scene.contacts, law)
+    if scene.periodic:
+        # by its name: "O.cell.velGrad = " would hold from the next step on, and the first forces be those of a cell at rest
+        omega.cell.updateAttrs({"velGrad": Matrix3(*np.diag(head["strainRate"]).flatten().tolist())})
+    engine = wrapper.JKRWadaEngine(subSteps=sub_steps, threads=threads, domains=domains, **law)
+    omega.engines = [engine]
+    engine.prepare()
+    return engine
+
+
+def add_bodies(scene):
+    omega = wrapper.Omega()
+    for material in scene.materials:
+        omega.materials.append(wrapper.JKRMat(**{name: float(material[name]) for name in material.dtype.names}))
+    grains = scene.grains
+    columns = [grains[name].tolist() for name in grains.dtype.names]
+    bodies = []
+    for position, velocity, spin, radius, mass, inertia, material, blocked in zip(*columns):
+        body = utils.sphere(position, radius, material=material)
+        state = body.state
+        state.vel, state.angVel, state.mass, state.inertia = velocity, spin, mass, (inertia, inertia, inertia)
+        if blocked:
+            state.blockedDOFs = "".join(letter for bit, letter in BLOCKED.items() if blocked & bit)
+        bodies.append(body)
+    omega.bodies.append(bodies)
+
+
+def add_contacts(contacts, law):
+    """Interactions with the springs of contacts (CONTACT,), for the engine to take over; the functors serve to make them only."""
+    wrapper.Omega().engines = [
+        wrapper.InteractionLoop(
+            [wrapper.Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=2)],
+            [wrapper.Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
+            [wrapper.Law2_ScGeom_JKRWadaPhys_JKRWada()],
+        )
+    ]
+    columns = [contacts[name].tolist() for name in contacts.dtype.names]
+    for first, second, bonded, pointer1, pointer2, twist, overlap, drag, rest in zip(*columns):
+        interaction = utils.createInteraction(first, second)
+        if interaction.id1 != first:
+            pointer1, pointer2 = pointer2, pointer1
+        interaction.phys.updateAttrs(
+            {
+                "touching": True,
+                "current": True,
+                "bonded": bool(bonded),
+                "pointer1": Vector3(*pointer1),
+                "pointer2": Vector3(*pointer2),
+                "twist": twist,
+                "overlap": overlap,
+                "dragForce": drag,
+                "restDistance": rest,
+            }
+        )
