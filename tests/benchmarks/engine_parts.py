@@ -11,7 +11,7 @@ import paper_scenes
 
 # The first that a function's name matches counts; a function that the compiler put into another one counts with that.
 PARTS = {
-    "lists": r"[Nn]ear|[Ff]indPairs|Grid|[Gg]rid|closeMembers|closerThan|sort|[Pp]airs|neighbour|Neighbour|merge|travel",
+    "lists": r"PairLists|closeGrains|keepLists|sort|reorder|orderGrains|[Nn]eighbour|merge|introselect",
     "forces": r"forces|[Ff]orcePass|bondForces|addOtherForces|drag|slip",
     "events": r"event|addFirstForces|contactStep|form|place",
     "integration": r"integrate|drift|kick",

@@ -121,7 +121,8 @@ def lists_and_events(moments):
         engine, steps, parts = moment.found["engine"], moment.steps(), moment.found["parts"] or {}
         slips = max(0, engine["events"] - engine["formed"] - engine["broken"])
         return [
-            *(interval_text(steps, engine[name]) for name in ("farRebuilds", "nearRebuilds")),
+            interval_text(steps, engine["searches"]),
+            f"{engine['looks'] / steps / engine['contacts']:.2g}",
             *(f"{100 * parts[part]:.0f}" if part in parts else "-" for part in ("lists", "forces", "integration")),
             f"{100 * slips / engine['contactUpdates']:.2g}",
             *(f"{engine[name] / steps:.2g}" for name in ("formed", "broken")),
@@ -129,7 +130,7 @@ def lists_and_events(moments):
         ]
 
     columns = (
-        "far lists redone every … steps | near lists | % of the time: lists | forces | integration | % of contact updates that slip | formed a step | "
+        "neighbours of all grains searched every … steps | looks at pairs, a contact and step | % of the time: lists | forces | integration | % of contact updates that slip | formed a step | "
         "broken a step | ledger's error"
     )
     note = (

@@ -53,7 +53,7 @@ def measure(scene, together, rounds, seconds, most):
                 }
             )
     after, now = engine.statistics(), dict(O.energy.items())
-    counted = ("farRebuilds", "nearRebuilds", "events", "formed", "broken", "contactUpdates")
+    counted = ("searches", "looks", "events", "formed", "broken", "contactUpdates")
     return {
         "grains": len(O.bodies),
         "contacts": sum(turn["contacts"] for turn in turns) / len(turns),

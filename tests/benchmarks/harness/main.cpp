@@ -16,7 +16,7 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
   steps=500       small steps of one measurement
   threads=1       threads, or several by turns: threads=1,2
   rounds=1        measurements with each
-  domains=2       parts that the grains are divided into
+  domains=0       parts that the grains are divided into; 0: by their number
   instructions=   avx512, avx2, portable; empty: the best that this machine has
   together=50     small steps in one call of the engine, as subSteps of JKRWadaEngine
   warm=0          small steps before the first measurement
@@ -26,7 +26,7 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
 
 struct Settings {
 	std::string scene, instructions, out, control;
-	long steps = 500, rounds = 1, domains = 2, together = 50, warm = 0;
+	long steps = 500, rounds = 1, domains = 0, together = 50, warm = 0;
 	std::vector<long> threads { 1 };
 };
 
@@ -65,7 +65,7 @@ void take(Settings& settings, const std::string& argument)
 	else if (name == "rounds")
 		settings.rounds = wholeNumber(name, value, 1);
 	else if (name == "domains")
-		settings.domains = wholeNumber(name, value, 1);
+		settings.domains = wholeNumber(name, value, 0);
 	else if (name == "together")
 		settings.together = wholeNumber(name, value, 1);
 	else if (name == "warm")
@@ -115,10 +115,10 @@ void measure(harness::Run& run, const Settings& settings, long threads)
 	const Counted after(dynamics);
 	const double mean = 0.5 * (contacts + contact_law::contactCount(dynamics));
 	std::printf("{\"threads\": %d, \"steps\": %ld, \"msPerStep\": %.6g, \"contacts\": %.1f, \"contactUpdatesPerSecond\": %.5g, "
-	            "\"farRebuilds\": %ld, \"nearRebuilds\": %ld, \"events\": %ld, \"formed\": %ld, \"broken\": %ld}\n",
+	            "\"searches\": %.4g, \"looks\": %ld, \"events\": %ld, \"formed\": %ld, \"broken\": %ld}\n",
 	        dynamics.threadCount(), settings.steps, 1e3 * seconds / double(settings.steps), mean,
-	        mean * double(settings.steps) / seconds, after.counters.farRebuilds - before.counters.farRebuilds,
-	        after.counters.nearRebuilds - before.counters.nearRebuilds, after.counts.events - before.counts.events,
+	        mean * double(settings.steps) / seconds, after.counters.searches - before.counters.searches,
+	        after.counters.looks - before.counters.looks, after.counts.events - before.counts.events,
 	        after.counts.formed - before.counts.formed, after.counts.broken - before.counts.broken);
 	std::fflush(stdout);
 }
