@@ -1,4 +1,4 @@
-// What the fused engine keeps between steps. Grains in the order of a space-filling curve; contacts in blocks of eight, each number of the
+// What the fused engine keeps between steps. Grains in the order of a k-d tree (grain_order.cpp); contacts in blocks of eight, each number of the
 // eight side by side.
 #pragma once
 #include "../kernel/contact_step.hpp"

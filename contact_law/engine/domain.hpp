@@ -1,4 +1,4 @@
-// A part of the grains (a stretch of the space-filling curve) with all contacts that touch them. Contacts across a border are computed in both
+// A part of the grains (a stretch of their order) with all contacts that touch them. Contacts across a border are computed in both
 // domains, each adding to its own grains only, so that results do not depend on how many threads the domains are dealt to.
 #pragma once
 #include "constraints.hpp"
