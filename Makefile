@@ -9,20 +9,24 @@
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
+# make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
+#             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
+# make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
+#             tests/yade_tools/results/debian.md. SYSTEMS=sid: unstable
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
 #
 # Afterwards scripts find the plugin by "import contact_law", or plain yade knows it with YADE_PREFIX=$PWD/build.
-# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface;
-# YADE_VERSION says which version they are of, and the plugin then loads into that version only.
+# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface.
+# The plugin loads into the version of YADE that is installed when it is compiled, and into no other; YADE_VERSION=... says another.
 
 .DELETE_ON_ERROR:
 .SUFFIXES:
 .DEFAULT_GOAL := all
 
-# ---- where things are (Debian 12) ----
+# ---- where things are, and of which version ----
 
 LIBRARY_FOLDER := lib/x86_64-linux-gnu/yade-double
 YADE_LIBRARIES := /usr/$(LIBRARY_FOLDER)
@@ -30,9 +34,15 @@ OVERLAY        := build/$(LIBRARY_FOLDER)
 PLUGIN         := $(OVERLAY)/libcontact_law.so
 OBJECTS_FOLDER := build/objects
 
-YADE_VERSION ?= 2023.02a
+# The versions of YADE that contact_law/yade_interface has been tried with (make test-debian). Another one is refused.
+YADE_DESCRIBED := 2023.02a 2025.2.0
 
+# Found out. Empty on a system that lacks the packages; they are installed before anything is compiled, by a make of its own.
 PYTHON := /usr/bin/python3
+PYTHON_VERSION := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null)
+ifndef YADE_VERSION
+YADE_VERSION := $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
+endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist
@@ -53,7 +63,7 @@ YADE_DEFINITIONS += -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MU
                     -DOMPI_SKIP_MPICXX -isystem /usr/lib/x86_64-linux-gnu/openmpi/include
 endif
 YADE_HEADERS = $(if $(YADE_INCLUDE),-isystem $(YADE_INCLUDE),-Icontact_law/yade_interface)
-YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python3.11
+YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python$(PYTHON_VERSION)
 
 # Files of the engine see no YADE type. Those with an instruction set in their name run only where the processor has it; there products and sums
 # are contracted (-ffp-contract=fast), which is worth a quarter of the speed: instruction sets agree to rounding, each with itself to the bit.
@@ -66,7 +76,7 @@ $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
 LINK := -shared -fopenmp -Wl,-z,defs -Wl,-rpath,$(YADE_LIBRARIES) -L$(YADE_LIBRARIES)
-LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python311 -lboost_serialization -lpython3.11 -ldl
+LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python$(subst .,,$(PYTHON_VERSION)) -lboost_serialization -lpython$(PYTHON_VERSION) -ldl
 
 # ---- what is built ----
 
@@ -80,11 +90,21 @@ PRECOMPILED    := $(OBJECTS_FOLDER)/precompiled.hpp
 
 .PHONY: all deps clean build
 all: deps
+	@$(MAKE) --no-print-directory known-yade
 	@$(MAKE) --no-print-directory $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 
 # After deps only: without the packages there is nothing to link to, nor to compile with.
 build: $(PLUGIN) build/overlay
 	@echo "contact_law is built: $(PLUGIN)"
+
+.PHONY: known-yade
+known-yade:
+ifndef YADE_INCLUDE
+ifneq ($(words $(filter $(YADE_VERSION),$(YADE_DESCRIBED))),1)
+	@echo "make: YADE $(YADE_VERSION) is installed: must be one of $(YADE_DESCRIBED), or compile against its source:" \
+		"make YADE_INCLUDE=/path/to/yade" >&2; exit 1
+endif
+endif
 
 # $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
 $(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
@@ -135,6 +155,15 @@ build/overlay: Makefile
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
 
+# For scripts of any folder: contact_law/installation.py says what goes where.
+PREFIX ?= $(HOME)/.local
+.PHONY: install uninstall
+install: all
+	@$(PYTHON) contact_law/installation.py install "$(PREFIX)"
+
+uninstall:
+	@$(PYTHON) contact_law/installation.py uninstall "$(PREFIX)"
+
 # ---- running it ----
 
 .PHONY: demo test
@@ -150,6 +179,12 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+SYSTEMS ?= bookworm trixie
+.PHONY: test-debian
+test-debian:
+	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git"
+	@$(PYTHON) tests/yade_tools/debian_systems.py $(SYSTEMS)
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk

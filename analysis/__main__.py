@@ -26,10 +26,21 @@ def _parser():
         epilog="Exit status: 0, or 2 if a run could not be analysed. A run that has not ended is analysed as far as it "
         "went by summary and figures, and left out by study.",
     )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
     for command in (summary, figures, study):
         command.add_parser(commands)
     return parser
+
+
+class _Version(argparse.Action):
+    """Asks git only when it is called."""
+
+    def __call__(self, parser, *_):
+        from .version import version_text
+
+        print(f"analysis {version_text()}")
+        parser.exit()
 
 
 if __name__ == "__main__":
