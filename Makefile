@@ -13,6 +13,7 @@
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
+# make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
 #             tests/yade_tools/results/debian.md. SYSTEMS=sid: unstable
 # make deps   installs what is missing from Debian's packages
@@ -45,7 +46,8 @@ YADE_VERSION := $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/
 endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
-            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist
+            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist \
+            python3-vtk9
 
 # ---- flags ----
 
@@ -179,6 +181,15 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+# With it the tests open exports in OVITO too (200 MB from PyPI, in a folder of its own).
+.PHONY: ovito
+ovito: build/ovito/installed
+build/ovito/installed: Makefile
+	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv libegl1 libopengl0"
+	@$(PYTHON) -m venv build/ovito
+	@build/ovito/bin/pip -q install --disable-pip-version-check ovito==3.17.2
+	@touch $@
 
 SYSTEMS ?= bookworm trixie
 .PHONY: test-debian

@@ -32,7 +32,13 @@ def installed(tmp_path_factory):
 
     def call(*command, **more):
         return subprocess.run(
-            command, cwd=elsewhere, env={**paths, "LC_ALL": "C.UTF-8"}, capture_output=True, text=True, timeout=120, **more
+            command,
+            cwd=elsewhere,
+            env={**paths, "LC_ALL": "C.UTF-8"},
+            capture_output=True,
+            text=True,
+            timeout=120,
+            **more,
         )
 
     return prefix, call
@@ -49,7 +55,9 @@ def test_a_script_of_any_folder_imports_the_contact_law(installed, tmp_path):
 
 def test_any_python_imports_the_analysis(installed):
     prefix, call = installed
-    done = call("/usr/bin/python3", "-c", "import analysis; print(analysis.__file__, analysis.__version__, analysis.commit)")
+    done = call(
+        "/usr/bin/python3", "-c", "import analysis; print(analysis.__file__, analysis.__version__, analysis.commit)"
+    )
     file, version, commit = done.stdout.rsplit(maxsplit=2)
     assert file == f"{prefix}/lib/contact_law/analysis/__init__.py"
     assert version == (TOP / "contact_law/VERSION").read_text().strip() and commit
