@@ -16,6 +16,7 @@
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
 #             tests/yade_tools/results/debian.md. SYSTEMS=sid: unstable
+# make yade-tree  compiles against YADE's own source, which it downloads (Debian 13), and loads the result
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
 #
@@ -195,7 +196,13 @@ SYSTEMS ?= bookworm trixie
 .PHONY: test-debian
 test-debian:
 	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git"
-	@$(PYTHON) tests/yade_tools/debian_systems.py $(SYSTEMS)
+	@$(PYTHON) tests/yade_tools/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
+
+# On Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
+.PHONY: yade-tree
+yade-tree: all
+	@$(MAKE) --no-print-directory deps PACKAGES="dpkg-dev git libopenmpi-dev bzip2"
+	@$(PYTHON) tests/yade_tools/yade_tree.py
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
