@@ -48,7 +48,7 @@ endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist \
-            python3-vtk9
+            python3-vtk9 ffmpeg
 
 # ---- flags ----
 
