@@ -61,7 +61,9 @@ def _view(run):
 def _frame(state, view, pixel):
     """RGB bytes (H, W, 3) of a state, H and W even, as the encoder wants them."""
     colours = np.array(AGGREGATE_COLOURS)[state.aggregate % len(AGGREGATE_COLOURS)]
-    image = paint_spheres(_drawn(state), state.radius, colours, view, pixel)[::-1]
+    position = _drawn(state)
+    fading = max(4.0, np.ptp(position[:, 2]) / state.radius.max())  # from front to back
+    image = paint_spheres(position, state.radius, colours, view, pixel, fading=fading)[::-1]
     image = np.pad(image, [(0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)], mode="edge")
     picture = Image.fromarray(np.round(255 * image).astype(np.uint8))
     text = f"t = {state.time * NANO:.1f} ns"

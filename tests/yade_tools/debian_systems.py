@@ -44,12 +44,14 @@ class System:
 
     suite: str
     folder: Path
+    kept: bool = False  # made by an earlier call
     versions: dict = field(default_factory=dict)
     results: list = field(default_factory=list)  # (command, what became of it, seconds)
 
     def make(self, mirror):
         """Debootstrap, packages that come before the clone, and the clone."""
-        if not (self.folder / "usr/bin/apt-get").exists():
+        self.kept = (self.folder / "usr/bin/apt-get").exists()
+        if not self.kept:
             _run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
         self.inside(f"apt-get -q update && apt-get -q -y --no-install-recommends install {' '.join(BASE)}", check=True)
@@ -132,7 +134,8 @@ def table(systems, commit):
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
-            lines.append(f"| {system.suite} | {versions} | `{command}` | {result} | {seconds:.0f} |")
+            name = system.suite + (", kept from an earlier call with its packages" if system.kept else "")
+            lines.append(f"| {name} | {versions} | `{command}` | {result} | {seconds:.0f} |")
     return "\n".join(lines) + "\n"
 
 
