@@ -21,7 +21,11 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
 FOLDER, LIST, PATH_FILE = "lib/contact_law", "installed.json", "contact_law.pth"
-COPIED = {"contact_law": ("*.py", "VERSION"), "analysis": ("**/*.py",), "yade_scripts": ("**/*.py", "**/*.table")}
+COPIED = {
+    "contact_law": ("*.py", "VERSION"),
+    "analysis": ("**/*.py", "gallery/*/*.csv"),
+    "yade_scripts": ("**/*.py", "**/*.table"),
+}
 
 # PYTHONPATH, not the folder that one stands in, says which packages these are.
 _PYTHON = "PYTHONPATH={folder} exec /usr/bin/python3 -P "
