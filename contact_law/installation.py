@@ -75,14 +75,14 @@ def install(prefix):
 
 
 def _require_free(prefix):
-    """CannotInstall where something that is not of an earlier installation is in the way."""
+    """CannotInstall where something is in the way that is not part of an earlier installation."""
     folder = prefix / FOLDER
     if folder.exists() and not (folder / LIST).is_file():
-        raise CannotInstall(f"{folder}: exists and is no installation of this; must be moved away")
+        raise CannotInstall(f"{folder}: exists and is not an installation of contact_law; must be moved away")
     own = set(json.loads((folder / LIST).read_text())) if folder.exists() else ()
     for file in (prefix / "bin" / name for name in COMMANDS):
         if os.path.lexists(file) and str(file) not in own:
-            raise CannotInstall(f"{file}: exists and is not of this; must be moved away")
+            raise CannotInstall(f"{file}: exists and is not part of an installation of contact_law; must be moved away")
 
 
 def uninstall(prefix, missing_ok=False):

@@ -38,8 +38,8 @@ def _frames(file):
 def _places(frame, colour):
     """Mean column, as a fraction of the width, of the pixels whose hue is the colour's."""
     colour = np.array(colour)
-    alike = (frame @ colour) / np.linalg.norm(frame + 1e-9, axis=2) / np.linalg.norm(colour) > 0.985
-    return np.argwhere(alike)[:, 1].mean() / frame.shape[1]
+    same_hue = (frame @ colour) / np.linalg.norm(frame + 1e-9, axis=2) / np.linalg.norm(colour) > 0.985
+    return np.argwhere(same_hue)[:, 1].mean() / frame.shape[1]
 
 
 @needs_ffmpeg

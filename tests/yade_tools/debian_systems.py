@@ -70,7 +70,7 @@ class System:
         return _run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
 
     def try_commands(self, commands):
-        """Run them in the clone, the next even if one fails."""
+        """Run them in the clone, the next even if one fails; yields after each."""
         for command in commands:
             begun = time.monotonic()
             done = self.inside(f"cd {CLONE} && git config --global --add safe.directory {CLONE} && {command}")
@@ -79,8 +79,9 @@ class System:
             print(f"{self.suite}: {command}: {self.results[-1][1]}, {seconds:.0f} s", flush=True)
             if done.returncode:
                 print((done.stdout + done.stderr)[-6000:], flush=True)
-        for name, command in VERSIONS.items():
-            self.versions[name] = self.inside(command).stdout.strip() or "not installed"
+            for name, ask in VERSIONS.items():
+                self.versions[name] = self.inside(ask).stdout.strip() or "not installed"
+            yield
 
     @property
     def succeeded(self):
@@ -164,8 +165,8 @@ def main(arguments):
             systems.append(System(suite, folder / suite))
             systems[-1].folder.mkdir(parents=True, exist_ok=True)
             systems[-1].make(mirror)
-            systems[-1].try_commands(commands)
-            options.out.write_text(table(systems, commit))
+            for _ in systems[-1].try_commands(commands):
+                options.out.write_text(table(systems, commit))
     except CannotBegin as error:
         print(f"debian_systems.py: {error}", file=sys.stderr)
         return 2

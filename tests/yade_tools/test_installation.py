@@ -103,7 +103,7 @@ def test_tables_that_the_analysis_reads_are_installed(installed):
 
 def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
     (tmp_path / "bin").mkdir()
-    (tmp_path / "bin/other").write_text("of somebody else")
+    (tmp_path / "bin/other").write_text("another program")
     for action in ("install", "install"):
         assert installation(action, tmp_path).returncode == 0
     assert {file.name for file in (tmp_path / "bin").iterdir()} == {*COMMANDS, "other"}
@@ -115,10 +115,10 @@ def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
 
 def test_what_is_in_the_way_is_kept(tmp_path):
     (tmp_path / "bin").mkdir()
-    (tmp_path / "bin/dust-study").write_text("of somebody else")
+    (tmp_path / "bin/dust-study").write_text("another program")
     done = installation("install", tmp_path)
-    assert done.returncode == 2 and "dust-study: exists and is not of this" in done.stderr
-    assert (tmp_path / "bin/dust-study").read_text() == "of somebody else"
+    assert done.returncode == 2 and "dust-study: exists and is not part of an installation" in done.stderr
+    assert (tmp_path / "bin/dust-study").read_text() == "another program"
     shutil.rmtree(tmp_path / "bin")
     assert installation("install", tmp_path).returncode == 0
 
