@@ -44,6 +44,7 @@ class System:
 
     suite: str
     folder: Path
+    commit: str = "unknown"
     kept: bool = False  # made by an earlier call
     versions: dict = field(default_factory=dict)
     results: list = field(default_factory=list)  # (command, what became of it, seconds)
@@ -58,6 +59,7 @@ class System:
         clone = self.folder / CLONE.lstrip("/")
         shutil.rmtree(clone, ignore_errors=True)
         _run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
+        self.commit = _run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
 
     def inside(self, command, check=False):
         """CompletedProcess of a shell command within the system, with processes, mounts and nothing of this one's
@@ -120,23 +122,23 @@ def commands_of_the_readme():
     return [line.split("#")[0].strip() for line in block.strip().splitlines()]
 
 
-def table(systems, commit):
+def table(systems):
     """The page that the repository keeps."""
     cores = len(os.sched_getaffinity(0))
     lines = [
         "# Fresh Debian systems",
         "",
-        f"Commit {commit}, {cores} cores, other work beside. Each system was made by debootstrap with nothing but "
+        f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
         f"{' and '.join(BASE)} added; the first command installs all other packages.",
         "",
-        "| system | " + " | ".join(VERSIONS) + " | command | result | time [s] |",
-        "|---|" + "---|" * len(VERSIONS) + "---|---|---:|",
+        "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |",
+        "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|",
     ]
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
             name = system.suite + (", kept from an earlier call with its packages" if system.kept else "")
-            lines.append(f"| {name} | {versions} | `{command}` | {result} | {seconds:.0f} |")
+            lines.append(f"| {name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
     return "\n".join(lines) + "\n"
 
 
@@ -157,7 +159,6 @@ def main(arguments):
             raise CannotBegin("must be run as root: debootstrap and chroot need it (sudo make test-debian)")
         if not shutil.which("debootstrap"):
             raise CannotBegin("debootstrap: not installed; must be there (apt-get install debootstrap)")
-        commit = _run(["git", "-C", str(TOP), "rev-parse", "--short", "HEAD"]).stdout.strip()
         folder = options.folder or Path(scratch := tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
         mirror, commands = mirror_of_this_system(), options.commands or commands_of_the_readme()
         systems = []
@@ -166,7 +167,7 @@ def main(arguments):
             systems[-1].folder.mkdir(parents=True, exist_ok=True)
             systems[-1].make(mirror)
             for _ in systems[-1].try_commands(commands):
-                options.out.write_text(table(systems, commit))
+                options.out.write_text(table(systems))
     except CannotBegin as error:
         print(f"debian_systems.py: {error}", file=sys.stderr)
         return 2
