@@ -11,20 +11,26 @@
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
+# make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
+#             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
+# make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
+# make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
+#             tests/yade_tools/results/debian.md. SYSTEMS=sid: unstable
+# make yade-tree  compiles against YADE's own source, which it downloads (Debian 13), and loads the result
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
 #
 # Afterwards scripts find the plugin by "import contact_law", or plain yade knows it with YADE_PREFIX=$PWD/build.
-# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface;
-# YADE_VERSION says which version they are of, and the plugin then loads into that version only.
+# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface.
+# The plugin loads into the version of YADE that is installed when it is compiled, and into no other; YADE_VERSION=... says another.
 
 .DELETE_ON_ERROR:
 .SUFFIXES:
 .DEFAULT_GOAL := all
 
-# ---- where things are (Debian 12) ----
+# ---- where things are, and of which version ----
 
 LIBRARY_FOLDER := lib/x86_64-linux-gnu/yade-double
 YADE_LIBRARIES := /usr/$(LIBRARY_FOLDER)
@@ -32,12 +38,19 @@ OVERLAY        := build/$(LIBRARY_FOLDER)
 PLUGIN         := $(OVERLAY)/libcontact_law.so
 OBJECTS_FOLDER := build/objects
 
-YADE_VERSION ?= 2023.02a
+# The versions of YADE that contact_law/yade_interface has been tried with (make test-debian). Another one is refused.
+YADE_DESCRIBED := 2023.02a 2025.2.0
 
+# Found out. Empty on a system that lacks the packages; they are installed before anything is compiled, by a make of its own.
 PYTHON := /usr/bin/python3
+PYTHON_VERSION := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null)
+ifndef YADE_VERSION
+YADE_VERSION := $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
+endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
-            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist
+            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist \
+            python3-vtk9 ffmpeg
 
 # ---- flags ----
 
@@ -50,12 +63,12 @@ YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UN
                     -DBOOST_BIND_GLOBAL_PLACEHOLDERS -DBOOST_ALLOW_DEPRECATED_HEADERS # Boost.Python's own use of older Boost
 ifdef YADE_INCLUDE
 PACKAGES += libopenmpi-dev
-YADE_DEFINITIONS += -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MULTI_HP -DMAX_LOG_LEVEL=5 \
+YADE_DEFINITIONS += -DCONTACT_LAW_YADES_OWN_HEADERS -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MULTI_HP -DMAX_LOG_LEVEL=5 \
                     -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE= \
                     -DOMPI_SKIP_MPICXX -isystem /usr/lib/x86_64-linux-gnu/openmpi/include
 endif
 YADE_HEADERS = $(if $(YADE_INCLUDE),-isystem $(YADE_INCLUDE),-Icontact_law/yade_interface)
-YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python3.11
+YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python$(PYTHON_VERSION)
 
 # Files of the engine see no YADE type. Those with an instruction set in their name run only where the processor has it; there products and sums
 # are contracted (-ffp-contract=fast), which is worth a quarter of the speed: instruction sets agree to rounding, each with itself to the bit.
@@ -68,7 +81,7 @@ $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
 LINK := -shared -fopenmp -Wl,-z,defs -Wl,-rpath,$(YADE_LIBRARIES) -L$(YADE_LIBRARIES)
-LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python311 -lboost_serialization -lpython3.11 -ldl
+LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python$(subst .,,$(PYTHON_VERSION)) -lboost_serialization -lpython$(PYTHON_VERSION) -ldl
 
 # ---- what is built ----
 
@@ -82,11 +95,21 @@ PRECOMPILED    := $(OBJECTS_FOLDER)/precompiled.hpp
 
 .PHONY: all deps clean build
 all: deps
+	@$(MAKE) --no-print-directory known-yade
 	@$(MAKE) --no-print-directory $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 
 # After deps only: without the packages there is nothing to link to, nor to compile with.
 build: $(PLUGIN) build/overlay
 	@echo "contact_law is built: $(PLUGIN)"
+
+.PHONY: known-yade
+known-yade:
+ifndef YADE_INCLUDE
+ifneq ($(words $(filter $(YADE_VERSION),$(YADE_DESCRIBED))),1)
+	@echo "make: YADE $(YADE_VERSION) is installed: must be one of $(YADE_DESCRIBED), or compile against its source:" \
+		"make YADE_INCLUDE=/path/to/yade" >&2; exit 1
+endif
+endif
 
 # $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
 $(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
@@ -149,6 +172,15 @@ $(HARNESS_OBJECTS): $(OBJECTS_FOLDER)/harness/%.o: tests/benchmarks/harness/%.cp
 	@mkdir -p $(@D)
 	@g++ $(ENGINE_FLAGS) -c $< -o $@
 
+# For scripts of any folder: contact_law/installation.py says what goes where.
+PREFIX ?= $(HOME)/.local
+.PHONY: install uninstall
+install: all
+	@$(PYTHON) contact_law/installation.py install "$(PREFIX)"
+
+uninstall:
+	@$(PYTHON) contact_law/installation.py uninstall "$(PREFIX)"
+
 # ---- running it ----
 
 .PHONY: demo test
@@ -164,6 +196,27 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+# With it the tests open exports in OVITO too (200 MB from PyPI, in a folder of its own).
+.PHONY: ovito
+ovito: build/ovito/installed
+build/ovito/installed: Makefile
+	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv libegl1 libopengl0"
+	@$(PYTHON) -m venv build/ovito
+	@build/ovito/bin/pip -q install --disable-pip-version-check ovito==3.17.2
+	@touch $@
+
+SYSTEMS ?= bookworm trixie
+.PHONY: test-debian
+test-debian:
+	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git"
+	@$(PYTHON) tests/yade_tools/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
+
+# On Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
+.PHONY: yade-tree
+yade-tree: all
+	@$(MAKE) --no-print-directory deps PACKAGES="dpkg-dev git libopenmpi-dev bzip2"
+	@$(PYTHON) tests/yade_tools/yade_tree.py
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk

@@ -1,10 +1,10 @@
-"""Command line: python3 -m analysis summary RUN..., figures RUN, study [NAME RUNS...]."""
+"""Command line: python3 -m analysis summary RUN..., figures RUN, export RUN, film RUN, study [NAME RUNS...]."""
 
 import argparse
 import os
 import sys
 
-from .commands import figures, study, summary
+from .commands import export, figures, film, study, summary
 
 
 def main(arguments=None):
@@ -24,12 +24,23 @@ def _parser():
         prog="python3 -m analysis",
         description="Analyse run folders.",
         epilog="Exit status: 0, or 2 if a run could not be analysed. A run that has not ended is analysed as far as it "
-        "went by summary and figures, and left out by study.",
+        "went by summary, figures, export and film, and left out by study.",
     )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for command in (summary, figures, study):
+    for command in (summary, figures, export, film, study):
         command.add_parser(commands)
     return parser
+
+
+class _Version(argparse.Action):
+    """Asks git only when it is called."""
+
+    def __call__(self, parser, *_):
+        from .version import version_text
+
+        print(f"analysis {version_text()}")
+        parser.exit()
 
 
 if __name__ == "__main__":

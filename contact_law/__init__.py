@@ -14,9 +14,9 @@ import sys
 
 from .grain_arrays import snapshot  # noqa: F401 (of the package)
 
-__version__ = "0.2.0"
-
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+with open(os.path.join(TOP, "contact_law/VERSION")) as _file:
+    __version__ = _file.read().strip()
 LIBRARY = os.path.join(TOP, "build/lib/x86_64-linux-gnu/yade-double/libcontact_law.so")
 
 
@@ -38,7 +38,7 @@ def _load(yade):
     if version != described:  # before anything of the library is touched
         raise ImportError(
             f"contact_law: refusing to load: this is YADE {version}, not {described} (yade.config.version). It was compiled for YADE {described}; "
-            "use that one (Debian 12 ships 2023.02a), or compile for yours: make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version."
+            "run make again with this one, or compile against its source: make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version."
         )
     try:
         # PyDLL keeps Python's lock, which the library needs. Like YADE's own libraries, it shares its symbols.

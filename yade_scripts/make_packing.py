@@ -12,6 +12,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from analysis.version import version_text
 from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import AggregateParameters, make
 from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
@@ -39,6 +40,9 @@ def _save(file, packing):
 
 
 def main(arguments):
+    if "--version" in arguments:
+        print(f"make_packing.py {version_text()}")
+        return 0
     files = [argument for argument in arguments if "=" not in argument]
     if "--help" in arguments or not 1 <= len(files) <= 2:
         print(f"{__doc__}\n{AggregateParameters.help_text()}\n\nWith from=:\n{CutParameters.help_text()}")

@@ -6,7 +6,8 @@
 Rows whose run folder has ended are skipped, provided that its parameters are the row's; runs that were killed
 resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
 ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
-a checkpoint. Logs, and the table of the rows that were left, are in runs/logs/NAME of the table.
+a checkpoint. Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be
+the name of a table in yade_scripts/studies: elastoplastic-desk.
 
 Exit status: 0 when every row has ended, 1 when a row failed (one line on stderr for each; the others have run),
 2 for a table that can't be used, 128 and the signal's number when stopped.
@@ -19,6 +20,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from analysis.version import version_text
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import rows, view
@@ -26,6 +28,7 @@ from yade_scripts.runner.batch import Batch, StudyBusy, StudyFolder
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING
 from yade_scripts.runner.screen import Screen
 
+STUDIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "studies")
 POLL = 1.0  # s
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -41,11 +44,18 @@ def parse_arguments(arguments):
         metavar="JOBS",
         help="threads at once (default: one for each core, %(default)s)",
     )
+    parser.add_argument("--version", action="version", version=f"study.py {version_text()}")
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
     options = parser.parse_args(arguments)
     if options.jobs < 1:
         parser.error(f"-j = {options.jobs}: must be 1 or more")
     return options
+
+
+def find_table(table):
+    """The file named, or else the table of that name among those that come with this: elastoplastic-desk, say."""
+    own = os.path.join(STUDIES, os.path.basename(table).removesuffix(".table") + ".table")
+    return own if not os.path.exists(table) and os.path.dirname(table) == "" and os.path.isfile(own) else table
 
 
 class Study:
@@ -154,7 +164,7 @@ def close(study, stop):
 def main(arguments):
     options = parse_arguments(arguments)
     try:
-        study = Study(options.table, options.jobs)
+        study = Study(find_table(options.table), options.jobs)
         if options.status:
             print(study.text(view.full_table))
             return 0

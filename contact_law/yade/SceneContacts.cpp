@@ -183,7 +183,7 @@ void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, S
 
 void SceneContacts::requireKept(const Scene& scene) const
 {
-	const InteractionContainer& there = *scene.interactions;
+	InteractionContainer& there = *scene.interactions;
 	const size_t real = std::count_if(held.begin(), held.end(), [](const auto& interaction) { return interaction->isReal(); });
 	const size_t left = std::min(there.size(), real);
 	if (left < held.size())

@@ -20,6 +20,11 @@ def main(kind, description):
     if "--help" in sys.argv[1:]:
         print(f"{description}\n{kind.parameters.help_text()}")
         sys.exit(0)
+    if "--version" in sys.argv[1:]:
+        from analysis.version import version_text
+
+        print(f"{script} {version_text()}")
+        sys.exit(0)
     with one_line_errors(script):
         parameters = kind.parse(*gather(sys.argv[1:]))
         from yade.wrapper import Omega

@@ -20,6 +20,7 @@ from yade_scripts.run.kind import Kind, NoKind, kind_of
 from yade_scripts.run.parameters import RunParameters
 from yade_scripts.runner.batch_command import DEFAULT_SCRIPT, failure
 
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
 
 
@@ -64,7 +65,7 @@ def read(path):
     rows, lines, kinds = [], {}, {}
     for row in table.read(path):
         name = re.sub(r"[^\w.,=+-]", "_", row.description)
-        script, kind, parameters, error = row.cells.get("!SCRIPT", DEFAULT_SCRIPT), None, None, None
+        script, kind, parameters, error = find_script(row.cells.get("!SCRIPT", DEFAULT_SCRIPT)), None, None, None
         try:
             kind = kinds[script] = kinds.get(script) or kind_of(script)
             parameters = kind.parse(row.parameters, row.description)
@@ -76,6 +77,12 @@ def read(path):
             lines[key] = row.line
         rows.append(StudyRow(name, row.cells, script, kind, parameters, error))
     return rows
+
+
+def find_script(name):
+    """The script that a table names: seen from the folder that one stands in, or else from the top of this suite."""
+    own = os.path.join(TOP, name)
+    return own if not os.path.isfile(name) and os.path.isfile(own) else name
 
 
 def state(row, log, since=0.0):

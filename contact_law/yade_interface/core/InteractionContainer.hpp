@@ -16,7 +16,7 @@ public:
 
 	[[gnu::always_inline]] iterator begin() { return linIntrs.begin(); }
 	[[gnu::always_inline]] iterator end() { return linIntrs.end(); }
-	[[gnu::always_inline]] size_t size() const { return currSize; }
+	[[gnu::always_inline]] size_t size() { return currSize; } // not const in YADE either
 	[[gnu::always_inline]] const shared_ptr<Interaction>& operator[](size_t i) const { return linIntrs[i]; }
 
 	const shared_ptr<Interaction>& find(Body::id_t id1, Body::id_t id2);

@@ -3,5 +3,5 @@
 #include <cstddef>
 #define YADE_INTERFACE_AT_(Class, member, offset)                                                                                          \
 	_Pragma("GCC diagnostic push") _Pragma("GCC diagnostic ignored \"-Winvalid-offsetof\"") static_assert(                             \
-	        offsetof(Class, member) == (offset), #Class "." #member " doesn't stand where YADE 2023.02a has it");                      \
+	        offsetof(Class, member) == (offset), #Class "." #member " doesn't stand where YADE has it");                               \
 	_Pragma("GCC diagnostic pop")

@@ -4,14 +4,14 @@
 #include <set>
 
 #ifndef CONTACT_LAW_YADE_VERSION
-#define CONTACT_LAW_YADE_VERSION "2023.02a"
+#error "the Makefile says which version of YADE the plugin is compiled for"
 #endif
 
 namespace contact_law {
 namespace proof {
 
 	namespace {
-		// With YADE_INCLUDE, the version of that source (make YADE_VERSION=...).
+		// Of the YADE that was installed when this was compiled.
 		const char* const describedVersion = CONTACT_LAW_YADE_VERSION;
 
 		py::object wrapper() { return py::import("yade.wrapper"); }
@@ -43,7 +43,7 @@ namespace proof {
 	std::string refusal(const std::string& what, const std::string& where)
 	{
 		return "contact_law: refusing to load: " + what + " (" + where + "). It was compiled for YADE " + describedVersion
-		        + "; use that one (Debian 12 ships 2023.02a), or compile for yours: make YADE_INCLUDE=/path/to/its/source "
+		        + "; run make again with this one, or compile against its source: make YADE_INCLUDE=/path/to/its/source "
 		          "YADE_VERSION=its-version.";
 	}
 

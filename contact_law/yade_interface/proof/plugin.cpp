@@ -35,6 +35,14 @@ bool factory::versionAgrees()
 #endif
 
 namespace {
+	// Omega::buildDynlibDatabase(classNames): makes classes known to YADE and to Python. It is private in YADE's own header,
+	// where nothing public does the same for a plugin's classes alone; the language lets an explicit instantiation name it.
+	void makeKnown(const std::vector<std::string>& classNames);
+	template <void (Omega::*function)(const std::vector<std::string>&)> struct Known {
+		friend void makeKnown(const std::vector<std::string>& classNames) { (Omega::instance().*function)(classNames); }
+	};
+	template struct Known<&Omega::buildDynlibDatabase>;
+
 	bool proven = false;     // whether the proof has run
 	bool fromPython = false; // loaded by import contact_law, which reports a refusal itself
 	std::string whyRefused;
@@ -70,7 +78,7 @@ namespace {
 		proven = true;
 		whyRefused = contact_law::proof::differenceFromRunningYade();
 		if (whyRefused.empty()) {
-			if (CONTACT_LAW_WAITS_FOR_PROOF || fromPython) Omega::instance().buildDynlibDatabase(ownClasses());
+			if (CONTACT_LAW_WAITS_FOR_PROOF || fromPython) makeKnown(ownClasses());
 			return;
 		}
 		if (!fromPython) std::cerr << whyRefused << std::endl;
@@ -121,7 +129,7 @@ extern "C" const char* contact_law_load()
 		result = contact_law::proof::differenceInVersion();
 		if (!result.empty()) return result.c_str();
 		yade::fromPython = true;
-		if (!yade::proven) yade::Omega::instance().buildDynlibDatabase({ "ContactLawPlugin" });
+		if (!yade::proven) yade::makeKnown({ "ContactLawPlugin" });
 		result = yade::whyRefused;
 		if (result.empty() && !yade::proven)
 			result = contact_law::proof::refusal("the proof of layouts did not run", "contact_law_load");

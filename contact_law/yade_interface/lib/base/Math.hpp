@@ -1,4 +1,4 @@
-// Numbers and vectors as YADE 2023.02a has them: double precision, and Eigen without vectorisation or alignment.
+// Numbers and vectors as YADE has them: double precision, and Eigen without vectorisation or alignment.
 // Eigen changes its layouts with these definitions, so they may neither be forgotten nor differ between files: State would be 352 instead of 328 bytes.
 #pragma once
 #if !defined(EIGEN_DONT_VECTORIZE) || !defined(EIGEN_DONT_ALIGN) || !defined(EIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT)

@@ -1,0 +1,47 @@
+"""python3 -m analysis film RUN [--out FILE] [--rate FRAMES]"""
+
+import argparse
+from pathlib import Path
+
+from . import FAILED, complain
+
+
+def add_parser(commands):
+    """Add the command to argparse's subparsers."""
+    parser = commands.add_parser(
+        "film",
+        help="write a film of a run's states",
+        description="Write a film with a frame for each saved state, seen along -z. Needs ffmpeg.",
+    )
+    parser.add_argument("run", metavar="RUN", help="run folder")
+    parser.add_argument("--out", metavar="FILE", help="where to (default: RUN/film.mp4)")
+    parser.add_argument("--rate", metavar="FRAMES", type=_rate, default=10.0, help="states a second (default: 10)")
+    parser.set_defaults(command=run)
+
+
+def _rate(text):
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 0.1 <= rate <= 120:
+        raise argparse.ArgumentTypeError(f"{text}: must be from 0.1 to 120")
+    return rate
+
+
+def run(options):
+    """Exit status: 0, or 2 when the run could not be read or the film not be written."""
+    from ..export.film import NoFilm, write_film
+    from ..runs.arrays import RunFolderError
+    from ..runs.folder import open_run
+
+    try:
+        folder = open_run(options.run)
+        print(write_film(folder, Path(options.out) if options.out else folder.path / "film.mp4", options.rate))
+    except (RunFolderError, NoFilm) as error:
+        complain(error)
+        return FAILED
+    except OSError as error:
+        complain(f"{options.out or options.run}: {error.strerror}")
+        return FAILED
+    return 0

@@ -1,0 +1,49 @@
+"""A run as one extended XYZ file, a frame for each state (OVITO, ASE).
+
+Source: https://github.com/libAtoms/extxyz (the format's specification). Numbers have 17 digits, which keep their bits."""
+
+import numpy as np
+
+from .fields import exported_states, grain_fields
+
+FILE = "run.xyz"
+SPECIES = "X"  # no element
+_TYPES = {"f": "R", "i": "I", "u": "I"}
+# where the format has a word of its own for a field
+_NAMES = {"v": "velo"}
+
+
+def write_xyz(run, folder):
+    """Write the states of a RunFolder; returns the file's Path. Columns: species, pos [m] and fields.GRAINS (v is called
+    velo); a frame's line has Time [s] and, of a periodic run, the cell."""
+    file = folder / FILE
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(file, "w", encoding="ascii") as out:
+        for exported in exported_states(run):
+            _write_frame(out, exported)
+    return file
+
+
+def _write_frame(out, exported):
+    state = exported.state
+    columns = {"pos": state.position, **grain_fields(exported)}
+    properties = ":".join(["species:S:1", *(_property(name, array) for name, array in columns.items())])
+    words = [f"Properties={properties}", f"Time={state.time!r}"]
+    if state.cell_size is None:
+        words.append('pbc="F F F"')
+    else:
+        edges = " ".join(f"{number:.17g}" for number in np.diag(state.cell_size).ravel())
+        words += [f'Lattice="{edges}"', 'pbc="T T T"']
+    out.write(f"{len(state.radius)}\n{' '.join(words)}\n")
+    table = np.hstack([np.asarray(array, dtype=float).reshape(len(state.radius), -1) for array in columns.values()])
+    np.savetxt(out, table, fmt=f"{SPECIES} " + " ".join(_formats(columns)))
+
+
+def _property(name, array):
+    return f"{_NAMES.get(name, name)}:{_TYPES[array.dtype.kind]}:{1 if array.ndim == 1 else array.shape[1]}"
+
+
+def _formats(columns):
+    """printf's format of every number of a line."""
+    for array in columns.values():
+        yield from ["%d" if array.dtype.kind in "iu" else "%.17g"] * (1 if array.ndim == 1 else array.shape[1])

@@ -1,0 +1,98 @@
+"""What is exported of a state: one list for grains and one for contacts, which every format follows.
+
+Names are those by which OVITO knows particles of granular codes (id, radius, mass, v, omega), SI units throughout."""
+
+from dataclasses import dataclass
+from typing import Callable
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Field:
+    """A quantity of every grain or contact: name, unit, meaning; values(Exported) -> (N,), (N, 3), (M,) or (M, 3)."""
+
+    name: str
+    unit: str
+    meaning: str
+    values: Callable
+
+
+class Exported:
+    """A state of a run as it is exported: state, density [kg/m^3] or None, and what follows from them."""
+
+    def __init__(self, state, density):
+        self.state, self.density = state, density
+        first, second = state.contact_pairs[:, 0], state.contact_pairs[:, 1]
+        between = state.position[second] - state.position[first]
+        if state.cell_size is not None:  # the nearest image
+            between -= state.cell_size * np.round(between / state.cell_size)
+        self.first, self.second, self.between = first, second, between  # (M,), (M,), (M, 3) [m]
+
+    def distance(self):
+        """(M,) [m], of the grains' centres."""
+        return np.linalg.norm(self.between, axis=1)
+
+    def normal_forces(self):
+        """(N, 3) [N], the sum of the contacts' normal forces on each grain."""
+        on_first = -self.state.contact_normal_force[:, None] * self.between / self.distance()[:, None]
+        total = np.zeros_like(self.state.position)
+        np.add.at(total, self.first, on_first)
+        np.add.at(total, self.second, -on_first)
+        return total
+
+    def coordination(self):
+        """(N,) int, contacts of each grain."""
+        return np.bincount(self.state.contact_pairs.ravel().astype(np.intp), minlength=len(self.state.radius))
+
+    def fragments(self):
+        """(N,) int, as measures.fragments.fragment_labels."""
+        from ..measures.fragments import fragment_labels  # loads scipy, which listing the fields does without
+
+        return fragment_labels(len(self.state.radius), self.state.contact_pairs)
+
+    def overlap(self):
+        """(M,) [m]."""
+        return self.state.radius[self.first] + self.state.radius[self.second] - self.distance()
+
+    def mass(self):
+        """(N,) [kg]."""
+        return 4.0 / 3.0 * np.pi * self.density * self.state.radius**3
+
+
+GRAINS = (
+    Field("id", "", "row of the grain in the states of the run", lambda e: np.arange(len(e.state.radius))),
+    Field("radius", "m", "radius", lambda e: e.state.radius),
+    Field("mass", "kg", "mass, of the run's density", lambda e: e.mass()),
+    Field("v", "m/s", "velocity", lambda e: e.state.velocity),
+    Field("omega", "rad/s", "angular velocity", lambda e: e.state.angular_velocity),
+    Field("aggregate", "", "aggregate at the start", lambda e: e.state.aggregate.astype(int)),
+    Field("fragment", "", "fragment, 0 the largest", lambda e: e.fragments()),
+    Field("coordination", "", "number of contacts", lambda e: e.coordination()),
+    Field("normal_force", "N", "sum of the normal forces of the contacts", lambda e: e.normal_forces()),
+)
+CONTACTS = (
+    Field("id1", "", "id of the first grain", lambda e: e.first.astype(int)),
+    Field("id2", "", "id of the second grain", lambda e: e.second.astype(int)),
+    Field("normal_force", "N", "normal force, positive when repulsive", lambda e: e.state.contact_normal_force),
+    Field("bonded", "", "1 for a sintered bond", lambda e: e.state.contact_bonded.astype(int)),
+    Field("overlap", "m", "sum of the radii less the distance", lambda e: e.overlap()),
+)
+
+
+def grain_fields(exported):
+    """{name: array} of the grains; without `mass` where the run tells no density."""
+    return {f.name: f.values(exported) for f in GRAINS if f.name != "mass" or exported.density is not None}
+
+
+def contact_fields(exported):
+    """{name: array} of the contacts."""
+    return {f.name: f.values(exported) for f in CONTACTS}
+
+
+def exported_states(run):
+    """An Exported for each state of a RunFolder, one at a time; RunFolderError when there is none."""
+    run.start  # noqa: B018 (raises)
+    density = run.derived.get("density")
+    for state in run.states:
+        yield Exported(state, density)

@@ -1,0 +1,42 @@
+"""Version and commit of this suite: contact_law/VERSION, and git in a checkout or contact_law/COMMIT where it is
+installed (make install)."""
+
+import subprocess
+from functools import cache
+from pathlib import Path
+
+_TOP = Path(__file__).resolve().parents[1]
+_PARTS = ("contact_law", "analysis", "yade_scripts", "Makefile")
+
+
+@cache
+def version():
+    """The version, such as "0.2.0"."""
+    return (_TOP / "contact_law" / "VERSION").read_text(encoding="utf-8").strip()
+
+
+@cache
+def commit():
+    """The commit of the sources, with "-changed" where they differ from it; "unknown" without git."""
+    installed = _TOP / "contact_law" / "COMMIT"
+    if installed.exists():
+        return installed.read_text(encoding="utf-8").strip()
+    if not (_TOP / ".git").exists():
+        return "unknown"
+    head = _git("rev-parse", "HEAD")
+    if head is None or not head.stdout.strip():
+        return "unknown"
+    changed = _git("diff", "--quiet", "HEAD", "--", *_PARTS).returncode != 0
+    return head.stdout.strip() + ("-changed" if changed else "")
+
+
+def version_text():
+    """Both in one line."""
+    return f"{version()}, commit {commit()}"
+
+
+def _git(*arguments):
+    try:
+        return subprocess.run(["git", "-C", str(_TOP), *arguments], capture_output=True, text=True)
+    except OSError:
+        return None

@@ -1,0 +1,260 @@
+"""Exports are opened by the real readers, field by field: VTK, and OVITO where a Python has it (make ovito)."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from written_runs import CHANNELS, MASS, RADIUS, record, state_arrays, write_run
+
+from analysis.__main__ import main
+from analysis.export.fields import CONTACTS, GRAINS
+from analysis.runs.folder import open_run
+
+TOP = Path(__file__).resolve().parents[2]
+HERE = Path(__file__).resolve().parent
+SIZE = np.array([1e-6, 1.5e-6, 2e-6])
+CELL_SERIES = ("filling", "pressure", "kinetic_pressure", "coordination", "edge_x", "edge_y", "edge_z")
+
+
+def _states(periodic):
+    """Three states of five grains of unlike size; the last one has no contact."""
+    random = np.random.default_rng(5)
+    for number in range(3):
+        pairs = [(0, 1), (1, 2), (4, 3)] if number < 2 else []
+        x, v = random.uniform(-1, 2, size=(5, 3)) * 1e-6, random.normal(size=(5, 3))
+        state = state_arrays(number * 1e-9, x, v, np.zeros(5) if periodic else [0, 0, 0, 1, 1], pairs)
+        state["contact_normal_force"] = random.normal(size=len(pairs)) * 1e-9
+        state["contact_bonded"] = np.arange(len(pairs)) == 1
+        state["angular_velocity"] = random.normal(size=(5, 3)) * 1e6
+        state["radius"] = RADIUS * np.linspace(1.0, 1.5, 5)
+        yield {**state, **({"cell_size": SIZE} if periodic else {})}
+
+
+@pytest.fixture(params=[False, True], ids=["free", "periodic"])
+def run(request, tmp_path):
+    about, names = record(1e-6), CELL_SERIES if request.param else ("d", "v", "contacts_between")
+    about["kind"] = "compression" if request.param else "collision"
+    history = {name: np.zeros(3) for name in (*CHANNELS, *names)}
+    history.update(time=np.arange(3) * 1e-9, contacts=np.zeros(3, dtype=int))
+    if not request.param:
+        history["contacts_between"] = np.zeros(3, dtype=int)
+    folder = write_run(tmp_path / "run", about, history, list(_states(request.param)))
+    assert main(["export", str(folder), "--format", "all"]) == 0
+    return open_run(folder)
+
+
+def expected(state):
+    """{name: array} of grains and of contacts, and the contacts' ends (M, 2, 3), written without the code under test."""
+    pairs, size = state.contact_pairs, state.cell_size
+    between = np.empty((len(pairs), 3))
+    for row, (a, b) in enumerate(pairs):
+        shifts = [np.zeros(3)]
+        if size is not None:
+            shifts = [size * np.array(k) for k in np.ndindex(9, 9, 9)]
+            shifts = [shift - 4 * size for shift in shifts]
+        images = [state.position[b] - state.position[a] + shift for shift in shifts]
+        between[row] = min(images, key=np.linalg.norm)
+    force = np.zeros_like(state.position)
+    for (a, b), f, way in zip(pairs, state.contact_normal_force, between):
+        force[b] += f * way / np.linalg.norm(way)
+        force[a] -= f * way / np.linalg.norm(way)
+    grains = {
+        "id": np.arange(5),
+        "radius": state.radius,
+        "mass": MASS * (state.radius / RADIUS) ** 3,
+        "v": state.velocity,
+        "omega": state.angular_velocity,
+        "aggregate": state.aggregate,
+        "fragment": [0, 0, 0, 1, 1] if len(pairs) else np.arange(5),
+        "coordination": [1, 2, 1, 1, 1] if len(pairs) else np.zeros(5),
+        "normal_force": force,
+    }
+    contacts = {
+        "id1": pairs[:, 0],
+        "id2": pairs[:, 1],
+        "normal_force": state.contact_normal_force,
+        "bonded": state.contact_bonded,
+        "overlap": [state.radius[a] + state.radius[b] - np.linalg.norm(d) for (a, b), d in zip(pairs, between)],
+    }
+    ends = np.array([[state.position[a], state.position[a] + d] for (a, _), d in zip(pairs, between)]).reshape(-1, 2, 3)
+    return grains, contacts, ends
+
+
+def agree(found, wanted, rtol=1e-12):
+    """Every field is there, and equal within rounding of its largest value."""
+    assert set(wanted) <= set(found)
+    for name, values in wanted.items():
+        values = np.asarray(values, dtype=float)
+        scale = np.abs(values).max(initial=0.0)
+        assert np.shape(found[name]) == values.shape or values.size == 0, name
+        assert np.allclose(np.reshape(found[name], values.shape), values, rtol=rtol, atol=rtol * scale), name
+
+
+def test_the_lists_are_what_is_tested_here(run):
+    grains, contacts, _ = expected(run.start)
+    assert [field.name for field in GRAINS] == list(grains)
+    assert [field.name for field in CONTACTS] == list(contacts)
+
+
+# ---- VTK ----
+
+
+def _blocks(file):
+    """{name: vtkPolyData} of a .vtm, by VTK's own reader; fails on any message of VTK's."""
+    from vtkmodules.vtkCommonCore import vtkCommand
+    from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet
+    from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader
+
+    reader, messages = vtkXMLMultiBlockDataReader(), []
+    for event in ("ErrorEvent", "WarningEvent"):
+        reader.AddObserver(getattr(vtkCommand, event, event), lambda _, name: messages.append(name))
+    reader.SetFileName(str(file))
+    reader.Update()
+    assert not messages
+    whole = reader.GetOutput()
+    names = [whole.GetMetaData(k).Get(vtkCompositeDataSet.NAME()) for k in range(whole.GetNumberOfBlocks())]
+    return {name: whole.GetBlock(k) for k, name in enumerate(names)}
+
+
+def _arrays(data):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    return {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
+
+
+def _series(file):
+    """[(time, file)] of a .pvd, which ParaView's own reader takes for what it says."""
+    import xml.etree.ElementTree as xml
+
+    sets = xml.parse(file).getroot().findall("Collection/DataSet")
+    return [(float(entry.get("timestep")), file.parent / entry.get("file")) for entry in sets]
+
+
+def test_vtk_reads_every_field(run):
+    pytest.importorskip("vtkmodules", reason="python3-vtk9 is not installed")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    series = _series(run.path / "export/run.pvd")
+    assert [time for time, _ in series] == list(run.states.times)
+    for state, (_, file) in zip(run.states, series, strict=True):
+        grains, contacts, ends = expected(state)
+        blocks = _blocks(file)
+        assert list(blocks) == ["grains", "contacts"]
+        points = blocks["grains"]
+        assert points.GetNumberOfPoints() == points.GetNumberOfVerts() == 5
+        assert np.array_equal(vtk_to_numpy(points.GetPoints().GetData()), state.position)
+        agree(_arrays(points.GetPointData()), grains)
+        whole = _arrays(points.GetFieldData())
+        assert whole["time"] == [state.time]
+        assert ("cell_size" in whole) == (state.cell_size is not None)
+        if state.cell_size is not None:
+            assert np.array_equal(whole["cell_size"], SIZE)
+        lines = blocks["contacts"]
+        assert lines.GetNumberOfLines() == len(ends) and lines.GetNumberOfVerts() == 0
+        agree(_arrays(lines.GetCellData()), contacts)
+        if len(ends):
+            found = vtk_to_numpy(lines.GetPoints().GetData())
+            order = vtk_to_numpy(lines.GetLines().GetConnectivityArray())
+            agree({"ends": found[order].reshape(-1, 2, 3)}, {"ends": ends})
+
+
+# ---- OVITO ----
+
+# OVITO's words for the fields that it knows, and the rest as they are
+PARTICLES = {
+    "id": "Particle Identifier",
+    "radius": "Radius",
+    "mass": "Mass",
+    "v": "Velocity",
+    "omega": "Angular Velocity",
+}
+LINES = {"id1": "Particle Identifier 1", "id2": "Particle Identifier 2"}
+
+
+def _python_with_ovito():
+    for python in (str(TOP / "build/ovito/bin/python"), sys.executable):
+        if os.path.exists(python):
+            ask = [python, "-c", "import importlib.util, sys; sys.exit(importlib.util.find_spec('ovito') is None)"]
+            if subprocess.run(ask, capture_output=True).returncode == 0:
+                return python
+    return None
+
+
+def test_ovito_reads_every_field(run):
+    python = _python_with_ovito()
+    if python is None:
+        pytest.skip("no Python here has ovito (make ovito installs it in build/ovito)")
+    files = [str(run.path / "export" / name) for name in ("run.pvd", "run.xyz")]
+    environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
+    command = [python, str(HERE / "read_by_ovito.py"), *files]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
+    assert done.returncode == 0, done.stderr
+    read = json.loads(done.stdout.splitlines()[-1])
+    for file in files:
+        for state, frame in zip(run.states, read[file], strict=True):
+            grains, contacts, ends = expected(state)
+            found = frame["grains"]
+            assert frame["time"] == pytest.approx(state.time, rel=1e-12)
+            agree({"position": found["Position"]}, {"position": state.position})
+            wanted = {PARTICLES.get(name, name): values for name, values in grains.items()}
+            agree({**found, "Radius": 0}, {**wanted, "Radius": 0})
+            assert np.allclose(
+                found["Radius"], state.radius, rtol=1e-6, atol=0
+            )  # OVITO keeps radii in single precision
+            if file.endswith(".pvd") and len(ends):
+                lines = {name: values[::2] for name, values in frame["contacts"].items()}  # a value for both ends
+                agree(lines, {LINES.get(name, name): values for name, values in contacts.items()})
+                agree({"ends": np.reshape(frame["contacts"]["Position"], (-1, 2, 3))}, {"ends": ends})
+            if file.endswith(".xyz") and state.cell_size is not None:
+                assert np.allclose(frame["cell"], np.column_stack([np.diag(SIZE), np.zeros(3)]), rtol=1e-12, atol=0)
+
+
+# ---- extended XYZ, by its specification ----
+
+
+def test_xyz_has_every_field_to_the_bit(run):
+    lines = (run.path / "export/run.xyz").read_text().splitlines()
+    assert len(lines) == 3 * 7
+    for number, state in enumerate(run.states):
+        count, about, *rows = lines[7 * number : 7 * number + 7]
+        assert int(count) == 5
+        properties = about.split("Properties=")[1].split()[0].split(":")
+        table, column, found = [row.split() for row in rows], 0, {}
+        for name, _, width in zip(properties[::3], properties[1::3], map(int, properties[2::3])):
+            cells = [row[column : column + width] for row in table]
+            found[name] = np.array(cells if name == "species" else np.array(cells, dtype=float)).squeeze()
+            column += width
+        assert column == len(table[0])
+        grains, _, _ = expected(state)
+        for name, values in {"pos": state.position, "velo": state.velocity, "omega": state.angular_velocity}.items():
+            assert np.array_equal(found[name], values), name
+        found["v"] = found["velo"]
+        agree(found, grains)
+        assert f"Time={state.time!r}" in about
+        assert ('pbc="T T T"' in about) == ("Lattice=" in about) == (state.cell_size is not None)
+
+
+# ---- what is refused ----
+
+
+def test_runs_without_states_and_damaged_ones_get_one_line(run, capsys):
+    file = sorted((run.path / "states").iterdir())[1]
+    file.write_bytes(file.read_bytes()[:100])
+    assert main(["export", str(run.path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    for state in (run.path / "states").iterdir():
+        state.unlink()
+    assert main(["export", str(run.path), "--format", "xyz"]) == 2
+    message = capsys.readouterr().err
+    assert "holds no state" in message and message.count("\n") == 1
+
+
+def test_a_folder_that_cannot_be_made_gets_one_line(run, tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert main(["export", str(run.path), "--out", str(tmp_path / "file" / "x")]) == 2
+    message = capsys.readouterr().err
+    assert "file" in message and message.count("\n") == 1

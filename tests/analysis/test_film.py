@@ -1,0 +1,76 @@
+"""A film of a run, read back frame by frame."""
+
+import json
+import os
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from written_runs import CHANNELS, RADIUS, record, state_arrays, write_run
+
+from analysis.__main__ import main
+from analysis.figures.style import AGGREGATE_COLOURS
+
+needs_ffmpeg = pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Two grains, one of each aggregate, that draw near along x in four states."""
+    history = {name: np.zeros(4) for name in (*CHANNELS, "d", "v")}
+    history.update(time=np.arange(4) * 1e-9, contacts=np.zeros(4, dtype=int), contacts_between=np.zeros(4, dtype=int))
+    states = []
+    for number in range(4):
+        x = (8 - 2 * number) * RADIUS
+        states.append(state_arrays(number * 1e-9, [(-x, 0, 0), (x, 0, 0)], np.zeros((2, 3)), [0, 1]))
+    return write_run(tmp_path / "run", record(1e-6), history, states)
+
+
+def _frames(file):
+    ask = ["ffprobe", "-v", "error", "-show_entries", "stream=width,height,nb_frames", "-of", "json", str(file)]
+    stream = json.loads(subprocess.run(ask, capture_output=True, check=True).stdout)["streams"][0]
+    read = ["ffmpeg", "-v", "error", "-i", str(file), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    data = subprocess.run(read, capture_output=True, check=True).stdout
+    return np.frombuffer(data, dtype=np.uint8).reshape(-1, stream["height"], stream["width"], 3).astype(float) / 255
+
+
+def _places(frame, colour):
+    """Mean column, as a fraction of the width, of the pixels whose hue is the colour's."""
+    colour = np.array(colour)
+    same_hue = (frame @ colour) / np.linalg.norm(frame + 1e-9, axis=2) / np.linalg.norm(colour) > 0.985
+    return np.argwhere(same_hue)[:, 1].mean() / frame.shape[1]
+
+
+@needs_ffmpeg
+def test_every_state_is_a_frame_with_the_grains_in_their_places(run):
+    assert main(["film", str(run)]) == 0
+    frames = _frames(run / "film.mp4")
+    assert len(frames) == 4
+    width = 2 * 10 * RADIUS  # 8 radii, and a margin of two
+    for number, frame in enumerate(frames):
+        x = (8 - 2 * number) * RADIUS
+        assert _places(frame, AGGREGATE_COLOURS[0]) == pytest.approx(0.5 - x / width, abs=0.01)
+        assert _places(frame, AGGREGATE_COLOURS[1]) == pytest.approx(0.5 + x / width, abs=0.01)
+
+
+@needs_ffmpeg
+def test_what_cannot_be_encoded_leaves_no_file(run, capsys):
+    assert main(["film", str(run), "--out", str(run / "film.nonsense")]) == 2
+    message = capsys.readouterr().err
+    assert "ffmpeg" in message and message.count("\n") == 1
+    assert not [path for path in run.iterdir() if "film" in path.name]
+
+
+def test_without_ffmpeg_one_line_says_so(run, capsys, monkeypatch):
+    monkeypatch.setitem(os.environ, "PATH", "/nowhere")
+    assert main(["film", str(run)]) == 2
+    assert "ffmpeg: not installed" in capsys.readouterr().err
+    assert not [path for path in run.iterdir() if "film" in path.name]
+
+
+@pytest.mark.parametrize("rate", ["0", "nan", "fast", "1000"])
+def test_rates_out_of_range_are_refused(run, rate, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(["film", str(run), "--rate", rate])
+    assert stopped.value.code == 2 and "must be from 0.1 to 120" in capsys.readouterr().err

@@ -1,0 +1,181 @@
+"""Fresh Debian systems, in each a clean clone, in it the README's commands. Run by `make test-debian`, as root.
+
+    python3 tests/yade_tools/debian_systems.py bookworm trixie      [--folder FOLDER] [--commands 'make demo' ...]
+
+A system is made by debootstrap with the mirror of this system's apt, and removed afterwards; with --folder it is made
+in FOLDER, or found there as an earlier call left it, and kept. Each runs in mount and process namespaces of its own.
+What is tested is the last commit. Writes results/debian.md: system, versions, result and time of each command.
+Exit status: 0 when every command of every system succeeded, otherwise 1; 2 when it could not begin.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+TOP = HERE.parents[1]
+RESULTS = HERE / "results" / "debian.md"
+CLONE = "/root/clone"
+BASE = ("git", "make")  # what one has who has cloned a repository and calls make
+VERSIONS = {
+    "Debian": "cat /etc/debian_version",
+    "YADE": "dpkg-query -W -f '${Version}' yade",
+    "Python": "dpkg-query -W -f '${Version}' python3",
+    "g++": "dpkg-query -W -f '${Version}' g++",
+    "Boost": "dpkg-query -W -f '${Version}' libboost-dev",
+    "numpy": "dpkg-query -W -f '${Version}' python3-numpy",
+}
+
+
+class CannotBegin(Exception):
+    """The message is one line: what is missing."""
+
+
+@dataclass
+class System:
+    """A Debian system in a folder; what has been found out about it."""
+
+    suite: str
+    folder: Path
+    commit: str = "unknown"
+    kept: bool = False  # made by an earlier call
+    versions: dict = field(default_factory=dict)
+    results: list = field(default_factory=list)  # (command, what became of it, seconds)
+
+    def make(self, mirror):
+        """Debootstrap, packages that come before the clone, and the clone."""
+        self.kept = (self.folder / "usr/bin/apt-get").exists()
+        if not self.kept:
+            _run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
+        (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
+        self.inside(f"apt-get -q update && apt-get -q -y --no-install-recommends install {' '.join(BASE)}", check=True)
+        clone = self.folder / CLONE.lstrip("/")
+        shutil.rmtree(clone, ignore_errors=True)
+        _run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
+        self.commit = _run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
+
+    def inside(self, command, check=False):
+        """CompletedProcess of a shell command within the system, with processes, mounts and nothing of this one's
+        environment but proxies."""
+        mounts = 'mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" && mount -t tmpfs tmp "$0/tmp"'
+        enter = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c"]
+        enter += [f'{mounts} && exec chroot "$0" /bin/sh -c "$1"', str(self.folder), command]
+        kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
+        own = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "TERM": "dumb"}
+        return _run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
+
+    def try_commands(self, commands):
+        """Run them in the clone, the next even if one fails; yields after each."""
+        for command in commands:
+            begun = time.monotonic()
+            done = self.inside(f"cd {CLONE} && git config --global --add safe.directory {CLONE} && {command}")
+            seconds = time.monotonic() - begun
+            self.results.append((command, outcome(done), seconds))
+            print(f"{self.suite}: {command}: {self.results[-1][1]}, {seconds:.0f} s", flush=True)
+            if done.returncode:
+                print((done.stdout + done.stderr)[-6000:], flush=True)
+            for name, ask in VERSIONS.items():
+                self.versions[name] = self.inside(ask).stdout.strip() or "not installed"
+            yield
+
+    @property
+    def succeeded(self):
+        return all(not result.startswith("failed") for _, result, _ in self.results)
+
+
+def _run(command, check=True, env=None):
+    done = subprocess.run(command, capture_output=True, text=True, env=env, stdin=subprocess.DEVNULL)
+    if check and done.returncode:
+        raise CannotBegin(f"{command[0]}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
+    return done
+
+
+def outcome(done):
+    """What became of a command: passed or failed, with pytest's last line or the line that make stopped with."""
+    counts = re.findall(r"^=* ?((?:\d+ \w+,? ?)+) in [\d.]+s", done.stdout, re.MULTILINE)
+    if done.returncode == 0:
+        return counts[-1].strip() if counts else "succeeded"
+    lines = [line for line in (done.stdout + done.stderr).splitlines() if line and not line.startswith("make")]
+    return f"failed: {counts[-1].strip() if counts else lines[-1][:150] if lines else done.returncode}"
+
+
+def mirror_of_this_system():
+    """The address of Debian's archive that apt uses here."""
+    targets = _run(["apt-get", "indextargets", "--format", "$(REPO_URI) $(ORIGIN) $(SUITE)", "Created-By: Packages"])
+    for line in targets.stdout.splitlines():
+        address, *about = line.split(" ")
+        if about and about[0] == "Debian" and "-" not in about[-1]:
+            return address
+    raise CannotBegin("apt has no Debian archive among its sources")
+
+
+def commands_of_the_readme():
+    """The first block of the README: what a new user calls, in order."""
+    block = re.search(r"\n\n((?:    make .*\n)+)", (TOP / "README.md").read_text()).group(1)
+    return [line.split("#")[0].strip() for line in block.strip().splitlines()]
+
+
+def table(systems):
+    """The page that the repository keeps."""
+    cores = len(os.sched_getaffinity(0))
+    lines = [
+        "# Fresh Debian systems",
+        "",
+        f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
+        f"{' and '.join(BASE)} added; the first command installs all other packages.",
+        "",
+        "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |",
+        "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|",
+    ]
+    for system in systems:
+        for command, result, seconds in system.results:
+            versions = " | ".join(system.versions.values())
+            name = system.suite + (", kept from an earlier call with its packages" if system.kept else "")
+            lines.append(f"| {name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
+    return "\n".join(lines) + "\n"
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("suites", nargs="+", metavar="SUITE")
+    parser.add_argument("--folder", type=Path, help="make the systems there, or find them there, and keep them")
+    parser.add_argument("--commands", nargs="+", metavar="COMMAND", help="instead of the README's")
+    parser.add_argument("--out", type=Path, default=RESULTS, help="where the table goes (default: %(default)s)")
+    return parser.parse_args(arguments)
+
+
+def main(arguments):
+    options = parse_arguments(arguments)
+    scratch = None
+    try:
+        if os.geteuid() != 0:
+            raise CannotBegin("must be run as root: debootstrap and chroot need it (sudo make test-debian)")
+        if not shutil.which("debootstrap"):
+            raise CannotBegin("debootstrap: not installed; must be there (apt-get install debootstrap)")
+        folder = options.folder or Path(scratch := tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
+        mirror, commands = mirror_of_this_system(), options.commands or commands_of_the_readme()
+        systems = []
+        for suite in options.suites:
+            systems.append(System(suite, folder / suite))
+            systems[-1].folder.mkdir(parents=True, exist_ok=True)
+            systems[-1].make(mirror)
+            for _ in systems[-1].try_commands(commands):
+                options.out.write_text(table(systems))
+    except CannotBegin as error:
+        print(f"debian_systems.py: {error}", file=sys.stderr)
+        return 2
+    finally:
+        if scratch:
+            shutil.rmtree(scratch)
+    return 0 if all(system.succeeded for system in systems) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

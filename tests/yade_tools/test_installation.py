@@ -1,0 +1,129 @@
+"""make install into a folder of its own: everything works from any folder, without the checkout; make uninstall."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).resolve().parents[2]
+COMMANDS = ("dust-analysis", "dust-collide", "dust-compress", "dust-packing", "dust-study")
+SMALL = ("grains=30", "packing=bpca", "velocity=20", "duration=2e-9", "stepFraction=0.1")
+
+
+def installation(action, prefix, environment=None):
+    return subprocess.run(
+        [sys.executable, str(TOP / "contact_law/installation.py"), action, str(prefix)],
+        capture_output=True,
+        text=True,
+        env=environment or {**os.environ, "PYTHONUSERBASE": str(prefix)},
+    )
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """(prefix, call): call(command, ...) runs in an empty folder with nothing but the installation to be found."""
+    prefix, elsewhere = tmp_path_factory.mktemp("prefix with a space"), tmp_path_factory.mktemp("elsewhere")
+    done = installation("install", prefix)
+    assert done.returncode == 0, done.stderr
+    paths = {"PATH": f"{prefix}/bin:/usr/bin:/bin", "HOME": str(elsewhere), "PYTHONUSERBASE": str(prefix)}
+
+    def call(*command, **more):
+        return subprocess.run(
+            command,
+            cwd=elsewhere,
+            env={**paths, "LC_ALL": "C.UTF-8"},
+            capture_output=True,
+            text=True,
+            timeout=120,
+            **more,
+        )
+
+    return prefix, call
+
+
+def test_a_script_of_any_folder_imports_the_contact_law(installed, tmp_path):
+    prefix, call = installed
+    script = tmp_path / "script.py"
+    script.write_text("import contact_law\nprint('found', contact_law.__file__, JKRMat().young, contact_law.commit)\n")
+    done = call("yade", "-n", "-x", str(script))
+    assert done.returncode == 0, done.stderr
+    assert f"found {prefix}/lib/contact_law/contact_law/__init__.py" in done.stdout
+
+
+def test_any_python_imports_the_analysis(installed):
+    prefix, call = installed
+    done = call(
+        "/usr/bin/python3", "-c", "import analysis; print(analysis.__file__, analysis.__version__, analysis.commit)"
+    )
+    file, version, commit = done.stdout.rsplit(maxsplit=2)
+    assert file == f"{prefix}/lib/contact_law/analysis/__init__.py"
+    assert version == (TOP / "contact_law/VERSION").read_text().strip() and commit
+
+
+def test_the_commands_tell_one_version_and_commit(installed):
+    _, call = installed
+    told = set()
+    for command in COMMANDS:
+        done = call(command, "--version")
+        assert done.returncode == 0, done.stderr
+        told |= {line.split(" ", 1)[1] for line in done.stdout.splitlines() if ", commit " in line}
+    assert len(told) == 1
+
+
+def test_a_collision_and_its_summary(installed, tmp_path):
+    _, call = installed
+    run = tmp_path / "run"
+    done = call("dust-collide", *SMALL, f"out={run}")
+    assert done.returncode == 0, done.stdout + done.stderr
+    done = call("dust-analysis", "summary", str(run))
+    assert done.returncode == 0 and "outcome" in done.stdout
+
+
+def test_a_study_by_the_name_of_its_table(installed):
+    """Its rows name scripts of the suite, which are found from any folder."""
+    _, call = installed
+    for name in ("demo", "compression-desk"):
+        done = call("dust-study", name, "--status")
+        assert done.returncode == 0, done.stderr
+        assert "no such script" not in done.stdout + done.stderr and "waiting" in done.stdout
+    assert call("dust-study", "no-such-study").returncode == 2
+
+
+def test_tables_that_the_analysis_reads_are_installed(installed):
+    prefix, call = installed
+    ask = "from analysis.studies.elastoplastic.prediction import GALLERY; print(GALLERY)"
+    gallery = Path(call("/usr/bin/python3", "-c", ask).stdout.strip())
+    assert gallery.is_relative_to(prefix)
+    for file in (TOP / "analysis/gallery/elastoplastic").glob("*.csv"):
+        assert (gallery / file.name).read_bytes() == file.read_bytes()
+
+
+def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/other").write_text("another program")
+    for action in ("install", "install"):
+        assert installation(action, tmp_path).returncode == 0
+    assert {file.name for file in (tmp_path / "bin").iterdir()} == {*COMMANDS, "other"}
+    assert installation("uninstall", tmp_path).returncode == 0
+    assert [path for path in tmp_path.rglob("*") if path.is_file() or path.is_symlink()] == [tmp_path / "bin/other"]
+    done = installation("uninstall", tmp_path)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
+
+
+def test_what_is_in_the_way_is_kept(tmp_path):
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/dust-study").write_text("another program")
+    done = installation("install", tmp_path)
+    assert done.returncode == 2 and "dust-study: exists and is not part of an installation" in done.stderr
+    assert (tmp_path / "bin/dust-study").read_text() == "another program"
+    shutil.rmtree(tmp_path / "bin")
+    assert installation("install", tmp_path).returncode == 0
+
+
+def test_a_folder_that_no_python_searches_is_named(tmp_path):
+    done = installation("install", tmp_path, {**os.environ, "PYTHONUSERBASE": "/nowhere"})
+    assert done.returncode == 0
+    assert f"PYTHONPATH={tmp_path}/lib/contact_law" in done.stdout

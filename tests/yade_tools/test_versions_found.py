@@ -1,0 +1,30 @@
+"""What the Makefile finds out of this system, and what it says of a YADE that has not been tried."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+
+
+def make(*arguments):
+    return subprocess.run(["make", "--no-print-directory", *arguments], cwd=TOP, capture_output=True, text=True)
+
+
+def variable(name):
+    return re.search(rf"^{name} :?= (.*)$", make("-pRrq", ":").stdout, re.M).group(1)
+
+
+def test_versions_are_those_of_this_python_and_this_yade(yade):
+    assert variable("PYTHON_VERSION") == f"{sys.version_info.major}.{sys.version_info.minor}"
+    found = yade("import yade.config\nresult['version'] = yade.config.version")
+    assert variable("YADE_VERSION") == found["version"]
+
+
+def test_another_yade_is_refused_in_one_line():
+    done = make("known-yade", "YADE_VERSION=2026.1.0")
+    lines = [line for line in done.stderr.splitlines() if not line.startswith("make: ***")]
+    assert done.returncode != 0 and len(lines) == 1
+    assert "YADE 2026.1.0 is installed: must be one of 2023.02a 2025.2.0" in lines[0]
+    assert make("known-yade", "YADE_VERSION=2026.1.0", "YADE_INCLUDE=/source").returncode == 0

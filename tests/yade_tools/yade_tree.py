@@ -1,0 +1,95 @@
+"""The plugin compiled against YADE's own headers, and loaded. Run by `make yade-tree`.
+
+Downloads the source of the YADE that is installed from Debian's archive (14 MB; Debian 13 has it), clones the last
+commit into build/yade-tree, compiles it there with YADE_INCLUDE, and runs an example and tests with the result.
+Exit status: 0, or 1 with one line on stderr that says which step failed.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+FOLDER = TOP / "build/yade-tree"
+SOURCE, CLONE = FOLDER / "source", FOLDER / "clone"
+CHECKS = (
+    ["yade", "-n", "-x", "yade_scripts/examples/pair.py"],
+    [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-q", "tests/physics/test_pairs.py"],
+)
+
+
+class Failed(Exception):
+    """The message is one line."""
+
+
+def run(command, **more):
+    """Run to its end; Failed with its last line when it fails."""
+    done = subprocess.run(command, capture_output=True, text=True, **more)
+    if done.returncode:
+        lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        raise Failed(f"{' '.join(map(str, command[:4]))}: {lines[-1] if lines else done.returncode}")
+    return done.stdout
+
+
+def installed_version():
+    """Of Debian's package yade, without Debian's own revision."""
+    return re.sub(r"^\d+:|-[^-]*$", "", run(["dpkg-query", "-W", "-f", "${Version}", "yade"]))
+
+
+def archives():
+    """Lines of deb-src for the archives that apt uses here."""
+    listed = run(["apt-get", "indextargets", "--format", "$(REPO_URI) $(ORIGIN) $(CODENAME)", "Created-By: Packages"])
+    found = {tuple(line.split(" ")) for line in listed.splitlines()}
+    return [f"deb-src {where} {name} main" for where, origin, name in sorted(found) if origin == "Debian"]
+
+
+def fetch(version):
+    """YADE's source in SOURCE. Lists and caches of apt's are its own, so that it needs no root."""
+    if (SOURCE / "core/Scene.hpp").exists():
+        return
+    apt = FOLDER / "apt"
+    for part in ("lists/partial", "archives/partial"):
+        (apt / part).mkdir(parents=True, exist_ok=True)
+    (apt / "sources.list").write_text("\n".join(archives()) + "\n")
+    places = {"Etc::SourceList": "sources.list", "State::lists": "lists", "Cache": ".", "Cache::archives": "archives"}
+    options = [word for name, place in places.items() for word in ("-o", f"Dir::{name}={apt / place}")]
+    options += ["-o", "Dir::Etc::SourceParts=-", "-o", "APT::Sandbox::User="]
+    run(["apt-get", *options, "-q", "update"])
+    # Where Debian's own parts of the source package are missing, apt fails after it has checked and kept YADE's.
+    subprocess.run(["apt-get", *options, "-q", "source", "--download-only", "yade"], cwd=apt, capture_output=True)
+    files = list(apt.glob(f"yade_{version}.orig.tar.*"))
+    files = [file for file in files if file.suffix != ".asc"]
+    if not files:
+        raise Failed(f"yade {version}: Debian's archive has no source of it")
+    unpacked = FOLDER / "unpacked"
+    shutil.rmtree(unpacked, ignore_errors=True)
+    unpacked.mkdir()
+    run(["tar", "-xf", files[0], "-C", unpacked])
+    next(unpacked.iterdir()).rename(SOURCE)
+
+
+def main():
+    try:
+        version = installed_version()
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        fetch(version)
+        shutil.rmtree(CLONE, ignore_errors=True)
+        run(["git", "clone", "-q", TOP, CLONE])
+        begun = time.monotonic()
+        run(["make", f"YADE_INCLUDE={SOURCE}"], cwd=CLONE)
+        print(f"compiled against the headers of YADE {version}: {time.monotonic() - begun:.0f} s", flush=True)
+        environment = {name: value for name, value in os.environ.items() if name != "YADE_PREFIX"}
+        for command in CHECKS:
+            print(run(command, cwd=CLONE, env=environment).strip().splitlines()[-1], flush=True)
+    except Failed as error:
+        print(f"yade_tree.py: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
