@@ -19,6 +19,9 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from yade_scripts.run.stop_signals import end_quietly
+
+end_quietly()
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import rows, view

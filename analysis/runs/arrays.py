@@ -2,6 +2,7 @@
 
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
+import os
 import zipfile
 import zlib
 from contextlib import contextmanager
@@ -38,9 +39,16 @@ def read_arrays(file, names, optional=()):
     return arrays
 
 
+def require_regular(file):
+    """Raise RunFolderError when a path is something else than a file: reading a pipe would never end."""
+    if os.path.exists(file) and not os.path.isfile(file):
+        raise RunFolderError(f"{file}: is no regular file; must be one")
+
+
 @contextmanager
 def _opened(file):
     """The archive; whatever goes wrong while it is read is a RunFolderError."""
+    require_regular(file)
     try:
         archive = np.load(file, allow_pickle=False)
         if isinstance(archive, np.ndarray):
@@ -93,3 +101,6 @@ def _check(file, quantity, array, sizes):
     if not quantity.gaps and not np.all(np.isfinite(array)):
         where = f", first at index {int(np.argmin(np.isfinite(array)))}" if array.ndim == 1 else ""
         raise RunFolderError(f"{file}: '{name}' holds a value that is not finite{where}")
+    if quantity.positive and not np.all(array > 0):
+        at = int(np.argmin(np.asarray(array) > 0))
+        raise RunFolderError(f"{file}: '{name}' is {array[at]:g} at index {at}; must be > 0")

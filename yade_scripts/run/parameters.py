@@ -12,6 +12,7 @@ from yade_scripts.parameters import (
     one_of,
     parameter,
 )
+from yade_scripts.run.file_name import file_name
 from yade_scripts.stability import AUTO, STABLE_STEP
 
 FUSED_THREADS = 2  # JKRWadaEngine's domains
@@ -68,7 +69,7 @@ class RunParameters(Parameters):
         found = super().parse(texts)
         if found.out is not None:
             return found
-        return found.changed(out="runs/" + _file_name(description or found._name_with(texts)))
+        return found.changed(out="runs/" + (file_name(description or found._name_with(texts)).lstrip(".") or "run"))
 
     def title(self):
         """(name of a run of these parameters, names of the parameters that are in it)."""
@@ -108,9 +109,3 @@ class RunParameters(Parameters):
         columns = self.columns()
         others = (key for key in sorted(texts) if key not in in_name and columns[key].of_consequence)
         return name + "".join(f"-{key}{getattr(self, key)}" for key in others)
-
-
-def _file_name(text):
-    """text as the name of one folder."""
-    others = "-_.,=+"
-    return "".join(c if c.isalnum() or c in others else "_" for c in text).lstrip(".")[:200] or "run"

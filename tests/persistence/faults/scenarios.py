@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-
 from faults.forks import COUNT, DISK_FULL, END_BEFORE, END_HALFWAY
 
 # Six steps of a few grains, a checkpoint after each, four states.
