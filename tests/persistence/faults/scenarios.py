@@ -13,6 +13,7 @@ RUN = ("radius=2", "velocity=30", "duration=1e-10", "states=4", "threads=1", "ch
 OTHER = ("seed=2",)  # of a run that was in the folder before
 RESUME, OVERWRITE = "resume=1", "overwrite=1"
 ACTIONS = {"ends before": END_BEFORE, "ends halfway": END_HALFWAY, "disk full from": DISK_FULL}
+STOPPED = 143
 RECORDER = "checkpoint/recorder.npz"
 
 
@@ -98,8 +99,8 @@ class Bench:
         text = f"{call.number} {_plain(call)}" + (f", SIGTERM before {stop}" if stop else "")
         case = Case(scenario.name, fault, text)
         if ACTIONS[fault] == DISK_FULL:
-            case.wrong += _of_a_full_disk(done, run)
-        elif done.status != -9:
+            case.wrong += wrong_on_a_full_disk(done, run)
+        elif done.status != -9 and not (stop and done.status == STOPPED):  # stopped before that call
             case.wrong.append(f"exit status {done.status}: {done.lines}")
         renamed = sum(c.name == "rename" and c.path == RECORDER for c in done.calls[: call.number - 1])
         if renamed and not (run / "ended").exists() and checkpoint_rows(run) < rows + renamed:
@@ -150,8 +151,8 @@ class Bench:
         return [] if arrays(run) == self.straight[RUN] else [f"{called}: other arrays"]
 
 
-def _of_a_full_disk(done, run):
-    """One line on stderr, and a status that says so; the run folder tells the outcome if it can."""
+def wrong_on_a_full_disk(done, run):
+    """What is wrong unless a run printed one line about it, and has a status that says so."""
     own = [line for line in done.lines if not line.startswith("run folder: ")]
     wrong = []
     if done.status == 0 and (run / "ended").exists():
@@ -179,12 +180,40 @@ def enumerated(bench, scenario, faults=tuple(ACTIONS), every=1, offset=0):
                 yield bench.case(scenario, fault, call)
 
 
-def enumerated_stops(bench, checkpoint):
+def enumerated_stops(bench, checkpoint, every=1):
     """Case of SIGTERM before each call of one checkpoint of a new run, and SIGKILL at each call from there on to the
-    next checkpoint's end."""
+    next checkpoint's end (or at every so many of these pairs)."""
     scenario = SCENARIOS[0]
     calls = bench.calls(scenario)
     ends = [c.number for c in calls if c.name == "rename" and c.path == RECORDER]
-    for stop in range(ends[checkpoint - 1] + 1, ends[checkpoint] + 1):
-        for number in range(stop, ends[checkpoint] + 25):
-            yield bench.case(scenario, "ends before", calls[number - 1], stop)
+    first, last = ends[checkpoint - 1] + 1, ends[checkpoint]
+    pairs = [(stop, number) for stop in range(first, last + 1) for number in range(stop, last + 25)]
+    for stop, number in pairs[::every]:
+        yield bench.case(scenario, "ends before", calls[number - 1], stop)
+
+
+def power_loss(calls):
+    """What a power loss could take although it must not, in words (nothing: []), from the calls of a run.
+
+    Of files that were written, and names that were made, without an fsync since, nothing may be counted on. So all must
+    be on the disk before `ended` gets its name, scene and states before recorder.npz gets its, and recorder.npz before
+    an older scene goes.
+    """
+    content, names, wrong = set(), set(), []  # without fsync
+    for call in calls:
+        folder, _, file = call.path.rpartition("/")
+        if call.name == "write":
+            content.add(call.path)
+        elif call.name == "fsync":
+            content.discard(call.path)
+            names = {name for name in names if (name.rpartition("/")[0] or ".") != call.path}
+        elif call.name == "rename":
+            temporary = {path for path in content if path.startswith(f"{folder}/.{file}.".lstrip("/"))}
+            own = {call.path} if temporary else set()
+            content = content - temporary | own
+            if call.path in ("ended", RECORDER):
+                wrong += [f"{path} at the renaming of {call.path}" for path in sorted(content | names - {call.path})]
+            names.add(call.path)
+        elif call.name == "unlink" and file.startswith("scene-"):
+            wrong += [f"{path} at the removal of {call.path}" for path in sorted(content | names) if path == RECORDER]
+    return wrong
