@@ -86,7 +86,10 @@ DAMAGE = {
         "000001.npz: damaged, or not an .npz file",
     ),
     "a state of another time": (lambda run, other: change_state(run, time=1.0), "000001.npz: of 1 s; must be of"),
-    "a state of another kind": (lambda run, other: change_state(run, aggregate=np.zeros(3, int)), "'aggregate' has the"),
+    "a state of another kind": (
+        lambda run, other: change_state(run, aggregate=np.zeros(3, int)),
+        "'aggregate' has the",
+    ),
 }
 
 

@@ -41,7 +41,10 @@ def test_the_calls_are_those_of_all_files(bench):
     states = {f"states/{number:06d}.npz" for number in range(4)}
     scenes = {f"checkpoint/scene-{step}.yade" for step in range(1, 7)}
     assert written == states | scenes | {"run.json", "history.npz", "ended", RECORDER}
-    assert {call.path for call in calls if call.name.startswith(("unlink", "rmdir"))} == scenes | {RECORDER, "checkpoint"}
+    assert {call.path for call in calls if call.name.startswith(("unlink", "rmdir"))} == scenes | {
+        RECORDER,
+        "checkpoint",
+    }
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario.name)
@@ -61,7 +64,9 @@ def test_a_disk_that_is_really_full(forks, tmp_path, size):
     """A small file system in memory; size in kB. A run without faults needs some 200."""
     disk = tmp_path / "disk"
     disk.mkdir()
-    mount = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}k", "none", disk], capture_output=True, text=True)
+    mount = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", f"size={size}k", "none", disk], capture_output=True, text=True
+    )
     if mount.returncode:
         pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
     try:

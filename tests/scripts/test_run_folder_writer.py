@@ -94,7 +94,9 @@ def test_a_folder_that_a_killed_run_began_is_used(tmp_path, left):
     for name in left:
         (tmp_path / "run" / name).write_bytes(b"half")
     RunFolder(str(tmp_path / "run"))
-    assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"] and not os.listdir(tmp_path / "run" / "states")
+    assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"] and not os.listdir(
+        tmp_path / "run" / "states"
+    )
 
 
 def test_states_without_their_run_are_left_alone(tmp_path):

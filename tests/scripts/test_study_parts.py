@@ -95,6 +95,9 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "run" / "run.json")
     os.mkfifo(tmp_path / "run" / "checkpoint" / "recorder.npz")
     assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
+    os.unlink(tmp_path / "run" / "run.json")
+    (tmp_path / "run" / "run.json").write_text('{"outcome": "running", "derived": {"steps": 1, "timeStep": 1}}')
+    assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
 
 
 @pytest.mark.parametrize("study", [elastoplastic, viscous], ids=["elastoplastic", "viscous"])

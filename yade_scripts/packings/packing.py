@@ -151,9 +151,11 @@ def _require_apart(path, packing):
     (from_file.py)."""
     pairs = cKDTree(packing.position).query_pairs(packing.radius.max(), output_type="ndarray")
     distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
-    deep = np.flatnonzero(distance <= packing.radius[pairs].max(axis=1, initial=0))
+    overlap = packing.radius[pairs].sum(axis=1) - distance
+    deep = np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))
     if len(deep):
         first, second = pairs[deep[0]]
         raise PackingError(
-            f"{path}: grains {first} and {second} are {distance[deep[0]]:.3g} m apart; must be further than the larger radius"
+            f"{path}: grains {first} and {second} overlap by {overlap[deep[0]]:.3g} m; must be less than the smaller "
+            "radius"
         )

@@ -18,7 +18,7 @@ import zipfile
 
 import numpy as np
 
-from analysis.runs.arrays import RunFolderError
+from analysis.runs.arrays import RunFolderError, require_regular
 from analysis.runs.folder import read_state
 from analysis.runs.format import CHECKPOINT_FOLDER, STATES_FOLDER, state_file
 from yade_scripts.parameters.errors import InputError
@@ -56,6 +56,7 @@ class Checkpoint:
         self.run_folder = run_folder
         self.folder = os.path.join(run_folder, CHECKPOINT_FOLDER)
         try:
+            require_regular(os.path.join(self.folder, RECORDER))
             with np.load(os.path.join(self.folder, RECORDER)) as file:
                 self.rows, about = file["rows"], json.loads(str(file["about"]))
             self.run, self.wallTime = about["run"], about["wallTime"]
@@ -65,6 +66,7 @@ class Checkpoint:
             # None: of a version that did not write them, which require_agreement() refuses.
             self.iteration, self.states, self._sums = (about.get(name) for name in ("iteration", "states", "sums"))
         except (
+            RunFolderError,
             OSError,
             KeyError,
             ValueError,
