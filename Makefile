@@ -10,6 +10,7 @@
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
 # make test   builds what is needed and passes the tests
+# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (ten minutes)
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
@@ -137,7 +138,7 @@ build/overlay: Makefile
 
 # ---- running it ----
 
-.PHONY: demo test
+.PHONY: demo test test-faults
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary runs/demo
@@ -150,6 +151,10 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+# Results in tests/persistence/results.
+test-faults: all
+	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
