@@ -10,7 +10,7 @@
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
 # make test   builds what is needed and passes the tests
-# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (ten minutes)
+# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (ten to twenty minutes)
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built

