@@ -3,6 +3,7 @@
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
 import os
+import tokenize
 import zipfile
 import zlib
 from contextlib import contextmanager
@@ -11,6 +12,23 @@ import numpy as np
 
 # numpy's letters of the types that may stand for a quantity's kind, and what to call them.
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("biu", "true or false")}
+
+# What numpy and zipfile raise for a damaged .npz file, found by flipping each bit of one: RuntimeError for a bit that says
+# "encrypted", TokenError for a header that numpy cannot parse, MemoryError for a shape that is too large.
+UNREADABLE = (
+    OSError,
+    ValueError,
+    KeyError,
+    TypeError,
+    EOFError,
+    AttributeError,
+    RuntimeError,
+    MemoryError,
+    SyntaxError,
+    tokenize.TokenError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 class RunFolderError(Exception):
@@ -57,7 +75,7 @@ def _opened(file):
             yield archive
     except FileNotFoundError:
         raise RunFolderError(f"{file}: missing") from None
-    except (OSError, ValueError, EOFError, AttributeError, zipfile.BadZipFile, zlib.error) as error:
+    except UNREADABLE as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise RunFolderError(f"{file}: damaged, or not an .npz file: {reason}") from None
 

@@ -335,6 +335,25 @@ def test_a_byte_order_mark_is_no_part_of_the_record(folder):
     assert open_run(folder).record == json.loads(text)
 
 
+def test_a_flipped_bit_of_a_state_is_noticed_or_changes_nothing(folder):
+    """Dates and attributes of the archive are under no sum of it."""
+    file = folder / "states" / "000000.npz"
+    whole, state = file.read_bytes(), open_run(folder).start
+    refused = 0
+    for where in range(0, len(whole), 13):
+        data = bytearray(whole)
+        data[where] ^= 1 << where % 8
+        file.write_bytes(data)
+        try:
+            found = open_run(folder).start
+        except RunFolderError as error:
+            assert "\n" not in str(error)
+            refused += 1
+        else:
+            assert all(np.array_equal(getattr(found, q.name), getattr(state, q.name)) for q in COLLISION.states[:-1])
+    assert refused > len(whole) / 13 / 2
+
+
 def test_a_run_without_states(folder):
     shutil.rmtree(folder / "states")
     with pytest.raises(RunFolderError, match="holds no state"):

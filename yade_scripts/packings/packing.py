@@ -2,13 +2,13 @@
 
 import json
 import os
-import zipfile
 from dataclasses import dataclass, field
 from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from analysis.runs.arrays import UNREADABLE
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.atomic_write import write_atomically
 
@@ -115,16 +115,7 @@ def load(path):
             if not isinstance(parameters, dict):
                 raise ValueError("parameters is no JSON object")
             packing = Packing(file["position"], file["radius"], int(file["seed"]), parameters)
-    except (
-        OSError,
-        KeyError,
-        ValueError,
-        TypeError,
-        AttributeError,
-        EOFError,
-        RecursionError,
-        zipfile.BadZipFile,
-    ) as error:
+    except UNREADABLE as error:
         reason = " ".join(str(error).split())
         raise PackingError(
             f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"

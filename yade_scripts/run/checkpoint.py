@@ -10,20 +10,16 @@ rounding.
 
 import hashlib
 import json
-import mmap
 import os
 import shutil
-import time
-import zipfile
 
 import numpy as np
 
-from analysis.runs.arrays import RunFolderError, require_regular
+from analysis.runs.arrays import UNREADABLE, RunFolderError, require_regular
 from analysis.runs.folder import read_state
 from analysis.runs.format import CHECKPOINT_FOLDER, STATES_FOLDER, state_file
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.agreement import difference
-from yade_scripts.run.atomic_write import sync, write_atomically, write_bytes_atomically
 
 RECORDER = "recorder.npz"
 
@@ -65,17 +61,7 @@ class Checkpoint:
             os.stat(self.scene)
             # None: of a version that did not write them, which require_agreement() refuses.
             self.iteration, self.states, self._sums = (about.get(name) for name in ("iteration", "states", "sums"))
-        except (
-            RunFolderError,
-            OSError,
-            KeyError,
-            ValueError,
-            TypeError,
-            AttributeError,
-            EOFError,
-            RecursionError,
-            zipfile.BadZipFile,
-        ) as error:
+        except (RunFolderError, *UNREADABLE) as error:
             raise CheckpointError(
                 f'{self.folder}: not a checkpoint ({" ".join(str(error).split())}); '
                 "must be removed to start the run again"
@@ -108,11 +94,11 @@ class Checkpoint:
         expected = schedule.samples_after(self.iteration or 0, fused)
         if self.rows.shape != (expected, len(self.columns)):
             self._damaged(f"{RECORDER}: rows have the shape {self.rows.shape}", f"({expected}, {len(self.columns)})")
-        for name, sums in (("rows", _sums(self.rows)), ("scene", _sums_of_file(self.scene))):
+        for name, found in (("rows", sums(self.rows.tobytes())), ("scene", _sums_of_file(self.scene))):
             written = (self._sums or {}).get(name)
-            if sums != written:
+            if found != written:
                 file = RECORDER if name == "rows" else os.path.basename(self.scene)
-                self._damaged(f"{file}: {_text(sums)}", f"{_text(written)}, as written")
+                self._damaged(f"{file}: {_text(found)}", f"{_text(written)}, as written")
         for number in range(self.states):
             self._require_state(kind_format, os.path.join(self.run_folder, STATES_FOLDER, state_file(number)))
 
@@ -137,68 +123,7 @@ class Checkpoint:
         raise CheckpointError(f"{self.folder}: {reason}; must be the same, or removed to start the run again")
 
 
-class Writer:
-    """Saves the running scene and a recorder's history every `interval` seconds of wall time.
-
-    folder: the RunFolder; run: the dictionary of run.json, with parameters, derived, versions and commit; wall_time():
-    seconds that the run has taken, those before earlier interruptions included.
-    """
-
-    def __init__(self, folder, run, recorder, wall_time, interval):
-        self.run_folder, self.folder = folder, os.path.join(folder.path, CHECKPOINT_FOLDER)
-        self.run, self.recorder, self.wall_time, self.interval = run, recorder, wall_time, interval
-        self._next = time.monotonic() + interval
-        self._saved = None  # iteration of the last one
-
-    def save_if_due(self):
-        if time.monotonic() >= self._next:
-            self.save()
-
-    def save(self):
-        """Write a checkpoint, unless this moment's is there; the one before stays until the new one is on the disk."""
-        from yade.wrapper import Omega
-
-        omega = Omega()
-        if self._saved == omega.iter:
-            return
-        self.run_folder.sync()
-        scene = f"scene-{omega.iter}.yade"
-        os.makedirs(self.folder, exist_ok=True)
-        content, rows = _saved_scene(omega), self.recorder.rows()
-        write_bytes_atomically(os.path.join(self.folder, scene), content, lasting=True)
-        about = {
-            "run": self.run,
-            "wallTime": self.wall_time(),
-            "scene": scene,
-            "iteration": omega.iter,
-            "states": self.recorder.states_written,
-            "sums": {"scene": _sums(content), "rows": _sums(rows)},
-            "columns": list(self.recorder.columns),
-        }
-        write_atomically(
-            os.path.join(self.folder, RECORDER),
-            lambda file: np.savez(file, rows=rows, about=json.dumps(about)),
-            lasting=True,
-        )
-        sync(self.run_folder.path)
-        for name in os.listdir(self.folder):
-            if name not in (scene, RECORDER):
-                os.unlink(os.path.join(self.folder, name))
-        self._saved = omega.iter
-        self._next = time.monotonic() + self.interval
-
-
-def _saved_scene(omega):
-    """The running scene as O.save writes it, in memory: to a full disk O.save would write a part and say nothing."""
-    handle = os.memfd_create("scene")
-    try:
-        omega.save(f"/proc/self/fd/{handle}", True)
-        return mmap.mmap(handle, 0, access=mmap.ACCESS_READ)
-    finally:
-        os.close(handle)
-
-
-def _sums(content):
+def sums(content):
     """[number of bytes, SHA-256] of a buffer."""
     view = memoryview(content).cast("B")
     return [len(view), hashlib.sha256(view).hexdigest()]
@@ -209,5 +134,5 @@ def _sums_of_file(path):
         return [os.fstat(file.fileno()).st_size, hashlib.file_digest(file, "sha256").hexdigest()]
 
 
-def _text(sums):
-    return f"{sums[0]} bytes, SHA-256 {sums[1][:12]}" if sums else "no sums"
+def _text(found):
+    return f"{found[0]} bytes, SHA-256 {found[1][:12]}" if found else "no sums"

@@ -56,8 +56,9 @@ def _open(kind, scene, schedule):
 
 def _carry_out(kind, scene, schedule, folder, saved, begun):
     """Step the scene to its end and write the run folder; the exit status."""
-    from yade_scripts.run import checkpoint, loop
+    from yade_scripts.run import loop
     from yade_scripts.run import scene as yade_scene
+    from yade_scripts.run.checkpoint_writer import CheckpointWriter
     from yade_scripts.run.recorder import Recorder
     from yade_scripts.run.report import Report
 
@@ -79,7 +80,7 @@ def _carry_out(kind, scene, schedule, folder, saved, begun):
         report.begin()
         if scene.step_choice != "as given":
             print(f"step: {scene.step_choice}", flush=True)
-        checkpoints = checkpoint.Writer(folder, report.run, recorder, report.wall_time, parameters.checkpointInterval)
+        checkpoints = CheckpointWriter(folder, report.run, recorder, report.wall_time, parameters.checkpointInterval)
         outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
         recorder.write_history()
     except (OSError, RuntimeError) as error:  # a folder that can't be written, a scene that YADE can't load

@@ -18,7 +18,7 @@ TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.ab
 sys.path.insert(0, TOP)
 import contact_law  # noqa: F401  (loaded once, for all runs)
 from yade_scripts.experiments.collision import KIND
-from yade_scripts.run import checkpoint, loop, recorder, report, scene, script  # noqa: F401
+from yade_scripts.run import checkpoint_writer, loop, recorder, report, scene, script  # noqa: F401
 
 
 def run(request):
