@@ -60,33 +60,33 @@ static int path_in(int at, const char* name, char* path)
 	return snprintf(path + length, PATH_MAX - length, "/%s", name) < (int)(PATH_MAX - length);
 }
 
-enum { GO_ON, HALF, FAIL };
+enum { PROCEED, HALF, FAIL };
 
 // Count a call; what is to become of it. takes_room: whether it fails on a full disk.
 static int counted(const char* name, const char* path, int is_write, int takes_room)
 {
-	if (!armed || !below(path)) return GO_ON;
+	if (!armed || !below(path)) return PROCEED;
 	++calls;
 	char line[PATH_MAX + 64];
 	int length = snprintf(line, sizeof line, "%ld %s %s\n", calls, name, path);
 	syscall(SYS_write, log_file, line, (size_t)length);
 	if (calls == stop_at) syscall(SYS_kill, getpid(), SIGTERM);
 	if (action == DISK_FULL && calls >= target && takes_room) return is_write && calls == target ? HALF : FAIL;
-	if (calls != target) return GO_ON;
+	if (calls != target) return PROCEED;
 	if (action == END_BEFORE || (action == END_HALFWAY && !is_write)) end_process();
-	return action == END_HALFWAY ? HALF : GO_ON;
+	return action == END_HALFWAY ? HALF : PROCEED;
 }
 
 static int counted_at(const char* name, int at, const char* file, int takes_room)
 {
 	char path[PATH_MAX];
-	return armed && path_in(at, file, path) ? counted(name, path, 0, takes_room) : GO_ON;
+	return armed && path_in(at, file, path) ? counted(name, path, 0, takes_room) : PROCEED;
 }
 
 static int counted_descriptor(const char* name, int descriptor, int is_write, int takes_room)
 {
 	char path[PATH_MAX];
-	return armed && path_of_descriptor(descriptor, path) ? counted(name, path, is_write, takes_room) : GO_ON;
+	return armed && path_of_descriptor(descriptor, path) ? counted(name, path, is_write, takes_room) : PROCEED;
 }
 
 #define NEXT(name) \
@@ -103,7 +103,7 @@ static int counted_descriptor(const char* name, int descriptor, int is_write, in
 		NEXT(name); \
 		va_list rest; \
 		va_start(rest, flags); \
-		mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(rest, mode_t) : 0; \
+		mode_t mode = (flags & O_CREAT) || (flags & O_TMPFILE) == O_TMPFILE ? va_arg(rest, mode_t) : 0; \
 		va_end(rest); \
 		if (flags & (O_CREAT | O_TRUNC)) counted_at("open", AT, FILE_NAME, 0); \
 		return next PASS; \
@@ -139,7 +139,7 @@ int mkdir(const char* path, mode_t mode) { return mkdirat(AT_FDCWD, path, mode);
 	{ \
 		NEXT(name); \
 		int what = counted_descriptor("write", descriptor, 1, 1); \
-		if (what == GO_ON) return ALL; \
+		if (what == PROCEED) return ALL; \
 		ssize_t written = what == HALF ? PART : 0; \
 		if (action == END_HALFWAY) end_process(); \
 		if (written > 0) return written; \
