@@ -39,9 +39,7 @@ class Forks:
         self.folder = Path(folder)
         library = self.folder / "injector.so"
         source = HERE / "injector.c"
-        subprocess.run(
-            ["gcc", "-shared", "-fPIC", "-O1", "-Wall", "-o", library, source, "-ldl"], check=True
-        )
+        subprocess.run(["gcc", "-shared", "-fPIC", "-O1", "-Wall", "-o", library, source, "-ldl"], check=True)
         requests, self._requests = os.pipe()
         self._answers, answers = os.pipe()
         environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
