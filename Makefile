@@ -14,6 +14,7 @@
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
+# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (ten to twenty minutes)
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
@@ -183,7 +184,7 @@ uninstall:
 
 # ---- running it ----
 
-.PHONY: demo test
+.PHONY: demo test test-faults
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary runs/demo
@@ -217,6 +218,10 @@ test-debian:
 yade-tree: all
 	@$(MAKE) --no-print-directory deps PACKAGES="dpkg-dev git libopenmpi-dev bzip2"
 	@$(PYTHON) tests/yade_tools/yade_tree.py
+
+# Results in tests/persistence/results.
+test-faults: all
+	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk

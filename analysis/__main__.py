@@ -2,9 +2,13 @@
 
 import argparse
 import os
+import signal
 import sys
 
-from .commands import export, figures, film, study, summary
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends the process without a traceback; before slow imports
+
+from .commands import export, figures, film, study, summary  # noqa: E402
 
 
 def main(arguments=None):

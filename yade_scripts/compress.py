@@ -19,6 +19,9 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
+from yade_scripts.run.stop_signals import end_quietly
+
+end_quietly()
 from yade_scripts.experiments.compression import KIND
 from yade_scripts.run import script
 

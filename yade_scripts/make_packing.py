@@ -12,6 +12,9 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from yade_scripts.run.stop_signals import end_quietly
+
+end_quietly()
 from analysis.version import version_text
 from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import AggregateParameters, make

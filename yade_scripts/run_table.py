@@ -12,14 +12,37 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from yade_scripts.run.stop_signals import end_quietly
+
+end_quietly()
+from yade_scripts.run.table import TableError, read
 from yade_scripts.runner.batch_command import LOGS, batch_command, failure
+
+LONGEST = 255  # bytes of a file's name
+
+
+def require_names(table):
+    """Raise TableError when the table can't be read, or a description is too long for the name of a log."""
+    for row in read(table):
+        length = len(
+            os.path.basename(log_name(table)).replace("%", str(row.line)).replace("@", row.description).encode()
+        )
+        if length > LONGEST:
+            raise TableError(
+                f"{table}: line {row.line}: its log's name would have {length} bytes; must be at most {LONGEST}, so the "
+                "description shorter"
+            )
+
+
+def log_name(table):
+    """Path of the logs, in which yade-batch puts a row's line for % and its description for @."""
+    return os.path.join(LOGS, f"{os.path.splitext(os.path.basename(table))[0]}.%.@.log")
 
 
 def run_batch(table, options):
     """Run yade-batch, its output passed on; returns what it printed. Raises OSError when it isn't there."""
-    name = os.path.splitext(os.path.basename(table))[0]
     os.makedirs(LOGS, exist_ok=True)
-    command = batch_command(table, os.path.join(LOGS, f"{name}.%.@.log"), options)
+    command = batch_command(table, log_name(table), options)
     lines = []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as batch:
         for line in batch.stdout:
@@ -42,7 +65,10 @@ def main(arguments):
     if not os.path.isfile(table):
         sys.exit(f"run_table.py: {table}: no such table")
     try:
+        require_names(table)
         status, output = run_batch(table, options)
+    except TableError as error:
+        sys.exit(f"run_table.py: {error}")
     except OSError as error:
         sys.exit(f"run_table.py: yade-batch: {error.strerror}")
     logs = log_files(output)

@@ -20,6 +20,9 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from yade_scripts.run.stop_signals import end_quietly
+
+end_quietly()
 from analysis.version import version_text
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
@@ -177,11 +180,11 @@ def main(arguments):
     for row in study.rows:
         if row.error:
             print(f"study.py: {row.name}: {row.error}; the other rows are run", file=sys.stderr, flush=True)
-    study.announce()
     try:
+        study.announce()
         run(study, stop)
-    except FileNotFoundError as error:
-        print(f"study.py: {error.filename}: {error.strerror}", file=sys.stderr)
+    except OSError as error:  # yade-batch is missing, the disk is full
+        print(f"study.py: {error.filename or study.folder.path}: {error.strerror}", file=sys.stderr)
         return 1
     stop.restore()
     return close(study, stop)

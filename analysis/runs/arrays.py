@@ -2,6 +2,8 @@
 
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
+import os
+import tokenize
 import zipfile
 import zlib
 from contextlib import contextmanager
@@ -10,6 +12,23 @@ import numpy as np
 
 # numpy's letters of the types that may stand for a quantity's kind, and what to call them.
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("biu", "true or false")}
+
+# What numpy and zipfile raise for a damaged .npz file, found by flipping each bit of one: RuntimeError for a bit that says
+# "encrypted", TokenError for a header that numpy cannot parse, MemoryError for a shape that is too large.
+UNREADABLE = (
+    OSError,
+    ValueError,
+    KeyError,
+    TypeError,
+    EOFError,
+    AttributeError,
+    RuntimeError,
+    MemoryError,
+    SyntaxError,
+    tokenize.TokenError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 class RunFolderError(Exception):
@@ -38,9 +57,16 @@ def read_arrays(file, names, optional=()):
     return arrays
 
 
+def require_regular(file):
+    """Raise RunFolderError when a path is something else than a file: reading a pipe would never end."""
+    if os.path.exists(file) and not os.path.isfile(file):
+        raise RunFolderError(f"{file}: is no regular file; must be one")
+
+
 @contextmanager
 def _opened(file):
     """The archive; whatever goes wrong while it is read is a RunFolderError."""
+    require_regular(file)
     try:
         archive = np.load(file, allow_pickle=False)
         if isinstance(archive, np.ndarray):
@@ -49,7 +75,7 @@ def _opened(file):
             yield archive
     except FileNotFoundError:
         raise RunFolderError(f"{file}: missing") from None
-    except (OSError, ValueError, EOFError, AttributeError, zipfile.BadZipFile, zlib.error) as error:
+    except UNREADABLE as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise RunFolderError(f"{file}: damaged, or not an .npz file: {reason}") from None
 
@@ -93,3 +119,6 @@ def _check(file, quantity, array, sizes):
     if not quantity.gaps and not np.all(np.isfinite(array)):
         where = f", first at index {int(np.argmin(np.isfinite(array)))}" if array.ndim == 1 else ""
         raise RunFolderError(f"{file}: '{name}' holds a value that is not finite{where}")
+    if quantity.positive and not np.all(array > 0):
+        at = int(np.argmin(np.asarray(array) > 0))
+        raise RunFolderError(f"{file}: '{name}' is {array[at]:g} at index {at}; must be > 0")

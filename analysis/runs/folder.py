@@ -13,7 +13,7 @@ from typing import Mapping
 
 import numpy as np
 
-from .arrays import RunFolderError, array_names, read_arrays, read_quantities
+from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_regular
 from .format import (
     COLLISION,
     ENDED_FILE,
@@ -154,7 +154,7 @@ def read_state(file, kind=COLLISION, file_format=READABLE[-1]):
 
 
 def _read_record(file):
-    record = _read_json(file)
+    record = read_json(file)
     if not isinstance(record, dict) or "format" not in record:
         raise RunFolderError(
             f"{file}: not the record of a run: no 'format' (another program's file, or a run that has only just begun)"
@@ -181,15 +181,25 @@ def _kind_of_its_own(name, history):
     return RunKind(name, tuple(Quantity(series, ("T",), "", "", gaps=True) for series in own))
 
 
-def _read_json(file):
+def read_json(file):
+    """What a JSON file holds; RunFolderError when it is missing, is no regular file, or no JSON (NaN and Infinity are
+    none)."""
+    file = Path(file)
+    require_regular(file)
     try:
-        return json.loads(file.read_text(encoding="utf-8"))
+        return json.loads(file.read_text(encoding="utf-8-sig"), parse_constant=_refuse_constant)
     except FileNotFoundError:
         raise RunFolderError(f"{file}: missing, so this is not a run folder") from None
     except OSError as error:
         raise RunFolderError(f"{file}: cannot be read: {error.strerror}") from None
+    except RecursionError:
+        raise RunFolderError(f"{file}: not valid JSON: nested too deeply") from None
     except ValueError as error:
         raise RunFolderError(f"{file}: not valid JSON: {error}") from None
+
+
+def _refuse_constant(text):
+    raise ValueError(f"{text} is no number of JSON")
 
 
 def _read_history(file, kind, file_format):

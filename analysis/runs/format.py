@@ -68,6 +68,7 @@ COLOURS = {channel.name: channel.colour for channel in CHANNEL_TABLE}
 class Quantity:
     """An array of a history or a state. shape: of "T", "N", "M" (samples, grains, contacts) and numbers; kind: numpy's
     letter of the type, "f", "i" or "b". `optional`: left out where the scene has none. `gaps`: may be NaN in places.
+    `positive`: all values are > 0.
     `since`: the first format that has it; zeros stand for it in older folders."""
 
     name: str
@@ -78,6 +79,7 @@ class Quantity:
     optional: bool = False
     gaps: bool = False
     since: int = 1
+    positive: bool = False
 
 
 @dataclass(frozen=True)
@@ -110,12 +112,12 @@ STATE = (
     Quantity("position", ("N", 3), "m", "positions; unwrapped in a periodic cell"),
     Quantity("velocity", ("N", 3), "m/s", "velocities"),
     Quantity("angular_velocity", ("N", 3), "rad/s", "angular velocities"),
-    Quantity("radius", ("N",), "m", "radii"),
+    Quantity("radius", ("N",), "m", "radii", positive=True),
     Quantity("aggregate", ("N",), "", "number of the aggregate that a grain belongs to at the start", "i"),
     Quantity("contact_pairs", ("M", 2), "", "rows of the two grains of a contact", "i"),
     Quantity("contact_normal_force", ("M",), "N", "normal force, elastic and viscous, positive when repulsive"),
     Quantity("contact_bonded", ("M",), "", "whether a contact is a sintered bond", "b"),
-    Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True),
+    Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True, positive=True),
 )
 
 COLLISION = RunKind(

@@ -69,12 +69,13 @@ def table_text(table, columns, head):
 def read_table(file, columns):
     """(DataFrame, head) of a CSV file; TableError where it is not one with these columns."""
     try:
-        text = Path(file).read_text(encoding="utf-8")
+        text = Path(file).read_text(encoding="utf-8-sig")
         comments = [line for line in text.splitlines() if line.startswith("# ")]
         head = json.loads(comments[0][2:]) if comments else None
         if not isinstance(head, dict):
             raise ValueError("its first line is not '# ' with a JSON object")
         body = text.splitlines()[len(comments) :]
+        _require_once(next(csv.reader(body), []))
         table = pandas.read_csv(
             io.StringIO("\n".join(body)),
             dtype={RUN: str},
@@ -84,6 +85,8 @@ def read_table(file, columns):
         )
     except OSError as error:
         raise TableError(f"{file}: cannot be read: {error.strerror}") from None
+    except RecursionError:
+        raise TableError(f"{file}: not a table of runs: its first line is nested too deeply") from None
     except ValueError as error:  # pandas's and json's errors are ValueErrors too
         raise TableError(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
     lacking = [c.name for c in columns if c.name not in table and c.absent is None]
@@ -93,6 +96,13 @@ def read_table(file, columns):
     for column in columns:
         _check(file, column, table[column.name])
     return table, head
+
+
+def _require_once(names):
+    """Raise ValueError when two columns have one name."""
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    if twice:
+        raise ValueError(f"has the column {twice[0]} {names.count(twice[0])} times; must be once")
 
 
 def _check(file, column, values):

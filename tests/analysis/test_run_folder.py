@@ -1,6 +1,7 @@
 """Reading run folders: whole, unfinished, damaged and foreign ones."""
 
 import json
+import os
 import shutil
 
 import numpy as np
@@ -145,6 +146,11 @@ def _flip(file):
     file.write_bytes(bytes(data))
 
 
+def _as_pipe(file):
+    file.unlink()
+    os.mkfifo(file)
+
+
 DAMAGE = {
     "no folder": (lambda f: shutil.rmtree(f), "no such run folder"),
     "a file": (lambda f: (shutil.rmtree(f), f.write_text("")), "is not a folder"),
@@ -154,6 +160,24 @@ DAMAGE = {
     "foreign record": (
         lambda f: (f / "run.json").write_text("{}"),
         "run.json: not the record of a run: no 'format'",
+    ),
+    "nested record": (
+        lambda f: (f / "run.json").write_text("[" * 100_000),
+        "run.json: not valid JSON: nested too deeply",
+    ),
+    "a pipe as record": (lambda f: _as_pipe(f / "run.json"), "run.json: is no regular file; must be one"),
+    "a pipe as history": (lambda f: _as_pipe(f / "history.npz"), "history.npz: is no regular file; must be one"),
+    "no number": (
+        lambda f: _change_record(f, lambda r: r["parameters"].update(velocity=float("nan"))),
+        "run.json: not valid JSON: NaN is no number of JSON",
+    ),
+    "infinite radius": (
+        lambda f: _change_record(f, lambda r: r["derived"].update(grainRadius=float("inf"))),
+        "run.json: not valid JSON: Infinity is no number of JSON",
+    ),
+    "time is no number": (
+        lambda f: _change_arrays(f / "history.npz", time=np.r_[np.nan, np.arange(200.0)]),
+        "'time' holds a value that is not finite, first at index 0",
     ),
     "a list": (lambda f: (f / "run.json").write_text("[1]"), "run.json: not the record of a run"),
     "later format": (
@@ -231,6 +255,23 @@ def test_damaged_folders_say_what_and_where(folder, damage):
 
 STATE_DAMAGE = {
     "half": (_halve, "damaged"),
+    "a pipe": (_as_pipe, "is no regular file; must be one"),
+    "no radius": (
+        lambda f: _change_arrays(f, radius=np.array([1e-7, 0.0])),
+        "'radius' is 0 at index 1; must be > 0",
+    ),
+    "negative radius": (
+        lambda f: _change_arrays(f, radius=np.array([-1e-7, 1e-7])),
+        "'radius' is -1e-07 at index 0; must be > 0",
+    ),
+    "a time that is no number": (
+        lambda f: _change_arrays(f, time=np.nan),
+        "'time' holds a value that is not finite",
+    ),
+    "a cell without an edge": (
+        lambda f: _change_arrays(f, cell_size=np.array([1e-6, 0.0, 1e-6])),
+        "'cell_size' is 0 at index 1; must be > 0",
+    ),
     "pair out of range": (
         lambda f: _change_arrays(f, contact_pairs=np.array([[0, 2]])),
         "names grain 2, there are grains 0 to 1",
@@ -286,6 +327,31 @@ def test_damaged_states_say_what_and_where(folder, damage):
         run.start
     assert message in str(error.value) and "000000.npz" in str(error.value) and "\n" not in str(error.value)
     assert run.last.radius.size == 2
+
+
+def test_a_byte_order_mark_is_no_part_of_the_record(folder):
+    text = (folder / "run.json").read_text()
+    (folder / "run.json").write_text(text, encoding="utf-8-sig")
+    assert open_run(folder).record == json.loads(text)
+
+
+def test_a_flipped_bit_of_a_state_is_noticed_or_changes_nothing(folder):
+    """Dates and attributes of the archive are under no sum of it."""
+    file = folder / "states" / "000000.npz"
+    whole, state = file.read_bytes(), open_run(folder).start
+    refused = 0
+    for where in range(0, len(whole), 13):
+        data = bytearray(whole)
+        data[where] ^= 1 << where % 8
+        file.write_bytes(data)
+        try:
+            found = open_run(folder).start
+        except RunFolderError as error:
+            assert "\n" not in str(error)
+            refused += 1
+        else:
+            assert all(np.array_equal(getattr(found, q.name), getattr(state, q.name)) for q in COLLISION.states[:-1])
+    assert refused > len(whole) / 13 / 2
 
 
 def test_a_run_without_states(folder):

@@ -35,6 +35,38 @@ def test_what_is_no_packing_gives_one_line(tmp_path, content):
     assert "\n" not in str(error.value) and str(path) in str(error.value)
 
 
+TWO = np.array([[0.0, 0, 0], [1.99e-7, 0, 0]])
+
+
+@pytest.mark.parametrize(
+    "position, radius, message",
+    [
+        (TWO * (np.nan, 1, 1), [1e-7] * 2, "position holds what is no finite number"),
+        (TWO, [1e-7, np.nan], "radius holds what is no finite number"),
+        (TWO, [1e-7, 0], "radius of grain 1 is 0; must be > 0"),
+        (TWO, [1e-7], r"position has the shape \(2, 3\), radius \(1,\)"),
+        (TWO[:, :2], [1e-7] * 2, r"position has the shape \(2, 2\), radius \(2,\)"),
+        (np.zeros((0, 3)), [], "N >= 1"),
+        (TWO * 0.4, [1e-7] * 2, "grains 0 and 1 overlap by 1.2e-07 m; must be less than the smaller radius"),
+        (TWO / 3, [1e-7, 1e-9], "grains 0 and 1 overlap by 3.47e-08 m; must be less than the smaller radius"),
+    ],
+)
+def test_arrays_that_are_no_packing_give_one_line(tmp_path, position, radius, message):
+    np.savez(tmp_path / "a.npz", position=position, radius=np.array(radius), seed=1, parameters="{}")
+    with pytest.raises(packings.PackingError, match=message) as error:
+        packings.load(tmp_path / "a.npz")
+    assert "\n" not in str(error.value) and str(error.value).startswith(str(tmp_path))
+
+
+def test_a_pipe_and_nested_parameters_are_no_packing(tmp_path):
+    os.mkfifo(tmp_path / "pipe.npz")
+    with pytest.raises(packings.PackingError, match="pipe.npz: is no regular file"):
+        packings.load(tmp_path / "pipe.npz")
+    np.savez(tmp_path / "a.npz", position=TWO, radius=[1e-7] * 2, seed=1, parameters="[" * 100_000)
+    with pytest.raises(packings.PackingError, match="not a packing"):
+        packings.load(tmp_path / "a.npz")
+
+
 def make_packing(folder, *arguments):
     return subprocess.run(
         [sys.executable, os.path.join(TOP, "yade_scripts", "make_packing.py"), *arguments],

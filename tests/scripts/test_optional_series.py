@@ -47,7 +47,7 @@ O.step(); recorder.sample(); recorder.write_history()
 result["counted"], result["error"] = folder.series, str(recorder.error)
 result["finished"], result["states"], result["time"] = bool(recorder.finished), folder.states, recorder.time
 again_folder, again = recorded(False)
-again.resume(recorder.rows(), recorder.columns)
+again.resume(recorder.rows(), recorder.columns, recorder.states_written)
 again.write_history()
 result["resumed"] = again_folder.series == folder.series
 """

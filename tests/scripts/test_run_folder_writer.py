@@ -1,5 +1,6 @@
 """The run folder's files, the schedule of samples, the progress bar: without YADE."""
 
+import fcntl
 import io
 import json
 import os
@@ -52,6 +53,64 @@ def test_an_ended_run_is_replaced_only_when_asked(tmp_path):
     RunFolder(str(path), overwrite=True)
     assert sorted(os.listdir(path)) == ["notes.txt", "run.json", "states"]
     assert os.listdir(path / "states") == []
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_a_run_that_ends_while_its_folder_is_opened_is_not_erased(tmp_path, monkeypatch, overwrite):
+    """The other run comes to its end, and gives up its lock, in the moment before this one takes it."""
+    path = tmp_path / "run"
+    other = RunFolder(str(path))
+    other.write_history({"time": np.zeros(3)})
+    take = fcntl.flock
+
+    def ends_then_take(handle, how):
+        other.write_ended()
+        os.close(other._lock)
+        take(handle, how)
+
+    monkeypatch.setattr(fcntl, "flock", ends_then_take)
+    if overwrite:
+        RunFolder(str(path), overwrite=True)
+        assert sorted(os.listdir(path)) == ["run.json", "states"]
+        return
+    with pytest.raises(RunFolderError, match="holds a run that has ended"):
+        RunFolder(str(path))
+    assert sorted(os.listdir(path)) == ["ended", "history.npz", "run.json", "states"]
+
+
+def test_an_ended_run_is_replaced_rather_than_resumed(tmp_path):
+    """One that was killed between the mark of its end and the removal of its checkpoint has both."""
+    path = ended_run(tmp_path / "run")
+    (path / "checkpoint").mkdir()
+    (path / "checkpoint" / "recorder.npz").write_bytes(b"")
+    assert RunFolder(str(path), overwrite=True, resume=True).checkpoint is None
+    assert sorted(os.listdir(path)) == ["run.json", "states"]
+
+
+@pytest.mark.parametrize("left", [[], [".run.json.x.unfinished"], ["states/.000000.npz.x.unfinished"]], ids=str)
+def test_a_folder_that_a_killed_run_began_is_used(tmp_path, left):
+    """states/ without run.json is what version 0.2 left."""
+    (tmp_path / "run" / "states").mkdir(parents=True)
+    for name in left:
+        (tmp_path / "run" / name).write_bytes(b"half")
+    RunFolder(str(tmp_path / "run"))
+    assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"] and not os.listdir(
+        tmp_path / "run" / "states"
+    )
+
+
+def test_states_without_their_run_are_left_alone(tmp_path):
+    """Someone may have put them aside."""
+    (tmp_path / "run" / "states").mkdir(parents=True)
+    (tmp_path / "run" / "states" / "000000.npz").write_bytes(b"mine")
+    with pytest.raises(RunFolderError, match="exists and is no run folder"):
+        RunFolder(str(tmp_path / "run"), overwrite=True)
+    assert (tmp_path / "run" / "states" / "000000.npz").read_bytes() == b"mine"
+
+
+def test_a_name_that_is_too_long_is_one_line(tmp_path):
+    with pytest.raises(RunFolderError, match="File name too long; must be a folder that can be written"):
+        RunFolder(str(tmp_path / ("x" * 256)))
 
 
 def test_a_run_that_has_not_ended_is_replaced(tmp_path):

@@ -45,6 +45,17 @@ def test_no_table(tmp_path):
     assert done.returncode == 1 and done.stderr == "run_table.py: nothing.table: no such table\n"
 
 
+def test_a_description_that_is_too_long_for_a_log_runs_nothing(tmp_path):
+    (tmp_path / "rows.table").write_text(f"description radius velocity\ngood 4 10\n{'x' * 250} 4 10\n")
+    done = run_table(tmp_path, "rows.table")
+    assert done.returncode == 1 and done.stdout == ""
+    assert done.stderr == (
+        "run_table.py: rows.table: line 3: its log's name would have 261 bytes; must be at most 255, so the "
+        "description shorter\n"
+    )
+    assert os.listdir(tmp_path) == ["rows.table"]
+
+
 @pytest.mark.parametrize("outcome", ["completed", "interrupted", "failed: energy (1 J): (a) b"])
 def test_closing_line_is_read_back(outcome):
     log = "Welcome\n" + closing_line("runs/a (1)", outcome, 12.34) + "\nbye\n"

@@ -172,3 +172,19 @@ def test_tables_that_cannot_be_used_run_nothing(tmp_path, text, message):
     assert failed.returncode == 2
     assert failed.stderr.startswith(message) and failed.stderr.count("\n") == 1
     assert "runs" not in os.listdir(tmp_path)
+
+
+def test_a_full_disk_is_one_line(tmp_path):
+    """A file system of one page: the table fits, nothing else does."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", disk], capture_output=True, text=True)
+    if mount.returncode:
+        pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
+    try:
+        write_table(disk, "tiny.table", "ends")
+        done = study(disk, "tiny.table", "-j", "1")
+    finally:
+        subprocess.run(["umount", disk], check=True)
+    assert done.returncode == 1
+    assert done.stderr == "study.py: runs/logs/tiny/speed.json: No space left on device\n"

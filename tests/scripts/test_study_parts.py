@@ -51,6 +51,55 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
     assert [row.cells for row in back] == [{"radius": "4", "!THREADS": "1"}, {"velocity": "10**0.5"}]
 
 
+def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path):
+    (tmp_path / "rows.table").write_text("radius velocity\n4 10\n", encoding="utf-8-sig")
+    assert [found.cells for found in table.read(tmp_path / "rows.table")] == [{"radius": "4", "velocity": "10"}]
+
+
+@pytest.mark.parametrize("names", ["radius velocity radius", "radius! velocity radius"])
+def test_a_column_that_is_there_twice_is_refused(tmp_path, names):
+    (tmp_path / "rows.table").write_text(f"{names}\n4 10 5\n")
+    with pytest.raises(table.TableError, match="rows.table: has the column radius 2 times; must be once"):
+        table.read(tmp_path / "rows.table")
+
+
+def test_names_of_any_length_are_names_of_files(tmp_path):
+    """Two descriptions of 400 characters that differ in the last one."""
+    for letter in ("x", "\u00e9"):
+        (tmp_path / "rows.table").write_text(
+            "description radius velocity\n" + "".join(f"{letter * 400}{end} 4 10\n" for end in "ab")
+        )
+        found = rows.read(tmp_path / "rows.table")
+        assert len({found_row.name for found_row in found}) == len({found_row.out for found_row in found}) == 2
+        for found_row in found:
+            assert not found_row.error
+            (tmp_path / f"{found_row.name}.log").write_text("")
+            os.makedirs(tmp_path / found_row.out)
+    assert rows.file_name("f0.4-R40,i=5 s1") == "f0.4-R40,i=5_s1"
+
+
+def test_an_ended_run_without_a_readable_record_is_not_done(tmp_path):
+    given = row(out=str(tmp_path / "run"))
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "ended").write_text("")
+    for text in (None, "", "{", "[" * 100_000):
+        if text is not None:
+            (tmp_path / "run" / "run.json").write_text(text)
+        found = rows.state(given, str(tmp_path / "log"))
+        assert found.kind == rows.FAILED and "without a readable run.json" in found.note
+
+
+def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
+    given = row(out=str(tmp_path / "run"))
+    (tmp_path / "run" / "checkpoint").mkdir(parents=True)
+    os.mkfifo(tmp_path / "run" / "run.json")
+    os.mkfifo(tmp_path / "run" / "checkpoint" / "recorder.npz")
+    assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
+    os.unlink(tmp_path / "run" / "run.json")
+    (tmp_path / "run" / "run.json").write_text('{"outcome": "running", "derived": {"steps": 1, "timeStep": 1}}')
+    assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
+
+
 @pytest.mark.parametrize("study", [elastoplastic, viscous], ids=["elastoplastic", "viscous"])
 def test_committed_tables_are_what_the_generator_writes(tmp_path, study):
     study.write_tables(tmp_path)

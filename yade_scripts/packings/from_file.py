@@ -17,24 +17,13 @@ def packing_from_file(path, grain_radius, overlap, planar=False):
     more deeply than DEEPEST of the equilibrium, or lie beside the plane z = 0 of a planar run.
     """
     packing = load(path)
-    _require_arrays(path, packing.position, packing.radius)
+    if packing.grains < 2:
+        raise PackingError(f"{path}: holds {packing.grains} grains; must be N >= 2")
     _require_radius(path, packing, grain_radius)
     _require_contacts(path, packing, grain_radius, overlap)
     if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
         raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
     return moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
-
-
-def _require_arrays(path, position, radius):
-    if radius.ndim != 1 or len(radius) < 2 or position.shape != (len(radius), 3):
-        raise PackingError(
-            f"{path}: position has the shape {position.shape}, radius {radius.shape}; must be (N, 3) and (N,), N >= 2"
-        )
-    for name, array in (("position", position), ("radius", radius)):
-        if array.dtype.kind not in "fiu" or not np.all(np.isfinite(array)):
-            raise PackingError(f"{path}: {name} holds what is no finite number; must be finite [m]")
-    if radius.min() <= 0:
-        raise PackingError(f"{path}: radius of grain {radius.argmin()} is {radius.min():g}; must be > 0 [m]")
 
 
 def _require_radius(path, packing, grain_radius):

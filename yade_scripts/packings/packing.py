@@ -1,13 +1,14 @@
 """Packings of spheres: what they are, their contacts, how far they are from touching, saving and loading."""
 
 import json
-import zipfile
+import os
 from dataclasses import dataclass, field
 from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from analysis.runs.arrays import UNREADABLE
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.atomic_write import write_atomically
 
@@ -101,15 +102,51 @@ def save(path, packing):
 
 
 def load(path):
-    """Read a packing that save() wrote; raises PackingError when the file is missing or isn't one."""
+    """Read a packing that save() wrote.
+
+    Raises PackingError when the file is missing or isn't one, an array has another shape or holds what is no finite
+    number, a radius is not positive, or a grain reaches the centre of another one.
+    """
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise PackingError(f"{path}: is no regular file; must be an .npz")
     try:
         with np.load(path) as file:
             parameters = json.loads(str(file["parameters"]))
             if not isinstance(parameters, dict):
                 raise ValueError("parameters is no JSON object")
-            return Packing(file["position"], file["radius"], int(file["seed"]), parameters)
-    except (OSError, KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
+            packing = Packing(file["position"], file["radius"], int(file["seed"]), parameters)
+    except UNREADABLE as error:
         reason = " ".join(str(error).split())
         raise PackingError(
             f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"
         ) from None
+    _require_arrays(path, packing.position, packing.radius)
+    _require_apart(path, packing)
+    return packing
+
+
+def _require_arrays(path, position, radius):
+    if radius.ndim != 1 or not len(radius) or position.shape != (len(radius), 3):
+        raise PackingError(
+            f"{path}: position has the shape {position.shape}, radius {radius.shape}; must be (N, 3) and (N,), N >= 1"
+        )
+    for name, array in (("position", position), ("radius", radius)):
+        if array.dtype.kind not in "fiu" or not np.all(np.isfinite(array)):
+            raise PackingError(f"{path}: {name} holds what is no finite number; must be finite [m]")
+    if radius.min() <= 0:
+        raise PackingError(f"{path}: radius of grain {radius.argmin()} is {radius.min():g}; must be > 0 [m]")
+
+
+def _require_apart(path, packing):
+    """Raise PackingError when a grain reaches another one's centre; how deep contacts may be depends on the material
+    (from_file.py)."""
+    pairs = cKDTree(packing.position).query_pairs(packing.radius.max(), output_type="ndarray")
+    distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
+    overlap = packing.radius[pairs].sum(axis=1) - distance
+    deep = np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))
+    if len(deep):
+        first, second = pairs[deep[0]]
+        raise PackingError(
+            f"{path}: grains {first} and {second} overlap by {overlap[deep[0]]:.3g} m; must be less than the smaller "
+            "radius"
+        )

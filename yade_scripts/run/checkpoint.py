@@ -1,23 +1,25 @@
 """Checkpoints: what a run needs to resume to the same bits after it was stopped or killed.
 
 The folder checkpoint/ of a run holds scene-STEP.yade (O.save: the bodies and the engine's arrays) and recorder.npz (the
-history so far, and whose checkpoint this is). recorder.npz names the scene it belongs to and is written after it, so
-that at any moment there is one whole checkpoint, or none. The fused engine resumes to the same bits; YADE's own loop may
-add up forces in another order after loading, so to rounding.
+history so far, and whose checkpoint this is). recorder.npz names the scene it belongs to, with its size and SHA-256, and
+is written after it, so that at any moment there is one whole checkpoint, or none. Before a run resumes, and before
+anything of its folder is removed, the checkpoint is checked: the scene, the rows, the states that were written before.
+The fused engine resumes to the same bits; YADE's own loop may add up forces in another order after loading, so to
+rounding.
 """
 
+import hashlib
 import json
 import os
 import shutil
-import time
-import zipfile
 
 import numpy as np
 
-from analysis.runs.format import CHECKPOINT_FOLDER
+from analysis.runs.arrays import UNREADABLE, RunFolderError, require_regular
+from analysis.runs.folder import read_state
+from analysis.runs.format import CHECKPOINT_FOLDER, STATES_FOLDER, state_file
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.agreement import difference
-from yade_scripts.run.atomic_write import write_atomically
 
 RECORDER = "recorder.npz"
 
@@ -41,20 +43,25 @@ def remove(run_folder):
 class Checkpoint:
     """A checkpoint read from a run folder's path.
 
-    .rows (T, columns) of the history, .columns their names, .run as in run.json, .wallTime [s] spent so far, .scene the
-    file of the scene. Raises CheckpointError when it can't be read.
+    .rows (T, columns) of the history, .columns their names, .run as in run.json, .wallTime [s] spent so far, .iteration
+    (O.iter), .states (number of states written), .scene the file of the scene. Raises CheckpointError when it can't be
+    read; what it says is not compared with the other files until require_whole().
     """
 
     def __init__(self, run_folder):
+        self.run_folder = run_folder
         self.folder = os.path.join(run_folder, CHECKPOINT_FOLDER)
         try:
+            require_regular(os.path.join(self.folder, RECORDER))
             with np.load(os.path.join(self.folder, RECORDER)) as file:
                 self.rows, about = file["rows"], json.loads(str(file["about"]))
             self.run, self.wallTime = about["run"], about["wallTime"]
             self.columns = about.get("columns", [])
             self.scene = os.path.join(self.folder, about["scene"])
             os.stat(self.scene)
-        except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
+            # None: of a version that did not write them, which require_agreement() refuses.
+            self.iteration, self.states, self._sums = (about.get(name) for name in ("iteration", "states", "sums"))
+        except (RunFolderError, *UNREADABLE) as error:
             raise CheckpointError(
                 f'{self.folder}: not a checkpoint ({" ".join(str(error).split())}); '
                 "must be removed to start the run again"
@@ -78,46 +85,54 @@ class Checkpoint:
         if self.columns != [q.name for q in history if not q.optional or q.name in self.columns]:
             self._refuse("of a history with other columns")
 
+    def require_whole(self, kind_format, schedule, fused):
+        """Raise CheckpointError unless scene, rows and the states before it are what was written.
+
+        kind_format: analysis.runs.format.RunKind of the states; schedule: of the run; fused: whether an O.step is all
+        steps between two samples. Reads the scene and the states once.
+        """
+        expected = schedule.samples_after(self.iteration or 0, fused)
+        if self.rows.shape != (expected, len(self.columns)):
+            self._damaged(f"{RECORDER}: rows have the shape {self.rows.shape}", f"({expected}, {len(self.columns)})")
+        for name, found in (("rows", sums(self.rows.tobytes())), ("scene", _sums_of_file(self.scene))):
+            written = (self._sums or {}).get(name)
+            if found != written:
+                file = RECORDER if name == "rows" else os.path.basename(self.scene)
+                self._damaged(f"{file}: {_text(found)}", f"{_text(written)}, as written")
+        for number in range(self.states):
+            self._require_state(kind_format, os.path.join(self.run_folder, STATES_FOLDER, state_file(number)))
+
     def load_scene(self):
         """Put the saved scene in the place of YADE's present one."""
         from yade.wrapper import Omega
 
         Omega().load(self.scene)
 
+    def _require_state(self, kind_format, file):
+        try:
+            time = read_state(file, kind_format).time
+        except RunFolderError as error:
+            raise CheckpointError(f"{error}; must be in order to resume, or {self.folder} removed") from None
+        if not np.isclose(self.rows[:, self.columns.index("time")], time, rtol=1e-12, atol=0).any():
+            raise CheckpointError(f"{file}: of {time:g} s; must be of a time of the history up to the checkpoint")
+
+    def _damaged(self, found, wanted):
+        raise CheckpointError(f"{self.folder}/{found}; must be {wanted}, or the checkpoint removed to start again")
+
     def _refuse(self, reason):
         raise CheckpointError(f"{self.folder}: {reason}; must be the same, or removed to start the run again")
 
 
-class Writer:
-    """Saves the running scene and a recorder's history every `interval` seconds of wall time.
+def sums(content):
+    """[number of bytes, SHA-256] of a buffer."""
+    view = memoryview(content).cast("B")
+    return [len(view), hashlib.sha256(view).hexdigest()]
 
-    run: the dictionary of run.json, with parameters, derived, versions and commit; wall_time(): seconds that
-    the run has taken, those before earlier interruptions included.
-    """
 
-    def __init__(self, run_folder, run, recorder, wall_time, interval):
-        self.folder = os.path.join(run_folder, CHECKPOINT_FOLDER)
-        self.run, self.recorder, self.wall_time, self.interval = run, recorder, wall_time, interval
-        self._next = time.monotonic() + interval
+def _sums_of_file(path):
+    with open(path, "rb") as file:
+        return [os.fstat(file.fileno()).st_size, hashlib.file_digest(file, "sha256").hexdigest()]
 
-    def save_if_due(self):
-        if time.monotonic() >= self._next:
-            self.save()
 
-    def save(self):
-        """Write a checkpoint; the one before is there until the new one is whole."""
-        from yade.wrapper import Omega
-
-        omega = Omega()
-        scene = f"scene-{omega.iter}.yade"
-        os.makedirs(self.folder, exist_ok=True)
-        omega.save(os.path.join(self.folder, scene), True)
-        about = {"run": self.run, "wallTime": self.wall_time(), "scene": scene, "columns": list(self.recorder.columns)}
-        write_atomically(
-            os.path.join(self.folder, RECORDER),
-            lambda file: np.savez(file, rows=self.recorder.rows(), about=json.dumps(about)),
-        )
-        for name in os.listdir(self.folder):
-            if name not in (scene, RECORDER):
-                os.unlink(os.path.join(self.folder, name))
-        self._next = time.monotonic() + self.interval
+def _text(found):
+    return f"{found[0]} bytes, SHA-256 {found[1][:12]}" if found else "no sums"

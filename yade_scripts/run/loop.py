@@ -42,4 +42,6 @@ def run(steps, recorder, runner, begin, checkpoints):
 
 def one_line(error):
     """What an exception says, on one line."""
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}"
     return " ".join(str(error).split()) or type(error).__name__

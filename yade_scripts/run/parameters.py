@@ -13,6 +13,7 @@ from yade_scripts.parameters import (
     one_of,
     parameter,
 )
+from yade_scripts.run.file_name import file_name
 from yade_scripts.stability import AUTO, STABLE_STEP
 
 CORES = len(os.sched_getaffinity(0))
@@ -69,7 +70,7 @@ class RunParameters(Parameters):
         found = super().parse(texts)
         if found.out is not None:
             return found
-        return found.changed(out="runs/" + _file_name(description or found._name_with(texts)))
+        return found.changed(out="runs/" + (file_name(description or found._name_with(texts)).lstrip(".") or "run"))
 
     def title(self):
         """(name of a run of these parameters, names of the parameters that are in it)."""
@@ -92,9 +93,7 @@ class RunParameters(Parameters):
         if self.engine == "fused":
             threads = self.threads or min(of_yade, CORES)
             if threads > CORES:
-                raise ParameterError(
-                    f"threads = {threads}: more than this machine has cores; must be 1 to {CORES}"
-                )
+                raise ParameterError(f"threads = {threads}: more than this machine has cores; must be 1 to {CORES}")
             return self.changed(threads=threads)
         if self.threads not in (None, of_yade):
             raise ParameterError(
@@ -109,9 +108,3 @@ class RunParameters(Parameters):
         columns = self.columns()
         others = (key for key in sorted(texts) if key not in in_name and columns[key].of_consequence)
         return name + "".join(f"-{key}{getattr(self, key)}" for key in others)
-
-
-def _file_name(text):
-    """text as the name of one folder."""
-    others = "-_.,=+"
-    return "".join(c if c.isalnum() or c in others else "_" for c in text).lstrip(".")[:200] or "run"

@@ -1,6 +1,7 @@
 """Samples a running scene into its run folder."""
 
 import time
+from contextlib import suppress
 
 import numpy as np
 from yade.wrapper import JKRWadaEngine, Omega
@@ -62,12 +63,18 @@ class Recorder:
             values.append(row[column])
         return np.array(values[::-1])
 
-    def resume(self, rows, columns):
-        """Have these rows, of a checkpoint, as the history so far; later states of the folder are removed."""
+    @property
+    def states_written(self):
+        """Number of states in the folder."""
+        return self._written
+
+    def resume(self, rows, columns, states):
+        """Have these rows, of a checkpoint, as the history so far; the folder's states from number `states` on are
+        removed."""
         self.columns = list(columns)
         self._rows = [tuple(row) for row in rows.tolist()]
-        self._written = sum(number < len(rows) for number in self.schedule.states)
-        self.folder.keep_states(self._written)
+        self._written = states
+        self.folder.keep_states(states)
 
     def sample(self):
         try:
@@ -77,9 +84,10 @@ class Recorder:
             self.write_last_good()
 
     def write_last_good(self):
-        """After a failure: the state of the last sample that was in order, if it isn't written yet."""
+        """After a failure: the state of the last sample that was in order, if it isn't written yet and can be."""
         if self._last_good is not None:
-            self._write_state(self._last_good)
+            with suppress(OSError):
+                self._write_state(self._last_good)
 
     def write_history(self):
         """Write all samples so far."""

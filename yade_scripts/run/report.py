@@ -4,11 +4,13 @@ import os
 import platform
 import sys
 import time
+from contextlib import suppress
 
 import numpy as np
 
 from yade_scripts.run import checkpoint
 from yade_scripts.run.closing_line import closing_line
+from yade_scripts.run.loop import one_line
 
 
 def made_with():
@@ -38,26 +40,45 @@ class Report:
     def __init__(self, folder, about, start, earlier=0.0):
         self.folder, self.start = folder, start - earlier
         self.run = {**about, **made_with(), "hardware": hardware()}
-        self._write("running")
 
     def wall_time(self):
         """Seconds that the run has taken, those before interruptions included."""
         return time.monotonic() - self.start
 
-    def end(self, outcome, time):
+    def begin(self):
+        """Write the outcome "running"; raises OSError."""
+        self._write("running")
+
+    def end(self, outcome, status, time):
         """Write the outcome, the time that was reached [s] (None: none) and, if the run came to its end, the mark of that;
-        print one line."""
+        print one line; the exit status, which is `status` unless something can't be written."""
         self.run["timeReached"] = time
-        self._write(outcome)
+        try:
+            self._write(outcome)
+            if outcome == "completed":
+                self.folder.write_ended()
+        except OSError as error:
+            if not outcome.startswith("failed"):
+                outcome, status = f"failed: {one_line(error)}", 1
+                with suppress(OSError):
+                    self._write(outcome)
         if outcome == "completed":
-            self.folder.write_ended()
-            checkpoint.remove(self.folder.path)
-        if outcome.startswith("failed"):
-            sys.stderr.write(f"{os.path.basename(sys.argv[0])}: {outcome}\n")
-        print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
+            with suppress(OSError):
+                checkpoint.remove(self.folder.path)
+        self._tell(outcome)
+        return status
 
     def _write(self, outcome):
         self.folder.write_run({**self.run, "wallTime": self.wall_time(), "outcome": outcome})
+
+    def _tell(self, outcome):
+        """The last line of the log, and one on stderr for a failure; neither when it can't be written."""
+        try:
+            if outcome.startswith("failed"):
+                sys.stderr.write(f"{os.path.basename(sys.argv[0])}: {outcome}\n")
+            print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
+        except OSError:  # what is left in the buffer would fail again at exit
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def hardware():

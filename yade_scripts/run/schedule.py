@@ -21,6 +21,11 @@ class Schedule:
         """Number of intervals between samples."""
         return self.steps // self.interval
 
+    def samples_after(self, iteration, fused):
+        """Number of samples taken when O.iter is `iteration`. fused: an O.step is all steps between two samples, and the
+        start is sampled first; otherwise the first step of each interval begins with a sample."""
+        return iteration + 1 if fused else (iteration - 1) // self.interval + 1
+
     @classmethod
     def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22):
         """At most `interval` steps between samples, and at least `fewest_samples` if the steps suffice.

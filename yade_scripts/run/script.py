@@ -30,13 +30,14 @@ def main(kind, description):
         from yade.wrapper import Omega
 
         import contact_law  # noqa: F401  (the plugin, before anything asks it)
+        from yade_scripts.run.schedule import Schedule
 
         scene = kind.prepare(parameters, Omega().numThreads)
         _require_finite(scene.parameters, scene.constants["timeUnit"])
-        folder, saved = _open(kind, scene)
-    outcome, status, time_reached, report = _carry_out(kind, scene, folder, saved, begun)
-    report.end(outcome, time_reached)
-    sys.exit(status)
+        parameters = scene.parameters
+        schedule = Schedule.of(parameters.duration, scene.time_step, scene.interval, states=parameters.states)
+        folder, saved = _open(kind, scene, schedule)
+    sys.exit(_carry_out(kind, scene, schedule, folder, saved, begun))
 
 
 def _require_finite(parameters, time_unit):
@@ -46,7 +47,7 @@ def _require_finite(parameters, time_unit):
     require_countable(parameters.duration, parameters.stepFraction, time_unit)
 
 
-def _open(kind, scene):
+def _open(kind, scene, schedule):
     """The run folder, and its checkpoint if the run resumes from one."""
     from yade_scripts.run import report
     from yade_scripts.run.folder import RunFolder
@@ -54,25 +55,20 @@ def _open(kind, scene):
     folder = RunFolder(scene.parameters.out, scene.parameters.overwrite, scene.parameters.resume)
     if folder.checkpoint:
         folder.checkpoint.require_agreement(kind, scene.parameters, report.made_with())
+        folder.checkpoint.require_whole(kind.format, schedule, scene.parameters.engine == "fused")
     return folder, folder.checkpoint
 
 
-def _carry_out(kind, scene, folder, saved, begun):
-    """(outcome, exit status, time reached [s], report) of the run."""
-    from yade_scripts.run import checkpoint, loop
+def _carry_out(kind, scene, schedule, folder, saved, begun):
+    """Step the scene to its end and write the run folder; the exit status."""
+    from yade_scripts.run import loop
     from yade_scripts.run import scene as yade_scene
+    from yade_scripts.run.checkpoint_writer import CheckpointWriter
     from yade_scripts.run.recorder import Recorder
     from yade_scripts.run.report import Report
-    from yade_scripts.run.schedule import Schedule
 
     parameters = scene.parameters
-    schedule = Schedule.of(parameters.duration, scene.time_step, scene.interval, states=parameters.states)
     recorder = Recorder(folder, schedule, kind.format, scene)
-    if saved:
-        recorder.resume(saved.rows, saved.columns)
-        steps, runner, begin = yade_scene.resume(scene, schedule, recorder, saved)
-    else:
-        steps, runner, begin = yade_scene.start(scene, schedule, recorder)
     about = {
         "kind": kind.name,
         "parameters": parameters.as_dict(),
@@ -80,9 +76,18 @@ def _carry_out(kind, scene, folder, saved, begun):
         "seed": parameters.as_dict().get("seed"),
     }
     report = Report(folder, about, begun, saved.wallTime if saved else 0.0)
-    checkpoints = checkpoint.Writer(folder.path, report.run, recorder, report.wall_time, parameters.checkpointInterval)
-    if scene.step_choice != "as given":
-        print(f"step: {scene.step_choice}", flush=True)
-    outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
-    recorder.write_history()
-    return outcome, status, recorder.time, report
+    try:
+        if saved:
+            recorder.resume(saved.rows, saved.columns, saved.states)
+            steps, runner, begin = yade_scene.resume(scene, schedule, recorder, saved)
+        else:
+            steps, runner, begin = yade_scene.start(scene, schedule, recorder)
+        report.begin()
+        if scene.step_choice != "as given":
+            print(f"step: {scene.step_choice}", flush=True)
+        checkpoints = CheckpointWriter(folder, report.run, recorder, report.wall_time, parameters.checkpointInterval)
+        outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
+        recorder.write_history()
+    except (OSError, RuntimeError) as error:  # a folder that can't be written, a scene that YADE can't load
+        outcome, status = f"failed: {loop.one_line(error)}", 1
+    return report.end(outcome, status, recorder.time)

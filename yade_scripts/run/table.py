@@ -29,10 +29,10 @@ def read(path):
     """The rows of a table in their order: = repeats the cell above, and cells with * are left out.
 
     Columns named !... are yade-batch's own and stay. Raises TableError when the file can't be read, a row has
-    another number of cells than the header, or there are no rows.
+    another number of cells than the header, two columns have one name, or there are no rows.
     """
     try:
-        with open(path) as file:
+        with open(path, encoding="utf-8-sig") as file:  # some editors begin a file with a byte order mark
             lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
     except (OSError, UnicodeDecodeError) as error:
         raise TableError(f'{path}: {getattr(error, "strerror", error)}; must be a table of parameters') from None
@@ -40,6 +40,7 @@ def read(path):
     if len(used) < 2:
         raise TableError(f"{path}: no rows; must be a line of names, then rows of values")
     header = used[0][1]
+    _require_once(path, [name.rstrip("!") for name in header])
     marked = [name for name in header if name.endswith("!")] or header
     rows, above = [], {}
     for number, cells in used[1:]:
@@ -56,6 +57,12 @@ def read(path):
             description += f"__line={number}__"
         rows.append(Row(number, description, plain))
     return rows
+
+
+def _require_once(path, names):
+    for name in names:
+        if names.count(name) > 1:
+            raise TableError(f"{path}: has the column {name} {names.count(name)} times; must be once")
 
 
 def write(path, rows, comment=""):

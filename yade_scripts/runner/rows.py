@@ -1,20 +1,19 @@
 """The rows of a study, and what has become of each, from its run folder and its log."""
 
-import json
 import os
 import re
 import signal
 import time
-import zipfile
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
+from analysis.runs.arrays import RunFolderError, read_arrays
+from analysis.runs.folder import read_json
 from analysis.runs.format import ENDED_FILE, HISTORY_FILE, RUN_FILE
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import checkpoint, table
 from yade_scripts.run.agreement import difference
+from yade_scripts.run.file_name import file_name
 from yade_scripts.run.folder import being_written
 from yade_scripts.run.kind import Kind, NoKind, kind_of
 from yade_scripts.run.parameters import RunParameters
@@ -64,7 +63,7 @@ def read(path):
     """
     rows, lines, kinds = [], {}, {}
     for row in table.read(path):
-        name = re.sub(r"[^\w.,=+-]", "_", row.description)
+        name = file_name(row.description)
         script, kind, parameters, error = find_script(row.cells.get("!SCRIPT", DEFAULT_SCRIPT)), None, None, None
         try:
             kind = kinds[script] = kinds.get(script) or kind_of(script)
@@ -90,10 +89,11 @@ def state(row, log, since=0.0):
     if row.error:
         return State(FAILED, note=row.error)
     folder = row.out
+    running = being_written(folder)  # first: a run that ends now has its mark before it gives up the lock
     run = run_of(folder)
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
         return _ended(row, run)
-    if being_written(folder):
+    if running:
         return _running(folder, run)
     outcome = run.get("outcome", "")
     note, progress = _stopped(folder, run)
@@ -106,6 +106,8 @@ def state(row, log, since=0.0):
 
 
 def _ended(row, run):
+    if not run:
+        return State(FAILED, note=f"{row.out}: holds an ended run without a readable {RUN_FILE}; must be removed")
     differs = difference(row.kind, row.parameters, run)
     if differs:
         note = f"{row.out}: holds an ended run with {differs}; must be the same, or removed to run the row"
@@ -139,9 +141,8 @@ def _stopped(folder, run):
 
 def _progress(folder, run):
     try:
-        with np.load(os.path.join(folder, HISTORY_FILE)) as history:
-            return float(history["time"][-1]) / _end(run)
-    except (OSError, KeyError, IndexError, ValueError, zipfile.BadZipFile):
+        return float(read_arrays(os.path.join(folder, HISTORY_FILE), ("time",))["time"][-1]) / _end(run)
+    except (RunFolderError, KeyError, IndexError, TypeError, ZeroDivisionError):
         return 0.0
 
 
@@ -152,10 +153,10 @@ def _end(run):
 def run_of(folder):
     """A run folder's run.json, or {} when there is none."""
     try:
-        with open(os.path.join(folder, RUN_FILE)) as file:
-            return json.load(file)
-    except (OSError, ValueError):
+        run = read_json(os.path.join(folder, RUN_FILE))
+    except RunFolderError:
         return {}
+    return run if isinstance(run, dict) else {}
 
 
 def _changed(path):

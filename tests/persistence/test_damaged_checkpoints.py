@@ -1,0 +1,149 @@
+"""A checkpoint that isn't what was written is refused with one line, and nothing of its run is removed."""
+
+import shutil
+
+import numpy as np
+import pytest
+from faults.forks import END_BEFORE
+from faults.scenarios import OTHER, RECORDER, RUN, arrays
+
+RESUME = RUN + ("resume=1",)
+
+
+def killed(forks, folder, arguments, checkpoints=4):
+    """A run folder whose run was killed after so many checkpoints."""
+    calls = forks.run(arguments, folder).calls
+    shutil.rmtree(folder)
+    ends = [call.number for call in calls if call.name == "rename" and call.path == RECORDER]
+    forks.run(arguments, folder, ends[checkpoints - 1] + 4, END_BEFORE)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def originals(forks, tmp_path_factory):
+    """(a killed run's folder, that of one with another seed)."""
+    folder = tmp_path_factory.mktemp("killed")
+    return killed(forks, folder / "run", RUN), killed(forks, folder / "other", RUN + OTHER)
+
+
+@pytest.fixture
+def run(originals, tmp_path):
+    return shutil.copytree(originals[0], tmp_path / "run")
+
+
+def scene_of(run):
+    return next((run / "checkpoint").glob("scene-*.yade"))
+
+
+def flip(file, where):
+    """Flip one bit of a file; where: a fraction of its length."""
+    data = bytearray(file.read_bytes())
+    data[int(where * len(data))] ^= 4
+    file.write_bytes(bytes(data))
+
+
+def change_rows(run, change):
+    """Write recorder.npz again with other rows."""
+    with np.load(run / RECORDER) as archive:
+        np.savez(run / RECORDER, rows=change(archive["rows"].copy()), about=archive["about"])
+
+
+def with_nan(rows):
+    rows[2, 3] = np.nan
+    return rows
+
+
+def change_state(run, **changed):
+    with np.load(run / "states" / "000001.npz") as archive:
+        held = {**archive, **changed}
+    np.savez(run / "states" / "000001.npz", **held)
+
+
+DAMAGE = {
+    **{
+        f"a bit of the scene at {where}": (lambda run, other, where=where: flip(scene_of(run), where), "scene-4.yade: ")
+        for where in (0.001, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999)
+    },
+    "half a scene": (
+        lambda run, other: scene_of(run).write_bytes(scene_of(run).read_bytes()[:2000]),
+        "scene-4.yade: 2000 bytes, SHA-256",
+    ),
+    "another run's scene": (lambda run, other: shutil.copy(scene_of(other), scene_of(run)), "scene-4.yade: "),
+    "no scene": (lambda run, other: scene_of(run).unlink(), "not a checkpoint ([Errno 2]"),
+    "rows cut": (lambda run, other: change_rows(run, lambda rows: rows[:-1]), "recorder.npz: rows have the shape (4, "),
+    "rows twice": (lambda run, other: change_rows(run, lambda rows: np.r_[rows, rows]), "rows have the shape (10, "),
+    "NaN in rows": (lambda run, other: change_rows(run, with_nan), "recorder.npz: "),
+    "a number in rows": (lambda run, other: change_rows(run, lambda rows: rows * (1 + 1e-15)), "recorder.npz: "),
+    "words as rows": (lambda run, other: change_rows(run, lambda rows: rows.astype(str)), "recorder.npz: "),
+    "half a recorder": (
+        lambda run, other: (run / RECORDER).write_bytes((run / RECORDER).read_bytes()[:900]),
+        "not a checkpoint (",
+    ),
+    "a state missing": (lambda run, other: (run / "states" / "000001.npz").unlink(), "000001.npz: missing"),
+    "all states missing": (lambda run, other: shutil.rmtree(run / "states"), "000000.npz: missing"),
+    "half a state": (
+        lambda run, other: (run / "states" / "000001.npz").write_bytes(b"half"),
+        "000001.npz: damaged, or not an .npz file",
+    ),
+    "a state of another time": (lambda run, other: change_state(run, time=1.0), "000001.npz: of 1 s; must be of"),
+    "a state of another kind": (
+        lambda run, other: change_state(run, aggregate=np.zeros(3, int)),
+        "'aggregate' has the",
+    ),
+}
+
+
+def content(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_checkpoint_is_one_line_and_removes_nothing(forks, originals, run, damage):
+    spoil, message = DAMAGE[damage]
+    spoil(run, originals[1])
+    before = content(run)
+    (run / "states").mkdir(exist_ok=True)
+    done = forks.run(RESUME, run)
+    assert done.status == 2 and len(done.lines) == 1, done
+    assert done.lines[0].startswith("collide.py: run/") and message in done.lines[0] and "must be" in done.lines[0]
+    assert content(run) == before
+
+
+def test_every_bit_of_a_recorder_that_is_flipped_is_noticed_or_without_effect(forks, run, tmp_path):
+    """np.load finds the flips by the archive's own sums; those it can't see (dates, attributes) change nothing."""
+    assert forks.run(RUN, tmp_path / "straight").status == 0
+    whole, straight = (run / RECORDER).read_bytes(), arrays(tmp_path / "straight")
+    saved = shutil.copytree(run, tmp_path / "saved")
+    statuses = set()
+    for where in np.linspace(0, len(whole) - 1, 40) / len(whole):
+        shutil.rmtree(run)
+        shutil.copytree(saved, run)
+        flip(run / RECORDER, where)
+        before = content(run)
+        done = forks.run(RESUME, run)
+        statuses.add(done.status)
+        if done.status == 0:
+            assert arrays(run) == straight
+        else:
+            assert done.status == 2 and len(done.lines) == 1, done
+            assert content(run) == before
+    assert 2 in statuses
+
+
+def test_the_checkpoint_of_a_run_of_the_functors_is_whole(forks, tmp_path):
+    """Where a step begins with a sample, not ends: the number of rows is another one."""
+    arguments = RUN + ("engine=functors",)
+    run = killed(forks, tmp_path / "run", arguments)
+    done = forks.run(arguments + ("resume=1",), run)
+    assert done.status == 0, done.lines
+    change_rows(killed(forks, tmp_path / "again", arguments), lambda rows: rows[:-1])
+    assert forks.run(arguments + ("resume=1",), tmp_path / "again").status == 2
+
+
+def test_a_run_resumes_with_another_number_of_states(forks, run):
+    """Those that are there stay; the others are written where the new number has them."""
+    done = forks.run([argument.replace("states=4", "states=7") for argument in RESUME], run)
+    assert done.status == 0, done.lines
+    times = [float(np.load(path)["time"]) for path in sorted((run / "states").iterdir())]
+    with np.load(run / "history.npz") as history:
+        assert times == [history["time"][number] for number in (0, 2, 4, 5, 6)]
