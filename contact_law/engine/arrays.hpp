@@ -115,6 +115,7 @@ struct ForcePass {
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
 	void (*batchDone)(void* owner, int batch);
+	bool cut; // springs beyond their limits are cut, each as an event, not returned to the limit (kernel/limit_rule.hpp)
 };
 
 // The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(). Lanes beyond the

@@ -33,8 +33,7 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 	BondList& list = bonds[sort];
 	const int k = lane % lanes, i = list.first(lane), j = list.second(lane);
 	Image image; // none: bonds are in open space only
-	const BondMotion motion { motionOf(i, j, image), s.inverseInertia[i], s.inverseInertia[j] };
-	const ContactMotion& m = motion.contact;
+	const ContactMotion m = motionOf(i, j, image);
 	const Bond bond = list.get(lane, s.commonBond);
 	const BondConstants<double>& b = bond.constants;
 	const PairConstants<double> constants = s.constantsOf(i, j);
@@ -43,7 +42,7 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 	const ContactBefore before = aStepAgo(b, bond.rest, separationAStepAgo(i, j, m), h);
 	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 
-	const BondStepResult result = bondStepWith[s.mechanisms](b, constants, motion, before, bond.rest, h);
+	const BondStepResult result = bondStepWith[s.mechanisms](b, constants, m, before, bond.rest, h);
 	const ContactStepResult& r = result.contact;
 	if (result.bonded) { // by rounding: it doesn't after all, and the forces of the pass stand
 		return;

@@ -8,7 +8,8 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 3;            // 1: without this header, up to version 0.1; 2: without formed and broke
+	// 1: without this header, up to version 0.1; 2: without formed and broke; 3: without limit
+	constexpr int formatNumber = 4;
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
 	{
@@ -91,6 +92,7 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(bool(setting.mechanisms & Sliding), named("sliding"));
 	archive.same(bool(setting.mechanisms & Rolling), named("rolling"));
 	archive.same(bool(setting.mechanisms & Twisting), named("twisting"));
+	archive.same(int(setting.limit), named("limit (0: held, 1: cut)"));
 	archive.same(setting.dt, named("the small step"));
 	for (std::size_t kind = 0; kind < setting.material.size(); ++kind)
 		for (const MaterialRow& row : materialList)

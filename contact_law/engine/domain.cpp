@@ -41,7 +41,7 @@ ForcePass Domain::passFor(int sort)
 	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), s.previous.data(), &cell, 0,
 		list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation,
 		books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf,
-		nullptr };
+		nullptr, s.limit == LimitRule::Cut };
 }
 
 void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
@@ -119,7 +119,8 @@ ContactMotion Domain::motionOf(int i, int j, Image& image) const
 	image = nearestImage(cell, separation);
 	const double inverseMass =
 	        inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
-	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity };
+	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity,
+		inverseInertiaOf(s.inverseInertia[i], s.blocked[i]), inverseInertiaOf(s.inverseInertia[j], s.blocked[j]) };
 }
 
 // Positions move by velocity * dt, and by where a script has put the grains since.
@@ -175,7 +176,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	}
 
 	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
-	const ContactStepResult r = contactStepWith[s.mechanisms](constants, m, before, h);
+	const ContactStepResult r = contactStepWith[s.mechanisms](constants, s.limit, m, before, h);
 	book(r, m, image, sort);
 	write(r.force, forces.force, k);
 	write(r.torque1, forces.torque1, k);
@@ -217,7 +218,7 @@ void Domain::formContact(int sort, int index)
 	Image image;
 	const ContactMotion m = motionOf(p.i, p.j, image);
 	Contact c { p.i, p.j, {}, s.constantsOf(p.i, p.j) };
-	const auto r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
+	const auto r = contactStepWith[s.mechanisms](c.constants, s.limit, m, ContactBefore {}, c.history);
 	if (!r.touching) return;
 	c.drag = r.now.drag;
 	c.overlap = r.geometry.overlap;

@@ -26,6 +26,7 @@ struct Setting {
 	PairConstants<double> common {};     // of the first grain with itself; of every pair when all grains are equal
 	BondConstants<double> commonBond {}; // likewise
 	unsigned mechanisms = AllSprings;
+	LimitRule limit = LimitRule::Held;
 	double dt = 0, farGap = 0, smallestRadius = 0;
 	Vec3<double> convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
 	const InstructionSet* passes = nullptr;

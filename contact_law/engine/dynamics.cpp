@@ -41,6 +41,7 @@ void Dynamics::prepare(const Grains& grains, const Materials& materials)
 	setting.linearDamping = options.linearDamping;
 	setting.neck = options.neck;
 	setting.mechanisms = options.mechanisms;
+	setting.limit = options.limit;
 	setting.dt = options.dt;
 	setting.convective = options.convective;
 }

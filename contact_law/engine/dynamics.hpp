@@ -34,6 +34,7 @@ public:
 		double dt = 0, linearDamping = 0;
 		double neck = 0; // of sintered bonds over the grains' radius; 0: none
 		unsigned mechanisms = AllSprings;
+		LimitRule limit = LimitRule::Held;
 		int domains = 2, threads = 1;
 		std::string instructions;            // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool orientations = false;           // whether to follow the grains' orientations

@@ -177,9 +177,16 @@ template <class Pack> struct Passes {
 		ContactForces<Pack> f = ContactForces<Pack>::none();
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
-		const unsigned events = buffer.events >> at & allLanes, slips = bitsOf(beyondLimits<mechanisms>(c, f, h.twist)) & ~events;
+		unsigned events = buffer.events >> at & allLanes, slips = bitsOf(beyondLimits<mechanisms>(c, f, h.twist)) & ~events;
+		if (__builtin_expect((events | slips) != 0, 0)) {
+			keep(old, before, at);
+			if (pass.cut) {
+				buffer.events |= slips << at;
+				events |= slips;
+				slips = 0;
+			}
+		}
 		if constexpr (bool(mechanisms & Drag)) keepDrag(c, pass.drags[index], buffer, events, at, lost);
-		if (__builtin_expect((events | slips) != 0, 0)) keep(old, before, at);
 		buffer.slips |= slips << at;
 		keep(h, block, at);
 	}

@@ -73,6 +73,7 @@ struct ContactMotion {
 	double dt;
 	double inverseMass;                     // 1/m1 + 1/m2
 	Vec3<double> imageVelocity { 0, 0, 0 }; // of it, what is not the grains' own but the motion of a periodic cell's boundaries
+	double inverseInertia1 = 0, inverseInertia2 = 0; // 1/I of the grains
 };
 
 // What the ledger and the drag need of the moment one step ago.

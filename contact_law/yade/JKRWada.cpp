@@ -166,6 +166,13 @@ boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(
 	return bond.pyDict();
 }
 
+void Law2_ScGeom_JKRWadaPhys_JKRWada::postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&)
+{
+	const int number = contact_law::limitRuleNumber(limit);
+	if (number < 0) throw std::invalid_argument("limit = '" + limit + "': must be 'held' or 'cut'");
+	limitRule = contact_law::LimitRule(number);
+}
+
 bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& physics, Interaction* interaction)
 {
 	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
@@ -185,15 +192,16 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	        + contact_law::inverseMassAlong(apart, 1 / state2.mass, state2.blockedDOFs);
 	const Real dt = phys.current ? 0 : scene->dt; // JKRWadaEngine has brought the contact here already
 	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass,
-		toKernel(imageVelocity) };
+		toKernel(imageVelocity), contact_law::inverseInertiaOf(1 / state1.inertia[0], state1.blockedDOFs),
+		contact_law::inverseInertiaOf(1 / state2.inertia[0], state2.blockedDOFs) };
 	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement),
 		toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
 	const bool drag = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
 	const unsigned mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	const ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, state1, state2, mechanisms)
-	                                        : contact_law::contactStepWith[mechanisms](constants, motion, before, history);
+	const ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
+	                                        : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
 
 	const Vector3r force = fromKernel(r.force);
 	scene->forces.addForce(interaction->getId1(), force);
@@ -220,16 +228,15 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 }
 
 ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, const PairConstants<double>& constants, ContactMotion motion,
-        const contact_law::ContactBefore& before, ContactHistory<double>& history, const State& state1, const State& state2,
-        unsigned mechanisms)
+        const contact_law::ContactBefore& before, ContactHistory<double>& history, unsigned mechanisms)
 {
 	const bool made = !phys.touching; // this is its first step
 	if (made) {
 		phys.restDistance = contact_law::newBond(motion.separation, history);
 		motion.dt = 0;
 	}
-	contact_law::BondStepResult r = contact_law::bondStepWith[mechanisms](phys.bond->forKernel(), constants,
-	        { motion, 1 / state1.inertia[0], 1 / state2.inertia[0] }, before, phys.restDistance, history);
+	contact_law::BondStepResult r =
+	        contact_law::bondStepWith[mechanisms](phys.bond->forKernel(), constants, motion, before, phys.restDistance, history);
 	r.contact.pointersMoved = r.contact.pointersMoved || made;
 	if (r.bonded) return r.contact;
 	phys.endBond();

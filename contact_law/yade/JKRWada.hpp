@@ -158,12 +158,14 @@ REGISTER_SERIALIZABLE(Ip2_JKRMat_JKRMat_JKRWadaPhys);
 
 class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	EnergyChannels channels;
+	contact_law::LimitRule limitRule = contact_law::LimitRule::Held;
 
 	void book(const contact_law::ContactStepResult&);
 	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion,
-	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, const State&, const State&, unsigned mechanisms);
+	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, unsigned mechanisms);
 
 public:
+	void postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&); // throws std::invalid_argument
 	bool go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction) override;
 	virtual ~Law2_ScGeom_JKRWadaPhys_JKRWada() {}
 	// clang-format off
@@ -175,6 +177,7 @@ public:
 		((bool, sliding, true, , "Whether contacts resist sliding."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
+		((std::string, limit, contact_law::limitRuleNames[0], Attr::triggerPostLoad, "What happens to sliding, rolling and twisting springs of ordinary contacts at their limits. 'held': the displacement is held there (Wada et al. 2007). 'cut': the spring is cut, what it stores is lost, and a new one without strain takes its place (Sirono & Ueno 2017)."))
 		((int, brokenByStretching, 0, Attr::readonly, "Sintered bonds that have broken because they were stretched or pressed."))
 		((int, brokenBySliding, 0, Attr::readonly, "Sintered bonds that have broken by sliding."))
 		((int, brokenByRolling, 0, Attr::readonly, "Sintered bonds that have broken by rolling."))

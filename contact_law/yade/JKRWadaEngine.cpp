@@ -48,7 +48,7 @@ namespace {
 
 EngineSettings JKRWadaEngine::settings() const
 {
-	return { domains, instructions, linearDamping, neck, sliding, rolling, twisting, orientations };
+	return { domains, instructions, linearDamping, neck, sliding, rolling, twisting, limit, orientations };
 }
 
 void JKRWadaEngine::requireInRange() const
@@ -61,6 +61,7 @@ void JKRWadaEngine::requireInRange() const
 		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
 	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
 		refuseInEngine("neck = " + text(neck) + ": must be 0 (no bonds), or up to 0.7 for sintered bonds");
+	if (contact_law::limitRuleNumber(limit) < 0) refuseInEngine("limit = " + text(limit) + ": must be 'held' or 'cut'");
 	if (neck != 0 && scene->isPeriodic)
 		refuseInEngine(
 		        "neck = " + text(neck) + " in a periodic cell: must be 0; sintered bonds in periodic cells are the functors'");
@@ -87,6 +88,7 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	for (const auto& material : materials)
 		drag = drag || material.viscoelasticTime > 0;
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
+	options.limit = contact_law::LimitRule(contact_law::limitRuleNumber(limit));
 	return options;
 }
 

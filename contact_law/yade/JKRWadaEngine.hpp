@@ -74,6 +74,7 @@ public:
 		((bool, sliding, true, , "Whether contacts resist sliding (bonds always do; likewise below)."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
+		((std::string, limit, contact_law::limitRuleNames[0], , "What happens to sliding, rolling and twisting springs of ordinary contacts at their limits. 'held': the displacement is held there (Wada et al. 2007). 'cut': the spring is cut, what it stores is lost, and a new one without strain takes its place (Sirono & Ueno 2017)."))
 		((bool, orientations, false, , "Whether to follow the bodies' orientations (State.ori); otherwise they stay as they were."))
 		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
