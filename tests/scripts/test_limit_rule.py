@@ -23,8 +23,7 @@ def test_engine_and_functors_obey_it_alike_and_held_is_the_default(tmp_path):
     scale = fused["kinetic"][0]
     for name in ("kinetic", "slidingDissipation", "rollingDissipation"):
         assert fused[name] == pytest.approx(functors[name], abs=1e-6 * scale), name
-    for name in ("slidingDissipation", "rollingDissipation"):
-        assert abs(fused[name][-1] / held[name][-1] - 1) > 0.1, name
+    assert fused["rollingDissipation"][-1] < 0.8 * held["rollingDissipation"][-1]
 
 
 @pytest.mark.parametrize("kind", [collision.KIND, compression.KIND])
