@@ -13,6 +13,7 @@ import os
 import sys
 
 from .grain_arrays import snapshot  # noqa: F401 (of the package)
+from .sintering import sinter  # noqa: F401
 
 __version__ = "0.2.0"
 
@@ -101,4 +102,4 @@ def _start():
 
 
 __all__, commit, channels = _start()
-__all__.append("snapshot")
+__all__ += ["snapshot", "sinter"]

@@ -160,7 +160,7 @@ struct InstructionSet {
 	double (*sumOfProduct)(
 	        double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
-	void (*bondForces)(const BondPass&);
+	void (*bondForces[2])(const BondPass&); // by whether the scene is periodic
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
 	int (*closeMembers[2])(const NeighbourSearch&, int* found); // by whether the scene is periodic (neighbour_search.hpp)
 };

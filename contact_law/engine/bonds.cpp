@@ -5,19 +5,27 @@ namespace contact_law {
 
 namespace {
 	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
+
+	// Without strain, and without constants yet.
+	Bond newBond(int i, int j, const Vec3<double>& separation)
+	{
+		Bond bond { i, j, {}, 0, {} };
+		bond.rest = contact_law::newBond(separation, bond.history);
+		return bond;
+	}
 }
 
 BondPass Domain::bondPassFor(int sort)
 {
 	BondList& list = bonds[sort];
 	return { s.grains.data(), list.data(), list.constantsData(), &s.commonBond, list.blockCount(), sort != Second, sort != First, dummy,
-		s.dt, &eventCalls[sort], &Domain::breaksOf };
+		s.dt, &cell, sort != Second ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::breaksOf };
 }
 
 void Domain::addBondForces()
 {
 	for (int sort = 0; sort < 3; ++sort)
-		if (bonds[sort].blockCount()) s.passes->bondForces(bondPassFor(sort));
+		if (bonds[sort].blockCount()) s.passes->bondForces[cell.on](bondPassFor(sort));
 }
 
 void Domain::breaksOf(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces)
@@ -32,7 +40,7 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 {
 	BondList& list = bonds[sort];
 	const int k = lane % lanes, i = list.first(lane), j = list.second(lane);
-	Image image; // none: bonds are in open space only
+	Image image;
 	const ContactMotion m = motionOf(i, j, image);
 	const Bond bond = list.get(lane, s.commonBond);
 	const BondConstants<double>& b = bond.constants;
@@ -73,8 +81,8 @@ void Domain::placeBonds()
 			const Vec3<double> separation = motionOf(p.i, p.j, image).separation;
 			const double reach = s.grainRadius[p.i] + s.grainRadius[p.j];
 			if (dot(separation, separation) >= reach * reach) continue;
-			Bond bond { p.i, p.j, {}, 0, s.bondOf(p.i, p.j) };
-			bond.rest = newBond(separation, bond.history);
+			Bond bond = newBond(p.i, p.j, separation);
+			bond.constants = s.bondOf(p.i, p.j, s.neck);
 			bonds[sort].append(bond);
 			touching[sort][index] = 1;
 		}
@@ -83,6 +91,41 @@ void Domain::placeBonds()
 void Domain::place(const Bond& b)
 {
 	if (owns(b.i) || owns(b.j)) bonds[owns(b.i) && owns(b.j) ? Both : owns(b.i) ? First : Second].append(b);
+}
+
+// Contacts that a script has torn apart since the latest step are none any more.
+Domain::AllBonds Domain::sintered(double neck) const
+{
+	AllBonds all;
+	for (int sort = 0; sort < 3; ++sort) {
+		for (int lane = 0; lane < bonds[sort].size(); ++lane)
+			if (bonds[sort].alive(lane)) all[sort].push_back(bonds[sort].get(lane, s.commonBond));
+		for (int lane = 0; lane < contacts[sort].size(); ++lane) {
+			if (!contacts[sort].alive(lane)) continue;
+			const Contact c = s.contactOf(contacts[sort], lane);
+			Image image;
+			const Vec3<double> separation = motionOf(c.i, c.j, image).separation;
+			if (normal::beyondPullOff(c.constants, geometryOf(separation, c.constants.radius1 + c.constants.radius2))) continue;
+			all[sort].push_back(newBond(c.i, c.j, separation));
+			all[sort].back().constants.neck = neck;
+		}
+	}
+	return all;
+}
+
+void Domain::setBonds(const AllBonds& all)
+{
+	placeDummies();
+	for (int sort = 0; sort < 3; ++sort) {
+		contacts[sort].clear();
+		contacts[sort].setDeadConstants(s.common);
+		bonds[sort] = BondList(s.uniformBonds(), dummy);
+		bonds[sort].setDead(s.commonBond, s.grains[dummy].x);
+		for (Bond bond : all[sort]) {
+			bond.constants = s.bondOf(bond.i, bond.j, bond.constants.neck);
+			bonds[sort].append(bond);
+		}
+	}
 }
 
 void Domain::addBondEnergies(StoredEnergy<double>& total)

@@ -8,7 +8,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	// 1: without this header, up to version 0.1; 2: without formed and broke; 3: without limit
+	// 1: without this header, up to version 0.1; 2: without formed and broke; 3: without limit and the necks of bonds
 	constexpr int formatNumber = 4;
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
@@ -22,8 +22,9 @@ namespace {
 	{
 		transferNumbers(archive, b.i, b.j);
 		transfer(archive, b.history);
-		archive.number(b.rest);
-		if (Archive::restoring) b.constants = setting.bondOf(b.i, b.j);
+		double neck = b.constants.neck;
+		transferNumbers(archive, b.rest, neck);
+		if (Archive::restoring) b.constants = setting.bondOf(b.i, b.j, neck);
 	}
 
 	Contact get(const ContactList& list, int lane, const Setting& setting) { return setting.contactOf(list, lane); }
@@ -89,6 +90,11 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(setting.material.size(), named("the number of materials"));
 	archive.same(setting.linearDamping, named("linearDamping"));
 	archive.same(setting.neck, named("neck"));
+	std::size_t necks = setting.necks.size();
+	archive.number(necks);
+	setting.necks.resize(necks);
+	for (double& neck : setting.necks)
+		archive.number(neck);
 	archive.same(bool(setting.mechanisms & Sliding), named("sliding"));
 	archive.same(bool(setting.mechanisms & Rolling), named("rolling"));
 	archive.same(bool(setting.mechanisms & Twisting), named("twisting"));

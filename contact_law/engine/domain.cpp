@@ -18,20 +18,24 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
         , end(end_)
         , contacts { { setting.uniform, setting.hasDrag(), dummy_ }, { setting.uniform, setting.hasDrag(), dummy_ },
 	        { setting.uniform, setting.hasDrag(), dummy_ } }
-        , bonds { { setting.uniform, dummy_ }, { setting.uniform, dummy_ }, { setting.uniform, dummy_ } }
+        , bonds { { setting.uniformBonds(), dummy_ }, { setting.uniformBonds(), dummy_ }, { setting.uniformBonds(), dummy_ } }
         , s(setting)
         , dummy(dummy_)
 {
 	for (int sort = 0; sort < 3; ++sort)
 		eventCalls[sort] = { this, sort };
-	const double distance = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
-	s.grains[dummy] = Grain {};
-	s.grains[dummy + 1] = Grain {};
-	s.grains[dummy].x = distance;
+	placeDummies();
 	for (ContactList& list : contacts)
 		list.setDeadConstants(s.common);
 	for (BondList& list : bonds)
-		list.setDead(s.commonBond, distance);
+		list.setDead(s.commonBond, s.grains[dummy].x);
+}
+
+void Domain::placeDummies()
+{
+	s.grains[dummy] = Grain {};
+	s.grains[dummy + 1] = Grain {};
+	s.grains[dummy].x = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
 }
 
 ForcePass Domain::passFor(int sort)

@@ -21,10 +21,11 @@ struct Setting {
 	std::vector<Orientation> orientation;                    // likewise; none where the scene doesn't ask for them
 	std::vector<unsigned> blocked;                           // likewise (kernel/blocked.hpp)
 	double linearDamping = 0;
-	double neck = 0; // radius of sintered bonds' necks over that of the grains; 0: none
+	double neck = 0; // radius of sintered bonds' necks over that of the grains, the largest, by which all grains have shrunk; 0: none
+	std::vector<double> necks; // of the bonds that there are, each once
 	bool uniform = true;
 	PairConstants<double> common {};     // of the first grain with itself; of every pair when all grains are equal
-	BondConstants<double> commonBond {}; // likewise
+	BondConstants<double> commonBond {}; // likewise, when all bonds are of one neck
 	unsigned mechanisms = AllSprings;
 	LimitRule limit = LimitRule::Held;
 	double dt = 0, farGap = 0, smallestRadius = 0;
@@ -50,9 +51,10 @@ struct Setting {
 		        ? common
 		        : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);
 	}
-	BondConstants<double> bondOf(int i, int j) const
+	bool uniformBonds() const { return uniform && necks.size() <= 1; }
+	BondConstants<double> bondOf(int i, int j, double beta) const
 	{
-		return uniform ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], neck);
+		return uniformBonds() ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], beta);
 	}
 };
 
@@ -94,6 +96,9 @@ public:
 	void findCompleted();    // where in the sorted contacts grains have had their last one
 	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
 	void placeBonds();       // between all grains that touched before they shrank
+	using AllBonds = std::array<std::vector<Bond>, 3>;
+	AllBonds sintered(double neck) const; // the bonds, and all contacts as bonds of this neck
+	void setBonds(const AllBonds&);       // in place of all bonds and contacts; to be followed by findPairs()
 	void place(const Bond&);
 	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and findPairs()
 	StoredEnergy<double> energies();
@@ -134,6 +139,7 @@ private:
 	void eventOf(int sort, int lane, const ContactBlock& before, LaneForces& forces);
 	bool closerThan(int i, int j, double gap) const; // surfaces
 	int pairIndex(int sort, int i, int j) const;     // among the far pairs, or -1
+	void placeDummies();
 	BondPass bondPassFor(int sort);
 	void addBondForces();
 	static void breaksOf(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);

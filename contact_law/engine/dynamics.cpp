@@ -1,4 +1,4 @@
-#include "contacts.hpp"
+#include "exchange.hpp"
 #include <algorithm>
 #include <omp.h>
 #include <stdexcept>
@@ -26,6 +26,7 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
         : options(options_)
 {
 	prepare(grains, materials);
+	setting.necks = inherited.necks();
 	orderGrains(grains);
 	loadGrains(grains);
 	makeDomains();
@@ -40,6 +41,7 @@ void Dynamics::prepare(const Grains& grains, const Materials& materials)
 	setting.material = materials;
 	setting.linearDamping = options.linearDamping;
 	setting.neck = options.neck;
+	if (setting.neck > 0) setting.necks = { setting.neck };
 	setting.mechanisms = options.mechanisms;
 	setting.limit = options.limit;
 	setting.dt = options.dt;
@@ -48,17 +50,12 @@ void Dynamics::prepare(const Grains& grains, const Materials& materials)
 
 void Dynamics::loadGrains(const Grains& grains)
 {
-	const double shrunk = neck::shrunkRadius(setting.neck);
-	double& smallest = setting.smallestRadius;
-	smallest = shrunk * grains[0].radius;
 	indexHere.resize(count);
 	for (int k = 0; k < count; ++k) {
 		const GrainInput& g = grains[original[k]];
 		indexHere[original[k]] = k;
-		smallest = std::min(smallest, shrunk * g.radius);
 		setting.grains.push_back(Grain {});
 		copyMotion(g, setting.grains.back());
-		setting.radius.push_back(shrunk * g.radius);
 		setting.grainRadius.push_back(g.radius);
 		setting.kind.push_back(g.kind);
 		setting.blocked.push_back(g.blocked);
@@ -67,12 +64,7 @@ void Dynamics::loadGrains(const Grains& grains)
 		setting.inverseInertia.push_back(1 / g.inertia);
 		setting.uniform = setting.uniform && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
 	}
-	const Material& m = setting.material[setting.kind[0]];
-	const double r = setting.grainRadius[0];
-	setting.common = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
-	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.neck);
-	nearGap = nearGapFor(0);
-	setting.farGap = 0.8 * smallest;
+	shrinkGrains();
 }
 
 void copyMotion(const GrainMotion& g, Grain& grain)

@@ -1,6 +1,7 @@
 #include "JKRWada.hpp"
 #include "../kernel/bond_step.hpp"
 #include "../kernel/blocked.hpp"
+#include "RunningLoop.hpp"
 #include <core/Body.hpp>
 #include <core/Cell.hpp>
 #include <core/EnergyTracker.hpp>
@@ -107,6 +108,14 @@ void JKRWadaPhys::endBond()
 	setConstants(constants);
 }
 
+void JKRWadaPhys::becomeBond()
+{
+	constants = constantsToCome;
+	setBond(bondToCome);
+	bondToCome.reset();
+	constantsToCome.reset();
+}
+
 void JKRWadaPhys::set(
         const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_)
 {
@@ -136,6 +145,30 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 		phys->setBond(
 		        bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, neck)));
 	interaction->phys = phys;
+}
+
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
+{
+	requireLoopAtRest("sinter()");
+	require(neckNow > 0 && neckNow <= contact_law::largestNeck, "sinter(): neck", neckNow, "> 0 and up to 0.7");
+	const Scene& now = *Omega::instance().getScene();
+	neck = std::max(neck, neckNow);
+	for (const auto& interaction : *now.interactions) {
+		if (!interaction->isReal()) continue;
+		auto* phys = dynamic_cast<JKRWadaPhys*>(interaction->phys.get());
+		const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
+		if (!phys || !geometry) continue;
+		const auto materialOf = [&](Body::id_t id) { return YADE_CAST<JKRMat*>((*now.bodies)[id]->material.get())->forKernel(); };
+		const auto first = materialOf(interaction->getId1()), second = materialOf(interaction->getId2());
+		const auto shrunk =
+		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, linearDamping, neck));
+		if (phys->bonded || !phys->touching)
+			phys->constants = shrunk; // of the contact that may come
+		else {
+			phys->bondToCome = bonds.of(contact_law::deriveBond(first, geometry->refR1, second, geometry->refR2, neckNow));
+			phys->constantsToCome = shrunk;
+		}
+	}
 }
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const
@@ -200,9 +233,10 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 
 	const bool drag = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
 	const unsigned mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	const ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
-	                                        : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
+	ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
+	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
 
+	if (phys.bondToCome && r.touching) sinter(phys, motion, history, r);
 	const Vector3r force = fromKernel(r.force);
 	scene->forces.addForce(interaction->getId1(), force);
 	scene->forces.addForce(interaction->getId2(), -force);
@@ -225,6 +259,23 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(history.pointers.n2);
 	}
 	return true;
+}
+
+/* The contact ends at this instant: it gives the half kick before it, and the bond, which takes its place without strain, the one after it.
+ * (The second-order part of the kinetic energy that goes with a grain's forces, which the fused engine books, is left out.) */
+void Law2_ScGeom_JKRWadaPhys_JKRWada::sinter(
+        JKRWadaPhys& phys, const ContactMotion& motion, ContactHistory<double>& history, ContactStepResult& r)
+{
+	r.force = r.forceBefore;
+	r.torque1 = r.torque1 - 0.5 * r.now.torque1;
+	r.torque2 = r.torque2 - 0.5 * r.now.torque2;
+	r.dissipated.disconnection += total(r.stored);
+	r.stored = { 0, 0, 0, 0 };
+	phys.becomeBond();
+	phys.restDistance = contact_law::newBond(motion.separation, history);
+	r.geometry = contact_law::geometryOf(motion.separation, phys.restDistance);
+	r.now = contact_law::ContactForces<double>::none();
+	r.pointersMoved = true;
 }
 
 ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, const PairConstants<double>& constants, ContactMotion motion,

@@ -43,11 +43,12 @@ public:
 	void prepare();
 	void writeInteractions();
 	void handOver();
+	void sinter(Real neck);
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
 	// Adds this engine's contacts to a snapshot (JKRWadaSnapshot), by the ids of their bodies; false before the first step.
-	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const;
+	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<double>& necks) const;
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
 	// clang-format off
@@ -85,6 +86,8 @@ public:
 		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
 		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors continue from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
+		.def("sinter", &JKRWadaEngine::sinter, boost::python::arg("neck"), "All contacts become bonds of this neck now, without strain where the grains are; bonds that there are keep their own neck. All grains shrink by the largest neck, "
+			"which is this engine's neck from now on. What the contacts held is booked as disconnection. Call it between two O.steps. contact_law.sinter() calls this, or the functors'.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
 	);
 	// clang-format on

@@ -6,7 +6,7 @@ import numpy as np
 from yade.wrapper import JKRWadaEngine, Omega
 
 import contact_law
-from analysis.runs.format import CHANNEL_TABLE, CHANNELS, WORK
+from analysis.runs.format import BROKEN_BONDS, CHANNEL_TABLE, CHANNELS, WORK
 from yade_scripts.run.diagnosis import RunFailed, suspects
 
 SECONDS_BETWEEN_WRITES = 10
@@ -15,9 +15,14 @@ WORK_CHANNELS = [channel.name for channel in CHANNEL_TABLE if channel.kind == WO
 
 
 def engine_counts():
-    """statistics() of the fused engine; {} where YADE's own loop steps."""
-    engine = Omega().engines[0]
-    return engine.statistics() if isinstance(engine, JKRWadaEngine) else {}
+    """statistics() of the fused engine; of YADE's own loop, the broken bonds by mode alone."""
+    for engine in Omega().engines:
+        if isinstance(engine, JKRWadaEngine):
+            return engine.statistics()
+        dispatcher = getattr(engine, "lawDispatcher", None)
+        if dispatcher:
+            return {name: getattr(dispatcher.functors[0], name) for name in BROKEN_BONDS}
+    return {}
 
 
 class Recorder:
@@ -94,6 +99,11 @@ class Recorder:
         self._require_sound(state, energies)
         contacts = len(state["contact_pairs"])
         counts = engine_counts()
+        if self._has_bonds(state):
+            state["bonds_broken"] = np.array([counts[name] for name in BROKEN_BONDS])
+        else:
+            state.pop("contact_neck")
+            counts = {name: count for name, count in counts.items() if name not in BROKEN_BONDS}
         sample = {**counts, "time": state["time"], **energies, "contacts": contacts, **self.scene.series(state)}
         if self.columns is None:
             self.columns = [q.name for q in self.history if not q.optional or q.name in sample]
@@ -106,6 +116,10 @@ class Recorder:
         if time.monotonic() >= self._next_write:
             self.write_history()
             self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
+
+    def _has_bonds(self, state):
+        """Whether the scene had bonds at its first sample."""
+        return state["contact_bonded"].any() if self.columns is None else BROKEN_BONDS[0] in self.columns
 
     def _write_state(self, state):
         there = [quantity.name for quantity in self.states if not quantity.optional or quantity.name in state]
