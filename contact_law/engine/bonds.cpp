@@ -56,6 +56,7 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 		return;
 	}
 	book(r, m, image, sort);
+	keepEarly(i, j, r);
 	if (sort != Second) ++broken[result.mode];
 	addAlone(sort, i, j, r, image);
 	write({ 0, 0, 0 }, forces.force, k);

@@ -8,7 +8,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	// 1: without this header, up to version 0.1; 2: without formed and broke; 3: without limit and the necks of bonds
+	// 1: without this header, up to version 0.1; 2: without formed and broke; 3: without limit, necks of bonds, early kicks
 	constexpr int formatNumber = 4;
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
@@ -68,6 +68,14 @@ namespace {
 		transfer(archive, domain.sums.dissipated);
 		transferNumbers(archive, domain.sums.eventWork, domain.sums.meanField);
 		transfer(archive, domain.sums.boundary);
+		std::size_t early = domain.early.size();
+		archive.number(early);
+		domain.early.resize(early);
+		for (EarlyKick& kick : domain.early) {
+			archive.number(kick.grain);
+			transfer(archive, kick.force);
+			transfer(archive, kick.torque);
+		}
 		transfer(archive, domain.constraints);
 		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks);
 		for (long& number : domain.broken)

@@ -60,6 +60,7 @@ void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
 void Domain::addFirstForces()
 {
 	sums.eventWork = 0;
+	early.clear();
 	if (cell.on) sums.boundary.arrive(cell, s.dt);
 	constraints.begin();
 	addForces(First, 0, contacts[First].blockCount(), false);
@@ -146,6 +147,13 @@ void Domain::book(const ContactStepResult& r, const ContactMotion& m, const Imag
 	++events;
 }
 
+void Domain::keepEarly(int i, int j, const ContactStepResult& r)
+{
+	const Vec3<double> force = r.forceBefore - 0.5 * r.force;
+	if (owns(i)) early.push_back({ i, force, r.torqueBefore1 - 0.5 * r.torque1 });
+	if (owns(j)) early.push_back({ j, -force, r.torqueBefore2 - 0.5 * r.torque2 });
+}
+
 void Domain::addAlone(int sort, int i, int j, const ContactStepResult& r, const Image& image)
 {
 	if (sort != Second) {
@@ -182,6 +190,7 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 	const ContactStepResult r = contactStepWith[s.mechanisms](constants, s.limit, m, before, h);
 	book(r, m, image, sort);
+	keepEarly(i, j, r);
 	write(r.force, forces.force, k);
 	write(r.torque1, forces.torque1, k);
 	write(r.torque2, forces.torque2, k);
@@ -229,6 +238,7 @@ void Domain::formContact(int sort, int index)
 	touching[sort][index] = 1;
 	if (sort != Second) ++formed;
 	book(r, m, image, sort);
+	keepEarly(p.i, p.j, r);
 	addAlone(sort, p.i, p.j, r, image);
 	contacts[sort].append(c);
 }

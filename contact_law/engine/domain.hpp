@@ -66,6 +66,12 @@ struct StepSums { // since the start, and (eventWork) of the latest step's event
 	        0; // taken out of the kinetic energy by changes of the cell's velocity gradient and by the convective acceleration [J]
 };
 
+// Of a grain's kick by events of the latest step: what belongs before this instant beyond the half.
+struct EarlyKick {
+	int grain;
+	Vec3<double> force, torque;
+};
+
 /* The moment a step ago of a pair whose springs rest at a distance `rest`: the first grain stood at `then` from the second, and the pointers of `h` had not
  * turned yet. Constants: of a contact or of a bond. */
 template <class Constants>
@@ -111,6 +117,7 @@ public:
 	long events = 0;
 	long formed = 0, broke = 0; // contacts (bonds not among them) so far; a border contact where its first grain lives
 	StepSums sums;
+	std::vector<EarlyKick> early;          // of own grains
 	ContactList contacts[3];               // both grains own; the first; the second
 	int sortedBlocks = 0;                  // of the contacts with both grains own
 	BondList bonds[3];                     // likewise
@@ -150,6 +157,7 @@ private:
 	ContactMotion motionOf(int i, int j, Image&) const;
 	Vec3<double> separationAStepAgo(int i, int j, const ContactMotion&) const;
 	void book(const ContactStepResult&, const ContactMotion&, const Image&, int sort);
+	void keepEarly(int i, int j, const ContactStepResult&);
 	void addAlone(int sort, int i, int j, const ContactStepResult&, const Image&); // kicks of a contact that no pass scatters
 	bool owns(int grain) const { return grain >= begin && grain < end; }
 

@@ -97,6 +97,7 @@ private:
 	void orderGrains(const Grains&);
 	void loadGrains(const Grains&);
 	void shrinkGrains();
+	void bringVelocitiesToPositions();
 	void makeDomains();
 	void inherit(const Inherited&);
 	void completeInheritedStep();

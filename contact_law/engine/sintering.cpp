@@ -20,6 +20,29 @@ void Dynamics::shrinkGrains()
 	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.necks.size() == 1 ? setting.necks[0] : setting.neck);
 }
 
+// Velocities at the positions' moment. Forces go: half of their kick belongs after it.
+void Dynamics::bringVelocitiesToPositions()
+{
+	for (auto& domain : domains) {
+		for (const EarlyKick& early : domain->early) {
+			Grain& g = setting.grains[early.grain];
+			const unsigned blocked = setting.blocked[early.grain];
+			const double m = setting.dt * setting.inverseMass[early.grain],
+			             i = setting.dt * setting.inverseInertia[early.grain];
+			const Vec3<double> push = m * (early.force - blockedForce(early.force, blocked));
+			const Vec3<double> turn = i * (early.torque - blockedTorque(early.torque, blocked));
+			g.vx += push.x, g.vy += push.y, g.vz += push.z;
+			g.wx += turn.x, g.wy += turn.y, g.wz += turn.z;
+		}
+		domain->early.clear();
+	}
+	for (int k = 0; k < count; ++k) {
+		Grain& g = setting.grains[k];
+		kick(setting, g, k, 0.5 * setting.dt);
+		g.fx = g.fy = g.fz = g.tx = g.ty = g.tz = 0;
+	}
+}
+
 /* Velocities are brought to the positions' moment and half a step back again with the forces after it, as at a start. What sum of kinetic and
  * stored energies that leaves out is what the contacts held (and, of second order, what a leapfrog's kinetic energy has of the forces). */
 void Dynamics::sinter(double neck)
@@ -29,11 +52,7 @@ void Dynamics::sinter(double neck)
 		return std::accumulate(values.begin(), values.end(), 0.);
 	};
 	const double before = total();
-	for (int k = 0; k < count; ++k) {
-		Grain& g = setting.grains[k];
-		kick(setting, g, k, 0.5 * setting.dt);
-		g.fx = g.fy = g.fz = g.tx = g.ty = g.tz = 0;
-	}
+	bringVelocitiesToPositions();
 	if (bondCount(*this) == 0) setting.necks.clear();
 	std::vector<Domain::AllBonds> bonds;
 	for (auto& domain : domains)

@@ -45,6 +45,8 @@ namespace bonds {
 			released -= total(r.stored) + total(r.dissipated);
 		}
 		r.forceBefore = ahead.force;
+		r.torqueBefore1 = ahead.torque1;
+		r.torqueBefore2 = ahead.torque2;
 		r.workBefore = ahead.work(m);
 		r.dissipated.*bondBreakingBy[breaking.mode] =
 		        released - ahead.workOnPair(m) + (after.squared(m) - ahead.squared(m)) * m.dt * m.dt / 2;
@@ -87,6 +89,8 @@ inline BondStepResult bondStep(const BondConstants<double>& b, const PairConstan
 	r.torque1 = f.torque1;
 	r.torque2 = f.torque2;
 	r.forceBefore = 0.5 * r.force;
+	r.torqueBefore1 = 0.5 * r.torque1;
+	r.torqueBefore2 = 0.5 * r.torque2;
 	r.workBefore = 0.5 * events::work(m, r.force, r.torque1, r.torque2);
 	return result;
 }

@@ -22,8 +22,9 @@ inline void setKicks(const ContactMotion& m, double normalBefore, double springs
 {
 	const double after = 0.5;
 	r.forceBefore = normalBefore * r.geometry.normal + springsBefore * r.now.sliding + ofCuts.force;
-	r.workBefore = events::work(
-	        m, r.forceBefore, springsBefore * r.now.torque1 + ofCuts.torque1, springsBefore * r.now.torque2 + ofCuts.torque2);
+	r.torqueBefore1 = springsBefore * r.now.torque1 + ofCuts.torque1;
+	r.torqueBefore2 = springsBefore * r.now.torque2 + ofCuts.torque2;
+	r.workBefore = events::work(m, r.forceBefore, r.torqueBefore1, r.torqueBefore2);
 	r.force = r.forceBefore + after * ((r.now.normalForce + r.now.drag) * r.geometry.normal + r.now.sliding);
 	r.torque1 = (springsBefore + after) * r.now.torque1 + ofCuts.torque1;
 	r.torque2 = (springsBefore + after) * r.now.torque2 + ofCuts.torque2;
@@ -104,6 +105,8 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	r.torque1 = (fraction - 0.5) * f.torque1;
 	r.torque2 = (fraction - 0.5) * f.torque2;
 	r.forceBefore = r.force;
+	r.torqueBefore1 = r.torque1;
+	r.torqueBefore2 = r.torque2;
 	r.workBefore = events::work(m, r.force, r.torque1, r.torque2);
 	r.dissipated.disconnection = normal::disconnection(c, push * m.dt, m.inverseMass);
 	addSpringRelease<mechanisms>(c, before, f, h.twist, fraction, r.dissipated);

@@ -267,8 +267,8 @@ void Law2_ScGeom_JKRWadaPhys_JKRWada::sinter(
         JKRWadaPhys& phys, const ContactMotion& motion, ContactHistory<double>& history, ContactStepResult& r)
 {
 	r.force = r.forceBefore;
-	r.torque1 = r.torque1 - 0.5 * r.now.torque1;
-	r.torque2 = r.torque2 - 0.5 * r.now.torque2;
+	r.torque1 = r.torqueBefore1;
+	r.torque2 = r.torqueBefore2;
 	r.dissipated.disconnection += total(r.stored);
 	r.stored = { 0, 0, 0, 0 };
 	phys.becomeBond();

@@ -273,6 +273,8 @@ void JKRWadaEngine::sinter(Real neckNow)
 	neck = current->dynamics.state().neck;
 	current->settings.neck = neck;
 	current->watch.motionsChanged();
+	current->dynamics.read(current->now);
+	writeBodies(); // their velocities are the same but for rounding: a checkpoint must find them as the engine has them
 	if (exportInteractions) current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
 	if (scene->trackEnergy) writeEnergies(current->dynamics.energies());
 }

@@ -70,7 +70,7 @@ engine = parameters["engine"]
 new_scene(0.05 * unit)
 distance = 2e-7 - 0.3 * constants(ice(), 1e-7)["equilibriumOverlap"]
 grain((0, 0, 0), 1e-7, ice(), spin=(3e7, 2e7, 1e7)); grain((distance, 0, 0), 1e-7, ice())
-grain((distance / 2, 2.2e-7, 0), 1e-7, ice(), velocity=(0, -0.5, 0))
+grain((distance / 2, 2.2e-7, 0), 1e-7, ice(), velocity=(0, -2, 0))
 if engine == "fused": fused_engine()
 for _ in range(20): O.step()
 def stop():
@@ -93,5 +93,5 @@ result["touch"] = float(np.linalg.norm(x[2] - x[:2], axis=1).min() / 1e-7)
 """,
         {"engine": engine},
     )
-    assert found["contacts"] == 1 and found["moved"] < 1e-9, found
+    assert found["contacts"] == 1 and found["moved"] < (1e-9 if engine == "fused" else 1e-5), found
     assert found["touch"] == pytest.approx(2 * found["shrunk"], abs=2e-3) and found["shrunk"] < 0.96
