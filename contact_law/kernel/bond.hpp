@@ -23,7 +23,7 @@ namespace contact_law {
 	_(rollingStiffness, "k_sr/R^2 [N/m], on the rolling displacement R(n1+n2), whose length is R times the angle of the tilt.")        \
 	_(twistingStiffness, "k_sw [N m].")                                                                                                \
 	_(breakingEnergy, "pi a^2 gamma [J]: the bond breaks when one mode holds it.")                                                     \
-	_(neck, "beta, the neck's radius over R_g = 2 r1 r2/(r1 + r2).")
+	_(neck, "beta: neckRadius [m] over R_g = 2 r1 r2/(r1 + r2) [m].")
 
 template <class T> struct BondConstants {
 #define CONTACT_LAW_MEMBER(name, ...) T name;

@@ -15,7 +15,7 @@ def history(folder, name, *arguments):
     return read_arrays(folder / name, "history.npz"), read_json(folder / name, "run.json")["parameters"]["limit"]
 
 
-def test_engine_and_functors_obey_it_alike_and_held_is_the_default(tmp_path):
+def test_engine_and_functors_obey_it_and_held_is_the_default(tmp_path):
     fused, rule = history(tmp_path, "fused", "limit=cut")
     functors, _ = history(tmp_path, "functors", "limit=cut", "engine=functors")
     held, default = history(tmp_path, "held")

@@ -30,7 +30,8 @@ class Recorder:
 
     kind_format: a RunKind of analysis.runs.format, which names the columns; scene: of run.kind, for its series, the
     grains' aggregates, whether its energy is conserved, and when it ends: .finished is true from then on.
-    Optional series are those of the kind's that the scene or the engine's statistics() have at the first sample.
+    Optional series are those of the kind's that the scene or the engine's statistics() have at the first sample; broken
+    bonds by mode where there are bonds then, and in states where there are any.
     An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
     """
 
@@ -99,7 +100,7 @@ class Recorder:
         self._require_sound(state, energies)
         contacts = len(state["contact_pairs"])
         counts = engine_counts()
-        if self._has_bonds(state):
+        if state["contact_bonded"].any() or BROKEN_BONDS[0] in (self.columns or ()):
             state["bonds_broken"] = np.array([counts[name] for name in BROKEN_BONDS])
         else:
             state.pop("contact_neck")
@@ -116,10 +117,6 @@ class Recorder:
         if time.monotonic() >= self._next_write:
             self.write_history()
             self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
-
-    def _has_bonds(self, state):
-        """Whether the scene had bonds at its first sample."""
-        return state["contact_bonded"].any() if self.columns is None else BROKEN_BONDS[0] in self.columns
 
     def _write_state(self, state):
         there = [quantity.name for quantity in self.states if not quantity.optional or quantity.name in state]
