@@ -5,7 +5,7 @@ def sinter(neck):
     """Make every contact of the running scene a sintered bond (Sirono & Ueno 2017), whoever moves the grains.
 
     neck: the necks' radius over that of the grains (unlike grains: over 2 r1 r2/(r1 + r2)), up to 0.7. Bonds are without strain where the
-    grains are now; with the functors from the next O.step on. Bonds that there are keep their own neck. All grains shrink by the volume of
+    grains are now; with the functors from the next O.step on. Existing bonds keep their own neck. All grains shrink by the volume of
     two of the largest necks, as ordinary contacts see them. What the contacts held is booked as disconnection (contact_law/MODEL.md,
     "Sintering a running scene").
 

@@ -22,7 +22,7 @@ struct Setting {
 	std::vector<unsigned> blocked;                           // likewise (kernel/blocked.hpp)
 	double linearDamping = 0;
 	double neck = 0; // radius of sintered bonds' necks over that of the grains, the largest, by which all grains have shrunk; 0: none
-	std::vector<double> necks; // of the bonds that there are, each once
+	std::vector<double> necks; // of the bonds in the scene, each once
 	bool uniform = true;
 	PairConstants<double> common {};     // of the first grain with itself; of every pair when all grains are equal
 	BondConstants<double> commonBond {}; // likewise, when all bonds are of one neck

@@ -67,7 +67,7 @@ public:
 	/* A periodic cell's mean velocity field x gradient: what is added to it now is added to every grain (by its unwrapped position), and from now on
 	 * `convective` (diagonal, 1/s) times their velocity accelerates grains. */
 	void setMeanField(const Vec3<double>& added, const Vec3<double>& convective);
-	/* All contacts become bonds of this neck, without strain where they are, beside the bonds that there are, which keep their own; all grains
+	/* All contacts become bonds of this neck, without strain where they are, beside existing bonds, which keep their own; all grains
 	 * shrink by the largest neck. What the contacts held is booked as disconnection. */
 	void sinter(double neck);
 	void setThreads(int threads) { options.threads = threads; }

@@ -13,8 +13,8 @@ namespace cut {
 	// A displacement that grows evenly through a step while its spring is cut at every limit.
 	template <class Displacement> struct Passage {
 		bool any = false;     // whether a spring was cut
-		Displacement now {};  // of the spring that there is at the end
-		Displacement mean {}; // of the springs that there were, over the time of the passage
+		Displacement now {};  // of the last spring
+		Displacement mean {}; // of all springs, over the time of the passage
 	};
 
 	inline Passage<Vec3<double>> passage(const Vec3<double>& before, const Vec3<double>& trial, double limit)

@@ -150,7 +150,7 @@ public:
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
 		,
 		.def("sinter", &Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter, boost::python::arg("neck"),
-			"All contacts become bonds of this neck when their forces are next evaluated, without strain where the grains are then; bonds that there are keep their own neck. All grains shrink by the largest neck, which "
+			"All contacts become bonds of this neck when their forces are next evaluated, without strain where the grains are then; existing bonds keep their own neck. All grains shrink by the largest neck, which "
 			"is this functor's neck from then on. What the contacts held is booked as disconnection. contact_law.sinter() calls this, or the fused engine's.")
 		.def("pairConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
 			"Constants of a contact of two grains (materials, radii in m) as a dict with the attributes of JKRWadaConstants. ValueError when a radius or a material constant is out of range. With a neck: of the shrunk grains (given are the radii before).")

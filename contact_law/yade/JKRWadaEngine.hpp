@@ -86,7 +86,7 @@ public:
 		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
 		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors continue from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
-		.def("sinter", &JKRWadaEngine::sinter, boost::python::arg("neck"), "All contacts become bonds of this neck now, without strain where the grains are; bonds that there are keep their own neck. All grains shrink by the largest neck, "
+		.def("sinter", &JKRWadaEngine::sinter, boost::python::arg("neck"), "All contacts become bonds of this neck now, without strain where the grains are; existing bonds keep their own neck. All grains shrink by the largest neck, "
 			"which is this engine's neck from now on. What the contacts held is booked as disconnection. Call it between two O.steps. contact_law.sinter() calls this, or the functors'.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), rebuilds of the neighbour lists (farRebuilds, nearRebuilds), instructions.")
 	);
