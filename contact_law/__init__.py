@@ -13,6 +13,7 @@ import os
 import sys
 
 from .grain_arrays import snapshot  # noqa: F401 (of the package)
+from .sintering import sinter  # noqa: F401
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 with open(os.path.join(TOP, "contact_law/VERSION")) as _file:
@@ -101,4 +102,4 @@ def _start():
 
 
 __all__, commit, channels = _start()
-__all__.append("snapshot")
+__all__ += ["snapshot", "sinter"]

@@ -8,8 +8,8 @@ def snapshot():
 
     Keys: time [s]; rows in the order of body ids: ids (N,), position (N, 3) [m], velocity (N, 3) [m/s], angular_velocity (N, 3) [rad/s],
     radius (N,) [m]; contacts: contact_pairs (M, 2) (row numbers), contact_normal_force (M,) [N] (elastic and viscous, positive when
-    repulsive), contact_bonded (M,) bool (sintered bonds). In a periodic scene also cell_size (3,) [m], the box's; positions are unwrapped, and a contact is of
-    the nearest images.
+    repulsive), contact_bonded (M,) bool (sintered bonds), contact_neck (M,) (of bonds, the neck's radius over that of the grains; 0: none).
+    In a periodic scene also cell_size (3,) [m], the box's; positions are unwrapped, and a contact is of the nearest images.
 
     Call it from a PyRunner that stands last among O.engines. NewtonIntegrator keeps velocities half a step apart from positions and
     has moved the grains on by then; the arrays are brought to the moment of the forces, which is also that of O.energy.
@@ -23,6 +23,7 @@ def snapshot():
         name: np.frombuffer(raw[name]).reshape(-1, 3).copy() for name in ("position", "velocity", "angular_velocity")
     }
     pairs = np.frombuffer(raw["contact_pairs"], dtype=np.int32).reshape(-1, 2).copy()
+    neck = np.frombuffer(raw["contact_neck"]).copy()
     cell = {"cell_size": np.frombuffer(raw["cell_size"]).copy()} if "cell_size" in raw else {}
     return {
         **cell,
@@ -32,5 +33,6 @@ def snapshot():
         "radius": np.frombuffer(raw["radius"]).copy(),
         "contact_pairs": pairs,
         "contact_normal_force": np.frombuffer(raw["contact_normal_force"]).copy(),
-        "contact_bonded": np.frombuffer(raw["contact_bonded"], dtype=np.int32).astype(bool),
+        "contact_bonded": neck > 0,
+        "contact_neck": neck,
     }

@@ -146,6 +146,60 @@ def return_to_limits(c, p, before, dt, lost):
     lost["rollingDissipation"] += rolling if slid and rolled else sliding + rolling if rolled else 0
 
 
+# ---- springs that are cut at their limits and formed anew (S17 section 3.2; MODEL.md, "Cut springs") ----
+
+
+def passage(then, now, limit):
+    """A displacement that grows evenly from one to the other while its spring is cut at the limit, again and again: (that of the last
+    spring, the mean over the way)."""
+    way, x, left, mean = now - then, then, 1.0, 0.0
+    while True:
+        squared, along, missing = way @ way, x @ way, limit**2 - x @ x
+        s = (sqrt(along**2 + squared * missing) - along) / squared if missing > 0 else 0.0
+        if s >= left:
+            return x + left * way, mean + left * (x + left / 2 * way)
+        mean, left, x = mean + s * (x + s / 2 * way), left - s, 0 * x
+
+
+def by_mode(c, p):
+    zeta, xi = displacements(c, p)
+    return {"sliding": zeta, "rolling": xi, "twisting": np.array([p.phi])}
+
+
+def with_displacement(c, p, mode, wanted):
+    """p with another displacement of one mode, the others the same to first order in the pointers' angles."""
+    q, by = SimpleNamespace(**vars(p)), wanted - by_mode(c, p)[mode]
+    if mode == "twisting":
+        q.phi = wanted[0]
+    elif sqrt(by @ by) > 0:
+        r1, r2 = (c.r1 + c.r2, -(c.r1 + c.r2)) if mode == "sliding" else (c.r1, c.r2)
+        move(q, -by, 0.0, r1, r2)
+    return q
+
+
+def cut_at_limits(c, p, old, dt, time):
+    """Cuts the springs beyond their limits. time: fraction of the step for which the contact has existed. Returns by mode: displacement a
+    step ago and as it was carried here, whether it was cut, and the contact whose spring acts before now, with the fraction for which it does."""
+    turn = dt * (cross(p.n, p.v) / p.distance + (p.w1 + p.w2) @ p.n / 2 * p.n)
+    then = {"sliding": turned(old.zeta, turn), "rolling": turned(old.xi, turn), "twisting": np.array([old.phi])}
+    limit, trial, ways = {"sliding": c.zeta_crit, "rolling": c.xi_crit, "twisting": c.phi_crit}, by_mode(c, p), {}
+    for mode in ("twisting", "sliding", "rolling"):
+        if trial[mode] @ trial[mode] > limit[mode] ** 2:
+            left, ways[mode] = passage(then[mode], trial[mode], limit[mode])
+            vars(p).update(vars(with_displacement(c, p, mode, left)))
+    acting = {mode: with_displacement(c, p, mode, time * mean - then[mode] / 2) for mode, mean in ways.items()}
+    return {m: (then[m], trial[m], m in ways, acting.get(m, p), 1.0 if m in ways else time / 2) for m in trial}
+
+
+def of_mode(c, mode, p):
+    """p with the springs of one mode alone."""
+    stiffness = {name: getattr(c, name) if m == mode else 0.0 for m, name in STIFFNESS.items()}
+    return SimpleNamespace(**{**vars(p), "springs": springs(SimpleNamespace(**{**vars(c), **stiffness}), p)})
+
+
+STIFFNESS = {"sliding": "ks", "rolling": "kr", "twisting": "kt"}
+
+
 # ---- grains, contacts and bonds through time steps (MODEL.md, "The integrator and the ledger") ----
 
 
@@ -154,12 +208,12 @@ class Scene:
     half_step: v and w are of half a step before x (YADE's functors), not of the same moment (the fused engine).
     `energies`: by channel, at the present positions."""
 
-    def __init__(self, materials, radii, x, v, w, dt, damping=0.0, neck=0.0, half_step=False):
+    def __init__(self, materials, radii, x, v, w, dt, damping=0.0, neck=0.0, half_step=False, limit="held"):
         self.materials, self.radii = [SimpleNamespace(**m) for m in materials], np.array(radii)
         self.x, self.v, self.w, self.dt = np.array(x), np.array(v), np.array(w), dt
         self.mass = 4 / 3 * pi * np.array([m.density for m in self.materials])[:, None] * self.radii[:, None] ** 3
         self.inertia = 0.4 * self.mass * self.radii[:, None] ** 2
-        self.damping, self.neck = damping, neck
+        self.damping, self.neck, self.limit = damping, neck, limit
         self.contacts, self.constants, self.lost = {}, {}, dict.fromkeys(LOST, 0.0)
         self.forces(dt if half_step else 0.0, start=True)
         if not half_step:
@@ -201,10 +255,39 @@ class Scene:
             return self.keep_bond(b, p, old, dt)
         if p.delta < -c.dc:
             return self.break_contact(c, p, old, dt)
-        return_to_limits(c, p, old, dt, self.lost)
+        ways = self.within_limits(c, p, old, dt, 1.0)
         self.evaluate(c, p, p.v + (p.v - old.v) / 2)
         self.lost["drag"] += (old.drag + p.drag) / 2 * (p.delta - old.delta)
-        self.kick(dt, [(p, 0.5 * (p.normal + p.drag), 0.5)], [(p, 0.5 * (p.normal + p.drag), 0.5)])
+        self.kick(
+            dt, self.before(c, p, 0.5 * (p.normal + p.drag), 0.5, ways, dt), [(p, 0.5 * (p.normal + p.drag), 0.5)]
+        )
+
+    def within_limits(self, c, p, old, dt, time):
+        if self.limit == "cut":
+            return cut_at_limits(c, p, old, dt, time)
+        return return_to_limits(c, p, old, dt, self.lost)
+
+    def before(self, c, p, normal, part, ways, dt):
+        """Kicks before now, for kick(); books what cut springs took of the motion."""
+        if not ways or not any(cut for _, _, cut, _, _ in ways.values()):
+            return [(p, normal, part)]
+        kicks, taken = {}, {}
+        for mode, (then, trial, cut, acting, fraction) in ways.items():
+            k, now, kicks[mode] = (
+                getattr(c, STIFFNESS[mode]),
+                by_mode(c, p)[mode],
+                (of_mode(c, mode, acting), 0.0, fraction),
+            )
+            *_, square, work = self.impulse(dt, [kicks[mode]])
+            taken[mode] = k / 2 * (then @ trial - now @ now) - work
+            if cut:
+                taken[mode] += self.impulse(dt, [(of_mode(c, mode, p), 0.0, 0.5)])[3] - square
+        cut = [mode for mode in ("sliding", "rolling") if ways[mode][2]]
+        if len(cut) == 1:  # it shifted the other spring
+            taken[cut[0]] = taken["sliding"] + taken["rolling"]
+        for mode in cut + ["twisting"] * ways["twisting"][2]:
+            self.lost[f"{mode}Dissipation"] += taken[mode]
+        return [(p, normal, 0.0), *kicks.values()]
 
     def evaluate(self, c, p, v):
         """Forces and stored energies at this instant; v: relative velocity at it. The contact is there from now on."""
@@ -225,15 +308,22 @@ class Scene:
         the kinetic energy now. Returns the sum of J^2/2m of what belongs after less before, torques included, and that work."""
         p, squares, works = before[0][0], [], []
         for kicks in (before, after):
-            force = sum((normal * q.n + part * q.springs[0] for q, normal, part in kicks), np.zeros(3))
-            torque1, torque2 = (sum((part * q.springs[k] for q, _, part in kicks), np.zeros(3)) for k in (1, 2))
+            force, torque1, torque2, square, work = self.impulse(dt, kicks) if kicks else (*3 * [np.zeros(3)], 0.0, 0.0)
             self.F[p.i], self.F[p.j] = self.F[p.i] + force, self.F[p.j] - force
             self.T[p.i], self.T[p.j] = self.T[p.i] + torque1, self.T[p.j] + torque2
-            turning = torque1 @ torque1 / self.inertia[p.i, 0] + torque2 @ torque2 / self.inertia[p.j, 0]
-            squares.append(dt**2 / 2 * (force @ force / p.mass + turning))
-            works.append(dt * (force @ p.v + torque1 @ p.w1 + torque2 @ p.w2))
+            squares.append(square)
+            works.append(work)
         self.work += works[0]
         return squares[1] - squares[0], works[0]
+
+    def impulse(self, dt, kicks):
+        """Force, torques, J^2/2m (torques included) and work of kicks."""
+        p = kicks[0][0]
+        force = sum((normal * q.n + part * q.springs[0] for q, normal, part in kicks), np.zeros(3))
+        torque1, torque2 = (sum((part * q.springs[k] for q, _, part in kicks), np.zeros(3)) for k in (1, 2))
+        turning = torque1 @ torque1 / self.inertia[p.i, 0] + torque2 @ torque2 / self.inertia[p.j, 0]
+        square = dt**2 / 2 * (force @ force / p.mass + turning)
+        return force, torque1, torque2, square, dt * (force @ p.v + torque1 @ p.w1 + torque2 @ p.w2)
 
     def set_new(self, p, since):
         """Pointers and twist of a contact that formed a time `since` ago."""
@@ -247,13 +337,15 @@ class Scene:
         inside = p.delta <= closing > 0  # the step; otherwise it was placed here, and nothing is booked
         f = p.delta / closing if inside else 0.0  # fraction of the step for which it has existed
         self.set_new(p, f * dt)
-        return_to_limits(c, p, SimpleNamespace(phi=0.0, zeta=np.zeros(3), xi=np.zeros(3)), dt, self.lost)
+        ways = self.within_limits(
+            c, p, SimpleNamespace(phi=0.0, zeta=np.zeros(3), xi=np.zeros(3)), dt, f if inside else 1.0
+        )
         self.evaluate(c, p, p.v)
         after, work = 0.5 * (p.normal + p.drag), p.held[0] - c.Fc * c.dc * U_AT_CONNECTION
         if not inside:
-            return self.kick(dt, [(p, after, 0.5)], [(p, after, 0.5)])
+            return self.kick(dt, self.before(c, p, after, 0.5, ways, dt), [(p, after, 0.5)])
         ahead = work / closing + f * p.drag
-        self.kick(dt, [(p, ahead, f / 2)], [(p, after, 0.5)])
+        self.kick(dt, self.before(c, p, ahead, f / 2, ways, dt), [(p, after, 0.5)])
         self.lost["connection"] += -c.Fc * c.dc * U_AT_CONNECTION + (after**2 - ahead**2) * dt**2 / (2 * p.mass)
         self.lost["drag"] += f * p.drag * closing
 

@@ -94,9 +94,11 @@ class RunKind:
 
     @property
     def history(self):
-        """Quantities of history.npz, in the order of its columns: time, the channels, the contacts, the kind's own."""
+        """Quantities of history.npz, in the order of its columns: time, the channels, the contacts, broken bonds by mode
+        (where there were bonds at the start), the kind's own."""
         channels = (Quantity(c.name, ("T",), "J", c.label, since=c.since) for c in CHANNEL_TABLE)
-        return (TIME_SERIES, *channels, CONTACTS, *self.series)
+        bonds = (Quantity(name, ("T",), "", "sintered bonds broken since the start", "i", optional=True) for name in BROKEN_BONDS)
+        return (TIME_SERIES, *channels, CONTACTS, *bonds, *self.series)
 
     @property
     def states(self):
@@ -106,6 +108,9 @@ class RunKind:
 
 TIME_SERIES = Quantity("time", ("T",), "s", "time, rising")
 CONTACTS = Quantity("contacts", ("T",), "", "number of contacts", "i")
+
+# Sintered bonds that have broken since the start, by mode: names in the history, and their order in a state.
+BROKEN_BONDS = ("brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting")
 
 STATE = (
     Quantity("time", (), "s", "time"),
@@ -117,6 +122,8 @@ STATE = (
     Quantity("contact_pairs", ("M", 2), "", "rows of the two grains of a contact", "i"),
     Quantity("contact_normal_force", ("M",), "N", "normal force, elastic and viscous, positive when repulsive"),
     Quantity("contact_bonded", ("M",), "", "whether a contact is a sintered bond", "b"),
+    Quantity("contact_neck", ("M",), "1", "of a bond, the neck's radius over that of the grains; 0 of other contacts", optional=True),
+    Quantity("bonds_broken", (4,), "", "sintered bonds broken since the start: by stretching (or pressing), sliding, rolling, twisting", "i", optional=True),
     Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True, positive=True),
 )
 

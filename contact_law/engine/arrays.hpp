@@ -109,6 +109,7 @@ struct ForcePass {
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
 	void (*batchDone)(void* owner, int batch);
+	bool cut; // springs beyond their limits are cut, each as an event, not returned to the limit (kernel/limit_rule.hpp)
 };
 
 // The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(); and by how much kicks
@@ -161,7 +162,7 @@ struct InstructionSet {
 	double (*sumOfProduct)(
 	        double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
-	void (*bondForces)(const BondPass&);
+	void (*bondForces[2])(const BondPass&); // by whether the scene is periodic
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
 	int (*closeGrains[2])(const NeighbourSearch&, int* found); // by whether the scene is periodic (neighbour_search.hpp)
 };

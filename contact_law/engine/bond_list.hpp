@@ -30,6 +30,8 @@ struct BondPass {
 	int endBlock;
 	int addFirst, addSecond, trash;
 	double dt;
+	const PeriodicCell* cell;
+	Vec3<double>* crossing; // in periodic scenes: shift times force of bonds across the boundaries is added here
 	void* owner;
 	// bonds of a block (bits of `which`) that break: history before the step, forces to be replaced
 	void (*breaking)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);

@@ -30,11 +30,14 @@ template <class Pack> struct BondPasses {
 	}
 
 	// `width` bonds: carried through the step, their forces, and which of them break (bits).
-	static unsigned sweep(const BondPass& pass, int index, int at, BondBlock& before, LaneForces& out)
+	template <bool periodic>
+	static unsigned sweep(
+	        const BondPass& pass, Crossing<Pack, periodic>& crossing, int index, int at, BondBlock& before, LaneForces& out)
 	{
 		BondBlock& block = pass.blocks[index];
 		const BondConstants<Pack> c = constantsOf(pass, index, at);
-		const auto pair = P::gatherPair(pass.grains, block, at);
+		auto pair = P::gatherPair(pass.grains, block, at);
+		if constexpr (periodic) P::store(P::toImages(crossing.images, pair), crossing.shift[0], at);
 		const ContactGeometry<Pack> g = geometryOf(pair.separation, Pack::load(block.rest + at));
 		const ContactHistory<Pack> old = historyOf(block, at);
 		const Pack dt(pass.dt);
@@ -51,8 +54,9 @@ template <class Pack> struct BondPasses {
 		return broken << at;
 	}
 
-	[[gnu::flatten]] static void forces(const BondPass& pass)
+	template <bool periodic> [[gnu::flatten]] static void forces(const BondPass& pass)
 	{
+		Crossing<Pack, periodic> crossing(pass.cell);
 		int trash[lanes];
 		for (int& t : trash)
 			t = pass.trash;
@@ -61,25 +65,30 @@ template <class Pack> struct BondPasses {
 			BondBlock before;
 			unsigned broken = 0;
 			for (int at = 0; at < lanes; at += width)
-				broken |= sweep(pass, index, at, before, out);
+				broken |= sweep(pass, crossing, index, at, before, out);
 			const BondBlock& block = pass.blocks[index];
 			if (__builtin_expect(broken != 0, 0)) pass.breaking(pass.owner, index, broken, before, out);
 			const int* to1 = pass.addFirst ? block.i : trash;
 			const int* to2 = pass.addSecond ? block.j : trash;
-			for (int at = 0; at < lanes; at += width)
-				P::scatter(pass.grains, to1, to2, out, at);
+			for (int at = 0; at < lanes; at += width) {
+				const Vec3<Pack> f = P::scatter(pass.grains, to1, to2, out, at);
+				if constexpr (periodic) crossing.add(P::load(crossing.shift[0], at), f);
+			}
 		}
+		if constexpr (periodic) crossing.addTo(*pass.crossing);
 	}
 
 	[[gnu::flatten]] static void energies(const BondPass& pass, StoredEnergy<double>& sums)
 	{
+		const Images<Pack> images(*pass.cell); // once a step at most: open scenes have their images here too, without a shift
 		StoredEnergy<Pack> sum { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
 		for (int index = 0; index < pass.endBlock; ++index)
 			for (int at = 0; at < lanes; at += width) {
 				const BondBlock& block = pass.blocks[index];
 				const BondConstants<Pack> c = constantsOf(pass, index, at);
-				const ContactGeometry<Pack> g =
-				        geometryOf(P::gatherPair(pass.grains, block, at).separation, Pack::load(block.rest + at));
+				auto pair = P::gatherPair(pass.grains, block, at);
+				P::toImages(images, pair);
+				const ContactGeometry<Pack> g = geometryOf(pair.separation, Pack::load(block.rest + at));
 				const ContactHistory<Pack> h = historyOf(block, at);
 				const StoredEnergy<Pack> e = bondEnergy(c, g, bondForces(c, g, h), h.twist);
 				P::addLiving(e, block, at, pass.trash, sum);
@@ -90,7 +99,8 @@ template <class Pack> struct BondPasses {
 	// An instruction set's passes with those over bonds.
 	static InstructionSet addTo(InstructionSet set)
 	{
-		set.bondForces = &forces;
+		set.bondForces[false] = &forces<false>;
+		set.bondForces[true] = &forces<true>;
 		set.bondEnergies = &energies;
 		return set;
 	}

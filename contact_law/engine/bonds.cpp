@@ -5,19 +5,27 @@ namespace contact_law {
 
 namespace {
 	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
+
+	// Without strain, and without constants yet.
+	Bond newBond(int i, int j, const Vec3<double>& separation)
+	{
+		Bond bond { i, j, {}, 0, {} };
+		bond.rest = contact_law::newBond(separation, bond.history);
+		return bond;
+	}
 }
 
 BondPass Domain::bondPassFor(int sort)
 {
 	BondList& list = bonds[sort];
 	return { s.grains.data(), list.data(), list.constantsData(), &s.commonBond, list.blockCount(), sort != Second, sort != First, dummy,
-		s.dt, &eventCalls[sort], &Domain::breaksOf };
+		s.dt, &cell, sort != Second ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::breaksOf };
 }
 
 void Domain::addBondForces()
 {
 	for (int sort = 0; sort < 3; ++sort)
-		if (bonds[sort].blockCount()) s.passes->bondForces(bondPassFor(sort));
+		if (bonds[sort].blockCount()) s.passes->bondForces[cell.on](bondPassFor(sort));
 }
 
 void Domain::breaksOf(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces)
@@ -32,9 +40,8 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 {
 	BondList& list = bonds[sort];
 	const int k = lane % lanes, i = list.first(lane), j = list.second(lane);
-	Image image; // none: bonds are in open space only
-	const BondMotion motion { motionOf(i, j, image), s.inverseInertia[i], s.inverseInertia[j] };
-	const ContactMotion& m = motion.contact;
+	Image image;
+	const ContactMotion m = motionOf(i, j, image);
 	const Bond bond = list.get(lane, s.commonBond);
 	const BondConstants<double>& b = bond.constants;
 	const PairConstants<double> constants = s.constantsOf(i, j);
@@ -43,12 +50,13 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 	const ContactBefore before = aStepAgo(b, bond.rest, separationAStepAgo(i, j, m), h);
 	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
 
-	const BondStepResult result = bondStepWith[s.mechanisms](b, constants, motion, before, bond.rest, h);
+	const BondStepResult result = bondStepWith[s.mechanisms](b, constants, m, before, bond.rest, h);
 	const ContactStepResult& r = result.contact;
 	if (result.bonded) { // by rounding: it doesn't after all, and the forces of the pass stand
 		return;
 	}
 	book(r, m, image, sort);
+	keepEarly(i, j, r);
 	if (sort != Second) ++broken[result.mode];
 	addAlone(sort, i, j, r, image);
 	write({ 0, 0, 0 }, forces.force, k);
@@ -66,11 +74,12 @@ void Domain::breakOf(int sort, int lane, const BondBlock& old, LaneForces& force
 void Domain::placeBonds()
 {
 	lists.each([this](int i, int j) {
-		const Vec3<double> separation = separationOf(s.grains[i], s.grains[j]);
+		Image image;
+		const Vec3<double> separation = motionOf(i, j, image).separation;
 		const double reach = s.grainRadius[i] + s.grainRadius[j];
 		if (dot(separation, separation) >= reach * reach) return;
-		Bond bond { i, j, {}, 0, s.bondOf(i, j) };
-		bond.rest = newBond(separation, bond.history);
+		Bond bond = newBond(i, j, separation);
+		bond.constants = s.bondOf(i, j, s.neck);
 		bonds[sortOf(i, j)].append(bond);
 	});
 	markTouching();
@@ -79,6 +88,41 @@ void Domain::placeBonds()
 void Domain::place(const Bond& b)
 {
 	if (owns(b.i) || owns(b.j)) bonds[sortOf(b.i, b.j)].append(b);
+}
+
+// Contacts that a script has torn apart since the latest step are none any more.
+Domain::AllBonds Domain::sintered(double neck) const
+{
+	AllBonds all;
+	for (int sort = 0; sort < 3; ++sort) {
+		for (int lane = 0; lane < bonds[sort].size(); ++lane)
+			if (bonds[sort].alive(lane)) all[sort].push_back(bonds[sort].get(lane, s.commonBond));
+		for (int lane = 0; lane < contacts[sort].size(); ++lane) {
+			if (!contacts[sort].alive(lane)) continue;
+			const Contact c = s.contactOf(contacts[sort], lane);
+			Image image;
+			const Vec3<double> separation = motionOf(c.i, c.j, image).separation;
+			if (normal::beyondPullOff(c.constants, geometryOf(separation, c.constants.radius1 + c.constants.radius2))) continue;
+			all[sort].push_back(newBond(c.i, c.j, separation));
+			all[sort].back().constants.neck = neck;
+		}
+	}
+	return all;
+}
+
+void Domain::setBonds(const AllBonds& all)
+{
+	placeDummies();
+	for (int sort = 0; sort < 3; ++sort) {
+		contacts[sort].clear();
+		contacts[sort].setDeadConstants(s.common);
+		bonds[sort] = BondList(s.uniformBonds(), dummy);
+		bonds[sort].setDead(s.commonBond, s.grains[dummy].x);
+		for (Bond bond : all[sort]) {
+			bond.constants = s.bondOf(bond.i, bond.j, bond.constants.neck);
+			bonds[sort].append(bond);
+		}
+	}
 }
 
 void Domain::addBondEnergies(StoredEnergy<double>& total)

@@ -22,8 +22,9 @@ namespace {
 	{
 		transferNumbers(archive, b.i, b.j);
 		transfer(archive, b.history);
-		archive.number(b.rest);
-		if (Archive::restoring) b.constants = setting.bondOf(b.i, b.j);
+		double neck = b.constants.neck;
+		transferNumbers(archive, b.rest, neck);
+		if (Archive::restoring) b.constants = setting.bondOf(b.i, b.j, neck);
 	}
 
 	Contact get(const ContactList& list, int lane, const Setting& setting) { return setting.contactOf(list, lane); }
@@ -67,6 +68,14 @@ namespace {
 		transfer(archive, domain.sums.dissipated);
 		transferNumbers(archive, domain.sums.eventWork, domain.sums.meanField);
 		transfer(archive, domain.sums.boundary);
+		std::size_t early = domain.early.size();
+		archive.number(early);
+		domain.early.resize(early);
+		for (EarlyKick& kick : domain.early) {
+			archive.number(kick.grain);
+			transfer(archive, kick.force);
+			transfer(archive, kick.torque);
+		}
 		transfer(archive, domain.constraints);
 		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks, domain.changed,
 		        domain.stepsSinceSort);
@@ -90,9 +99,15 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(setting.material.size(), named("the number of materials"));
 	archive.same(setting.linearDamping, named("linearDamping"));
 	archive.same(setting.neck, named("neck"));
+	std::size_t necks = setting.necks.size();
+	archive.number(necks);
+	setting.necks.resize(necks);
+	for (double& neck : setting.necks)
+		archive.number(neck);
 	archive.same(bool(setting.mechanisms & Sliding), named("sliding"));
 	archive.same(bool(setting.mechanisms & Rolling), named("rolling"));
 	archive.same(bool(setting.mechanisms & Twisting), named("twisting"));
+	archive.same(int(setting.limit), named("limit (0: held, 1: cut)"));
 	archive.same(setting.dt, named("the small step"));
 	for (std::size_t kind = 0; kind < setting.material.size(); ++kind)
 		for (const MaterialRow& row : materialList)

@@ -48,8 +48,10 @@ ContactNow contactNow(const Dynamics& dynamics, const BondList& list, int lane)
 	const Setting& setting = dynamics.state();
 	const Bond b = list.get(lane, setting.commonBond);
 	const Grain &one = setting.grains[b.i], &two = setting.grains[b.j];
-	ContactNow n { dynamics.given(b.i), dynamics.given(b.j), setting.constantsOf(b.i, b.j), b.history,
-		geometryOf(separationOf(one, two), b.rest), {}, velocityOf(one) - velocityOf(two), { 0, 0, 0 }, true, b.constants, b.rest };
+	Vec3<double> separation = separationOf(one, two);
+	const Image image = nearestImage(dynamics.cell(), separation);
+	ContactNow n { dynamics.given(b.i), dynamics.given(b.j), setting.constantsOf(b.i, b.j), b.history, geometryOf(separation, b.rest),
+		{}, velocityOf(one) - velocityOf(two) + image.velocity, image.shift, true, b.constants, b.rest };
 	n.forces = bondForces(b.constants, n.geometry, b.history);
 	return n;
 }
@@ -64,7 +66,9 @@ double normalForceNow(const Dynamics& dynamics, const Contact& c)
 
 double normalForceNow(const Dynamics& dynamics, const Bond& b)
 {
-	const auto g = geometryOf(separationOf(dynamics.state().grains[b.i], dynamics.state().grains[b.j]), b.rest);
+	Vec3<double> separation = separationOf(dynamics.state().grains[b.i], dynamics.state().grains[b.j]);
+	nearestImage(dynamics.cell(), separation);
+	const auto g = geometryOf(separation, b.rest);
 	return bondForces(b.constants, g, b.history).normalForce;
 }
 

@@ -22,20 +22,24 @@ Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
         , lists(setting, begin_, end_)
         , contacts { { setting.uniform, setting.hasDrag(), dummy_ }, { setting.uniform, setting.hasDrag(), dummy_ },
 	        { setting.uniform, setting.hasDrag(), dummy_ } }
-        , bonds { { setting.uniform, dummy_ }, { setting.uniform, dummy_ }, { setting.uniform, dummy_ } }
+        , bonds { { setting.uniformBonds(), dummy_ }, { setting.uniformBonds(), dummy_ }, { setting.uniformBonds(), dummy_ } }
         , s(setting)
         , dummy(dummy_)
 {
 	for (int sort = 0; sort < 3; ++sort)
 		eventCalls[sort] = { this, sort };
-	const double distance = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
-	s.grains[dummy] = Grain {};
-	s.grains[dummy + 1] = Grain {};
-	s.grains[dummy].x = distance;
+	placeDummies();
 	for (ContactList& list : contacts)
 		list.setDeadConstants(s.common);
 	for (BondList& list : bonds)
-		list.setDead(s.commonBond, distance);
+		list.setDead(s.commonBond, s.grains[dummy].x);
+}
+
+void Domain::placeDummies()
+{
+	s.grains[dummy] = Grain {};
+	s.grains[dummy + 1] = Grain {};
+	s.grains[dummy].x = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
 }
 
 ForcePass Domain::passFor(int sort)
@@ -45,7 +49,7 @@ ForcePass Domain::passFor(int sort)
 	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), &cell, 0,
 		list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation,
 		books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf,
-		nullptr };
+		nullptr, s.limit == LimitRule::Cut };
 }
 
 void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
@@ -62,6 +66,7 @@ void Domain::addFirstForces()
 	sums.eventWork = 0;
 	lists.beginStep();
 	sortIfWorthwhile();
+	early.clear();
 	if (cell.on) sums.boundary.arrive(cell, s.dt);
 	constraints.begin();
 	addForces(First, 0, contacts[First].blockCount(), false);
@@ -146,7 +151,8 @@ ContactMotion Domain::motionOf(int i, int j, Image& image) const
 	image = nearestImage(cell, separation);
 	const double inverseMass =
 	        inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
-	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity };
+	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity,
+		inverseInertiaOf(s.inverseInertia[i], s.blocked[i]), inverseInertiaOf(s.inverseInertia[j], s.blocked[j]) };
 }
 
 // Positions move by velocity * dt, and by where a script has put the grains since.
@@ -166,6 +172,13 @@ void Domain::book(const ContactStepResult& r, const ContactMotion& m, const Imag
 	sums.eventWork += r.workBefore - 0.5 * contact_law::events::work(m, r.force, r.torque1, r.torque2);
 	if (cell.on) sums.boundary.addEarly(image.shift, r.force, r.forceBefore);
 	++events;
+}
+
+void Domain::keepEarly(int i, int j, const ContactStepResult& r)
+{
+	const Vec3<double> force = r.forceBefore - 0.5 * r.force;
+	if (owns(i)) early.push_back({ i, force, r.torqueBefore1 - 0.5 * r.torque1 });
+	if (owns(j)) early.push_back({ j, -force, r.torqueBefore2 - 0.5 * r.torque2 });
 }
 
 void Domain::addAlone(int sort, int i, int j, const ContactStepResult& r, const Image& image)
@@ -201,8 +214,9 @@ void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& fo
 	}
 
 	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
-	const ContactStepResult r = contactStepWith[s.mechanisms](constants, m, before, h);
+	const ContactStepResult r = contactStepWith[s.mechanisms](constants, s.limit, m, before, h);
 	book(r, m, image, sort);
+	keepEarly(i, j, r);
 	write(r.force, forces.force, k);
 	write(r.torque1, forces.torque1, k);
 	write(r.torque2, forces.torque2, k);
@@ -238,7 +252,7 @@ bool Domain::formContact(const NeighbourPair& pair)
 	Image image;
 	const ContactMotion m = motionOf(i, j, image);
 	Contact c { i, j, {}, s.constantsOf(i, j) };
-	const auto r = contactStepWith[s.mechanisms](c.constants, m, ContactBefore {}, c.history);
+	const auto r = contactStepWith[s.mechanisms](c.constants, s.limit, m, ContactBefore {}, c.history);
 	if (!r.touching) return false;
 	c.drag = r.now.drag;
 	c.overlap = r.geometry.overlap;
@@ -246,6 +260,7 @@ bool Domain::formContact(const NeighbourPair& pair)
 	if (sort != Second) ++formed;
 	++changed;
 	book(r, m, image, sort);
+	keepEarly(i, j, r);
 	addAlone(sort, i, j, r, image);
 	contacts[sort].append(c);
 	return true;

@@ -15,6 +15,12 @@ struct StepSums { // since the start, and (eventWork) of the latest step's event
 	        0; // taken out of the kinetic energy by changes of the cell's velocity gradient and by the convective acceleration [J]
 };
 
+// Of a grain's kick by events of the latest step: what belongs before this instant beyond the half.
+struct EarlyKick {
+	int grain;
+	Vec3<double> force, torque;
+};
+
 /* The moment a step ago of a pair whose springs rest at a distance `rest`: the first grain stood at `then` from the second, and the pointers of `h` had not
  * turned yet. Constants: of a contact or of a bond. */
 template <class Constants>
@@ -45,6 +51,9 @@ public:
 	void findCompleted();    // where in the sorted contacts grains have had their last one
 	void placeOverlapping(); // contacts of all pairs that overlap already, with unstrained springs
 	void placeBonds();       // between all grains that touched before they shrank
+	using AllBonds = std::array<std::vector<Bond>, 3>;
+	AllBonds sintered(double neck) const; // the bonds, and all contacts as bonds of this neck
+	void setBonds(const AllBonds&);       // in place of all bonds and contacts; to be followed by findPairs()
 	void place(const Bond&);
 	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and markTouching()
 	void place(const std::vector<Constrained>&);
@@ -65,6 +74,7 @@ public:
 	long events = 0;
 	long formed = 0, broke = 0; // contacts (bonds not among them) so far; a border contact where its first grain lives
 	StepSums sums;
+	std::vector<EarlyKick> early;          // of own grains
 	ContactList contacts[3];               // both grains own; the first; the second
 	int sortedBlocks = 0;                  // of the contacts with both grains own
 	long changed = 0, stepsSinceSort = 0;  // contacts that formed or broke since the latest sorting
@@ -90,6 +100,7 @@ private:
 	void sortIfWorthwhile();
 	static void eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
 	void eventOf(int sort, int lane, const ContactBlock& before, LaneForces& forces);
+	void placeDummies();
 	BondPass bondPassFor(int sort);
 	void addBondForces();
 	static void breaksOf(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
@@ -100,6 +111,7 @@ private:
 	ContactMotion motionOf(int i, int j, Image&) const;
 	Vec3<double> separationAStepAgo(int i, int j, const ContactMotion&) const;
 	void book(const ContactStepResult&, const ContactMotion&, const Image&, int sort);
+	void keepEarly(int i, int j, const ContactStepResult&);
 	void addAlone(int sort, int i, int j, const ContactStepResult&, const Image&); // kicks of a contact that no pass scatters
 	bool owns(int grain) const { return grain >= begin && grain < end; }
 	Sort sortOf(int i, int j) const { return owns(i) && owns(j) ? Both : owns(i) ? First : Second; }

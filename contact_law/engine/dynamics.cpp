@@ -1,4 +1,4 @@
-#include "contacts.hpp"
+#include "exchange.hpp"
 #include <algorithm>
 #include <omp.h>
 #include <stdexcept>
@@ -18,7 +18,6 @@ namespace {
 	constexpr double worn = 1.5;              // groups are put in order again when their edges have grown by this
 	constexpr double mostStepsToCheck = 8; // from one check of the neighbour lists to the next
 	constexpr int grainsInDomain = 6000, mostDomains = 64; // at least, and at most, where the scene decides
-	constexpr double leastKick = 1e-8;     // bound on kicks in r/dt: a pair a hundredth of a radius apart is then not looked at for a thousand steps
 	constexpr double boxMargin = 3;        // how much further groups are taken for nearby than they need be, over the largest radius
 }
 
@@ -40,6 +39,7 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
         : options(options_)
 {
 	prepare(grains, materials);
+	setting.necks = inherited.necks();
 	orderGrains(positionsOf(grains));
 	loadGrains(grains);
 	makeDomains();
@@ -56,23 +56,19 @@ void Dynamics::prepare(const Grains& grains, const Materials& materials)
 	setting.material = materials;
 	setting.linearDamping = options.linearDamping;
 	setting.neck = options.neck;
+	if (setting.neck > 0) setting.necks = { setting.neck };
 	setting.mechanisms = options.mechanisms;
+	setting.limit = options.limit;
 	setting.dt = options.dt;
 	setting.convective = options.convective;
 }
 
 void Dynamics::loadGrains(const Grains& grains)
 {
-	const double shrunk = neck::shrunkRadius(setting.neck);
-	double& smallest = setting.smallestRadius;
-	smallest = shrunk * grains[0].radius;
 	for (int k = 0; k < count; ++k) {
 		const GrainInput& g = grains[original[k]];
-		smallest = std::min(smallest, shrunk * g.radius);
-		setting.largestRadius = std::max(setting.largestRadius, shrunk * g.radius);
 		setting.grains.push_back(Grain {});
 		copyMotion(g, setting.grains.back());
-		setting.radius.push_back(shrunk * g.radius);
 		setting.grainRadius.push_back(g.radius);
 		setting.kind.push_back(g.kind);
 		setting.blocked.push_back(g.blocked);
@@ -81,12 +77,7 @@ void Dynamics::loadGrains(const Grains& grains)
 		setting.inverseInertia.push_back(1 / g.inertia);
 		setting.uniform = setting.uniform && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
 	}
-	const Material& m = setting.material[setting.kind[0]];
-	const double r = setting.grainRadius[0];
-	setting.common = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
-	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.neck);
-	setting.farGap = 0.8 * smallest;
-	setting.leastKick = leastKick * smallest / setting.dt;
+	shrinkGrains();
 }
 
 void copyMotion(const GrainMotion& g, Grain& grain)

@@ -42,6 +42,7 @@ public:
 		double dt = 0, linearDamping = 0;
 		double neck = 0; // of sintered bonds over the grains' radius; 0: none
 		unsigned mechanisms = AllSprings;
+		LimitRule limit = LimitRule::Held;
 		int domains = 0, threads = 1; // domains = 0: by the number of grains
 		std::string instructions;            // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool orientations = false;           // whether to follow the grains' orientations
@@ -77,6 +78,9 @@ public:
 	/* A periodic cell's mean velocity field x gradient: what is added to it now is added to every grain (by its unwrapped position), and from now on
 	 * `convective` (diagonal, 1/s) times their velocity accelerates grains. */
 	void setMeanField(const Vec3<double>& added, const Vec3<double>& convective);
+	/* All contacts become bonds of this neck, without strain where they are, beside existing bonds, which keep their own; all grains
+	 * shrink by the largest neck. What the contacts held is booked as disconnection. */
+	void sinter(double neck);
 	void setThreads(int threads) { options.threads = threads; }
 
 	// ---- its state ----
@@ -107,6 +111,8 @@ private:
 	void loadGrains(const Grains&);
 	int domainCount() const;
 	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
+	void shrinkGrains();
+	void bringVelocitiesToPositions();
 	void makeDomains();
 	void inherit(const Inherited&);
 	void completeInheritedStep();

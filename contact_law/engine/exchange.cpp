@@ -1,6 +1,15 @@
 #include "exchange.hpp"
+#include <set>
 
 namespace contact_law {
+
+std::vector<double> Inherited::necks() const
+{
+	std::set<double> found;
+	for (const One& one : contacts)
+		if (one.bonded) found.insert(one.neck);
+	return { found.begin(), found.end() };
+}
 
 void Dynamics::inherit(const Inherited& inherited)
 {
@@ -14,7 +23,7 @@ void Dynamics::inherit(const Inherited& inherited)
 		const int a = indexHere[one.first], b = indexHere[one.second], i = std::min(a, b), j = std::max(a, b);
 		const ContactHistory<double> history = a < b ? one.history : swapped(one.history);
 		for (auto& domain : domains)
-			one.bonded ? domain->place(Bond { i, j, history, one.rest, setting.bondOf(i, j) })
+			one.bonded ? domain->place(Bond { i, j, history, one.rest, setting.bondOf(i, j, one.neck) })
 			           : domain->place(Contact { i, j, history, setting.constantsOf(i, j), one.drag, one.overlap, velocityBefore(i, j) });
 	}
 	for (auto& domain : domains)

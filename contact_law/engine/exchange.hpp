@@ -11,13 +11,15 @@ struct Inherited {
 		ContactHistory<double> history; // laboratory frame
 		double overlap, drag;           // at the moment of the history
 		bool bonded = false;
-		double rest = 0; // of a bond
+		double rest = 0, neck = 0; // of a bond
 	};
 	std::vector<One> contacts;
 	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
 	 * scenes with drag `previous`, the velocities another step before. Otherwise all is of one moment. */
 	bool stepBehind = false;
 	std::vector<Vec3<double>> previous;
+
+	std::vector<double> necks() const; // of the bonds, each once
 };
 
 // As YADE's loop leaves grains after a step: moved on by a small step, velocities of half a step before that, contacts as they are now.

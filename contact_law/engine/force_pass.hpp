@@ -22,19 +22,31 @@ struct alignas(64) BatchBuffer {
 	LaneForces out;
 };
 
+template <class Pack> double sumOf(const Pack& p)
+{
+	alignas(64) double values[lanes];
+	p.store(values);
+	double sum = 0;
+	for (int lane = 0; lane < Pack::width; ++lane)
+		sum += values[lane];
+	return sum;
+}
+
 // What a pass knows of the periodic cell: nothing in open space.
 template <class Pack, bool periodic> struct Crossing {
-	explicit Crossing(const ForcePass&) {}
+	explicit Crossing(const PeriodicCell*) {}
 };
 template <class Pack> struct Crossing<Pack, true> {
 	const Images<Pack> images;
 	alignas(64) double shift[batchSize][3][lanes];     // cells by which the first grain is shifted to be nearest to the second
 	Vec3<Pack> kicks { Pack(0.), Pack(0.), Pack(0.) }; // sum of shift times force
 
-	explicit Crossing(const ForcePass& pass)
-	        : images(*pass.cell)
+	explicit Crossing(const PeriodicCell* cell)
+	        : images(*cell)
 	{
 	}
+	void add(const Vec3<Pack>& shifted, const Vec3<Pack>& force) { kicks = kicks + Images<Pack>::times(shifted, force); }
+	void addTo(Vec3<double>& sum) const { sum = sum + Vec3<double> { sumOf(kicks.x), sumOf(kicks.y), sumOf(kicks.z) }; }
 };
 
 template <class Pack> struct Passes {
@@ -163,9 +175,16 @@ template <class Pack> struct Passes {
 		ContactForces<Pack> f = ContactForces<Pack>::none();
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
-		const unsigned events = buffer.events >> at & allLanes, slips = bitsOf(beyondLimits<mechanisms>(c, f, h.twist)) & ~events;
+		unsigned events = buffer.events >> at & allLanes, slips = bitsOf(beyondLimits<mechanisms>(c, f, h.twist)) & ~events;
+		if (__builtin_expect((events | slips) != 0, 0)) {
+			keep(old, before, at);
+			if (pass.cut) {
+				buffer.events |= slips << at;
+				events |= slips;
+				slips = 0;
+			}
+		}
 		if constexpr (bool(mechanisms & Drag)) keepDrag(c, pass.drags[index], buffer, events, at, lost);
-		if (__builtin_expect((events | slips) != 0, 0)) keep(old, before, at);
 		buffer.slips |= slips << at;
 		keep(h, block, at);
 	}
@@ -261,7 +280,7 @@ template <class Pack> struct Passes {
 		BatchBuffer buffers[batchSize];
 		const PairConstants<Pack> same = spread(*pass.uniform);
 		DissipationOf<Pack> lost;
-		Crossing<Pack, periodic> crossing(pass);
+		Crossing<Pack, periodic> crossing(pass.cell);
 		int trash[lanes];
 		for (int& t : trash)
 			t = pass.trash;
@@ -296,17 +315,14 @@ template <class Pack> struct Passes {
 				const int* to2 = pass.addSecond ? blocks[b].j : trash;
 				for (int at = 0; at < lanes; at += width) {
 					const Vec3<Pack> f = scatter(pass.grains, to1, to2, buffers[b].out, at);
-					if constexpr (periodic)
-						crossing.kicks = crossing.kicks + Images<Pack>::times(load(crossing.shift[b], at), f);
+					if constexpr (periodic) crossing.add(load(crossing.shift[b], at), f);
 				}
 			}
 			if (pass.batchDone) pass.batchDone(pass.owner, batch);
 		}
 		for (std::size_t k = 0; k < std::size(lostChannels); ++k)
 			pass.dissipated->*lostChannels[k].member += sumOf(lost.*lostChannelsOf<Pack>[k].member);
-		if constexpr (periodic)
-			*pass.crossing =
-			        *pass.crossing + Vec3<double> { sumOf(crossing.kicks.x), sumOf(crossing.kicks.y), sumOf(crossing.kicks.z) };
+		if constexpr (periodic) crossing.addTo(*pass.crossing);
 	}
 
 	template <unsigned mechanisms, bool uniform>
@@ -347,19 +363,9 @@ template <class Pack> struct Passes {
 			to.*storedChannels[k].member = sumOf(from.*storedChannelsOf<Pack>[k].member);
 	}
 
-	static double sumOf(const Pack& p)
-	{
-		alignas(64) double values[lanes];
-		p.store(values);
-		double sum = 0;
-		for (int lane = 0; lane < width; ++lane)
-			sum += values[lane];
-		return sum;
-	}
-
 	static InstructionSet all(const char* name, decltype(InstructionSet::integrate) integrate)
 	{
-		InstructionSet set { name, {}, {}, &sumOfProduct, integrate, nullptr, nullptr, {} };
+		InstructionSet set { name, {}, {}, &sumOfProduct, integrate, {}, nullptr, {} };
 		fill<0>(set);
 		return set;
 	}

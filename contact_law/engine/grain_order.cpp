@@ -31,7 +31,7 @@ namespace {
 	}
 
 	// Where a branch within a domain is cut: between groups, then in the middle.
-	int cut(int first, int last)
+	int middleOf(int first, int last)
 	{
 		const int size = last - first;
 		return first + (size > grainsInGroup ? (size / grainsInGroup + 1) / 2 * grainsInGroup : size / 2);
@@ -51,7 +51,7 @@ void Dynamics::orderGrains(const Positions& positions)
 		const bool oneDomain = b.lastDomain - b.firstDomain == 1;
 		if (oneDomain && b.last - b.first <= leaf) continue;
 		const int middleDomain = (b.firstDomain + b.lastDomain) / 2;
-		const int middle = oneDomain ? cut(b.first, b.last) : beginOf(middleDomain);
+		const int middle = oneDomain ? middleOf(b.first, b.last) : beginOf(middleDomain);
 		const int axis = widestAxis(positions, original.data() + b.first, original.data() + b.last);
 		std::nth_element(original.begin() + b.first, original.begin() + middle, original.begin() + b.last, [&](int i, int j) {
 			const double x = (&positions[i].x)[axis], y = (&positions[j].x)[axis];
@@ -130,6 +130,9 @@ void Dynamics::reorder()
 	arrange(setting.blocked, from);
 	for (Constrained& c : constrained)
 		c.grain = to[c.grain];
+	for (auto& domain : domains)
+		for (EarlyKick& early : domain->early)
+			early.grain = to[early.grain];
 	for (auto& domain : domains) {
 		for (const Contact& c : contacts)
 			domain->place(renumbered(c, to[c.i], to[c.j]));

@@ -18,13 +18,16 @@ struct Setting {
 	std::vector<Orientation> orientation;                    // likewise; none where the scene doesn't ask for them
 	std::vector<unsigned> blocked;                           // likewise (kernel/blocked.hpp)
 	double linearDamping = 0;
-	double neck = 0; // radius of sintered bonds' necks over that of the grains; 0: none
+	double neck = 0; // radius of sintered bonds' necks over that of the grains, the largest, by which all grains have shrunk; 0: none
+	std::vector<double> necks; // of the bonds in the scene, each once
 	bool uniform = true;
 	PairConstants<double> common {};     // of the first grain with itself; of every pair when all grains are equal
-	BondConstants<double> commonBond {}; // likewise
+	BondConstants<double> commonBond {}; // likewise, when all bonds are of one neck
 	unsigned mechanisms = AllSprings;
+	LimitRule limit = LimitRule::Held;
 	double dt = 0, farGap = 0, smallestRadius = 0, largestRadius = 0; // farGap: between the surfaces of pairs in the neighbour lists
-	double leastKick = 0; // least bound on the change of a velocity in a step [m/s] (pair_lists.hpp)
+	double leastKick = 0; // least bound on the change of a velocity in a step [m/s] (pair_lists.hpp), over r/dt:
+	static constexpr double leastKickOver = 1e-8; // a pair a hundredth of a radius apart is then not looked at for a thousand steps
 	Vec3<double> convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
 	const InstructionSet* passes = nullptr;
 	std::vector<Vec3<double>> displaced; // of each grain, by a script since the latest step [m]; empty when none was
@@ -47,9 +50,10 @@ struct Setting {
 		        ? common
 		        : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);
 	}
-	BondConstants<double> bondOf(int i, int j) const
+	bool uniformBonds() const { return uniform && necks.size() <= 1; }
+	BondConstants<double> bondOf(int i, int j, double beta) const
 	{
-		return uniform ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], neck);
+		return uniformBonds() ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], beta);
 	}
 };
 

@@ -4,21 +4,40 @@
 
 namespace contact_law {
 
-double unstableStep(const Dynamics& dynamics)
+namespace {
+	// visit(a grain), of each kind
+	template <class Visit> void eachKind(const Dynamics& dynamics, Visit&& visit)
+	{
+		const Setting& setting = dynamics.state();
+		std::set<std::pair<int, double>> seen;
+		for (int k = 0; k < dynamics.grainCount(); ++k)
+			if (seen.emplace(setting.kind[k], setting.grainRadius[k]).second) visit(k);
+	}
+}
+
+double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 {
 	const Setting& setting = dynamics.state();
-	const bool bonded = bondCount(dynamics) > 0;
 	double least = 1e300;
-	std::set<std::pair<int, double>> seen;
-	for (int k = 0; k < dynamics.grainCount(); ++k) {
-		if (!seen.emplace(setting.kind[k], setting.radius[k]).second) continue;
-		const PairConstants<double> c = setting.constantsOf(k, k);
-		if (bonded)
-			least = std::min(
-			        least, 2 / fastestVibration(setting.bondOf(k, k), setting.inverseMass[k], setting.inverseInertia[k]));
+	eachKind(dynamics, [&](int k) {
+		const Material& m = setting.material[setting.kind[k]];
+		const BondConstants<double> b = deriveBond(m, setting.grainRadius[k], m, setting.grainRadius[k], neck);
+		least = std::min(least, 2 / fastestVibration(b, setting.inverseMass[k], setting.inverseInertia[k]));
+	});
+	return least;
+}
+
+double unstableStep(const Dynamics& dynamics)
+{
+	double least = 1e300;
+	eachKind(dynamics, [&](int k) {
+		const PairConstants<double> c = dynamics.state().constantsOf(k, k);
 		const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
 		least = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
-	}
+	});
+	if (bondCount(dynamics) > 0)
+		for (const double neck : dynamics.state().necks)
+			least = std::min(least, unstableStepOfBonds(dynamics, neck));
 	return least;
 }
 

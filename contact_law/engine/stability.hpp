@@ -9,5 +9,7 @@ class Dynamics;
  * collisions were seen to blow up, m* over the drag coefficient, where drag overshoots with its velocity extrapolated, or 2 over the fastest vibration of a
  * bonded pair. */
 double unstableStep(const Dynamics&);
+// The same for bonds of another neck [s].
+double unstableStepOfBonds(const Dynamics&, double neck);
 
 } // namespace contact_law

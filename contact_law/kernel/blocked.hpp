@@ -14,6 +14,9 @@ inline Vec3<double> componentsOf(const Vec3<double>& v, unsigned bits)
 inline Vec3<double> blockedForce(const Vec3<double>& force, unsigned blocked) { return componentsOf(force, blocked & 7); }
 inline Vec3<double> blockedTorque(const Vec3<double>& torque, unsigned blocked) { return componentsOf(torque, blocked >> 3 & 7); }
 
+// 1/inertia that a torque meets: none turns a grain whose turning is blocked about all axes.
+inline double inverseInertiaOf(double inverseInertia, unsigned blocked) { return (blocked >> 3 & 7) == 7 ? 0 : inverseInertia; }
+
 // 1/mass that an impulse along a direction (of any length) meets: an impulse J adds J^2/2 of it to the kinetic energy of a grain at rest.
 inline double inverseMassAlong(const Vec3<double>& direction, double inverseMass, unsigned blocked)
 {

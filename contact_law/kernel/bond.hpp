@@ -22,7 +22,8 @@ namespace contact_law {
 	_(slidingStiffness, "k_st [N/m].")                                                                                                 \
 	_(rollingStiffness, "k_sr/R^2 [N/m], on the rolling displacement R(n1+n2), whose length is R times the angle of the tilt.")        \
 	_(twistingStiffness, "k_sw [N m].")                                                                                                \
-	_(breakingEnergy, "pi a^2 gamma [J]: the bond breaks when one mode holds it.")
+	_(breakingEnergy, "pi a^2 gamma [J]: the bond breaks when one mode holds it.")                                                     \
+	_(neck, "beta: neckRadius [m] over R_g = 2 r1 r2/(r1 + r2) [m].")
 
 template <class T> struct BondConstants {
 #define CONTACT_LAW_MEMBER(name, ...) T name;
@@ -53,6 +54,7 @@ inline BondConstants<double> deriveBond(const Material& material1, double radius
 	b.slidingStiffness = area * G / d;                       // S17 (4)
 	b.rollingStiffness = area * a * a * E / (4 * d * R * R); // S17 (5)
 	b.twistingStiffness = area * a * a * G / (2 * d);        // polar moment of a disk; S17 is planar and has none
+	b.neck = beta;
 	b.breakingEnergy = area * std::sqrt(material1.surfaceEnergy) * std::sqrt(material2.surfaceEnergy);
 	return b;
 }

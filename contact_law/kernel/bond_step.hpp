@@ -6,11 +6,6 @@
 
 namespace contact_law {
 
-struct BondMotion {
-	ContactMotion contact;
-	double inverseInertia1, inverseInertia2; // 1/I of the grains
-};
-
 struct BondStepResult {
 	ContactStepResult contact; // touching = false: nothing is left
 	bool bonded = true;
@@ -18,39 +13,21 @@ struct BondStepResult {
 };
 
 namespace bonds {
-	// Kicks of one contact at this instant: what belongs before it and what after.
-	struct Kicks {
-		Vec3<double> force { 0, 0, 0 }, torque1 { 0, 0, 0 }, torque2 { 0, 0, 0 };
-
-		void add(double ofNormal, double ofSprings, const ContactGeometry<double>& g, const ContactForces<double>& f)
-		{
-			force = force + (ofNormal * (f.normalForce + f.drag)) * g.normal + ofSprings * f.sliding;
-			torque1 = torque1 + ofSprings * f.torque1;
-			torque2 = torque2 + ofSprings * f.torque2;
-		}
-		double squared(const BondMotion& m) const // kinetic energy that they would give to grains at rest, twice over dt^2
-		{
-			return dot(force, force) * m.contact.inverseMass + dot(torque1, torque1) * m.inverseInertia1
-			        + dot(torque2, torque2) * m.inverseInertia2;
-		}
-	};
-
 	/* The bond broke after a fraction of the step: its last kicks covered half a step, what is missing to the fraction follows now.
 	 * Shrunk grains that overlap now touch since then, or since they overlapped, with unstrained springs: S17's new contact. What
 	 * disappears is all that the bond held, less what the new contact holds and what the kicks take out of the step, less what
 	 * unequal half kicks lose in a leapfrog (contact_step.hpp). */
 	template <unsigned mechanisms>
-	inline BondStepResult broken(const BondConstants<double>& b, const PairConstants<double>& c, const BondMotion& motion,
+	inline BondStepResult broken(const BondConstants<double>& b, const PairConstants<double>& c, const ContactMotion& m,
 	        const ContactBefore& before, const ContactGeometry<double>& bondGeometry, const ContactForces<double>& bond,
 	        const Breaking& breaking, ContactHistory<double>& h)
 	{
-		const ContactMotion& m = motion.contact;
 		BondStepResult result;
 		ContactStepResult& r = result.contact;
 		result.bonded = false;
 		result.mode = breaking.mode;
 		double released = heldAfterHalfKick(b, before, bondGeometry, bond, h.twist);
-		Kicks ahead, after;
+		events::Kicks ahead, after;
 		ahead.add(breaking.fraction - 0.5, breaking.fraction - 0.5, bondGeometry, bond);
 
 		r.geometry = geometryOf(m.separation, c.radius1 + c.radius2);
@@ -68,10 +45,11 @@ namespace bonds {
 			released -= total(r.stored) + total(r.dissipated);
 		}
 		r.forceBefore = ahead.force;
-		r.workBefore = events::work(m, ahead.force, ahead.torque1, ahead.torque2);
-		const double onBoth = r.workBefore + m.dt * dot(ahead.force, m.imageVelocity); // that on a periodic cell's boundaries too
+		r.torqueBefore1 = ahead.torque1;
+		r.torqueBefore2 = ahead.torque2;
+		r.workBefore = ahead.work(m);
 		r.dissipated.*bondBreakingBy[breaking.mode] =
-		        released - onBoth + (after.squared(motion) - ahead.squared(motion)) * m.dt * m.dt / 2;
+		        released - ahead.workOnPair(m) + (after.squared(m) - ahead.squared(m)) * m.dt * m.dt / 2;
 		r.force = ahead.force + after.force;
 		r.torque1 = ahead.torque1 + after.torque1;
 		r.torque2 = ahead.torque2 + after.torque2;
@@ -92,15 +70,14 @@ inline double newBond(const Vec3<double>& separation, ContactHistory<double>& hi
  * and the shrunk grains of `c` overlap, result and history are those of the ordinary contact that takes its place. `mechanisms` are
  * those of ordinary contacts; a bond has all springs, and no drag. */
 template <unsigned mechanisms>
-inline BondStepResult bondStep(const BondConstants<double>& b, const PairConstants<double>& c, const BondMotion& motion,
+inline BondStepResult bondStep(const BondConstants<double>& b, const PairConstants<double>& c, const ContactMotion& m,
         const ContactBefore& before, double rest, ContactHistory<double>& history)
 {
-	const ContactMotion& m = motion.contact;
 	const ContactGeometry<double> g = geometryOf(m.separation, rest);
 	history.twist += twisting::increment(g.normal, g.inverseDistance, m.velocity, m.spin1 - m.spin2, m.dt);
 	const ContactForces<double> f = bondForces(b, g, history);
 	const bonds::Breaking breaking = bonds::firstBreaking(b, before, g, f, history.twist);
-	if (breaking.mode >= 0) return bonds::broken<mechanisms>(b, c, motion, before, g, f, breaking, history);
+	if (breaking.mode >= 0) return bonds::broken<mechanisms>(b, c, m, before, g, f, breaking, history);
 
 	BondStepResult result;
 	ContactStepResult& r = result.contact;
@@ -112,12 +89,14 @@ inline BondStepResult bondStep(const BondConstants<double>& b, const PairConstan
 	r.torque1 = f.torque1;
 	r.torque2 = f.torque2;
 	r.forceBefore = 0.5 * r.force;
+	r.torqueBefore1 = 0.5 * r.torque1;
+	r.torqueBefore2 = 0.5 * r.torque2;
 	r.workBefore = 0.5 * events::work(m, r.force, r.torque1, r.torque2);
 	return result;
 }
 
 // bondStep by the mechanisms of ordinary contacts, for callers that know them at run time only.
-using BondStep = BondStepResult (*)(const BondConstants<double>&, const PairConstants<double>&, const BondMotion&, const ContactBefore&,
+using BondStep = BondStepResult (*)(const BondConstants<double>&, const PairConstants<double>&, const ContactMotion&, const ContactBefore&,
         double, ContactHistory<double>&);
 
 template <size_t... mechanisms> constexpr std::array<BondStep, sizeof...(mechanisms)> bondSteps(std::index_sequence<mechanisms...>)

@@ -73,6 +73,7 @@ struct ContactMotion {
 	double dt;
 	double inverseMass;                     // 1/m1 + 1/m2
 	Vec3<double> imageVelocity { 0, 0, 0 }; // of it, what is not the grains' own but the motion of a periodic cell's boundaries
+	double inverseInertia1 = 0, inverseInertia2 = 0; // 1/I of the grains
 };
 
 // What the ledger and the drag need of the moment one step ago.
@@ -88,7 +89,8 @@ struct ContactBefore {
 struct ContactStepResult {
 	bool touching = false, pointersMoved = false;                             // moved by a slip, or new
 	Vec3<double> force { 0, 0, 0 }, torque1 { 0, 0, 0 }, torque2 { 0, 0, 0 }; // kicks over dt; minus `force` on grain 2
-	Vec3<double> forceBefore { 0, 0, 0 };                                     // the part of `force` that belongs before this instant
+	Vec3<double> forceBefore { 0, 0, 0 }, torqueBefore1 { 0, 0, 0 },
+	        torqueBefore2 { 0, 0, 0 }; // of them, what belongs before this instant
 	double workBefore = 0; // work of the part of the kicks that belongs before this instant: kinetic energy now minus half a step ago
 	ContactGeometry<double> geometry {};
 	ContactForces<double> now {}; // the forces at this instant

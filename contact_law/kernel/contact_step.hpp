@@ -7,73 +7,85 @@
 // MODEL.md, "The integrator and the ledger", derives each line.
 #pragma once
 #include "contact.hpp"
+#include "cut.hpp"
 #include "events.hpp"
+#include "limit_rule.hpp"
 #include <array>
 #include <utility>
 
 namespace contact_law {
 
 /* The kicks of a contact that touches now: what belongs before this instant (`normalBefore` along the normal, a fraction of the springs'
- * forces), and half a step's forces after it.
+ * forces, and what cut springs gave beyond that), and half a step's forces after it.
  * r.now is the contact at this instant. */
-inline void setKicks(const ContactMotion& m, double normalBefore, double springsBefore, ContactStepResult& r)
+inline void setKicks(const ContactMotion& m, double normalBefore, double springsBefore, const events::Kicks& ofCuts, ContactStepResult& r)
 {
 	const double after = 0.5;
-	r.forceBefore = normalBefore * r.geometry.normal + springsBefore * r.now.sliding;
-	r.workBefore = events::work(m, r.forceBefore, springsBefore * r.now.torque1, springsBefore * r.now.torque2);
+	r.forceBefore = normalBefore * r.geometry.normal + springsBefore * r.now.sliding + ofCuts.force;
+	r.torqueBefore1 = springsBefore * r.now.torque1 + ofCuts.torque1;
+	r.torqueBefore2 = springsBefore * r.now.torque2 + ofCuts.torque2;
+	r.workBefore = events::work(m, r.forceBefore, r.torqueBefore1, r.torqueBefore2);
 	r.force = r.forceBefore + after * ((r.now.normalForce + r.now.drag) * r.geometry.normal + r.now.sliding);
-	r.torque1 = (springsBefore + after) * r.now.torque1;
-	r.torque2 = (springsBefore + after) * r.now.torque2;
+	r.torque1 = (springsBefore + after) * r.now.torque1 + ofCuts.torque1;
+	r.torque2 = (springsBefore + after) * r.now.torque2 + ofCuts.torque2;
 }
 
-// The contact at this instant: displacements returned to their limits, forces, stored energies. velocity: v1 - v2 now.
+// The contact at this instant: displacements brought within their limits, forces, stored energies. velocity: v1 - v2 now; springsBefore: the
+// fraction of the springs' forces that belongs before this instant. Returns what cut springs add to that.
 template <unsigned mechanisms>
-inline void evaluateNow(const PairConstants<double>& c, const ContactMotion& m, const ContactBefore& before, const Vec3<double>& velocity,
-        ContactHistory<double>& history, ContactStepResult& r)
+inline events::Kicks evaluateNow(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before,
+        const Vec3<double>& velocity, double springsBefore, ContactHistory<double>& history, ContactStepResult& r)
 {
 	const ContactGeometry<double>& g = r.geometry;
-	const bool moved = returnToLimits<mechanisms>(c, g.normal, { before.sliding, before.rolling, before.twist },
-	        { normalRate(g.normal, g.inverseDistance, m.velocity), m.spin1, m.spin2, m.dt }, history, true, r.dissipated);
-	r.pointersMoved = moved || !before.touching;
+	cut::Result cuts;
+	if (limit == LimitRule::Cut)
+		cuts = cutAtLimits(mechanisms, c, g, m, before, springsBefore, history, r.dissipated);
+	else
+		cuts.pointersMoved = returnToLimits<mechanisms>(c, g.normal, { before.sliding, before.rolling, before.twist },
+		        { normalRate(g.normal, g.inverseDistance, m.velocity), m.spin1, m.spin2, m.dt }, history, true, r.dissipated);
+	r.pointersMoved = cuts.pointersMoved || !before.touching;
 	r.touching = true;
 	r.now = contactForces<mechanisms>(c, g, history, velocity);
 	r.stored = storedEnergy(c, r.now, history.twist);
+	return cuts.added;
 }
 
 // A contact that touched a step ago and does now.
 template <unsigned mechanisms>
-inline ContactStepResult keptContact(const PairConstants<double>& c, const ContactMotion& m, const ContactGeometry<double>& g,
-        const ContactBefore& before, ContactHistory<double>& history)
+inline ContactStepResult keptContact(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m,
+        const ContactGeometry<double>& g, const ContactBefore& before, ContactHistory<double>& history)
 {
 	ContactStepResult r;
 	r.geometry = g;
-	evaluateNow<mechanisms>(c, m, before, drag::velocityNow(m.velocity, before.velocity), history, r);
+	const events::Kicks ofCuts =
+	        evaluateNow<mechanisms>(c, limit, m, before, drag::velocityNow(m.velocity, before.velocity), 0.5, history, r);
 	bookDrag<double>(c, { before.drag, before.overlap }, { r.now.drag, g.overlap }, true, r.dissipated);
-	setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, r);
+	setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, ofCuts, r);
 	return r;
 }
 
 /* A contact that touches now and did not a step ago. Its springs grow from zero: half of their force over the fraction of the step.
  * One that overlapped a step ago already and has no history was placed there by the user: nothing is booked for it. */
 template <unsigned mechanisms>
-inline ContactStepResult newContact(const PairConstants<double>& c, const ContactMotion& m, const ContactGeometry<double>& g,
-        const ContactBefore& before, ContactHistory<double>& history)
+inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m,
+        const ContactGeometry<double>& g, const ContactBefore& before, ContactHistory<double>& history)
 {
 	ContactStepResult r;
 	r.geometry = g;
 	const events::Formation formed = events::formationOf(m, c.radius1 + c.radius2, g.overlap);
 	history = events::formedHistory(m, formed.fraction * m.dt);
-	evaluateNow<mechanisms>(c, m, before, m.velocity, history, r);
+	const double f = formed.fraction;
+	const events::Kicks ofCuts = evaluateNow<mechanisms>(c, limit, m, before, m.velocity, formed.inStep ? f / 2 : 0.5, history, r);
 	if (!formed.inStep) {
-		setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, r);
+		setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, ofCuts, r);
 		return r;
 	}
-	const double closing = g.overlap - formed.overlapBefore, f = formed.fraction;
+	const double closing = g.overlap - formed.overlapBefore;
 	const double normalBefore = normal::forceSinceFormation(c, r.stored.normal, closing) + f * r.now.drag;
 	const double impulseBefore = normalBefore * m.dt, impulseAfter = 0.5 * (r.now.normalForce + r.now.drag) * m.dt;
 	r.dissipated.connection = normal::connection(c, impulseBefore, impulseAfter, m.inverseMass);
 	bookDragFraction(c, f, { r.now.drag, g.overlap }, closing, r.dissipated);
-	setKicks(m, normalBefore, f / 2, r);
+	setKicks(m, normalBefore, f / 2, ofCuts, r);
 	return r;
 }
 
@@ -93,6 +105,8 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	r.torque1 = (fraction - 0.5) * f.torque1;
 	r.torque2 = (fraction - 0.5) * f.torque2;
 	r.forceBefore = r.force;
+	r.torqueBefore1 = r.torque1;
+	r.torqueBefore2 = r.torque2;
 	r.workBefore = events::work(m, r.force, r.torque1, r.torque2);
 	r.dissipated.disconnection = normal::disconnection(c, push * m.dt, m.inverseMass);
 	addSpringRelease<mechanisms>(c, before, f, h.twist, fraction, r.dissipated);
@@ -104,23 +118,23 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
  * the step before; it comes back as it is after slips (and made anew for a contact that forms). touching = false in the result: no
  * contact now, and the history has no meaning. */
 template <unsigned mechanisms>
-inline ContactStepResult contactStep(
-        const PairConstants<double>& c, const ContactMotion& m, const ContactBefore& before, ContactHistory<double>& history)
+inline ContactStepResult contactStep(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before,
+        ContactHistory<double>& history)
 {
 	const ContactGeometry<double> g = geometryOf(m.separation, c.radius1 + c.radius2);
 	if (!before.touching) {
 		if (g.overlap < 0) return {}; // grains that sintering has shrunk are seen before they touch
-		return newContact<mechanisms>(c, m, g, before, history);
+		return newContact<mechanisms>(c, limit, m, g, before, history);
 	}
 	if constexpr (bool(mechanisms & Twisting))
 		history.twist += twisting::increment(g.normal, g.inverseDistance, m.velocity, m.spin1 - m.spin2, m.dt);
 	if (normal::beyondPullOff(c, g)) return brokenContact<mechanisms>(c, m, g, before, history);
-	return keptContact<mechanisms>(c, m, g, before, history);
+	return keptContact<mechanisms>(c, limit, m, g, before, history);
 }
 
 // contactStep by its mechanisms, for callers that know them at run time only.
 using ContactStep = ContactStepResult (*)(
-        const PairConstants<double>&, const ContactMotion&, const ContactBefore&, ContactHistory<double>&);
+        const PairConstants<double>&, LimitRule, const ContactMotion&, const ContactBefore&, ContactHistory<double>&);
 
 template <size_t... mechanisms> constexpr std::array<ContactStep, sizeof...(mechanisms)> contactSteps(std::index_sequence<mechanisms...>)
 {

@@ -57,6 +57,14 @@ namespace sliding {
 		const Vec3<T> e = inverse * zeta;
 		return { movedPointer(p.n1, -excess, r1 + r2, e), movedPointer(p.n2, excess, r1 + r2, e) };
 	}
+	// The pointers with zeta another `by` (a vector across the normal) and the rolling displacement as it is, to first order.
+	inline Pointers<double> displaced(const Pointers<double>& p, double r1, double r2, const Vec3<double>& by)
+	{
+		const double length = std::sqrt(dot(by, by));
+		if (length == 0) return p;
+		const Vec3<double> e = (1 / length) * by;
+		return { movedPointer(p.n1, length, r1 + r2, e), movedPointer(p.n2, -length, r1 + r2, e) };
+	}
 	// What the return of displacement `trial` to pointers p, which moved them by `moved`, dissipates; `before`: the displacement a step
 	// ago.
 	template <class T>

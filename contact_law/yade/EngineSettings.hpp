@@ -11,7 +11,9 @@ struct EngineSettings {
 	int domains;
 	std::string instructions;
 	double linearDamping, neck;
-	bool sliding, rolling, twisting, orientations;
+	bool sliding, rolling, twisting;
+	std::string limit;
+	bool orientations;
 
 	// visit(name, value before, value now), of each
 	template <class Visit> static void each(const EngineSettings& before, const EngineSettings& now, Visit&& visit)
@@ -23,6 +25,7 @@ struct EngineSettings {
 		visit("sliding", before.sliding, now.sliding);
 		visit("rolling", before.rolling, now.rolling);
 		visit("twisting", before.twisting, now.twisting);
+		visit("limit", before.limit, now.limit);
 		visit("orientations", before.orientations, now.orientations);
 	}
 	// Throws std::runtime_error for one that has been changed.

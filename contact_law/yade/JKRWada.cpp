@@ -1,6 +1,7 @@
 #include "JKRWada.hpp"
 #include "../kernel/bond_step.hpp"
 #include "../kernel/blocked.hpp"
+#include "RunningLoop.hpp"
 #include <core/Body.hpp>
 #include <core/Cell.hpp>
 #include <core/EnergyTracker.hpp>
@@ -107,6 +108,14 @@ void JKRWadaPhys::endBond()
 	setConstants(constants);
 }
 
+void JKRWadaPhys::becomeBond()
+{
+	constants = constantsToCome;
+	setBond(bondToCome);
+	bondToCome.reset();
+	constantsToCome.reset();
+}
+
 void JKRWadaPhys::set(
         const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_)
 {
@@ -138,6 +147,30 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	interaction->phys = phys;
 }
 
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
+{
+	requireLoopAtRest("sinter()");
+	require(neckNow > 0 && neckNow <= contact_law::largestNeck, "sinter(): neck", neckNow, "> 0 and up to 0.7");
+	const Scene& now = *Omega::instance().getScene();
+	neck = std::max(neck, neckNow);
+	for (const auto& interaction : *now.interactions) {
+		if (!interaction->isReal()) continue;
+		auto* phys = dynamic_cast<JKRWadaPhys*>(interaction->phys.get());
+		const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
+		if (!phys || !geometry) continue;
+		const auto materialOf = [&](Body::id_t id) { return YADE_CAST<JKRMat*>((*now.bodies)[id]->material.get())->forKernel(); };
+		const auto first = materialOf(interaction->getId1()), second = materialOf(interaction->getId2());
+		const auto shrunk =
+		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, linearDamping, neck));
+		if (phys->bonded || !phys->touching)
+			phys->constants = shrunk; // of the contact that may come
+		else {
+			phys->bondToCome = bonds.of(contact_law::deriveBond(first, geometry->refR1, second, geometry->refR2, neckNow));
+			phys->constantsToCome = shrunk;
+		}
+	}
+}
+
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const
 {
 	requireInRange();
@@ -166,6 +199,13 @@ boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(
 	return bond.pyDict();
 }
 
+void Law2_ScGeom_JKRWadaPhys_JKRWada::postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&)
+{
+	const int number = contact_law::limitRuleNumber(limit);
+	if (number < 0) throw std::invalid_argument("limit = '" + limit + "': must be 'held' or 'cut'");
+	limitRule = contact_law::LimitRule(number);
+}
+
 bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& physics, Interaction* interaction)
 {
 	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
@@ -185,16 +225,18 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	        + contact_law::inverseMassAlong(apart, 1 / state2.mass, state2.blockedDOFs);
 	const Real dt = phys.current ? 0 : scene->dt; // JKRWadaEngine has brought the contact here already
 	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass,
-		toKernel(imageVelocity) };
+		toKernel(imageVelocity), contact_law::inverseInertiaOf(1 / state1.inertia[0], state1.blockedDOFs),
+		contact_law::inverseInertiaOf(1 / state2.inertia[0], state2.blockedDOFs) };
 	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement),
 		toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
 	const bool drag = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
 	const unsigned mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	const ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, state1, state2, mechanisms)
-	                                        : contact_law::contactStepWith[mechanisms](constants, motion, before, history);
+	ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
+	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
 
+	if (phys.bondToCome && r.touching) sinter(phys, motion, history, r);
 	const Vector3r force = fromKernel(r.force);
 	scene->forces.addForce(interaction->getId1(), force);
 	scene->forces.addForce(interaction->getId2(), -force);
@@ -219,17 +261,33 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	return true;
 }
 
+/* The contact ends at this instant: it gives the half kick before it, and the bond, which takes its place without strain, the one after it.
+ * (The second-order part of the kinetic energy that goes with a grain's forces, which the fused engine books, is left out.) */
+void Law2_ScGeom_JKRWadaPhys_JKRWada::sinter(
+        JKRWadaPhys& phys, const ContactMotion& motion, ContactHistory<double>& history, ContactStepResult& r)
+{
+	r.force = r.forceBefore;
+	r.torque1 = r.torqueBefore1;
+	r.torque2 = r.torqueBefore2;
+	r.dissipated.disconnection += total(r.stored);
+	r.stored = { 0, 0, 0, 0 };
+	phys.becomeBond();
+	phys.restDistance = contact_law::newBond(motion.separation, history);
+	r.geometry = contact_law::geometryOf(motion.separation, phys.restDistance);
+	r.now = contact_law::ContactForces<double>::none();
+	r.pointersMoved = true;
+}
+
 ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, const PairConstants<double>& constants, ContactMotion motion,
-        const contact_law::ContactBefore& before, ContactHistory<double>& history, const State& state1, const State& state2,
-        unsigned mechanisms)
+        const contact_law::ContactBefore& before, ContactHistory<double>& history, unsigned mechanisms)
 {
 	const bool made = !phys.touching; // this is its first step
 	if (made) {
 		phys.restDistance = contact_law::newBond(motion.separation, history);
 		motion.dt = 0;
 	}
-	contact_law::BondStepResult r = contact_law::bondStepWith[mechanisms](phys.bond->forKernel(), constants,
-	        { motion, 1 / state1.inertia[0], 1 / state2.inertia[0] }, before, phys.restDistance, history);
+	contact_law::BondStepResult r =
+	        contact_law::bondStepWith[mechanisms](phys.bond->forKernel(), constants, motion, before, phys.restDistance, history);
 	r.contact.pointersMoved = r.contact.pointersMoved || made;
 	if (r.bonded) return r.contact;
 	phys.endBond();

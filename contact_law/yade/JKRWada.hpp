@@ -93,6 +93,7 @@ public:
 	void setConstants(const shared_ptr<JKRWadaConstants>&);
 	void setBond(const shared_ptr<JKRWadaBond>&);
 	void endBond();
+	void becomeBond();
 	// All but the pointers. velocity: of body 1 past body 2 through the last step.
 	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist,
 	        const Vector3r& velocity);
@@ -105,6 +106,8 @@ public:
 		((bool, bonded, false, Attr::readonly, "Whether this is a sintered bond, linear and elastic until it breaks, and not an ordinary contact."))
 		((shared_ptr<JKRWadaBond>, bond, , Attr::readonly, "Constants of this kind of bond; None when it is none. Those in constants are of the contact that may take its place."))
 		((Real, restDistance, 0, Attr::readonly, "Distance of the centres at which a bond was made [m]."))
+		((shared_ptr<JKRWadaBond>, bondToCome, , Attr::readonly|Attr::hidden, "The bond that this contact becomes when its forces are next evaluated (sinter())."))
+		((shared_ptr<JKRWadaConstants>, constantsToCome, , Attr::readonly|Attr::hidden, "The constants from then on."))
 		((Vector3r, pointer1, Vector3r::Zero(), Attr::readonly, "Contact pointer of the first body, in the body's own frame: unit vector from its centre to the contact."))
 		((Vector3r, pointer2, Vector3r::Zero(), Attr::readonly, "Contact pointer of the second body, likewise."))
 		((Real, overlap, 0, Attr::readonly, "delta = r1 + r2 - distance of the centres [m], r1 and r2 as in constants; negative when the neck is stretched. Of a bond: restDistance - distance."))
@@ -132,6 +135,7 @@ public:
 	void postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&); // likewise: within a step, YADE's threads could not pass an exception on
 	void go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
 	        const shared_ptr<Interaction>& interaction) override;
+	void sinter(Real neck);
 	boost::python::dict pairConstants(
 	        const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
 	boost::python::dict bondConstants(
@@ -145,6 +149,9 @@ public:
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
 		,
+		.def("sinter", &Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter, boost::python::arg("neck"),
+			"All contacts become bonds of this neck when their forces are next evaluated, without strain where the grains are then; existing bonds keep their own neck. All grains shrink by the largest neck, which "
+			"is this functor's neck from then on. What the contacts held is booked as disconnection. contact_law.sinter() calls this, or the fused engine's.")
 		.def("pairConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
 			"Constants of a contact of two grains (materials, radii in m) as a dict with the attributes of JKRWadaConstants. ValueError when a radius or a material constant is out of range. With a neck: of the shrunk grains (given are the radii before).")
 		.def("bondConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants, (boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
@@ -158,12 +165,15 @@ REGISTER_SERIALIZABLE(Ip2_JKRMat_JKRMat_JKRWadaPhys);
 
 class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	EnergyChannels channels;
+	contact_law::LimitRule limitRule = contact_law::LimitRule::Held;
 
 	void book(const contact_law::ContactStepResult&);
+	void sinter(JKRWadaPhys&, const contact_law::ContactMotion&, contact_law::ContactHistory<double>&, contact_law::ContactStepResult&);
 	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion,
-	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, const State&, const State&, unsigned mechanisms);
+	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, unsigned mechanisms);
 
 public:
+	void postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&); // throws std::invalid_argument
 	bool go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction) override;
 	virtual ~Law2_ScGeom_JKRWadaPhys_JKRWada() {}
 	// clang-format off
@@ -175,6 +185,7 @@ public:
 		((bool, sliding, true, , "Whether contacts resist sliding."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
+		((std::string, limit, contact_law::limitRuleNames[0], Attr::triggerPostLoad, "What happens to sliding, rolling and twisting springs of ordinary contacts at their limits. 'held': the displacement is held there (Wada et al. 2007). 'cut': the spring is cut, what it stores is lost, and a new one without strain takes its place (Sirono & Ueno 2017)."))
 		((int, brokenByStretching, 0, Attr::readonly, "Sintered bonds that have broken because they were stretched or pressed."))
 		((int, brokenBySliding, 0, Attr::readonly, "Sintered bonds that have broken by sliding."))
 		((int, brokenByRolling, 0, Attr::readonly, "Sintered bonds that have broken by rolling."))

@@ -48,7 +48,7 @@ namespace {
 
 EngineSettings JKRWadaEngine::settings() const
 {
-	return { domains, instructions, linearDamping, neck, sliding, rolling, twisting, orientations };
+	return { domains, instructions, linearDamping, neck, sliding, rolling, twisting, limit, orientations };
 }
 
 void JKRWadaEngine::requireInRange() const
@@ -62,9 +62,7 @@ void JKRWadaEngine::requireInRange() const
 		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
 	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
 		refuseInEngine("neck = " + text(neck) + ": must be 0 (no bonds), or up to 0.7 for sintered bonds");
-	if (neck != 0 && scene->isPeriodic)
-		refuseInEngine(
-		        "neck = " + text(neck) + " in a periodic cell: must be 0; sintered bonds in periodic cells are the functors'");
+	if (contact_law::limitRuleNumber(limit) < 0) refuseInEngine("limit = " + text(limit) + ": must be 'held' or 'cut'");
 }
 
 void JKRWadaEngine::requireOwnScene() const
@@ -88,6 +86,7 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	for (const auto& material : materials)
 		drag = drag || material.viscoelasticTime > 0;
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
+	options.limit = contact_law::LimitRule(contact_law::limitRuleNumber(limit));
 	return options;
 }
 
@@ -103,8 +102,9 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment)
 	SceneContacts contacts;
 	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
 	for (const auto& one : inherited.contacts)
-		if (one.bonded && neck == 0)
-			refuseInEngine("O.interactions has sintered bonds, and neck is 0: must be the neck they were made with");
+		if (one.bonded && one.neck > neck)
+			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)
+			        + ": must be the largest neck they were made with");
 	const bool inherits = !continued && !inherited.contacts.empty(), stepBehind = inherits && inherited.stepBehind;
 	if (stepBehind) scene->forces.reset(scene->iter); // those of the functors' last step
 	SceneCell cell;
@@ -259,6 +259,27 @@ void JKRWadaEngine::writeInteractions()
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
 }
 
+void JKRWadaEngine::sinter(Real neckNow)
+{
+	const auto rest = atRest("sinter()");
+	if (!(neckNow > 0 && neckNow <= contact_law::largestNeck))
+		refuseInEngine("sinter(): neck = " + text(neckNow) + ": must be > 0 and up to 0.7");
+	enter(Moment::BetweenSteps);
+	const double unstable = contact_law::unstableStepOfBonds(current->dynamics, neckNow);
+	if (!(smallStep < unstable))
+		refuseInEngine("sinter(): the small step O.dt/subSteps is " + text(smallStep) + " s: must be below " + text(unstable)
+		        + " s for bonds of neck = " + text(neckNow));
+	current->contacts.withdraw(*scene);
+	current->dynamics.sinter(neckNow);
+	neck = current->dynamics.state().neck;
+	current->settings.neck = neck;
+	current->watch.motionsChanged();
+	current->dynamics.read(current->now);
+	writeBodies(); // their velocities are the same but for rounding: a checkpoint must find them as the engine has them
+	if (exportInteractions) current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
+	if (scene->trackEnergy) writeEnergies(current->dynamics.energies());
+}
+
 void JKRWadaEngine::handOver()
 {
 	const auto rest = atRest("handOver()");
@@ -297,21 +318,22 @@ void JKRWadaEngine::preSave(JKRWadaEngine&)
 	savedState = here ? current->dynamics.save() : std::vector<Real>();
 }
 
-bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const
+bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<double>& necks) const
 {
 	requireOwnScene();
 	if (!current) return false;
 	current->grains.requireThere(*Omega::instance().getScene());
-	const auto add = [&](int first, int second, double normalForce, bool isBond) {
+	const auto add = [&](int first, int second, double normalForce, double neckOfBond) {
 		pairs.push_back(first);
 		pairs.push_back(second);
 		normalForces.push_back(normalForce);
-		bonded.push_back(isBond);
+		necks.push_back(neckOfBond);
 	};
-	eachContact(current->dynamics,
-	        [&](const contact_law::Contact&, int first, int second, double force) { add(first, second, force, false); });
-	eachBond(
-	        current->dynamics, [&](const contact_law::Bond&, int first, int second, double force) { add(first, second, force, true); });
+	eachContact(
+	        current->dynamics, [&](const contact_law::Contact&, int first, int second, double force) { add(first, second, force, 0); });
+	eachBond(current->dynamics, [&](const contact_law::Bond& bond, int first, int second, double force) {
+		add(first, second, force, bond.constants.neck);
+	});
 	return true;
 }
 

@@ -43,11 +43,12 @@ public:
 	void prepare();
 	void writeInteractions();
 	void handOver();
+	void sinter(Real neck);
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
 	// Adds this engine's contacts to a snapshot (JKRWadaSnapshot), by the ids of their bodies; false before the first step.
-	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<int>& bonded) const;
+	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<double>& necks) const;
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
 	// clang-format off
@@ -70,10 +71,11 @@ public:
 		((std::string, instructions, "", , "Instruction set: 'avx512', 'avx2', 'portable', or '' for the best this machine has. Another one changes results by rounding."))
 		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
 		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that touch at the start are bonded, all others as shrunk as they "
-			"(:yref:`Ip2_JKRMat_JKRMat_JKRWadaPhys.neck`)."))
+			"(:yref:`Ip2_JKRMat_JKRMat_JKRWadaPhys.neck`). After sinter(): the largest neck of any bond."))
 		((bool, sliding, true, , "Whether contacts resist sliding (bonds always do; likewise below)."))
 		((bool, rolling, true, , "Whether contacts resist rolling."))
 		((bool, twisting, true, , "Whether contacts resist twisting."))
+		((std::string, limit, contact_law::limitRuleNames[0], , "What happens to sliding, rolling and twisting springs of ordinary contacts at their limits. 'held': the displacement is held there (Wada et al. 2007). 'cut': the spring is cut, what it stores is lost, and a new one without strain takes its place (Sirono & Ueno 2017)."))
 		((bool, orientations, false, , "Whether to follow the bodies' orientations (State.ori); otherwise they stay as they were."))
 		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
@@ -84,6 +86,8 @@ public:
 		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
 		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors continue from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
+		.def("sinter", &JKRWadaEngine::sinter, boost::python::arg("neck"), "All contacts become bonds of this neck now, without strain where the grains are; existing bonds keep their own neck. All grains shrink by the largest neck, "
+			"which is this engine's neck from now on. What the contacts held is booked as disconnection. Call it between two O.steps. contact_law.sinter() calls this, or the functors'.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (lane updates so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), searches (for neighbours, of all grains or as many a part at a time), looks (at pairs that do not touch), orders (times that grains were put into a new order, because fragments had flown apart), domains, instructions.")
 	);
 	// clang-format on

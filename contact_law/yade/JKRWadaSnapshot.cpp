@@ -91,8 +91,8 @@ boost::python::dict JKRWadaSnapshot::read() const
 	const Grains grains = readGrains(scene, fused);
 	std::vector<int> pairs;
 	std::vector<double> normalForce;
-	std::vector<int> bonded;
-	const bool fromEngine = fused && fused->addContacts(pairs, normalForce, bonded);
+	std::vector<double> necks;
+	const bool fromEngine = fused && fused->addContacts(pairs, normalForce, necks);
 	for (const auto& interaction : *scene.interactions) {
 		if (fromEngine) break;
 		if (!interaction->isReal()) continue;
@@ -102,7 +102,7 @@ boost::python::dict JKRWadaSnapshot::read() const
 		pairs.push_back(grains.rowOf[interaction->getId1()]);
 		pairs.push_back(grains.rowOf[interaction->getId2()]);
 		normalForce.push_back(phys->normalForce.dot(geometry->normal));
-		bonded.push_back(phys->bonded);
+		necks.push_back(phys->bonded ? phys->bond->neck : 0);
 	}
 	boost::python::dict result;
 	result["time"] =
@@ -119,7 +119,7 @@ boost::python::dict JKRWadaSnapshot::read() const
 	}
 	result["contact_pairs"] = bytes(pairs);
 	result["contact_normal_force"] = bytes(normalForce);
-	result["contact_bonded"] = bytes(bonded);
+	result["contact_neck"] = bytes(necks);
 	return result;
 }
 

@@ -86,7 +86,10 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
 		Inherited::One one { id1, id2,
 			{ { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap,
-			phys.dragForce, phys.bonded, phys.restDistance };
+			phys.dragForce, phys.bonded, phys.restDistance, phys.bonded ? phys.bond->neck : 0 };
+		if (phys.bondToCome)
+			refuseInEngine("the functors are about to sinter the contacts (sinter() was called since their last step): make a "
+			               "step first");
 		if (!phys.current) { // the bodies have turned since
 			inherited.stepBehind = true;
 			one.history.pointers.n1 = contact_law::turned(one.history.pointers.n1, -dt * toKernel(state1.angVel));

@@ -144,10 +144,6 @@ result.update(difference=float(np.abs(positions() - straight[0]).max() / 1e-7), 
     [
         ("O.engines[0].neck = 0.8", "neck = 0.8"),
         ("O.engines[0].neck = -1", "neck = -1: must be 0 (no bonds), or up to 0.7 for sintered bonds"),
-        (
-            "O.periodic = True; O.cell.setBox(2e-5, 2e-5, 2e-5)",
-            "in a periodic cell: must be 0; sintered bonds in periodic cells are the functors'",
-        ),
         ("O.dt = 0.45 * unit", "every packing of these grains is unstable"),
     ],
 )

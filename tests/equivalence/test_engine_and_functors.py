@@ -7,24 +7,25 @@ SCENE = """
 from scenes import *
 unit = constants(ice(), 1e-7)["timeUnit"]
 KINDS = {"like": ([ice()], [1e-7]), "unlike": ([ice(), soft()], [1e-7, 1.6e-7, 1.3e-7]), "drag": ([ice(viscoelasticTime=2e-12)], [1e-7])}
-def start(kind, count=27, seed=1, damping=0):
-    new_scene(0.1 * unit, damping=damping)
+def start(kind, count=27, seed=1, damping=0, limit="held"):
+    new_scene(0.1 * unit, damping=damping, limit=limit)
     materials, radii = KINDS[kind]
     converging(count, seed, materials, radii)
 """
 
 
+@pytest.mark.parametrize("limit", ["held", "cut"])
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
-def test_engine_and_functors_agree_step_by_step(yade, kind):
+def test_engine_and_functors_agree_step_by_step(yade, kind, limit):
     """27 grains fly together: contacts form, slip and break. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
     found = yade(
         SCENE
         + """
-kind = parameters["kind"]
-start(kind)
+kind, limit = parameters["kind"], parameters["limit"]
+start(kind, limit=limit)
 functors, functor_energies = record(401)
 start(kind)
-fused_engine()
+fused_engine(limit=limit)
 engine, engine_energies = record(400)
 result["difference"] = np.abs(functors[:400] - engine).max(axis=(1, 2)) / 1e-7
 # O.energy of the functors belongs to the positions before the step
@@ -34,7 +35,7 @@ result["energies"] = [max(abs(functor_energies[k + 1][n] - engine_energies[k][n]
 result["events"] = O.engines[0].statistics()["events"]
 result["lost"] = engine_energies[-1]
 """,
-        {"kind": kind},
+        {"kind": kind, "limit": limit},
     )
     assert found["events"] > 100
     assert found["lost"]["slidingDissipation"] > 0 and found["lost"]["connection"] > 0
@@ -65,14 +66,14 @@ result["statistics"] = {k: v for k, v in statistics.items() if k in ("events", "
     assert found["difference"] < 1e-9, found
 
 
-@pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
-def test_same_bits_on_one_and_two_threads_and_on_every_run(yade, kind):
+@pytest.mark.parametrize("kind,limit", [("like", "held"), ("unlike", "held"), ("drag", "held"), ("unlike", "cut")])
+def test_same_bits_on_one_and_two_threads_and_on_every_run(yade, kind, limit):
     found = yade(
         SCENE
         + """
 def end(threads):
     start(parameters["kind"], count=400)
-    fused_engine(threads=threads, subSteps=10)
+    fused_engine(threads=threads, subSteps=10, limit=parameters["limit"])
     O.dt *= 10
     O.run(120, True)
     return positions(), energies(), O.engines[0].statistics()["events"]
@@ -80,33 +81,43 @@ runs = [end(1), end(2), end(1)]
 result["same"] = [bool((runs[0][0] == r[0]).all() and runs[0][1] == r[1]) for r in runs[1:]]
 result["events"] = runs[0][2]
 """,
-        {"kind": kind},
+        {"kind": kind, "limit": limit},
     )
     assert found["same"] == [True, True] and found["events"] > 1000
 
 
-def test_instruction_sets_agree_to_rounding(yade):
+@pytest.mark.parametrize("limit", ["held", "cut"])
+def test_instruction_sets_agree_to_rounding(yade, limit):
     found = yade(
         SCENE
         + """
 def run(instructions):
     start("like", count=27)
-    fused_engine(instructions=instructions)
+    fused_engine(instructions=instructions, limit=parameters["limit"])
     O.run(200, True)
 result["differences"] = differences_of_instruction_sets(run)
-"""
+""",
+        {"limit": limit},
     )
     for name, difference in found["differences"].items():
         assert difference < 1e-11, name
 
 
-@pytest.mark.parametrize("kind,format", [("like", ".yade.bz2"), ("unlike", ".xml.gz"), ("drag", ".yade.gz")])
-def test_checkpoint_continues_to_the_bit(yade, kind, format):
+@pytest.mark.parametrize(
+    "kind,format,limit",
+    [
+        ("like", ".yade.bz2", "held"),
+        ("unlike", ".xml.gz", "held"),
+        ("drag", ".yade.gz", "held"),
+        ("drag", ".yade", "cut"),
+    ],
+)
+def test_checkpoint_continues_to_the_bit(yade, kind, format, limit):
     found = yade(
         SCENE
         + """
 start(parameters["kind"], count=100)
-fused_engine(subSteps=7)
+fused_engine(subSteps=7, limit=parameters["limit"])
 O.dt *= 7
 O.run(40, True)
 O.save("checkpoint" + parameters["format"])
@@ -118,7 +129,7 @@ again = positions(), energies()
 result["same"] = bool((straight[0] == again[0]).all())
 result["energies"] = [straight[1], again[1]]
 """,
-        {"kind": kind, "format": format},
+        {"kind": kind, "format": format, "limit": limit},
     )
     assert found["same"]
     straight, again = found["energies"]

@@ -7,9 +7,9 @@ SCENE = """
 from scenes import *
 unit = constants(ice(), 1e-7)["timeUnit"]
 KINDS = {"like": ([ice()], [1e-7]), "unlike": ([ice(), soft()], [1e-7, 1.6e-7, 1.3e-7]), "drag": ([ice(viscoelasticTime=2e-12)], [1e-7])}
-def start(kind, rate, homo, count=27, seed=1, fill=1.02):
+def start(kind, rate, homo, count=27, seed=1, fill=1.02, limit="held"):
     'Grains on a loose lattice that fills the cell, shrinking by `rate` a time unit, and each with some velocity and spin; some lie in other periods.'
-    new_scene(0.1 * unit)
+    new_scene(0.1 * unit, limit=limit)
     materials, radii = KINDS[kind]
     random = np.random.default_rng(seed)
     side = int(round(count ** (1 / 3)))
@@ -29,10 +29,18 @@ def all_energies():
 
 
 @pytest.mark.parametrize(
-    "kind,rate,homo",
-    [("like", 0, 2), ("unlike", 0, 0), ("like", 2e-3, 0), ("drag", 2e-3, 1), ("unlike", 2e-3, 1), ("like", 2e-3, 2)],
+    "kind,rate,homo,limit",
+    [
+        ("like", 0, 2, "held"),
+        ("unlike", 0, 0, "held"),
+        ("like", 2e-3, 0, "held"),
+        ("drag", 2e-3, 1, "held"),
+        ("unlike", 2e-3, 1, "held"),
+        ("like", 2e-3, 2, "held"),
+        ("drag", 2e-3, 0, "cut"),
+    ],
 )
-def test_engine_and_functors_agree_step_by_step(yade, kind, rate, homo):
+def test_engine_and_functors_agree_step_by_step(yade, kind, rate, homo, limit):
     """Grains of which some lie in other periods than their neighbours, in a cell at rest, in a shrinking one through which they fly (homoDeform 0), and in one whose mean field moves them.
 
     With prepare() the engine takes the velocity gradient at once, so that its cell is an update ahead of the functors' O.cell at the same grains' positions: the
@@ -43,7 +51,7 @@ def test_engine_and_functors_agree_step_by_step(yade, kind, rate, homo):
     found = yade(
         SCENE
         + """
-kind, rate, homo, n = parameters["kind"], parameters["rate"], parameters["homo"], 300
+kind, rate, homo, limit, n = *(parameters[name] for name in ("kind", "rate", "homo", "limit")), 300
 def record(n):
     tracks, sums, sizes = [], [], []
     for _ in range(n):
@@ -52,15 +60,15 @@ def record(n):
         sums.append(all_energies())
         sizes.append([O.cell.hSize[k, k] for k in range(3)])
     return np.array(tracks), sums, np.array(sizes)
-start(kind, rate, homo)
+start(kind, rate, homo, limit=limit)
 if homo == 2 and rate:
     gradient = np.diag(np.array(O.cell.nextVelGrad).reshape(3, 3))
     for b in O.bodies:
         mean = gradient * np.array(b.state.pos)
         b.state.vel = Vector3((np.array(b.state.vel) + mean) * (1 + gradient * O.dt) / (1 + gradient * O.dt / 2) - mean)
 functors, functor_energies, functor_sizes = record(n + 1)
-start(kind, rate, homo)
-fused_engine()
+start(kind, rate, homo, limit=limit)
+fused_engine(limit=limit)
 O.engines[0].prepare()
 engine, engine_energies, sizes = record(n)
 result["sizes"] = float(np.abs(functor_sizes[1:] - sizes).max() / 1e-7)
@@ -71,7 +79,7 @@ result["energies"] = {c: max(abs(functor_energies[k + 1][c] - engine_energies[k]
 result["events"] = O.engines[0].statistics()["events"]
 result["last"] = engine_energies[-1]
 """,
-        {"kind": kind, "rate": rate, "homo": homo},
+        {"kind": kind, "rate": rate, "homo": homo, "limit": limit},
     )
     assert found["events"] > 50 and found["last"]["connection"] > 0 and found["last"]["slidingDissipation"] > 0
     assert (found["last"]["boundaryWork"] != 0) == (rate != 0)

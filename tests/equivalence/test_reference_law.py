@@ -23,16 +23,16 @@ def given():
     materials = [{name: getattr(b.mat, name) for name in names} for b in O.bodies]
     return dict(materials=materials, radii=[b.shape.radius for b in O.bodies], x=positions(), v=[list(b.state.vel) for b in O.bodies],
                 w=[list(b.state.angVel) for b in O.bodies], dt=O.dt)
-def tracks(start, steps, damping, neck):
+def tracks(start, steps, damping, neck, limit):
     start()
-    result["given"] = {**given(), "damping": damping, "neck": neck}
+    result["given"] = {**given(), "damping": damping, "neck": neck, "limit": limit}
     x, e = record(steps + 1)
     result["functors"] = x[:steps], [[one[name] for name in parameters["channels"]] for one in e[1:]]  # their energies are of the positions a step ago
     if neck:
         law = O.engines[2].lawDispatcher.functors[0]
         result["broken"] = [law.brokenByStretching, law.brokenBySliding, law.brokenByRolling, law.brokenByTwisting]
     start()
-    fused_engine(linearDamping=damping, neck=neck)
+    fused_engine(linearDamping=damping, neck=neck, limit=limit)
     x, e = record(steps)
     result["engine"] = x, [[one[name] for name in parameters["channels"]] for one in e]
 """
@@ -92,6 +92,18 @@ CASES = {
         {},
         "sliding rolling twisting disconnection",
     ),
+    "cut": (
+        "converging(12, 1, [ICE, SOFT], [1e-7, 1.5e-7], speed=12)",
+        300,
+        {"limit": "cut"},
+        "sliding rolling twisting connection",
+    ),
+    "cut-viscous": (
+        "cluster(10, 5, [VISCOUS, SOFT_VISCOUS], [1e-7, 1.3e-7], speed=6, spin=1e8)",
+        300,
+        {"limit": "cut"},
+        "sliding rolling twisting drag",
+    ),
     "bonded": (
         "cluster(12, 4, [ICE], [1e-7], speed=10, spin=2e8)",
         250,
@@ -111,13 +123,14 @@ CASES = {
 def test_functors_and_engine_are_the_reference_law(yade, case):
     grains, steps, options, working = CASES[case]
     damping, neck, step = options.get("damping", 0), options.get("neck", 0), options.get("step", 0.1)
+    limit = options.get("limit", "held")
     found = yade(
         SCENE
         + f"""
 def start():
-    new_scene({step} * unit, damping={damping}, neck={neck})
+    new_scene({step} * unit, damping={damping}, neck={neck}, limit={limit!r})
     {grains}
-tracks(start, {steps}, {damping}, {neck})
+tracks(start, {steps}, {damping}, {neck}, {limit!r})
 """,
         {"channels": CHANNELS},
     )

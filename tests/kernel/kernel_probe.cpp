@@ -101,5 +101,13 @@ void bondAt(const double* constants, double rest, const double* state, double* o
 	*out++ = e.normal, *out++ = e.sliding, *out++ = e.rolling, *out++ = e.twisting, *out++ = bondBreaks(b, e);
 }
 
+// out: displacement of the last spring, mean displacement of all over the way.
+void cutPassage(const double* before, const double* trial, double limit, double* out)
+{
+	const auto passed = cut::passage(vector(before), vector(trial), limit);
+	write(out, passed.now);
+	write(out, passed.mean);
+}
+
 void turn(const double* v, const double* angle, double* out) { write(out, turned(vector(v), vector(angle))); }
 }

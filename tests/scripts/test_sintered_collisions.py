@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from running import COLLIDE, collide, environment, messages, read_arrays, read_json
 
-from analysis.runs.format import CHANNELS
+from analysis.runs.folder import open_run
+from analysis.runs.format import BROKEN_BONDS, CHANNELS
 from yade_scripts import stability
 
 PLANAR = ("radius=6", "filling=0.7", "planar=1", "velocity=60", "duration=6e-9", "seed=2", "stepFraction=0.05")
@@ -36,6 +37,28 @@ def test_bonds_break_and_new_contacts_are_none(run):
     sides = end["aggregate"][end["contact_pairs"]]
     between = sides[:, 0] != sides[:, 1]
     assert between.any() and not end["contact_bonded"][between].any()
+
+
+def test_broken_bonds_by_mode_are_in_history_and_states(run):
+    """As many as the states have lost; read back by the analysis."""
+    read, history = open_run(run), read_arrays(run, "history.npz")
+    broken = np.stack([history[name] for name in BROKEN_BONDS], axis=1)
+    assert broken.dtype.kind == "i" and not broken[0].any() and (np.diff(broken, axis=0) >= 0).all()
+    assert broken[-1, 3] == 0 and broken[-1].sum() > 5  # in a plane nothing twists
+    first = read.start.contact_bonded.sum()
+    for state in read.states:
+        assert state.contact_neck.tolist() == (0.5 * state.contact_bonded).tolist()
+        assert first - state.contact_bonded.sum() == state.bonds_broken.sum()
+        assert state.bonds_broken.tolist() in broken.tolist()
+    assert (read.last.bonds_broken == broken[-1]).all()
+    assert all((read.history[name] == history[name]).all() for name in BROKEN_BONDS)
+
+
+def test_runs_without_bonds_have_no_columns_for_them(tmp_path):
+    done = collide(tmp_path, "radius=3", "velocity=10", "duration=1e-9", "out=run")
+    assert done.returncode == 0, done.stderr
+    read = open_run(tmp_path / "run")
+    assert not set(BROKEN_BONDS) & set(read.history) and read.last.contact_neck is None is read.last.bonds_broken
 
 
 def test_a_plane_stays_a_plane_to_the_bit(run):

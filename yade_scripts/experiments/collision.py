@@ -294,6 +294,10 @@ def _longest_step(parameters, constants, limit):
         raise ParameterError(
             "stepFraction = auto: measured for cpe aggregates in space without necks only; must be a number [t0] here"
         )
+    if parameters.limit != "held":
+        raise ParameterError(
+            f"stepFraction = auto: measured with limit = held; must be a number [t0] with limit = {parameters.limit}"
+        )
     return stability.longest_step(parameters, constants, limit)
 
 

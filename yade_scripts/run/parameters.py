@@ -43,6 +43,11 @@ class RunParameters(Parameters):
     engine: str = parameter(
         "fused", one_of(["fused", "functors"]), "JKRWadaEngine, or YADE's own loop (the reference, much slower)"
     )
+    limit: str = parameter(
+        "held",
+        one_of(["held", "cut"]),
+        "displacements of contacts at their limits: held there (W07), or their springs cut and new ones formed (S17)",
+    )
     threads: int | None = parameter(
         None,
         Check(">= 1", lambda n: n >= 1),

@@ -7,7 +7,7 @@ import numpy as np
 from yade.wrapper import JKRWadaEngine, Omega
 
 import contact_law
-from analysis.runs.format import CHANNEL_TABLE, CHANNELS, WORK
+from analysis.runs.format import BROKEN_BONDS, CHANNEL_TABLE, CHANNELS, WORK
 from yade_scripts.run.diagnosis import RunFailed, suspects
 
 SECONDS_BETWEEN_WRITES = 10
@@ -16,9 +16,14 @@ WORK_CHANNELS = [channel.name for channel in CHANNEL_TABLE if channel.kind == WO
 
 
 def engine_counts():
-    """statistics() of the fused engine; {} where YADE's own loop steps."""
-    engine = Omega().engines[0]
-    return engine.statistics() if isinstance(engine, JKRWadaEngine) else {}
+    """statistics() of the fused engine; of YADE's own loop, the broken bonds by mode alone."""
+    for engine in Omega().engines:
+        if isinstance(engine, JKRWadaEngine):
+            return engine.statistics()
+        dispatcher = getattr(engine, "lawDispatcher", None)
+        if dispatcher:
+            return {name: getattr(dispatcher.functors[0], name) for name in BROKEN_BONDS}
+    return {}
 
 
 class Recorder:
@@ -26,7 +31,8 @@ class Recorder:
 
     kind_format: a RunKind of analysis.runs.format, which names the columns; scene: of run.kind, for its series, the
     grains' aggregates, whether its energy is conserved, and when it ends: .finished is true from then on.
-    Optional series are those of the kind's that the scene or the engine's statistics() have at the first sample.
+    Optional series are those of the kind's that the scene or the engine's statistics() have at the first sample; broken
+    bonds by mode where there are bonds then, and in states where there are any.
     An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
     """
 
@@ -102,6 +108,11 @@ class Recorder:
         self._require_sound(state, energies)
         contacts = len(state["contact_pairs"])
         counts = engine_counts()
+        if state["contact_bonded"].any() or BROKEN_BONDS[0] in (self.columns or ()):
+            state["bonds_broken"] = np.array([counts[name] for name in BROKEN_BONDS])
+        else:
+            state.pop("contact_neck")
+            counts = {name: count for name, count in counts.items() if name not in BROKEN_BONDS}
         sample = {**counts, "time": state["time"], **energies, "contacts": contacts, **self.scene.series(state)}
         if self.columns is None:
             self.columns = [q.name for q in self.history if not q.optional or q.name in sample]

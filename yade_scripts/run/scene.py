@@ -99,10 +99,10 @@ def start(scene, schedule, recorder):
     _publish(recorder)
     runner = PyRunner(command="history.sample()", iterPeriod=schedule.interval, initRun=True)
     if parameters.engine == "functors":
-        omega.engines = functor_engines(parameters.grainRadius, runner, **scene.law)
+        omega.engines = functor_engines(parameters.grainRadius, runner, parameters.limit, **scene.law)
         return schedule.steps + 1, runner, lambda: None
     runner.iterPeriod = 1
-    fused = JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, **scene.law)
+    fused = JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, limit=parameters.limit, **scene.law)
     omega.dt *= schedule.interval
     omega.engines = [fused, runner]
     return schedule.steps // schedule.interval, runner, lambda: (fused.prepare(), recorder.sample())
@@ -125,15 +125,15 @@ def _publish(recorder):
     sys.modules["__main__"].history = recorder
 
 
-def functor_engines(grain_radius, runner, **law):
-    """YADE's own engines with the plugin's law and its attributes; runner comes last, after a whole step."""
+def functor_engines(grain_radius, runner, limit="held", **law):
+    """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last, after a whole step."""
     return [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=VERLET_DISTANCE * grain_radius),
         InteractionLoop(
             [Ig2_Sphere_Sphere_ScGeom()],
             [Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
-            [Law2_ScGeom_JKRWadaPhys_JKRWada()],
+            [Law2_ScGeom_JKRWadaPhys_JKRWada(limit=limit)],
         ),
         NewtonIntegrator(damping=0),
         runner,

@@ -1,0 +1,37 @@
+"""The parameter `limit` of collide.py and compress.py: obeyed by both engines, in run.json, and part of a run's identity."""
+
+import pytest
+from running import collide, messages, read_arrays, read_json
+
+from yade_scripts.experiments import collision, compression
+from yade_scripts.parameters import ParameterError
+
+SHORT = ("radius=3", "velocity=30", "duration=12e-9", "threads=1", "seed=2", "stepFraction=0.05")
+
+
+def history(folder, name, *arguments):
+    done = collide(folder, *SHORT, *arguments, f"out={name}")
+    assert done.returncode == 0 and messages(done) == [], done.stderr
+    return read_arrays(folder / name, "history.npz"), read_json(folder / name, "run.json")["parameters"]["limit"]
+
+
+def test_engine_and_functors_obey_it_and_held_is_the_default(tmp_path):
+    fused, rule = history(tmp_path, "fused", "limit=cut")
+    functors, _ = history(tmp_path, "functors", "limit=cut", "engine=functors")
+    held, default = history(tmp_path, "held")
+    assert (rule, default) == ("cut", "held")
+    scale = fused["kinetic"][0]
+    for name in ("kinetic", "slidingDissipation", "rollingDissipation"):
+        assert fused[name] == pytest.approx(functors[name], abs=1e-6 * scale), name
+    assert fused["rollingDissipation"][-1] < 0.8 * held["rollingDissipation"][-1]
+
+
+@pytest.mark.parametrize("kind", [collision.KIND, compression.KIND])
+def test_another_word_is_refused(kind):
+    with pytest.raises(ParameterError, match="limit = slack: must be held or cut"):
+        kind.parse({"limit": "slack"})
+
+
+def test_a_step_for_a_tolerance_was_measured_with_held_only(tmp_path):
+    done = collide(tmp_path, "radius=3", "limit=cut", "stepFraction=auto", "out=run")
+    assert done.returncode != 0 and "stepFraction = auto: measured with limit = held" in "".join(messages(done))
