@@ -128,6 +128,7 @@ void Dynamics::reorder()
 	arrange(setting.kind, from);
 	arrange(setting.orientation, from);
 	arrange(setting.blocked, from);
+	arrange(setting.displaced, from);
 	for (Constrained& c : constrained)
 		c.grain = to[c.grain];
 	for (auto& domain : domains)
