@@ -51,7 +51,7 @@ namespace {
 		Inherited inherited;
 		for (const ContactRecord& c : scene.contacts)
 			inherited.contacts.push_back({ int(c.first), int(c.second), { { vector(c.pointer1), vector(c.pointer2) }, c.twist },
-			        c.overlap, c.drag, c.bonded != 0, c.rest });
+			        c.overlap, c.drag, c.bonded != 0, c.rest, c.bonded ? scene.head.neck : 0 });
 		return inherited;
 	}
 
