@@ -41,7 +41,7 @@ def compression_history(pressure, low=0.002, high=0.5, rate=3e-7, samples=3000, 
     volume = GRAINS * 4 / 3 * np.pi * RADIUS**3 / filling
     values = pressure(filling) * np.where(np.arange(len(filling)) < samples, 1.0, -1.0)
     work = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(volume))])
-    history = {quantity.name: np.zeros(len(filling)) for quantity in COMPRESSION.history}
+    history = {quantity.name: np.zeros(len(filling)) for quantity in COMPRESSION.history if not quantity.optional}
     history.update(
         time=time,
         filling=filling,
