@@ -78,7 +78,7 @@ namespace {
 		}
 		transfer(archive, domain.constraints);
 		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks, domain.changed,
-		        domain.stepsSinceSort);
+		        domain.stepsSinceSort, domain.lists.searches, domain.lists.looks);
 		for (long& number : domain.broken)
 			archive.number(number);
 		for (BondList& list : domain.bonds)
@@ -166,7 +166,12 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 	if (!from.atEnd()) throw std::invalid_argument("the checkpoint of the grains is too long: it must be as O.save wrote it");
 	for (auto& domain : domains)
 		domain->findCompleted();
+	std::vector<long> searches;
+	for (auto& domain : domains)
+		searches.push_back(domain->lists.searches);
 	makeLists(); // the pairs may be others than before; the contacts' order and the contacts that will form are not
+	for (std::size_t d = 0; d < domains.size(); ++d)
+		domains[d]->lists.searches = searches[d];
 }
 
 } // namespace contact_law

@@ -116,7 +116,7 @@ def end(threads, save=False):
     if save: O.save("half.yade.gz")
     O.run(10, True)
     return state()
-def state(): return positions(), {k: v for k, v in O.engines[0].statistics().items() if "Rebuilds" not in k}, necks()
+def state(): return positions(), {k: v for k, v in O.engines[0].statistics().items() if k not in ("searches", "looks")}, necks()
 runs = [end(1), end(2), end(1, True)]
 O.load("half.yade.gz")
 O.run(10, True)

@@ -22,7 +22,7 @@ CHANGES = {
     "engine().rolling = False": ["rolling was changed"],
     "engine().twisting = False": ["twisting was changed"],
     "engine().limit = 'cut'": ["limit was changed", "must stay 'held', not 'cut'"],
-    "engine().domains = 3": ["domains was changed", "must stay 2, not 3"],
+    "engine().domains = 3": ["domains was changed", "must stay 0, not 3"],
     "engine().instructions = 'portable'": ["instructions was changed", "must stay ''"],
     "engine().orientations = True": ["orientations was changed"],
     "engine().subSteps = 2": ["the small step O.dt/subSteps was changed", "must stay"],
@@ -108,7 +108,8 @@ OUT_OF_RANGE = {
     "linearDamping=-1.0": ["linearDamping = -1: must be >= 0"],
     "linearDamping=float('nan')": ["linearDamping = nan: must be >= 0"],
     "linearDamping=float('inf')": ["linearDamping = inf: must be >= 0"],
-    **{f"{name}={value}": [f"{name} = {value}: must be >= 1"] for name in ("subSteps", "threads", "domains") for value in (0, -3)},
+    **{f"{name}={value}": [f"{name} = {value}: must be >= 1"] for name in ("subSteps", "threads") for value in (0, -3)},
+    "domains=-3": ["domains = -3: must be >= 1, or 0 (by the number of bodies)"],
 }  # fmt: skip
 
 
