@@ -113,8 +113,9 @@ struct ForcePass {
 };
 
 // The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(); and by how much kicks
-// changed each component at most. Lanes beyond the third: room for a register.
-struct alignas(64) VelocityRange {
+// changed each component at most. The fourth lane: room for a register.
+struct alignas(32) VelocityRange {
+	static constexpr int lanes = 4;
 	double least[lanes], most[lanes], kick[lanes];
 
 	VelocityRange() { clear(); }
@@ -125,9 +126,11 @@ struct alignas(64) VelocityRange {
 	}
 	void join(const VelocityRange& other)
 	{
-		for (int k = 0; k < 3; ++k)
-			least[k] = std::min(least[k], other.least[k]), most[k] = std::max(most[k], other.most[k]),
+		for (int k = 0; k < lanes; ++k) {
+			least[k] = std::min(least[k], other.least[k]);
+			most[k] = std::max(most[k], other.most[k]);
 			kick[k] = std::max(kick[k], other.kick[k]);
+		}
 	}
 	bool holds(const VelocityRange& other) const // its velocities, whatever the kicks
 	{

@@ -57,7 +57,8 @@ namespace avx512 {
 		        _mm512_set_epi64(6, 5, 4, 3, 2, 0, 0, 0); // line 2 is wz, -, f, t; velocities and wx, wy stand at 3 .. 7 of line 1
 		const __m512i underPositions = _mm512_set_epi64(0, 0, 0, 0, 0, 5, 4, 3); // where velocities go
 		const __m512d step = _mm512_set1_pd(dt);
-		__m512d least = _mm512_load_pd(range.least), most = _mm512_load_pd(range.most), kicked = _mm512_setzero_pd();
+		const auto wide = [](const double* four) { return _mm512_castpd256_pd512(_mm256_load_pd(four)); };
+		__m512d least = wide(range.least), most = wide(range.most), kicked = _mm512_setzero_pd();
 		for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {
 			const __m512d second = _mm512_load_pd(&g->wz);
 			const __m512d m = _mm512_set1_pd(*inverseMass * dt), i = _mm512_set1_pd(*inverseInertia * dt);
@@ -75,9 +76,9 @@ namespace avx512 {
 			most = _mm512_max_pd(most, moved);
 		}
 		kicked = _mm512_maskz_permutexvar_pd(0x07, underPositions, kicked);
-		_mm512_store_pd(range.kick, _mm512_max_pd(kicked, _mm512_load_pd(range.kick)));
-		_mm512_store_pd(range.least, least);
-		_mm512_store_pd(range.most, most);
+		_mm256_store_pd(range.kick, _mm256_max_pd(_mm512_castpd512_pd256(kicked), _mm256_load_pd(range.kick)));
+		_mm256_store_pd(range.least, _mm512_castpd512_pd256(least));
+		_mm256_store_pd(range.most, _mm512_castpd512_pd256(most));
 	}
 }
 }

@@ -31,9 +31,25 @@ struct alignas(64) Group {
 	double approach = 0;      // bound on how far its grains and theirs have come closer since its pairs were found [m]
 	std::vector<NeighbourPair> pairs; // with a gap below Setting::farGap when they were found, in order
 	std::vector<int> next;            // by pair: the step in which to look at it again; never: it touches
-	int soonest = 0;                  // of these
+	std::vector<int> soonestOf;       // of these, by stretch of pairs
+	int soonest = 0;                  // of all
 
-	static constexpr int never = 2147483647;
+	static constexpr int never = 2147483647, stretch = 16;
+
+	// A pair is to be looked at in a step, at the latest.
+	void lookAt(int pair, int step)
+	{
+		next[pair] = step;
+		soonestOf[pair / stretch] = std::min(soonestOf[pair / stretch], step);
+		soonest = std::min(soonest, step);
+	}
+	void lookAtAll()
+	{
+		for (int& step : next)
+			if (step != never) step = 0;
+		std::fill(soonestOf.begin(), soonestOf.end(), 0);
+		soonest = 0;
+	}
 
 	// After a step: its grains' velocities and kicks in it. Returns whether they keep within the bounds.
 	bool keepsWithin(const VelocityRange& latest)
@@ -54,7 +70,7 @@ struct alignas(64) Group {
 		if (++checksSinceTrial < 16) return;
 		checksSinceTrial = 0;
 		kickBound = std::max({ leastKick, 0.5 * kickBound, 2 * sinceTrial.largestKick() });
-		if (bound.diagonal() > 6 * sinceTrial.diagonal() + 32 * kickBound) {
+		if (bound.diagonal() > 4 * sinceTrial.diagonal() + 8 * kickBound) {
 			bound = sinceTrial;
 			widen();
 		}
@@ -62,11 +78,11 @@ struct alignas(64) Group {
 	}
 
 private:
-	// To twice the range, and by what kicks may add in a few steps.
+	// To twice the range, and by what kicks may add.
 	void widen()
 	{
 		for (int k = 0; k < 3; ++k) {
-			const double by = 0.5 * (bound.most[k] - bound.least[k]) + 4 * kickBound;
+			const double by = 0.5 * (bound.most[k] - bound.least[k]) + kickBound;
 			bound.least[k] -= by, bound.most[k] += by;
 		}
 	}

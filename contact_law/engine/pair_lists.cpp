@@ -113,6 +113,7 @@ void PairLists::search(Group& group, const PeriodicCell& cell)
 	}
 	group.pairs.swap(foundPairs);
 	group.next.swap(foundNext);
+	group.soonestOf.assign((group.next.size() + Group::stretch - 1) / Group::stretch, 0);
 	group.soonest = 0;
 	group.approach = 0;
 	++searches;
@@ -142,7 +143,7 @@ void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, doub
 		if (group.approach + ahead > s.farGap)
 			search(group, cell);
 		else if (kicks > group.kickNearby || speed > group.speedNearby)
-			group.soonest = -1;
+			group.lookAtAll();
 		group.kickNearby = kicks;
 		group.speedNearby = speed;
 		holds = holds && ahead <= s.farGap;
@@ -177,16 +178,20 @@ void PairLists::findDue()
 	due.clear();
 	for (Group& group : own()) {
 		if (group.soonest > step) continue;
-		const int last = group.soonest < 0 ? Group::never - 1 : step; // all, or those whose time has come
-		int soonest = Group::never;
-		for (std::size_t k = 0; k < group.next.size(); ++k) {
-			const int next = group.next[k];
-			if (next <= last)
-				due.push_back({ &group, int(k) });
-			else
-				soonest = std::min(soonest, next);
+		group.soonest = Group::never;
+		for (std::size_t part = 0; part < group.soonestOf.size(); ++part) {
+			int& soonest = group.soonestOf[part];
+			if (soonest <= step) {
+				soonest = Group::never;
+				const int first = int(part) * Group::stretch, last = std::min(first + Group::stretch, int(group.next.size()));
+				for (int k = first; k < last; ++k)
+					if (group.next[k] <= step)
+						due.push_back({ &group, k });
+					else
+						soonest = std::min(soonest, group.next[k]);
+			}
+			group.soonest = std::min(group.soonest, soonest);
 		}
-		group.soonest = soonest;
 	}
 }
 
@@ -204,8 +209,7 @@ void PairLists::look(Group& group, int index, const PeriodicCell& cell)
 		const double distance = std::sqrt(squared);
 		next = step + stepsUntilTouch(group, distance - reach, -dot(separation, velocity) / distance);
 	}
-	group.next[index] = next;
-	group.soonest = std::min(group.soonest, next);
+	group.lookAt(index, next);
 }
 
 /* In k steps two grains come closer by k closing dt + k (k + 1) a dt at most, when no kick changes a velocity by more than a: the distance of two straight lines is convex
@@ -240,9 +244,8 @@ void PairLists::part(int i, int j)
 {
 	int* next = nextOf(i, j);
 	if (!next) return;
-	*next = step + 1;
 	Group& g = group(i >= begin && i < end ? i : j);
-	g.soonest = std::min(g.soonest, step + 1);
+	g.lookAt(int(next - g.next.data()), step + 1);
 }
 
 } // namespace contact_law

@@ -9,7 +9,7 @@ import contact_law  # noqa: F401  (puts the plugin's classes into wrapper)
 BLOCKED = {1: "x", 2: "y", 4: "z", 8: "X", 16: "Y", 32: "Z"}
 
 
-def build(scene, sub_steps, threads=1, domains=2):
+def build(scene, sub_steps, threads=1, domains=0):
     """The fused engine with a scene_file.SceneFile, prepared: O.step() makes sub_steps small steps."""
     omega, head = wrapper.Omega(), scene.head
     omega.trackEnergy = True
