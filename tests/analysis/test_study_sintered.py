@@ -119,6 +119,7 @@ def test_points_and_the_fit_of_made_runs(runs):
     point = results.main(growth_velocity=0.0, neck=0.7, velocity=10.0)[0]
     assert (point.grown, point.outcomes.get("sticking")) == (2, 2)
     assert point.means["largest"] == pytest.approx((0.75, 0.5 / np.sqrt(12)))
+    assert point.means["rolling_of_lost"][0] == pytest.approx(0.4 / 0.5)
     fit = results.fits[1, 0.0]
     assert fit.points == 9 and fit.runs == 36  # not BCCA of beta = 0.2, not those in which no neck broke
     assert fit.amplitude == pytest.approx(AMPLITUDE, rel=0.1) and fit.exponent == pytest.approx(EXPONENT, abs=0.04)
@@ -157,6 +158,7 @@ def test_comparison_and_figures(runs, tmp_path, capsys):
     assert bounce["ours"] == pytest.approx(0.5) and bounce["paper"] == pytest.approx(0.4)
     assert lines["fraction that bounces, V_g = 3 m/s, beta = 0.7, 3 m/s"]["ours"] == 1.0
     assert lines["rolling friction takes, unsintered, 10 m/s"]["ours"] == pytest.approx(0.4)
+    assert point_of(answer, 0.0, 10.0)["largest"][0] == 1.0
     assert lines["kinetic and elastic at the end, beta = 0.5, 10 m/s"]["ours"] == pytest.approx(0.5)
     assert lines["necks broken by rolling, in the plane"]["ours"] == pytest.approx(7 / 8, abs=0.02)
     assert lines["exponent, in the plane"]["paper"] == 0.97
@@ -165,6 +167,12 @@ def test_comparison_and_figures(runs, tmp_path, capsys):
     assert {f"{name}.png" for name in figures | {"fig15_necks", "fig17_chains", "modes"}} <= drawn
     assert main(["study", "sintered", str(tmp_path / "out" / "runs.csv"), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["sections"] == answer["sections"]
+
+
+def point_of(answer, neck, velocity):
+    """The record of a point of BCCA aggregates in the section of all points."""
+    points = [s for s in answer["sections"] if s["heading"] == "all points"][0]["rows"]
+    return next(p for p in points if (p["growth_velocity"], p["neck"], p["velocity"]) == (0.0, neck, velocity))
 
 
 def test_the_same_pair_twice_counts_once(tmp_path, capsys):

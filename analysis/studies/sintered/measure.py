@@ -24,6 +24,7 @@ PARTS = {
     "necks": ("bondBreaking",),
     "drag": ("drag",),
 }
+LOST = ("rolling_friction", "sliding_friction", "stretching", "necks", "drag")
 LABELS = {
     "kinetic": "kinetic",
     "elastic": "elastic",

@@ -10,7 +10,7 @@ import pandas
 from ...measures.outcome import BOUNCING, STICKING
 from ...runs.format import BROKEN_BONDS
 from ...statistics import mean_and_error, pair_weights, resampling_error, stretch
-from .measure import PARTS
+from .measure import LOST, PARTS
 
 # What tells points apart; every run of a point has another seed.
 POINT = ("planar", "criticalRolling", "viscoelasticTime", "cut", "growth_velocity", "neck", "velocity")
@@ -23,6 +23,8 @@ MEANS = (
     "gyration_radius",
     "cut_per_grain",
     "by_rolling",
+    "rolling_of_lost",
+    "stretching_of_lost",
     *(f"part_{name}" for name in PARTS),
 )
 
@@ -30,7 +32,8 @@ MEANS = (
 @dataclass(frozen=True)
 class Point:
     """The runs of one parameter set: those of POINT as attributes, energy_ratio (NaN: unsintered), runs (their number),
-    means {name: (mean, standard error or None)} of MEANS (by_rolling: over runs in which necks broke; None without any),
+    means {name: (mean, standard error or None)} of MEANS (by_rolling: over runs in which necks broke; None without any; X_of_lost:
+    fraction of all that was dissipated),
     outcomes {kind: number}, grown (runs in which the largest piece has more than half the mass)."""
 
     planar: int
@@ -107,8 +110,11 @@ def same(a, b):
 def make_results(table):
     """Results of a table of runs (measure.COLUMNS), at least one."""
     table = table.assign(broken=table[list(BROKEN_BONDS)].sum(axis=1))
+    lost = sum(table[f"part_{name}"] for name in LOST)
     table = table.assign(
         cut_per_grain=table.broken / table.grains,
+        rolling_of_lost=table.part_rolling_friction / lost,
+        stretching_of_lost=table.part_stretching / lost,
         by_rolling=table.brokenByRolling / table.broken.where(table.broken > 0),
     )
     keys = [table[name].map(lambda value: float(f"{value:.6g}")) for name in POINT]
