@@ -84,10 +84,12 @@ def unique(*groups):
 
 NECKS = (0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
 DESK = unique(
-    points((0, 0.7, 0.2), (ROOT, "10", "15", "20", "30", "50")),  # Figs 8, 15
+    points((0, 0.7), (ROOT, "10", "20", "30", "50")),  # Figs 8, 15
+    points((0.7,), ("15",)),
+    points((0.2,), ("10", "20", "30")),
     points(NECKS, ("10", "30")),  # Figs 11, 12, 14
     points((0.7,), (ROOT, "10", "30"), (1, 3, 10)),  # Figs 10, 15
-    [Point(0, "3", 3), *(Point(n, f"{g}", g) for g in (1, 2, 3, 5) for n in (0.2, 0.4, 0.7))],  # Figs 9, 13, 17
+    [Point(0, "3", 3), *(Point(n, f"{g}", g) for g in (1, 2, 3, 5) for n in (0.2, 0.7))],  # Figs 9, 13, 17
 )
 # The same in space, the paper's section 6.2: does bouncing survive, and which mode breaks necks? And with drag.
 SPACE = unique(
