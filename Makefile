@@ -11,8 +11,8 @@
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
-# make study-sintered  the collisions of Sirono & Ueno (2017), in runs/sintered: five hours on two cores, or
-#             SIZE=full: all of the paper's, eighteen hours, in runs/sintered-full. make study-status STUDY=sintered
+# make study-sintered  the collisions of Sirono & Ueno (2017), in runs/sintered: seven hours on two cores at most, or
+#             SIZE=full: all of the paper's, a day, in runs/sintered-full. make study-status STUDY=sintered
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests

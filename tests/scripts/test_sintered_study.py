@@ -75,7 +75,7 @@ def test_a_growth_that_does_not_stick_says_so(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sintered_growth, "_collide", lambda aggregate, grown, files, run: os.mkdir(run))
     monkeypatch.setattr(sintered_growth, "largest_piece", lambda run: load(run + "-0.npz"))
-    with pytest.raises(sintered_growth.PackingError, match="16 grains did not stick at 50 m/s in 5 orientations"):
+    with pytest.raises(sintered_growth.PackingError, match="512 grains did not stick at 50 m/s in 5 orientations"):
         sintered_growth.grow(Grown(50.0, 1))
 
 
@@ -83,6 +83,7 @@ def test_a_small_table_from_growth_to_report(tmp_path, monkeypatch):
     """Aggregates of 32 grains grown at 3 m/s, sintered, collided, and reported with the V_g that they grew at."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sintered_growth, "GRAINS", 32)
+    monkeypatch.setattr(sintered_growth, "START", 16)
     os.makedirs(sintered_growth.FOLDER)
     grown = Grown(3.0, 7)
     assert "contacts a grain" in sintered_growth.grow(grown)

@@ -132,13 +132,14 @@ def rows(size):
 HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {which}
 Ten seeds a point where the paper has five runs. {cost}
 Compacted aggregates (packing = file) come from sintered_growth.py, which make study-sintered runs first.
-The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates after they have come to rest; ordinary
-contacts cut their springs at the limits (limit = cut, section 3.2); 20,000 periods of the stretching vibration, 1.22 ns each, is
+The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates (one collision at V_g)
+after they have come to rest; ordinary contacts cut their springs at the limits (limit = cut, section 3.2); 20,000 periods of the stretching vibration, 1.22 ns each, is
 the longest duration, and a run ends earlier when no pieces can meet again; grains in contact at the end are one piece.
 Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/sintered.py."""
 COST = {
-    "desk": "About ten core hours, five hours on two cores (one core minute a row, three trial rows), and one to grow the aggregates.",
-    "full": "About 33 core hours, and three to grow the aggregates, by the cost of a row of the desk study.",
+    "desk": "At most 13 core hours (110 s a row of beta = 0.7 to its end, 50 s unsintered: trial rows beside others on a busy machine), "
+    "and one to grow the aggregates.",
+    "full": "At most 50 core hours by the cost of the desk's rows, and three to grow the aggregates.",
 }
 
 

@@ -2,15 +2,16 @@
 
     python3 yade_scripts/studies/sintered_growth.py SIZE [-j JOBS]    those of a table that are not there yet (desk, full)
 
-The paper's aggregates come from "successive collisions with a collision velocity of V_g using non-sintered aggregates"; it
-doesn't say from what they start, nor whether both partners are one aggregate. Here an aggregate starts as a BCCA cluster
-of START grains and collides head-on with itself, both in random orientations, until it has 1,024 grains: each
-collision's largest piece, at rest, is the next one's aggregate (yade_scripts/packings/collided.py). Single grains would
-bounce from 2 m/s on, so that collisions cannot begin with them. A generation in which the largest piece has less than STUCK of
-the grains is tried again in other orientations, ATTEMPTS times.
+Section 4 makes aggregates of 1,024 grains by "collision simulations" at V_g, section 5.2 speaks of "successive collisions"; it
+isn't said from what they start. Here an aggregate starts as a BCCA cluster of START grains and collides head-on with itself, both
+in random orientations, until it has 1,024 grains: each collision's largest piece, at rest, is the next one's aggregate
+(yade_scripts/packings/collided.py).
 
-The reading decides how compact aggregates are. S17's Fig. 6 has two contacts a grain at low V_g and three at high V_g, to 20 m/s;
-one collision of two BCCA clusters of 512 grains (START = 512, one seed) gives 2.5 at 3 m/s and 3.0 at 10 m/s, START = 16 more.
+The start decides how compact aggregates are. S17's Fig. 6 has about two contacts a grain at low V_g and three at high V_g, and Fig. 17
+needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (analysis/theory/chains.py). One collision, START = 512, gives
+2.15, 2.49 and 3.01 at 1, 3 and 10 m/s (one seed). Six from START = 16 gave 2.5, 2.9 and 3.2, which Figs 6 and 17 exclude. So it is 512.
+
+A generation in which the largest piece has less than STUCK of the grains is tried again in other orientations, ATTEMPTS times.
 
 Packings are runs/sintered-grown/NAME.npz and NAME-b.npz, the same aggregate in two orientations: target and projectile. A second
 call makes what is missing.
@@ -34,7 +35,7 @@ from yade_scripts.packings.collided import largest_piece, turned
 from yade_scripts.packings.packing import Packing, PackingError
 
 FOLDER = "runs/sintered-grown"
-GRAINS, START = 1024, 16
+GRAINS, START = 1024, 512
 STUCK, ATTEMPTS = 0.9, 5
 RADIUS = 1e-7  # m
 CROSSINGS = 3.0  # a collision lasts as long as the two take to move so many times their diameters at V_g,

@@ -134,8 +134,8 @@ def _compacted(results):
                     )
                 )
     notes = (
-        "Our compacted aggregates start from BCCA clusters of 16 grains; what the paper's start from isn't said. Their contacts "
-        "a grain, on which the outcome depends (section 5.5), are in the table of all points.",
+        "Our compacted aggregates are two BCCA clusters of 512 grains that have collided at V_g; the paper doesn't say from what its "
+        "own start. Their contacts a grain, on which the outcome depends (section 5.5), are in the table of all points.",
     )
     return "compacted aggregates at V_c = V_g (Fig. 13)", lines, notes
 
