@@ -60,7 +60,7 @@ def necks_section(results):
             "by_rolling": _known(point.means["by_rolling"]),
             **{
                 name: _known(point.means[f"part_{name}"])
-                for name in ("kinetic", "elastic", "rolling_friction", "necks")
+                for name in ("kinetic", "elastic", "rolling_friction", "sliding_friction", "necks")
             },
         }
         for point in results.points
@@ -75,6 +75,7 @@ def necks_section(results):
         Column("kinetic", lambda r: _pair(r["kinetic"]), long="kinetic [K(0)]"),
         Column("elastic", lambda r: _pair(r["elastic"]), long="elastic [K(0)]"),
         Column("roll. fr.", lambda r: _pair(r["rolling_friction"]), long="rolling friction [K(0)]"),
+        Column("slid. fr.", lambda r: _pair(r["sliding_friction"]), long="sliding friction [K(0)]"),
         Column("necks", lambda r: _pair(r["necks"]), long="breaking of necks [K(0)]"),
     )
     return Section("broken necks and the energy at the end", columns, records) if records else None
