@@ -11,6 +11,8 @@
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
+# make study-sintered  the collisions of Sirono & Ueno (2017), in runs/sintered: seven hours on two cores at most, or
+#             SIZE=full: all of the paper's, a day, in runs/sintered-full. make study-status STUDY=sintered
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
@@ -235,6 +237,12 @@ runs  = runs/$1$(filter-out -desk,-$(SIZE))
 $(STUDIES:%=study-%): study-%: all
 	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
 	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures
+
+# Compacted aggregates are made by collisions of their own before the study's.
+study-sintered: grow-sintered
+.PHONY: grow-sintered
+grow-sintered: all
+	@$(PYTHON) yade_scripts/studies/sintered_growth.py $(SIZE) -j $(JOBS)
 
 # of STUDY
 study-status:

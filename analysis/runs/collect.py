@@ -14,12 +14,19 @@ LEVELS = 2
 @dataclass(frozen=True)
 class Scene:
     """Which runs belong together: its name (as in "A24's scene"), the parameters that every run has (`values`), those
-    that must be numbers (`numbers`; two runs with the same ones are the same run) and the kind of run."""
+    that must be numbers (`numbers`), what else a study measures that tells runs apart (`measured`: names of its columns;
+    two runs with the same numbers of both are the same run) and the kind of run."""
 
     name: str
     values: dict
     numbers: tuple
     kind: str = COLLISION.name
+    measured: tuple = ()
+
+    @property
+    def key(self):
+        """Columns whose numbers two runs must not share."""
+        return self.numbers + self.measured
 
     def why_not(self, run):
         """Why a RunFolder is no run of this scene; None if it is one."""

@@ -64,7 +64,7 @@ def _measure(study, runs, taken, found):
             continue
         twin = taken.setdefault(_key(study, values), run.path)
         if twin is not run.path:
-            found.notes.append(f"{run.path}: the same {_listed(study.scene.numbers)} as {twin}, left out")
+            found.notes.append(f"{run.path}: the same {_listed(study.scene.key)} as {twin}, left out")
             continue
         measured.append((run.path, values))
         sources.append(run)
@@ -82,13 +82,13 @@ def _read(study, file, taken):
     keys = {_key(study, row): f"{file}, {row[RUN]}" for row in table.to_dict("records")}
     twins = keys.keys() & taken.keys()
     if twins or len(keys) < len(table):
-        raise TableError(f"{file}: two runs have the same {_listed(study.scene.numbers)}")
+        raise TableError(f"{file}: two runs have the same {_listed(study.scene.key)}")
     taken.update(keys)
     return table, head["provenance"], head.get("notes", [])
 
 
 def _key(study, values):
-    return tuple(f"{values[name]:.9g}" for name in study.scene.numbers)
+    return tuple(f"{values[name]:.9g}" for name in study.scene.key)
 
 
 def _listed(names):

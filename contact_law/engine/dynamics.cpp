@@ -156,7 +156,7 @@ void Dynamics::makeLists()
 	setMostCells();
 	for (auto& domain : domains) {
 		domain->lists.findNearby(cell(), reach() + boxMargin * setting.largestRadius);
-		domain->lists.searchAll(cell());
+		domain->lists.searchAnew(cell());
 		domain->markTouching();
 	}
 	listAge = {};

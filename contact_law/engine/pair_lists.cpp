@@ -119,10 +119,13 @@ void PairLists::search(Group& group, const PeriodicCell& cell)
 	++searches;
 }
 
-void PairLists::searchAll(const PeriodicCell& cell)
+void PairLists::searchAnew(const PeriodicCell& cell)
 {
-	for (Group& group : own())
+	for (Group& group : own()) {
+		group.pairs.clear();
+		group.next.clear();
 		search(group, cell);
+	}
 }
 
 void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across)

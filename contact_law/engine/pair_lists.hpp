@@ -20,7 +20,7 @@ public:
 
 	void measureBoxes();
 	void findNearby(const PeriodicCell&, double reach); // groups with boxes closer than this [m]
-	void searchAll(const PeriodicCell&);
+	void searchAnew(const PeriodicCell&); // for all, of grains in a new order: no pair touches until touch() is called for it
 
 	/* The lists `steps` steps after the latest check, to hold for stepsToNext more (fewer when kicks exceed their bounds: then check at once). across: by how much
 	 * boundaries move images in a step [m]. */

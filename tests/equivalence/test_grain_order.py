@@ -86,3 +86,35 @@ result["statistics"] = one[2]
     assert found["statistics"]["events"] > 1000
     assert found["same"] == [True] * 4
     assert found["energies"] == [True] * 3
+
+
+def test_contacts_form_after_a_new_order(yade):
+    """Dimers that meet only after the grains have been put into a new order: as many contacts as with the functors. Which rows
+    touched in the old order says nothing of the grains in those rows now."""
+    found = yade(
+        SCENE
+        + """
+def dimers_flying_apart(count=60):
+    "Two dimers each, which close at 2 m/s and touch after some 3,000 steps, while the groups of two fly apart."
+    random = np.random.default_rng(7)
+    new_scene(0.1 * unit)
+    for k in range(count):
+        place = 1.2e-6 * np.array([k % 4, k // 4 % 4, k // 16]) + 1e-8 * random.normal(size=3)
+        fly = 4e7 * (place - 1.2e-6 * np.array([1.5, 1.5, 1.375]))  # from the middle: no group meets another one
+        for side in (-1, 1):
+            for place_in_dimer in (0, 1):  # beside each other in x at first, in y when the order is made anew
+                at = place + np.array([side * 1.6e-7, side * 0.3e-7 + (place_in_dimer - 0.5) * (2e-7 - 1e-9), 0])
+                grain(at, 1e-7, ice(), fly - np.array([side * 1.0, 0, 0]), np.zeros(3))
+dimers_flying_apart()
+fused_engine(domains=2, threads=1)
+O.run(2900, True)
+result["before"] = [O.engines[0].statistics()[name] for name in ("contacts", "orders")]
+O.run(1600, True)
+result["after"] = O.engines[0].statistics()["contacts"]
+dimers_flying_apart()
+O.run(4501, True)
+result["functors"] = sum(i.isReal for i in O.interactions)
+"""
+    )
+    assert found["before"][0] == 120 and found["before"][1] >= 1
+    assert found["after"] == found["functors"] > 200

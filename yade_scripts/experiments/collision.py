@@ -160,7 +160,10 @@ def prepare(parameters, threads):
     return Scene(
         parameters=parameters,
         constants=constants,
-        derived={**_sizes(aggregate_radius, pair), **({} if touch is None else {"firstTouch": touch})},
+        derived={
+            **_sizes(aggregate_radius, pair, parameters.packing == "file"),
+            **({} if touch is None else {"firstTouch": touch}),
+        },
         aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
         build=lambda: yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar)),
         series=lambda state: series(state, aggregate_radius),
@@ -200,10 +203,12 @@ def _with_size(parameters, pair):
     return parameters.changed(radius=radius, filling=filling, grains=pair[0].grains)
 
 
-def _sizes(aggregate_radius, pair):
-    """What run.json tells of the two aggregates."""
+def _sizes(aggregate_radius, pair, from_file):
+    """What run.json tells of the two aggregates; from_file: also what their files say of how they were made."""
     found = {"aggregateRadius": aggregate_radius, "grainsPerAggregate": pair[0].grains}
     for name, packing in zip(("target", "projectile"), pair):
+        if from_file:
+            found[f"{name}Packing"] = {**packing.parameters, "seed": packing.seed}
         found[f"{name}Grains"] = packing.grains
         found[f"{name}GyrationRadius"] = packings.gyration_radius(packing)
         found[f"{name}CharacteristicRadius"] = packings.characteristic_radius(packing)

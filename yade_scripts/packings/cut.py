@@ -90,7 +90,7 @@ def cut(state, parameters, index=0):
     if len(kept) < 2:
         raise PackingError(f"radius = {parameters.radius:g}: leaves {len(kept)} grains; must leave 2 or more")
     position, radius = position[inside[kept]], state.radius[inside[kept]]
-    moved = _at_rest(position, radius, pairs, state.overlap)
+    moved = at_rest(position, radius, pairs, state.overlap)
     turned = Rotation.random(random_state=stream).apply(moved - moved.mean(axis=0))
     about = dict(
         packing="compressed",
@@ -126,7 +126,7 @@ def _largest_cluster(grains, pairs):
     return kept, rows[(rows >= 0).all(axis=1)]
 
 
-def _at_rest(position, radius, pairs, overlap):
+def at_rest(position, radius, pairs, overlap):
     """Positions with every contact at its equilibrium overlap, by the smallest motion (Newton's method on the distances);
     grains that come to overlap on the way are contacts too."""
     moved = position.copy()

@@ -1,0 +1,39 @@
+"""The comparison with S17: the sections of the report."""
+
+from ...report.beside_paper import section_of_lines
+from ...report.section import Section
+from .lines import compare
+from .tables import bouncing_section, necks_section, points_section
+
+LEGEND = (
+    "error: standard error of the mean over seeds, each another pair of aggregates; -: one seed only.",
+    "The paper has five runs a point, draws their standard deviations and prints few numbers: where it prints a statement, the "
+    "note says whether our mean is within it.",
+    "In brackets after a probability: Wilson's 95 % interval.",
+)
+
+
+def sections(results):
+    """Sections of results.Results: one for each subject, with an honest read as notes, then every point."""
+    for heading, lines, notes in compare(results):
+        if lines:
+            yield section_of_lines(heading, lines, notes)
+    for section in (points_section(results), necks_section(results), bouncing_section(results)):
+        if section is not None:
+            yield section
+    yield Section("how to read the tables", notes=LEGEND)
+
+
+def remarks(results):
+    """Lines that say what could not be told, and why."""
+    table = results.table
+    open_ended = int((~table.ended_by).sum())
+    if open_ended:
+        yield f"{open_ended} of {len(table)} runs went on to their duration: pieces may still have met or parted later"
+    held = int((table.cut == 0).sum())
+    if held:
+        yield f"{held} runs hold springs at their limits (limit = held), which is not S17's rule: points of their own"
+    for (planar, drag), fit in results.fits.items():
+        if fit is None and not drag:
+            where = "in the plane" if planar else "in space"
+            yield f"no fit of broken necks {where}: fewer than two energies with broken necks"

@@ -1,0 +1,228 @@
+"""Our numbers beside S17's, as lines of tables, each group with what it can and cannot tell."""
+
+from ...report.beside_paper import Line
+from ...statistics import wilson
+from . import paper
+
+
+def compare(results):
+    """Yields (heading, [Line], (notes)) of results.Results."""
+    for group in (_efficiency, _bounces, _compacted, _energy, _broken, _fit):
+        yield group(results)
+
+
+def _bcca(results, neck, velocity):
+    found = results.main(growth_velocity=0.0, neck=neck, velocity=velocity)
+    return found[0] if found else None
+
+
+def _name(point):
+    beta = f"beta = {point.neck:g}" if point.neck else "unsintered"
+    grown = f"V_g = {point.growth_velocity:g} m/s, " if point.growth_velocity else ""
+    return f"{grown}{beta}, {point.velocity:.3g} m/s"
+
+
+def probability(successes, trials):
+    """'3 of 10 (0.11 to 0.60)', with Wilson's interval.
+
+    >>> probability(0, 10)
+    '0 of 10 (0.00 to 0.28)'
+    """
+    low, high = wilson(successes, trials)
+    return f"{successes} of {trials} ({low:.2f} to {high:.2f})"
+
+
+def within(mean, error, least, most):
+    """Whether a mean is between limits (None: open), and if not how far off: in words.
+
+    >>> within(0.8, 0.1, 0.9, 1.0), within(0.95, None, 0.9, 1.0)
+    ('outside it by 1.0 errors', 'within it')
+    """
+    off = max((least - mean) if least is not None else 0.0, (mean - most) if most is not None else 0.0, 0.0)
+    if off == 0.0:
+        return "within it"
+    return f"outside it by {off / error:.1f} errors" if error else f"outside it by {off:.3g}"
+
+
+def _limits(least, most):
+    if least is None:
+        return f"at most {most:g}"
+    return f"{least:g} to {most:g}"
+
+
+def _efficiency(results):
+    lines = []
+    for neck, velocity, least, most, said in paper.STICKING_EFFICIENCY:
+        point = _bcca(results, neck, velocity)
+        if point is not None:
+            mean, error = point.means["largest"]
+            note = (
+                f"paper: {said}, read as {_limits(least, most)}: {within(mean, error, least, most)}; {point.runs} seeds"
+            )
+            lines.append(Line(f"sticking efficiency, {_name(point)}", "", mean, error, note=note))
+    fall = [_bcca(results, neck, 30.0) for neck in (0.4, 0.5)]
+    if all(fall):
+        (high, first), (low, second) = (point.means["largest"] for point in fall)
+        error = (first**2 + second**2) ** 0.5 if first is not None and second is not None else None
+        lines.append(
+            Line(
+                "fall from beta = 0.4 to 0.5 at 30 m/s",
+                "",
+                high - low,
+                error,
+                note="paper: decreases (Fig. 11). The same seeds at both: the error, of independent means, is too large "
+                "rather than too small",
+            )
+        )
+    notes = (
+        "Limits are read from words (perfect, close to unity, rupture): a mean outside them by less than its error contradicts "
+        "nothing.",
+    )
+    return "sticking efficiency of BCCA aggregates (Figs 8, 11)", lines, notes
+
+
+def _bounces(results):
+    lines = []
+    point = _bcca(results, 0.7, 10.0)
+    if point is not None:
+        bounced, runs = paper.BOUNCES
+        low, high = wilson(bounced, runs)
+        note = (
+            f"ours {probability(point.bouncing, point.runs)}, paper {probability(bounced, runs)}: 2 of 5 alone allows {low:.2f} to "
+            f"{high:.2f}"
+        )
+        lines.append(
+            Line(
+                "fraction that bounces, beta = 0.7, 10 m/s",
+                "",
+                point.bouncing / point.runs,
+                None,
+                bounced / runs,
+                None,
+                note,
+            )
+        )
+    for velocity in (paper.SLOW,):
+        point = _bcca(results, 0.7, velocity)
+        if point is not None:
+            note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
+            lines.append(
+                Line(f"fraction that sticks, {_name(point)}", "", point.sticking / point.runs, None, 1.0, None, note)
+            )
+    return "bouncing of BCCA aggregates (section 5.1)", lines, ()
+
+
+def _compacted(results):
+    lines = []
+    for growth, least in paper.COMPACTED:
+        points = results.main(growth_velocity=growth, velocity=growth)
+        for point in points:
+            if point.neck:
+                bounces = least is not None and point.neck >= least
+                expected = "only bouncing" if bounces else ("sticking" if least is None else "bouncing and sticking")
+                note = f"paper: {expected}; ours {probability(point.bouncing, point.runs)} bounce"
+                theirs = 1.0 if bounces else (0.0 if least is None else None)
+                lines.append(
+                    Line(
+                        f"fraction that bounces, {_name(point)}",
+                        "",
+                        point.bouncing / point.runs,
+                        None,
+                        theirs,
+                        None,
+                        note,
+                    )
+                )
+    notes = (
+        "Our compacted aggregates are two BCCA clusters of 512 grains that have collided at V_g; the paper doesn't say from what its "
+        "own start. Their contacts a grain, on which the outcome depends (section 5.5), are in the table of all points.",
+    )
+    return "compacted aggregates at V_c = V_g (Fig. 13)", lines, notes
+
+
+def _energy(results):
+    lines = []
+    point = _bcca(results, 0.0, 10.0)
+    if point is not None:
+        for name, words, theirs in (
+            ("rolling_friction", "rolling friction takes", paper.ROLLING_FRACTION),
+            ("stretching", "formation and breaking of contacts take", paper.DISCONNECTION_FRACTION),
+        ):
+            lines.append(_part(point, name, words, theirs))
+            mean, error = point.means["rolling_of_lost" if name == "rolling_friction" else "stretching_of_lost"]
+            lines.append(
+                Line("the same, of all that is lost", "", mean, error, theirs, None, words, _freedom(point.runs))
+            )
+    for neck, name, words, theirs in ((0.2, "necks", "breaking of necks takes", paper.WEAK_NECK_FRACTION),):
+        point = _bcca(results, neck, 10.0)
+        if point is not None:
+            lines.append(_part(point, name, words, theirs))
+    point = _bcca(results, 0.5, 10.0)
+    if point is not None:
+        (kinetic, first), (elastic, second) = point.means["part_kinetic"], point.means["part_elastic"]
+        error = (first**2 + second**2) ** 0.5 if first is not None and second is not None else None
+        lines.append(
+            Line(
+                f"kinetic and elastic at the end, {_name(point)}", "K(0)", kinetic + elastic, error, paper.UNDISSIPATED
+            )
+        )
+    notes = (
+        "The paper says 'approximately' and draws no errors: differences are in units of ours alone. Formation of contacts "
+        "counts as stretching here; the paper names breaking only.",
+        "Contacts that form have a negative potential energy, and what they release is dissipated too: all losses exceed K(0), the "
+        "elastic part is negative. The paper's parts add up to K(0); it doesn't say how it counts the potential.",
+    )
+    return "where the energy goes at 10 m/s (Fig. 14)", lines, notes
+
+
+def _part(point, name, words, theirs):
+    mean, error = point.means[f"part_{name}"]
+    return Line(
+        f"{words}, {_name(point)}", "K(0)", mean, error, theirs, None, f"{point.runs} seeds", _freedom(point.runs)
+    )
+
+
+def _freedom(runs):
+    return runs - 1 if runs > 1 else None
+
+
+def _broken(results):
+    lines = []
+    for planar in (1, 0):
+        points = results.select(planar=planar, cut=1, criticalRolling=2e-10, viscoelasticTime=0.0)
+        names = ("brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting")
+        table = results.table
+        chosen = (table.planar == planar) & (table.neck > 0) & (table.cut == 1) & (table.viscoelasticTime == 0)
+        total = int(table.loc[chosen, list(names)].to_numpy().sum())
+        if not points or not total:
+            continue
+        rolling = int(table.loc[chosen, "brokenByRolling"].sum())
+        others = ", ".join(
+            f"{n.removeprefix('brokenBy').lower()} {table.loc[chosen, n].sum() / total:.1%}" for n in names
+        )
+        where = "in the plane" if planar else "in space"
+        note = f"{total} necks of {int(chosen.sum())} runs: {others}"
+        if planar:
+            note += f"; paper: more than {paper.BY_ROLLING:.0%}"
+        lines.append(Line(f"necks broken by rolling, {where}", "", rolling / total, None, note=note))
+    notes = ("All runs together, as the paper has it; by point in the table of broken necks.",)
+    return "which mode breaks necks (section 5.3)", lines, notes
+
+
+def _fit(results):
+    lines = []
+    for (planar, drag), fit in results.fits.items():
+        if fit is None:
+            continue
+        where = ("in the plane" if planar else "in space") + (f", T_vis = {drag * 1e12:.3g} ps" if drag else "")
+        known = planar and not drag
+        note = f"{fit.runs} runs, {fit.points} points"
+        amplitude, exponent = paper.FIT if known else (None, None)
+        lines.append(Line(f"amplitude, {where}", "", fit.amplitude, fit.amplitude_error, amplitude, None, note))
+        lines.append(Line(f"exponent, {where}", "", fit.exponent, fit.exponent_error, exponent, None, note))
+    notes = (
+        "Least squares of the logarithms of the points' means, without BCCA aggregates of beta = 0.2, as in the paper; errors "
+        "from resampling seeds, the same in all points. Amplitude and exponent are correlated.",
+        "Runs in which no neck broke have no logarithm and are left out; where they are many, the fit is too high at that end.",
+    )
+    return "broken necks, N_cut/N_t = amplitude (E_k/E_sint)^exponent (Fig. 15)", lines, notes

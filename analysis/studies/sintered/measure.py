@@ -1,0 +1,156 @@
+"""One row of numbers for each collision."""
+
+from math import pi
+
+import numpy as np
+
+from ...measures.fragments import fragment_labels, fragment_sizes
+from ...measures.ledger import closure, initial_kinetic_energy
+from ...measures.of_run import derived_constants, met
+from ...runs.format import BROKEN_BONDS
+from ...runs.table import Column
+from ...theory.chains import breaking_energy
+from ..collision_points import OUTCOME_COLUMNS, outcome_values
+from ..definition import NotMeasured
+from . import paper
+
+# The parts of Fig. 14: {column: (channels)}. What is left moves or is stored in contacts (elastic).
+PARTS = {
+    "kinetic": ("kinetic",),
+    "elastic": ("normal", "sliding", "rolling", "twisting"),
+    "rolling_friction": ("rollingDissipation",),
+    "sliding_friction": ("slidingDissipation", "twistingDissipation"),
+    "stretching": ("connection", "disconnection"),
+    "necks": ("bondBreaking",),
+    "drag": ("drag",),
+}
+LOST = ("rolling_friction", "sliding_friction", "stretching", "necks", "drag")
+LABELS = {
+    "kinetic": "kinetic",
+    "elastic": "elastic",
+    "rolling_friction": "rolling friction",
+    "sliding_friction": "sliding friction",
+    "stretching": "unsintered contacts: formation, breaking",
+    "necks": "breaking of necks",
+    "drag": "drag",
+}
+
+PACKINGS = ("bcca", "file")
+
+COLUMNS = (
+    Column("planar", "", "1: grains in a plane", kind="i"),
+    Column("neck", "", "beta; 0: unsintered"),
+    Column("velocity", "m/s", "collision velocity V_c"),
+    Column("growth_velocity", "m/s", "V_g of the compacted aggregates; 0: BCCA"),
+    Column("criticalRolling", "m", "xi_crit"),
+    Column("viscoelasticTime", "s", "T_vis"),
+    Column("cut", "", "1: springs are cut at the limits, 0: held there", kind="i"),
+    Column("packing_seed", "", "random seed of the aggregates", kind="i"),
+    Column("grains", "", "grains of both aggregates", kind="i"),
+    Column("grain_radius", "m", "R, before sintering"),
+    Column("contacts", "", "contacts a grain at the start"),
+    Column("initial_radius", "", "gyration radius of an aggregate at the start, mean of both, in R"),
+    Column("met", "", "whether the aggregates touched", kind="b"),
+    *OUTCOME_COLUMNS,
+    Column("largest", "", "sticking efficiency: fraction of the mass in the largest piece"),
+    Column("second", "", "fraction of the mass in the second one"),
+    Column("fragments", "", f"fraction of the mass in pieces of less than {paper.FRAGMENT:g} of it"),
+    Column("gyration_radius", "", "gyration radius of the largest piece, in R (S17 eq 13)"),
+    Column("energy_ratio", "", "E_k/E_sint, E_k = m V_c^2/4 (S17 section 5.3)", gaps=True),
+    Column("necks_at_start", "", "sintered bonds at the start", kind="i"),
+    *(Column(name, "", "necks broken so", kind="i") for name in BROKEN_BONDS),
+    *(
+        Column(f"part_{name}", "K(0)", f"{LABELS[name]}: change from the start (kinetic: what is left)")
+        for name in PARTS
+    ),
+    Column("ended_by", "", "whether the run ended before its duration, because nothing could meet or break", kind="b"),
+    Column("closure", "", "largest error of the energy ledger over K(0)"),
+    Column("time", "s", "time at the end"),
+)
+
+
+def measure(run):
+    """{column: value} of a RunFolder of S17's scene that has ended. NotMeasured where the aggregates are of
+    another kind or of unlike grains, RunFolderError where something is missing."""
+    start, end, history = run.start, run.last, run.history
+    if not np.allclose(start.radius, start.radius[0]):
+        raise NotMeasured(f"{run.path}: grains of unlike radii, S17's are equal")
+    parameters = run.parameters
+    if parameters["packing"] not in PACKINGS:
+        raise NotMeasured(f"{run.path}: packing = {parameters['packing']}, S17's are {' and '.join(PACKINGS)}")
+    constants = derived_constants(run, {name: name for name in ("grainRadius", "density", "surfaceEnergy")})
+    radius, grains = constants["grainRadius"], len(start.radius)
+    velocity, neck = float(parameters["velocity"]), float(parameters["neck"])
+    about = run.derived.get("targetPacking") or {}
+    return {
+        "planar": int(parameters["planar"]),
+        "neck": neck,
+        "velocity": velocity,
+        "growth_velocity": float(about.get("growthVelocity", 0.0)),
+        "criticalRolling": float(run.derived["criticalRolling"]),
+        "viscoelasticTime": float(parameters["viscoelasticTime"]),
+        "cut": int(parameters.get("limit", "held") == "cut"),
+        "packing_seed": int(about.get("seed", parameters["seed"])),
+        "grains": grains,
+        "grain_radius": radius,
+        "contacts": 2.0 * len(start.contact_pairs) / grains,
+        "initial_radius": float(
+            np.mean([gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)]) / radius
+        ),
+        "met": met(run),
+        **outcome_values(run, velocity),
+        **pieces(end.position, end.contact_pairs, radius),
+        "energy_ratio": energy_ratio(neck, velocity, **constants) if neck else float("nan"),
+        "necks_at_start": int(np.count_nonzero(start.contact_bonded)),
+        **{name: int(history[name][-1]) if name in history else 0 for name in BROKEN_BONDS},
+        **partition(history),
+        "ended_by": bool(history["time"][-1] < 0.999 * float(parameters["duration"])),
+        "closure": closure(history),
+        "time": float(history["time"][-1]),
+    }
+
+
+def gyration_radius(position):
+    """R_g of points (N,3) of equal mass, in their unit: S17 eq 13.
+
+    >>> gyration_radius([[0.0, 0, 0], [2, 0, 0]])
+    1.0
+    """
+    position = np.asarray(position, dtype=float)
+    return float(np.sqrt(((position - position.mean(axis=0)) ** 2).sum(axis=1).mean()))
+
+
+def pieces(position, pairs, radius):
+    """{column: value} of the pieces that equal grains at position (N,3) [m], joined by pairs (M,2), make; radius: R [m].
+
+    >>> pieces([[0.0, 0, 0], [2, 0, 0], [9, 0, 0]], [[0, 1]], 1.0)["largest"].__round__(3)
+    0.667
+    """
+    labels = fragment_labels(len(position), pairs)
+    fractions = fragment_sizes(labels) / len(position)
+    return {
+        "largest": float(fractions[0]),
+        "second": float(fractions[1]) if len(fractions) > 1 else 0.0,
+        "fragments": float(fractions[fractions < paper.FRAGMENT].sum()),
+        "gyration_radius": gyration_radius(np.asarray(position)[labels == 0]) / radius,
+    }
+
+
+def energy_ratio(neck, velocity, grainRadius, density, surfaceEnergy):
+    """E_k/E_sint of beta and V_c [m/s]: (m V_c^2/4)/(pi gamma (beta R)^2), S17 section 5.3; all in SI.
+
+    >>> round(energy_ratio(0.2, 10**1.5, 1e-7, 1000.0, 0.1), 1)
+    8.3
+    """
+    mass = 4.0 / 3.0 * pi * density * grainRadius**3
+    return 0.25 * mass * velocity**2 / breaking_energy(neck, grainRadius, surfaceEnergy)
+
+
+def partition(history):
+    """{part_NAME: value} of PARTS, changes over K(0); they add up to 1 for an exact ledger."""
+    unit = initial_kinetic_energy(history)
+    found = {}
+    for name, channels in PARTS.items():
+        change = sum(history[c][-1] - history[c][0] for c in channels) / unit
+        found[f"part_{name}"] = float(change + (name == "kinetic"))
+    return found

@@ -1,0 +1,193 @@
+"""The study of S17 from made run folders whose answers are known: measured, compared, drawn, and read again from its table."""
+
+import json
+
+import numpy as np
+import pandas
+import pytest
+from written_runs import MASS, RADIUS, record, state_arrays, write_run
+
+from analysis.__main__ import main
+from analysis.runs.folder import open_run
+from analysis.runs.format import BROKEN_BONDS, CHANNELS
+from analysis.studies.sintered import paper
+from analysis.studies.sintered.bouncing import chain_grains, predicted_ratio
+from analysis.studies.sintered.measure import energy_ratio, measure
+from analysis.studies.sintered.results import fit_curve, make_results
+from analysis.theory import ICE
+
+GRAINS = 400  # of both aggregates: chains of 200
+AMPLITUDE, EXPONENT = 0.05, 0.8  # of the made necks
+ICE_GRAIN = dict(grainRadius=RADIUS, density=ICE.density, surfaceEnergy=ICE.surface_energy)
+PARTS = {"rollingDissipation": 0.4, "disconnection": 0.1, "normal": 0.05}
+
+
+def chain(start, number):
+    return [[k, k + 1] for k in range(start, start + number - 1)]
+
+
+def made_run(path, velocity, neck, seed, largest=GRAINS, growth=0.0, broken=None, **parameters):
+    """A collision of two straight chains: at the end a piece of `largest` grains, the rest a second piece; necks broken as
+    the power law has it (or `broken`), one in eight by sliding, the others by rolling."""
+    ratio = energy_ratio(neck, velocity, **ICE_GRAIN) if neck else 0.0
+    noise = 1 + 0.05 * np.random.default_rng(seed).normal()
+    if broken is None:
+        broken = int(round(GRAINS * AMPLITUDE * ratio**EXPONENT * noise)) if neck else 0
+    counts = dict(zip(BROKEN_BONDS, (0, broken // 8, broken - broken // 8, 0)))
+    kinetic = GRAINS * 0.5 * MASS * (velocity / 2) ** 2
+    time = np.linspace(0, 4e-6, 21)
+    history = {name: np.zeros(21) for name in CHANNELS}
+    for name, part in PARTS.items():
+        history[name] = part * kinetic * time / time[-1]
+    history["kinetic"] = kinetic * (1 - sum(PARTS.values()) * time / time[-1])
+    history.update(time=time, d=0 * time, v=0 * time, contacts=0 * time.astype(int))
+    history["contacts_between"] = (time > 0).astype(int)
+    if neck:
+        history.update({name: np.linspace(0, number, 21).astype(int) for name, number in counts.items()})
+    aggregate = np.repeat([0, 1], GRAINS // 2)
+    position = 2 * RADIUS * np.arange(GRAINS)[:, None] * (1, 0, 0)
+    whole = chain(0, GRAINS // 2) + chain(GRAINS // 2, GRAINS // 2)
+    end = chain(0, largest) + chain(largest, GRAINS - largest)
+    states = [
+        state_arrays(0.0, position, 0 * position, aggregate, whole),
+        state_arrays(4e-6, position, 0 * position, aggregate, end),
+    ]
+    for state in states:
+        state["contact_bonded"] = np.full(len(state["contact_pairs"]), neck > 0)
+    values = {
+        "packing": "file" if growth else "bcca",
+        "material": "ice",
+        "planar": 1,
+        "neck": neck,
+        "velocity": velocity,
+        "viscoelasticTime": 0.0,
+        "limit": "cut",
+        "impact": 0.0,
+        "duration": 24.4e-6,
+        "seed": 1 if growth else seed,
+        **parameters,
+    }
+    about = record(200 * RADIUS, values)
+    about["derived"].update(criticalRolling=2e-10)
+    if growth:
+        about["derived"]["targetPacking"] = {"growthVelocity": growth, "seed": seed}
+    return write_run(path, about, history, states)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sintered") / "runs"
+    for seed in (1, 2, 3, 4):
+        for neck in (0.0, 0.2, 0.4, 0.5, 0.7):
+            for velocity in (10.0, 30.0, 50.0):
+                # BCCA of 0.7 at 10 m/s: seeds 1 and 2 bounce
+                bounce = (neck, velocity) == (0.7, 10.0) and seed < 3
+                made_run(
+                    folder / f"b{neck}-v{velocity}-s{seed}", velocity, neck, seed, GRAINS // 2 if bounce else GRAINS
+                )
+        for neck in (0.2, 0.7):
+            made_run(folder / f"vg3-b{neck}-s{seed}", 3.0, neck, seed, GRAINS // 2, growth=3.0, broken=0)
+    return folder
+
+
+def test_one_run(runs):
+    row = measure(open_run(runs / "b0.7-v30.0-s2"))
+    assert (row["neck"], row["packing_seed"], row["growth_velocity"], row["grains"]) == (0.7, 2, 0.0, GRAINS)
+    assert row["energy_ratio"] == pytest.approx(MASS * 30.0**2 / 4 / (np.pi * 0.1 * (0.7 * RADIUS) ** 2))
+    assert row["largest"] == 1.0 and row["second"] == 0.0 and row["fragments"] == 0.0 and row["outcome"] == "sticking"
+    # a straight chain of n grains 2R apart: R_g^2 = 4 R^2 (n^2 - 1)/12
+    assert row["gyration_radius"] == pytest.approx(2 * np.sqrt((GRAINS**2 - 1) / 12))
+    assert row["initial_radius"] == pytest.approx(2 * np.sqrt(((GRAINS / 2) ** 2 - 1) / 12))
+    assert row["contacts"] == pytest.approx(2 * (GRAINS - 2) / GRAINS) and row["necks_at_start"] == GRAINS - 2
+    assert row["brokenByRolling"] > 6 * row["brokenBySliding"] > 0 == row["brokenByTwisting"]
+    assert row["part_kinetic"] == pytest.approx(0.45) and row["part_elastic"] == pytest.approx(0.05)
+    assert row["part_rolling_friction"] == pytest.approx(0.4) and row["part_stretching"] == pytest.approx(0.1)
+    assert sum(row[name] for name in row if name.startswith("part_")) == pytest.approx(1.0) and row["closure"] < 1e-12
+    assert row["ended_by"]
+
+
+def test_a_compacted_pair_keeps_its_origin(runs):
+    row = measure(open_run(runs / "vg3-b0.7-s4"))
+    assert (row["growth_velocity"], row["packing_seed"]) == (3.0, 4)
+    assert row["largest"] == row["second"] == 0.5 and row["fragments"] == 0.0
+
+
+def test_points_and_the_fit_of_made_runs(runs):
+    table = pandas.DataFrame([measure(open_run(path)) for path in sorted(runs.iterdir())])
+    results = make_results(table)
+    assert len(results.points) == 5 * 3 + 2 and all(point.runs == 4 for point in results.points)
+    point = results.main(growth_velocity=0.0, neck=0.7, velocity=10.0)[0]
+    assert (point.grown, point.outcomes.get("sticking")) == (2, 2)
+    assert point.means["largest"] == pytest.approx((0.75, 0.5 / np.sqrt(12)))
+    assert point.means["rolling_of_lost"][0] == pytest.approx(0.4 / 0.5)
+    fit = results.fits[1, 0.0]
+    assert fit.points == 9 and fit.runs == 36  # not BCCA of beta = 0.2, not those in which no neck broke
+    assert fit.amplitude == pytest.approx(AMPLITUDE, rel=0.1) and fit.exponent == pytest.approx(EXPONENT, abs=0.04)
+    assert 0 < fit.exponent_error < 0.2 and 0 < fit.amplitude_error < 0.2 * AMPLITUDE
+    assert fit_curve(fit, [2.0]) == pytest.approx([fit.amplitude * 2**fit.exponent])
+    assert fit_curve(paper.FIT, [1.0]) == pytest.approx([3.7e-2])
+
+
+def test_runs_with_held_springs_are_points_of_their_own(tmp_path):
+    for limit in ("held", "cut"):
+        made_run(tmp_path / limit, 30.0, 0.7, 1, limit=limit)
+    table = pandas.DataFrame([measure(open_run(path)) for path in sorted(tmp_path.iterdir())])
+    results = make_results(table)
+    assert sorted(point.cut for point in results.points) == [0, 1] and len(results.main()) == 1
+
+
+def test_the_chain_model_of_points(runs):
+    table = pandas.DataFrame([measure(open_run(path)) for path in sorted(runs.iterdir())])
+    results = make_results(table)
+    loops = results.main(growth_velocity=0.0, neck=0.7, velocity=10.0)[0]
+    assert chain_grains(loops) == 100 and predicted_ratio(loops) > 1 > predicted_ratio(loops, paper.LOOP_GRAINS)
+    unsintered = results.main(growth_velocity=0.0, neck=0.0, velocity=10.0)[0]
+    assert np.isnan(predicted_ratio(unsintered))
+    straight = results.main(growth_velocity=3.0, neck=0.7)[0]  # fewer than two contacts a grain: no lattice of chains
+    assert np.isinf(chain_grains(straight)) and np.isinf(predicted_ratio(straight))
+
+
+def test_comparison_and_figures(runs, tmp_path, capsys):
+    assert main(["study", "sintered", str(runs), "--figures", str(tmp_path / "out"), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    lines = {row["quantity"]: row for s in answer["sections"] for row in s["rows"] if "quantity" in row}
+    assert lines["sticking efficiency, unsintered, 50 m/s"]["ours"] == 1.0
+    assert "within it" in lines["sticking efficiency, unsintered, 50 m/s"]["note"]
+    assert "outside it" in lines["sticking efficiency, beta = 0.7, 30 m/s"]["note"]
+    bounce = lines["fraction that bounces, beta = 0.7, 10 m/s"]
+    assert bounce["ours"] == pytest.approx(0.5) and bounce["paper"] == pytest.approx(0.4)
+    assert lines["fraction that bounces, V_g = 3 m/s, beta = 0.7, 3 m/s"]["ours"] == 1.0
+    assert lines["rolling friction takes, unsintered, 10 m/s"]["ours"] == pytest.approx(0.4)
+    assert point_of(answer, 0.0, 10.0)["largest"][0] == 1.0
+    assert lines["kinetic and elastic at the end, beta = 0.5, 10 m/s"]["ours"] == pytest.approx(0.5)
+    assert lines["necks broken by rolling, in the plane"]["ours"] == pytest.approx(7 / 8, abs=0.02)
+    assert lines["exponent, in the plane"]["paper"] == 0.97
+    drawn = {file.name for file in (tmp_path / "out").glob("*.png")}
+    figures = {"fig06_contacts", "fig08_velocity", "fig11_beta", "fig12_fragments", "fig13_compacted", "fig14_energy"}
+    assert {f"{name}.png" for name in figures | {"fig15_necks", "fig17_chains", "modes"}} <= drawn
+    assert main(["study", "sintered", str(tmp_path / "out" / "runs.csv"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["sections"] == answer["sections"]
+
+
+def point_of(answer, neck, velocity):
+    """The record of a point of BCCA aggregates in the section of all points."""
+    points = [s for s in answer["sections"] if s["heading"] == "all points"][0]["rows"]
+    return next(p for p in points if (p["growth_velocity"], p["neck"], p["velocity"]) == (0.0, neck, velocity))
+
+
+def test_the_same_pair_twice_counts_once(tmp_path, capsys):
+    for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+        made_run(tmp_path / name, 3.0, 0.7, seed, growth=3.0)
+    assert main(["study", "sintered", str(tmp_path), "--json"]) == 0
+    said = capsys.readouterr()
+    assert "packing_seed as" in said.err
+    points = [s for s in json.loads(said.out)["sections"] if s["heading"] == "all points"][0]["rows"]
+    assert [point["runs"] for point in points] == [2]
+
+
+def test_runs_of_other_scenes_are_left_out(tmp_path, capsys):
+    made_run(tmp_path / "oblique", 10.0, 0.7, 1, impact=0.5)
+    made_run(tmp_path / "extracted", 10.0, 0.7, 1, packing="cpe")
+    assert main(["study", "sintered", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "impact = 0.5, S17's scene has 0.0" in said and "packing = cpe, S17's are bcca and file" in said

@@ -1,0 +1,154 @@
+"""Writes the tables of the study of Sirono & Ueno (2017, S17): python3 yade_scripts/studies/sintered.py
+
+full has the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper
+has five runs a point. desk is an evening on two cores: the points that decide the paper's statements, ten seeds each. Rows
+are in the order in which they are worth having: one seed of every point after another.
+
+Compacted aggregates are read from files that sintered_growth.py makes first.
+"""
+
+import os
+import sys
+from dataclasses import dataclass
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
+from yade_scripts.run import table
+from yade_scripts.studies.sintered_growth import Grown
+
+GRAINS = 1024
+SEEDS = range(1, 11)
+# 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
+DURATION = "24.4e-6"  # s
+STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119
+STATES = 9  # Fig. 7 shows 0, 2,500, 5,000, 10,000 and 20,000 periods, Fig. 9 also 625 and 1,250
+ROOT = "10**0.5"  # m/s, the paper's 3.2
+
+
+@dataclass(frozen=True)
+class Point:
+    """One set of parameters: beta (0: unsintered), V_c [m/s] (text), V_g [m/s] (0: BCCA), xi_crit [Angstrom], planar, T_vis
+    [s] (text)."""
+
+    neck: float
+    velocity: str
+    growth: float = 0
+    rolling: float = 2
+    planar: int = 1
+    drag: str = "0"
+
+    def name(self, seed):
+        """Of a row and its run folder: b0.7-v10-vg3-s1 and what else is special."""
+        parts = [f"b{self.neck:g}", "v3.2" if self.velocity == ROOT else f"v{self.velocity}"]
+        parts += [f"vg{self.growth:g}"] if self.growth else []
+        parts += [f"x{self.rolling:g}"] if self.rolling != 2 else []
+        parts += [] if self.planar else ["space"]
+        parts += [f"T{1e12 * float(self.drag):g}ps"] if float(self.drag) else []
+        return "-".join([*parts, f"s{seed}"])
+
+    def row(self, seed, folder):
+        """A table's row."""
+        name = self.name(seed)
+        grown = Grown(self.growth, seed, self.rolling, self.planar)
+        return {
+            "description": name,
+            "packing": "file" if self.growth else "bcca",
+            "grains": "*" if self.growth else GRAINS,
+            "seed": "*" if self.growth else seed,
+            "file": grown.file(0) if self.growth else "*",
+            "projectileFile": grown.file(1) if self.growth else "*",
+            "planar": self.planar,
+            "neck": f"{self.neck:g}",
+            "velocity": self.velocity,
+            "criticalRolling": f"{self.rolling:g}e-10",
+            "viscoelasticTime": self.drag,
+            "limit": "cut",
+            "duration": DURATION,
+            "endWhenApart": 1,
+            "states": STATES,
+            "stepFraction": STEP,
+            "threads": 1,
+            "out": f"{folder}/{name}",
+        }
+
+
+def points(necks, velocities, growth=(0,), **more):
+    """Every combination, the velocities fastest."""
+    return [Point(n, v, g, **more) for g in growth for n in necks for v in velocities]
+
+
+def unique(*groups):
+    """Points of the groups in their order, each once."""
+    return list(dict.fromkeys(point for group in groups for point in group))
+
+
+NECKS = (0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
+DESK = unique(
+    points((0, 0.7), (ROOT, "10", "20", "30", "50")),  # Figs 8, 15
+    points((0.7,), ("15",)),
+    points((0.2,), ("10", "20", "30")),
+    points(NECKS, ("10", "30")),  # Figs 11, 12, 14
+    points((0.7,), (ROOT, "10", "30"), (1, 3, 10)),  # Figs 10, 15
+    [Point(0, "3", 3), *(Point(n, f"{g}", g) for g in (1, 2, 3, 5) for n in (0.2, 0.7))],  # Figs 9, 13, 17
+)
+# The same in space, the paper's section 6.2: does bouncing survive, and which mode breaks necks? And with drag.
+SPACE = unique(
+    points((0.7,), (ROOT, "10", "20", "30"), planar=0),
+    points((0, 0.2), ("10", "30"), planar=0),
+    points((0.7,), ("10", "30"), drag="6e-12"),
+)
+GROWTH = (1, 2, 3, 4, 5, 7.5, 10, 15, 20)  # V_g of Fig. 6 for 2 Angstrom,
+GROWTH_30 = (1, 3, 5, 10, 15, 20)  # for 30
+FULL = unique(
+    points((0, 0.2, 0.7), ("1", "2", ROOT, "5", "10", "15", "20", "30", "50", "70", "100")),
+    points(NECKS, ("10", "30")),
+    points((0.7,), ("1", ROOT, "5", "10", "15", "20", "30", "50", "100"), (1, 3, 10)),
+    points(NECKS, ("10", "30"), rolling=30),
+    [Point(n, f"{g:g}", g) for g in GROWTH for n in NECKS],
+    [Point(n, f"{g:g}", g, 30) for g in GROWTH_30 for n in NECKS],
+    SPACE,
+)
+TABLES = {"desk": unique(DESK, SPACE), "full": FULL}
+
+
+def grown(size):
+    """[Grown] that the rows of a table need, each once."""
+    wanted = (
+        Grown(point.growth, seed, point.rolling, point.planar)
+        for seed in SEEDS
+        for point in TABLES[size]
+        if point.growth
+    )
+    return list(dict.fromkeys(wanted))
+
+
+def rows(size):
+    """A table's rows: every point with the first seed, then with the next one. In desk space and drag come last."""
+    folder = "runs/sintered" + ("" if size == "desk" else f"-{size}")
+    groups = (DESK, [point for point in TABLES[size] if point not in DESK]) if size == "desk" else (TABLES[size],)
+    return [point.row(seed, folder) for group in groups for seed in SEEDS for point in group]
+
+
+HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {which}
+Ten seeds a point where the paper has five runs. {cost}
+Compacted aggregates (packing = file) come from sintered_growth.py, which make study-sintered runs first.
+The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates (one collision at V_g)
+after they have come to rest; ordinary contacts cut their springs at the limits (limit = cut, section 3.2); 20,000 periods of the stretching vibration, 1.22 ns each, is
+the longest duration, and a run ends earlier when no pieces can meet again; grains in contact at the end are one piece.
+Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/sintered.py."""
+COST = {
+    "desk": "At most 13 core hours (110 s a row of beta = 0.7 to its end, 50 s unsintered: trial rows beside others on a busy machine), "
+    "and one to grow the aggregates.",
+    "full": "At most 50 core hours by the cost of the desk's rows, and three to grow the aggregates.",
+}
+
+
+def write_tables(folder):
+    """Write sintered-desk.table and sintered-full.table into a folder."""
+    for size, which in (("desk", "A selection."), ("full", "All of the paper's.")):
+        path = os.path.join(folder, f"sintered-{size}.table")
+        table.write(path, rows(size), HEAD.format(which=which, cost=COST[size]))
+
+
+if __name__ == "__main__":
+    write_tables(HERE)
