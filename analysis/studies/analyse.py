@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
+from ..progress import progress
 from ..report.data import json_text
 from ..report.markdown import markdown
 from ..report.section import Report
@@ -107,7 +106,7 @@ def _draw(study, results, folder):
     from ..figures.save import save_small, save_vector
 
     there, undrawn = [], []
-    for figure in tqdm(figures(study.name), "drawing", disable=None, leave=False):
+    for figure in progress(figures(study.name), "drawing"):
         file = folder / f"{figure.name}.png"
         try:
             drawn = figure.draw(results)
