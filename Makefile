@@ -5,7 +5,8 @@
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
-#             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
+#             one to two hours on two cores; SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full; SIZE=first: one
+#             figure in a quarter of an hour. All ends in one page, runs/elastoplastic/elastoplastic.html (analysis/STUDIES.md).
 #             Stop it at will; called again it resumes. make study-status tells from another shell how far it is.
 # make study-viscous  the collisions of Arakawa et al. (2022), in runs/viscous: five hours on two cores, or SIZE=full: all
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
