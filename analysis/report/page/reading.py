@@ -3,7 +3,7 @@
 DIFFERS = 2.0  # errors from which a difference is called one
 CHANCE = 0.05  # Student's, below which it is called one
 COARSE = 0.3  # of the paper's value: an error larger than this tells little
-FEWEST_SEEDS = 5  # of fewer, an error without degrees of freedom is uncertain by more than a third
+FEWEST_SEEDS = 5  # of fewer, an error is uncertain by more than a third
 
 NO_DIFFERENCE, DIFFERENCE, OPEN = "no difference found", "a difference", "not decided"
 VERDICTS = (NO_DIFFERENCE, DIFFERENCE, OPEN)
@@ -12,8 +12,8 @@ VERDICTS = (NO_DIFFERENCE, DIFFERENCE, OPEN)
 def reading(record, seeds=None):
     """(verdict, why) of a Line's record (dict); ('', '') where the paper has no value.
 
-    seeds: number of seeds of all runs (None: unknown). Where the error has degrees of freedom, Student's chance decides;
-    otherwise the difference in units of both errors, or of ours where the paper gives none.
+    seeds: number of seeds of all runs (None: unknown). A difference is one of DIFFERS errors or more (of both, or of ours where
+    there is none of the paper's) that Student's t finds less likely than CHANCE, where the error has degrees of freedom.
 
     >>> reading({"paper": 1.0, "error": 0.1, "difference": 0.5, "combined_difference": None, "chance": None}, 10)
     ('no difference found', '0.5 of our errors; the paper gives none')
@@ -24,13 +24,12 @@ def reading(record, seeds=None):
     if record["difference"] is None:
         return OPEN, "no standard error of ours (see the note)"
     size = _size(record)
-    if record["chance"] is not None:
-        verdict = DIFFERENCE if record["chance"] < CHANCE else NO_DIFFERENCE
-        why = f"{size}; chance {record['chance']:.2g}"
-    elif seeds is not None and seeds < FEWEST_SEEDS:
-        return OPEN, f"{size}, which {_seeds(seeds)} can't tell"
-    else:
-        verdict, why = (DIFFERENCE if _units(record) >= DIFFERS else NO_DIFFERENCE), size
+    if seeds is not None and seeds < FEWEST_SEEDS:
+        return OPEN, f"{_seeds(seeds)}: the error itself is hardly known"
+    far, why, chance = _units(record) >= DIFFERS, size, record["chance"]
+    if chance is not None:
+        far, why = far and chance < CHANCE, f"{size}; chance {chance:.2g}"
+    verdict = DIFFERENCE if far else NO_DIFFERENCE
     if verdict == NO_DIFFERENCE and paper and abs(error / paper) > COARSE:
         return OPEN, f"our error is {100 * abs(error / paper):.0f} % of the paper's value"
     return verdict, why
