@@ -5,7 +5,8 @@
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
-#             one to two hours on two cores, or SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full.
+#             one to two hours on two cores; SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full; SIZE=first: one
+#             figure in a quarter of an hour. All ends in one page, runs/elastoplastic/elastoplastic.html (analysis/STUDIES.md).
 #             Stop it at will; called again it resumes. make study-status tells from another shell how far it is.
 # make study-viscous  the collisions of Arakawa et al. (2022), in runs/viscous: five hours on two cores, or SIZE=full: all
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
@@ -52,7 +53,7 @@ YADE_VERSION := $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/
 endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
-            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-pytest python3-pytest-xdist \
+            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-jinja2 python3-markdown python3-pytest python3-pytest-xdist \
             python3-vtk9 ffmpeg
 
 # ---- flags ----
@@ -236,7 +237,7 @@ runs  = runs/$1$(filter-out -desk,-$(SIZE))
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status
 $(STUDIES:%=study-%): study-%: all
 	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
-	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures
+	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures --page $(call runs,$*)/$*.html
 
 # Compacted aggregates are made by collisions of their own before the study's.
 study-sintered: grow-sintered

@@ -1,4 +1,4 @@
-"""Command line: python3 -m analysis summary RUN..., figures RUN, export RUN, film RUN, study [NAME RUNS...]."""
+"""Command line: python3 -m analysis summary RUN..., figures RUN, export RUN, film RUN, status RUNS..., study [NAME RUNS...]."""
 
 import argparse
 import os
@@ -8,7 +8,7 @@ import sys
 if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends the process without a traceback; before slow imports
 
-from .commands import export, figures, film, study, summary  # noqa: E402
+from .commands import export, figures, film, status, study, summary  # noqa: E402
 
 
 def main(arguments=None):
@@ -32,7 +32,7 @@ def _parser():
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for command in (summary, figures, export, film, study):
+    for command in (summary, figures, export, film, status, study):
         command.add_parser(commands)
     return parser
 

@@ -23,7 +23,7 @@ TOP = Path(__file__).resolve().parents[1]
 FOLDER, LIST, PATH_FILE = "lib/contact_law", "installed.json", "contact_law.pth"
 COPIED = {
     "contact_law": ("*.py", "VERSION"),
-    "analysis": ("**/*.py", "gallery/*/*.csv"),
+    "analysis": ("**/*.py", "**/*.html", "gallery/*/*.csv", "gallery/*/*.json", "gallery/*/README.md"),
     "yade_scripts": ("**/*.py", "**/*.table"),
 }
 

@@ -20,13 +20,14 @@ def run(options):
     """Exit status: 0, or 2 when the run could not be read or the figures not be written."""
     # matplotlib is slow to load, and `summary` does without it.
     from ..figures.draw import draw_all
+    from ..progress import line_beside_bars
     from ..runs.arrays import RunFolderError
     from ..runs.folder import open_run
 
     try:
         folder = open_run(options.run)
         for file in draw_all(folder, options.out or folder.path / "figures"):
-            print(file)
+            line_beside_bars(file)
     except (RunFolderError, OSError) as error:
         complain(error)
         return FAILED

@@ -1,5 +1,9 @@
-"""python3 -m analysis study [NAME RUNS... [--figures FOLDER] [--json | --format FORMAT]]"""
+"""python3 -m analysis study [NAME RUNS... [--figures FOLDER] [--page FILE] [--json | --format FORMAT]]"""
 
+import argparse
+import os
+import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
 from . import FAILED, complain
@@ -36,6 +40,13 @@ def _add_study(parser, name):
         metavar="FOLDER",
         help="write comparison.md, comparison.json, runs.csv (a row a run) and the figures there; made if it is missing",
     )
+    parser.add_argument(
+        "--page",
+        metavar="FILE",
+        type=_page_file,
+        help="write one HTML page with everything in it, to be sent to others, and a PDF of it beside it where weasyprint "
+        "or chromium is installed",
+    )
     output = parser.add_mutually_exclusive_group()
     output.add_argument("--format", choices=FORMATS, default="text", help="what to print (csv: a row a run)")
     output.add_argument(
@@ -48,6 +59,12 @@ def _add_study(parser, name):
     parser.set_defaults(command=run, name=name)
 
 
+def _page_file(text):
+    if Path(text).suffix != ".html":
+        raise argparse.ArgumentTypeError(f"{text}: must end in .html")
+    return Path(text)
+
+
 def run(options):
     """Exit status: 0, or 2 when a path or run could not be read or nothing was left to analyse."""
     # pandas and scipy take a moment to load, and the parser does without them.
@@ -58,22 +75,65 @@ def run(options):
     try:
         analysis = analyse(find(options.name), options.runs)
         _complain_of(analysis.found)
-        if options.figures:
-            for name in analysis.write(Path(options.figures)):
-                complain(f"{name}: not drawn: it needs the run folders, a table has only their numbers")
+        if options.figures or options.page:
+            _write(analysis, options)
     except NothingToAnalyse as nothing:
         _complain_of(nothing.found)
         if not nothing.found.problems:
             complain(nothing)
         return FAILED
     except OSError as error:
-        complain(f"{error.filename or options.figures}: {error.strerror}")
+        complain(f"{error.filename or options.page or options.figures}: {error.strerror}")
         return FAILED
     except RunFolderError as error:
         complain(error)
         return FAILED
     print(_printed(options.format, analysis).rstrip("\n"))
     return FAILED if analysis.found.problems else 0
+
+
+def _write(analysis, options):
+    """Figures and page, as far as they are wanted."""
+    with _folder(options.figures) as folder:
+        written = analysis.write(folder)
+        for name in written.undrawn:
+            complain(f"{name}: not drawn: it needs the run folders, a table has only their numbers")
+        if options.page:
+            _write_page(options.page, analysis.page(written, tuple(_commands(options))))
+
+
+@contextmanager
+def _folder(wanted):
+    """The folder for figures: the one that is wanted, or one that goes when the page holds them."""
+    if wanted:
+        yield Path(wanted)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            yield Path(folder)
+
+
+def _write_page(file, text):
+    """The page, whole or not there, and its PDF; a PDF of an earlier page goes where there can be none of this one."""
+    from ..report.page.pdf import NoPdf, write_pdf
+
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part, pdf = file.with_name(f".{file.name}.part"), file.with_suffix(".pdf")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, file)
+    try:
+        write_pdf(file, pdf)
+    except NoPdf as error:
+        pdf.unlink(missing_ok=True)
+        complain(f"{pdf}: {error}")
+
+
+def _commands(options):
+    """How to make the runs and the page again, without this machine's folders."""
+    runs = " ".join(
+        path if not os.path.isabs(path) else os.path.basename(os.path.normpath(path)) for path in options.runs
+    )
+    yield f"make study-{options.name}   # the runs of the study's table and this page, in runs/{options.name}"
+    yield f"python3 -m analysis study {options.name} {runs} --page {options.page.name}   # this page from its runs"
 
 
 def _list(options):

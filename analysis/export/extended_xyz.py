@@ -4,6 +4,7 @@ Source: https://github.com/libAtoms/extxyz (the format's specification). Numbers
 
 import numpy as np
 
+from ..progress import progress
 from .fields import exported_states, grain_fields
 
 FILE = "run.xyz"
@@ -19,7 +20,7 @@ def write_xyz(run, folder):
     file = folder / FILE
     folder.mkdir(parents=True, exist_ok=True)
     with open(file, "w", encoding="ascii") as out:
-        for exported in exported_states(run):
+        for exported in progress(exported_states(run), "writing states", len(run.states)):
             _write_frame(out, exported)
     return file
 

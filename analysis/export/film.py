@@ -9,6 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from ..figures.sphere_raster import paint_spheres
 from ..figures.style import AGGREGATE_COLOURS, NANO
+from ..progress import progress
 
 FRAMES_PER_SECOND = 10
 WIDTH = 960  # pixels
@@ -31,7 +32,11 @@ def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH):
     part = tempfile.NamedTemporaryFile(dir=file.parent, prefix=".film-", suffix=file.suffix, delete=False)
     part.close()
     try:
-        _encode((_frame(state, view, pixel) for state in run.states), part.name, frames_per_second)
+        _encode(
+            (_frame(state, view, pixel) for state in progress(run.states, "drawing frames")),
+            part.name,
+            frames_per_second,
+        )
         os.chmod(part.name, 0o644)
         os.replace(part.name, file)
     finally:
@@ -48,12 +53,13 @@ def _drawn(state):
 def _view(run):
     """(x0, x1, y0, y1) [m] that holds the grains of all states but those that fly far off."""
     first, margin = run.start, _MARGIN * run.start.radius.max()
+    states = progress(run.states, "finding the view")
     if first.cell_size is not None:
-        edges = np.max([state.cell_size for state in run.states], axis=0)
+        edges = np.max([state.cell_size for state in states], axis=0)
         return -margin, edges[0] + margin, -margin, edges[1] + margin
     low, high = first.position[:, :2].min(axis=0) - margin, first.position[:, :2].max(axis=0) + margin
     middle, half = (low + high) / 2, (high - low) / 2
-    reach = np.max([np.abs(state.position[:, :2] - middle).max(axis=0) for state in run.states], axis=0) + margin
+    reach = np.max([np.abs(state.position[:, :2] - middle).max(axis=0) for state in states], axis=0) + margin
     half = np.minimum(reach, _LARGEST_VIEW * half.max())
     return middle[0] - half[0], middle[0] + half[0], middle[1] - half[1], middle[1] + half[1]
 

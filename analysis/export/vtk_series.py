@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..progress import progress
 from . import vtk_xml
 from .fields import contact_fields, exported_states, grain_fields
 
@@ -16,7 +17,7 @@ def write_vtk(run, folder):
     nearest image, with fields.CONTACTS; each has its own two points. `time` [s] and, of a periodic run, `cell_size` [m]
     are field data of the grains. (OVITO 3.17 shows the contacts of an earlier state where a state has none.)"""
     names, times = [], []
-    for number, exported in enumerate(exported_states(run)):
+    for number, exported in enumerate(progress(exported_states(run), "writing states", len(run.states))):
         names.append(f"state_{number:06d}")
         times.append(exported.state.time)
         (folder / names[-1]).mkdir(parents=True, exist_ok=True)

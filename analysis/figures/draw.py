@@ -4,6 +4,7 @@ import pkgutil
 from importlib import import_module
 from pathlib import Path
 
+from ..progress import progress
 from . import of_run
 
 
@@ -26,7 +27,7 @@ def draw_all(run, folder):
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, make in figures_of(run).items():
+    for name, make in progress(figures_of(run).items(), "drawing"):
         figure = make(run)
         file = folder / f"{name}.png"
         figure.savefig(file)

@@ -36,7 +36,8 @@ class Section:
 @dataclass(frozen=True)
 class Report:
     """study (its name), title, provenance (dict of runs.provenance), remarks (what could not be done, and why), notes
-    (runs left out), sections."""
+    (runs left out), sections, question (what the study asks; "" where it doesn't say), seeds (number of different seeds of
+    all runs; None: unknown)."""
 
     study: str
     title: str
@@ -44,3 +45,5 @@ class Report:
     remarks: tuple
     notes: tuple
     sections: tuple
+    question: str = ""
+    seeds: int | None = None

@@ -81,7 +81,17 @@ def collect(paths, scene):
 def _folders(paths):
     """(run folder or table, None) or (None, what is wrong) for every path."""
     for path in map(Path, paths):
-        if (path / RUN_FILE).exists() or (path.suffix == ENDING and path.is_file()):
+        if path.suffix == ENDING and path.is_file():
+            yield path, None
+        else:
+            yield from run_folders([path])
+
+
+def run_folders(paths):
+    """(Path of a run folder, None) or (None, what is wrong) for every path: the path itself, or folders at most LEVELS
+    below it."""
+    for path in map(Path, paths):
+        if (path / RUN_FILE).exists():
             yield path, None
             continue
         if not path.is_dir():

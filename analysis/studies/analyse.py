@@ -1,10 +1,10 @@
 """From a study and paths to its results, report, table and figures."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
+from ..progress import progress
 from ..report.data import json_text
 from ..report.markdown import markdown
 from ..report.section import Report
@@ -13,6 +13,7 @@ from .definition import Study
 from .find import figures
 from .gather import Gathered, gather
 
+GALLERY = Path(__file__).resolve().parents[1] / "gallery"
 TABLE_FILE, PAGE_FILE, DATA_FILE = "runs.csv", "comparison.md", "comparison.json"
 
 
@@ -39,14 +40,33 @@ class Analysis:
         return table_text(self.found.table, self.study.columns, head)
 
     def write(self, folder):
-        """Write table, page, JSON and figures into a folder (Path, made if it is missing); the names of the figures that
-        could not be drawn because they need run folders."""
+        """Write table, comparison, JSON and figures into a folder (Path, made if it is missing): Written."""
         folder.mkdir(parents=True, exist_ok=True)
         (folder / TABLE_FILE).write_text(self.csv(), encoding="utf-8")
         (folder / DATA_FILE).write_text(json_text(self.report), encoding="utf-8")
         drawn, undrawn = _draw(self.study, self.results, folder)
         (folder / PAGE_FILE).write_text(markdown(self.report, drawn), encoding="utf-8")
-        return undrawn
+        return Written(folder, tuple(drawn), tuple(undrawn))
+
+    def page(self, written, commands):
+        """The HTML page (str) with what was written in it. commands: lines that say how to make it again."""
+        from ..report.page.gallery_reading import gallery_reading
+        from ..report.page.render import page
+
+        pictures = [(written.folder / name, caption) for name, caption in written.figures]
+        files = [written.folder / name for name in (TABLE_FILE, DATA_FILE)]
+        reading = gallery_reading(GALLERY / self.study.name, self.report.provenance)
+        return page(self.report, pictures, files, commands, reading)
+
+
+@dataclass(frozen=True)
+class Written:
+    """What Analysis.write() left: folder (Path), figures ((file name, caption) of each that is there), undrawn (names of
+    those that could not be drawn because they need run folders)."""
+
+    folder: Path
+    figures: tuple
+    undrawn: tuple
 
 
 def analyse(study, paths):
@@ -58,7 +78,16 @@ def analyse(study, paths):
         raise NothingToAnalyse(study, found)
     results = study.results(found.table)
     sections, remarks = tuple(study.sections(results)), tuple(study.remarks(results))
-    report = Report(study.name, study.title, found.provenance, remarks, tuple(_kept(found)), sections)
+    report = Report(
+        study.name,
+        study.title,
+        found.provenance,
+        remarks,
+        tuple(_kept(found)),
+        sections,
+        question=study.question,
+        seeds=int(found.table["seed"].nunique()) if "seed" in found.table else None,
+    )
     return Analysis(study, found, results, report)
 
 
@@ -77,7 +106,7 @@ def _draw(study, results, folder):
     from ..figures.save import save_small, save_vector
 
     there, undrawn = [], []
-    for figure in tqdm(figures(study.name), "drawing", disable=None, leave=False):
+    for figure in progress(figures(study.name), "drawing"):
         file = folder / f"{figure.name}.png"
         try:
             drawn = figure.draw(results)

@@ -23,6 +23,7 @@ class Study:
     sections  results -> report.section.Section of the comparison, in order
     remarks   results -> lines (str) that say what could not be done, and why
 
+    question  what the study asks, and of which paper: the first lines of its page
     name: that of the study's folder, filled in by find()."""
 
     title: str
@@ -32,6 +33,7 @@ class Study:
     results: Callable
     sections: Callable
     remarks: Callable = _nothing
+    question: str = ""
     name: str = ""
 
 

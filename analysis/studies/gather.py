@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 import pandas
-from tqdm import tqdm
 
+from ..progress import progress
 from ..runs.arrays import RunFolderError
 from ..runs.collect import collect
 from ..runs.provenance import joined, provenance
@@ -53,7 +53,7 @@ def gather(study, paths):
 def _measure(study, runs, taken, found):
     """([(path, {column: value})], their RunFolders)."""
     measured, sources = [], []
-    for run in tqdm(runs, "reading runs", disable=None, leave=False):
+    for run in progress(runs, "reading runs"):
         try:
             values = study.measure(run)
         except NotMeasured as error:

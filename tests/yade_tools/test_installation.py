@@ -92,13 +92,21 @@ def test_a_study_by_the_name_of_its_table(installed):
     assert call("dust-study", "no-such-study").returncode == 2
 
 
-def test_tables_that_the_analysis_reads_are_installed(installed):
+def test_files_that_the_analysis_reads_are_installed(installed):
     prefix, call = installed
     ask = "from analysis.studies.elastoplastic.prediction import GALLERY; print(GALLERY)"
     gallery = Path(call("/usr/bin/python3", "-c", ask).stdout.strip())
     assert gallery.is_relative_to(prefix)
-    for file in (TOP / "analysis/gallery/elastoplastic").glob("*.csv"):
-        assert (gallery / file.name).read_bytes() == file.read_bytes()
+    for pattern in (
+        "gallery/elastoplastic/*.csv",
+        "gallery/elastoplastic/README.md",
+        "gallery/elastoplastic/*.json",
+        "report/page/*.html",
+    ):
+        files = list((TOP / "analysis").glob(pattern))
+        assert files
+        for file in files:
+            assert (gallery.parents[1] / file.relative_to(TOP / "analysis")).read_bytes() == file.read_bytes()
 
 
 def test_installing_again_and_removing_leave_nothing_behind(tmp_path):

@@ -3,13 +3,12 @@
 import os
 import re
 import signal
-import time
 from dataclasses import dataclass
 from functools import cached_property
 
-from analysis.runs.arrays import RunFolderError, read_arrays
-from analysis.runs.folder import read_json
-from analysis.runs.format import ENDED_FILE, HISTORY_FILE, RUN_FILE
+from analysis.runs.format import ENDED_FILE, RUN_FILE
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, changed, end_time, run_of  # noqa: F401
+from analysis.runs.status import running as running_state
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import checkpoint, table
 from yade_scripts.run.agreement import difference
@@ -20,7 +19,6 @@ from yade_scripts.run.parameters import RunParameters
 from yade_scripts.runner.batch_command import DEFAULT_SCRIPT, failure
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
 
 
 @dataclass(frozen=True)
@@ -43,17 +41,6 @@ class StudyRow:
     def estimate(self):
         """run.kind.Estimate of its run."""
         return self.kind.estimate(self.parameters)
-
-
-@dataclass(frozen=True)
-class State:
-    """kind: DONE, ...; progress: 0 to 1; seconds: wall time spent; left: seconds by the run's own pace, if known."""
-
-    kind: str
-    progress: float = 0.0
-    seconds: float = None
-    left: float = None
-    note: str = ""
 
 
 def read(path):
@@ -94,13 +81,13 @@ def state(row, log, since=0.0):
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
         return _ended(row, run)
     if running:
-        return _running(folder, run)
+        return running_state(folder, run)
     outcome = run.get("outcome", "")
     note, progress = _stopped(folder, run)
-    problem = _failure(log) if _changed(log) >= since else None
+    problem = _failure(log) if changed(log) >= since else None
     if problem:
         return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
-    if outcome.startswith("failed") and _changed(os.path.join(folder, RUN_FILE)) >= since:
+    if outcome.startswith("failed") and changed(os.path.join(folder, RUN_FILE)) >= since:
         return State(FAILED, progress, note=f"{folder}: {outcome}")
     return State(WAITING, progress, run.get("wallTime"), note=note)
 
@@ -115,16 +102,6 @@ def _ended(row, run):
     return State(DONE, 1.0, run.get("wallTime"))
 
 
-def _running(folder, run):
-    """Its pace is that of the wall time and the progress at the last writing of the history."""
-    progress = _progress(folder, run)
-    begun, written = _changed(os.path.join(folder, RUN_FILE)), _changed(os.path.join(folder, HISTORY_FILE))
-    if not written > begun or progress < 0.02:
-        return State(RUNNING, progress)
-    spent, since = run.get("wallTime", 0.0) + written - begun, time.time() - written
-    return State(RUNNING, progress, spent + since, max(0.0, spent * (1 - progress) / progress - since))
-
-
 def _stopped(folder, run):
     """(what to say of a run that didn't come to its end, how far its checkpoint is)."""
     if not run:
@@ -135,36 +112,8 @@ def _stopped(folder, run):
         rows = checkpoint.Checkpoint(folder).rows
     except checkpoint.CheckpointError:
         return "", 0.0
-    reached = rows[-1][0] / _end(run) if len(rows) else 0.0
+    reached = rows[-1][0] / end_time(run) if len(rows) else 0.0
     return f"checkpoint at {100 * reached:.0f} %", reached
-
-
-def _progress(folder, run):
-    try:
-        return float(read_arrays(os.path.join(folder, HISTORY_FILE), ("time",))["time"][-1]) / _end(run)
-    except (RunFolderError, KeyError, IndexError, TypeError, ZeroDivisionError):
-        return 0.0
-
-
-def _end(run):
-    return run["derived"]["steps"] * run["derived"]["timeStep"]
-
-
-def run_of(folder):
-    """A run folder's run.json, or {} when there is none."""
-    try:
-        run = read_json(os.path.join(folder, RUN_FILE))
-    except RunFolderError:
-        return {}
-    return run if isinstance(run, dict) else {}
-
-
-def _changed(path):
-    """When a file was written [s since 1970]; -1 when it isn't there."""
-    try:
-        return os.stat(path).st_mtime
-    except OSError:
-        return -1.0
 
 
 def _failure(log):

@@ -1,25 +1,16 @@
 """What a study looks like as text."""
 
-from tqdm import tqdm
-
+from analysis.report.status import counts, duration_text
+from analysis.report.status import line as run_line
+from analysis.runs.status import FAILED, RUNNING, WAITING
 from yade_scripts.runner.cost import makespan
-from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 
-WIDTH = 20  # of a bar
 SHOWN = 15  # lines of a live table
-
-
-def duration_text(seconds):
-    """02:03 or 1:02:03 for a number of seconds."""
-    return tqdm.format_interval(seconds)
 
 
 def headline(name, states, cost, rows, at_once):
     """One line: how many rows are done, running, waiting, failed, and the time left."""
-    counts = ", ".join(
-        f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, WAITING, FAILED)
-    )
-    return f"{name}: {counts}{_left(total_left(states, cost, rows, at_once))}"
+    return f"{name}: {counts(states)}{_left(total_left(states, cost, rows, at_once))}"
 
 
 def total_left(states, cost, rows, at_once):
@@ -47,16 +38,7 @@ def seconds_left(state, cost, row):
 
 def line(row, state, cost):
     """One row of the table."""
-    text = f"  {state.kind:8s} {row.name:24s}"
-    if state.kind == FAILED:
-        return f"{text} {state.note}"
-    if state.kind == DONE:
-        return f"{text} {duration_text(state.seconds or 0):>8s}"
-    filled = int(WIDTH * state.progress)
-    bar = f' [{"#" * filled}{"." * (WIDTH - filled)}] {100 * state.progress:5.1f} %' if state.kind == RUNNING else ""
-    left = seconds_left(state, cost, row)
-    note = f"  {state.note}" if state.note else ""
-    return text + bar + ("" if left is None else f" {duration_text(left):>8s} left") + note
+    return run_line(row.name, state, seconds_left(state, cost, row))
 
 
 def full_table(name, rows, states, cost, at_once):

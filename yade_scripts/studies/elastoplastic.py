@@ -1,7 +1,8 @@
 """Writes the tables of the study of Arakawa et al. (2024): python3 yade_scripts/studies/elastoplastic.py
 
 full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every scene, at its default step. desk is a
-selection for two hours on two cores, at twice that step. Rows are in the order in which they are
+selection for two hours on two cores, at twice that step. first is one figure for a first look (Fig. 8, R = 40), some ten
+minutes on two cores. Rows are in the order in which they are
 worth having: small scenes first, and every figure gets its first points early.
 """
 
@@ -37,6 +38,7 @@ DURATION = "64.6*{radius}*" + TIME_UNIT
 # The slowest at R = 40 are followed for twice as long, when more of them have stuck or parted.
 FOLLOWED = {(40, i): "1e-6" for i in range(3)}  # {(radius, i): duration [s]}
 FIRST = 2  # seeds of each of these that come before any third
+FIRST_LOOK = (1, 3, 5, 7)  # i of the velocities of the table first
 
 
 def desk():
@@ -71,6 +73,11 @@ def full():
     return sorted(rows, key=lambda row: (row[3] > FIRST, row[1], row[3]))
 
 
+def first():
+    """[(filling, radius, i, seed)] of one figure."""
+    return [(0.4, 40, i, seed) for seed in range(1, FIRST + 1) for i in FIRST_LOOK]
+
+
 def rows(scenes, folder, step, followed):
     """A table's rows, with run folders FOLDER/fFILLING-RRADIUS-iI-sSEED; followed: {(radius, i): duration} of
     those that have another than DURATION."""
@@ -98,7 +105,12 @@ Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0. Writte
 
 
 def write_tables(folder):
-    """Write elastoplastic-desk.table and elastoplastic-full.table into a folder."""
+    """Write elastoplastic-first.table, elastoplastic-desk.table and elastoplastic-full.table into a folder."""
+    table.write(
+        os.path.join(folder, "elastoplastic-first.table"),
+        rows(first(), "runs/elastoplastic-first", FASTEST_STEP, {}),
+        HEAD.format(which="One figure: Fig. 8 at R = 40."),
+    )
     table.write(
         os.path.join(folder, "elastoplastic-desk.table"),
         rows(desk(), "runs/elastoplastic", FASTEST_STEP, FOLLOWED),

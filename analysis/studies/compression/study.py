@@ -8,6 +8,8 @@ from .measure import COLUMNS, measure
 from .results import make_results
 
 STUDY = Study(
+    question="Which pressure compresses a fluffy aggregate to a given filling factor, and on which properties of the grains does it "
+    "depend? Kataoka et al. (2013, K13), Static compression of porous dust aggregates, A&A 554, A4.",
     title="Static compression of fluffy aggregates beside K13",
     # BCCA clusters in cells that shrink uniformly, without viscous drag.
     scene=Scene(

@@ -6,6 +6,7 @@ from typing import Mapping
 import numpy as np
 import pandas
 
+from ...progress import progress
 from ...statistics import mean_and_error, percentile_error
 from ...theory.aggregates import bulk_modulus, cpe_coordination, poisson_ratio
 from ..collision_points import collision_point
@@ -95,7 +96,7 @@ def make_results(table):
     fillings = table.filling.round(6)
     by_filling = {
         float(filling): _filling(float(filling), table[fillings == filling])
-        for filling in sorted(fillings.unique(), reverse=True)
+        for filling in progress(sorted(fillings.unique(), reverse=True), "fitting")
     }
     constants = {name: float(table[name].iloc[0]) for name in CONSTANTS}
     return Results(table, by_filling, tuple(_bounces(table)), **constants)

@@ -118,6 +118,8 @@ def _chance(values):
 
 
 STUDY = Study(
+    question="Does viscous drag between grains explain where the collisions of the study elastoplastic differ from Arakawa et al. (2024)? "
+    "The same pairs of aggregates with and without it.",
     title="Elastoplastic collisions with drag beside the same without",
     scene=Scene(
         name="A24's scene with drag",

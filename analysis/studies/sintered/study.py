@@ -8,6 +8,8 @@ from .results import make_results
 
 STUDY = Study(
     title="Sintered aggregates beside S17",
+    question="Do sintered aggregates still grow when they collide, at which velocity do they bounce and break, and which modes break their "
+    "necks (Sirono & Ueno 2017)? And does their bouncing survive the third dimension?",
     # Head-on collisions of equal aggregates of equal ice grains: BCCA ones, and those that collisions have compacted.
     scene=Scene(
         name="S17's scene",

@@ -7,6 +7,9 @@ from .measure import COLUMNS, measure
 from .results import make_results
 
 STUDY = Study(
+    question="How much does viscous drag between grains help colliding aggregates to grow, at which velocity do they fragment, and how are "
+    "the fragments distributed? Arakawa, Tanaka & Kokubo (2022, A22), Impacts of viscous dissipation on collisional growth and "
+    "fragmentation of dust aggregates.",
     title="Viscous dissipation, oblique collisions and fragments beside A22",
     # Collisions of equal BPCA aggregates of equal ice grains, without bonds.
     scene=Scene(

@@ -1,0 +1,115 @@
+"""What has become of a run, from its folder alone: of any machine, without locks.
+
+A run writes its history every ten seconds or so (yade_scripts.run.recorder), so that the newest write in its folder is
+its heartbeat. The clocks of machines that share a disk must agree to a minute."""
+
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from .arrays import RunFolderError, read_arrays
+from .folder import read_json
+from .format import CHECKPOINT_FOLDER, ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
+
+DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
+KINDS = (DONE, RUNNING, WAITING, FAILED)
+SILENCE = 180.0  # s without a write after which a run is taken for stopped: large scenes are long in the making
+EARLY = 0.02  # progress below which a pace tells nothing
+FAILURE = "failed"  # how the outcome of a failed run begins, in run.json
+
+
+@dataclass(frozen=True)
+class State:
+    """kind: DONE, ...; progress: 0 to 1; seconds: wall time spent; left: seconds by the run's own pace, if known."""
+
+    kind: str
+    progress: float = 0.0
+    seconds: float = None
+    left: float = None
+    note: str = ""
+
+
+def state(folder, now=None):
+    """State of the run in a folder (path); now: seconds since 1970. Running is what wrote within SILENCE seconds and has not
+    said that it stopped; waiting, what was stopped or killed: time left is then by the pace it had."""
+    now = time.time() if now is None else now
+    run = run_of(folder)
+    outcome = str(run.get("outcome", ""))
+    if os.path.exists(os.path.join(folder, ENDED_FILE)):
+        if not run:
+            return State(FAILED, note=f"ended, but its {RUN_FILE} cannot be read")
+        return State(DONE, 1.0, _spent(folder, run))
+    progress, silence = progress_of(folder, run), now - newest_write(folder)
+    if outcome.startswith(FAILURE):
+        return State(FAILED, progress, _spent(folder, run), note=outcome)
+    if silence < SILENCE and outcome in ("", "running"):
+        return running(folder, run, now)
+    spent = _spent(folder, run)
+    left = spent * (1 - progress) / progress if progress >= EARLY else None
+    how = "stopped" if outcome == "interrupted" else "stopped without a word"
+    return State(WAITING, progress, spent, left, f"{how}, {_resumes(folder)}")
+
+
+def running(folder, run, now=None):
+    """State of a run that is under way. Its pace is that of the wall time and the progress at the last writing of the
+    history."""
+    now = time.time() if now is None else now
+    progress = progress_of(folder, run)
+    written = changed(os.path.join(folder, HISTORY_FILE))
+    if not written > changed(os.path.join(folder, RUN_FILE)) or progress < EARLY:
+        return State(RUNNING, progress)
+    spent, since = _spent(folder, run), now - written
+    return State(RUNNING, progress, spent + since, max(0.0, spent * (1 - progress) / progress - since))
+
+
+def progress_of(folder, run):
+    """How far a run is by its history, 0 to 1; 0 where that cannot be told. run: its run.json."""
+    try:
+        reached = float(read_arrays(os.path.join(folder, HISTORY_FILE), ("time",))["time"][-1]) / end_time(run)
+    except (RunFolderError, KeyError, IndexError, TypeError, ZeroDivisionError):
+        return 0.0
+    return min(1.0, max(0.0, reached))
+
+
+def end_time(run):
+    """Time [s] at which a run (its run.json) is at its planned end; KeyError or TypeError where it doesn't say."""
+    return run["derived"]["steps"] * run["derived"]["timeStep"]
+
+
+def run_of(folder):
+    """A run folder's run.json, or {} when there is none."""
+    try:
+        run = read_json(Path(folder) / RUN_FILE)
+    except RunFolderError:
+        return {}
+    return run if isinstance(run, dict) else {}
+
+
+def newest_write(folder):
+    """When something was last written in a run folder [s since 1970]; -1 when it isn't there."""
+    inside = (RUN_FILE, HISTORY_FILE, STATES_FOLDER, CHECKPOINT_FOLDER)
+    return max(changed(os.path.join(folder, name)) for name in inside)
+
+
+def changed(path):
+    """When a file or folder was written [s since 1970]; -1 when it isn't there."""
+    try:
+        return os.stat(path).st_mtime
+    except OSError:
+        return -1.0
+
+
+def _spent(folder, run):
+    """Wall time [s] until the last writing of the history, that of earlier starts included."""
+    earlier = run.get("wallTime")
+    earlier = float(earlier) if isinstance(earlier, (int, float)) else 0.0
+    if run.get("outcome") != "running":
+        return earlier
+    begun, written = changed(os.path.join(folder, RUN_FILE)), changed(os.path.join(folder, HISTORY_FILE))
+    return earlier + max(0.0, written - begun)
+
+
+def _resumes(folder):
+    there = os.path.isdir(os.path.join(folder, CHECKPOINT_FOLDER))
+    return "has a checkpoint" if there else "starts again"
