@@ -46,8 +46,8 @@ ForcePass Domain::passFor(int sort)
 {
 	ContactList& list = contacts[sort];
 	const bool books = sort != Second; // both domains of a border contact compute it; the first grain's books it
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), &cell, 0,
-		list.blockCount(), sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation,
+	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), &cell, 0, list.blockCount(),
+		sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation,
 		books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf,
 		nullptr, s.limit == LimitRule::Cut };
 }

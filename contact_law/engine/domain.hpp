@@ -59,15 +59,15 @@ public:
 	void place(const std::vector<Constrained>&);
 	// All contacts and bonds of which this domain has the first grain, and its constrained grains; they are placed anew when grains have changed their order.
 	void takeOut(std::vector<Contact>&, std::vector<Bond>&, std::vector<Constrained>&);
-	void markTouching();        // in the neighbour lists, all that touch
-	void takeVelocities();      // as they are now, for drag in the next step
+	void markTouching();   // in the neighbour lists, all that touch
+	void takeVelocities(); // as they are now, for drag in the next step
 	StoredEnergy<double> energies();
 	double kineticEnergy()
 	        const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add; in it no convective acceleration, but
 	double convectiveWork() const; // this is half of what it does in the kick now
 
 	int begin, end;
-	VelocityRange velocities;  // of own grains through the latest drift
+	VelocityRange velocities;   // of own grains through the latest drift
 	bool boundExceeded = false; // whether in it a group's grains left their bounds
 	PairLists lists;            // neighbours that do not touch
 	bool mustCheck() const { return boundExceeded || !lists.holdToNext(); }

@@ -14,11 +14,11 @@ namespace {
 		return positions;
 	}
 
-	constexpr long stepsBetweenTrials = 2000; // of the grains' order, which takes some fifty steps' time to make anew
-	constexpr double worn = 1.5;              // groups are put in order again when their edges have grown by this
-	constexpr double mostStepsToCheck = 8; // from one check of the neighbour lists to the next
+	constexpr long stepsBetweenTrials = 2000;              // of the grains' order, which takes some fifty steps' time to make anew
+	constexpr double worn = 1.5;                           // groups are put in order again when their edges have grown by this
+	constexpr double mostStepsToCheck = 8;                 // from one check of the neighbour lists to the next
 	constexpr int grainsInDomain = 6000, mostDomains = 64; // at least, and at most, where the scene decides
-	constexpr double boxMargin = 3;        // how much further groups are taken for nearby than they need be, over the largest radius
+	constexpr double boxMargin = 3; // how much further groups are taken for nearby than they need be, over the largest radius
 }
 
 Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_)
@@ -175,7 +175,8 @@ template <class Mine, class Wait>
 bool Dynamics::keepLists(ListAge& age, const VelocityRange& range, const Vec3<double>& growth, Mine&& mine, Wait&& wait)
 {
 	const Vec3<double> moved = Images<double>::times(mostCells, growth);
-	const double across = std::sqrt(dot(moved, moved)), approach = setting.dt * range.diagonal() + across; // an image moves with its cell
+	const double across = std::sqrt(dot(moved, moved)),
+	             approach = setting.dt * range.diagonal() + across; // an image moves with its cell
 	age.sinceBoxes += approach;
 	++age.sinceCheck;
 	const bool early = std::any_of(domains.begin(), domains.end(), [](const auto& domain) { return domain->mustCheck(); });
@@ -250,7 +251,8 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 	};
 	const Vec3<double> rate = (1 / setting.dt) * growth;
 	ListAge age = listAge;
-	if (std::sqrt(dot(mostCells, mostCells)) * std::sqrt(dot(rate - cell().rate, rate - cell().rate)) > setting.leastKick) age.outdated = true;
+	if (std::sqrt(dot(mostCells, mostCells)) * std::sqrt(dot(rate - cell().rate, rate - cell().rate)) > setting.leastKick)
+		age.outdated = true;
 	const double fastest = fastestThatHolds();
 	mine([](Domain& domain, int) { domain.integrate(); });
 	for (long step = 1; step <= steps; ++step) {
@@ -285,7 +287,8 @@ long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 			if (groupSizes() > worn * sizesWhenOrdered) reorder();
 		}
 		// what a script has moved is moved for the first step only
-		const long most = setting.displaced.empty() ? stepsBetweenTrials - stepsSinceTrial : 1, wanted = std::min(most, steps - made);
+		const long most = setting.displaced.empty() ? stepsBetweenTrials - stepsSinceTrial : 1,
+		           wanted = std::min(most, steps - made);
 		const long here = runEvenly(wanted, from + (double(made + wanted) / double(steps)) * (to - from));
 		setting.displaced.clear();
 		stepsSinceTrial += here, made += here;

@@ -43,7 +43,7 @@ public:
 		double neck = 0; // of sintered bonds over the grains' radius; 0: none
 		unsigned mechanisms = AllSprings;
 		LimitRule limit = LimitRule::Held;
-		int domains = 0, threads = 1; // domains = 0: by the number of grains
+		int domains = 0, threads = 1;        // domains = 0: by the number of grains
 		std::string instructions;            // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool orientations = false;           // whether to follow the grains' orientations
 		PeriodicCell cell {};                // at the start's moment; off: open space
@@ -142,7 +142,7 @@ private:
 	long stepsSinceTrial = 0;    // whether they need a new one
 	long orders = 0;
 	ListAge listAge;
-	bool velocitiesSet = false; // otherwise than by a step since the latest one
+	bool velocitiesSet = false;         // otherwise than by a step since the latest one
 	Vec3<double> mostCells { 0, 0, 0 }; // that a shift to the nearest image can be, periodic
 };
 

@@ -24,7 +24,8 @@ void Dynamics::inherit(const Inherited& inherited)
 		const ContactHistory<double> history = a < b ? one.history : swapped(one.history);
 		for (auto& domain : domains)
 			one.bonded ? domain->place(Bond { i, j, history, one.rest, setting.bondOf(i, j, one.neck) })
-			           : domain->place(Contact { i, j, history, setting.constantsOf(i, j), one.drag, one.overlap, velocityBefore(i, j) });
+			           : domain->place(Contact {
+			                   i, j, history, setting.constantsOf(i, j), one.drag, one.overlap, velocityBefore(i, j) });
 	}
 	for (auto& domain : domains)
 		domain->sortContacts();

@@ -18,17 +18,17 @@ struct NeighbourPair {
 /* What the neighbour lists know of a group (pair_lists.hpp). Its own domain writes all of it; other domains read ranges, bounds and boxes, in another part of a step
  * than that in which they are written. */
 struct alignas(64) Group {
-	VelocityRange sinceCheck;  // of its grains since the latest check
-	VelocityRange sinceTrial;  // since the bounds were last tried for being too wide
-	VelocityRange bound;       // in which all velocities of its grains have been; widened at once when one leaves it
-	double kickBound = 0;      // likewise for kicks [m/s]
+	VelocityRange sinceCheck; // of its grains since the latest check
+	VelocityRange sinceTrial; // since the bounds were last tried for being too wide
+	VelocityRange bound;      // in which all velocities of its grains have been; widened at once when one leaves it
+	double kickBound = 0;     // likewise for kicks [m/s]
 	int checksSinceTrial = 0;
-	int first, last;          // grains, the last one not among them
-	double low[3], high[3];   // around the grains' centres when boxes were measured
-	std::vector<int> nearby;  // groups whose grains may be neighbours of its own, itself among them, by rising number
-	double kickNearby = 0;    // largest of their bounds on kicks at the latest check
-	double speedNearby = 0;   // bound on the relative velocity of its grains and theirs, likewise [m/s]
-	double approach = 0;      // bound on how far its grains and theirs have come closer since its pairs were found [m]
+	int first, last;                  // grains, the last one not among them
+	double low[3], high[3];           // around the grains' centres when boxes were measured
+	std::vector<int> nearby;          // groups whose grains may be neighbours of its own, itself among them, by rising number
+	double kickNearby = 0;            // largest of their bounds on kicks at the latest check
+	double speedNearby = 0;           // bound on the relative velocity of its grains and theirs, likewise [m/s]
+	double approach = 0;              // bound on how far its grains and theirs have come closer since its pairs were found [m]
 	std::vector<NeighbourPair> pairs; // with a gap below Setting::farGap when they were found, in order
 	std::vector<int> next;            // by pair: the step in which to look at it again; never: it touches
 	std::vector<int> soonestOf;       // of these, by stretch of pairs

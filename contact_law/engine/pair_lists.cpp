@@ -51,7 +51,8 @@ void PairLists::findNearby(const PeriodicCell& cell, double reach)
 		for (const Group& other : s.groups) {
 			double squared = 0;
 			for (int k = 0; k < 3; ++k) {
-				const double centres = nearest(0.5 * (group.low[k] + group.high[k] - other.low[k] - other.high[k]), size[k], cell.on);
+				const double centres =
+				        nearest(0.5 * (group.low[k] + group.high[k] - other.low[k] - other.high[k]), size[k], cell.on);
 				const double apart = centres - 0.5 * (group.high[k] - group.low[k] + other.high[k] - other.low[k]);
 				if (apart > 0) squared += apart * apart;
 			}
@@ -77,8 +78,9 @@ void PairLists::gatherCandidates(const Group& group, const PeriodicCell& cell)
 	for (const int g : group.nearby)
 		for (int i = s.groups[g].first; i < s.groups[g].last; ++i) {
 			const Grain& grain = s.grains[i];
-			if (nearest(grain.x - centre[0], size[0], cell.on) <= half[0] && nearest(grain.y - centre[1], size[1], cell.on) <= half[1]
-			    && nearest(grain.z - centre[2], size[2], cell.on) <= half[2])
+			if (nearest(grain.x - centre[0], size[0], cell.on) <= half[0]
+			        && nearest(grain.y - centre[1], size[1], cell.on) <= half[1]
+			        && nearest(grain.z - centre[2], size[2], cell.on) <= half[2])
 				candidates.add(i, grain, s.radius[i]);
 		}
 }
@@ -186,7 +188,8 @@ void PairLists::findDue()
 			int& soonest = group.soonestOf[part];
 			if (soonest <= step) {
 				soonest = Group::never;
-				const int first = int(part) * Group::stretch, last = std::min(first + Group::stretch, int(group.next.size()));
+				const int first = int(part) * Group::stretch,
+				          last = std::min(first + Group::stretch, int(group.next.size()));
 				for (int k = first; k < last; ++k)
 					if (group.next[k] <= step)
 						due.push_back({ &group, k });
