@@ -192,7 +192,7 @@ bool Dynamics::keepLists(ListAge& age, const VelocityRange& range, const Vec3<do
 		});
 		age.sinceBoxes = 0;
 	}
-	mine([&](Domain& domain, int) { domain.lists.check(domain.cell, age.sinceCheck, next, across); });
+	mine([&](Domain& domain, int) { domain.lists.check(domain.cell, age.sinceCheck, next, across, age.outdated); });
 	age.sinceCheck = 0;
 	age.checkAfter = next;
 	age.outdated = false;

@@ -130,7 +130,7 @@ void PairLists::searchAnew(const PeriodicCell& cell)
 	}
 }
 
-void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across)
+void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across, bool lookAtAll)
 {
 	holds = true;
 	for (Group& group : own()) {
@@ -147,7 +147,7 @@ void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, doub
 		group.approach += steps * perStep;
 		if (group.approach + ahead > s.farGap)
 			search(group, cell);
-		else if (kicks > group.kickNearby || speed > group.speedNearby)
+		else if (lookAtAll || kicks > group.kickNearby || speed > group.speedNearby)
 			group.lookAtAll();
 		group.kickNearby = kicks;
 		group.speedNearby = speed;

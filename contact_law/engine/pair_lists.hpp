@@ -23,8 +23,8 @@ public:
 	void searchAnew(const PeriodicCell&); // for all, of grains in a new order: no pair touches until touch() is called for it
 
 	/* The lists `steps` steps after the latest check, to hold for stepsToNext more (fewer when kicks exceed their bounds: then check at once). across: by how much
-	 * boundaries move images in a step [m]. */
-	void check(const PeriodicCell&, int steps, int stepsToNext, double across);
+	 * boundaries move images in a step [m]. lookAtAll: velocities have changed otherwise than by kicks. */
+	void check(const PeriodicCell&, int steps, int stepsToNext, double across, bool lookAtAll);
 	bool holdToNext() const { return holds; } // otherwise one step only
 	void clearAfterCheck();                   // ranges and bounds begin anew
 

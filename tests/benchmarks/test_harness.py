@@ -10,7 +10,6 @@ import numpy as np
 import paper_scenes
 import pytest
 import scene_file
-from conftest import run_yade
 from measured_on import TOP
 from paper_scenes import PaperScene
 
@@ -84,21 +83,21 @@ result["cell"] = list(O.cell.size) if O.periodic else [0, 0, 0]
 
 
 @pytest.mark.parametrize("name", list(SMALL))
-def test_the_same_as_in_yade(name, folder):
+def test_the_same_as_in_yade(name, folder, yade):
     """From a start without contacts, and from a moment whose contacts have springs: positions to 1e-12 of a radius, the same contacts."""
     for moment, path in moments(name, folder):
         end = folder / "end.scene"
         run_harness(path, f"steps={STEPS}", f"out={end}")
-        ours, yade = scene_file.load(end), run_yade(YADE, {"scene": str(path), "steps": STEPS})
+        ours, theirs = scene_file.load(end), yade(YADE, {"scene": str(path), "steps": STEPS})
         radius, speed = ours.grains["radius"][0], np.ptp(ours.grains["velocity"], axis=0).max()
-        assert np.abs(ours.grains["position"] - yade["position"]).max() < 1e-12 * radius, moment
-        assert np.abs(ours.grains["velocity"] - yade["velocity"]).max() < 1e-12 * speed, moment
+        assert np.abs(ours.grains["position"] - theirs["position"]).max() < 1e-12 * radius, moment
+        assert np.abs(ours.grains["velocity"] - theirs["velocity"]).max() < 1e-12 * speed, moment
         spin = np.abs(ours.grains["angularVelocity"]).max()
-        assert np.abs(ours.grains["angularVelocity"] - yade["angular_velocity"]).max() <= 1e-12 * spin, moment
+        assert np.abs(ours.grains["angularVelocity"] - theirs["angular_velocity"]).max() <= 1e-12 * spin, moment
         pairs = np.sort(np.column_stack([ours.contacts["first"], ours.contacts["second"]]), axis=1)
-        assert {tuple(pair) for pair in pairs.tolist()} == {tuple(sorted(pair)) for pair in yade["contact_pairs"]}
-        assert ours.contacts["bonded"].sum() == sum(yade["contact_bonded"])
-        assert ours.head["cellSize"] == pytest.approx(yade["cell"], rel=1e-12)
+        assert {tuple(pair) for pair in pairs.tolist()} == {tuple(sorted(pair)) for pair in theirs["contact_pairs"]}
+        assert ours.contacts["bonded"].sum() == sum(theirs["contact_bonded"])
+        assert ours.head["cellSize"] == pytest.approx(theirs["cell"], rel=1e-12)
 
 
 def test_the_scenes_have_what_they_are_for(folder):
