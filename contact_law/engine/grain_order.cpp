@@ -71,7 +71,7 @@ double Dynamics::groupSizes()
 		domain->lists.measureBoxes();
 	for (const Group& group : setting.groups)
 		for (int k = 0; k < 3; ++k)
-			sum += group.high[k] - group.low[k];
+			sum += group.box.high[k] - group.box.low[k];
 	return sum;
 }
 

@@ -15,6 +15,10 @@ struct NeighbourPair {
 	int second() const { return own < other ? other : own; }
 };
 
+struct Box { // around grains' centres [m]
+	double low[3], high[3];
+};
+
 /* What the neighbour lists know of a group (pair_lists.hpp). Its own domain writes all of it; other domains read ranges, bounds and boxes, in another part of a step
  * than that in which they are written. */
 struct alignas(64) Group {
@@ -24,7 +28,7 @@ struct alignas(64) Group {
 	double kickBound = 0;     // likewise for kicks [m/s]
 	int checksSinceTrial = 0;
 	int first, last;                  // grains, the last one not among them
-	double low[3], high[3];           // around the grains' centres when boxes were measured
+	Box box;                          // when boxes were measured
 	std::vector<int> nearby;          // groups whose grains may be neighbours of its own, itself among them, by rising number
 	double kickNearby = 0;            // largest of their bounds on kicks at the latest check
 	double speedNearby = 0;           // bound on the relative velocity of its grains and theirs, likewise [m/s]

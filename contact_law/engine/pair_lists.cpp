@@ -30,17 +30,24 @@ PairLists::PairLists(Setting& setting, int begin_, int end_)
 PairLists::Stretch PairLists::own() const { return { s.groups.data() + firstGroup, s.groups.data() + endGroup }; }
 Group& PairLists::group(int grain) { return s.groups[firstGroup + (grain - begin) / grainsInGroup]; }
 
+Box PairLists::boxOf(const Group& group) const
+{
+	Box box;
+	for (int k = 0; k < 3; ++k) {
+		double low = 1e300, high = -1e300;
+		for (int i = group.first; i < group.last; ++i) {
+			low = std::min(low, (&s.grains[i].x)[k]);
+			high = std::max(high, (&s.grains[i].x)[k]);
+		}
+		box.low[k] = low, box.high[k] = high;
+	}
+	return box;
+}
+
 void PairLists::measureBoxes()
 {
 	for (Group& group : own())
-		for (int k = 0; k < 3; ++k) {
-			double low = 1e300, high = -1e300;
-			for (int i = group.first; i < group.last; ++i) {
-				low = std::min(low, (&s.grains[i].x)[k]);
-				high = std::max(high, (&s.grains[i].x)[k]);
-			}
-			group.low[k] = low, group.high[k] = high;
-		}
+		group.box = boxOf(group);
 }
 
 void PairLists::findNearby(const PeriodicCell& cell, double reach)
@@ -52,8 +59,10 @@ void PairLists::findNearby(const PeriodicCell& cell, double reach)
 			double squared = 0;
 			for (int k = 0; k < 3; ++k) {
 				const double centres =
-				        nearest(0.5 * (group.low[k] + group.high[k] - other.low[k] - other.high[k]), size[k], cell.on);
-				const double apart = centres - 0.5 * (group.high[k] - group.low[k] + other.high[k] - other.low[k]);
+				        nearest(0.5 * (group.box.low[k] + group.box.high[k] - other.box.low[k] - other.box.high[k]),
+				                size[k], cell.on);
+				const double apart =
+				        centres - 0.5 * (group.box.high[k] - group.box.low[k] + other.box.high[k] - other.box.low[k]);
 				if (apart > 0) squared += apart * apart;
 			}
 			if (squared <= reach * reach) group.nearby.push_back(int(&other - s.groups.data()));
@@ -64,15 +73,11 @@ void PairLists::findNearby(const PeriodicCell& cell, double reach)
 void PairLists::gatherCandidates(const Group& group, const PeriodicCell& cell)
 {
 	const double size[3] = { cell.size.x, cell.size.y, cell.size.z };
+	const Box box = boxOf(group); // now, not when boxes were measured
 	double centre[3], half[3];
 	for (int k = 0; k < 3; ++k) {
-		double low = 1e300, high = -1e300;
-		for (int i = group.first; i < group.last; ++i) {
-			low = std::min(low, (&s.grains[i].x)[k]);
-			high = std::max(high, (&s.grains[i].x)[k]);
-		}
-		centre[k] = 0.5 * (low + high);
-		half[k] = 0.5 * (high - low) + 2 * s.largestRadius + s.farGap;
+		centre[k] = 0.5 * (box.low[k] + box.high[k]);
+		half[k] = 0.5 * (box.high[k] - box.low[k]) + 2 * s.largestRadius + s.farGap;
 	}
 	candidates.clear();
 	for (const int g : group.nearby)

@@ -53,6 +53,7 @@ private:
 		Group* end() const { return to; }
 	};
 	Stretch own() const;
+	Box boxOf(const Group&) const;
 	void search(Group&, const PeriodicCell&);
 	void gatherCandidates(const Group&, const PeriodicCell&);
 	int* nextOf(int i, int j);

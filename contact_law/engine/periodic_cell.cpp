@@ -11,7 +11,7 @@ void Dynamics::setMostCells()
 	for (int k = 0; k < 3; ++k) {
 		double low = 1e300, high = -1e300;
 		for (const Group& group : setting.groups)
-			low = std::min(low, group.low[k]), high = std::max(high, group.high[k]);
+			low = std::min(low, group.box.low[k]), high = std::max(high, group.box.high[k]);
 		extent[k] = high - low;
 	}
 	const Vec3<double>& size = cell().size;
