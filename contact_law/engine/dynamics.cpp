@@ -164,6 +164,7 @@ void Dynamics::makeLists()
 
 void Dynamics::outdateLists()
 {
+	if (listAge.outdated) return; // a script may set every grain
 	for (Group& group : setting.groups)
 		group.approach = 2 * setting.farGap;
 	listAge.outdated = true;

@@ -17,16 +17,12 @@ namespace {
 
 	int widestAxis(const Positions& positions, const int* first, const int* last)
 	{
-		double widest = -1;
+		Box box;
+		for (const int* at = first; at < last; ++at)
+			box.include(&positions[*at].x);
 		int axis = 0;
-		for (int k = 0; k < 3; ++k) {
-			double low = 1e300, high = -1e300;
-			for (const int* at = first; at < last; ++at) {
-				low = std::min(low, (&positions[*at].x)[k]);
-				high = std::max(high, (&positions[*at].x)[k]);
-			}
-			if (high - low > widest) widest = high - low, axis = k;
-		}
+		for (int k = 1; k < 3; ++k)
+			if (box.edge(k) > box.edge(axis)) axis = k;
 		return axis;
 	}
 
@@ -71,7 +67,7 @@ double Dynamics::groupSizes()
 		domain->lists.measureBoxes();
 	for (const Group& group : setting.groups)
 		for (int k = 0; k < 3; ++k)
-			sum += group.box.high[k] - group.box.low[k];
+			sum += group.box.edge(k);
 	return sum;
 }
 
@@ -129,6 +125,10 @@ void Dynamics::reorder()
 	arrange(setting.orientation, from);
 	arrange(setting.blocked, from);
 	arrange(setting.displaced, from);
+	for (Contact& c : contacts)
+		c = renumbered(c, to[c.i], to[c.j]);
+	for (Bond& b : bonds)
+		b = renumbered(b, to[b.i], to[b.j]);
 	for (Constrained& c : constrained)
 		c.grain = to[c.grain];
 	for (auto& domain : domains)
@@ -136,9 +136,9 @@ void Dynamics::reorder()
 			early.grain = to[early.grain];
 	for (auto& domain : domains) {
 		for (const Contact& c : contacts)
-			domain->place(renumbered(c, to[c.i], to[c.j]));
+			domain->place(c);
 		for (const Bond& b : bonds)
-			domain->place(renumbered(b, to[b.i], to[b.j]));
+			domain->place(b);
 		domain->place(constrained);
 		domain->sortContacts();
 	}

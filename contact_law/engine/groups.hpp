@@ -16,7 +16,17 @@ struct NeighbourPair {
 };
 
 struct Box { // around grains' centres [m]
-	double low[3], high[3];
+	double low[3] { 1e300, 1e300, 1e300 }, high[3] { -1e300, -1e300, -1e300 };
+
+	void include(const double* lowest, const double* highest)
+	{
+		for (int k = 0; k < 3; ++k)
+			low[k] = std::min(low[k], lowest[k]), high[k] = std::max(high[k], highest[k]);
+	}
+	void include(const double* x) { include(x, x); }
+	void include(const Box& other) { include(other.low, other.high); }
+	double edge(int axis) const { return high[axis] - low[axis]; }
+	Vec3<double> centre() const { return { 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]) }; }
 };
 
 /* What the neighbour lists know of a group (pair_lists.hpp). Its own domain writes all of it; other domains read ranges, bounds and boxes, in another part of a step

@@ -4,14 +4,6 @@
 
 namespace contact_law {
 
-namespace {
-	// By how much a distance along an axis of a periodic cell (or not) is shorter than half the way around.
-	double nearest(double distance, double size, bool periodic)
-	{
-		return std::abs(periodic ? distance - size * std::nearbyint(distance / size) : distance);
-	}
-}
-
 PairLists::PairLists(Setting& setting, int begin_, int end_)
         : s(setting)
         , begin(begin_)
@@ -33,14 +25,8 @@ Group& PairLists::group(int grain) { return s.groups[firstGroup + (grain - begin
 Box PairLists::boxOf(const Group& group) const
 {
 	Box box;
-	for (int k = 0; k < 3; ++k) {
-		double low = 1e300, high = -1e300;
-		for (int i = group.first; i < group.last; ++i) {
-			low = std::min(low, (&s.grains[i].x)[k]);
-			high = std::max(high, (&s.grains[i].x)[k]);
-		}
-		box.low[k] = low, box.high[k] = high;
-	}
+	for (int i = group.first; i < group.last; ++i)
+		box.include(&s.grains[i].x);
 	return box;
 }
 
@@ -52,17 +38,14 @@ void PairLists::measureBoxes()
 
 void PairLists::findNearby(const PeriodicCell& cell, double reach)
 {
-	const double size[3] = { cell.size.x, cell.size.y, cell.size.z };
 	for (Group& group : own()) {
 		group.nearby.clear();
 		for (const Group& other : s.groups) {
+			Vec3<double> centres = group.box.centre() - other.box.centre();
+			nearestImage(cell, centres);
 			double squared = 0;
 			for (int k = 0; k < 3; ++k) {
-				const double centres =
-				        nearest(0.5 * (group.box.low[k] + group.box.high[k] - other.box.low[k] - other.box.high[k]),
-				                size[k], cell.on);
-				const double apart =
-				        centres - 0.5 * (group.box.high[k] - group.box.low[k] + other.box.high[k] - other.box.low[k]);
+				const double apart = std::abs((&centres.x)[k]) - 0.5 * (group.box.edge(k) + other.box.edge(k));
 				if (apart > 0) squared += apart * apart;
 			}
 			if (squared <= reach * reach) group.nearby.push_back(int(&other - s.groups.data()));
@@ -72,21 +55,17 @@ void PairLists::findNearby(const PeriodicCell& cell, double reach)
 
 void PairLists::gatherCandidates(const Group& group, const PeriodicCell& cell)
 {
-	const double size[3] = { cell.size.x, cell.size.y, cell.size.z };
 	const Box box = boxOf(group); // now, not when boxes were measured
-	double centre[3], half[3];
-	for (int k = 0; k < 3; ++k) {
-		centre[k] = 0.5 * (box.low[k] + box.high[k]);
-		half[k] = 0.5 * (box.high[k] - box.low[k]) + 2 * s.largestRadius + s.farGap;
-	}
+	const Vec3<double> centre = box.centre();
+	const double reach = 2 * s.largestRadius + s.farGap;
 	candidates.clear();
 	for (const int g : group.nearby)
 		for (int i = s.groups[g].first; i < s.groups[g].last; ++i) {
-			const Grain& grain = s.grains[i];
-			if (nearest(grain.x - centre[0], size[0], cell.on) <= half[0]
-			        && nearest(grain.y - centre[1], size[1], cell.on) <= half[1]
-			        && nearest(grain.z - centre[2], size[2], cell.on) <= half[2])
-				candidates.add(i, grain, s.radius[i]);
+			Vec3<double> d = positionOf(s.grains[i]) - centre;
+			nearestImage(cell, d);
+			if (std::abs(d.x) <= 0.5 * box.edge(0) + reach && std::abs(d.y) <= 0.5 * box.edge(1) + reach
+			        && std::abs(d.z) <= 0.5 * box.edge(2) + reach)
+				candidates.add(i, s.grains[i], s.radius[i]);
 		}
 }
 

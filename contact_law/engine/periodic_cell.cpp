@@ -7,15 +7,11 @@ namespace contact_law {
 void Dynamics::setMostCells()
 {
 	if (!cell().on) return;
-	double extent[3];
-	for (int k = 0; k < 3; ++k) {
-		double low = 1e300, high = -1e300;
-		for (const Group& group : setting.groups)
-			low = std::min(low, group.box.low[k]), high = std::max(high, group.box.high[k]);
-		extent[k] = high - low;
-	}
+	Box all;
+	for (const Group& group : setting.groups)
+		all.include(group.box);
 	const Vec3<double>& size = cell().size;
-	mostCells = { extent[0] / size.x + 1, extent[1] / size.y + 1, extent[2] / size.z + 1 };
+	mostCells = { all.edge(0) / size.x + 1, all.edge(1) / size.y + 1, all.edge(2) / size.z + 1 };
 }
 
 void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& convective)
