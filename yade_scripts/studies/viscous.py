@@ -67,7 +67,7 @@ def rows(scenes, folder):
                 "endWhenApart": 1,
                 "states": STATES,
                 "stepFraction": STEP if grains == FULL_GRAINS else LONGER_STEP,
-                "threads": 2 if grains == FULL_GRAINS else 1,
+                "threads": 1,
                 "out": f"{folder}/{name}",
             }
         )
