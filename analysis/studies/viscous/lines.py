@@ -169,13 +169,13 @@ def _head_on(results):
     table = results.table
     runs = table[(table.impact == 0) & (table.velocity > low * (1 - CLOSE)) & (table.velocity < high * (1 + CLOSE))]
     for grains, own in runs.groupby("grains"):
-        for time, mean, error, number in by_time(own, own.growth):
+        of_pairs = own.groupby([own.viscoelasticTime.round(16), "seed"]).growth.mean().reset_index()
+        for time, mean, error, number in by_time(of_pairs, of_pairs.growth):
             name = f"f_gro, B_off = 0, 20 to 100 m/s, T_vis = {picoseconds(time)} ps, {grains} grains"
-            lines.append(Line(name, "", mean, error, 1.0, None, f"{number} runs; paper: about 1 below 100 m/s"))
+            lines.append(Line(name, "", mean, error, 1.0, None, f"{number} seeds; paper: about 1 below 100 m/s"))
     if lines:
         notes = (
-            "Mean over velocities and seeds; the error takes runs for independent, which the same pair at several "
-            "velocities is not quite.",
+            "Mean over the velocities, then over the pairs of aggregates: a pair at several velocities counts once.",
         )
         yield "head-on collisions", lines, notes
 
