@@ -1,7 +1,7 @@
-"""What has become of a run, from its folder alone: of any machine, without locks.
+"""What has become of a run, from its folder alone: of any machine.
 
-A run writes its history every ten seconds or so (yade_scripts.run.recorder), so that the newest write in its folder is
-its heartbeat. The clocks of machines that share a disk must agree to a minute."""
+running.py tells whether it is under way. A run of a version before 0.4.0 has no heartbeat: on another machine it is taken
+for running as long as it writes its history, every ten seconds or so; the clocks must agree to a minute then."""
 
 import os
 import time
@@ -10,57 +10,66 @@ from pathlib import Path
 
 from .arrays import RunFolderError, read_arrays
 from .folder import read_json
-from .format import CHECKPOINT_FOLDER, ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
+from .format import CHECKPOINT_FOLDER, ENDED_FILE, HEARTBEAT_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
+from .running import place
 
 DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
 KINDS = (DONE, RUNNING, WAITING, FAILED)
-SILENCE = 180.0  # s without a write after which a run is taken for stopped: large scenes are long in the making
+SILENCE = 180.0  # s without a write after which a run without a heartbeat is taken for stopped
 EARLY = 0.02  # progress below which a pace tells nothing
 FAILURE = "failed"  # how the outcome of a failed run begins, in run.json
 
 
 @dataclass(frozen=True)
 class State:
-    """kind: DONE, ...; progress: 0 to 1; seconds: wall time spent; left: seconds by the run's own pace, if known."""
+    """kind: DONE, ...; progress: 0 to 1; seconds: wall time spent; left: seconds by the run's own pace, if known; host: the
+    machine on which it is running, if known."""
 
     kind: str
     progress: float = 0.0
     seconds: float = None
     left: float = None
     note: str = ""
+    host: str = None
 
 
 def state(folder, now=None):
-    """State of the run in a folder (path); now: seconds since 1970. Running is what wrote within SILENCE seconds and has not
-    said that it stopped; waiting, what was stopped or killed: time left is then by the pace it had."""
+    """State of the run in a folder (path); now: seconds since 1970. Running is what running.place() says; without a
+    heartbeat also what wrote within SILENCE seconds and has not said that it stopped. Waiting is what was stopped or killed:
+    time left is then by the pace it had."""
     now = time.time() if now is None else now
+    where = place(folder)  # first: a run that ends now has its mark before it gives up its heartbeat
     run = run_of(folder)
     outcome = str(run.get("outcome", ""))
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
         if not run:
             return State(FAILED, note=f"ended, but its {RUN_FILE} cannot be read")
         return State(DONE, 1.0, _spent(folder, run))
-    progress, silence = progress_of(folder, run), now - newest_write(folder)
+    if where:
+        return running(folder, run, where, now)
+    progress = progress_of(folder, run)
     if outcome.startswith(FAILURE):
         return State(FAILED, progress, _spent(folder, run), note=outcome)
-    if silence < SILENCE and outcome in ("", "running"):
-        return running(folder, run, now)
+    without = not os.path.exists(os.path.join(folder, HEARTBEAT_FILE))
+    if without and now - newest_write(folder) < SILENCE and outcome in ("", "running"):
+        return running(folder, run, None, now)
     spent = _spent(folder, run)
     left = spent * (1 - progress) / progress if progress >= EARLY else None
     how = "stopped" if outcome == "interrupted" else "stopped without a word"
     return State(WAITING, progress, spent, left, f"{how}, {_resumes(folder)}")
 
 
-def running(folder, run, now=None):
-    """State of a run that is under way. Its pace is that of the wall time and the progress at the last writing of the
-    history."""
+def running(folder, run, where=None, now=None):
+    """State of a run that is under way; where: its running.Place, if known. Its pace is that of the wall time and the
+    progress at the last writing of the history."""
     now = time.time() if now is None else now
     progress = progress_of(folder, run)
+    known = {} if where is None else {"host": where.host, "note": "" if where.here else str(where)}
     written = changed(os.path.join(folder, HISTORY_FILE))
     if not written > changed(os.path.join(folder, RUN_FILE)) or progress < EARLY:
-        return State(RUNNING, progress)
+        return State(RUNNING, progress, **known)
     spent, since = _spent(folder, run), now - written
-    return State(RUNNING, progress, spent + since, max(0.0, spent * (1 - progress) / progress - since))
+    return State(RUNNING, progress, spent + since, max(0.0, spent * (1 - progress) / progress - since), **known)
 
 
 def progress_of(folder, run):

@@ -3,15 +3,16 @@
 import fcntl
 import json
 import os
-import re
 from contextlib import suppress
 
 import numpy as np
 
 from analysis.runs.format import ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
+from analysis.runs.running import being_written, locked_inodes  # noqa: F401
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
 from yade_scripts.run.atomic_write import is_unfinished, remove_unfinished, sync, write_atomically
+from yade_scripts.run.heartbeat import Beating, RunsElsewhere, is_heartbeat
 
 
 class RunFolderError(InputError):
@@ -24,12 +25,13 @@ class RunFolder:
     Raises RunFolderError when the folder can't be written, holds something else, is being written by another
     run, or holds a run that has ended and overwrite is false. With resume, a folder with a checkpoint is left as
     it is, and .checkpoint is that checkpoint, otherwise None; raises CheckpointError when it can't be read.
-    What write_...() raises is OSError.
+    heartbeat: whether it has one from now on, or, when it is left as it is, from begin_heartbeat() on, until close().
+    What write_...() raises is OSError, also when a run of another machine has taken over the folder.
     """
 
-    def __init__(self, path, overwrite=False, resume=False):
+    def __init__(self, path, overwrite=False, resume=False, heartbeat=False):
         self.path = path
-        self.checkpoint = None
+        self.checkpoint = self._heartbeat = None
         self.states = os.path.join(path, STATES_FOLDER)
         self._unsynced = set()  # paths that a power loss may still take
         try:
@@ -40,12 +42,30 @@ class RunFolder:
                 if resume and not self._has_ended() and checkpoint.exists(path):
                     self.checkpoint = checkpoint.Checkpoint(path)
                 else:
+                    if heartbeat:
+                        self.begin_heartbeat()
                     self._begin()
             except BaseException:
+                self.close()
                 os.close(self._lock)
                 raise
         except OSError as error:
             raise RunFolderError(f"out = {path}: {error.strerror}; must be a folder that can be written") from None
+
+    def begin_heartbeat(self):
+        """Take the folder before other machines, too. Raises RunFolderError, and OSError when it can't be written."""
+        try:
+            self._heartbeat = Beating(self.path)
+        except RunsElsewhere as where:
+            raise RunFolderError(
+                f"out = {self.path}: another run is writing there, {where}; must be another folder"
+            ) from None
+
+    def close(self):
+        """End the heartbeat; the lock stays until the process ends."""
+        if self._heartbeat:
+            self._heartbeat.stop()
+            self._heartbeat = None
 
     def write_run(self, run):
         """run.json from a dictionary that JSON can hold."""
@@ -69,6 +89,7 @@ class RunFolder:
 
     def sync(self):
         """Have all that was written so far on the disk, so that it outlives a power loss."""
+        self._require_kept()
         for path in sorted(self._unsynced):
             sync(path)
         if self._unsynced:
@@ -89,7 +110,12 @@ class RunFolder:
     def _file(self, name):
         return os.path.join(self.path, name)
 
+    def _require_kept(self):
+        if self._heartbeat:
+            self._heartbeat.require_kept()
+
     def _write(self, name, write):
+        self._require_kept()
         write_atomically(self._file(name), write)
         self._unsynced.add(self._file(name))
 
@@ -120,22 +146,6 @@ def json_text(content):
     return lambda file: file.write(text.encode())
 
 
-def being_written(path):
-    """Whether a process of this machine holds the folder's lock (read from the kernel's list, without taking it)."""
-    try:
-        inode = os.stat(path).st_ino
-        with open("/proc/locks") as locks:
-            return inode in locked_inodes(locks)
-    except OSError:
-        return False
-
-
-def locked_inodes(lines):
-    """Inodes on which the lines of /proc/locks say that a process holds a flock; one that waits for it has '->'."""
-    held = r"\d+: FLOCK +\S+ +\S+ +-?\d+ +[0-9a-f]+:[0-9a-f]+:(\d+) "
-    return {int(found.group(1)) for found in (re.match(held, line) for line in lines) if found}
-
-
 def _require_usable(path, overwrite):
     if not os.path.exists(os.path.join(path, RUN_FILE)) and not _is_empty(path):
         raise RunFolderError(
@@ -147,7 +157,7 @@ def _require_usable(path, overwrite):
 
 def _is_empty(path):
     """Whether a folder holds nothing but what a run that was killed at its beginning may leave."""
-    names = [name for name in os.listdir(path) if not is_unfinished(name)]
+    names = [name for name in os.listdir(path) if not is_unfinished(name) and not is_heartbeat(name)]
     states = os.path.join(path, STATES_FOLDER)
     return not names or (names == [STATES_FOLDER] and os.path.isdir(states) and _is_empty(states))
 

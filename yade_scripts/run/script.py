@@ -37,7 +37,11 @@ def main(kind, description):
         parameters = scene.parameters
         schedule = Schedule.of(parameters.duration, scene.time_step, scene.interval, states=parameters.states)
         folder, saved = _open(kind, scene, schedule)
-    sys.exit(_carry_out(kind, scene, schedule, folder, saved, begun))
+    try:
+        status = _carry_out(kind, scene, schedule, folder, saved, begun)
+    finally:
+        folder.close()
+    sys.exit(status)
 
 
 def _require_finite(parameters, time_unit):
@@ -48,14 +52,15 @@ def _require_finite(parameters, time_unit):
 
 
 def _open(kind, scene, schedule):
-    """The run folder, and its checkpoint if the run resumes from one."""
+    """The run folder with its heartbeat, and its checkpoint if the run resumes from one."""
     from yade_scripts.run import report
     from yade_scripts.run.folder import RunFolder
 
-    folder = RunFolder(scene.parameters.out, scene.parameters.overwrite, scene.parameters.resume)
+    folder = RunFolder(scene.parameters.out, scene.parameters.overwrite, scene.parameters.resume, heartbeat=True)
     if folder.checkpoint:
         folder.checkpoint.require_agreement(kind, scene.parameters, report.made_with())
         folder.checkpoint.require_whole(kind.format, schedule, scene.parameters.engine == "fused")
+        folder.begin_heartbeat()
     return folder, folder.checkpoint
 
 

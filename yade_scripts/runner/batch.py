@@ -8,8 +8,9 @@ import subprocess
 import time
 from contextlib import suppress
 
+from analysis.runs.running import being_written
 from yade_scripts.run import table
-from yade_scripts.run.folder import being_written, write_json
+from yade_scripts.run.folder import write_json
 from yade_scripts.runner.batch_command import LOGS, batch_command
 from yade_scripts.runner.cost import TELLING, Cost
 from yade_scripts.runner.rows import DONE

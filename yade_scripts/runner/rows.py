@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from analysis.runs.format import ENDED_FILE, RUN_FILE
+from analysis.runs.running import place
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, changed, end_time, run_of  # noqa: F401
 from analysis.runs.status import running as running_state
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import checkpoint, table
 from yade_scripts.run.agreement import difference
 from yade_scripts.run.file_name import file_name
-from yade_scripts.run.folder import being_written
 from yade_scripts.run.kind import Kind, NoKind, kind_of
 from yade_scripts.run.parameters import RunParameters
 from yade_scripts.runner.batch_command import DEFAULT_SCRIPT, failure
@@ -76,12 +76,12 @@ def state(row, log, since=0.0):
     if row.error:
         return State(FAILED, note=row.error)
     folder = row.out
-    running = being_written(folder)  # first: a run that ends now has its mark before it gives up the lock
+    where = place(folder)  # first: a run that ends now has its mark before it gives up the lock and its heartbeat
     run = run_of(folder)
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
         return _ended(row, run)
-    if running:
-        return running_state(folder, run)
+    if where:
+        return running_state(folder, run, where)
     outcome = run.get("outcome", "")
     note, progress = _stopped(folder, run)
     problem = _failure(log) if changed(log) >= since else None

@@ -214,6 +214,8 @@ def power_loss(calls):
             if call.path in ("ended", RECORDER):
                 wrong += [f"{path} at the renaming of {call.path}" for path in sorted(content | names - {call.path})]
             names.add(call.path)
-        elif call.name == "unlink" and file.startswith("scene-"):
+        elif call.name == "unlink":
+            content.discard(call.path)
+        if call.name == "unlink" and file.startswith("scene-"):
             wrong += [f"{path} at the removal of {call.path}" for path in sorted(content | names) if path == RECORDER]
     return wrong

@@ -1,0 +1,177 @@
+"""The sign of life of a run, and which of several starters on machines of a shared disk has its folder.
+
+A start takes the folder by making the file .heartbeat-N, N one more than the last start's, which only one of them can; it
+may when the last start's heartbeat has stopped (analysis.runs.running). As long as that file is there the folder is its
+own: a run that was paused so long that another one took it over finds it gone, and writes nothing any more. Both files go
+when the run comes to any end but a kill.
+"""
+
+import errno
+import json
+import os
+import re
+import tempfile
+import threading
+import time
+from contextlib import suppress
+from dataclasses import asdict, replace
+
+from analysis.runs import running
+from analysis.runs.format import HEARTBEAT_FILE
+from analysis.runs.running import INTERVAL, Heartbeat, Place
+from yade_scripts.run.atomic_write import UNFINISHED, write_bytes_atomically
+
+_START = re.compile(r"\.heartbeat-(\d+)")
+_NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK)
+
+
+class RunsElsewhere(Exception):
+    """A folder that a run of another machine has; the message says where."""
+
+
+class Beating:
+    """Takes a run folder (path), whose lock this process holds, and writes heartbeat.json every `interval` seconds [s] until
+    stop(), from a thread: while a step is taken it waits, at most seconds with a million grains.
+
+    Raises RunsElsewhere, and OSError when the folder can't be written.
+    """
+
+    def __init__(self, folder, interval=INTERVAL):
+        self.folder, self.now = folder, _of_this_process(interval)
+        self._take()
+        self._written, self._writing = time.monotonic(), threading.Lock()
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._beat_on, name="heartbeat", daemon=True)
+        self._thread.start()
+
+    def require_kept(self):
+        """Raise OSError when another run has taken the folder over; to be called before a file in it is written."""
+        if time.monotonic() - self._written > 2 * self.now.interval:  # the thread, or all of the process, was held up
+            self._beat()
+
+    def stop(self):
+        """The end: the files go, unless they are another run's by now."""
+        self._ending.set()
+        self._thread.join()
+        with suppress(OSError):
+            self._require_own()
+            os.unlink(self._file(HEARTBEAT_FILE))
+        _unlink(self._own())
+
+    def _beat_on(self):
+        while not self._ending.wait(self.now.interval):
+            with suppress(OSError):  # a full disk, a network that is away: the run's own writes tell of them
+                self._beat()
+
+    def _beat(self):
+        with self._writing:
+            self._require_own()
+            self._write(beat=self.now.beat + 1)
+            self._written = time.monotonic()
+
+    def _require_own(self):
+        if not os.path.exists(self._own()):
+            raise OSError(
+                errno.EBUSY, "another run has taken the folder over, as this one gave no sign of life", self.folder
+            )
+
+    def _take(self):
+        starts = _starts(self.folder)
+        _require_stopped(self.folder, starts)
+        last = running.read_heartbeat(self.folder)
+        self.now = replace(self.now, start=max([*starts, last.start if last else 0]) + 1)
+        if not _made_anew(self._own(), _text(self.now)):
+            raise RunsElsewhere("which has just begun")
+        try:
+            if _starts(self.folder) - starts != {self.now.start}:  # another one, while this process was held up
+                raise RunsElsewhere("which has just begun")
+            self._write()
+        except BaseException:
+            _unlink(self._own())
+            raise
+        for start in starts:
+            _unlink(self._file(_name(start)))
+
+    def _write(self, **changed):
+        now = replace(self.now, **changed)
+        write_bytes_atomically(self._file(HEARTBEAT_FILE), _text(now), lasting=True)
+        self.now = now
+
+    def _own(self):
+        return self._file(_name(self.now.start))
+
+    def _file(self, name):
+        return os.path.join(self.folder, name)
+
+
+def is_heartbeat(name):
+    """Whether a file of this name, in a run folder, is one of those kept here."""
+    return name == HEARTBEAT_FILE or bool(_START.fullmatch(name))
+
+
+def _require_stopped(folder, starts):
+    """Raise RunsElsewhere unless the last of these starts has stopped. One that was killed as it began has left nothing but
+    its own file."""
+    heartbeat, name = running.read_heartbeat(folder), HEARTBEAT_FILE
+    if starts and (heartbeat is None or heartbeat.start < max(starts)):
+        name = _name(max(starts))
+        heartbeat = running.read_heartbeat(folder, name)
+    if heartbeat and running.beats(os.path.join(folder, name), heartbeat):
+        raise RunsElsewhere(str(Place(heartbeat.host, heartbeat.job, False)))
+
+
+def _starts(folder):
+    """{N} of the files .heartbeat-N in a folder."""
+    return {int(found.group(1)) for found in map(_START.fullmatch, os.listdir(folder)) if found}
+
+
+def _name(start):
+    return f".heartbeat-{start}"
+
+
+def _of_this_process(interval):
+    host, boot = running.this_machine()
+    job, restarts = running.this_job()
+    return Heartbeat(host, boot, os.getpid(), job, restarts, interval=interval)
+
+
+def _text(heartbeat):
+    return (json.dumps(asdict(heartbeat), indent=2) + "\n").encode()
+
+
+def _made_anew(path, content):
+    """Make a file with its content at once; whether there was none. Two that do so at the same time: one of them has made
+    it."""
+    folder, name = os.path.split(path)
+    handle, temporary = tempfile.mkstemp(prefix=f".{name}.", suffix=UNFINISHED, dir=folder)
+    try:
+        os.write(handle, content)
+        os.link(temporary, path)
+    except FileExistsError:
+        return os.fstat(handle).st_nlink == 2  # the answer to a request that NFS had sent twice
+    except OSError as error:
+        if error.errno not in _NO_LINKS:
+            raise
+        return _made_without_link(path, content)
+    finally:
+        os.close(handle)
+        _unlink(temporary)
+    return True
+
+
+def _made_without_link(path, content):
+    """The same where the file system has no hard links: between two calls the file is empty."""
+    try:
+        handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
+    except FileExistsError:
+        return False
+    try:
+        os.write(handle, content)
+    finally:
+        os.close(handle)
+    return True
+
+
+def _unlink(path):
+    with suppress(OSError):
+        os.unlink(path)
