@@ -2,14 +2,20 @@
 
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, by yade-batch, JOBS threads at once
     python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell
+    python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as a job array of Slurm, JOBS tasks at
+                                                     once; OPTIONS of sbatch: -- --partition=long --time=12:00:00
 
 Rows whose run folder has ended are skipped, provided that its parameters are the row's; runs that were killed
 resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
 ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
-a checkpoint. Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be
+a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there. Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be
 the name of a table in yade_scripts/studies: elastoplastic-desk.
 
-Exit status: 0 when every row has ended, 1 when a row failed (one line on stderr for each; the others have run),
+With --slurm each row that is left is one task, by the same rules, of as many processors as it has threads. A minute before its
+time limit a task writes its checkpoint and is put into the queue again; rows that are in the queue already are not
+submitted. --dry-run prints the scripts, and submits nothing.
+
+Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the others have run),
 2 for a table that can't be used, 128 and the signal's number when stopped.
 """
 
@@ -18,6 +24,7 @@ import os
 import signal
 import sys
 import time
+from dataclasses import replace
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from yade_scripts.run.stop_signals import end_quietly
@@ -26,9 +33,9 @@ end_quietly()
 from analysis.version import version_text
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
-from yade_scripts.runner import rows, view
+from yade_scripts.runner import rows, slurm, view
 from yade_scripts.runner.batch import Batch, StudyBusy, StudyFolder
-from yade_scripts.runner.rows import DONE, FAILED, RUNNING
+from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
 
 STUDIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "studies")
@@ -43,15 +50,26 @@ def parse_arguments(arguments):
         "-j",
         "--jobs",
         type=int,
-        default=os.cpu_count(),
         metavar="JOBS",
-        help="threads at once (default: one for each core, %(default)s)",
+        help=f"threads at once (default: one for each core, {os.cpu_count()}); with --slurm tasks (default: as Slurm likes)",
     )
     parser.add_argument("--version", action="version", version=f"study.py {version_text()}")
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
-    options = parser.parse_args(arguments)
-    if options.jobs < 1:
+    parser.add_argument(
+        "--slurm", action="store_true", help="submit what is left to Slurm; after --: options of sbatch"
+    )
+    parser.add_argument(
+        "--dry-run", action="store_true", help="with --slurm: print the job scripts, and submit nothing"
+    )
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    options = parser.parse_args(arguments[:end])
+    options.sbatch = arguments[end + 1 :]
+    if options.jobs is not None and options.jobs < 1:
         parser.error(f"-j = {options.jobs}: must be 1 or more")
+    if (options.sbatch or options.dry_run) and not options.slurm:
+        parser.error(f'{"--dry-run" if options.dry_run else options.sbatch[0]}: must be given with --slurm')
+    if options.status and options.slurm:
+        parser.error("--status: must be given without --slurm")
     return options
 
 
@@ -80,8 +98,18 @@ class Study:
             found.append(state)
         return found
 
+    def states_with_queue(self):
+        """The same, with a note where a row is a task of Slurm's queue; [whether it is one, ...]."""
+        states, queued = self.states(), slurm.queued(self.folder)
+        for number, (row, state) in enumerate(zip(self.rows, states)):
+            if state.kind == WAITING and row.name in queued:
+                task, of_slurm = queued[row.name]
+                note = f"Slurm job {task} {of_slurm.lower()}" + (f", {state.note}" if state.note else "")
+                states[number] = replace(state, note=note)
+        return states, [row.name in queued for row in self.rows]
+
     def text(self, drawn_as):
-        states = self.states()
+        states, _ = self.states_with_queue()
         return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
 
     def announce(self):
@@ -101,6 +129,29 @@ class Study:
             f'{self.jobs} at once ({self.folder.basis(self.rows, states)})',
             flush=True,
         )
+
+
+def submit(study, at_once, sbatch, dry_run):
+    """Submit the rows that are left and not in the queue to Slurm, or print their scripts; the exit status."""
+    states, queued = study.states_with_queue()
+    failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
+    for row, state in failures:
+        print(f"study.py: {row.name}: {state.note}; the other rows are submitted", file=sys.stderr, flush=True)
+    left = [row for row, state, there in zip(study.rows, states, queued) if state.kind == WAITING and not there]
+    slurm.require_usable(study.folder, left)
+    if dry_run:
+        for group in slurm.by_threads(left):
+            print(slurm.job_script(study.folder, slurm.next_folder(study.folder), group, at_once), end="")
+        return int(bool(failures))
+    jobs = slurm.submit(study.folder, left, at_once, sbatch)
+    for job, group in jobs:
+        print(f"Slurm job {job}: {len(group)} tasks, {rows.threads(group[0])} threads each")
+    others = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, FAILED)]
+    waiting = sum(state.kind == WAITING for state in states) - len(left)
+    print(
+        f'{study.name}: {len(states)} rows, {", ".join(others)}, {waiting} in the queue before, {len(left)} submitted'
+    )
+    return int(bool(failures))
 
 
 def run(study, stop):
@@ -167,12 +218,16 @@ def close(study, stop):
 def main(arguments):
     options = parse_arguments(arguments)
     try:
-        study = Study(find_table(options.table), options.jobs)
+        study = Study(find_table(options.table), options.jobs or os.cpu_count())
         if options.status:
             print(study.text(view.full_table))
             return 0
-        study.folder.lock()
-    except (TableError, StudyBusy, OSError) as error:
+        if not options.dry_run:
+            study.folder.lock()
+        if options.slurm:
+            study.since = time.time()
+            return submit(study, options.jobs, options.sbatch, options.dry_run)
+    except (TableError, StudyBusy, slurm.SlurmError, OSError) as error:
         print(f"study.py: {error}", file=sys.stderr)
         return 2
     study.since = time.time()

@@ -28,6 +28,7 @@ CLOCKS_AGREE = 60.0  # s that clocks may differ by, where the file server's cann
 SQUEUE_AGAIN = 10.0  # s for which an answer of squeue is kept
 ALIVE = ("RUNNING", "COMPLETING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING", "STAGE_OUT")
 _JOB = re.compile(r"(\d+)(_\d+)?")
+_ANSWERS = {}  # of squeue: {job: (when, {task: state} or None)}
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,15 @@ def this_job():
     return (job, int(restarts) if restarts.isdecimal() else 0) if _JOB.fullmatch(job) else (None, 0)
 
 
+def states_of_job(job):
+    """{job with its array task, such as 12_3: state} of a job of Slurm (its number, text) by squeue, which is asked once for
+    all tasks; None when it doesn't know the job, or isn't there."""
+    when, states = _ANSWERS.get(job, (None, None))
+    if when is None or time.monotonic() - when > SQUEUE_AGAIN:
+        _ANSWERS[job] = time.monotonic(), _ask_squeue(job)
+    return _ANSWERS[job][1]
+
+
 def is_here(heartbeat):
     """Whether a heartbeat is of this machine, since its last start."""
     return (heartbeat.host, heartbeat.boot) == this_machine()
@@ -169,7 +179,6 @@ class _Looks:
 
 
 _LOOKS = _Looks()
-_ANSWERS = {}  # of squeue: {job: (when, {task: state} or None)}
 
 
 def _slurm_says(heartbeat):
@@ -179,22 +188,14 @@ def _slurm_says(heartbeat):
     job, restarts = this_job()
     if job == heartbeat.job and restarts != heartbeat.restarts:
         return False  # this is the job begun anew, which Slurm does when it has ended the former processes
-    states = _squeue(_JOB.fullmatch(heartbeat.job).group(1))
+    states = states_of_job(_JOB.fullmatch(heartbeat.job).group(1))
     return None if states is None else states.get(heartbeat.job) in ALIVE
 
 
-def _squeue(job):
-    """{job with its array task: state} of a job by squeue, which is asked once for all tasks; None when it doesn't know."""
-    when, states = _ANSWERS.get(job, (None, None))
-    if when is None or time.monotonic() - when > SQUEUE_AGAIN:
-        _ANSWERS[job] = time.monotonic(), _ask_squeue("-r", "-j", job)
-    return _ANSWERS[job][1]
-
-
-def _ask_squeue(*options):
+def _ask_squeue(job):
     if not shutil.which("squeue"):
         return None
-    command = ["squeue", "-h", *options, "-o", "%i %T"]
+    command = ["squeue", "-h", "-r", "-j", job, "-o", "%i %T"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=20, stdin=subprocess.DEVNULL)
     except (OSError, subprocess.TimeoutExpired):

@@ -9,11 +9,10 @@ import time
 from contextlib import suppress
 
 from analysis.runs.running import being_written
-from yade_scripts.run import table
 from yade_scripts.run.folder import write_json
 from yade_scripts.runner.batch_command import LOGS, batch_command
 from yade_scripts.runner.cost import TELLING, Cost
-from yade_scripts.runner.rows import DONE
+from yade_scripts.runner.rows import DONE, write
 
 MEASURING = 300  # s, at most
 MEASURE_SPEED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "measure_speed.py")
@@ -36,6 +35,12 @@ class StudyFolder:
 
     def log(self, row):
         return self.file(f"{row.name}.log")
+
+    def remove_logs(self, rows):
+        """An earlier failure would still be one to --status until the row's turn comes."""
+        for row in rows:
+            with suppress(FileNotFoundError):
+                os.remove(self.log(row))
 
     def lock(self):
         """Take the study for this process and its jobs; raises StudyBusy when another has it."""
@@ -99,23 +104,8 @@ class Batch:
     def __init__(self, folder, rows, jobs):
         self.rows = rows
         left = folder.file("left.table")
-        table.write(
-            left,
-            [
-                {
-                    "description": row.name,
-                    **row.cells,
-                    "out": row.out,
-                    "resume": 1,
-                    "!SCRIPT": row.script,
-                    "!THREADS": row.parameters.threads or 1,
-                }
-                for row in rows
-            ],
-        )
-        for row in rows:  # an earlier failure would still be one to --status until the row's turn comes
-            with suppress(FileNotFoundError):
-                os.remove(folder.log(row))
+        write(left, rows)
+        folder.remove_logs(rows)
         self._output = open(folder.file("yade-batch.out"), "w")
         command = batch_command(left, folder.file("@.log"), ["-j", str(jobs), "--nice", NICE])
         # Jobs inherit the study's lock: it is free again when the last of them has ended, even if this process is killed.

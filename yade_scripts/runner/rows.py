@@ -65,6 +65,29 @@ def read(path):
     return rows
 
 
+def write(path, rows):
+    """Write rows as a table for yade-batch, and for jobs of Slurm, whose runs resume in the same folders."""
+    table.write(
+        path,
+        [
+            {
+                "description": row.name,
+                **row.cells,
+                "out": row.out,
+                "resume": 1,
+                "!SCRIPT": row.script,
+                "!THREADS": threads(row),
+            }
+            for row in rows
+        ],
+    )
+
+
+def threads(row):
+    """Processors that a row's run takes."""
+    return row.parameters.threads or 1
+
+
 def find_script(name):
     """The script that a table names: seen from the folder that one stands in, or else from the top of this suite."""
     own = os.path.join(TOP, name)

@@ -1,0 +1,129 @@
+"""A study as job arrays of Slurm: one task for each row that is left.
+
+Each call of submit() makes folders slurm-N below the study's: rows.table with the rows as they are now, whose line k is that of
+task k; job.sh, the script that was submitted; job, Slurm's number of it; k.out, what a task printed. The logs of the runs are
+where a local runner has them.
+"""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+
+from analysis.runs.running import states_of_job
+from yade_scripts.run.file_name import file_name
+from yade_scripts.run.table import TableError, read
+from yade_scripts.runner.rows import threads, write
+
+TASK = os.path.join(os.path.dirname(os.path.abspath(__file__)), "slurm_task.py")
+ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
+BEFORE_THE_LIMIT = 60  # s
+OF_YADE_BATCH = ("!SCRIPT", "!THREADS", "!OMP_NUM_THREADS")  # columns that have a meaning here, too
+OVER = (
+    "COMPLETED",
+    "CANCELLED",
+    "FAILED",
+    "TIMEOUT",
+    "NODE_FAIL",
+    "BOOT_FAIL",
+    "DEADLINE",
+    "OUT_OF_MEMORY",
+    "PREEMPTED",
+)
+_FOLDER = re.compile(r"slurm-(\d+)")
+
+
+class SlurmError(Exception):
+    """What Slurm refused, or what a job can't be made of; the message is one line."""
+
+
+def by_threads(rows):
+    """[[row, ...], ...]: rows that take as many processors each make one array."""
+    return [[row for row in rows if threads(row) == number] for number in sorted(set(map(threads, rows)))]
+
+
+def job_script(study_folder, folder, rows, at_once=None):
+    """Text of the script of an array of rows that take as many processors each.
+
+    study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks at once at most (None: as Slurm likes).
+    """
+    name = os.path.basename(study_folder.path)
+    task = " ".join(map(shlex.quote, (sys.executable, TASK, os.path.join(folder, ROWS))))
+    return f"""#!/bin/sh
+#SBATCH --job-name={name}
+#SBATCH --array=1-{len(rows)}{f"%{at_once}" if at_once else ""}
+#SBATCH --cpus-per-task={threads(rows[0])}
+#SBATCH --signal=B:USR1@{BEFORE_THE_LIMIT}
+#SBATCH --requeue
+#SBATCH --open-mode=append
+#SBATCH --output={os.path.join(folder, "%a.out")}
+exec {task} "$SLURM_ARRAY_TASK_ID"
+"""
+
+
+def require_usable(study_folder, rows):
+    """Raise SlurmError for names and columns that a job can't have."""
+    name = os.path.basename(study_folder.path)
+    if name != file_name(name):
+        raise SlurmError(f"{name}: a table's name must be of letters, digits and -_.,=+ for Slurm")
+    others = sorted({column for row in rows for column in row.cells if column[0] == "!"} - set(OF_YADE_BATCH))
+    if others:
+        raise SlurmError(f"{others[0]}: a column of yade-batch alone; must be left out for Slurm")
+
+
+def submit(study_folder, rows, at_once=None, options=()):
+    """Submit rows; [(Slurm's number of a job, its rows)]. options: of sbatch. Raises SlurmError and OSError."""
+    study_folder.remove_logs(rows)
+    return [(_submit(study_folder, group, at_once, options), group) for group in by_threads(rows)]
+
+
+def queued(study_folder):
+    """{name of a row: (its task, such as 12_3, and the task's state)} of tasks that wait or run, as squeue has them."""
+    found = {}
+    for number in _numbers(study_folder):
+        folder = study_folder.file(f"slurm-{number}")
+        try:
+            with open(os.path.join(folder, JOB)) as file:
+                job = file.read().strip()
+            states = states_of_job(job) if job.isdecimal() else None
+            names = [row.description for row in read(os.path.join(folder, ROWS))] if states else []
+        except (OSError, TableError):  # being submitted, or refused by sbatch
+            continue
+        tasks = {f"{job}_{task}": name for task, name in enumerate(names, 1)}
+        found |= {
+            tasks[task]: (task, state) for task, state in (states or {}).items() if task in tasks and state not in OVER
+        }
+    return found
+
+
+def next_folder(study_folder):
+    """Path of the folder of the next job."""
+    return study_folder.file(f"slurm-{max(_numbers(study_folder), default=0) + 1}")
+
+
+def _submit(study_folder, rows, at_once, options):
+    folder = next_folder(study_folder)
+    os.makedirs(folder)
+    write(os.path.join(folder, ROWS), rows)
+    with open(os.path.join(folder, SCRIPT), "w") as file:
+        file.write(job_script(study_folder, folder, rows, at_once))
+    command = ["sbatch", "--parsable", *options, os.path.join(folder, SCRIPT)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    except FileNotFoundError:
+        raise SlurmError("sbatch: not found; must be on a machine that submits to Slurm") from None
+    job = done.stdout.strip().partition(";")[0]  # a cluster's name may follow
+    if done.returncode or not job.isdecimal():
+        raise SlurmError(f'sbatch: {" ".join(done.stderr.split()) or f"exit status {done.returncode}"}')
+    with open(os.path.join(folder, JOB), "w") as file:
+        file.write(f"{job}\n")
+    return job
+
+
+def _numbers(study_folder):
+    try:
+        names = os.listdir(study_folder.path)
+    except FileNotFoundError:
+        return []
+    return sorted(int(found.group(1)) for found in map(_FOLDER.fullmatch, names) if found)
