@@ -18,6 +18,7 @@
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (ten to twenty minutes)
+# make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/scripts/results/slurm.md
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
@@ -187,7 +188,7 @@ uninstall:
 
 # ---- running it ----
 
-.PHONY: demo test test-faults
+.PHONY: demo test test-faults test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary runs/demo
@@ -225,6 +226,11 @@ yade-tree: all
 # Results in tests/persistence/results.
 test-faults: all
 	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
+
+# Results in tests/scripts/results.
+test-slurm: all
+	@$(MAKE) --no-print-directory deps PACKAGES="slurm-wlm munge"
+	@$(PYTHON) tests/scripts/try_slurm.py
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk

@@ -2,8 +2,8 @@
 
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, by yade-batch, JOBS threads at once
     python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell
-    python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as a job array of Slurm, JOBS tasks at
-                                                     once; OPTIONS of sbatch: -- --partition=long --time=12:00:00
+    python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as job arrays of Slurm, JOBS tasks of
+                                                     each at once; OPTIONS of sbatch: -- --time=12:00:00
 
 Rows whose run folder has ended are skipped, provided that its parameters are the row's; runs that were killed
 resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
@@ -51,7 +51,7 @@ def parse_arguments(arguments):
         "--jobs",
         type=int,
         metavar="JOBS",
-        help=f"threads at once (default: one for each core, {os.cpu_count()}); with --slurm tasks (default: as Slurm likes)",
+        help=f"threads at once (default: one for each core, {os.cpu_count()}); with --slurm tasks of an array (default: as Slurm likes)",
     )
     parser.add_argument("--version", action="version", version=f"study.py {version_text()}")
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
@@ -140,12 +140,10 @@ def submit(study, at_once, sbatch, dry_run):
     left = [row for row, state, there in zip(study.rows, states, queued) if state.kind == WAITING and not there]
     slurm.require_usable(study.folder, left)
     if dry_run:
-        for group in slurm.by_threads(left):
-            print(slurm.job_script(study.folder, slurm.next_folder(study.folder), group, at_once), end="")
+        print("\n".join(slurm.scripts(study.folder, left, at_once, sbatch)), end="")
         return int(bool(failures))
-    jobs = slurm.submit(study.folder, left, at_once, sbatch)
-    for job, group in jobs:
-        print(f"Slurm job {job}: {len(group)} tasks, {rows.threads(group[0])} threads each")
+    for job, group in slurm.submit(study.folder, left, at_once, sbatch):
+        print(f"Slurm job {job}: {len(group)} tasks, {rows.threads(group[0])} threads each", flush=True)
     others = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, FAILED)]
     waiting = sum(state.kind == WAITING for state in states) - len(left)
     print(

@@ -14,8 +14,9 @@ def add_parser(commands):
     parser = commands.add_parser(
         "status",
         help="what is done, running, waiting and failed, and the time left",
-        description="Print what has become of each run, from its folder alone, so also of runs of other machines on a shared "
-        f"disk. Running is what wrote something in the last {SILENCE:.0f} s. Times left are by each run's own pace. Rows of a "
+        description="Print what has become of each run, also of runs of other machines on a shared disk, with their host. Running is "
+        "what holds its folder's lock, runs by Slurm or has a heartbeat; of a version without heartbeats what wrote something in "
+        f"the last {SILENCE:.0f} s. Times left are by each run's own pace. Rows of a "
         "table that have not begun have no folder: yade_scripts/study.py TABLE --status counts them too.",
     )
     parser.add_argument(

@@ -157,10 +157,10 @@ def age(file):
 
 
 class _Looks:
-    """Heartbeats seen earlier: {file: (heartbeat, when it was written, on the clock of time.monotonic())}."""
+    """Heartbeats seen earlier."""
 
     def __init__(self):
-        self._seen = {}
+        self._seen = {}  # {file: (heartbeat, when it was written, on the clock of time.monotonic())}
 
     def beats(self, file, heartbeat):
         """Whether a heartbeat has changed since the last look, or is young enough."""
@@ -209,6 +209,6 @@ def _is_sound(key, value):
         return isinstance(value, str) and value.isprintable()
     if key == "job":
         return value is None or (isinstance(value, str) and bool(_JOB.fullmatch(value)))
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return False
-    return 0 < value <= 3600 if key == "interval" else key in ("pid", "restarts", "start", "beat") and value >= 0
+    if key == "interval":
+        return isinstance(value, (int, float)) and 0 < value <= 3600
+    return key in ("pid", "restarts", "start", "beat") and isinstance(value, int) and value >= 0

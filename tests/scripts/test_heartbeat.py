@@ -102,7 +102,9 @@ def test_a_heartbeat_that_stops_is_missed_after_three_intervals(tmp_path):
         assert time.monotonic() < deadline
 
 
-@pytest.mark.parametrize("text", ["", "[]", '{"interval": -1, "job": "1; rm", "host": 3}', '{"interval": 1e99}'])
+@pytest.mark.parametrize(
+    "text", ["", "[]", '{"interval": -1, "job": "1; rm", "host": 3}', '{"interval": 1e99, "start": 1.5}']
+)
 def test_a_damaged_heartbeat_is_judged_by_its_age(tmp_path, text):
     folder = left_by(tmp_path / "run", ELSEWHERE)
     (tmp_path / "run" / HEARTBEAT_FILE).write_text(text)

@@ -19,6 +19,7 @@ from yade_scripts.runner.rows import threads, write
 TASK = os.path.join(os.path.dirname(os.path.abspath(__file__)), "slurm_task.py")
 ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
 BEFORE_THE_LIMIT = 60  # s
+LARGEST = 1000  # tasks of an array, by Slurm's default MaxArraySize
 OF_YADE_BATCH = ("!SCRIPT", "!THREADS", "!OMP_NUM_THREADS")  # columns that have a meaning here, too
 OVER = (
     "COMPLETED",
@@ -38,15 +39,16 @@ class SlurmError(Exception):
     """What Slurm refused, or what a job can't be made of; the message is one line."""
 
 
-def by_threads(rows):
-    """[[row, ...], ...]: rows that take as many processors each make one array."""
-    return [[row for row in rows if threads(row) == number] for number in sorted(set(map(threads, rows)))]
+def arrays(rows):
+    """[[row, ...], ...]: rows that take as many processors each make an array, at most LARGEST of them."""
+    uniform = [[row for row in rows if threads(row) == number] for number in sorted(set(map(threads, rows)))]
+    return [group[first : first + LARGEST] for group in uniform for first in range(0, len(group), LARGEST)]
 
 
 def job_script(study_folder, folder, rows, at_once=None):
     """Text of the script of an array of rows that take as many processors each.
 
-    study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks at once at most (None: as Slurm likes).
+    study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks of it at once at most (None: as Slurm likes).
     """
     name = os.path.basename(study_folder.path)
     task = " ".join(map(shlex.quote, (sys.executable, TASK, os.path.join(folder, ROWS))))
@@ -73,9 +75,10 @@ def require_usable(study_folder, rows):
 
 
 def submit(study_folder, rows, at_once=None, options=()):
-    """Submit rows; [(Slurm's number of a job, its rows)]. options: of sbatch. Raises SlurmError and OSError."""
-    study_folder.remove_logs(rows)
-    return [(_submit(study_folder, group, at_once, options), group) for group in by_threads(rows)]
+    """Submit rows; yields (Slurm's number of a job, its rows). options: of sbatch. Raises SlurmError and OSError."""
+    for group in arrays(rows):
+        study_folder.remove_logs(group)
+        yield _submit(study_folder, group, at_once, options), group
 
 
 def queued(study_folder):
@@ -97,20 +100,22 @@ def queued(study_folder):
     return found
 
 
-def next_folder(study_folder):
-    """Path of the folder of the next job."""
-    return study_folder.file(f"slurm-{max(_numbers(study_folder), default=0) + 1}")
+def scripts(study_folder, rows, at_once=None, options=()):
+    """Texts of what submit() would submit, each with the command as a comment."""
+    first, groups = _next_number(study_folder), arrays(rows)
+    folders = [study_folder.file(f"slurm-{number}") for number in range(first, first + len(groups))]
+    texts = (job_script(study_folder, *pair, at_once) for pair in zip(folders, groups))
+    return [f"{text}# {shlex.join(_command(folder, options))}\n" for text, folder in zip(texts, folders)]
 
 
 def _submit(study_folder, rows, at_once, options):
-    folder = next_folder(study_folder)
+    folder = study_folder.file(f"slurm-{_next_number(study_folder)}")
     os.makedirs(folder)
     write(os.path.join(folder, ROWS), rows)
     with open(os.path.join(folder, SCRIPT), "w") as file:
         file.write(job_script(study_folder, folder, rows, at_once))
-    command = ["sbatch", "--parsable", *options, os.path.join(folder, SCRIPT)]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        done = subprocess.run(_command(folder, options), capture_output=True, text=True, stdin=subprocess.DEVNULL)
     except FileNotFoundError:
         raise SlurmError("sbatch: not found; must be on a machine that submits to Slurm") from None
     job = done.stdout.strip().partition(";")[0]  # a cluster's name may follow
@@ -119,6 +124,14 @@ def _submit(study_folder, rows, at_once, options):
     with open(os.path.join(folder, JOB), "w") as file:
         file.write(f"{job}\n")
     return job
+
+
+def _command(folder, options):
+    return ["sbatch", "--parsable", *options, os.path.join(folder, SCRIPT)]
+
+
+def _next_number(study_folder):
+    return max(_numbers(study_folder), default=0) + 1
 
 
 def _numbers(study_folder):

@@ -34,8 +34,10 @@ def main(arguments):
     if before.kind == DONE:
         print(f"{row.name}: has ended before", flush=True)
         return 0
-    if before.kind in (FAILED, RUNNING):
-        return _refuse(row, before.note or f"being run on {before.host}")
+    if before.kind == RUNNING:
+        return _refuse(row, f"is running on {before.host}")
+    if before.kind == FAILED:
+        return _refuse(row, before.note)
     run = Run(row, f"{path}:{line}", log)
     status = run.wait()
     after = rows.state(row, log)

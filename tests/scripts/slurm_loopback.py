@@ -1,0 +1,147 @@
+"""Debian's Slurm on this machine alone: munged, slurmctld and slurmd of one node, in a temporary folder."""
+
+import os
+import socket
+import subprocess
+import time
+from contextlib import suppress
+from pathlib import Path
+
+CONFIGURATION = """ClusterName=loopback
+SlurmctldHost={host}(127.0.0.1)
+SlurmUser=root
+SlurmctldPort={ports[0]}
+SlurmdPort={ports[1]}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket,cred_expire=5
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd.log
+SlurmdParameters=config_overrides
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SwitchType=switch/none
+MpiDefault=none
+ReturnToService=2
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+KillWait=10
+SchedulerParameters=sched_interval=2,batch_sched_delay=0
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+"""
+STARTING = 60  # s
+
+
+class NoSlurm(Exception):
+    """Slurm can't be run here; the message is one line."""
+
+
+class Loopback:
+    """With it the commands of Slurm find this node, by .environment. folder: an empty one, of a short path (sockets)."""
+
+    def __init__(self, folder):
+        self.folder, self._daemons = Path(folder), []
+        self.environment = {**os.environ, "SLURM_CONF": str(self.folder / "slurm.conf")}
+
+    def __enter__(self):
+        if os.getuid():
+            raise NoSlurm("must be root, as slurmd starts jobs of users")
+        host = socket.gethostname().partition(".")[0]
+        settings = CONFIGURATION.format(host=host, folder=self.folder, ports=_free_ports(2), cores=os.cpu_count())
+        (self.folder / "slurm.conf").write_text(settings)
+        for name in ("state", "spool"):
+            (self.folder / name).mkdir()
+        (self.folder / "munge.key").write_bytes(os.urandom(1024))
+        (self.folder / "munge.key").chmod(0o600)
+        files = [f"--{name}={self.folder}/munge.{ending}" for name, ending in MUNGE_FILES.items()]
+        try:
+            self._start("munged", "--force", "--foreground", *files)
+            self._wait("munge", "-n", "-S", str(self.folder / "munge.socket"))
+            self._start("slurmctld", "-D")
+            self._wait("scontrol", "ping")
+            self._start("slurmd", "-D")
+            self._wait("srun", "--immediate=1", "true")
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        if len(self._daemons) == 3:
+            self._end_jobs()
+        for daemon in reversed(self._daemons):
+            daemon.terminate()
+        for daemon in self._daemons:
+            try:
+                daemon.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                daemon.kill()
+                daemon.wait()
+
+    def ask(self, *command):
+        """What a command prints; raises NoSlurm when it fails."""
+        try:
+            done = subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=60)
+        except subprocess.TimeoutExpired:
+            raise NoSlurm(f'{" ".join(command)}: no answer in 60 s') from None
+        if done.returncode:
+            raise NoSlurm(f'{" ".join(command)}: {" ".join(done.stderr.split())}')
+        return done.stdout
+
+    def job(self, task):
+        """{property: text} of a task such as 12_3, by scontrol."""
+        return dict(pair.partition("=")[::2] for pair in self.ask("scontrol", "-o", "show", "job", task).split())
+
+    def _end_jobs(self):
+        with suppress(NoSlurm):
+            self.ask("scancel", "--user=root")
+            deadline = time.monotonic() + STARTING
+            while self.ask("squeue", "-h", "-t", "R,CG,S").strip() and time.monotonic() < deadline:
+                time.sleep(0.5)
+
+    def _start(self, *command):
+        with open(self.folder / f"{command[0]}.out", "wb") as output:
+            try:
+                daemon = subprocess.Popen(command, env=self.environment, stdout=output, stderr=output)
+            except FileNotFoundError:
+                raise NoSlurm(f"{command[0]}: not installed (make test-slurm installs it)") from None
+        self._daemons.append(daemon)
+
+    def _wait(self, *command):
+        """Until a command succeeds."""
+        deadline = time.monotonic() + STARTING
+        while True:
+            try:
+                return self.ask(*command)
+            except NoSlurm as error:
+                dead = [daemon.args[0] for daemon in self._daemons if daemon.poll() is not None]
+                if dead or time.monotonic() > deadline:
+                    said = "".join((self.folder / f"{name}.out").read_text() for name in dead)
+                    raise NoSlurm(f'{" ".join(dead) or error}: {" ".join(said.split())}') from None
+                time.sleep(0.2)
+
+
+MUNGE_FILES = {
+    "key-file": "key",
+    "socket": "socket",
+    "pid-file": "pid",
+    "log-file": "log",
+    "seed-file": "seed",
+}
+
+
+def _free_ports(number):
+    sockets = [socket.socket() for _ in range(number)]
+    try:
+        for one in sockets:
+            one.bind(("127.0.0.1", 0))
+        return [one.getsockname()[1] for one in sockets]
+    finally:
+        for one in sockets:
+            one.close()

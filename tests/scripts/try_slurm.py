@@ -1,0 +1,269 @@
+"""A dozen rows as a job array of Debian's Slurm on this machine, and the same rows by the local runner; writes results/slurm.md.
+
+    python3 tests/scripts/try_slurm.py [--out FILE]      root; some five minutes on two cores
+
+One row fails, one is killed, one is requeued and one meets its time limit while it runs. Exit status: 0 when all was as it must be,
+otherwise 1, with one line on stderr for each that was not.
+"""
+
+import argparse
+import csv
+import io
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "benchmarks")]
+from measured_on import machine
+from running import PYTHON, TOP, environment, read_arrays, read_json
+from slurm_loopback import Loopback, NoSlurm
+from test_study import process_writing
+
+STUDY = os.path.join(TOP, "yade_scripts", "study.py")
+LONG = ("requeued", "limit", "killed")
+SEEDS = (1, 2, 3, 4, 5, 7, 8, 9)  # 6: the aggregates don't meet
+SHORT = [f"short{seed}" for seed in SEEDS]
+ENDING = (*LONG, *SHORT)
+RTOL = 1e-9  # of the analysis: sums over grains in another order
+PATIENCE = 300  # s
+HEAD = """# Slurm
+
+A table of twelve collisions is submitted by `study.py --slurm` to Slurm {slurm} of Debian (slurmctld, slurmd and munged on loopback,
+one node), and run by `study.py` in another folder. Of the three long rows one is requeued (`scontrol requeue`), one gets the signal
+that Slurm sends before a time limit, the run of one is killed (SIGKILL), each after its first checkpoint. One row fails, eight end.
+"Elsewhere" is a process in a namespace of its own, with another host name, that sees none of this machine's locks.
+
+`make test-slurm`, commit {commit}, {cpu}, {cores} cores, {minutes:.1f} minutes.
+
+| what | found | as it must be |
+|---|---|---|
+"""
+
+
+def write_table(folder, velocity=10):
+    lines = ["description radius filling velocity seed duration stepFraction checkpointInterval threads out"]
+    for seed, name in enumerate(LONG, 1):
+        lines.append(f"{name} 10 0.4 {velocity} {seed} 500e-9 * 0.1 1 runs/dozen/{name}")
+    lines.append("fails 5 0.4 3000 1 10e-9 0.4 * 1 runs/dozen/fails")  # a step too long for such an impact
+    for seed, name in zip(SEEDS, SHORT):
+        lines.append(f"{name} 6 0.4 5 {seed} 100e-9 * * 1 runs/dozen/{name}")
+    (folder / "dozen.table").write_text("\n".join(lines) + "\n")
+
+
+class Trial:
+    """Rows of (what, found, as it must be); with Slurm's node, and the folder of the study."""
+
+    def __init__(self, node, folder):
+        self.node, self.folder, self.rows = node, folder, []
+
+    def check(self, what, found, wanted):
+        self.rows.append((what, str(found), str(wanted)))
+        print(f"{'ok ' if str(found) == str(wanted) else 'NOT'} {what}: {found}", flush=True)
+
+    def study(self, *arguments, folder=None, before=()):
+        return subprocess.run(
+            [*before, PYTHON, STUDY, "dozen.table", *arguments],
+            cwd=folder or self.folder,
+            env={**environment(), "SLURM_CONF": self.node.environment["SLURM_CONF"]},
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+        )
+
+    def from_elsewhere(self, *command):
+        """What a command prints on what passes for another machine of a shared disk."""
+        script = 'hostname elsewhere; exec "$@"'
+        return subprocess.run(
+            ["unshare", "--uts", "--pid", "--fork", "--mount-proc", "sh", "-c", script, "sh", PYTHON, *command],
+            cwd=self.folder,
+            env={**environment(PYTHONPATH=TOP), "SLURM_CONF": self.node.environment["SLURM_CONF"]},
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+        ).stdout
+
+    def wait(self, condition):
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            if time.monotonic() > deadline:
+                raise NoSlurm(f"waited in vain for {PATIENCE} s: {self.node.ask('squeue', '-r')}")
+            time.sleep(0.1)
+
+    def with_checkpoint(self, name):
+        """The process of a row, stopped (SIGSTOP) when it has a checkpoint."""
+        run = self.folder / "runs" / "dozen" / name
+        self.wait(lambda: (run / "checkpoint" / "recorder.npz").exists() and process_writing(run))
+        os.kill(process_writing(run), signal.SIGSTOP)
+        return process_writing(run)
+
+    def until_over(self, job):
+        self.wait(lambda: not self.node.ask("squeue", "-h", "-r", "-t", "PD,R,CG,S", "-j", job).strip())
+
+
+def try_all(trial):
+    write_table(trial.folder)
+    first = trial.study("--slurm", "--", "--time=10")
+    job = first.stdout.split()[2].rstrip(":")
+    trial.check("submitted", first.stdout.splitlines()[-1].rpartition(", ")[2], "12 submitted")
+    trial.check("a second call submits", trial.study("--slurm").stdout.split(", ")[-1].strip(), "0 submitted")
+    running_elsewhere(trial, job)
+    interrupt(trial, job)
+    trial.until_over(job)
+    ends(trial, job)
+    what_is_left(trial)
+    same_as_local(trial)
+    other_parameters(trial)
+
+
+def running_elsewhere(trial, job):
+    """While the first long row runs."""
+    trial.with_checkpoint("requeued")
+    note = f"on {os.uname().nodename}, Slurm job {job}_1"
+    for what, command in {
+        "study.py --status": (STUDY, "dozen.table", "--status"),
+        "analysis status": ("-m", "analysis", "status", "runs/dozen/requeued"),
+    }.items():
+        line = next(line for line in trial.from_elsewhere(*command).splitlines() if "requeued" in line)
+        found = (line.split()[0], line.endswith(note))
+        trial.check(f"elsewhere, {what}: its state, and whether host and job are named", found, ("running", True))
+
+
+def interrupt(trial, job):
+    trial.node.ask("scontrol", "requeue", f"{job}_1")
+    process = trial.with_checkpoint("limit")
+    os.kill(process, signal.SIGCONT)
+    near = ["scancel", "--signal=USR1", "--batch", f"{job}_2"]  # it tries on and on when the task has left by then
+    with subprocess.Popen(near, env=trial.node.environment, stderr=subprocess.DEVNULL) as scancel:
+        trial.wait(lambda: trial.node.job(f"{job}_2")["Restarts"] == "1")
+        scancel.kill()
+    os.kill(trial.with_checkpoint("killed"), signal.SIGKILL)
+
+
+def ends(trial, job):
+    """States of the tasks, and what --status says."""
+    for number, name, state, code, restarts in (
+        (1, "requeued", "COMPLETED", "0:0", 1),
+        (2, "limit", "COMPLETED", "0:0", 1),
+        (3, "killed", "FAILED", "137:0", 0),
+        (4, "fails", "FAILED", "1:0", 0),
+    ):
+        found = trial.node.job(f"{job}_{number}")
+        text = "{JobState}, exit code {ExitCode}, begun anew {Restarts} times"
+        wanted = text.format(JobState=state, ExitCode=code, Restarts=restarts)
+        trial.check(f"task of `{name}`", text.format(**found), wanted)
+    states = [trial.node.job(f"{job}_{number}")["JobState"] for number in range(5, 13)]
+    trial.check("tasks of the short rows", f"{states.count('COMPLETED')} COMPLETED", "8 COMPLETED")
+    status = trial.study("--status").stdout.splitlines()
+    trial.check("--status", status[-1].partition(";")[0], "dozen: 10 done, 0 running, 0 waiting, 2 failed")
+    killed = next(line for line in status if " killed " in line)
+    trial.check("--status of `killed`", " ".join(killed.split()[:6]), "failed killed killed by signal 9")
+    failed = next(line for line in status if " fails " in line)
+    trial.check("--status of `fails`", "the run broke down" in failed, True)
+
+
+def what_is_left(trial):
+    """The killed row resumes, the other one fails again, and nothing else is run."""
+    ended = {
+        name: os.stat(trial.folder / "runs" / "dozen" / name / "ended").st_mtime_ns for name in (*LONG[:2], *SHORT)
+    }
+    again = trial.study("--slurm", "-j", "1")
+    trial.check("called again", again.stdout.splitlines()[-1].rpartition(", ")[2], "2 submitted")
+    trial.until_over(again.stdout.split()[2].rstrip(":"))
+    status = trial.study("--status").stdout.splitlines()
+    trial.check("--status then", status[-1].partition(";")[0], "dozen: 11 done, 0 running, 0 waiting, 1 failed")
+    same = all(
+        os.stat(trial.folder / "runs" / "dozen" / name / "ended").st_mtime_ns == at for name, at in ended.items()
+    )
+    trial.check("runs that had ended were left alone", same, True)
+
+
+def same_as_local(trial):
+    local = trial.folder.parent / "local"
+    local.mkdir()
+    write_table(local)
+    done = trial.study("-j", str(os.cpu_count()), folder=local)
+    trial.check("the local runner", done.stdout.splitlines()[-1], "dozen: 12 rows, 11 done, 1 failed")
+    runs = [at / "runs" / "dozen" for at in (trial.folder, local)]
+    differing = [name for name in ENDING if not _same_bits(*(at / name for at in runs))]
+    trial.check(
+        "runs whose history and states differ from the local ones in a bit", ", ".join(differing) or "none", "none"
+    )
+    tables = [_merged_table(at) for at in runs]
+    trial.check("rows of the analysis' merged table", [len(table) for table in tables], [len(ENDING)] * 2)
+    trial.check(f"largest relative difference of its numbers <= {RTOL:g}", _difference(*tables) <= RTOL, True)
+
+
+def other_parameters(trial):
+    """Rows that ended with other parameters are refused."""
+    write_table(trial.folder, velocity=11)
+    refused = trial.study("--slurm", "--dry-run")
+    lines = [line for line in refused.stderr.splitlines() if "holds an ended run with velocity = 10, not 11" in line]
+    trial.check("rows of other parameters than their ended runs: refused", (len(lines), refused.returncode), (3, 1))
+
+
+def _same_bits(one, other):
+    names = ["history.npz"] + [f"states/{name}" for name in sorted(os.listdir(one / "states"))]
+    if sorted(os.listdir(one / "states")) != sorted(os.listdir(other / "states")):
+        return False
+    return read_json(one, "run.json")["outcome"] == read_json(other, "run.json")["outcome"] and all(
+        np.array_equal(read_arrays(one, name)[key], array, equal_nan=True)
+        for name in names
+        for key, array in read_arrays(other, name).items()
+    )
+
+
+def _merged_table(runs):
+    """[{column: text}] of the runs that ended, as the study's analysis makes them, without what it costs."""
+    command = [PYTHON, "-m", "analysis", "study", "elastoplastic", str(runs), "--format", "csv"]
+    done = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=PATIENCE)
+    lines = [line for line in done.stdout.splitlines(keepends=True) if not line.startswith("#")]
+    return sorted(csv.DictReader(io.StringIO("".join(lines))), key=lambda row: row["run"])
+
+
+def _difference(one, other):
+    largest = 0.0
+    for row, other_row in zip(one, other):
+        for name, text in row.items():
+            try:
+                a, b = float(text), float(other_row[name])
+            except ValueError:
+                largest = max(largest, 0.0 if text == other_row[name] else float("inf"))
+                continue
+            largest = max(largest, abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0)
+    return largest
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=HERE / "results" / "slurm.md")
+    options = parser.parse_args(arguments)
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))  # not without ending Slurm
+    begun = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("slurm", "study"):
+            Path(folder, name).mkdir()
+        try:
+            with Loopback(Path(folder, "slurm")) as node:
+                version = node.ask("sinfo", "--version").split()[-1]
+                trial = Trial(node, Path(folder, "study"))
+                try_all(trial)
+        except NoSlurm as error:
+            sys.exit(f"try_slurm.py: {error}")
+    wrong = [f"{what}: {found}, not {wanted}" for what, found, wanted in trial.rows if found != wanted]
+    options.out.parent.mkdir(exist_ok=True)
+    head = HEAD.format(**machine(), slurm=version, minutes=(time.monotonic() - begun) / 60)
+    options.out.write_text(head + "".join(f"| {what} | {found} | {wanted} |\n" for what, found, wanted in trial.rows))
+    for line in wrong:
+        print(f"try_slurm.py: {line}", file=sys.stderr)
+    return int(bool(wrong))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
