@@ -8,15 +8,16 @@
 Rows whose run folder has ended are skipped, provided that its parameters are the row's; runs that were killed
 resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
 ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
-a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there. Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be
-the name of a table in yade_scripts/studies: elastoplastic-desk.
+a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
+Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be the name of
+a table in yade_scripts/studies: elastoplastic-desk.
 
-With --slurm each row that is left is one task, by the same rules, of as many processors as it has threads. A minute before its
-time limit a task writes its checkpoint and is put into the queue again; rows that are in the queue already are not
+With --slurm each row that is left is one task, by the same rules, of as many processors as it has threads. A minute
+before its time limit a task writes its checkpoint and is queued again; rows that are in the queue already are not
 submitted. --dry-run prints the scripts, and submits nothing.
 
-Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the others have run),
-2 for a table that can't be used, 128 and the signal's number when stopped.
+Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the
+others have run), 2 for a table that can't be used, 128 and the signal's number when stopped.
 """
 
 import argparse

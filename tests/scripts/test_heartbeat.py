@@ -194,18 +194,18 @@ def test_a_start_that_was_killed_at_once_is_taken_over_too(tmp_path, monkeypatch
     assert sorted(os.listdir(tmp_path / "run")) == [".heartbeat-5", HEARTBEAT_FILE]
 
 
-def test_a_starter_that_was_held_up_for_all_of_another_run_gives_way(tmp_path, monkeypatch):
+def test_a_starter_that_was_paused_for_all_of_another_run_is_refused(tmp_path, monkeypatch):
     """It has seen start 4 killed; a run then came to its end, and another one has begun, counting from 1."""
     left_by(tmp_path / "run", Heartbeat("node7", "another boot", start=4), STALE)
     make = heartbeat._made_anew
 
-    def held_up(path, content):
+    def paused(path, content):
         for name in os.listdir(tmp_path / "run"):
             os.unlink(tmp_path / "run" / name)
         left_by(tmp_path / "run", ELSEWHERE)
         return make(path, content)
 
-    monkeypatch.setattr(heartbeat, "_made_anew", held_up)
+    monkeypatch.setattr(heartbeat, "_made_anew", paused)
     with pytest.raises(RunsElsewhere):
         Beating(str(tmp_path / "run"))
     assert sorted(os.listdir(tmp_path / "run")) == [".heartbeat-1", HEARTBEAT_FILE]
@@ -241,10 +241,10 @@ def test_a_run_that_was_paused_for_too_long_writes_nothing_any_more(tmp_path, mo
     file = tmp_path / "run" / HEARTBEAT_FILE
     os.utime(file, (1, 1))
     other = Beating(paused.path)
-    paused.write_history({"time": np.zeros(1)})  # it was heard of a moment ago
+    paused.write_history({"time": np.zeros(1)})  # its heartbeat is a moment old
     monkeypatch.setattr(paused._heartbeat, "_written", -1e9)
     for write in (paused.write_ended, lambda: paused.write_run({}), lambda: paused.write_state(0, {})):
-        with pytest.raises(OSError, match="another run has taken the folder over"):
+        with pytest.raises(OSError, match="another run has taken over the folder"):
             write()
     paused.close()
     assert read_heartbeat(tmp_path / "run").host == "node8" and os.path.exists(other._own())

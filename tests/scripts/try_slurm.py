@@ -139,7 +139,12 @@ def interrupt(trial, job):
     trial.node.ask("scontrol", "requeue", f"{job}_1")
     process = trial.with_checkpoint("limit")
     os.kill(process, signal.SIGCONT)
-    near = ["scancel", "--signal=USR1", "--batch", f"{job}_2"]  # it tries on and on when the task has left by then
+    near = [
+        "scancel",
+        "--signal=USR1",
+        "--batch",
+        f"{job}_2",
+    ]  # it retries without end when the task is in the queue again
     with subprocess.Popen(near, env=trial.node.environment, stderr=subprocess.DEVNULL) as scancel:
         trial.wait(lambda: trial.node.job(f"{job}_2")["Restarts"] == "1")
         scancel.kill()

@@ -1,9 +1,9 @@
-"""The sign of life of a run, and which of several starters on machines of a shared disk has its folder.
+"""A run's heartbeat, and which of several starts, on machines of a shared disk, gets its folder.
 
 A start takes the folder by making the file .heartbeat-N, N one more than the last start's, which only one of them can; it
-may when the last start's heartbeat has stopped (analysis.runs.running). As long as that file is there the folder is its
-own: a run that was paused so long that another one took it over finds it gone, and writes nothing any more. Both files go
-when the run comes to any end but a kill.
+may do so when the last start's heartbeat has stopped (analysis.runs.running). The folder is its own as long as that file is
+there: a run that was paused until another one took over its folder finds the file gone, and writes nothing any more. Both
+files are removed at any end of the run but a kill.
 """
 
 import errno
@@ -31,7 +31,7 @@ class RunsElsewhere(Exception):
 
 class Beating:
     """Takes a run folder (path), whose lock this process holds, and writes heartbeat.json every `interval` seconds [s] until
-    stop(), from a thread: while a step is taken it waits, at most seconds with a million grains.
+    stop(), from a thread, which waits while a step is taken or a scene is saved or loaded: some 20 s with a million grains.
 
     Raises RunsElsewhere, and OSError when the folder can't be written.
     """
@@ -46,7 +46,7 @@ class Beating:
 
     def require_kept(self):
         """Raise OSError when another run has taken the folder over; to be called before a file in it is written."""
-        if time.monotonic() - self._written > 2 * self.now.interval:  # the thread, or all of the process, was held up
+        if time.monotonic() - self._written > 2 * self.now.interval:  # the thread, or all of the process, was paused
             self._beat()
 
     def stop(self):
@@ -72,7 +72,7 @@ class Beating:
     def _require_own(self):
         if not os.path.exists(self._own()):
             raise OSError(
-                errno.EBUSY, "another run has taken the folder over, as this one gave no sign of life", self.folder
+                errno.EBUSY, "another run has taken over the folder, as this one's heartbeat had stopped", self.folder
             )
 
     def _take(self):
@@ -83,7 +83,7 @@ class Beating:
         if not _made_anew(self._own(), _text(self.now)):
             raise RunsElsewhere("which has just begun")
         try:
-            if _starts(self.folder) - starts != {self.now.start}:  # another one, while this process was held up
+            if _starts(self.folder) - starts != {self.now.start}:  # another one, while this process was paused
                 raise RunsElsewhere("which has just begun")
             self._write()
         except BaseException:
