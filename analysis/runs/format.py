@@ -7,7 +7,7 @@ Scripts write what stands here and the analysis reads it. All quantities are in 
     states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts
     ended               empty: the run came to its planned end
     checkpoint/         while the run is under way, or was stopped: not part of the format
-    heartbeat.json      while the run is under way: where, and since when it is so (running.py); not part of the format
+    heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
 
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
 and no `cell_size` in states. Format 2 has them.

@@ -30,6 +30,16 @@ def test_a_folder_that_was_begun_or_emptied_halfway_can_be_used(bench):
     assert not [case for case in cases if case.wrong]
 
 
+@pytest.mark.parametrize("fault", ["ends before", "disk full from"])
+def test_no_fault_at_the_heartbeat_of_a_resumed_run(bench, fault):
+    """Every call that makes, replaces or removes one of its files."""
+    scenario = SCENARIOS[1]
+    calls = [call for call in bench.calls(scenario) if "heartbeat" in call.path]
+    assert {call.name for call in calls} >= {"link", "rename", "unlink"}
+    cases = [bench.case(scenario, fault, call) for call in calls]
+    assert not [case for case in cases if case.wrong]
+
+
 def test_sigterm_during_a_checkpoint_and_then_sigkill(bench):
     """What batch systems do: the checkpoint that is being written isn't written again in place."""
     cases = list(enumerated_stops(bench, 2, every=37))

@@ -50,16 +50,18 @@ class RunFolder:
                 os.close(self._lock)
                 raise
         except OSError as error:
-            raise RunFolderError(f"out = {path}: {error.strerror}; must be a folder that can be written") from None
+            raise _unwritable(path, error) from None
 
     def begin_heartbeat(self):
-        """Take the folder before other machines, too. Raises RunFolderError, and OSError when it can't be written."""
+        """Take the folder before other machines, too. Raises RunFolderError."""
         try:
             self._heartbeat = Beating(self.path)
         except RunsElsewhere as where:
             raise RunFolderError(
                 f"out = {self.path}: another run is writing there, {where}; must be another folder"
             ) from None
+        except OSError as error:
+            raise _unwritable(self.path, error) from None
 
     def close(self):
         """End the heartbeat; the lock stays until the process ends."""
@@ -144,6 +146,10 @@ def json_text(content):
     """write(file) of a dictionary as JSON; raises ValueError for what JSON can't hold."""
     text = json.dumps(content, indent=2, allow_nan=False) + "\n"
     return lambda file: file.write(text.encode())
+
+
+def _unwritable(path, error):
+    return RunFolderError(f"out = {path}: {error.strerror}; must be a folder that can be written")
 
 
 def _require_usable(path, overwrite):

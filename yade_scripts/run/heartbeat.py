@@ -145,7 +145,8 @@ def _made_anew(path, content):
     folder, name = os.path.split(path)
     handle, temporary = tempfile.mkstemp(prefix=f".{name}.", suffix=UNFINISHED, dir=folder)
     try:
-        os.write(handle, content)
+        with open(handle, "wb", closefd=False) as file:
+            file.write(content)
         os.link(temporary, path)
     except FileExistsError:
         return os.fstat(handle).st_nlink == 2  # the answer to a request that NFS had sent twice
@@ -165,10 +166,8 @@ def _made_without_link(path, content):
         handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
     except FileExistsError:
         return False
-    try:
-        os.write(handle, content)
-    finally:
-        os.close(handle)
+    with open(handle, "wb") as file:
+        file.write(content)
     return True
 
 
