@@ -125,7 +125,6 @@ void Dynamics::setOutsideForces(const std::vector<OutsideForce>& given_, Onset o
 		for (const OutsideForce& f : domain->outside.grains)
 			changeForce(*domain, f.grain, f.force, f.torque, onset);
 	}
-	velocitiesSet = velocitiesSet || onset == Onset::Now;
 }
 
 // What the kinetic energy of this moment, which a leapfrog counts with half a kick, changes by is work of the force.
