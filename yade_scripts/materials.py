@@ -54,27 +54,42 @@ class GrainParameters(Parameters):
         return super(GrainParameters, grains).filled_in()
 
 
-def pair_constants(grains, radii=None):
+def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
     """{name: value} of a contact of two of these grains (SI), by the plugin's names, where no YADE runs.
 
     grains: anything with the attributes of Material, and viscoelasticTime [s] if there is drag; radii: of the two [m],
-    both grainRadius when left out. A run takes the constants from the plugin; a test holds the two together. Sources:
-    analysis.theory.
+    both grainRadius when left out. With a neck, under 'bond', those of a bond of two grains of grainRadius. A run takes
+    the constants from the plugin; a test holds the two together. Sources: analysis.theory.
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]
     radii = radii or (grains.grainRadius, grains.grainRadius)
-    return dict(_pair_constants(*properties, getattr(grains, "viscoelasticTime", 0.0), *radii))
+    properties.append(getattr(grains, "viscoelasticTime", 0.0))
+    found = dict(_pair_constants(*properties, *radii, linearDamping))
+    if neck:
+        found["bond"] = dict(_bond_constants(*properties, grains.grainRadius, neck))
+    return found
 
 
 @lru_cache
-def _pair_constants(*properties_and_radii):
+def _pair_constants(*properties_radii_and_damping):
     from analysis import theory  # takes a moment, and runs within YADE do without
 
-    *properties, radius1, radius2 = properties_and_radii
+    *properties, radius1, radius2, damping = properties_radii_and_damping
     material = theory.Material(*properties)
-    pair = theory.pair_constants(material, radius1, material, radius2)
-    return {_camel_case(name): value for name, value in vars(pair).items()}
+    return _by_plugins_names(theory.pair_constants(material, radius1, material, radius2, damping))
+
+
+@lru_cache
+def _bond_constants(*properties_radius_and_neck):
+    from analysis import theory
+
+    *properties, radius, neck = properties_radius_and_neck
+    return _by_plugins_names(theory.bond_constants(theory.Material(*properties), radius, neck))
+
+
+def _by_plugins_names(constants):
+    return {_camel_case(name): value for name, value in vars(constants).items()}
 
 
 def _camel_case(name):

@@ -1,27 +1,7 @@
-"""The time step of a run: its limits, the largest number of steps, and the longest step for a tolerance.
+"""The limits of a run's time step, and of the number of steps.
 
 Steps are in units of t0 (K13 eq 2, `timeUnit`). constants: {name: value} of a contact of two grains, as the plugin's
 pairConstants or materials.pair_constants give them, with the constants of a bond under "bond" where grains are sintered.
-
-The longest step for a tolerance (stepFraction=auto). The ledger closes with second order in the step s. What is left of
-the largest |E(t) - E(0)|/K(0) of a run has two sources (e = F_c delta_c, the scale of a contact's energy; K(0): of all
-grains together; N: their number):
-
-- Contacts that form or break, or begin to slip, within a step. Each leaves an error of the order e s^2, and their number
-  grows with the energy that there is for them, as 1 + x with x = K(0)/e. Of random sign they would leave
-  s^2 (1 + x)^(1/2)/x of K(0), of one sign s^2 (1 + x)/x; measured is a power in between:
-  EVENTS s^2 (1 + 1/x)^(1/2) x^-DECAY.
-- The curvature of the normal force along the way that grains make in a step: SPEED s^2 k/(1 + k)^(4/5), where
-  k = K(0)/(N e) is the relative velocity squared over 8 e/m. For small k this goes with the square of the overlap
-  travelled in a step; for large k a contact lasts as long as Hertz's, ~ v^(-1/5), and the step over that time squared
-  goes with k^(1/5).
-
-The constants are such that 95 % of collisions stay below the sum. They were fitted by quantile regression to the 98 %
-level of a grid of collisions: what was fitted to 95 % held for 90 % only of random scenes, which vary more, and this
-holds for 96 % of them (tests/benchmarks/step_choice.py measures and fits; results/step_choice.md has fit and scatter,
-step_choice.csv the data: 50 to 86,400 grains in an aggregate, fillings 0.2 to 0.65, 0.3 to 80 m/s, ice and silicate,
-T_vis up to 6 ps). The typical error is a quarter of it. Filling and drag are left out: with drag errors are somewhat
-smaller.
 """
 
 import math
@@ -34,10 +14,8 @@ AUTO = "auto"
 # Velocity Verlet is stable at 0.4 t0 and blows up at 0.5 t0 on A24's scene, without drag (measured).
 STABLE_STEP = 0.4
 SAFETY = STABLE_STEP / 0.5
-SHORTEST = 0.01  # t0: below, rather another tolerance
 # An hour for 50 grains, a week for 6,000: longer than any run on a desk machine.
 MOST_STEPS = 1e9
-EVENTS, DECAY, SPEED = 0.056, 0.36, 0.0101
 
 
 def step_limit(constants, filling):
@@ -68,12 +46,16 @@ def step_limit(constants, filling):
     moving = 8 / (drag + math.sqrt(drag**2 + 16 * stiffness))
     steps = [turning, moving]
     if constants.get("bond"):
-        bond = constants["bond"]
-        steps += [
-            2 / math.sqrt(40 * occupied * bond["slidingStiffness"] / mass),
-            2 / math.sqrt(8 * (bond["normalStiffness"] + bond["slidingStiffness"]) / mass),
-        ]
+        turning_bonds = 2 / math.sqrt(40 * occupied * constants["bond"]["slidingStiffness"] / mass)
+        steps += [turning_bonds, bond_step(constants) * constants["timeUnit"]]
     return min(STABLE_STEP, SAFETY * min(steps) / constants["timeUnit"])
+
+
+def bond_step(constants):
+    """Step [t0] at which a grain vibrates unstably against eight bonded neighbours, as in step_limit()."""
+    bond, mass = constants["bond"], 2 * constants["reducedMass"]
+    stiffness = 8 * (bond["normalStiffness"] + bond["slidingStiffness"]) / mass
+    return 2 / math.sqrt(stiffness) / constants["timeUnit"]
 
 
 def equivalent_filling(packing, filling, planar, constants):
@@ -122,59 +104,3 @@ def require_countable(duration, step, time_unit):
             f"duration = {duration:.6g}: {steps:.2g} steps of {step:g} t0; must be at most {MOST_STEPS:g} steps, "
             f"{MOST_STEPS * step * time_unit:.3g} s with this stepFraction"
         )
-
-
-def longest_step(parameters, constants, limit):
-    """The step [t0], rounded down to two digits: the longest that keeps to parameters.tolerance, at most limit.
-
-    parameters: of a collision, with velocity, grains and tolerance. Raises ParameterError when the step would be
-    shorter than SHORTEST.
-    """
-    per_square = sum(ledger_errors(*energies(parameters, constants)))
-    step = math.sqrt(parameters.tolerance / per_square)
-    if step < SHORTEST:
-        least = _rounded(per_square * SHORTEST**2, math.ceil)
-        raise ParameterError(
-            f"tolerance = {parameters.tolerance:g}: would take a step of {step:.2g} t0 at "
-            f"{parameters.velocity:.3g} m/s; must be at least {least:g} K(0) in this scene, "
-            f"for {SHORTEST:g} t0, or stepFraction a number"
-        )
-    return min(limit, _rounded(step, math.floor))
-
-
-def energies(parameters, constants):
-    """(K(0), the same for a grain) of a collision, both over F_c delta_c."""
-    contact = constants["pullOffForce"] * constants["pullOffOverlap"]
-    grain = constants["reducedMass"] * (parameters.velocity / 2) ** 2 / contact  # a grain's mass is 2 m*
-    return 2 * parameters.grains * grain, grain
-
-
-def ledger_errors(kinetic, of_grain, events=EVENTS, decay=DECAY, speed=SPEED):
-    """(of events, of speed): error of the ledger [K(0)] over the square of the step [t0], 95 % level.
-
-    kinetic, of_grain: as energies() gives them, numbers or arrays.
-    """
-    return events * (1 + 1 / kinetic) ** 0.5 * kinetic**-decay, speed * of_grain / (1 + of_grain) ** 0.8
-
-
-def reason(parameters, constants, limit):
-    """Why parameters.stepFraction is what longest_step() gave, in one line."""
-    events, speed = ledger_errors(*energies(parameters, constants))
-    step, drag = parameters.stepFraction, "no drag"
-    if parameters.viscoelasticTime:
-        drag = f"T_vis = {parameters.viscoelasticTime * 1e12:.3g} ps"
-    if step == limit:
-        why = f"set by the limit of stability, where {(events + speed) * step**2:.1g} is expected"
-    else:
-        source = "forming and breaking contacts" if events > speed else "the speed of the impact"
-        why = f"set by {source}; limit of stability {limit:.3g} t0"
-    return (
-        f"{step:.3g} t0 for a ledger error of at most {parameters.tolerance:g} K(0) in 95 % of runs, "
-        f"{2 * parameters.grains} grains at {parameters.velocity:.3g} m/s, {drag} ({why})"
-    )
-
-
-def _rounded(x, direction):
-    """x at two significant digits, by math.floor or math.ceil."""
-    unit = 10.0 ** (math.floor(math.log10(x)) - 1)
-    return float(f"{direction(round(x / unit, 9)) * unit:.2g}")

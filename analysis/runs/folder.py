@@ -160,7 +160,7 @@ def _read_record(file):
             f"{file}: not the record of a run: no 'format' (another program's file, or a run that has only just begun)"
         )
     if record["format"] not in READABLE:
-        known = " and ".join(map(str, READABLE))
+        known = ", ".join(map(str, READABLE[:-1])) + f" and {READABLE[-1]}"
         raise RunFolderError(f"{file}: format is {record['format']!r}, this analysis reads formats {known}")
     if not isinstance(record.get("kind", ""), str):
         raise RunFolderError(f"{file}: kind is {record['kind']!r}: must be a name, such as {COLLISION.name}")

@@ -10,13 +10,13 @@ Scripts write what stands here and the analysis reads it. All quantities are in 
     heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
 
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
-and no `cell_size` in states. Format 2 has them.
+and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well.
 """
 
 from dataclasses import dataclass
 
-FORMAT = 2
-READABLE = (1, 2)
+FORMAT = 3
+READABLE = (1, 2, 3)
 
 RUN_FILE, HISTORY_FILE, ENDED_FILE = "run.json", "history.npz", "ended"
 STATES_FOLDER, CHECKPOINT_FOLDER = "states", "checkpoint"
@@ -60,6 +60,7 @@ CHANNEL_TABLE = (
     Channel("bondBreaking", LOST, "bond breaking", "#3b2a20"),
     Channel("boundaryWork", WORK, "work on the boundaries", "#4d4d4d", since=2),
     Channel("constraintWork", WORK, "work on constraints", "#b3b3b3", since=2),
+    Channel("externalWork", WORK, "work against outside forces", "#d9d9d9", since=3),
 )
 CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE)
 LABELS = {channel.name: channel.label for channel in CHANNEL_TABLE}

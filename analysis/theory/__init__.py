@@ -1,11 +1,12 @@
 """Theory in closed form, written from the papers alone: nothing here comes from the simulation code.
 
-Two grains: jkr, pair_constants, sticking (all names below). Aggregates: andrews and andrews_motion (two elastoplastic
+Two grains: jkr, pair_constants, bonds, sticking (all names below). Aggregates: andrews and andrews_motion (two elastoplastic
 spheres), aggregates (elastic constants, strength, coordination number).
 
 A22 = Arakawa et al. 2022 (viscous dissipation), A24 = Arakawa et al. 2024 (elastoplastic collisions), K13 =
-Kataoka et al. 2013."""
+Kataoka et al. 2013, S17 = Sirono & Ueno 2017 (sintered aggregates)."""
 
+from .bonds import BondConstants, bond_constants
 from .jkr import (
     contact_radius,
     contact_radius_root,
@@ -47,6 +48,8 @@ __all__ = [
     "interaction_energies",
     "pair_constants",
     "time_unit",
+    "BondConstants",
+    "bond_constants",
     "PairCollision",
     "collide_pair",
     "pair_motion",

@@ -8,7 +8,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 4;            // 1: without this header, up to version 0.1; 2, 3: version 0.2
+	constexpr int formatNumber = 5;            // 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
 	{
@@ -62,6 +62,19 @@ namespace {
 		archive.number(constraints.work);
 	}
 
+	template <class Archive> void transfer(Archive& archive, OutsideForces& outside)
+	{
+		std::size_t size = outside.grains.size();
+		archive.number(size);
+		outside.grains.resize(size);
+		for (OutsideForce& f : outside.grains) {
+			archive.number(f.grain);
+			transfer(archive, f.force);
+			transfer(archive, f.torque);
+		}
+		archive.number(outside.work);
+	}
+
 	template <class Archive> void transfer(Archive& archive, Domain& domain, const Setting& setting)
 	{
 		transfer(archive, domain.cell);
@@ -77,6 +90,7 @@ namespace {
 			transfer(archive, kick.torque);
 		}
 		transfer(archive, domain.constraints);
+		transfer(archive, domain.outside);
 		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks, domain.changed,
 		        domain.stepsSinceSort, domain.lists.searches, domain.lists.looks);
 		for (long& number : domain.broken)

@@ -60,6 +60,16 @@ public:
 		grains.insert(at, c);
 	}
 
+	// Another outside force on a grain from now on, by which what it is given changes: the blocked part is withheld, the rest is returned.
+	void push(int grain, Vec3<double>& force, Vec3<double>& torque)
+	{
+		auto at = std::lower_bound(grains.begin(), grains.end(), grain, [](const Constrained& c, int g) { return c.grain < g; });
+		if (at == grains.end() || at->grain != grain) return;
+		const Vec3<double> heldForce = blockedForce(force, at->blocked), heldTorque = blockedTorque(torque, at->blocked);
+		at->force = at->force + heldForce, at->torque = at->torque + heldTorque;
+		force = force - heldForce, torque = torque - heldTorque;
+	}
+
 private:
 	std::size_t next = 0;
 

@@ -94,6 +94,16 @@ bool constrained(const Dynamics& dynamics)
 	        dynamics.parts().begin(), dynamics.parts().end(), [](const auto& domain) { return !domain->constraints.grains.empty(); });
 }
 
+std::vector<OutsideForce> outsideForces(const Dynamics& dynamics)
+{
+	std::vector<OutsideForce> all;
+	for (const auto& domain : dynamics.parts())
+		for (const OutsideForce& f : domain->outside.grains)
+			all.push_back({ dynamics.given(f.grain), f.force, f.torque });
+	std::sort(all.begin(), all.end(), [](const OutsideForce& a, const OutsideForce& b) { return a.grain < b.grain; });
+	return all;
+}
+
 std::array<long, bondModes> brokenBonds(const Dynamics& dynamics)
 {
 	std::array<long, bondModes> total {};

@@ -58,7 +58,8 @@ template <class Visit> void eachBond(const Dynamics& dynamics, Visit&& visit)
 
 int contactCount(const Dynamics&); // bonds among them
 int bondCount(const Dynamics&);
-bool constrained(const Dynamics&); // whether any grain has a blocked degree of freedom
+bool constrained(const Dynamics&);                        // whether any grain has a blocked degree of freedom
+std::vector<OutsideForce> outsideForces(const Dynamics&); // by rising index of the grain as given
 
 // Since the start:
 std::array<long, bondModes> brokenBonds(const Dynamics&); // by mode

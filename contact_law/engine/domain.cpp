@@ -68,6 +68,7 @@ void Domain::addFirstForces()
 	sortIfWorthwhile();
 	early.clear();
 	if (cell.on) sums.boundary.arrive(cell, s.dt);
+	outside.begin();
 	constraints.begin();
 	addForces(First, 0, contacts[First].blockCount(), false);
 	addForces(Second, 0, contacts[Second].blockCount(), false);
@@ -81,7 +82,7 @@ void Domain::addOtherForces(bool behind)
 	if (behind) beginMoving();
 	addForces(Both, 0, sortedBlocks, behind);
 	if (cell.on) sums.boundary.complete(cell, s.dt);
-	constraints.withhold(s.grains.data(), s.dt, end);
+	completeForces(end);
 	if (behind) integrateUpTo(end);
 }
 
@@ -89,8 +90,14 @@ void Domain::moveBehind(void* owner, int batch)
 {
 	Domain& domain = *static_cast<EventCall*>(owner)->domain;
 	const int complete = domain.completed[batch];
-	domain.constraints.withhold(domain.s.grains.data(), domain.s.dt, complete);
+	domain.completeForces(complete);
 	domain.integrateUpTo(complete);
+}
+
+void Domain::completeForces(int grain)
+{
+	outside.add(s.grains.data(), s.dt, grain);
+	constraints.withhold(s.grains.data(), s.dt, grain);
 }
 
 void Domain::beginMoving()
@@ -266,7 +273,20 @@ bool Domain::formContact(const NeighbourPair& pair)
 	return true;
 }
 
-void Domain::takeOut(std::vector<Contact>& allContacts, std::vector<Bond>& allBonds, std::vector<Constrained>& allConstrained)
+namespace {
+	template <class OfGrain> void moveAll(std::vector<OfGrain>& from, std::vector<OfGrain>& to)
+	{
+		to.insert(to.end(), from.begin(), from.end());
+		from.clear();
+	}
+	template <class OfGrain> void sortByGrain(std::vector<OfGrain>& all)
+	{
+		std::sort(all.begin(), all.end(), [](const OfGrain& a, const OfGrain& b) { return a.grain < b.grain; });
+	}
+}
+
+void Domain::takeOut(std::vector<Contact>& allContacts, std::vector<Bond>& allBonds, std::vector<Constrained>& allConstrained,
+        std::vector<OutsideForce>& allOutside)
 {
 	for (int sort = Both; sort <= First; ++sort) {
 		for (int lane = 0; lane < contacts[sort].size(); ++lane)
@@ -278,16 +298,22 @@ void Domain::takeOut(std::vector<Contact>& allContacts, std::vector<Bond>& allBo
 		list.clear();
 	for (BondList& list : bonds)
 		list.clear();
-	allConstrained.insert(allConstrained.end(), constraints.grains.begin(), constraints.grains.end());
-	constraints.grains.clear();
+	moveAll(constraints.grains, allConstrained);
+	moveAll(outside.grains, allOutside);
 }
 
 void Domain::place(const std::vector<Constrained>& all)
 {
 	for (const Constrained& c : all)
 		if (owns(c.grain)) constraints.grains.push_back(c);
-	std::sort(constraints.grains.begin(), constraints.grains.end(),
-	        [](const Constrained& a, const Constrained& b) { return a.grain < b.grain; });
+	sortByGrain(constraints.grains);
+}
+
+void Domain::place(const std::vector<OutsideForce>& all)
+{
+	for (const OutsideForce& f : all)
+		if (owns(f.grain)) outside.grains.push_back(f);
+	sortByGrain(outside.grains);
 }
 
 void Domain::markTouching()
@@ -379,13 +405,17 @@ StoredEnergy<double> Domain::energies()
 double Domain::kineticEnergy() const
 {
 	double sum = sums.eventWork;
-	for (int k = begin; k < end; ++k) {
-		const Grain& p = s.grains[k];
-		sum += 0.5 / s.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz)
-		        + 0.5 / s.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
-		        + 0.5 * s.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
-	}
+	for (int k = begin; k < end; ++k)
+		sum += kineticEnergyOf(k);
 	return sum;
+}
+
+double Domain::kineticEnergyOf(int k) const
+{
+	const Grain& p = s.grains[k];
+	return 0.5 / s.inverseMass[k] * (p.vx * p.vx + p.vy * p.vy + p.vz * p.vz)
+	        + 0.5 / s.inverseInertia[k] * (p.wx * p.wx + p.wy * p.wy + p.wz * p.wz)
+	        + 0.5 * s.dt * (p.fx * p.vx + p.fy * p.vy + p.fz * p.vz + p.tx * p.wx + p.ty * p.wy + p.tz * p.wz);
 }
 
 double Domain::convectiveWork() const

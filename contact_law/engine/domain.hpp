@@ -2,6 +2,7 @@
 // domains, each adding to its own grains only, so that results do not depend on how many threads the domains are dealt to.
 #pragma once
 #include "constraints.hpp"
+#include "outside_forces.hpp"
 #include "pair_lists.hpp"
 #include "setting.hpp"
 
@@ -57,14 +58,16 @@ public:
 	void place(const Bond&);
 	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and markTouching()
 	void place(const std::vector<Constrained>&);
-	// All contacts and bonds of which this domain has the first grain, and its constrained grains; they are placed anew when grains have changed their order.
-	void takeOut(std::vector<Contact>&, std::vector<Bond>&, std::vector<Constrained>&);
+	void place(const std::vector<OutsideForce>&);
+	// All contacts and bonds of which this domain has the first grain, its constrained grains and outside forces; they are placed anew when grains have changed their order.
+	void takeOut(std::vector<Contact>&, std::vector<Bond>&, std::vector<Constrained>&, std::vector<OutsideForce>&);
 	void markTouching();   // in the neighbour lists, all that touch
 	void takeVelocities(); // as they are now, for drag in the next step
 	StoredEnergy<double> energies();
 	double kineticEnergy()
 	        const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add; in it no convective acceleration, but
-	double convectiveWork() const; // this is half of what it does in the kick now
+	double convectiveWork() const;           // this is half of what it does in the kick now
+	double kineticEnergyOf(int grain) const; // likewise of one, without what events add
 
 	int begin, end;
 	VelocityRange velocities;   // of own grains through the latest drift
@@ -81,6 +84,7 @@ public:
 	BondList bonds[3];                     // likewise
 	std::array<long, bondModes> broken {}; // bonds so far, by mode; a border bond where its first grain lives
 	Constraints constraints;
+	OutsideForces outside;
 	PeriodicCell cell;        // as it is at this domain's latest forces
 	int contactCount() const; // alive ones, bonds among them, a border contact counted where its first grain lives
 
@@ -94,6 +98,7 @@ private:
 	void addForces(int sort, int firstBlock, int endBlock, bool moveBehind);
 	static void moveBehind(void* owner, int batch);
 	void convect(int first, int last);
+	void completeForces(int grain); // of grains below that, which have those of all contacts
 	void integrateUpTo(int grain);
 	void beginMoving();
 	void finishGroup(Group&);

@@ -111,6 +111,35 @@ void Dynamics::set(int index, const GrainMotion& now)
 	outdateLists();
 }
 
+void Dynamics::setOutsideForces(const std::vector<OutsideForce>& given_, Onset onset)
+{
+	std::vector<OutsideForce> all = given_;
+	for (OutsideForce& f : all)
+		f.grain = indexHere[f.grain];
+	for (auto& domain : domains) {
+		const std::vector<OutsideForce> before = std::move(domain->outside.grains);
+		domain->outside.grains.clear();
+		domain->place(all);
+		for (const OutsideForce& f : before)
+			changeForce(*domain, f.grain, -f.force, -f.torque, onset);
+		for (const OutsideForce& f : domain->outside.grains)
+			changeForce(*domain, f.grain, f.force, f.torque, onset);
+	}
+}
+
+// What the kinetic energy of this moment, which a leapfrog counts with half a kick, changes by is work of the force.
+void Dynamics::changeForce(Domain& domain, int k, Vec3<double> force, Vec3<double> torque, Onset onset)
+{
+	Grain& p = setting.grains[k];
+	const double before = domain.kineticEnergyOf(k);
+	if (onset == Onset::Now) kick(setting, p, k, 0.5 * setting.dt);
+	domain.constraints.push(k, force, torque);
+	p.fx += force.x, p.fy += force.y, p.fz += force.z;
+	p.tx += torque.x, p.ty += torque.y, p.tz += torque.z;
+	if (onset == Onset::Now) kick(setting, p, k, -0.5 * setting.dt);
+	domain.outside.work += before - domain.kineticEnergyOf(k);
+}
+
 void kick(const Setting& setting, Grain& p, int k, double time)
 {
 	const double m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
@@ -353,6 +382,7 @@ Energies Dynamics::energies()
 		e.kinetic += kinetic[d] + convective[d];
 		e.boundaryWork += domains[d]->sums.boundary.done + domains[d]->sums.meanField - convective[d];
 		e.constraintWork += domains[d]->constraints.work;
+		e.externalWork += domains[d]->outside.work;
 	}
 	return e;
 }

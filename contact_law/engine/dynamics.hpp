@@ -75,6 +75,10 @@ public:
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);
+	/* All outside forces from now on, by rising grain (those not given have none). Onset::Now: positions and velocities of this moment stay, and the force acts from here
+	 * on. Onset::AStepAgo: it has acted already in the kick that the velocities of half a step ago came from, as other owners of the grains leave them. */
+	enum class Onset { Now, AStepAgo };
+	void setOutsideForces(const std::vector<OutsideForce>& given, Onset);
 	/* A periodic cell's mean velocity field x gradient: what is added to it now is added to every grain (by its unwrapped position), and from now on
 	 * `convective` (diagonal, 1/s) times their velocity accelerates grains. */
 	void setMeanField(const Vec3<double>& added, const Vec3<double>& convective);
@@ -129,8 +133,9 @@ private:
 	long runEvenly(long steps, const Vec3<double>& sizeAtEnd);
 	long runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier&);
 	Domain& domainOf(int index);
-	double fastestThatHolds() const;  // velocity component that a step may have
-	VelocityRange velocities() const; // of all grains through the latest drift
+	void changeForce(Domain&, int index, Vec3<double> force, Vec3<double> torque, Onset); // by that much
+	double fastestThatHolds() const;                                                      // velocity component that a step may have
+	VelocityRange velocities() const;                                                     // of all grains through the latest drift
 
 	Options options;
 	Setting setting;

@@ -116,8 +116,9 @@ void Dynamics::reorder()
 	std::vector<Contact> contacts;
 	std::vector<Bond> bonds;
 	std::vector<Constrained> constrained;
+	std::vector<OutsideForce> outside;
 	for (auto& domain : domains)
-		domain->takeOut(contacts, bonds, constrained);
+		domain->takeOut(contacts, bonds, constrained, outside);
 	arrange(setting.grains, from);
 	for (auto* values : { &setting.inverseMass, &setting.inverseInertia, &setting.radius, &setting.grainRadius })
 		arrange(*values, from);
@@ -131,6 +132,8 @@ void Dynamics::reorder()
 		b = renumbered(b, to[b.i], to[b.j]);
 	for (Constrained& c : constrained)
 		c.grain = to[c.grain];
+	for (OutsideForce& f : outside)
+		f.grain = to[f.grain];
 	for (auto& domain : domains)
 		for (EarlyKick& early : domain->early)
 			early.grain = to[early.grain];
@@ -140,6 +143,7 @@ void Dynamics::reorder()
 		for (const Bond& b : bonds)
 			domain->place(b);
 		domain->place(constrained);
+		domain->place(outside);
 		domain->sortContacts();
 	}
 	makeLists();

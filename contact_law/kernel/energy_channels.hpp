@@ -75,11 +75,13 @@ struct Energies {
 	Dissipation dissipated;
 	double boundaryWork = 0;   // done against a periodic cell's boundaries and mean velocity field
 	double constraintWork = 0; // done by contacts on blocked degrees of freedom
+	double externalWork = 0;   // done against outside forces: minus what these did on the grains
 };
 constexpr ChannelRow<Energies, double> grainChannels[] = { { "kinetic", &Energies::kinetic } };
 constexpr ChannelRow<Energies, double> workChannels[] = {
 	{ "boundaryWork", &Energies::boundaryWork },
 	{ "constraintWork", &Energies::constraintWork },
+	{ "externalWork", &Energies::externalWork },
 };
 
 template <class T> inline StoredEnergy<T>& StoredEnergy<T>::operator+=(const StoredEnergy& e)

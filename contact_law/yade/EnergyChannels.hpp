@@ -37,9 +37,12 @@ public:
 
 	// ---- for an engine that replaces ForceResetter, so that nothing empties channels between steps ----
 
-	/* The channels' values at present. known: O.energy holds them already, from a checkpoint. constrained: the scene has blocked
-	 * degrees of freedom. */
-	void set(Scene& scene, const contact_law::Energies& energies, bool known, bool constrained)
+	// What works are done on in a scene, beside a periodic cell's boundaries.
+	struct WorkOn {
+		bool blocked = false, outside = false; // blocked degrees of freedom; outside forces
+	};
+	// The channels' values at present. known: O.energy holds them already, from a checkpoint.
+	void set(Scene& scene, const contact_law::Energies& energies, bool known, WorkOn there)
 	{
 		int kinetic = -1;
 		scene.energy->findId(nameOf(0), kinetic, false, false);
@@ -48,7 +51,7 @@ public:
 		prepare(scene);
 		const auto values = contact_law::byChannel(energies);
 		for (int channel = 0; channel < count; ++channel) {
-			if (isWork(channel) && !(channel == boundaryWork ? scene.isPeriodic : constrained)) continue;
+			if (isWork(channel) && !isDone(channel, scene, there)) continue;
 			if (!known && values[channel] != last[channel])
 				scene.energy->add(values[channel] - last[channel], nameOf(channel), ids[channel], perStep(channel));
 			last[channel] = values[channel];
@@ -67,14 +70,19 @@ public:
 	}
 
 private:
-	static constexpr int count = contact_law::channelCount, boundaryWork = contact_law::channelNumber("boundaryWork");
+	static constexpr int count = contact_law::channelCount, boundaryWork = contact_law::channelNumber("boundaryWork"),
+	                     externalWork = contact_law::channelNumber("externalWork");
 
 	static const char* nameOf(int channel) { return contact_law::channels[channel].name; }
 	// Whether O.energy has a channel anew each step: energies held now are, losses and works add up. (YADE's ForceResetter is what
 	// empties those.)
 	static bool perStep(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Stored; }
-	// Channels only of scenes that have blocked degrees of freedom, or a periodic cell.
+	// Channels only of scenes that have blocked degrees of freedom, outside forces, or a periodic cell.
 	static bool isWork(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Work; }
+	static bool isDone(int work, const Scene& scene, WorkOn there)
+	{
+		return work == boundaryWork ? scene.isPeriodic : work == externalWork ? there.outside : there.blocked;
+	}
 
 	void add(Scene& scene, int channel, double energy)
 	{

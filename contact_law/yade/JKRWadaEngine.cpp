@@ -4,6 +4,7 @@
 #include "../engine/stability.hpp"
 #include "RunningLoop.hpp"
 #include "SceneContacts.hpp"
+#include "SceneForces.hpp"
 #include "SceneGrains.hpp"
 #include "StepWatch.hpp"
 #include <boost/weak_ptr.hpp>
@@ -21,11 +22,13 @@ struct JKRWadaEngine::Run {
 	SceneContacts contacts;
 	SceneCell cell;
 	EngineSettings settings; // at the start
+	bool stepBehind;         // until the first step: velocities came from the functors
 	Dynamics dynamics;
 	boost::weak_ptr<Scene> scene; // whose grains these are
 	std::vector<GrainMotion> now {};
 	StepWatch watch {};
-	bool constrained = false; // at any time: the scene then has the channel
+	std::vector<contact_law::OutsideForce> outside {}; // by ids, as they are held
+	EnergyChannels::WorkOn workOn {};                  // at any time: the scene then has the channel
 };
 
 namespace {
@@ -106,12 +109,12 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment)
 			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)
 			        + ": must be the largest neck they were made with");
 	const bool inherits = !continued && !inherited.contacts.empty(), stepBehind = inherits && inherited.stepBehind;
-	if (stepBehind) scene->forces.reset(scene->iter); // those of the functors' last step
+	if (!continued) SceneForces::dropThoseOfOtherEngines(*scene, grains.size(), threads, stepBehind);
 	SceneCell cell;
 	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);
 	const auto started = [&](auto&&... from) {
-		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(),
+		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), stepBehind,
 		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene() });
 	};
 	return continued ? started(savedState) : inherits ? started(inherited) : started();
@@ -121,6 +124,7 @@ void JKRWadaEngine::start(Moment moment)
 {
 	requireAlone(*scene);
 	const bool continued = !savedState.empty();
+	if (continued) SceneForces::restorePermanent(*scene, savedForces);
 	std::shared_ptr<Run> run;
 	try {
 		run = newRun(moment);
@@ -129,6 +133,7 @@ void JKRWadaEngine::start(Moment moment)
 	}
 	requireSound(*run);
 	current = run;
+	current->outside = contact_law::outsideForces(current->dynamics);
 	smallStep = run->dynamics.state().dt;
 	current->now = current->grains.motions();
 	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
@@ -180,6 +185,18 @@ void JKRWadaEngine::takeChanges()
 	if (exportInteractions) current->contacts.requireKept(*scene);
 }
 
+// The forces that others put on the grains hold through this O.step.
+void JKRWadaEngine::takeForces()
+{
+	std::vector<contact_law::OutsideForce> now = SceneForces::take(*scene, current->grains.size(), current->dynamics.threadCount());
+	const auto onset = current->stepBehind ? Dynamics::Onset::AStepAgo : Dynamics::Onset::Now;
+	current->stepBehind = false;
+	if (now == current->outside) return;
+	current->dynamics.setOutsideForces(now, onset);
+	current->outside = std::move(now);
+	current->watch.motionsChanged();
+}
+
 // The beginning of all that this engine does: afterwards there is a run, of this scene, and as scripts want it.
 void JKRWadaEngine::enter(Moment moment)
 {
@@ -204,7 +221,7 @@ void JKRWadaEngine::action()
 	const std::lock_guard<std::mutex> acting(busy);
 	requireAlone(*scene);
 	enter(Moment::WithinStep);
-	requireNoForces(*scene, current->grains.size(), current->dynamics.threadCount());
+	takeForces();
 	current->cell.require(*scene, current->dynamics);
 	if (scene->dt / subSteps != smallStep)
 		refuseInEngine("the small step O.dt/subSteps was changed after the start: it must stay " + text(smallStep) + " s, not "
@@ -306,8 +323,9 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 	const bool known = booking == Booking::AlreadyInOEnergy;
 	if (!booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
 	booked = true;
-	current->constrained = current->constrained || contact_law::constrained(current->dynamics);
-	channels.set(*scene, now, known, current->constrained);
+	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics);
+	current->workOn.outside = current->workOn.outside || !current->outside.empty() || now.externalWork != 0;
+	channels.set(*scene, now, known, current->workOn);
 }
 
 void JKRWadaEngine::preSave(JKRWadaEngine&)
@@ -316,6 +334,7 @@ void JKRWadaEngine::preSave(JKRWadaEngine&)
 	if (!current) return; // before the first step: what was loaded, if anything, is saved again
 	const bool here = current->scene.lock() == Omega::instance().getScene();
 	savedState = here ? current->dynamics.save() : std::vector<Real>();
+	savedForces = here ? SceneForces::permanent(*scene) : std::vector<Real>();
 }
 
 bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<double>& necks) const

@@ -32,6 +32,7 @@ class JKRWadaEngine : public GlobalEngine {
 	static void requireSound(const Run&);
 	void enter(Moment);
 	void takeChanges();
+	void takeForces();
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();
 	enum class Booking { Add, AlreadyInOEnergy };
@@ -63,7 +64,9 @@ public:
 		"holds from the second O.step on, or at once when prepare() is called. "
 		"A run that blows up stops with the body, the contact and the time in the message, and leaves O.bodies as they were before the step. "
 		"What a script does between two O.steps to positions, velocities, blockedDOFs, O.cell.velGrad, threads, exportInteractions and O.trackEnergy holds from the next one on; any other change of the bodies, their materials "
-		"or this engine, and forces in O.forces, are refused with a RuntimeError. Contacts are the only forces: engines that add others cannot stand in O.engines. "
+		"or this engine is refused with a RuntimeError. "
+		"Forces and torques in O.forces, permanent or added by engines that stand before this one, act throughout the O.step; what they do is O.energy['externalWork'], with the sign turned. Without a ForceResetter among "
+		"O.engines this engine empties O.forces of what is not permanent. O.save keeps permanent forces. "
 		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
 		((int, subSteps, 1, , "Small steps in one O.step."))
 		((int, threads, 1, , "Threads to use, at most as many as domains."))
@@ -80,7 +83,8 @@ public:
 		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
 		((bool, booked, false, Attr::readonly|Attr::hidden, "Whether O.energy has the energies of this run."))
-		((std::vector<Real>, savedState, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint (engine/checkpoint.cpp).")),
+		((std::vector<Real>, savedState, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint (engine/checkpoint.cpp)."))
+		((std::vector<Real>, savedForces, , Attr::readonly|Attr::hidden, "Permanent forces of O.forces, in a checkpoint: id, force and torque each.")),
 		,
 		.def("prepare", &JKRWadaEngine::prepare, "Read the bodies and compute forces and energies without moving anything, so that O.energy and contact_law.snapshot() have the start.")
 		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")

@@ -55,33 +55,6 @@ bool finite(const GrainMotion& g)
 	return all(g.position) && all(g.velocity) && all(g.angularVelocity);
 }
 
-namespace {
-	// Those of all bodies, without a call for each where they stand in a row, as they do once a force was added.
-	template <class Get> bool allZero(std::size_t bodies, int threads, const Get& get)
-	{
-		const Vector3r *first = &get(0), *last = &get(int(bodies) - 1);
-		if (first == last) return first->isZero(0); // the container is empty, or there is one body
-		const bool inRow = last - first == std::ptrdiff_t(bodies) - 1;
-		return forAll(bodies, threads, [&](std::size_t k) { return (inRow ? first[k] : get(int(k))).isZero(0); });
-	}
-}
-
-void requireNoForces(Scene& scene, std::size_t bodies, int threads)
-{
-	scene.forces.sync();
-	const auto force = [&](int id) -> const Vector3r& { return scene.forces.getForce(id); };
-	const auto torque = [&](int id) -> const Vector3r& { return scene.forces.getTorque(id); };
-	if (allZero(bodies, threads, force) && allZero(bodies, threads, torque)) return;
-	for (int id = 0; id < int(bodies); ++id) {
-		const bool isForce = !force(id).isZero(0);
-		const Vector3r v = isForce ? force(id) : torque(id);
-		if (v.isZero(0)) continue;
-		refuseInEngine("O.forces has a " + std::string(isForce ? "force" : "torque") + " on " + bodyName(id) + ", (" + rounded(v[0])
-		        + ", " + rounded(v[1]) + ", " + rounded(v[2]) + (isForce ? ") N" : ") N m")
-		        + ": it must be 0, contacts are the only forces here (O.forces.reset() clears what others left)");
-	}
-}
-
 SceneGrains::SceneGrains(const Scene& scene)
 {
 	bodies.reserve(scene.bodies->size());

@@ -66,9 +66,6 @@ contact_law::GrainMotion motionOf(const State&);
 bool sameMotion(const State&, const contact_law::GrainMotion&, bool orientations);
 bool finite(const contact_law::GrainMotion&);
 
-// Throws std::runtime_error when O.forces holds anything: the fused engine does not add other engines' forces to the contacts'.
-void requireNoForces(Scene&, std::size_t bodies, int threads);
-
 // Whether it is so for every body; asked by all threads, since reading every body takes about a small step.
 template <class Is> bool forAll(std::size_t bodies, int threads, const Is& is)
 {

@@ -37,7 +37,7 @@ def test_channels_are_those_of_the_run_folder_in_order():
             "drag",
             "bondBreaking",
         ),
-        WORK: ("boundaryWork", "constraintWork"),
+        WORK: ("boundaryWork", "constraintWork", "externalWork"),
     }
     assert set(LABELS) == set(COLOURS) == set(CHANNELS)
     assert len(set(COLOURS.values())) == len(CHANNELS)

@@ -77,7 +77,7 @@ def test_d_and_v_may_have_no_value(folder):
 def _as_format_1(folder):
     """What a folder of format 1 lacks."""
     _change_record(folder, lambda r: (r.update(format=1), r.pop("kind")))
-    _change_arrays(folder / "history.npz", boundaryWork=None, constraintWork=None)
+    _change_arrays(folder / "history.npz", boundaryWork=None, constraintWork=None, externalWork=None)
 
 
 def test_a_folder_of_format_1_is_read(folder):
@@ -181,8 +181,8 @@ DAMAGE = {
     ),
     "a list": (lambda f: (f / "run.json").write_text("[1]"), "run.json: not the record of a run"),
     "later format": (
-        lambda f: _change_record(f, lambda r: r.update(format=3)),
-        "format is 3, this analysis reads formats 1 and 2",
+        lambda f: _change_record(f, lambda r: r.update(format=4)),
+        "format is 4, this analysis reads formats 1, 2 and 3",
     ),
     "no kind at all": (lambda f: _change_record(f, lambda r: r.update(kind=[])), "kind is []: must be a name"),
     "no derived": (lambda f: _change_record(f, lambda r: r.pop("derived")), "'derived' is missing"),

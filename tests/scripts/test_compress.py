@@ -182,14 +182,19 @@ def test_functors_give_the_same_pressure(tmp_path):
             "stepFraction=0.4",
             "stepFraction = 0.4: unstable at this final filling and damping; must be at most 0.368 [t0]",
         ),
-        ("stepFraction=auto", "stepFraction = auto: not measured for this kind of run; must be a number [t0]"),
+        (
+            "stepFraction=auto finalPressure=1e4",
+            "stepFraction = auto: not measured with finalPressure, which may end a run at any filling",
+        ),
         ("strainRate=0", "strainRate = 0: must be > 0 and <= 0.001 [1/t0]"),
         ("packing=cpe", "packing = cpe: must be bcca"),
         ("velocity=3", "velocity: unknown parameter; must be one of grains"),
     ],
 )
 def test_wrong_parameters_give_one_line(tmp_path, argument, message):
-    refused = compress(tmp_path, *(text for text in SMALL if text.split("=")[0] != argument.split("=")[0]), argument)
+    refused = compress(
+        tmp_path, *(text for text in SMALL if text.split("=")[0] != argument.split("=")[0]), *argument.split()
+    )
     assert refused.returncode == 2 and len(messages(refused)) == 1
     assert messages(refused)[0].startswith(f"compress.py: {message}")
     assert os.listdir(tmp_path) == []

@@ -4,6 +4,7 @@ import pytest
 from running import collide, messages, read_arrays, read_json
 
 from yade_scripts.experiments import collision, compression
+from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import ParameterError
 
 SHORT = ("radius=3", "velocity=30", "duration=12e-9", "threads=1", "seed=2", "stepFraction=0.05")
@@ -32,6 +33,7 @@ def test_another_word_is_refused(kind):
         kind.parse({"limit": "slack"})
 
 
-def test_a_step_for_a_tolerance_was_measured_with_held_only(tmp_path):
-    done = collide(tmp_path, "radius=3", "limit=cut", "stepFraction=auto", "out=run")
-    assert done.returncode != 0 and "stepFraction = auto: measured with limit = held" in "".join(messages(done))
+def test_a_step_for_a_tolerance_was_not_measured_for_compressions_with_cut():
+    parameters = compression.KIND.parse({"limit": "cut", "stepFraction": "auto"})
+    with pytest.raises(ParameterError, match="stepFraction = auto: not measured with limit = cut in a compression"):
+        compression.complete(parameters, pair_constants(parameters), 1)

@@ -32,7 +32,7 @@ def test_files_are_whole_and_no_others_stay(tmp_path):
     found = {os.path.relpath(os.path.join(at, name), tmp_path) for at, _, names in os.walk(tmp_path) for name in names}
     assert found == {"a/b/run.json", "a/b/history.npz", "a/b/ended", "a/b/states/000000.npz"}
     with open(tmp_path / "a" / "b" / "run.json") as file:
-        assert json.load(file) == {"format": 2, "outcome": "completed"}
+        assert json.load(file) == {"format": 3, "outcome": "completed"}
 
 
 def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):

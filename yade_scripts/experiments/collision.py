@@ -8,7 +8,7 @@ import numpy as np
 from analysis.measures.compression import compression_and_velocity
 from analysis.measures.free_flight import has_come_to_rest
 from analysis.runs.format import COLLISION
-from yade_scripts import packings, stability
+from yade_scripts import packings, stability, step_choice
 from yade_scripts.materials import pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.approach import first_touch
@@ -122,11 +122,11 @@ def step_limit(parameters, constants):
     return min(limit, stability.limit_of_unlike(parameters, constants, parameters.radius_range()))
 
 
-def step_choice(parameters, constants):
+def reason_of_step(parameters, constants):
     """How complete() came to parameters.stepFraction, in one line."""
     if parameters.tolerance is None:
         return "as given"
-    return stability.reason(parameters, constants, step_limit(parameters, constants))
+    return step_choice.collision_reason(parameters, constants, step_limit(parameters, constants))
 
 
 def default_duration(radius, time_unit, touch):
@@ -168,7 +168,7 @@ def prepare(parameters, threads):
         build=lambda: yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar)),
         series=lambda state: series(state, aggregate_radius),
         law={"neck": parameters.neck},
-        step_choice=step_choice(parameters, constants),
+        step_choice=reason_of_step(parameters, constants),
         **({"control": _end_when_apart(parameters, constants)} if parameters.endWhenApart else {}),
     )
 
@@ -251,7 +251,7 @@ def series(state, aggregate_radius):
 
 def estimate(parameters):
     """Estimate of a run, without its packings: contacts of a CPE packing by A24 eq 39, in BCCA two a grain."""
-    constants = pair_constants(parameters)
+    constants = pair_constants(parameters, neck=parameters.neck)
     planar = bool(parameters.planar)
     grains = _grain_numbers(parameters)
     if parameters.packing == "file":
@@ -295,15 +295,8 @@ def _require_sintered(neck, constants):
 
 
 def _longest_step(parameters, constants, limit):
-    if parameters.packing != "cpe" or parameters.planar or parameters.neck:
-        raise ParameterError(
-            "stepFraction = auto: measured for cpe aggregates in space without necks only; must be a number [t0] here"
-        )
-    if parameters.limit != "held":
-        raise ParameterError(
-            f"stepFraction = auto: measured with limit = held; must be a number [t0] with limit = {parameters.limit}"
-        )
-    return stability.longest_step(parameters, constants, limit)
+    step_choice.require_measured(parameters)
+    return step_choice.longest_step(step_choice.collision_errors(parameters, constants), parameters, limit)
 
 
 def _step(parameters, constants):
@@ -313,7 +306,7 @@ def _step(parameters, constants):
     try:
         return _longest_step(parameters, constants, step_limit(parameters, constants))
     except ParameterError:  # the run will say what is wrong
-        return stability.SHORTEST
+        return step_choice.SHORTEST
 
 
 def _time_of_touch(pair, velocities, bond):

@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.measures.virial import contact_pressure, filling_factor, kinetic_pressure
 from analysis.runs.format import COMPRESSION
-from yade_scripts import packings, stability
+from yade_scripts import packings, stability, step_choice
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
@@ -98,10 +98,24 @@ def complete(parameters, constants, threads):
     gives them. Raises ParameterError."""
     require_small_contacts(constants)
     parameters = _with_ends(parameters, constants)
-    if parameters.stepFraction != stability.AUTO:
-        limit = stability.step_limit(constants, parameters.finalFilling)
-        stability.require_stable(parameters.stepFraction, limit, "final filling and damping")
+    limit = stability.step_limit(constants, parameters.finalFilling)
+    if parameters.stepFraction == stability.AUTO:
+        parameters = parameters.changed(stepFraction=_longest_step(parameters, constants, limit))
+    stability.require_stable(parameters.stepFraction, limit, "final filling and damping")
     return parameters.with_threads(threads)
+
+
+def _longest_step(parameters, constants, limit):
+    step_choice.require_measured_compression(parameters, constants)
+    return step_choice.longest_step(step_choice.compression_errors(parameters, constants), parameters, limit)
+
+
+def reason_of_step(parameters, constants):
+    """How complete() came to parameters.stepFraction, in one line."""
+    if parameters.tolerance is None:
+        return "as given"
+    limit = stability.step_limit(constants, parameters.finalFilling)
+    return step_choice.compression_reason(parameters, constants, limit)
 
 
 def _with_ends(parameters, constants):
@@ -150,6 +164,7 @@ def prepare(parameters, threads):
         energy_is_conserved=parameters.engine == "fused",
         control=Ending(parameters, constants["timeUnit"], rate),
         interval=_interval(parameters),
+        step_choice=reason_of_step(parameters, constants),
     )
 
 
@@ -160,8 +175,6 @@ def _rolling(parameters):
 
 def _interval(parameters):
     """Steps between samples."""
-    if parameters.stepFraction == stability.AUTO:
-        return 1  # refused before anything runs
     between = min(BETWEEN_SAMPLES, FINEST_FILLING / (6 * parameters.strainRate))
     return max(1, round(between / parameters.stepFraction))
 
@@ -192,7 +205,7 @@ def _require_order(parameters):
 def _with_duration(parameters, time_unit):
     duration = longest_duration(parameters, time_unit)
     step = parameters.stepFraction
-    if step != stability.AUTO and duration > stability.MOST_STEPS * step * time_unit:
+    if duration > stability.MOST_STEPS * step * time_unit:
         steps = duration / (step * time_unit)
         raise ParameterError(
             f"strainRate = {parameters.strainRate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
@@ -291,18 +304,28 @@ def estimate(parameters):
     """Estimate of a run, without its cluster: two contacts a grain, more where it is dense (A24 eq 45)."""
     from analysis.theory.aggregates import bcca_coordination
 
-    constants = pair_constants(parameters)
+    constants = pair_constants(parameters, linearDamping=parameters.linearDamping)
     try:
         ends = _with_ends(parameters, constants)
     except ParameterError:  # the run will say what is wrong
         ends = parameters.changed(finalFilling=FINAL_FILLING, stretch="no")
+    step = _step(ends, constants)
     first = ends.initialFilling or typical_first_filling(ends.grains)
     ends = ends.changed(initialFilling=min(first, 0.9 * ends.finalFilling))
     duration = parameters.duration or longest_duration(ends, constants["timeUnit"])
     fillings = np.exp(np.linspace(log(ends.initialFilling), log(ends.finalFilling), 50))
     contacts = parameters.grains * float(bcca_coordination(fillings).mean()) / 2
-    step = 0.1 if parameters.stepFraction == stability.AUTO else parameters.stepFraction
     return Estimate(parameters.grains, contacts, duration / constants["timeUnit"] / step)
+
+
+def _step(parameters, constants):
+    """stepFraction as a run will have it."""
+    if parameters.stepFraction != stability.AUTO:
+        return parameters.stepFraction
+    try:
+        return _longest_step(parameters, constants, stability.step_limit(constants, parameters.finalFilling))
+    except ParameterError:  # the run will say what is wrong
+        return step_choice.SHORTEST
 
 
 def typical_first_filling(grains):

@@ -37,8 +37,9 @@ class RunParameters(Parameters):
     tolerance: float | None = parameter(
         None,
         between(*TOLERANCES),
-        f"largest error of the energy ledger, with stepFraction={AUTO} only ({TOLERANCE:g})",
-        "K(0)",
+        f"largest error of the energy ledger over K(0), or over the boundaries' work in a compression; with "
+        f"stepFraction={AUTO} only ({TOLERANCE:g})",
+        "1",
     )
     engine: str = parameter(
         "fused", one_of(["fused", "functors"]), "JKRWadaEngine, or YADE's own loop (the reference, much slower)"

@@ -16,6 +16,12 @@ public:
 	// valid after sync()
 	const Vector3r& getForce(Body::id_t);
 	const Vector3r& getTorque(Body::id_t);
+	// permanent ones (O.forces.setPermF, setPermT); valid after sync()
+	const Vector3r& getPermForce(Body::id_t);
+	const Vector3r& getPermTorque(Body::id_t);
+	void setPermForce(Body::id_t, const Vector3r&);
+	void setPermTorque(Body::id_t, const Vector3r&);
+	bool getPermForceUsed() const; // whether any was ever set
 	void sync();
 	void reset(long iter, bool resetAll = false); // resetAll: permanent forces (O.forces.setPermF) too
 };

@@ -1,0 +1,103 @@
+#include "SceneForces.hpp"
+#include "Refusal.hpp"
+#include "SceneGrains.hpp"
+#include <core/GlobalEngine.hpp>
+#include <algorithm>
+#include <cmath>
+
+namespace yade {
+
+using contact_law::OutsideForce;
+
+namespace {
+	constexpr std::size_t numbersSaved = 7; // id, force, torque
+
+	contact_law::Vec3<double> kernelVector(const Vector3r& v) { return { v[0], v[1], v[2] }; }
+	bool allFinite(const Vector3r& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+	// Those of all bodies, without a call for each where they stand in a row, as they do once a force was added.
+	template <class Get> bool allZero(std::size_t bodies, int threads, const Get& get)
+	{
+		const Vector3r *first = &get(0), *last = &get(int(bodies) - 1);
+		if (first == last) return first->isZero(0); // the container is empty, or there is one body
+		const bool inRow = last - first == std::ptrdiff_t(bodies) - 1;
+		return forAll(bodies, threads, [&](std::size_t k) { return (inRow ? first[k] : get(int(k))).isZero(0); });
+	}
+
+	bool anyForce(Scene& scene, std::size_t bodies, int threads)
+	{
+		scene.forces.sync();
+		return !(allZero(bodies, threads, [&](int id) -> const Vector3r& { return scene.forces.getForce(id); })
+		        && allZero(bodies, threads, [&](int id) -> const Vector3r& { return scene.forces.getTorque(id); }));
+	}
+
+	// YADE keeps no room for them until one is set; valid after sync().
+	OutsideForce permanentOn(Scene& scene, int id)
+	{
+		if (!scene.forces.getPermForceUsed()) return { id, { 0, 0, 0 }, { 0, 0, 0 } };
+		return { id, kernelVector(scene.forces.getPermForce(id)), kernelVector(scene.forces.getPermTorque(id)) };
+	}
+
+	bool hasForceResetter(const Scene& scene)
+	{
+		for (const auto& engine : scene.engines)
+			if (!engine->dead && engine->getClassName() == "ForceResetter") return true;
+		return false;
+	}
+}
+
+std::vector<OutsideForce> SceneForces::take(Scene& scene, std::size_t bodies, int threads)
+{
+	std::vector<OutsideForce> found;
+	if (!anyForce(scene, bodies, threads)) return found;
+	for (int id = 0; id < int(bodies); ++id) {
+		const Vector3r &force = scene.forces.getForce(id), &torque = scene.forces.getTorque(id);
+		if (force.isZero(0) && torque.isZero(0)) continue;
+		if (!allFinite(force) || !allFinite(torque))
+			refuseInEngine("O.forces has a force or torque on " + bodyName(id) + " that is not a finite number");
+		found.push_back({ id, kernelVector(force), kernelVector(torque) });
+	}
+	if (!hasForceResetter(scene)) scene.forces.reset(scene.iter);
+	return found;
+}
+
+void SceneForces::dropThoseOfOtherEngines(Scene& scene, std::size_t bodies, int threads, bool ofFunctors)
+{
+	if (scene.iter == 0 || hasForceResetter(scene)) return;
+	if (!ofFunctors) {
+		for (const OutsideForce& f : take(scene, bodies, threads)) {
+			if (f == permanentOn(scene, f.grain)) continue;
+			refuseInEngine("O.forces has a force or torque on " + bodyName(f.grain)
+			        + " from before this engine's first step: it must be 0 or permanent (O.forces.reset() clears it, "
+			          "ForceResetter "
+			          "as the first engine does so in every step)");
+		}
+	}
+	scene.forces.reset(scene.iter);
+}
+
+std::vector<Real> SceneForces::permanent(Scene& scene)
+{
+	std::vector<Real> rows;
+	if (!scene.forces.getPermForceUsed()) return rows;
+	scene.forces.sync();
+	for (int id = 0; id < int(scene.bodies->size()); ++id) {
+		const auto [grain, force, torque] = permanentOn(scene, id);
+		const Real row[numbersSaved] = { Real(grain), force.x, force.y, force.z, torque.x, torque.y, torque.z };
+		if (std::any_of(row + 1, row + numbersSaved, [](Real x) { return x != 0; }))
+			rows.insert(rows.end(), row, row + numbersSaved);
+	}
+	return rows;
+}
+
+void SceneForces::restorePermanent(Scene& scene, const std::vector<Real>& rows)
+{
+	if (scene.forces.getPermForceUsed()) return;
+	for (std::size_t k = 0; k + numbersSaved <= rows.size(); k += numbersSaved) {
+		const Real* row = &rows[k];
+		scene.forces.setPermForce(int(row[0]), Vector3r(row[1], row[2], row[3]));
+		scene.forces.setPermTorque(int(row[0]), Vector3r(row[4], row[5], row[6]));
+	}
+}
+
+} // namespace yade
