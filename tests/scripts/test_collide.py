@@ -46,7 +46,7 @@ def test_run_folder_is_complete(run):
         "outcome",
         "timeReached",
     }
-    assert (about["format"], about["kind"]) == (2, "collision")
+    assert (about["format"], about["kind"]) == (3, "collision")
     assert list(about["parameters"]) == list(CollisionParameters.columns())
     of_others = ["projectileGrains", "projectileFile", "file", "sizeRatio", "sizeFraction", "sizeSpread", "tolerance"]
     assert [name for name, value in about["parameters"].items() if value is None] == of_others

@@ -104,7 +104,7 @@ def run(tmp_path_factory):
 
 def test_the_run_folder_tells_the_kind_and_holds_its_series(run):
     about, history = read_json(run, "run.json"), read_arrays(run, "history.npz")
-    assert (about["format"], about["kind"], about["outcome"]) == (2, "shrink", "completed")
+    assert (about["format"], about["kind"], about["outcome"]) == (3, "shrink", "completed")
     assert list(about["parameters"])[:2] == ["rate", "duration"] and about["derived"]["spacing"] > 1.98e-7
     assert list(history) == ["time", *CHANNELS, "contacts", "filling"]
     strain = 3e-4 * history["time"] / about["derived"]["timeUnit"]

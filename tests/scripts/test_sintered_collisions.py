@@ -132,10 +132,6 @@ def test_a_killed_sintered_run_resumes_to_the_same_bits(tmp_path):
             ("neck=0.2", "stepFraction=0.2"),
             "stepFraction = 0.2: unstable at this neck, filling and drag; must be at most 0.119 [t0]",
         ),
-        (
-            ("neck=0.4", "stepFraction=auto"),
-            "stepFraction = auto: measured for cpe aggregates in space without necks only; must be a number [t0] here",
-        ),
         (("packing=bcca", "filling=0.3"), "filling = 0.3: given with packing = bcca; must be grains only"),
         (("planar=1", "filling=0.95"), "filling = 0.95: more than the lattice holds; must be at most 0.91"),
     ],
