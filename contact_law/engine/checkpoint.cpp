@@ -62,17 +62,16 @@ namespace {
 		archive.number(constraints.work);
 	}
 
-	template <class Archive> void transfer(Archive& archive, OutsideForces& outside)
+	template <class Archive, class OfGrain> void transferPushes(Archive& archive, std::vector<OfGrain>& all)
 	{
-		std::size_t size = outside.grains.size();
+		std::size_t size = all.size();
 		archive.number(size);
-		outside.grains.resize(size);
-		for (OutsideForce& f : outside.grains) {
-			archive.number(f.grain);
-			transfer(archive, f.force);
-			transfer(archive, f.torque);
+		all.resize(size);
+		for (OfGrain& push : all) {
+			archive.number(push.grain);
+			transfer(archive, push.force);
+			transfer(archive, push.torque);
 		}
-		archive.number(outside.work);
 	}
 
 	template <class Archive> void transfer(Archive& archive, Domain& domain, const Setting& setting)
@@ -81,16 +80,10 @@ namespace {
 		transfer(archive, domain.sums.dissipated);
 		transferNumbers(archive, domain.sums.eventWork, domain.sums.meanField);
 		transfer(archive, domain.sums.boundary);
-		std::size_t early = domain.early.size();
-		archive.number(early);
-		domain.early.resize(early);
-		for (EarlyKick& kick : domain.early) {
-			archive.number(kick.grain);
-			transfer(archive, kick.force);
-			transfer(archive, kick.torque);
-		}
+		transferPushes(archive, domain.early);
 		transfer(archive, domain.constraints);
-		transfer(archive, domain.outside);
+		transferPushes(archive, domain.outside.grains);
+		archive.number(domain.outside.work);
 		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks, domain.changed,
 		        domain.stepsSinceSort, domain.lists.searches, domain.lists.looks);
 		for (long& number : domain.broken)
