@@ -104,7 +104,8 @@ def outcome(done):
     counts = re.findall(r"^=* ?((?:\d+ \w+,? ?)+) in [\d.]+s", done.stdout, re.MULTILINE)
     if done.returncode == 0:
         return counts[-1].strip() if counts else "succeeded"
-    lines = [line for line in (done.stdout + done.stderr).splitlines() if line and not line.startswith("make")]
+    of_make = re.compile(r"make(\[\d+\])?: (\*\*\*|Entering|Leaving|Nothing)")
+    lines = [line for line in (done.stdout + done.stderr).splitlines() if line and not of_make.match(line)]
     return f"failed: {counts[-1].strip() if counts else lines[-1][:150] if lines else done.returncode}"
 
 
