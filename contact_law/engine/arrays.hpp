@@ -46,6 +46,12 @@ inline Vec3<double> separationOf(const Grain& a, const Grain& b)
 	return positionOf(a) - positionOf(b);
 } // of the grains themselves, not their images
 
+inline void addToGrain(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
+{
+	g.fx += force.x, g.fy += force.y, g.fz += force.z;
+	g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
+}
+
 constexpr int lanes = 8; // contacts in a block
 
 // Blocks handled together, so that what stands between gathering, computing and scattering stays in the first-level cache.

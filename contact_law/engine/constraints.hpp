@@ -35,7 +35,7 @@ public:
 			sum += 0.5 * dt
 			        * (dot(c.force + force, Vec3<double> { g.vx, g.vy, g.vz })
 			                + dot(c.torque + torque, Vec3<double> { g.wx, g.wy, g.wz }));
-			add(g, -force, -torque);
+			addToGrain(g, -force, -torque);
 			c.force = force;
 			c.torque = torque;
 		}
@@ -48,7 +48,7 @@ public:
 	{
 		auto at = std::lower_bound(grains.begin(), grains.end(), grain, [](const Constrained& c, int g) { return c.grain < g; });
 		if (at != grains.end() && at->grain == grain) {
-			add(all[grain], at->force, at->torque);
+			addToGrain(all[grain], at->force, at->torque);
 			at = grains.erase(at);
 		}
 		if (!blocked) return;
@@ -56,7 +56,7 @@ public:
 		Constrained c { grain, blocked };
 		c.force = blockedForce({ g.fx, g.fy, g.fz }, blocked);
 		c.torque = blockedTorque({ g.tx, g.ty, g.tz }, blocked);
-		add(g, -c.force, -c.torque);
+		addToGrain(g, -c.force, -c.torque);
 		grains.insert(at, c);
 	}
 
@@ -72,12 +72,6 @@ public:
 
 private:
 	std::size_t next = 0;
-
-	static void add(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
-	{
-		g.fx += force.x, g.fy += force.y, g.fz += force.z;
-		g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
-	}
 };
 
 } // namespace contact_law

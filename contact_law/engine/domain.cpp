@@ -5,14 +5,6 @@
 namespace contact_law {
 
 namespace {
-
-	void add(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
-	{
-		g.fx += force.x, g.fy += force.y, g.fz += force.z;
-		g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
-	}
-	constexpr double sortingCost = 1; // of a contact, over what one costs a step more for being out of order (measured)
-
 	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
 }
 
@@ -191,10 +183,10 @@ void Domain::keepEarly(int i, int j, const ContactStepResult& r)
 void Domain::addAlone(int sort, int i, int j, const ContactStepResult& r, const Image& image)
 {
 	if (sort != Second) {
-		add(s.grains[i], r.force, r.torque1);
+		addToGrain(s.grains[i], r.force, r.torque1);
 		if (cell.on) sums.boundary.add(image.shift, r.force);
 	}
-	if (sort != First) add(s.grains[j], -r.force, r.torque2);
+	if (sort != First) addToGrain(s.grains[j], -r.force, r.torque2);
 }
 
 void Domain::eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces)
@@ -271,123 +263,6 @@ bool Domain::formContact(const NeighbourPair& pair)
 	addAlone(sort, i, j, r, image);
 	contacts[sort].append(c);
 	return true;
-}
-
-namespace {
-	template <class OfGrain> void moveAll(std::vector<OfGrain>& from, std::vector<OfGrain>& to)
-	{
-		to.insert(to.end(), from.begin(), from.end());
-		from.clear();
-	}
-	template <class OfGrain> void sortByGrain(std::vector<OfGrain>& all)
-	{
-		std::sort(all.begin(), all.end(), [](const OfGrain& a, const OfGrain& b) { return a.grain < b.grain; });
-	}
-}
-
-void Domain::takeOut(std::vector<Contact>& allContacts, std::vector<Bond>& allBonds, std::vector<Constrained>& allConstrained,
-        std::vector<OutsideForce>& allOutside)
-{
-	for (int sort = Both; sort <= First; ++sort) {
-		for (int lane = 0; lane < contacts[sort].size(); ++lane)
-			if (contacts[sort].alive(lane)) allContacts.push_back(s.contactOf(contacts[sort], lane));
-		for (int lane = 0; lane < bonds[sort].size(); ++lane)
-			if (bonds[sort].alive(lane)) allBonds.push_back(bonds[sort].get(lane, s.commonBond));
-	}
-	for (ContactList& list : contacts)
-		list.clear();
-	for (BondList& list : bonds)
-		list.clear();
-	moveAll(constraints.grains, allConstrained);
-	moveAll(outside.grains, allOutside);
-}
-
-void Domain::place(const std::vector<Constrained>& all)
-{
-	for (const Constrained& c : all)
-		if (owns(c.grain)) constraints.grains.push_back(c);
-	sortByGrain(constraints.grains);
-}
-
-void Domain::place(const std::vector<OutsideForce>& all)
-{
-	for (const OutsideForce& f : all)
-		if (owns(f.grain)) outside.grains.push_back(f);
-	sortByGrain(outside.grains);
-}
-
-void Domain::markTouching()
-{
-	const auto mark = [this](const auto& list) {
-		for (int lane = 0; lane < list.size(); ++lane)
-			if (list.alive(lane)) lists.touch(list.first(lane), list.second(lane));
-	};
-	for (const ContactList& list : contacts)
-		mark(list);
-	for (const BondList& list : bonds)
-		mark(list);
-}
-
-void Domain::takeVelocities()
-{
-	if (!s.hasDrag()) return;
-	for (ContactList& list : contacts)
-		for (int lane = 0; lane < list.size(); ++lane) {
-			if (!list.alive(lane)) continue;
-			Image image;
-			list.writeVelocity(lane, motionOf(list.first(lane), list.second(lane), image).velocity);
-		}
-}
-
-/* A contact that formed costs more until it is sorted in, sorting costs in proportion to all of them: both together least when the first sum has grown to the second. */
-void Domain::sortIfWorthwhile()
-{
-	++stepsSinceSort;
-	if (double(changed) * stepsSinceSort > sortingCost * (contacts[Both].size() + contacts[First].size() + contacts[Second].size()))
-		sortContacts();
-}
-
-void Domain::sortContacts()
-{
-	for (ContactList& list : contacts)
-		list.sort();
-	for (BondList& list : bonds)
-		list.sort();
-	sortedBlocks = contacts[Both].blockCount();
-	changed = stepsSinceSort = 0;
-	findCompleted();
-	s.grains[dummy].fx = s.grains[dummy].fy = s.grains[dummy].fz = 0;
-}
-
-void Domain::findCompleted()
-{
-	const ContactList& list = contacts[Both];
-	completed.assign((sortedBlocks + batchSize - 1) / batchSize, end);
-	int next = end;
-	for (int batch = int(completed.size()) - 1; batch >= 0; --batch) {
-		completed[batch] = next;
-		const int last = std::min((batch + 1) * batchSize, sortedBlocks) * lanes;
-		for (int lane = last - 1; lane >= batch * batchSize * lanes; --lane)
-			if (list.alive(lane)) next = list.first(lane);
-	}
-}
-
-void Domain::place(const Contact& c)
-{
-	if (owns(c.i) || owns(c.j)) contacts[sortOf(c.i, c.j)].append(c);
-}
-
-void Domain::placeOverlapping()
-{
-	lists.each([this](int i, int j) {
-		Vec3<double> separation = separationOf(s.grains[i], s.grains[j]);
-		nearestImage(cell, separation);
-		const ContactMotion m { separation, { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, s.dt, 0 };
-		const double overlap = s.radius[i] + s.radius[j] - std::sqrt(dot(separation, separation));
-		if (overlap <= 0) return;
-		contacts[sortOf(i, j)].append({ i, j, contact_law::events::formedHistory(m, 0), s.constantsOf(i, j), 0, overlap });
-	});
-	markTouching();
 }
 
 StoredEnergy<double> Domain::energies()

@@ -134,8 +134,7 @@ void Dynamics::changeForce(Domain& domain, int k, Vec3<double> force, Vec3<doubl
 	const double before = domain.kineticEnergyOf(k);
 	if (onset == Onset::Now) kick(setting, p, k, 0.5 * setting.dt);
 	domain.constraints.push(k, force, torque);
-	p.fx += force.x, p.fy += force.y, p.fz += force.z;
-	p.tx += torque.x, p.ty += torque.y, p.tz += torque.z;
+	addToGrain(p, force, torque);
 	if (onset == Onset::Now) kick(setting, p, k, -0.5 * setting.dt);
 	domain.outside.work += before - domain.kineticEnergyOf(k);
 }

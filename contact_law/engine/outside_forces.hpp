@@ -32,10 +32,8 @@ public:
 		auto at = grains.begin() + next;
 		for (; at != grains.end() && at->grain < end; ++at) {
 			Grain& g = all[at->grain];
-			const Vec3<double>&f = at->force, &t = at->torque;
-			sum -= dt * (dot(f, velocityOf(g)) + dot(t, spinOf(g)));
-			g.fx += f.x, g.fy += f.y, g.fz += f.z;
-			g.tx += t.x, g.ty += t.y, g.tz += t.z;
+			sum -= dt * (dot(at->force, velocityOf(g)) + dot(at->torque, spinOf(g)));
+			addToGrain(g, at->force, at->torque);
 		}
 		work = sum;
 		next = at - grains.begin();

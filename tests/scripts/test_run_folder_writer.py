@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from analysis.measures.compression import compression_and_velocity
-from yade_scripts.run.folder import RunFolder, RunFolderError, being_written, locked_inodes
+from analysis.runs.running import being_written, locked_inodes
+from yade_scripts.run.folder import RunFolder, RunFolderError
 from yade_scripts.run.progress import progress_bar
 from yade_scripts.run.schedule import MOST_SAMPLES, Schedule
 

@@ -8,7 +8,6 @@ from contextlib import suppress
 import numpy as np
 
 from analysis.runs.format import ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
-from analysis.runs.running import being_written, locked_inodes  # noqa: F401
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
 from yade_scripts.run.atomic_write import is_unfinished, remove_unfinished, sync, write_atomically

@@ -1,6 +1,7 @@
 """Our numbers beside S17's, as lines of tables, each group with what it can and cannot tell."""
 
 from ...report.beside_paper import Line
+from ...runs.format import BROKEN_BONDS
 from ...statistics import wilson
 from . import paper
 
@@ -63,7 +64,7 @@ def _efficiency(results):
     fall = [_bcca(results, neck, 30.0) for neck in (0.4, 0.5)]
     if all(fall):
         (high, first), (low, second) = (point.means["largest"] for point in fall)
-        error = (first**2 + second**2) ** 0.5 if first is not None and second is not None else None
+        error = _together(first, second)
         lines.append(
             Line(
                 "fall from beta = 0.4 to 0.5 at 30 m/s",
@@ -91,24 +92,11 @@ def _bounces(results):
             f"ours {probability(point.bouncing, point.runs)}, paper {probability(bounced, runs)}: 2 of 5 alone allows {low:.2f} to "
             f"{high:.2f}"
         )
-        lines.append(
-            Line(
-                "fraction that bounces, beta = 0.7, 10 m/s",
-                "",
-                point.bouncing / point.runs,
-                None,
-                bounced / runs,
-                None,
-                note,
-            )
-        )
-    for velocity in (paper.SLOW,):
-        point = _bcca(results, 0.7, velocity)
-        if point is not None:
-            note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
-            lines.append(
-                Line(f"fraction that sticks, {_name(point)}", "", point.sticking / point.runs, None, 1.0, None, note)
-            )
+        lines.append(_fraction("bounces", point, point.bouncing, bounced / runs, note))
+    point = _bcca(results, 0.7, paper.SLOW)
+    if point is not None:
+        note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
+        lines.append(_fraction("sticks", point, point.sticking, 1.0, note))
     return "bouncing of BCCA aggregates (section 5.1)", lines, ()
 
 
@@ -122,17 +110,7 @@ def _compacted(results):
                 expected = "only bouncing" if bounces else ("sticking" if least is None else "bouncing and sticking")
                 note = f"paper: {expected}; ours {probability(point.bouncing, point.runs)} bounce"
                 theirs = 1.0 if bounces else (0.0 if least is None else None)
-                lines.append(
-                    Line(
-                        f"fraction that bounces, {_name(point)}",
-                        "",
-                        point.bouncing / point.runs,
-                        None,
-                        theirs,
-                        None,
-                        note,
-                    )
-                )
+                lines.append(_fraction("bounces", point, point.bouncing, theirs, note))
     notes = (
         "Our compacted aggregates are two BCCA clusters of 512 grains that have collided at V_g; the paper doesn't say from what its "
         "own start. Their contacts a grain, on which the outcome depends (section 5.5), are in the table of all points.",
@@ -153,14 +131,13 @@ def _energy(results):
             lines.append(
                 Line("the same, of all that is lost", "", mean, error, theirs, None, words, _freedom(point.runs))
             )
-    for neck, name, words, theirs in ((0.2, "necks", "breaking of necks takes", paper.WEAK_NECK_FRACTION),):
-        point = _bcca(results, neck, 10.0)
-        if point is not None:
-            lines.append(_part(point, name, words, theirs))
+    point = _bcca(results, 0.2, 10.0)
+    if point is not None:
+        lines.append(_part(point, "necks", "breaking of necks takes", paper.WEAK_NECK_FRACTION))
     point = _bcca(results, 0.5, 10.0)
     if point is not None:
         (kinetic, first), (elastic, second) = point.means["part_kinetic"], point.means["part_elastic"]
-        error = (first**2 + second**2) ** 0.5 if first is not None and second is not None else None
+        error = _together(first, second)
         lines.append(
             Line(
                 f"kinetic and elastic at the end, {_name(point)}", "K(0)", kinetic + elastic, error, paper.UNDISSIPATED
@@ -182,6 +159,16 @@ def _part(point, name, words, theirs):
     )
 
 
+def _fraction(what, point, number, theirs, note):
+    """Of the runs of a point, those that do what is said."""
+    return Line(f"fraction that {what}, {_name(point)}", "", number / point.runs, None, theirs, None, note)
+
+
+def _together(first, second):
+    """Error of a sum or difference of two independent means; None where either is not known."""
+    return None if first is None or second is None else (first**2 + second**2) ** 0.5
+
+
 def _freedom(runs):
     return runs - 1 if runs > 1 else None
 
@@ -190,15 +177,14 @@ def _broken(results):
     lines = []
     for planar in (1, 0):
         points = results.select(planar=planar, cut=1, criticalRolling=2e-10, viscoelasticTime=0.0)
-        names = ("brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting")
         table = results.table
         chosen = (table.planar == planar) & (table.neck > 0) & (table.cut == 1) & (table.viscoelasticTime == 0)
-        total = int(table.loc[chosen, list(names)].to_numpy().sum())
+        total = int(table.loc[chosen, list(BROKEN_BONDS)].to_numpy().sum())
         if not points or not total:
             continue
         rolling = int(table.loc[chosen, "brokenByRolling"].sum())
         others = ", ".join(
-            f"{n.removeprefix('brokenBy').lower()} {table.loc[chosen, n].sum() / total:.1%}" for n in names
+            f"{n.removeprefix('brokenBy').lower()} {table.loc[chosen, n].sum() / total:.1%}" for n in BROKEN_BONDS
         )
         where = "in the plane" if planar else "in space"
         note = f"{total} necks of {int(chosen.sum())} runs: {others}"
