@@ -4,6 +4,9 @@ full is the paper's section 2.4: 416 collisions of BPCA aggregates of 50,000 gra
 two cores: the whole grid of B_off, speed and T_vis with aggregates of 500 grains and several seeds, the speeds around
 v_fra with 2,000, both at twice the step, and the paper's own size where Fig. 1 is, with three pairs of aggregates: the paper has one,
 so they tell what its numbers are worth. Rows are in the order in which they are worth having: whole grids of one seed after another.
+
+prediction holds larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran
+(analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size.
 """
 
 import os
@@ -24,7 +27,10 @@ STATES = 21  # every 0.317 us: the times of Figs 1, 10 and 11 are among them
 # {grains of an aggregate: (exponents i, seeds)}
 DESK = {500: (EXPONENTS, 4), 2000: (range(16, 21), 3)}
 REFERENCE_SEEDS, REFERENCE_PICOSECONDS = 3, (0, 6)  # at the paper's size
-STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for the aggregates of DESK: its ledger closes to 1e-3 of K(0)
+STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for smaller aggregates: its ledger closes to 1e-3 of K(0)
+
+PREDICTED_GRAINS, PREDICTED_SEEDS, PREDICTED_EXPONENTS = 10_000, 2, range(17, 21)
+EVERY_SECOND = TWELFTHS[::2]  # enough for the mean over B_off
 
 
 def grid(grains, exponents, seed):
@@ -50,6 +56,19 @@ def full():
     """Scenes of the paper, those of Fig. 1 first."""
     scenes = grid(FULL_GRAINS, EXPONENTS, 1)
     return sorted(scenes, key=lambda scene: scene[1:3] != REFERENCE)
+
+
+def prediction():
+    """Scenes that were predicted: without drag and with the most, seed by seed."""
+    scenes = []
+    for seed in range(1, PREDICTED_SEEDS + 1):
+        scenes += [
+            scene
+            for scene in grid(PREDICTED_GRAINS, PREDICTED_EXPONENTS, seed)
+            if scene[1] in EVERY_SECOND and scene[3] in REFERENCE_PICOSECONDS
+        ]
+        scenes += [(FULL_GRAINS, 0, REFERENCE[1], 0, seed)] if seed == 1 else []
+    return scenes
 
 
 def rows(scenes, folder):
@@ -82,11 +101,16 @@ Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, durat
 
 
 def write_tables(folder):
-    """Write viscous-desk.table and viscous-full.table into a folder."""
+    """Write viscous-desk.table, viscous-prediction.table and viscous-full.table into a folder."""
     table.write(
         os.path.join(folder, "viscous-desk.table"),
         rows(desk(), "runs/viscous"),
         HEAD.format(which="Smaller aggregates, and six collisions of the paper's size."),
+    )
+    table.write(
+        os.path.join(folder, "viscous-prediction.table"),
+        rows(prediction(), "runs/viscous"),
+        HEAD.format(which="Larger aggregates, predicted before they ran."),
     )
     table.write(
         os.path.join(folder, "viscous-full.table"),

@@ -51,8 +51,8 @@ class Results:
 
     @property
     def main_size(self):
-        """The largest of them; None without any."""
-        return self.sizes[-1] if self.sizes else None
+        """The largest of those with the most T_vis; None without any."""
+        return max(self.sizes, key=lambda grains: (len(self.of_size(grains)), grains), default=None)
 
     def of_size(self, grains):
         """[Growth] of one size, by T_vis."""

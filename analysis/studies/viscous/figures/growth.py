@@ -119,42 +119,6 @@ def thresholds_figure(results):
 
 
 @styled
-def size_figure(results):
-    """v_fra against the size of the aggregates, for every T_vis, and against T_vis, for every size."""
-    known = [growth for growth in results.growth.values() if growth.v_fra is not None]
-    if not known:
-        return None
-    figure, axes = panels(1, 2, 4.8, 4.2)
-    colours = time_colours(results.table)
-    for time, colour in colours.items():
-        own = sorted((g for g in known if g.viscous_time == time), key=lambda growth: growth.grains)
-        if own:
-            errors = [g.v_fra_error or 0.0 for g in own]
-            x = [g.grains for g in own]
-            axes[0, 0].errorbar(
-                x, [g.v_fra for g in own], errors, fmt="o-", color=colour, capsize=3, label=time_label(time)
-            )
-    for i, grains in enumerate(results.sizes):
-        own = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
-        if own:
-            errors = [g.v_fra_error or 0.0 for g in own]
-            shade = str(0.7 - 0.6 * (i + 1) / len(results.sizes))
-            x = [g.viscous_time * 1e12 for g in own]
-            axes[0, 1].errorbar(
-                x, [g.v_fra for g in own], errors, fmt="o-", color=shade, capsize=3, label=f"{grains} grains"
-            )
-    axes[0, 0].plot([paper.GRAINS] * 2, paper.V_FRA, color=PAPER, lw=4, alpha=0.5, label="A22")
-    axes[0, 0].set_xscale("log")
-    axes[0, 0].set_xlabel("grains of an aggregate")
-    axes[0, 1].set_xlabel("$T_{vis}$  [ps]")
-    axes[0, 0].set_ylabel("$v_{fra}$  [m/s]")
-    for place in axes[0]:
-        legend(place, fontsize=8)
-    letter(axes, "")
-    return figure
-
-
-@styled
 def collapse_figure(results):
     """<f_gro> against velocity, and against velocity over v_stick(T_vis): one curve if single contacts decided."""
     grains = results.main_size
@@ -212,7 +176,6 @@ FIGURES = (
     ),
     StudyFigure("fig04_head_on", "A22 Fig. 4: growth efficiency of head-on collisions.", head_on_figure),
     StudyFigure("fig05_thresholds", "A22 Fig. 5: v_stick of two grains and v_fra of aggregates.", thresholds_figure),
-    StudyFigure("size", "v_fra against size and T_vis.", size_figure),
     StudyFigure(
         "collapse", "Growth efficiency with speeds scaled by v_stick(T_vis): no theory of one contact.", collapse_figure
     ),

@@ -1,0 +1,93 @@
+"""What the size of the aggregates changes: v_fra and growth efficiency."""
+
+import numpy as np
+
+from ....figures.style import styled
+from ...definition import StudyFigure
+from .. import paper
+from ..size_dependence import EXPONENTS, extrapolation_weight
+from .common import PAPER, legend, letter, panels, time_colours, time_label
+
+SHOWN = (50.0, 101.0)  # m/s: around v_fra
+
+
+@styled
+def size_figure(results):
+    """v_fra against the size of the aggregates, for every T_vis, and against T_vis, for every size."""
+    known = [growth for growth in results.growth.values() if growth.v_fra is not None]
+    if not known:
+        return None
+    figure, axes = panels(1, 2, 4.8, 4.2)
+    colours = time_colours(results.table)
+    for time, colour in colours.items():
+        own = sorted((g for g in known if g.viscous_time == time), key=lambda growth: growth.grains)
+        if own:
+            errors = [g.v_fra_error or 0.0 for g in own]
+            x = [g.grains for g in own]
+            axes[0, 0].errorbar(
+                x, [g.v_fra for g in own], errors, fmt="o-", color=colour, capsize=3, label=time_label(time)
+            )
+    for i, grains in enumerate(results.sizes):
+        own = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
+        if own:
+            errors = [g.v_fra_error or 0.0 for g in own]
+            shade = str(0.7 - 0.6 * (i + 1) / len(results.sizes))
+            x = [g.viscous_time * 1e12 for g in own]
+            axes[0, 1].errorbar(
+                x, [g.v_fra for g in own], errors, fmt="o-", color=shade, capsize=3, label=f"{grains} grains"
+            )
+    axes[0, 0].plot([paper.GRAINS] * 2, paper.V_FRA, color=PAPER, lw=4, alpha=0.5, label="A22")
+    axes[0, 0].set_xscale("log")
+    axes[0, 0].set_xlabel("grains of an aggregate")
+    axes[0, 1].set_xlabel("$T_{vis}$  [ps]")
+    axes[0, 0].set_ylabel("$v_{fra}$  [m/s]")
+    for place in axes[0]:
+        legend(place, fontsize=8)
+    letter(axes, "")
+    return figure
+
+
+@styled
+def size_growth_figure(results):
+    """<f_gro> against N^-1/2 at the velocities around v_fra, with lines through the two smallest sizes to endless aggregates."""
+    velocities = sorted({round(v, 6) for growth in results.growth.values() for v in growth.velocities})
+    velocities = [v for v in velocities if SHOWN[0] < v < SHOWN[1]]
+    if len(results.sizes) < 2 or not velocities:
+        return None
+    figure, axes = panels(1, len(velocities), 3.6, 3.8)
+    for place, velocity in zip(axes[0], velocities):
+        for time, colour in time_colours(results.table).items():
+            _points_of_sizes(place, results, time, velocity, colour)
+        place.axhline(0.0, color="0.6", lw=0.8)
+        place.axvline(paper.GRAINS**-0.5, color=PAPER, lw=4, alpha=0.3)
+        place.set_xlim(left=0.0)
+        place.set_xlabel("$N^{-1/2}$")
+        place.text(0.97, 0.95, f"{velocity:.3g} m/s", transform=place.transAxes, ha="right", va="top")
+    axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
+    legend(axes[0, 0], fontsize=8)
+    letter(axes, "")
+    return figure
+
+
+def _points_of_sizes(place, results, time, velocity, colour):
+    """One T_vis at one velocity: a point each size, and the line through the first two."""
+    found = []
+    for grains in results.sizes:
+        growth = results.growth.get((grains, time))
+        at = [] if growth is None else np.flatnonzero(np.abs(growth.velocities / velocity - 1) < 1e-6)
+        if len(at):
+            found.append((grains, growth.mean[at[0]], np.nan_to_num(growth.error[at[0]])))
+    if not found:
+        return
+    grains, mean, error = zip(*found)
+    x = np.array(grains, dtype=float) ** -EXPONENTS[0]
+    place.errorbar(x, mean, error, fmt="o", color=colour, capsize=3, label=time_label(time))
+    if [*grains[:2]] == results.sizes[:2]:
+        endless = mean[1] + extrapolation_weight(*grains[:2], np.inf, EXPONENTS[0]) * (mean[1] - mean[0])
+        place.plot([x[0], 0.0], [mean[0], endless], "--", color=colour, lw=0.9)
+
+
+FIGURES = (
+    StudyFigure("size", "v_fra against size and T_vis.", size_figure),
+    StudyFigure("size_growth", "Growth efficiency against N^-1/2.", size_growth_figure),
+)
