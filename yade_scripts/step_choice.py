@@ -56,6 +56,8 @@ def require_measured(parameters):
         _refuse("packing = file")
     if parameters.sizes != EQUAL:
         _refuse(f"sizes = {parameters.sizes}")
+    if parameters.initialOverlap != 1:
+        _refuse(f"initialOverlap = {parameters.initialOverlap:g}")
 
 
 def require_measured_compression(parameters, constants):

@@ -75,7 +75,7 @@ def test_the_study_that_asks_nothing_has_no_question(written):
     assert 'class="question"' not in written and "<h1>Sticking against velocity</h1>" in written
 
 
-@pytest.mark.parametrize("name", ["elastoplastic", "viscous", "compression", "elastoplastic_drag"])
+@pytest.mark.parametrize("name", ["elastoplastic", "viscous", "compression", "elastoplastic_variants"])
 def test_studies_say_what_they_ask(name):
     from analysis.studies.find import find
 

@@ -125,3 +125,21 @@ def test_two_hundred_thousand_grains_in_seconds():
     packing = ice(relative_radius=79.37)
     assert packing.grains == 200000
     assert time.perf_counter() - start < 10
+
+
+def test_the_largest_piece_is_what_hangs_together():
+    packing = ice(filling=0.3)
+    piece = packings.largest_piece(packing)
+    assert 0 < piece.parameters["dropped"] == packing.grains - piece.grains < 0.02 * packing.grains
+    rows = {tuple(position) for position in packing.position}
+    assert all(tuple(position) in rows for position in piece.position)
+    reached, pairs = {0}, packings.contacts(piece)
+    neighbours = [[] for _ in range(piece.grains)]
+    for i, j in pairs:
+        neighbours[i].append(j)
+        neighbours[j].append(i)
+    front = [0]
+    while front:
+        front = [j for i in front for j in neighbours[i] if j not in reached and not reached.add(j)]
+    assert len(reached) == piece.grains
+    assert packings.largest_piece(piece).grains == piece.grains

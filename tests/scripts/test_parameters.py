@@ -152,6 +152,16 @@ WRONG = [
     ({"packing": "fcc"}, "packing = fcc: must be cpe or bcca"),
     ({"packing": "bcca", "radius": "10"}, "radius = 10: given with packing = bcca; must be grains only"),
     ({"packing": "bcca", "grains": "1e6"}, "grains = 1000000: too many for packing = bcca; must be 2 to 100000"),
+    (
+        {"packing": "bpca", "removeLooseGrains": "1"},
+        "removeLooseGrains = 1: given with packing = bpca, on which it has no",
+    ),
+    (
+        {"packing": "bcca", "initialOverlap": "0.5"},
+        "initialOverlap = 0.5: given with packing = bcca, on which it has no",
+    ),
+    ({"neck": "0.5", "initialOverlap": "0.5"}, "initialOverlap = 0.5: given with neck = 0.5; must be 1"),
+    ({"initialOverlap": "0"}, "initialOverlap = 0: must be > 0 and at most 1 [of that at rest]"),
     ({"engine": "magic"}, "engine = magic: must be fused or functors"),
     ({"seed": "-1"}, "seed = -1: must be >= 0"),
     ({"seed": "1.5"}, "seed = 1.5: not a whole number"),

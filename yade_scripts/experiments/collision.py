@@ -79,6 +79,10 @@ class CollisionParameters(AggregateParameters, RunParameters):
             require_growable(found.packing, "projectileGrains", found.projectileGrains)
         if found.neck and found.sizes != EQUAL:
             raise ParameterError(f"sizes = {found.sizes}: given with neck = {found.neck:g}; must be {EQUAL}")
+        if found.neck and found.initialOverlap != 1:
+            raise ParameterError(
+                f"initialOverlap = {found.initialOverlap:g}: given with neck = {found.neck:g}; must be 1, bonds start at rest"
+            )
         return found
 
     def of_projectile(self):

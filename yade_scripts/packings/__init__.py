@@ -3,6 +3,7 @@
 from yade_scripts.packings.bcca import bcca  # noqa: F401
 from yade_scripts.packings.bpca import bpca  # noqa: F401
 from yade_scripts.packings.filling import grain_number, maximum_filling  # noqa: F401
+from yade_scripts.packings.largest_piece import largest_piece  # noqa: F401
 from yade_scripts.packings.lattice import cpe  # noqa: F401
 from yade_scripts.packings.packing import (  # noqa: F401
     Packing,

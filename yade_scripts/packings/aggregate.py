@@ -10,6 +10,7 @@ from yade_scripts.packings.bpca import bpca
 from yade_scripts.packings.filling import grain_number
 from yade_scripts.packings.from_file import packing_from_file
 from yade_scripts.packings.grain_sizes import EQUAL, LOGNORMAL, SIZES, TWO
+from yade_scripts.packings.largest_piece import largest_piece
 from yade_scripts.packings.lattice import cpe
 from yade_scripts.packings.packing import random_stream
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
@@ -17,6 +18,7 @@ from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, Param
 MOST_GRAINS = 5_000_000
 MOST_GROWN = {"bcca": 100_000, "bpca": 2_000_000}  # made in a minute, in minutes
 GRAINS_GROWN = 1024
+OF_CPE = ("removeLooseGrains", "initialOverlap")
 OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
 
 
@@ -63,12 +65,23 @@ class AggregateParameters(GrainParameters):
         f"cut off at {grain_sizes.WIDEST:g} of it",
         "1",
     )
+    removeLooseGrains: int = parameter(
+        0, SWITCH, "1: grains of a cpe aggregate that are not connected with the most of them are left out"
+    )
+    initialOverlap: float = parameter(
+        1.0,
+        Check("> 0 and at most 1", lambda x: 0 < x <= 1),
+        "overlap of touching grains of a cpe aggregate at the start; below 1 they pull",
+        "of that at rest",
+    )
     seed: int = parameter(1, NOT_NEGATIVE, "of the random packings")
 
     def filled_in(self):
         """What follows from the way of packing: radius from grains or grains from radius and filling (cpe)."""
         if self.packing != "file" and self.file is not None:
             raise ParameterError(f"file = {self.file}: given with packing = {self.packing}; must be left out")
+        if self.packing != "cpe":
+            self._refuse(*OF_CPE)
         sized = {"cpe": self._of_cpe, "file": self._of_file}.get(self.packing, self._grown)()
         return super(AggregateParameters, sized._with_sizes()).filled_in()
 
@@ -160,7 +173,9 @@ def make(parameters, overlap, index):
     if parameters.packing == "file":
         return packing_from_file(parameters.file, radius, overlap, planar)
     if parameters.packing == "cpe":
-        return cpe(parameters.filling, parameters.radius * radius, radius, overlap, seed, index, planar)
+        overlap *= parameters.initialOverlap
+        packing = cpe(parameters.filling, parameters.radius * radius, radius, overlap, seed, index, planar)
+        return largest_piece(packing) if parameters.removeLooseGrains else packing
     radii = _radii(parameters, index)
     if parameters.packing == "bpca":
         return bpca(parameters.grains, radius, overlap, seed, index, radii)

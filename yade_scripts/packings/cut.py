@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import lsqr
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
@@ -20,6 +19,7 @@ from scipy.spatial.transform import Rotation
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import read_state
 from analysis.runs.format import COMPRESSION, FORMAT, RUN_FILE
+from yade_scripts.packings.largest_piece import largest_cluster
 from yade_scripts.packings.packing import Packing, PackingError, random_stream
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, parameter
 
@@ -86,7 +86,7 @@ def cut(state, parameters, index=0):
     position = position - state.cell_size * np.round(position / state.cell_size)
     inside = np.flatnonzero(np.linalg.norm(position, axis=1) <= parameters.radius * grain_radius)
     pairs = _pairs_within(position, state.contact_pairs, inside)
-    kept, pairs = _largest_cluster(len(inside), pairs)
+    kept, pairs = largest_cluster(len(inside), pairs)
     if len(kept) < 2:
         raise PackingError(f"radius = {parameters.radius:g}: leaves {len(kept)} grains; must leave 2 or more")
     position, radius = position[inside[kept]], state.radius[inside[kept]]
@@ -113,17 +113,6 @@ def _pairs_within(position, pairs, inside):
     apart = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
     near = apart < 3 * np.median(apart) if len(apart) else np.zeros(0, bool)
     return chosen[(chosen >= 0).all(axis=1) & near]
-
-
-def _largest_cluster(grains, pairs):
-    """(grains of the largest connected cluster, its pairs in their rows)."""
-    graph = csr_matrix((np.ones(len(pairs)), pairs.T), shape=(grains, grains))
-    _, cluster = connected_components(graph, directed=False)
-    kept = np.flatnonzero(cluster == np.bincount(cluster).argmax()) if grains else np.zeros(0, int)
-    row = np.full(grains, -1)
-    row[kept] = np.arange(len(kept))
-    rows = row[pairs]
-    return kept, rows[(rows >= 0).all(axis=1)]
 
 
 def at_rest(position, radius, pairs, overlap):

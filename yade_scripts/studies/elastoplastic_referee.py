@@ -20,11 +20,15 @@ COLUMNS = (
     "velocity",
     "seed",
     "viscoelasticTime",
+    "removeLooseGrains",
+    "initialOverlap",
     "duration",
     "stepFraction",
     "threads",
     "out",
 )
+# Columns that a table has only where a row differs from these.
+USUAL = {"removeLooseGrains": "0", "initialOverlap": "1"}
 
 
 LONG = "runs/elastoplastic-long"
@@ -33,7 +37,7 @@ LONG = "runs/elastoplastic-long"
 @dataclass(frozen=True)
 class Block:
     """comment; fillings, radii, velocities (i of 10^(0.1 i) m/s), seeds; duration [s] (text, None: DEFAULT); drag [s];
-    folder of the run folders. LONG holds pairs that have run before, for longer: analysed by itself."""
+    remove: whether loose grains are; overlap at the start; folder of the run folders. LONG holds pairs that have run before, for longer: analysed by itself."""
 
     comment: str
     fillings: tuple
@@ -42,6 +46,8 @@ class Block:
     seeds: range
     duration: str = None
     drag: tuple = ("0",)
+    remove: int = 0
+    overlap: float = 1.0
     folder: str = "runs/elastoplastic"
 
     def scenes(self):
@@ -85,6 +91,22 @@ REFEREE = (
         drag=("1e-12", "3e-12", "6e-12"),
     ),
     Block(
+        "Did the paper keep the grains outside the largest piece? The same pairs without them.",
+        SIZES,
+        (40,),
+        (5,),
+        range(1, 21),
+        remove=1,
+    ),
+    Block(
+        "Neighbours that start without overlap (next to none: rounding would decide at 0 which touch): the same pairs.",
+        SIZES,
+        (40,),
+        (5,),
+        range(1, 11),
+        overlap=1e-3,
+    ),
+    Block(
         "A24's Fig. 4 and the scatter at R = 80: its ten seeds at 3.162 m/s (three have run).",
         SIZES,
         (80,),
@@ -126,38 +148,40 @@ REFEREE = (
 def rows(block):
     """Cells (tuples of text) of a block's rows; run folders are named fFILLING-RRADIUS-iI-sSEED and what is special."""
     for filling, radius, i, seed, drag in block.scenes():
-        special = (f"-T{float(drag) * 1e12:g}ps" if float(drag) else "") + (
-            f"-{float(block.duration) * 1e6:g}us" if block.duration else ""
-        )
+        special = (f"-T{float(drag) * 1e12:g}ps" if float(drag) else "") + ("-largest" if block.remove else "")
+        special += f"-overlap{block.overlap:g}" if block.overlap != 1 else ""
+        special += f"-{float(block.duration) * 1e6:g}us" if block.duration else ""
         name = f"f{filling:g}-R{radius:g}-i{i}-s{seed}{special}"
         duration = block.duration or DEFAULT.format(radius=radius)
-        cells = name, f"{filling:g}", radius, f"10**(0.1*{i})", seed, drag, duration, STEP, 1, f"{block.folder}/{name}"
-        yield tuple(map(str, cells))
+        start = drag, block.remove, f"{block.overlap:g}", duration
+        yield tuple(
+            map(str, (name, f"{filling:g}", radius, f"10**(0.1*{i})", seed, *start, STEP, 1, f"{block.folder}/{name}"))
+        )
 
 
 def text(blocks, title):
     """A table (str) of blocks, each after a comment with its core hours."""
     table = [(block, list(rows(block))) for block in blocks]
-    widths = [
-        max(len(row[k]) for row in [COLUMNS, *(row for _, own in table for row in own)]) for k in range(len(COLUMNS))
-    ]
+    every = [row for _, own in table for row in own]
+    shown = [k for k, name in enumerate(COLUMNS) if any(row[k] != USUAL.get(name) for row in every)]
+    widths = [max(len(row[k]) for row in [COLUMNS, *every]) for k in shown]
+
+    def line(cells):
+        return "  ".join(cells[k].ljust(width) for k, width in zip(shown, widths)).rstrip()
+
     lines = [
         f"# {title}",
         "# Units: radius: grain radii; velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0.",
     ]
     lines += [
         f"# Written by yade_scripts/studies/{os.path.basename(__file__)}; core hours are estimates.",
-        _line(COLUMNS, widths),
+        line(COLUMNS),
     ]
     for block, own in table:
         lines += [f"# {part}" for part in block.comment.splitlines()]
         lines += [f"# {len(own)} runs, {block.hours():.1f} core hours."]
-        lines += [_line(row, widths) for row in own]
+        lines += [line(row) for row in own]
     return "\n".join(lines) + "\n"
-
-
-def _line(cells, widths):
-    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths)).rstrip()
 
 
 TABLES = {

@@ -21,6 +21,8 @@ STUDY = Study(
             "neck": 0.0,
             "planar": 0,
             "material": "ice",
+            "removeLooseGrains": 0,
+            "initialOverlap": 1.0,
         },
         numbers=("filling", "radius", "velocity", "seed"),
     ),
