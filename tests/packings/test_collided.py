@@ -11,7 +11,7 @@ from written_runs import PAIR, RADIUS, record, state_arrays, write_run
 
 from analysis.runs.format import CHANNELS
 from yade_scripts.packings import contacts, gyration_radius, load, save
-from yade_scripts.packings.collided import largest_piece, turned
+from yade_scripts.packings.collided import largest_piece_of_run, turned
 from yade_scripts.packings.from_file import packing_from_file
 from yade_scripts.packings.packing import PackingError
 
@@ -32,7 +32,7 @@ def made_run(path, bonded=False):
 
 
 def test_its_contacts_are_at_rest_and_it_has_hardly_moved(tmp_path):
-    packing = largest_piece(made_run(tmp_path / "run"))
+    packing = largest_piece_of_run(made_run(tmp_path / "run"))
     assert packing.grains == 4 and packing.seed == 5 and packing.parameters["of"] == 7
     assert contacts(packing).tolist() == [[0, 1], [1, 2], [2, 3]]
     distance = np.linalg.norm(np.diff(packing.position, axis=0), axis=1)
@@ -43,7 +43,7 @@ def test_its_contacts_are_at_rest_and_it_has_hardly_moved(tmp_path):
 
 
 def test_turned_in_its_plane_and_saved_for_the_next_run(tmp_path):
-    packing = largest_piece(made_run(tmp_path / "run"))
+    packing = largest_piece_of_run(made_run(tmp_path / "run"))
     one, other = turned(packing, 3, 0), turned(packing, 3, 1)
     assert np.all(one.position[:, 2] == 0) and not np.allclose(one.position, other.position)
     assert gyration_radius(one) == pytest.approx(gyration_radius(packing), rel=1e-12)
@@ -55,6 +55,6 @@ def test_turned_in_its_plane_and_saved_for_the_next_run(tmp_path):
 
 def test_what_is_no_such_run_is_refused(tmp_path):
     with pytest.raises(PackingError, match="must be a run folder"):
-        largest_piece(tmp_path)
+        largest_piece_of_run(tmp_path)
     with pytest.raises(PackingError, match="with sintered bonds"):
-        largest_piece(made_run(tmp_path / "bonded", bonded=True))
+        largest_piece_of_run(made_run(tmp_path / "bonded", bonded=True))

@@ -74,7 +74,7 @@ def test_a_growth_that_does_not_stick_says_so(tmp_path, monkeypatch):
     """Collisions that leave the halves apart, without running any."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sintered_growth, "_collide", lambda aggregate, grown, files, run: os.mkdir(run))
-    monkeypatch.setattr(sintered_growth, "largest_piece", lambda run: load(run + "-0.npz"))
+    monkeypatch.setattr(sintered_growth, "largest_piece_of_run", lambda run: load(run + "-0.npz"))
     with pytest.raises(sintered_growth.PackingError, match="512 grains did not stick at 50 m/s in 5 orientations"):
         sintered_growth.grow(Grown(50.0, 1))
 

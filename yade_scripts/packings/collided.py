@@ -7,14 +7,14 @@ each its equilibrium overlap; a run starts from contacts that have neither slid,
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from analysis.measures.fragments import fragment_labels
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import open_run
 from yade_scripts.packings.cut import at_rest
+from yade_scripts.packings.largest_piece import largest_cluster
 from yade_scripts.packings.packing import Packing, PackingError, centred, random_stream
 
 
-def largest_piece(path):
+def largest_piece_of_run(path):
     """Packing of the largest piece in the last state of a run folder, around the origin, and about what it came from among
     its parameters: grains of the run (`of`), largest motion to rest [m]. Raises PackingError."""
     try:
@@ -25,18 +25,14 @@ def largest_piece(path):
         raise PackingError(f"after = {path}: {' '.join(str(error).split())}; must be a run folder") from None
     if state.cell_size is not None or state.contact_bonded.any():
         raise PackingError(f"after = {path}: periodic, or with sintered bonds; must be a collision without them")
-    labels = fragment_labels(len(state.radius), state.contact_pairs)
-    inside = np.flatnonzero(labels == 0)
-    row = np.full(len(labels), -1)
-    row[inside] = np.arange(len(inside))
-    pairs = row[state.contact_pairs[np.isin(state.contact_pairs, inside).all(axis=1)]]
+    inside, pairs = largest_cluster(len(state.radius), state.contact_pairs)
     position, radius = state.position[inside], state.radius[inside]
     moved = at_rest(position, radius, pairs, overlap)
     about = dict(
         packing="collided",
         grainRadius=grain_radius,
         overlap=overlap,
-        of=len(labels),
+        of=len(state.radius),
         largestMotion=float(np.linalg.norm(moved - position, axis=1).max()),
     )
     return Packing(centred(moved, radius), radius, int(run.parameters.get("seed", 0)), about)

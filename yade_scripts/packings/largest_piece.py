@@ -1,9 +1,8 @@
 """The largest connected piece of a packing."""
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
+from analysis.measures.fragments import fragment_labels
 from yade_scripts.packings.packing import Packing, contacts
 
 
@@ -17,9 +16,7 @@ def largest_piece(packing):
 
 def largest_cluster(grains, pairs):
     """(grains of the largest cluster that pairs (M,2) connect, its pairs in their rows)."""
-    graph = csr_matrix((np.ones(len(pairs)), pairs.T), shape=(grains, grains))
-    _, cluster = connected_components(graph, directed=False)
-    kept = np.flatnonzero(cluster == np.bincount(cluster).argmax()) if grains else np.zeros(0, int)
+    kept = np.flatnonzero(fragment_labels(grains, pairs) == 0)
     row = np.full(grains, -1)
     row[kept] = np.arange(len(kept))
     rows = row[pairs]

@@ -31,7 +31,7 @@ sys.path.insert(0, TOP)
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings.bcca import bcca
-from yade_scripts.packings.collided import largest_piece, turned
+from yade_scripts.packings.collided import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
 
 FOLDER = "runs/sintered-grown"
@@ -91,7 +91,7 @@ def _next(aggregate, grown, generation, folder):
         for index, file in enumerate(files):
             packings.save(file, turned(aggregate, grown.seed, 1000 + 20 * generation + 2 * attempt + index))
         _collide(aggregate, grown, files, run)
-        found = largest_piece(run)
+        found = largest_piece_of_run(run)
         shutil.rmtree(run)
         if found.grains >= STUCK * 2 * aggregate.grains:
             return found
