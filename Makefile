@@ -14,6 +14,7 @@
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
 # make study-sintered  the collisions of Sirono & Ueno (2017), in runs/sintered: seven hours on two cores at most, or
 #             SIZE=full: all of the paper's, a day, in runs/sintered-full. make study-status STUDY=sintered
+# make study-compressed  collisions of compressed aggregates beside CPE ones, in runs/compressed: an hour on two cores
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
@@ -250,6 +251,13 @@ study-sintered: grow-sintered
 .PHONY: grow-sintered
 grow-sintered: all
 	@$(PYTHON) yade_scripts/studies/sintered_growth.py $(SIZE) -j $(JOBS)
+
+# Spheres are cut out of cells that are compressed first.
+study-compressed: compressed-packings
+.PHONY: compressed-packings
+compressed-packings: all
+	@$(PYTHON) yade_scripts/study.py yade_scripts/studies/compressed-cells.table -j $(JOBS)
+	@$(PYTHON) yade_scripts/studies/compressed.py cut
 
 # of STUDY
 study-status:

@@ -1,0 +1,70 @@
+"""Spheres cut out of compressed cells, at the filling that is asked for; the tables of their study."""
+
+import os
+
+import numpy as np
+import pytest
+from running import TOP
+
+from yade_scripts import packings
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.packings.cut import PeriodicState
+from yade_scripts.packings.packing import PackingError
+from yade_scripts.studies import compressed
+
+R = MATERIALS["ice"].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
+
+
+@pytest.mark.parametrize("name", ["compressed-cells.table", "compressed-desk.table"])
+def test_the_table_is_what_the_script_writes(tmp_path, name):
+    compressed.write_tables(tmp_path)
+    with open(os.path.join(TOP, "yade_scripts", "studies", name)) as kept:
+        assert (tmp_path / name).read_text() == kept.read()
+
+
+def diluted_crystal(filling):
+    """PeriodicState of a cubic cell with fcc sites, some of them empty."""
+    spacing, cells = 2 * R - OVERLAP, 12
+    edge = 2**0.5 * spacing
+    basis = np.array([[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
+    corners = np.stack(np.meshgrid(*3 * [np.arange(cells)], indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    sites = ((corners + basis) * edge).reshape(-1, 3)
+    wanted = round(filling * (cells * edge) ** 3 / (4 / 3 * np.pi * R**3))
+    kept = np.sort(np.random.default_rng(5).choice(len(sites), wanted, replace=False))
+    packing = packings.Packing(sites[kept], np.full(wanted, R), 0)
+    return PeriodicState(
+        packing.position, packing.radius, packings.contacts(packing), np.full(3, cells * edge), OVERLAP
+    )
+
+
+@pytest.fixture
+def made_cell(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(compressed, "RADIUS", 8)
+    monkeypatch.setattr(compressed, "read_periodic_state", lambda path: diluted_crystal(0.4))
+    os.makedirs(os.path.join(compressed.cell(0.4, 3), "states"))
+    os.makedirs(compressed.PACKINGS)
+    return open(os.path.join(compressed.cell(0.4, 3), "states", "000001.npz"), "w").close()
+
+
+def test_both_spheres_have_the_filling_that_was_asked_for(made_cell):
+    compressed.cut_pair(0.4, 3)
+    pair = [packings.load(compressed.packing_file(0.4, 3, index)) for index in (0, 1)]
+    for packing in pair:
+        assert packing.grains / 8**3 == packing.parameters["filling"] == pytest.approx(0.4, rel=compressed.TOLERANCE)
+        assert (packing.parameters["cell"], packing.parameters["nominal"]) == (3, 0.4)
+        assert packings.extent(packing) < 8.6 * R
+    assert pair[0].grains != pair[1].grains or not np.allclose(pair[0].position, pair[1].position)
+    before = os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns
+    compressed.cut_pair(0.4, 3)
+    assert os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns == before
+
+
+def test_a_cell_that_is_not_there_and_one_of_another_filling(made_cell, monkeypatch):
+    with pytest.raises(PackingError, match="f0.3-s9/states: no states; must be those of a cell"):
+        compressed.cut_pair(0.3, 9)
+    monkeypatch.setattr(compressed, "PLACES", 3)
+    monkeypatch.setattr(compressed, "TOLERANCE", 1e-9)
+    with pytest.raises(PackingError, match="no sphere of that filling in 3 places; must be another cell"):
+        compressed.cut_pair(0.4, 3)

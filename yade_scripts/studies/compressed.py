@@ -1,0 +1,127 @@
+"""Collisions of compressed aggregates beside CPE ones. Compressed cells are made first, spheres cut out of them, then collided:
+
+    python3 yade_scripts/study.py yade_scripts/studies/compressed-cells.table -j 2
+    python3 yade_scripts/studies/compressed.py cut        the spheres, into runs/compressed-packings
+    python3 yade_scripts/study.py yade_scripts/studies/compressed-desk.table -j 2
+    python3 yade_scripts/studies/compressed.py tables     writes both tables
+
+make study-compressed does all of it. The recipe of Oshiro et al. (2025): a BCCA cluster in a periodic cell is compressed
+(K13), and spheres are cut out where the filling is that of the CPE aggregates, to TOLERANCE: places in the cell are drawn
+until that is so. A pair comes from one cell, in two places and orientations, whose spheres may share grains.
+"""
+
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TOP = os.path.dirname(os.path.dirname(HERE))
+sys.path.insert(0, TOP)
+from analysis.progress import progress
+from yade_scripts import packings
+from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
+from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.run import table
+
+CELLS, PACKINGS, COLLISIONS = "runs/compressed-cells", "runs/compressed-packings", "runs/compressed"
+FILLINGS, PAIRS = (0.4, 0.3), 10
+GRAINS, RATE = 8192, "1e-5"  # of a cell; 1/t0
+RADIUS = 20  # r, of the spheres; half the cell's edge is 22 r at 0.4
+TOLERANCE, PLACES = 0.01, 200  # of the filling; places tried
+EXPONENTS = (5, 0, 10)  # i of 10^(0.1 i) m/s
+DURATION = "8e-7"  # s: compressed aggregates turn around later than CPE ones
+STEP, CELL_STEP = 0.2, 0.3  # t0
+
+
+def cell(filling, seed):
+    """Run folder of a cell."""
+    return f"{CELLS}/f{filling:g}-s{seed}"
+
+
+def packing_file(filling, seed, index):
+    """Path of the packing of target (0) or projectile (1)."""
+    return f"{PACKINGS}/f{filling:g}-s{seed}{('', '-b')[index]}.npz"
+
+
+def cut_pair(filling, seed):
+    """Make both spheres of a cell, where they are missing. Raises PackingError."""
+    files = [packing_file(filling, seed, index) for index in (0, 1)]
+    if all(map(os.path.exists, files)):
+        return
+    folder = os.path.join(cell(filling, seed), "states")
+    try:
+        last = max(os.listdir(folder))
+    except (OSError, ValueError):
+        raise PackingError(f"{folder}: no states; must be those of a cell: run compressed-cells.table first") from None
+    state, place = read_periodic_state(os.path.join(folder, last)), 0
+    for index, file in enumerate(files):
+        while place < PLACES:
+            found = cut(state, CutParameters(radius=float(RADIUS), seed=1000 * seed + place), index)
+            place += 1
+            if abs(found.parameters["filling"] / filling - 1) <= TOLERANCE:
+                break
+        else:
+            raise PackingError(
+                f"{cell(filling, seed)}: no sphere of that filling in {PLACES} places; must be another cell"
+            )
+        about = {**found.parameters, "cell": seed, "nominal": filling}
+        packings.save(file, Packing(found.position, found.radius, found.seed, about))
+
+
+def cell_rows():
+    """Rows of the cells' table."""
+    row = {"!SCRIPT": "yade_scripts/compress.py", "grains": GRAINS, "strainRate": RATE, "stepFraction": CELL_STEP}
+    found = []
+    for seed in range(1, PAIRS + 1):
+        for filling in FILLINGS:
+            own = {"finalFilling": f"{filling:g}", "states": 2, "seed": seed, "threads": 1, "out": cell(filling, seed)}
+            found.append({"description": f"f{filling:g}-s{seed}", **row, **own})
+    return found
+
+
+def collision_rows():
+    """Rows of the collisions' table: each pair of both kinds after the other."""
+    found = []
+    for i in EXPONENTS:
+        for seed in range(1, PAIRS + 1):
+            for filling in FILLINGS:
+                files = [packing_file(filling, seed, index) for index in (0, 1)]
+                for kind, given in (
+                    ("cpe", dict(packing="cpe", filling=filling, radius=RADIUS, seed=seed)),
+                    ("compressed", dict(packing="file", file=files[0], projectileFile=files[1])),
+                ):
+                    name = f"{kind}-f{filling:g}-i{i}-s{seed}"
+                    last = dict(duration=DURATION, stepFraction=STEP, threads=1, out=f"{COLLISIONS}/{name}")
+                    found.append({"description": name, **given, "velocity": f"10**(0.1*{i})", **last})
+    return found
+
+
+def write_tables(folder):
+    """Write compressed-cells.table and compressed-desk.table into a folder."""
+    written = "Written by yade_scripts/studies/compressed.py."
+    head = f"Cells that are compressed, out of which spheres are cut (Oshiro et al. 2025).\nUnits: strainRate: 1/t0; stepFraction: t0. {written}"
+    table.write(os.path.join(folder, "compressed-cells.table"), cell_rows(), head)
+    head = (
+        "CPE and compressed aggregates of the same filling and size, head-on.\n"
+        f"Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0. {written}"
+    )
+    table.write(os.path.join(folder, "compressed-desk.table"), collision_rows(), head)
+
+
+def main(arguments):
+    if arguments == ["tables"]:
+        write_tables(HERE)
+    elif arguments == ["cut"]:
+        os.chdir(TOP)
+        os.makedirs(PACKINGS, exist_ok=True)
+        pairs = [(filling, seed) for filling in FILLINGS for seed in range(1, PAIRS + 1)]
+        try:
+            for filling, seed in progress(pairs, "cutting spheres"):
+                cut_pair(filling, seed)
+        except PackingError as error:
+            sys.exit(f"compressed.py: {error}")
+    else:
+        sys.exit("compressed.py: must be called with cut or tables")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
