@@ -32,6 +32,21 @@ def scatter(values):
     return _without_rounding(values.std(ddof=1), values) if len(values) > 1 else float("nan")
 
 
+def pooled_scatter(scatters, numbers):
+    """(standard deviation of one run, its degrees of freedom) from the standard deviations (K,) (NaN: one run) of groups of
+    numbers (K,) runs each; (None, 0) without a group of two.
+
+    >>> pooled_scatter([1.0, float("nan"), 7.0], [2, 1, 2])
+    (5.0, 2)
+    """
+    scatters, numbers = np.asarray(scatters, dtype=float), np.asarray(numbers)
+    known = np.isfinite(scatters) & (numbers > 1)
+    if not known.any():
+        return None, 0
+    freedom = numbers[known] - 1
+    return float(np.sqrt(np.average(np.square(scatters[known]), weights=freedom))), int(freedom.sum())
+
+
 def resampling_error(resamples):
     """Standard error: the standard deviation over resamples (B,), of those that are finite; None where fewer than two
     are, 0 where they agree to rounding."""

@@ -13,7 +13,8 @@ from .section import Column, Section
 class Line:
     """quantity, unit ('' for numbers), ours with its standard error (None: no error), paper (None: it gives none),
     paper_error (None: it gives none, and there is no estimate), note, freedom (degrees of freedom of the error, where it is
-    from so many runs less one; None: of more, or unknown)."""
+    from so many runs less one; None: of more, or unknown), shared (whether the paper's error is of our own scatter, as if its run were
+    one of ours)."""
 
     quantity: str
     unit: str
@@ -23,12 +24,14 @@ class Line:
     paper_error: float = None
     note: str = ""
     freedom: int = None
+    shared: bool = False
 
     @property
     def chance(self):
-        """Chance of such a difference from our scatter alone, by Student's t; None without freedom."""
-        known = self.difference is not None and self.freedom
-        return student_chance(self.difference, self.freedom) if known else None
+        """Chance of such a difference from our scatter, by Student's t: of our mean alone, or of the paper's run too where it
+        is taken to scatter as ours (shared); None without freedom."""
+        difference = self.combined_difference if self.shared else self.difference
+        return student_chance(difference, self.freedom) if difference is not None and self.freedom else None
 
     @property
     def difference(self):

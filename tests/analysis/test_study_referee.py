@@ -11,12 +11,13 @@ from made_collisions import FILLING, MODULI, OFFSET, made_points
 from written_runs import RADIUS
 
 from analysis.runs.table import read_table
+from analysis.statistics import pooled_scatter
 from analysis.studies.elastoplastic import paper, prediction
 from analysis.studies.elastoplastic.joint_fit import JointSearch, joint_fit
 from analysis.studies.elastoplastic.measure import COLUMNS
 from analysis.studies.elastoplastic.points import points_of, resampled
 from analysis.studies.elastoplastic.results import PAPER_RADII
-from analysis.studies.elastoplastic.size_fit import fit_sizes, joint_difference, line_covariance, pooled_scatter
+from analysis.studies.elastoplastic.size_fit import fit_sizes, joint_difference, line_covariance
 from analysis.studies.elastoplastic.start_offset import common_slope
 from analysis.studies.elastoplastic.velocity_fit import predicted
 from analysis.studies.elastoplastic.zone_fit import adjust, fit_slope

@@ -3,12 +3,12 @@
 import numpy as np
 
 from ...report.beside_paper import Line
-from ...statistics import mean_and_error
+from ...statistics import mean_and_error, pooled_scatter
 from ...theory.aggregates import bulk_modulus, cpe_coordination
 from ...theory.andrews import Spheres, restitution, stress_if_rigid
 from . import paper
 from .results import PAPER_RADII
-from .size_fit import errors_of_design, pooled_scatter
+from .size_fit import errors_of_design
 from .velocity_fit import degenerate_curve, fitted_sizes, moduli_errors_of_design, reduced_radius
 
 MEGA = 1e6

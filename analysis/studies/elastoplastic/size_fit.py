@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2, f
 
-from ...statistics import resampling_error
+from ...statistics import pooled_scatter, resampling_error
 
 NAMES = ("c1", "c2", "offset", "ratio")
 
@@ -130,17 +130,6 @@ def line_covariance(radii, number, scatter):
     scatters by `scatter` [grain radii]."""
     design = np.stack([np.asarray(radii, dtype=float), -np.ones(len(radii))], axis=1)
     return scatter**2 * np.linalg.inv(design.T @ (design * np.broadcast_to(number, len(radii))[:, None]))
-
-
-def pooled_scatter(own, number):
-    """(standard deviation of one run, its degrees of freedom) from those of K points (nan: one run) with `number` runs."""
-    known = np.isfinite(own) & (np.asarray(number) > 1)
-    freedom = np.asarray(number)[known] - 1
-    return (
-        (float(np.sqrt(np.average(np.square(own[known]), weights=freedom))), int(freedom.sum()))
-        if known.any()
-        else (None, 0)
-    )
 
 
 def joint_difference(fit, points, line, design, seeds, grain_radius):

@@ -3,20 +3,18 @@
 import numpy as np
 
 from ...report.beside_paper import Line
-from ...statistics import mean_and_error, resampling_error, scatter
+from ...statistics import mean_and_error, pooled_scatter, resampling_error, scatter
 from . import paper
-from .measure import DISSIPATION
-from .results import by_time, picoseconds, total_dissipation
-
-CLOSE = 2e-3  # relative: velocities that count as the same
+from .loss_lines import dissipation, events, fragments, pair_speeds
+from .results import CLOSE, by_time, named, picoseconds
 
 
 def compare(results):
     """Yields (heading, [Line], (notes)) of results.Results."""
-    for group in (_aggregates, _sticking, _thresholds, _growth, _largest, _head_on, _dissipation, _events):
+    for group in (_aggregates, _sticking, _thresholds, _growth, _largest, _head_on, dissipation, events):
         yield from group(results)
-    yield from _fragments(results)
-    yield from _pair_speeds(results)
+    yield from fragments(results)
+    yield from pair_speeds(results)
     yield from _collapse(results)
 
 
@@ -26,18 +24,20 @@ def _aggregates(results):
         pairs = runs.drop_duplicates("seed")
         own = pairs.characteristic_radius / pairs.grain_radius
         theirs = np.array(paper.CHARACTERISTIC_RADII)
-        papers = grains == paper.GRAINS
+        papers = grains == paper.GRAINS and len(pairs) > 1
         lines.append(
             Line(
                 f"characteristic radius, {grains} grains",
                 "r",
                 *mean_and_error(own),
                 theirs.mean() if papers else None,
-                scatter(theirs) / 2**0.5 if papers else None,
+                scatter(own) if papers else None,
                 f"{len(pairs)} pairs of aggregates, filling N (r/r_c)^3 = {grains / own.mean() ** 3:.4f}",
+                len(pairs) - 1,
+                shared=True,
             )
         )
-    yield "the aggregates", lines, ("The error is of the mean over pairs; the paper's, of its two aggregates.",)
+    yield "the aggregates", lines, ("The mean of a pair's two. The paper's error: the scatter of one of our pairs.",)
 
 
 def _sticking(results):
@@ -62,7 +62,7 @@ def _thresholds(results):
             end = "above" if growth.mean[-1] > 0 else "below" if growth.mean[0] <= 0 else "not within"
             note = f"{end} the velocities of the runs; {covered}"
         half = 0.5 * (paper.V_FRA[1] - paper.V_FRA[0])
-        lines.append(Line(_name("v_fra", growth), "m/s", growth.v_fra, growth.v_fra_error, middle, half, note))
+        lines.append(Line(named("v_fra", growth), "m/s", growth.v_fra, growth.v_fra_error, middle, half, note))
     lines += list(_v_fra_ratios(results))
     notes = (
         "v_fra: where <f_gro> first falls through 0, linear in ln v between velocities a quarter apart; the error is from "
@@ -102,7 +102,7 @@ def _growth(results):
             if len(k):
                 error = None if np.isnan(growth.error[k[0]]) else float(growth.error[k[0]])
                 sign = "paper: > 0 below 50 m/s" if velocity < 60 else "paper: < 0 above 60 m/s"
-                name = _name(f"<f_gro> at {velocity:.3g} m/s", growth)
+                name = named(f"<f_gro> at {velocity:.3g} m/s", growth)
                 lines.append(Line(name, "", float(growth.mean[k[0]]), error, note=sign))
     lines += list(_growth_differences(results))
     if lines:
@@ -139,28 +139,50 @@ def _largest(results):
     runs = runs[runs.grains == paper.GRAINS]
     if not len(runs):
         return
-    lines = []
-    for time, mean, error, number in by_time(runs, runs.largest):
-        own = runs.largest[(runs.viscoelasticTime - time).abs() < 1e-16]
-        spread = scatter(own) if number > 1 else None
-        lines.append(
-            Line(
-                f"N_lar, T_vis = {picoseconds(time)} ps",
-                "",
-                mean,
-                error,
-                paper.LARGEST.get(time),
-                spread,
-                f"{number} seeds; the paper's error: the scatter of one of our runs"
-                if spread
-                else "one seed: no error",
-            )
+    points = by_time(runs, runs.largest)
+    own = [runs.largest[(runs.viscoelasticTime - time).abs() < 1e-16] for time, *_ in points]
+    spread, freedom = pooled_scatter([scatter(values) for values in own], [number for *_, number in points])
+    lines = [
+        Line(
+            f"N_lar, T_vis = {picoseconds(time)} ps",
+            "",
+            mean,
+            spread / number**0.5 if spread else None,
+            paper.LARGEST.get(time),
+            spread,
+            f"{number} pairs",
+            freedom,
+            shared=True,
         )
+        for time, mean, _, number in points
+    ]
+    lines += list(_largest_difference(runs, points[0][0], points[-1][0]))
     notes = (
-        "50.1 m/s, B_off^2 = 3/12, the paper's own size. Its four numbers are of one pair of aggregates; the difference of "
-        "43,957 and 47,919 says something about T_vis only if it is larger than what another pair would give.",
+        "50.1 m/s, B_off^2 = 3/12, the paper's own size. Its four numbers are of one pair of aggregates, which is taken to "
+        "scatter as one of ours: p is by Student's t, for both. The scatter of a run is pooled over T_vis.",
+        "The difference has each pair with and without drag, so that what differs from pair to pair drops out.",
     )
     yield "largest fragment at full size", lines, notes
+
+
+def _largest_difference(runs, low, high):
+    """N_lar at one T_vis less that at another, of the same pairs."""
+    at = [runs[(runs.viscoelasticTime - time).abs() < 1e-16].set_index("seed").largest for time in (low, high)]
+    differences = (at[1] - at[0]).dropna()
+    if low == high or not len(differences):
+        return
+    known = {low, high} <= set(paper.LARGEST)
+    several = len(differences) > 1
+    yield Line(
+        f"N_lar, {picoseconds(high)} ps less {picoseconds(low)} ps",
+        "",
+        *mean_and_error(differences),
+        paper.LARGEST[high] - paper.LARGEST[low] if known else None,
+        scatter(differences) if several else None,
+        f"{len(differences)} pairs",
+        len(differences) - 1,
+        shared=True,
+    )
 
 
 def _head_on(results):
@@ -180,88 +202,6 @@ def _head_on(results):
         yield "head-on collisions", lines, notes
 
 
-def _dissipation(results):
-    for grains, runs in results.reference.groupby("grains"):
-        lines, total = [], total_dissipation(runs)
-        parts = {**{name: runs[name] for name in DISSIPATION if not name.endswith("connection")}}
-        parts["connection and disconnection"] = runs.connection + runs.disconnection
-        for name, part in parts.items():
-            for time, mean, error, number in by_time(runs, part / total):
-                label = f"{name.removesuffix('Dissipation')}, T_vis = {picoseconds(time)} ps"
-                lines.append(Line(label, "of all that is lost", mean, error, note=f"{number} runs"))
-        unit = 2 * runs.grains * runs.energy_unit
-        for time, mean, error, number in by_time(runs, parts["connection and disconnection"] / unit):
-            label = f"E_dis,c/(N_tot F_c delta_c), T_vis = {picoseconds(time)} ps"
-            lines.append(Line(label, "", mean, error, 1.0, None, 'paper: "on the order of 1"'))
-        notes = (
-            "Changes from the start to the end at 50.1 m/s, B_off^2 = 3/12. The paper's finding: rolling is the largest of "
-            "the five for every T_vis, connection and disconnection the smallest but for drag without drag; it prints no "
-            "numbers. What is lost when contacts break includes the energy of their tangential springs, as in A22.",
-        )
-        yield f"where the energy goes, {grains} grains", lines, notes
-
-
-def _events(results):
-    for grains, runs in results.reference.groupby("grains"):
-        runs = runs[np.isfinite(runs.formed.astype(float))]
-        lines = []
-        for quantity, values, theirs in (("N_con", runs.formed, 1.0), ("N_cut", runs.broken, None)):
-            for time, mean, error, number in by_time(runs, values.astype(float) / (2 * runs.grains)):
-                note = f"{number} runs; paper: " + ("about 1" if theirs else "less than 1")
-                lines.append(
-                    Line(f"{quantity}/N_tot, T_vis = {picoseconds(time)} ps", "", mean, error, theirs, None, note)
-                )
-        if lines:
-            notes = (
-                "50.1 m/s, B_off^2 = 3/12, all contacts that formed and broke since the start, those between grains of one "
-                "aggregate too, and a contact that chatters as often as it does. The paper reads its numbers off Fig. 15.",
-            )
-            yield f"connections and disconnections, {grains} grains", lines, notes
-
-
-def _fragments(results):
-    lines = []
-    for growth in results.growth.values():
-        for velocity, distribution in growth.distributions.items():
-            if min(abs(velocity / v - 1) for v in (paper.VELOCITY, 100.0)) > CLOSE:
-                continue
-            law, name = distribution.power_law, _name(f"{velocity:.3g} m/s", growth)
-            theirs = (paper.EXPONENT, paper.AMPLITUDE) if growth.viscous_time > 0 else (None, None)
-            lines.append(
-                Line(f"alpha, {name}", "", law.exponent, law.exponent_error, theirs[0], note="f(N) = c N^-alpha")
-            )
-            lines.append(Line(f"c, {name}", "", law.amplitude, law.amplitude_error, theirs[1]))
-    if lines:
-        notes = (
-            "Fitted to <N_cum(<= N)> up to 5 % of all grains, least squares of the logarithms; errors joint from "
-            "resampling pairs of aggregates. The paper draws N_cum = N for 6 ps by eye.",
-            "Fragments larger than that are too few for a law, and in small aggregates the range is short.",
-        )
-        yield "size distribution of fragments", lines, notes
-
-
-def _pair_speeds(results):
-    lines = []
-    for grains, runs in results.reference.groupby("grains"):
-        for time, mean, error, number in by_time(runs, runs.pair_speed):
-            note = f"{number} runs" + ("; paper: below 1 m/s" if time else "")
-            lines.append(
-                Line(
-                    f"largest rms of v_rel, T_vis = {picoseconds(time)} ps, {grains} grains",
-                    "m/s",
-                    mean,
-                    error,
-                    note=note,
-                )
-            )
-    if lines:
-        notes = (
-            "Pairs nearer than 2.2 r at 50.1 m/s, B_off^2 = 3/12; the largest over the states, so that a peak between two of "
-            "them is missed. Small aggregates are over before the paper's 0.3 us.",
-        )
-        yield "velocities between neighbours", lines, notes
-
-
 def _collapse(results):
     lines = []
     for grains in results.sizes:
@@ -269,7 +209,7 @@ def _collapse(results):
             if growth.v_fra is not None and np.isfinite(growth.sticking_velocity):
                 ratio = growth.v_fra / growth.sticking_velocity
                 error = None if growth.v_fra_error is None else growth.v_fra_error / growth.sticking_velocity
-                lines.append(Line(_name("v_fra/v_stick", growth), "", ratio, error))
+                lines.append(Line(named("v_fra/v_stick", growth), "", ratio, error))
     if lines:
         notes = (
             "If single contacts decided, as a theory of two grains has it, <f_gro> would be one curve of v/v_stick(T_vis) "
@@ -277,10 +217,6 @@ def _collapse(results):
             "grains lose by rolling, sliding and twisting, which T_vis does not change, is what has to be paid.",
         )
         yield "does f_gro collapse with v/v_stick?", lines, notes
-
-
-def _name(quantity, growth):
-    return f"{quantity}, T_vis = {picoseconds(growth.viscous_time)} ps, {growth.grains} grains"
 
 
 def _seeds(results, growth):

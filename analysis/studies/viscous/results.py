@@ -12,6 +12,8 @@ from .measure import DISSIPATION, is_reference
 from .size_distribution import SizeDistribution, size_distribution
 from .threshold import threshold_velocity
 
+CLOSE = 2e-3  # relative: velocities that count as the same
+
 
 @dataclass(frozen=True)
 class Growth:
@@ -138,3 +140,8 @@ def by_time(table, values):
         if len(own):
             found.append((float(time), *mean_and_error(own), len(own)))
     return found
+
+
+def named(quantity, growth):
+    """The quantity with T_vis and size of a Growth, as lines name it."""
+    return f"{quantity}, T_vis = {picoseconds(growth.viscous_time)} ps, {growth.grains} grains"
