@@ -17,6 +17,11 @@ COMMANDS = {
 }
 
 
+def hear_ctrl_c():
+    """As in a terminal: what a shell starts in the background ignores Ctrl-C, and so would the tests' processes."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def interrupted(command, module, folder):
     """The process, after Ctrl-C while it imported the module."""
     (folder / f"{module}.py").write_text(SLOW)
@@ -29,6 +34,7 @@ def interrupted(command, module, folder):
         stderr=subprocess.PIPE,
         text=True,
         env=environment(PYTHONPATH=f"{folder}:{TOP}", IMPORTING=str(importing)),
+        preexec_fn=hear_ctrl_c,
     )
     with open(importing):  # waits for the other end
         process.send_signal(signal.SIGINT)
