@@ -73,6 +73,16 @@ def impact_mean(runs, values, draws):
     return mean, resamples
 
 
+def head_on_mean(runs, values, draws):
+    """As impact_mean, of the head-on collisions alone."""
+    points = [(samples, seeds) for square, samples, seeds in at_impacts(runs, values) if square == 0]
+    if not points:
+        return None
+    ((samples, seeds),) = points
+    mean = samples.mean(axis=0)
+    return mean, mean + draws.deviations(samples, seeds)
+
+
 def has_scatter(runs):
     """Whether some B_off of a table of runs has two seeds or more, so that errors can be told."""
     return bool(runs.groupby(runs.impact.round(6)).seed.nunique().max() > 1)

@@ -7,7 +7,7 @@ import numpy as np
 import pandas
 
 from ...statistics import mean_and_error, resampling_error
-from .impact_mean import Draws, has_scatter, impact_mean
+from .impact_mean import Draws, has_scatter, head_on_mean, impact_mean
 from .measure import DISSIPATION, is_reference
 from .size_distribution import SizeDistribution, size_distribution
 from .threshold import threshold_velocity
@@ -17,7 +17,7 @@ CLOSE = 2e-3  # relative: velocities that count as the same
 
 @dataclass(frozen=True)
 class Growth:
-    """<f_gro> against velocity at one size and T_vis: velocities (V,) [m/s], mean (V,), error (V,) (NaN: not known),
+    """<f_gro>, or f_gro at B_off = 0, against velocity at one size and T_vis: velocities (V,) [m/s], mean (V,), error (V,) (NaN: not known),
     resamples (B, V); v_fra [m/s] (None: outside the velocities), its error (None: not known) and resamples (B,);
     distributions ({velocity: SizeDistribution}); sticking_velocity [m/s] of two grains."""
 
@@ -41,10 +41,12 @@ class Growth:
 
 @dataclass(frozen=True)
 class Results:
-    """table (a row a run, measure.COLUMNS), growth ({(grains, T_vis): Growth}, where some velocity has B_off from 0 to 1)."""
+    """table (a row a run, measure.COLUMNS); {(grains, T_vis): Growth}: growth of means over B_off, where some velocity has B_off
+    from 0 to 1, and head_on."""
 
     table: pandas.DataFrame
     growth: Mapping
+    head_on: Mapping
 
     @property
     def sizes(self):
@@ -88,20 +90,25 @@ def total_dissipation(table):
 
 def make_results(table):
     """Results of a table of runs (measure.COLUMNS), at least one."""
-    growth = {}
+    return Results(table, _growths(table, impact_mean), _growths(table[table.impact == 0], head_on_mean))
+
+
+def _growths(table, mean):
+    """{(grains, T_vis): Growth} of a table of runs, with impact_mean or head_on_mean."""
+    found = {}
     for grains, of_size in table.groupby("grains"):
         draws = Draws(of_size.seed)
         for time, runs in of_size.groupby(of_size.viscoelasticTime.round(16)):
-            found = _growth(int(grains), float(time), runs, draws)
-            if found is not None:
-                growth[int(grains), float(time)] = found
-    return Results(table, growth)
+            own = _growth(int(grains), float(time), runs, draws, mean)
+            if own is not None:
+                found[int(grains), float(time)] = own
+    return found
 
 
-def _growth(grains, time, table, draws):
+def _growth(grains, time, table, draws, mean):
     velocities, means, resamples, errors, distributions = [], [], [], [], {}
     for _, runs in table.groupby(table.velocity.round(6)):
-        found = impact_mean(runs, runs.growth, draws)
+        found = mean(runs, runs.growth, draws)
         if found is None:
             continue
         velocity = float(runs.velocity.iloc[0])
@@ -109,7 +116,8 @@ def _growth(grains, time, table, draws):
         means.append(float(found[0]))
         resamples.append(found[1])
         errors.append(resampling_error(found[1]) if has_scatter(runs) else np.nan)
-        distributions[velocity] = size_distribution(runs, draws)
+        if mean is impact_mean:
+            distributions[velocity] = size_distribution(runs, draws)
     if not velocities:
         return None
     resamples = np.stack(resamples, axis=1)

@@ -37,18 +37,15 @@ def extrapolate(small, large, grains, exponent):
 
 
 def size_section(results):
-    """Section of <f_gro> and v_fra against size, measured where there are runs, and extrapolated from the two smallest
-    sizes to the others and to the paper's; None without two sizes."""
-    if len(results.sizes) < 2:
+    """Section of growth against size, measured where there are runs, and extrapolated from the two smallest sizes to the
+    others and to the paper's; None without two sizes."""
+    records = [
+        *_of_quantity("<f_gro>", results.growth, threshold=True),
+        *_of_quantity("f_gro at B_off = 0", results.head_on, threshold=False),
+    ]
+    if not records:
         return None
-    small, large, *others = results.sizes
-    records = []
-    for time in sorted({growth.viscous_time for growth in results.growth.values()}):
-        if (small, time) in results.growth and (large, time) in results.growth:
-            pair = results.growth[small, time], results.growth[large, time]
-            for grains in (*others, *({paper.GRAINS} - set(others))):
-                records += _records(pair, results.growth.get((grains, time)), grains)
-    intro = f"From {small} and {large} grains by <f_gro> = f_inf + c N^-p, beside runs where there are any."
+    intro = "From the two smallest sizes by f = f_inf + c N^-p, beside runs where there are any."
     notes = (
         "Errors are joint over velocities, from resampling pairs of aggregates; the sizes are independent of each other.",
         "diff: measured less extrapolated, in both errors. Rows of one T_vis are the same pairs and not independent.",
@@ -56,30 +53,52 @@ def size_section(results):
     return Section("extrapolated to larger aggregates", _COLUMNS, tuple(records), intro, notes)
 
 
-def _records(pair, measured, grains):
-    """Rows of one size and T_vis: <f_gro> at every velocity, then v_fra."""
+def _of_quantity(name, growth, threshold):
+    """Rows of {(grains, T_vis): Growth}; threshold: v_fra too."""
+    sizes = sorted({grains for grains, _ in growth})
+    if len(sizes) < 2:
+        return
+    small, large, *others = sizes
+    for time in sorted({time for _, time in growth}):
+        if (small, time) in growth and (large, time) in growth:
+            pair = growth[small, time], growth[large, time]
+            for grains in sorted({*others, paper.GRAINS}):
+                measured = growth.get((grains, time))
+                yield from _at_velocities(name, pair, measured, grains)
+                if threshold:
+                    yield _threshold(pair, measured, grains)
+
+
+def _at_velocities(name, pair, measured, grains):
+    """A row for each velocity."""
     drawn = [extrapolate(*pair, grains, exponent) for exponent in EXPONENTS]
-    velocities = drawn[0][0]
-    error_of = resampling_error if all(growth.has_errors for growth in pair) else _unknown
-    base = {"T_vis": pair[0].viscous_time, "grains": grains}
-    for k, velocity in enumerate(velocities):
-        found = [(mean[k], error_of(resamples[:, k])) for _, mean, resamples in drawn]
-        own = None if measured is None else np.flatnonzero(np.abs(measured.velocities / velocity - 1) < 1e-6)
-        known = own is not None and len(own)
-        value = (measured.mean[own[0]], measured.error[own[0]]) if known else None
-        yield {**base, **_record(f"<f_gro> at {velocity:.3g} m/s", found, value)}
-    found = [
-        (threshold_velocity(velocities, mean), error_of(threshold_velocity(velocities, resamples)))
-        for _, mean, resamples in drawn
-    ]
+    for k, velocity in enumerate(drawn[0][0]):
+        found = [(mean[k], _error(resamples[:, k], pair)) for _, mean, resamples in drawn]
+        own = [] if measured is None else np.flatnonzero(np.abs(measured.velocities / velocity - 1) < 1e-6)
+        value = (measured.mean[own[0]], measured.error[own[0]]) if len(own) else None
+        yield _record(f"{name} at {velocity:.3g} m/s", pair, grains, found, value)
+
+
+def _threshold(pair, measured, grains):
+    """The row of v_fra."""
+    found = []
+    for exponent in EXPONENTS:
+        velocities, mean, resamples = extrapolate(*pair, grains, exponent)
+        drawn = threshold_velocity(velocities, resamples)
+        found.append((threshold_velocity(velocities, mean), _error(drawn, pair)))
     value = (measured.v_fra, measured.v_fra_error) if measured is not None and measured.v_fra is not None else None
-    yield {**base, **_record("v_fra [m/s]", found, value)}
+    return _record("v_fra [m/s]", pair, grains, found, value)
 
 
-def _record(quantity, extrapolated, measured):
+def _error(resamples, pair):
+    """Standard error; None where one of the two sizes has one seed."""
+    return resampling_error(resamples) if all(growth.has_errors for growth in pair) else None
+
+
+def _record(quantity, pair, grains, extrapolated, measured):
     """One row; extrapolated: [(value, error)] of EXPONENTS, measured: (value, error) or None. Unknown numbers: None."""
     value, error = (None, None) if measured is None else (_finite(measured[0]), _finite(measured[1]))
-    record = {"quantity": quantity, "measured": value, "error": error}
+    record = {"T_vis": pair[0].viscous_time, "grains": grains, "quantity": quantity, "measured": value, "error": error}
     for name, (expected, its_error) in zip(_NAMES, extrapolated):
         expected, its_error = _finite(expected), _finite(its_error)
         both = None if None in (error, its_error) else float(np.hypot(error, its_error))
@@ -87,10 +106,6 @@ def _record(quantity, extrapolated, measured):
         record |= {name: expected, f"{name}_error": its_error}
         record[f"{name}_difference"] = (value - expected) / both if known else None
     return record
-
-
-def _unknown(_):
-    return None
 
 
 def _finite(value):
