@@ -59,16 +59,14 @@ def full():
 
 
 def prediction():
-    """Scenes that were predicted: without drag and with the most, seed by seed."""
-    scenes = []
-    for seed in range(1, PREDICTED_SEEDS + 1):
-        scenes += [
-            scene
-            for scene in grid(PREDICTED_GRAINS, PREDICTED_EXPONENTS, seed)
-            if scene[1] in EVERY_SECOND and scene[3] in REFERENCE_PICOSECONDS
-        ]
-        scenes += [(FULL_GRAINS, 0, REFERENCE[1], 0, seed)] if seed == 1 else []
-    return scenes
+    """Scenes that were predicted, without drag and with the most: head-on ones first, then seed by seed."""
+    scenes = [
+        scene
+        for seed in range(1, PREDICTED_SEEDS + 1)
+        for scene in grid(PREDICTED_GRAINS, PREDICTED_EXPONENTS, seed)
+        if scene[1] in EVERY_SECOND and scene[3] in REFERENCE_PICOSECONDS
+    ]
+    return sorted([*scenes, (FULL_GRAINS, 0, REFERENCE[1], 0, 1)], key=lambda scene: scene[1] > 0)
 
 
 def rows(scenes, folder):
