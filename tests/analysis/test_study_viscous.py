@@ -120,7 +120,7 @@ def test_comparison_and_figures(runs, tmp_path, capsys):
     said = capsys.readouterr()
     answer = json.loads(said.out)
     sections = {section["heading"]: section["rows"] for section in answer["sections"]}
-    lines = {row["quantity"]: row for rows in sections.values() for row in rows}
+    lines = {row["quantity"]: row for rows in sections.values() for row in rows if "quantity" in row}
     name = f"T_vis = 6 ps, {GRAINS} grains"
     assert lines[f"v_fra, {name}"]["ours"] == pytest.approx(V_FRA, rel=0.1) and lines[f"v_fra, {name}"]["error"] > 0
     ratio = lines["v_stick(6 ps)/v_stick(0)"]

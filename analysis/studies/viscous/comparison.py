@@ -8,6 +8,7 @@ from ...statistics import RESAMPLES
 from .lines import compare
 from .results import picoseconds
 from .size_dependence import size_section
+from .small_fragments import drag_section, small_section
 
 LEGEND = (
     f"error: standard error from the scatter of the seeds (bootstrap of pairs of aggregates, {RESAMPLES} resamples, joint "
@@ -22,8 +23,9 @@ def sections(results):
     """Sections of results.Results: one for each subject, with an honest read as notes."""
     for heading, lines, notes in compare(results):
         yield section_of_lines(heading, lines, notes)
-    if (of_sizes := size_section(results)) is not None:
-        yield of_sizes
+    for make in (drag_section, small_section, size_section):
+        if (section := make(results)) is not None:
+            yield section
     yield Section("how to read the tables", notes=LEGEND)
 
 

@@ -5,8 +5,9 @@ import numpy as np
 from ...report.beside_paper import Line
 from ...statistics import mean_and_error, pooled_scatter, resampling_error, scatter
 from . import paper
+from .curves import SAME, difference
 from .loss_lines import dissipation, events, fragments, pair_speeds
-from .results import CLOSE, by_time, named, picoseconds
+from .results import by_time, named, picoseconds
 
 
 def compare(results):
@@ -98,12 +99,11 @@ def _growth(results):
     lines = []
     for growth in results.growth.values():
         for velocity in (paper.VELOCITY, 10**1.8):
-            k = np.flatnonzero(np.abs(growth.velocities / velocity - 1) < CLOSE)
-            if len(k):
-                error = None if np.isnan(growth.error[k[0]]) else float(growth.error[k[0]])
+            found = growth.at(velocity)
+            if found is not None:
                 sign = "paper: > 0 below 50 m/s" if velocity < 60 else "paper: < 0 above 60 m/s"
                 name = named(f"<f_gro> at {velocity:.3g} m/s", growth)
-                lines.append(Line(name, "", float(growth.mean[k[0]]), error, note=sign))
+                lines.append(Line(name, "", *found, note=sign))
     lines += list(_growth_differences(results))
     if lines:
         notes = (
@@ -118,20 +118,10 @@ def _growth_differences(results):
         low, high = results.of_size(grains)[0], results.of_size(grains)[-1]
         if low is high:
             continue
-        at = [np.flatnonzero(np.abs(g.velocities / paper.VELOCITY - 1) < CLOSE) for g in (low, high)]
-        if len(at[0]) and len(at[1]):
-            k, m = int(at[0][0]), int(at[1][0])
-            error = resampling_error(high.resamples[:, m] - low.resamples[:, k])
-            name = f"{picoseconds(high.viscous_time)} ps less {picoseconds(low.viscous_time)} ps"
-            yield Line(
-                f"<f_gro> at 50.1 m/s, {name}, {grains} grains",
-                "",
-                float(high.mean[m] - low.mean[k]),
-                error if low.has_errors and high.has_errors else None,
-                0.0,
-                None,
-                "paper: hardly any difference",
-            )
+        found = difference(high, low, paper.VELOCITY)
+        if found is not None:
+            name = f"{picoseconds(high.viscous_time)} ps less {picoseconds(low.viscous_time)} ps, {grains} grains"
+            yield Line(f"<f_gro> at 50.1 m/s, {name}", "", *found, 0.0, None, "paper: hardly any difference")
 
 
 def _largest(results):
@@ -189,7 +179,7 @@ def _head_on(results):
     lines = []
     low, high = paper.HEAD_ON
     table = results.table
-    runs = table[(table.impact == 0) & (table.velocity > low * (1 - CLOSE)) & (table.velocity < high * (1 + CLOSE))]
+    runs = table[(table.impact == 0) & (table.velocity > low * (1 - SAME)) & (table.velocity < high * (1 + SAME))]
     for grains, own in runs.groupby("grains"):
         of_pairs = own.groupby([own.viscoelasticTime.round(16), "seed"]).growth.mean().reset_index()
         for time, mean, error, number in by_time(of_pairs, of_pairs.growth):

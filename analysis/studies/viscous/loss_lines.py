@@ -4,8 +4,9 @@ import numpy as np
 
 from ...report.beside_paper import Line
 from . import paper
+from .curves import SAME
 from .measure import DISSIPATION
-from .results import CLOSE, by_time, named, picoseconds, total_dissipation
+from .results import by_time, named, picoseconds, total_dissipation
 
 
 def dissipation(results):
@@ -51,7 +52,7 @@ def fragments(results):
     lines = []
     for growth in results.growth.values():
         for velocity, distribution in growth.distributions.items():
-            if min(abs(velocity / v - 1) for v in (paper.VELOCITY, 100.0)) > CLOSE:
+            if min(abs(velocity / v - 1) for v in (paper.VELOCITY, 100.0)) > SAME:
                 continue
             law, name = distribution.power_law, named(f"{velocity:.3g} m/s", growth)
             theirs = (paper.EXPONENT, paper.AMPLITUDE) if growth.viscous_time > 0 else (None, None)

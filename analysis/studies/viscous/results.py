@@ -7,46 +7,38 @@ import numpy as np
 import pandas
 
 from ...statistics import mean_and_error, resampling_error
-from .impact_mean import Draws, has_scatter, head_on_mean, impact_mean
-from .measure import DISSIPATION, is_reference
+from .curves import Curve, curves
+from .impact_mean import Draws, head_on_mean
+from .measure import DISSIPATION, is_reference, sizes_from_text
 from .size_distribution import SizeDistribution, size_distribution
 from .threshold import threshold_velocity
 
-CLOSE = 2e-3  # relative: velocities that count as the same
+SMALL = 10  # grains of a fragment that counts as small
 
 
 @dataclass(frozen=True)
-class Growth:
-    """<f_gro>, or f_gro at B_off = 0, against velocity at one size and T_vis: velocities (V,) [m/s], mean (V,), error (V,) (NaN: not known),
-    resamples (B, V); v_fra [m/s] (None: outside the velocities), its error (None: not known) and resamples (B,);
+class Growth(Curve):
+    """<f_gro>, and what follows: v_fra [m/s] (None: outside the velocities), its error (None: not known) and resamples (B,);
     distributions ({velocity: SizeDistribution}); sticking_velocity [m/s] of two grains."""
 
-    grains: int
-    viscous_time: float
-    velocities: np.ndarray
-    mean: np.ndarray
-    error: np.ndarray
-    resamples: np.ndarray
     v_fra: float
     v_fra_error: float
     v_fra_resamples: np.ndarray
     distributions: Mapping[float, SizeDistribution]
     sticking_velocity: float
 
-    @property
-    def has_errors(self):
-        """Whether the seeds allow errors."""
-        return bool(np.isfinite(self.error).any())
-
 
 @dataclass(frozen=True)
 class Results:
-    """table (a row a run, measure.COLUMNS); {(grains, T_vis): Growth}: growth of means over B_off, where some velocity has B_off
-    from 0 to 1, and head_on."""
+    """table (a row a run, measure.COLUMNS), and by (grains, T_vis): growth (Growth), where some velocity has B_off from 0 to 1;
+    head_on (Curve of f_gro at B_off = 0); small (Curve of the mean over B_off of the mass in small fragments, over that of one
+    aggregate) and remnants (Curve of <f_gro> and half of that)."""
 
     table: pandas.DataFrame
     growth: Mapping
     head_on: Mapping
+    small: Mapping
+    remnants: Mapping
 
     @property
     def sizes(self):
@@ -90,51 +82,45 @@ def total_dissipation(table):
 
 def make_results(table):
     """Results of a table of runs (measure.COLUMNS), at least one."""
-    return Results(table, _growths(table, impact_mean), _growths(table[table.impact == 0], head_on_mean))
+    found = curves(table, table.growth)
+    small = small_mass(table)
+    head_on = table.impact == 0
+    return Results(
+        table,
+        {key: _growth(curve, _of(table, key)) for key, curve in found.items()},
+        curves(table[head_on], table.growth[head_on], head_on_mean),
+        curves(table, small),
+        curves(table, table.growth + 0.5 * small),
+    )
 
 
-def _growths(table, mean):
-    """{(grains, T_vis): Growth} of a table of runs, with impact_mean or head_on_mean."""
-    found = {}
-    for grains, of_size in table.groupby("grains"):
-        draws = Draws(of_size.seed)
-        for time, runs in of_size.groupby(of_size.viscoelasticTime.round(16)):
-            own = _growth(int(grains), float(time), runs, draws, mean)
-            if own is not None:
-                found[int(grains), float(time)] = own
-    return found
+def small_mass(table):
+    """Mass (runs,) in fragments of SMALL grains or fewer over that of one aggregate, of a table of runs."""
+    sizes = [sizes_from_text(text) for text in table.fragments]
+    return np.array([own[own <= SMALL].sum() for own in sizes], dtype=float) / table.grains
 
 
-def _growth(grains, time, table, draws, mean):
-    velocities, means, resamples, errors, distributions = [], [], [], [], {}
-    for _, runs in table.groupby(table.velocity.round(6)):
-        found = mean(runs, runs.growth, draws)
-        if found is None:
-            continue
-        velocity = float(runs.velocity.iloc[0])
-        velocities.append(velocity)
-        means.append(float(found[0]))
-        resamples.append(found[1])
-        errors.append(resampling_error(found[1]) if has_scatter(runs) else np.nan)
-        if mean is impact_mean:
-            distributions[velocity] = size_distribution(runs, draws)
-    if not velocities:
-        return None
-    resamples = np.stack(resamples, axis=1)
-    v_fra, drawn = threshold_velocity(velocities, means), threshold_velocity(velocities, resamples)
+def _of(table, key):
+    """Rows of a size and T_vis."""
+    return table[(table.grains == key[0]) & ((table.viscoelasticTime - key[1]).abs() < 1e-16)]
+
+
+def _growth(curve, table):
+    """Growth from the Curve of <f_gro> and its rows."""
+    v_fra, drawn = (threshold_velocity(curve.velocities, values) for values in (curve.mean, curve.resamples))
     known = np.isfinite(v_fra)
+    draws = Draws(table.seed)
+    by_velocity = {float(runs.velocity.iloc[0]): runs for _, runs in table.groupby(table.velocity.round(6))}
+    distributions = {
+        velocity: size_distribution(by_velocity[velocity], draws) for velocity in curve.velocities.tolist()
+    }
     return Growth(
-        grains,
-        time,
-        np.array(velocities),
-        np.array(means),
-        np.array(errors, dtype=float),
-        resamples,
-        float(v_fra) if known else None,
-        resampling_error(drawn) if known and np.isfinite(errors).any() else None,
-        drawn,
-        distributions,
-        float(table.sticking_velocity.iloc[0]),
+        **vars(curve),
+        v_fra=float(v_fra) if known else None,
+        v_fra_error=resampling_error(drawn) if known and curve.has_errors else None,
+        v_fra_resamples=drawn,
+        distributions=distributions,
+        sticking_velocity=float(table.sticking_velocity.iloc[0]),
     )
 
 

@@ -27,7 +27,7 @@ def extrapolation_weight(small, large, grains, exponent):
 
 def extrapolate(small, large, grains, exponent):
     """(velocities (V,) [m/s] that both have, <f_gro> (V,) of aggregates of `grains` grains, resamples (B, V)) from the
-    results.Growth of two sizes at one T_vis."""
+    curves.Curve of two sizes at one T_vis."""
     weight = extrapolation_weight(small.grains, large.grains, grains, exponent)
     ours, theirs = _common(small.velocities, large.velocities)
     # The two sizes are independent pairs of aggregates, though their resamples came from the same random numbers.
@@ -54,7 +54,7 @@ def size_section(results):
 
 
 def _of_quantity(name, growth, threshold):
-    """Rows of {(grains, T_vis): Growth}; threshold: v_fra too."""
+    """Rows of {(grains, T_vis): Curve}; threshold: v_fra of Growths too."""
     sizes = sorted({grains for grains, _ in growth})
     if len(sizes) < 2:
         return
@@ -74,8 +74,7 @@ def _at_velocities(name, pair, measured, grains):
     drawn = [extrapolate(*pair, grains, exponent) for exponent in EXPONENTS]
     for k, velocity in enumerate(drawn[0][0]):
         found = [(mean[k], _error(resamples[:, k], pair)) for _, mean, resamples in drawn]
-        own = [] if measured is None else np.flatnonzero(np.abs(measured.velocities / velocity - 1) < 1e-6)
-        value = (measured.mean[own[0]], measured.error[own[0]]) if len(own) else None
+        value = None if measured is None else measured.at(velocity)
         yield _record(f"{name} at {velocity:.3g} m/s", pair, grains, found, value)
 
 

@@ -74,9 +74,9 @@ def _points_of_sizes(place, results, time, velocity, colour):
     found = []
     for grains in results.sizes:
         growth = results.growth.get((grains, time))
-        at = [] if growth is None else np.flatnonzero(np.abs(growth.velocities / velocity - 1) < 1e-6)
-        if len(at):
-            found.append((grains, growth.mean[at[0]], np.nan_to_num(growth.error[at[0]])))
+        at = None if growth is None else growth.at(velocity)
+        if at is not None:
+            found.append((grains, at[0], at[1] or 0.0))
     if not found:
         return
     grains, mean, error = zip(*found)
