@@ -13,6 +13,7 @@ from .results import picoseconds
 from .threshold import threshold_velocity
 
 EXPONENTS = (1 / 2, 1 / 3)  # p
+PREDICTED = (10_000, paper.GRAINS)  # grains: viscous-prediction.table has the first
 
 
 def extrapolation_weight(small, large, grains, exponent):
@@ -38,7 +39,7 @@ def extrapolate(small, large, grains, exponent):
 
 def size_section(results):
     """Section of growth against size, measured where there are runs, and extrapolated from the two smallest sizes to the
-    others and to the paper's; None without two sizes."""
+    others and PREDICTED; None without two sizes."""
     records = [
         *_of_quantity("<f_gro>", results.growth, threshold=True),
         *_of_quantity("f_gro at B_off = 0", results.head_on, threshold=False),
@@ -62,7 +63,7 @@ def _of_quantity(name, growth, threshold):
     for time in sorted({time for _, time in growth}):
         if (small, time) in growth and (large, time) in growth:
             pair = growth[small, time], growth[large, time]
-            for grains in sorted({*others, paper.GRAINS}):
+            for grains in sorted({*others, *PREDICTED}):
                 measured = growth.get((grains, time))
                 yield from _at_velocities(name, pair, measured, grains)
                 if threshold:
