@@ -40,11 +40,12 @@ def test_the_law_that_the_runs_follow_is_found_again():
 
 def test_section_tells_the_right_exponent_from_the_wrong_one():
     found = size_section(make_results(table((20, 200, 50_000), noise=0.005)))
-    rows = [row for row in found.records if row["quantity"].startswith("<f_gro>")]
+    of_largest = [row for row in found.records if row["grains"] == 50_000]
+    rows = [row for row in of_largest if row["quantity"].startswith("<f_gro>")]
     assert len(rows) == len(VELOCITIES)
     assert all(abs(row["extrapolated_p1/2_difference"]) < 4 for row in rows)
     assert all(row["extrapolated_p1/3_difference"] < -4 for row in rows)
-    threshold = found.records[-1]
+    threshold = next(row for row in of_largest if row["quantity"].startswith("v_fra"))
     assert threshold["measured"] == pytest.approx(threshold["extrapolated_p1/2"], rel=0.02)
     # Errors: of the sum of independent pairs with their weights, 0.005/2 each.
     weight = (200**-0.5 - 50_000**-0.5) / (20**-0.5 - 200**-0.5)
