@@ -14,7 +14,8 @@ LEGEND = (
     f"error: standard error from the scatter of the seeds (bootstrap of pairs of aggregates, {RESAMPLES} resamples, joint "
     "where numbers come from the same pairs; otherwise of the mean); -: one seed only.",
     "An error from n seeds is itself uncertain by the fraction [2 (n - 1)]^(-1/2): 0.7 of it for two, 0.4 for four.",
-    "diff: (ours - paper)/error. diff*: in units of both errors, where the paper's could be told.",
+    "diff: (ours - paper)/error. diff*: in units of both errors, where the paper's could be told. p: the chance of such a "
+    "difference by Student's t, with one degree of freedom less than pairs of aggregates.",
     "The paper has one run of each parameter set and states no errors: its numbers scatter as one seed of ours.",
 )
 

@@ -13,7 +13,7 @@ SAME = 2e-3  # relative: velocities that count as the same
 @dataclass(frozen=True)
 class Curve:
     """A mean over runs of `grains` grains an aggregate and viscous_time [s] against velocity: velocities (V,) [m/s], mean (V,),
-    error (V,) (NaN: not known), resamples (B, V)."""
+    error (V,) (NaN: not known), resamples (B, V), pairs of aggregates (their number)."""
 
     grains: int
     viscous_time: float
@@ -21,6 +21,7 @@ class Curve:
     mean: np.ndarray
     error: np.ndarray
     resamples: np.ndarray
+    pairs: int
 
     @property
     def has_errors(self):
@@ -75,4 +76,4 @@ def _curve(grains, time, table, draws, mean):
         return None
     velocities, means, errors, resamples = zip(*points)
     arrays = (np.array(each, dtype=float) for each in (velocities, means, errors))
-    return Curve(grains, time, *arrays, np.stack(resamples, axis=1))
+    return Curve(grains, time, *arrays, np.stack(resamples, axis=1), table.seed.nunique())

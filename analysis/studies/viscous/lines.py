@@ -3,11 +3,11 @@
 import numpy as np
 
 from ...report.beside_paper import Line
-from ...statistics import mean_and_error, pooled_scatter, resampling_error, scatter
+from ...statistics import mean_and_error, pooled_scatter, scatter
 from . import paper
 from .curves import SAME, difference
 from .loss_lines import dissipation, events, fragments, pair_speeds
-from .results import by_time, named, picoseconds
+from .results import by_time, named, picoseconds, threshold_error
 
 
 def compare(results):
@@ -58,12 +58,14 @@ def _thresholds(results):
     lines, middle = [], float(np.mean(paper.V_FRA))
     for growth in results.growth.values():
         covered = f"{len(growth.velocities)} velocities"
-        note = f"paper: 50 to 60 m/s at {paper.GRAINS} grains; {covered}, {_seeds(results, growth)}"
+        note = f"paper: 50 to 60 m/s at {paper.GRAINS} grains; {covered}, {growth.pairs} pairs{_lost(growth.v_fra_resamples)}"
         if growth.v_fra is None:
             end = "above" if growth.mean[-1] > 0 else "below" if growth.mean[0] <= 0 else "not within"
             note = f"{end} the velocities of the runs; {covered}"
         half = 0.5 * (paper.V_FRA[1] - paper.V_FRA[0])
-        lines.append(Line(named("v_fra", growth), "m/s", growth.v_fra, growth.v_fra_error, middle, half, note))
+        lines.append(
+            Line(named("v_fra", growth), "m/s", growth.v_fra, growth.v_fra_error, middle, half, note, growth.pairs - 1)
+        )
     lines += list(_v_fra_ratios(results))
     notes = (
         "v_fra: where <f_gro> first falls through 0, linear in ln v between velocities a quarter apart; the error is from "
@@ -84,14 +86,25 @@ def _v_fra_ratios(results):
         if len(known) > 1:
             low, high = known[0], known[-1]
             ratio = high.v_fra_resamples / low.v_fra_resamples
-            error = resampling_error(ratio) if low.v_fra_error and high.v_fra_error else None
+            error = threshold_error(ratio) if low.has_errors and high.has_errors else None
             times = f"{picoseconds(high.viscous_time)} ps)/v_fra({picoseconds(low.viscous_time)} ps"
             note = f"v_stick: ratio {high.sticking_velocity / low.sticking_velocity:.3g}"
-            lost = float(np.mean(~np.isfinite(ratio)))
-            note += f"; no v_fra within the velocities in {lost:.0%} of the resamples" if lost > 0.01 else ""
             yield Line(
-                f"v_fra({times}), {grains} grains", "", high.v_fra / low.v_fra, error, 1.0, None, f"paper: 1; {note}"
+                f"v_fra({times}), {grains} grains",
+                "",
+                high.v_fra / low.v_fra,
+                error,
+                1.0,
+                None,
+                f"paper: 1; {note}{_lost(ratio)}",
+                high.pairs - 1,
             )
+
+
+def _lost(resamples):
+    """Words on resamples (B,) of a threshold that is not within the velocities."""
+    lost = float(np.mean(~np.isfinite(resamples)))
+    return f"; not within the velocities in {lost:.0%} of the resamples" if lost > 0.01 else ""
 
 
 def _growth(results):
@@ -121,7 +134,9 @@ def _growth_differences(results):
         found = difference(high, low, paper.VELOCITY)
         if found is not None:
             name = f"{picoseconds(high.viscous_time)} ps less {picoseconds(low.viscous_time)} ps, {grains} grains"
-            yield Line(f"<f_gro> at 50.1 m/s, {name}", "", *found, 0.0, None, "paper: hardly any difference")
+            yield Line(
+                f"<f_gro> at 50.1 m/s, {name}", "", *found, 0.0, None, "paper: hardly any difference", high.pairs - 1
+            )
 
 
 def _largest(results):
@@ -184,7 +199,9 @@ def _head_on(results):
         of_pairs = own.groupby([own.viscoelasticTime.round(16), "seed"]).growth.mean().reset_index()
         for time, mean, error, number in by_time(of_pairs, of_pairs.growth):
             name = f"f_gro, B_off = 0, 20 to 100 m/s, T_vis = {picoseconds(time)} ps, {grains} grains"
-            lines.append(Line(name, "", mean, error, 1.0, None, f"{number} seeds; paper: about 1 below 100 m/s"))
+            lines.append(
+                Line(name, "", mean, error, 1.0, None, f"{number} pairs; paper: about 1 below 100 m/s", number - 1)
+            )
     if lines:
         notes = (
             "Mean over the velocities, then over the pairs of aggregates: a pair at several velocities counts once.",
@@ -203,13 +220,6 @@ def _collapse(results):
     if lines:
         notes = (
             "If single contacts decided, as a theory of two grains has it, <f_gro> would be one curve of v/v_stick(T_vis) "
-            "and these ratios equal at all T_vis. Where they fall as v_stick rises, v_fra does not follow v_stick: what "
-            "grains lose by rolling, sliding and twisting, which T_vis does not change, is what has to be paid.",
+            "and these ratios equal at all T_vis. What drag changes is in the next tables.",
         )
         yield "does f_gro collapse with v/v_stick?", lines, notes
-
-
-def _seeds(results, growth):
-    table = results.table
-    own = table[(table.grains == growth.grains) & ((table.viscoelasticTime - growth.viscous_time).abs() < 1e-16)]
-    return f"{own.seed.nunique()} seeds"

@@ -21,7 +21,7 @@ def dissipation(results):
         unit = 2 * runs.grains * runs.energy_unit
         for time, mean, error, number in by_time(runs, parts["connection and disconnection"] / unit):
             label = f"E_dis,c/(N_tot F_c delta_c), T_vis = {picoseconds(time)} ps"
-            lines.append(Line(label, "", mean, error, 1.0, None, 'paper: "on the order of 1"'))
+            lines.append(Line(label, "", mean, error, 1.0, None, 'paper: "on the order of 1"', number - 1))
         notes = (
             "Changes from the start to the end at 50.1 m/s, B_off^2 = 3/12. The paper's finding: rolling is the largest of "
             "the five for every T_vis, connection and disconnection the smallest but for drag without drag; it prints no "
@@ -38,7 +38,16 @@ def events(results):
             for time, mean, error, number in by_time(runs, values.astype(float) / (2 * runs.grains)):
                 note = f"{number} runs; paper: " + ("about 1" if theirs else "less than 1")
                 lines.append(
-                    Line(f"{quantity}/N_tot, T_vis = {picoseconds(time)} ps", "", mean, error, theirs, None, note)
+                    Line(
+                        f"{quantity}/N_tot, T_vis = {picoseconds(time)} ps",
+                        "",
+                        mean,
+                        error,
+                        theirs,
+                        None,
+                        note,
+                        number - 1,
+                    )
                 )
         if lines:
             notes = (
@@ -57,9 +66,20 @@ def fragments(results):
             law, name = distribution.power_law, named(f"{velocity:.3g} m/s", growth)
             theirs = (paper.EXPONENT, paper.AMPLITUDE) if growth.viscous_time > 0 else (None, None)
             lines.append(
-                Line(f"alpha, {name}", "", law.exponent, law.exponent_error, theirs[0], note="f(N) = c N^-alpha")
+                Line(
+                    f"alpha, {name}",
+                    "",
+                    law.exponent,
+                    law.exponent_error,
+                    theirs[0],
+                    None,
+                    "f(N) = c N^-alpha",
+                    growth.pairs - 1,
+                )
             )
-            lines.append(Line(f"c, {name}", "", law.amplitude, law.amplitude_error, theirs[1]))
+            lines.append(
+                Line(f"c, {name}", "", law.amplitude, law.amplitude_error, theirs[1], None, "", growth.pairs - 1)
+            )
     if lines:
         notes = (
             "Fitted to <N_cum(<= N)> up to 5 % of all grains, least squares of the logarithms; errors joint from "

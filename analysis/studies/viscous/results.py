@@ -13,13 +13,14 @@ from .measure import DISSIPATION, is_reference, sizes_from_text
 from .size_distribution import SizeDistribution, size_distribution
 from .threshold import threshold_velocity
 
+LOST = 0.05
 SMALL = 10  # grains of a fragment that counts as small
 
 
 @dataclass(frozen=True)
 class Growth(Curve):
-    """<f_gro>, and what follows: v_fra [m/s] (None: outside the velocities), its error (None: not known) and resamples (B,);
-    distributions ({velocity: SizeDistribution}); sticking_velocity [m/s] of two grains."""
+    """<f_gro>, and what follows: v_fra [m/s] (None: outside the velocities), its error (None: not known, or LOST of the
+    resamples have none within the velocities) and resamples (B,); distributions ({velocity: SizeDistribution}); sticking_velocity [m/s] of two grains."""
 
     v_fra: float
     v_fra_error: float
@@ -100,6 +101,12 @@ def small_mass(table):
     return np.array([own[own <= SMALL].sum() for own in sizes], dtype=float) / table.grains
 
 
+def threshold_error(resamples):
+    """Standard error from resamples (B,) of a threshold; None where LOST of them or more have none: the others would tell too
+    small an error."""
+    return resampling_error(resamples) if np.mean(~np.isfinite(resamples)) < LOST else None
+
+
 def _of(table, key):
     """Rows of a size and T_vis."""
     return table[(table.grains == key[0]) & ((table.viscoelasticTime - key[1]).abs() < 1e-16)]
@@ -117,7 +124,7 @@ def _growth(curve, table):
     return Growth(
         **vars(curve),
         v_fra=float(v_fra) if known else None,
-        v_fra_error=resampling_error(drawn) if known and curve.has_errors else None,
+        v_fra_error=threshold_error(drawn) if known and curve.has_errors else None,
         v_fra_resamples=drawn,
         distributions=distributions,
         sticking_velocity=float(table.sticking_velocity.iloc[0]),

@@ -9,7 +9,7 @@ import numpy as np
 from ...report.section import Column, Section
 from ...statistics import resampling_error
 from . import paper
-from .results import picoseconds
+from .results import picoseconds, threshold_error
 from .threshold import threshold_velocity
 
 EXPONENTS = (1 / 2, 1 / 3)  # p
@@ -85,7 +85,8 @@ def _threshold(pair, measured, grains):
     for exponent in EXPONENTS:
         velocities, mean, resamples = extrapolate(*pair, grains, exponent)
         drawn = threshold_velocity(velocities, resamples)
-        found.append((threshold_velocity(velocities, mean), _error(drawn, pair)))
+        error = threshold_error(drawn) if all(growth.has_errors for growth in pair) else None
+        found.append((threshold_velocity(velocities, mean), error))
     value = (measured.v_fra, measured.v_fra_error) if measured is not None and measured.v_fra is not None else None
     return _record("v_fra [m/s]", pair, grains, found, value)
 
