@@ -17,6 +17,6 @@ def threshold_velocity(velocities, growth):
     k = np.argmax(falls, axis=-1)[..., None]
     above, below = (np.take_along_axis(growth, k + i, axis=-1)[..., 0] for i in (0, 1))
     k = k[..., 0]
-    with np.errstate(invalid="ignore", divide="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         crossing = np.exp(log[k] + (log[k + 1] - log[k]) * above / (above - below))
     return np.where(falls.any(axis=-1), crossing, np.nan)[()]

@@ -18,6 +18,7 @@ __all__ = [
     "own_times",
     "panels",
     "run_folder",
+    "threshold_points",
     "time_colours",
     "time_label",
     "velocity_axis",
@@ -47,6 +48,16 @@ def mean_points(axes, x, samples, colour, label=None, marker="o", line="-"):
     means, errors = zip(*(mean_and_error(sample) for sample in samples))
     errors = [error or 0.0 for error in errors]
     axes.errorbar(x, means, yerr=errors, fmt=marker + line, color=colour, markersize=4, capsize=2, lw=1.3, label=label)
+
+
+def threshold_points(axes, x, growths, colour, label):
+    """v_fra of Growths that have one, at x (K,); open, and without a bar, where its error is not known."""
+    values = [growth.v_fra for growth in growths]
+    axes.errorbar(
+        x, values, [g.v_fra_error or 0.0 for g in growths], fmt="o-", color=colour, capsize=3, mfc="white", label=label
+    )
+    known = [k for k, growth in enumerate(growths) if growth.v_fra_error]
+    axes.plot([x[k] for k in known], [values[k] for k in known], "o", color=colour, zorder=3)
 
 
 def one_run_each(results):

@@ -141,7 +141,7 @@ def against_impact(results):
         place.set_ylim(0.0, None)
         place.text(0.97, 0.95, time_label(time), transform=place.transAxes, ha="right", va="top")
     axes[0, 0].set_ylabel("lost, fraction of $K(0)$")
-    legend(axes[0, -1], fontsize=8, loc="center right")
+    legend(axes[0, -1], fontsize=8, loc="upper right", bbox_to_anchor=(1.0, 0.9))
     letter(axes, f"{grains} grains each, 50.1 m/s")
     return figure
 

@@ -7,7 +7,18 @@ from ...definition import StudyFigure
 from .. import paper
 from ..impact_mean import at_impacts
 from ..results import picoseconds
-from .common import PAPER, impact_colour, legend, letter, mean_points, panels, time_colours, time_label, velocity_axis
+from .common import (
+    PAPER,
+    impact_colour,
+    legend,
+    letter,
+    mean_points,
+    panels,
+    threshold_points,
+    time_colours,
+    time_label,
+    velocity_axis,
+)
 
 
 @styled
@@ -103,10 +114,9 @@ def thresholds_figure(results):
         found = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
         if found:
             times = [growth.viscous_time * 1e12 for growth in found]
-            errors = [growth.v_fra_error or 0.0 for growth in found]
             colour = shades[min(i, 3) if len(results.sizes) > 1 else 2]
             label = f"$v_{{fra}}$, {grains} grains"
-            place.errorbar(times, [g.v_fra for g in found], errors, fmt="o-", capsize=3, color=colour, label=label)
+            threshold_points(place, times, found, colour, label)
     place.axhspan(*paper.V_FRA, color=PAPER, alpha=0.12, lw=0, label="A22: $v_{fra}$")
     place.set_yscale("log")
     place.set_ylim(3, 200)

@@ -6,7 +6,7 @@ from ....figures.style import styled
 from ...definition import StudyFigure
 from .. import paper
 from ..size_dependence import EXPONENTS, extrapolation_weight
-from .common import PAPER, legend, letter, panels, time_colours, time_label
+from .common import PAPER, legend, letter, panels, threshold_points, time_colours, time_label
 
 SHOWN = (50.0, 101.0)  # m/s: around v_fra
 
@@ -22,20 +22,13 @@ def size_figure(results):
     for time, colour in colours.items():
         own = sorted((g for g in known if g.viscous_time == time), key=lambda growth: growth.grains)
         if own:
-            errors = [g.v_fra_error or 0.0 for g in own]
-            x = [g.grains for g in own]
-            axes[0, 0].errorbar(
-                x, [g.v_fra for g in own], errors, fmt="o-", color=colour, capsize=3, label=time_label(time)
-            )
+            threshold_points(axes[0, 0], [g.grains for g in own], own, colour, time_label(time))
     for i, grains in enumerate(results.sizes):
         own = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
         if own:
-            errors = [g.v_fra_error or 0.0 for g in own]
             shade = str(0.7 - 0.6 * (i + 1) / len(results.sizes))
             x = [g.viscous_time * 1e12 for g in own]
-            axes[0, 1].errorbar(
-                x, [g.v_fra for g in own], errors, fmt="o-", color=shade, capsize=3, label=f"{grains} grains"
-            )
+            threshold_points(axes[0, 1], x, own, shade, f"{grains} grains")
     axes[0, 0].plot([paper.GRAINS] * 2, paper.V_FRA, color=PAPER, lw=4, alpha=0.5, label="A22")
     axes[0, 0].set_xscale("log")
     axes[0, 0].set_xlabel("grains of an aggregate")
