@@ -102,7 +102,7 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
 
 @pytest.mark.parametrize(
     "study, sizes",
-    [(elastoplastic, ("desk", "first", "full")), (viscous, ("desk", "full"))],
+    [(elastoplastic, ("desk", "first", "full")), (viscous, ("desk", "full", "prediction"))],
     ids=["elastoplastic", "viscous"],
 )
 def test_committed_tables_are_what_the_generator_writes(tmp_path, study, sizes):
@@ -131,6 +131,11 @@ def test_the_viscous_tables_hold_the_papers_runs():
     assert {round(p.impact**2 * 12, 9) for p in of_size(50_000)} == {3}
     small = {(round(p.impact**2 * 12, 9), p.velocity, p.viscoelasticTime, p.seed) for p in of_size(500)}
     assert small == {(*scene, seed) for scene in scenes for seed in (1, 2, 3, 4)}
+    # What was predicted before it ran is in no other table, and spans B_off at every velocity and T_vis.
+    predicted = [row.parameters for row in rows.read(os.path.join(STUDIES, "viscous-prediction.table"))]
+    assert not {p.out for p in predicted} & {p.out for p in full + desk}
+    of_size = [p for p in predicted if p.grains == 10_000]
+    assert {round(p.impact**2 * 12, 9) for p in of_size} == set(range(0, 13, 2)) and len(of_size) == 2 * 2 * 4 * 7
 
 
 def test_the_tables_hold_the_papers_runs():
