@@ -5,13 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..measures.ledger import fractions_at
-from ..measures.of_run import outcome_of_run
+from ..measures.compression import first_compression
+from ..measures.ledger import fractions_at, initial_kinetic_energy
+from ..measures.of_run import met, outcome_of_run
 from ..measures.outcome import STICKING, UNDECIDED, still_parting
 from ..measures.return_phase import largest_return_speed
-from ..runs.format import CHANNELS, LABELS
+from ..runs.arrays import RunFolderError
+from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
 from ..runs.table import Column
 from ..statistics import mean_and_error, student_interval, wilson
+from .definition import NotMeasured
 
 
 def at_maximum(channel):
@@ -56,6 +59,18 @@ RETURN_COLUMNS = (
     Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
     Column("return_time", "s", "its time", gaps=True, absent=np.nan),
 )
+
+
+def largest_compression(run):
+    """(measures.compression.Maximum, whether d exceeds it later) of a RunFolder's first compression. NotMeasured where the
+    aggregates never met or never turned around, RunFolderError where they had no kinetic energy."""
+    history = run.history
+    maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
+    if maximum is None or not maximum.inside or not met(run):
+        raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
+    if not initial_kinetic_energy(history) > 0:
+        raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
+    return maximum, exceeded
 
 
 def outcome_values(run, velocity):

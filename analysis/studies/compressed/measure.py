@@ -1,17 +1,16 @@
 """One row of numbers for each collision."""
 
-from ...measures.compression import first_compression
 from ...measures.coordination import mean_coordination
-from ...measures.ledger import closure, initial_kinetic_energy
-from ...measures.of_run import derived_constants, met
+from ...measures.ledger import closure
+from ...measures.of_run import derived_constants
 from ...runs.arrays import RunFolderError
-from ...runs.format import HISTORY_FILE
 from ...runs.table import Column
 from ..collision_points import (
     OUTCOME_COLUMNS,
     PARTITION_COLUMNS,
     RETURN_COLUMNS,
     energy_partition,
+    largest_compression,
     outcome_values,
     return_values,
 )
@@ -39,11 +38,7 @@ def measure(run):
     """{column: value} of a RunFolder that has ended. NotMeasured where the packings are no such spheres, or the aggregates
     have not met or not turned around; RunFolderError where something is missing."""
     history = run.history
-    maximum, _ = first_compression(history["time"], history["d"], history["v"])
-    if maximum is None or not maximum.inside or not met(run):
-        raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
-    if not initial_kinetic_energy(history) > 0:
-        raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
+    maximum, _ = largest_compression(run)
     scene, start = _scene(run), run.start
     returned = return_values(history, maximum.time)
     # A run's d is from the sphere around its centres, which is a little smaller than the one that was cut.

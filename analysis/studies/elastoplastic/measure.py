@@ -2,22 +2,20 @@
 
 import numpy as np
 
-from ...measures.compression import compression_by_aggregate, compression_length, first_compression
+from ...measures.compression import compression_by_aggregate, compression_length
 from ...measures.coordination import inner_coordination, mean_coordination
-from ...measures.ledger import closure, initial_kinetic_energy
-from ...measures.of_run import derived_constants, met
-from ...runs.arrays import RunFolderError
-from ...runs.format import HISTORY_FILE
+from ...measures.ledger import closure
+from ...measures.of_run import derived_constants
 from ...runs.table import Column
 from ..collision_points import (
     OUTCOME_COLUMNS,
     PARTITION_COLUMNS,
     RETURN_COLUMNS,
     energy_partition,
+    largest_compression,
     outcome_values,
     return_values,
 )
-from ..definition import NotMeasured
 from .start import COLUMNS as START_COLUMNS
 from .start import start_values
 
@@ -54,11 +52,7 @@ def measure(run):
     """{column: value} of a RunFolder of A24's scene that has ended. NotMeasured where the aggregates never met or never
     turned around, RunFolderError where something is missing."""
     history = run.history
-    maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
-    if maximum is None or not maximum.inside or not met(run):
-        raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
-    if not initial_kinetic_energy(history) > 0:
-        raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
+    maximum, exceeded = largest_compression(run)
     scene = _scene(run)
     start, r = run.start, scene["grain_radius"]
     returned = return_values(history, maximum.time)
