@@ -79,24 +79,27 @@ def mean_growth_figure(results):
 
 @styled
 def head_on_figure(results):
-    """f_gro of head-on collisions against velocity: Fig. 4."""
-    table = results.table
-    runs = table[(table.impact == 0)]
-    if runs.empty:
+    """f_gro of head-on collisions against velocity for every T_vis, a panel for each size: Fig. 4."""
+    sizes = sorted({grains for grains, _ in results.head_on})
+    if not sizes:
         return None
-    runs = runs[runs.grains == runs.grains.max()]
-    figure, axes = panels(1, 1)
-    for time, colour in time_colours(table).items():
-        own = runs[(runs.viscoelasticTime - time).abs() < 1e-16]
-        velocities = np.unique(own.velocity.round(6))
-        if len(velocities):
-            samples = [own.growth[own.velocity.round(6) == v] for v in velocities]
-            mean_points(axes[0, 0], velocities, samples, colour, time_label(time))
-    velocity_axis(axes[0, 0], table.velocity)
-    axes[0, 0].axhline(0.0, color="0.6", lw=0.8)
+    figure, axes = panels(1, len(sizes), 4.0, 4.2)
+    colours = time_colours(results.table)
+    for place, grains in zip(axes[0], sizes):
+        for (own, time), curve in sorted(results.head_on.items()):
+            if own == grains:
+                error = np.nan_to_num(curve.error)
+                label = time_label(time)
+                place.errorbar(
+                    curve.velocities, curve.mean, error, fmt="o-", color=colours[time], capsize=3, label=label
+                )
+        velocity_axis(place, results.table.velocity)
+        place.axhline(0.0, color="0.6", lw=0.8)
+        place.set_ylim(-0.9, 1.05)
+        place.text(0.03, 0.05, f"{grains} grains each", transform=place.transAxes)
     axes[0, 0].set_ylabel("$f_{gro}$ at $B_{off}$ = 0")
-    legend(axes[0, 0], fontsize=8)
-    letter(axes, f"{runs.grains.max()} grains each")
+    legend(axes[0, 0], fontsize=8, loc="center left")
+    letter(axes, "")
     return figure
 
 
@@ -184,7 +187,7 @@ FIGURES = (
     StudyFigure(
         "fig03_mean_growth", "A22 Fig. 3: growth efficiency, mean over B_off, of every size.", mean_growth_figure
     ),
-    StudyFigure("fig04_head_on", "A22 Fig. 4: growth efficiency of head-on collisions.", head_on_figure),
+    StudyFigure("fig04_head_on", "A22 Fig. 4: growth efficiency of head-on collisions, of every size.", head_on_figure),
     StudyFigure("fig05_thresholds", "A22 Fig. 5: v_stick of two grains and v_fra of aggregates.", thresholds_figure),
     StudyFigure(
         "collapse", "Growth efficiency with speeds scaled by v_stick(T_vis): no theory of one contact.", collapse_figure
