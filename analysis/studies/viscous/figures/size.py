@@ -42,32 +42,36 @@ def size_figure(results):
 
 @styled
 def size_growth_figure(results):
-    """<f_gro> against N^-1/2 at the velocities around v_fra, with lines through the two smallest sizes to endless aggregates."""
+    """<f_gro> (above) and f_gro at B_off = 0 (below) against N^-1/2 at the velocities around v_fra, with lines through the two
+    smallest sizes to endless aggregates."""
     velocities = sorted({round(v, 6) for growth in results.growth.values() for v in growth.velocities})
     velocities = [v for v in velocities if SHOWN[0] < v < SHOWN[1]]
     if len(results.sizes) < 2 or not velocities:
         return None
-    figure, axes = panels(1, len(velocities), 3.6, 3.8)
+    figure, axes = panels(2, len(velocities), 3.4, 3.4)
+    for row, curves, limit in ((axes[0], results.growth, 0.0), (axes[1], results.head_on, 1.0)):
+        for place, velocity in zip(row, velocities):
+            for time, colour in time_colours(results.table).items():
+                _points_of_sizes(place, curves, time, velocity, colour)
+            place.axhline(limit, color="0.6", lw=0.8)
+            place.axvline(paper.GRAINS**-0.5, color=PAPER, lw=4, alpha=0.3)
+            place.set_xlim(left=0.0)
     for place, velocity in zip(axes[0], velocities):
-        for time, colour in time_colours(results.table).items():
-            _points_of_sizes(place, results, time, velocity, colour)
-        place.axhline(0.0, color="0.6", lw=0.8)
-        place.axvline(paper.GRAINS**-0.5, color=PAPER, lw=4, alpha=0.3)
-        place.set_xlim(left=0.0)
+        place.set_title(f"{velocity:.3g} m/s", fontsize=10)
+    for place in axes[1]:
         place.set_xlabel("$N^{-1/2}$")
-        place.text(0.97, 0.95, f"{velocity:.3g} m/s", transform=place.transAxes, ha="right", va="top")
     axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
-    legend(axes[0, 0], fontsize=8)
-    letter(axes, "")
+    axes[1, 0].set_ylabel("$f_{gro}$ at $B_{off}$ = 0")
+    legend(axes[1, 0], fontsize=8, loc="lower left")
     return figure
 
 
-def _points_of_sizes(place, results, time, velocity, colour):
-    """One T_vis at one velocity: a point each size, and the line through the first two."""
+def _points_of_sizes(place, curves, time, velocity, colour):
+    """One T_vis of {(grains, T_vis): Curve} at one velocity: a point each size, and the line through the first two."""
+    sizes = sorted({grains for grains, _ in curves})
     found = []
-    for grains in results.sizes:
-        growth = results.growth.get((grains, time))
-        at = None if growth is None else growth.at(velocity)
+    for grains in sizes:
+        at = curves[grains, time].at(velocity) if (grains, time) in curves else None
         if at is not None:
             found.append((grains, at[0], at[1] or 0.0))
     if not found:
@@ -75,12 +79,16 @@ def _points_of_sizes(place, results, time, velocity, colour):
     grains, mean, error = zip(*found)
     x = np.array(grains, dtype=float) ** -EXPONENTS[0]
     place.errorbar(x, mean, error, fmt="o", color=colour, capsize=3, label=time_label(time))
-    if [*grains[:2]] == results.sizes[:2]:
+    if [*grains[:2]] == sizes[:2]:
         endless = mean[1] + extrapolation_weight(*grains[:2], np.inf, EXPONENTS[0]) * (mean[1] - mean[0])
         place.plot([x[0], 0.0], [mean[0], endless], "--", color=colour, lw=0.9)
 
 
 FIGURES = (
     StudyFigure("size", "v_fra against size and T_vis.", size_figure),
-    StudyFigure("size_growth", "Growth efficiency against N^-1/2.", size_growth_figure),
+    StudyFigure(
+        "size_growth",
+        "Growth efficiency against N^-1/2, mean over B_off (above) and head-on (below).",
+        size_growth_figure,
+    ),
 )
