@@ -63,6 +63,7 @@ CHANNEL_TABLE = (
     Channel("externalWork", WORK, "work against outside forces", "#d9d9d9", since=3),
 )
 CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE)
+LOST_CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE if channel.kind == LOST)
 LABELS = {channel.name: channel.label for channel in CHANNEL_TABLE}
 COLOURS = {channel.name: channel.colour for channel in CHANNEL_TABLE}
 

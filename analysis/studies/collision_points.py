@@ -2,6 +2,7 @@
 statistics over the seeds of one parameter set."""
 
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -15,6 +16,19 @@ from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
 from ..runs.table import Column
 from ..statistics import mean_and_error, student_interval, wilson
 from .definition import NotMeasured
+
+# Parameters of A24's collisions, but for the packing.
+HEAD_ON_ICE = MappingProxyType(
+    {
+        "impact": 0.0,
+        "viscoelasticTime": 0.0,
+        "neck": 0.0,
+        "planar": 0,
+        "material": "ice",
+        "removeLooseGrains": 0,
+        "initialOverlap": 1.0,
+    }
+)
 
 
 def at_maximum(channel):

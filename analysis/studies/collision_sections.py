@@ -3,7 +3,7 @@ goes."""
 
 from ..measures.outcome import STILL_PARTING, UNDECIDED
 from ..report.section import Column, Section
-from ..runs.format import CHANNELS, LABELS
+from ..runs.format import CHANNELS, LABELS, LOST_CHANNELS
 
 UNDECIDED_MEANS = (
     f"{UNDECIDED}: in one piece at the end, but parting at more than {STILL_PARTING:g} of the largest speed "
@@ -117,8 +117,7 @@ def _two_parts(row, channel):
 
 def _lost(changes):
     """All dissipation in a phase [per cent of K(0)]."""
-    names = ("slidingDissipation", "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag")
-    return f"{100 * sum(changes[c] for c in (*names, 'bondBreaking')):.1f}"
+    return f"{100 * sum(changes[c] for c in LOST_CHANNELS):.1f}"
 
 
 def _per_cent(pair):

@@ -7,14 +7,13 @@ from scipy.stats import ttest_ind
 
 from ...report.section import Column, Section
 from ...runs.collect import Scene
-from ...runs.format import CHANNELS
+from ...runs.format import LOST_CHANNELS
 from ...statistics import mean_and_error, scatter
-from ..collision_points import at_maximum, collision_point
+from ..collision_points import HEAD_ON_ICE, at_maximum, collision_point
 from ..collision_sections import energy_section, outcome_section, return_section
 from ..definition import Study
 from .measure import COLUMNS, measure
 
-LOST = ("slidingDissipation", "rollingDissipation", "twistingDissipation", "connection", "disconnection", "drag")
 KINDS = {0: "CPE", 1: "compressed"}
 
 
@@ -51,7 +50,7 @@ class Results:
 
 def quantities(runs):
     """[(name, unit, values (n,))] of a table of runs, that are compared; lengths in grain radii, times in ns."""
-    lost = {name: 100 * runs[at_maximum(name)] for name in CHANNELS}
+    lost = {name: 100 * runs[at_maximum(name)] for name in LOST_CHANNELS}
     return [
         ("contacts of a grain", "", runs.coordination),
         ("filling", "", runs.filling),
@@ -61,7 +60,7 @@ def quantities(runs):
         ("sliding until t_max", "% of K(0)", lost["slidingDissipation"]),
         ("rolling until t_max", "% of K(0)", lost["rollingDissipation"]),
         ("twisting until t_max", "% of K(0)", lost["twistingDissipation"]),
-        ("all that is lost until t_max", "% of K(0)", sum(lost[name] for name in LOST)),
+        ("all that is lost until t_max", "% of K(0)", sum(lost.values())),
     ]
 
 
@@ -130,15 +129,7 @@ STUDY = Study(
     title="Collisions of CPE and of compressed aggregates",
     scene=Scene(
         name="A24's scene, or one of compressed aggregates",
-        values={
-            "impact": 0.0,
-            "viscoelasticTime": 0.0,
-            "neck": 0.0,
-            "planar": 0,
-            "material": "ice",
-            "removeLooseGrains": 0,
-            "initialOverlap": 1.0,
-        },
+        values=HEAD_ON_ICE,
         numbers=("velocity",),
         measured=("compressed", "nominal", "radius", "pair"),
     ),

@@ -5,14 +5,13 @@ import numpy as np
 from ...measures.ledger import work_closure
 from ...measures.of_run import derived_constants
 from ...measures.structure import fractal_dimension, grains_within
-from ...runs.format import CHANNEL_TABLE, LOST
+from ...runs.format import LOST_CHANNELS
 from ...runs.table import Column
 from ..definition import NotMeasured
 from . import paper
 from .curve import AVERAGED, FILLINGS, at_filling, binned, compressing, filling_at_pressure, pressure_at, tension
 
 ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.5)
-LOST_CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE if channel.kind == LOST)
 STRUCTURE_SCALE = (3.0, 10.0)  # grain radii between which the fractal dimension is taken
 NEAREST = 0.15  # of the filling factor: how far away the state may be
 ORIGINS = 2000

@@ -1,6 +1,7 @@
 """The study of A24's collisions."""
 
 from ...runs.collect import Scene
+from ..collision_points import HEAD_ON_ICE
 from ..definition import Study
 from .comparison import remarks, sections
 from .measure import COLUMNS, measure
@@ -14,16 +15,7 @@ STUDY = Study(
     # Head-on collisions of CPE aggregates, without drag and bonds.
     scene=Scene(
         name="A24's scene",
-        values={
-            "packing": "cpe",
-            "impact": 0.0,
-            "viscoelasticTime": 0.0,
-            "neck": 0.0,
-            "planar": 0,
-            "material": "ice",
-            "removeLooseGrains": 0,
-            "initialOverlap": 1.0,
-        },
+        values={"packing": "cpe", **HEAD_ON_ICE},
         numbers=("filling", "radius", "velocity", "seed"),
     ),
     columns=COLUMNS,

@@ -41,6 +41,19 @@ class Curve:
         return float(self.mean[k]), float(self.error[k]) if np.isfinite(self.error[k]) else None
 
 
+def of_other_pairs(resamples):
+    """Resamples (B, ...) of one size that go with those of another: the sizes are independent pairs of aggregates, though
+    their resamples came from the same random numbers."""
+    return np.roll(resamples, 1, axis=0)
+
+
+def with_error(value, error, digits=3):
+    """'0.152 +- 0.012' with so many digits; '-' for None, the value alone without an error."""
+    if value is None:
+        return "-"
+    return f"{value:.{digits}f}" + (f" +- {error:.{digits}f}" if error is not None else "")
+
+
 def difference(first, second, velocity):
     """(mean, error; None: not known) of one Curve less another of the same pairs of aggregates at a velocity [m/s]; None where
     one of them doesn't have it."""

@@ -9,6 +9,7 @@ import numpy as np
 from ...report.section import Column, Section
 from ...statistics import resampling_error
 from . import paper
+from .curves import of_other_pairs, with_error
 from .results import picoseconds, threshold_error
 from .threshold import threshold_velocity
 
@@ -31,8 +32,7 @@ def extrapolate(small, large, grains, exponent):
     curves.Curve of two sizes at one T_vis."""
     weight = extrapolation_weight(small.grains, large.grains, grains, exponent)
     ours, theirs = _common(small.velocities, large.velocities)
-    # The two sizes are independent pairs of aggregates, though their resamples came from the same random numbers.
-    of_small = np.roll(small.resamples[:, ours], 1, axis=0)
+    of_small = of_other_pairs(small.resamples[:, ours])
     mean = (1 + weight) * large.mean[theirs] - weight * small.mean[ours]
     return large.velocities[theirs], mean, (1 + weight) * large.resamples[:, theirs] - weight * of_small
 
@@ -120,10 +120,7 @@ def _common(first, second):
 
 
 def _with_error(value, error):
-    if value is None:
-        return "-"
-    digits = 3 if abs(value) < 10 else 1
-    return f"{value:.{digits}f}" + (f" +- {error:.{digits}f}" if error is not None else "")
+    return with_error(value, error, 3 if value is None or abs(value) < 10 else 1)
 
 
 _NAMES = tuple(f"extrapolated_p1/{round(1 / exponent)}" for exponent in EXPONENTS)

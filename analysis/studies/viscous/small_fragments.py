@@ -8,7 +8,7 @@ import numpy as np
 
 from ...report.section import Column, Section
 from ...statistics import resampling_error
-from .curves import difference
+from .curves import difference, of_other_pairs, with_error
 from .results import SMALL, picoseconds
 
 
@@ -34,9 +34,9 @@ def drag_section(results):
         Column("grains", lambda r: str(r["grains"])),
         Column("v [m/s]", lambda r: f"{r['velocity']:.3g}"),
         Column("T_vis [ps]", lambda r: f"{picoseconds(r['T_vis'])} less {picoseconds(r['less'])}"),
-        Column("<f_gro>", lambda r: _with_error(r["growth"])),
-        Column("half the small fragments", lambda r: _with_error(r["small"])),
-        Column("the rest", lambda r: _with_error(r["remnants"])),
+        Column("<f_gro>", lambda r: with_error(*r["growth"])),
+        Column("half the small fragments", lambda r: with_error(*r["small"])),
+        Column("the rest", lambda r: with_error(*r["remnants"])),
     )
     intro = (
         f"Difference of means over B_off. Small: fragments of {SMALL} grains or fewer, their mass over that of an aggregate. Each "
@@ -69,8 +69,8 @@ def small_section(results):
         Column("T_vis [ps]", lambda r: picoseconds(r["T_vis"])),
         Column("v [m/s]", lambda r: f"{r['velocity']:.3g}"),
         Column("grains", lambda r: str(r["grains"])),
-        Column("small fragments", lambda r: _with_error(r["small"], 4)),
-        Column("p", lambda r: "-" if r["exponent"] is None else _with_error(r["exponent"], 2)),
+        Column("small fragments", lambda r: with_error(*r["small"], 4)),
+        Column("p", lambda r: "-" if r["exponent"] is None else with_error(*r["exponent"], 2)),
     )
     intro = f"Mean over B_off of the mass in fragments of {SMALL} grains or fewer, over that of an aggregate, ~ N^-p from the size above."
     return Section("small fragments against size", columns, tuple(rows), intro)
@@ -83,14 +83,8 @@ def _exponent(small, large, velocity):
     if min(means) <= 0:
         return None
     scale = np.log(large.grains / small.grains)
-    # The two sizes are independent pairs of aggregates, though their resamples came from the same random numbers.
-    drawn = np.roll(small.resamples[:, places[0]], 1), large.resamples[:, places[1]]
+    drawn = of_other_pairs(small.resamples[:, places[0]]), large.resamples[:, places[1]]
     known = small.has_errors and large.has_errors
     with np.errstate(invalid="ignore", divide="ignore"):
         error = resampling_error(np.log(drawn[0] / drawn[1]) / scale) if known else None
     return float(np.log(means[0] / means[1]) / scale), error
-
-
-def _with_error(value, digits=3):
-    mean, error = value
-    return f"{mean:.{digits}f}" + (f" +- {error:.{digits}f}" if error is not None else "")

@@ -10,6 +10,7 @@ from ..results import picoseconds
 
 __all__ = [
     "PAPER",
+    "draw_curve",
     "impact_colour",
     "legend",
     "letter",
@@ -48,6 +49,12 @@ def mean_points(axes, x, samples, colour, label=None, marker="o", line="-"):
     means, errors = zip(*(mean_and_error(sample) for sample in samples))
     errors = [error or 0.0 for error in errors]
     axes.errorbar(x, means, yerr=errors, fmt=marker + line, color=colour, markersize=4, capsize=2, lw=1.3, label=label)
+
+
+def draw_curve(axes, curve, colour, label, scale=1.0):
+    """Means of a Curve with errors against velocity over scale [m/s]."""
+    x, error = curve.velocities / scale, np.nan_to_num(curve.error)
+    axes.errorbar(x, curve.mean, error, fmt="o-", color=colour, capsize=3, label=label)
 
 
 def threshold_points(axes, x, growths, colour, label):

@@ -9,6 +9,7 @@ from ..impact_mean import at_impacts
 from ..results import picoseconds
 from .common import (
     PAPER,
+    draw_curve,
     impact_colour,
     legend,
     letter,
@@ -56,17 +57,7 @@ def mean_growth_figure(results):
     colours = time_colours(results.table)
     for place, grains in zip(axes[0], results.sizes):
         for growth in results.of_size(grains):
-            colour = colours[growth.viscous_time]
-            error = np.nan_to_num(growth.error)
-            place.errorbar(
-                growth.velocities,
-                growth.mean,
-                error,
-                fmt="o-",
-                color=colour,
-                capsize=3,
-                label=time_label(growth.viscous_time),
-            )
+            draw_curve(place, growth, colours[growth.viscous_time], time_label(growth.viscous_time))
         place.axhline(0.0, color="0.6", lw=0.8)
         place.axvspan(*paper.V_FRA, color=PAPER, alpha=0.12, lw=0, label="A22: $v_{fra}$")
         velocity_axis(place, results.table.velocity)
@@ -88,11 +79,7 @@ def head_on_figure(results):
     for place, grains in zip(axes[0], sizes):
         for (own, time), curve in sorted(results.head_on.items()):
             if own == grains:
-                error = np.nan_to_num(curve.error)
-                label = time_label(time)
-                place.errorbar(
-                    curve.velocities, curve.mean, error, fmt="o-", color=colours[time], capsize=3, label=label
-                )
+                draw_curve(place, curve, colours[time], time_label(time))
         velocity_axis(place, results.table.velocity)
         place.axhline(0.0, color="0.6", lw=0.8)
         place.set_ylim(-0.9, 1.05)
@@ -140,11 +127,8 @@ def collapse_figure(results):
     figure, axes = panels(1, 2, 4.8, 4.2)
     colours = time_colours(results.table)
     for growth in results.of_size(grains):
-        scaled = growth.velocities / growth.sticking_velocity
-        for place, x in zip(axes[0], (growth.velocities, scaled)):
-            label = f"{picoseconds(growth.viscous_time)} ps"
-            error = np.nan_to_num(growth.error)
-            place.errorbar(x, growth.mean, error, fmt="o-", color=colours[growth.viscous_time], capsize=3, label=label)
+        for place, scale in zip(axes[0], (1.0, growth.sticking_velocity)):
+            draw_curve(place, growth, colours[growth.viscous_time], f"{picoseconds(growth.viscous_time)} ps", scale)
             place.axhline(0.0, color="0.6", lw=0.8)
     velocity_axis(axes[0, 0], results.table.velocity)
     axes[0, 1].set_xscale("log")

@@ -1,11 +1,9 @@
 """What drag changes: growth efficiency with and without half of the small fragments' mass."""
 
-import numpy as np
-
 from ....figures.style import styled
 from ...definition import StudyFigure
 from ..results import SMALL
-from .common import legend, letter, panels, time_colours, time_label, velocity_axis
+from .common import draw_curve, legend, letter, panels, time_colours, time_label, velocity_axis
 
 
 @styled
@@ -19,9 +17,7 @@ def remnants_figure(results):
         for place, grains in zip(row, results.sizes):
             for growth in results.of_size(grains):
                 curve = curves[grains, growth.viscous_time]
-                colour, label = colours[curve.viscous_time], time_label(curve.viscous_time)
-                error = np.nan_to_num(curve.error)
-                place.errorbar(curve.velocities, curve.mean, error, fmt="o-", color=colour, capsize=3, label=label)
+                draw_curve(place, curve, colours[curve.viscous_time], time_label(curve.viscous_time))
             place.axhline(0.0, color="0.6", lw=0.8)
             velocity_axis(place, results.table.velocity)
             place.text(0.03, 0.05, f"{grains} grains each", transform=place.transAxes)
