@@ -121,6 +121,9 @@ def test_points_and_the_fit_of_made_runs(runs):
     assert (point.grown, point.outcomes.get("sticking")) == (2, 2)
     assert point.means["largest"] == pytest.approx((0.75, 0.5 / np.sqrt(12)))
     assert point.means["rolling_of_lost"][0] == pytest.approx(0.4 / 0.5)
+    falls = results.paired("largest", {"neck": 0.0, "velocity": 10.0}, {"neck": 0.7, "velocity": 10.0})
+    assert sorted(falls) == pytest.approx([0.0, 0.0, 0.5, 0.5])
+    assert len(results.paired("largest", {"neck": 0.0, "velocity": 10.0}, {"neck": 0.65, "velocity": 10.0})) == 0
     fit = results.fits[1, 0.0]
     assert fit.points == 9 and fit.runs == 36  # not BCCA of beta = 0.2, not those in which no neck broke
     assert fit.amplitude == pytest.approx(AMPLITUDE, rel=0.1) and fit.exponent == pytest.approx(EXPONENT, abs=0.04)

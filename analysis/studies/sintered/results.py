@@ -94,6 +94,16 @@ class Results:
         """[Point] in the plane, xi_crit = 2 Angstrom, without drag, springs cut, and with these attributes."""
         return self.select(**{**MAIN, **values})
 
+    def paired(self, column, first, second):
+        """Values (n,) of a column in the runs of one point of the main BCCA runs less another's, {attribute: value}, seed by
+        seed: n seeds that both have."""
+        values = [self._of_seeds(column, {**MAIN, "growth_velocity": 0.0, **point}) for point in (first, second)]
+        return (values[0] - values[1]).dropna().to_numpy()
+
+    def _of_seeds(self, column, point):
+        chosen = np.logical_and.reduce([np.isclose(self.table[k], v, rtol=2e-3, atol=0) for k, v in point.items()])
+        return self.table[chosen].groupby("packing_seed")[column].mean()
+
 
 MAIN = MappingProxyType({"planar": 1, "criticalRolling": 2e-10, "viscoelasticTime": 0.0, "cut": 1})
 
