@@ -44,7 +44,9 @@ def run_batch(table, options):
     os.makedirs(LOGS, exist_ok=True)
     command = batch_command(table, log_name(table), options)
     lines = []
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as batch:
+    # yade-batch ends without flushing: what it still had in its buffer would be lost.
+    how = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    with subprocess.Popen(command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, **how) as batch:
         for line in batch.stdout:
             print(line, end="", flush=True)
             lines.append(line)

@@ -49,7 +49,7 @@ def contacts_of_chain(grains):
 def chain_of_contacts(contacts):
     """N of the chains of an aggregate with so many contacts a grain (> 2): S17 eq 16 solved for N; inf at 2.
 
-    >>> round(chain_of_contacts(contacts_of_chain(12.0)), 9)
+    >>> round(float(chain_of_contacts(contacts_of_chain(12.0))), 9)
     12.0
     """
     contacts = np.asarray(contacts, dtype=float)

@@ -23,7 +23,7 @@ from yade_scripts.parameters.arithmetic import NotANumber, evaluate
         ("2*pi*sqrt(2)/e", 2 * math.pi * math.sqrt(2) / math.e),
         (
             "exp(1) + log(2) + log10(3) + sin(4) + cos(5) + tan(6)",
-            sum((math.e, math.log(2), math.log10(3))) + math.sin(4) + math.cos(5) + math.tan(6),
+            math.e + math.log(2) + math.log10(3) + math.sin(4) + math.cos(5) + math.tan(6),
         ),
         ("64.6*40*1.936532021439599e-10", 64.6 * 40 * 1.936532021439599e-10),
         ("2**60 + 1", 2**60 + 1),
