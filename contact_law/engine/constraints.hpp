@@ -3,6 +3,7 @@
 #include "../kernel/blocked.hpp"
 #include "arrays.hpp"
 #include <algorithm>
+#include <emmintrin.h>
 
 namespace contact_law {
 
@@ -11,6 +12,18 @@ struct Constrained {
 	unsigned blocked;                                   // bits, blocked.hpp
 	Vec3<double> force { 0, 0, 0 }, torque { 0, 0, 0 }; // withheld now
 };
+
+// 1 for each degree of freedom that is blocked, 0 for the others: x, y, z, about x, y, z.
+using BlockedRow = std::array<double, 6>;
+constexpr std::array<BlockedRow, 64> allBlockedRows()
+{
+	std::array<BlockedRow, 64> rows {};
+	for (unsigned bits = 0; bits < rows.size(); ++bits)
+		for (unsigned k = 0; k < 6; ++k)
+			rows[bits][k] = bits >> k & 1;
+	return rows;
+}
+constexpr auto blockedRows = allBlockedRows();
 
 // Of one domain's grains. Forces are withheld as soon as they are complete, so that all that comes after (kicks, kinetic energy) knows nothing of it.
 class Constraints {
@@ -27,18 +40,8 @@ public:
 	{
 		double sum = work; // grain by grain, so that it doesn't depend on where `end` stood
 		auto at = grains.begin() + next;
-		for (; at != grains.end() && at->grain < end; ++at) {
-			Constrained& c = *at;
-			Grain& g = all[c.grain];
-			const Vec3<double> force = blockedForce({ g.fx, g.fy, g.fz }, c.blocked),
-			                   torque = blockedTorque({ g.tx, g.ty, g.tz }, c.blocked);
-			sum += 0.5 * dt
-			        * (dot(c.force + force, Vec3<double> { g.vx, g.vy, g.vz })
-			                + dot(c.torque + torque, Vec3<double> { g.wx, g.wy, g.wz }));
-			addToGrain(g, -force, -torque);
-			c.force = force;
-			c.torque = torque;
-		}
+		for (; at != grains.end() && at->grain < end; ++at)
+			sum += 0.5 * dt * withheldFrom(all[at->grain], *at);
 		work = sum;
 		next = at - grains.begin();
 	}
@@ -72,6 +75,22 @@ public:
 
 private:
 	std::size_t next = 0;
+
+	// The power of what is withheld of a grain, now and before. In the plane all grains come here in every step: by pairs of numbers, without branches.
+	static double withheldFrom(Grain& g, Constrained& c)
+	{
+		const double* blocked = blockedRows[c.blocked].data();
+		double *forces = &g.fx, *before = &c.force.x;
+		const double* velocities = &g.vx;
+		__m128d power = _mm_setzero_pd();
+		for (int k = 0; k < 6; k += 2) {
+			const __m128d force = _mm_loadu_pd(forces + k), held = _mm_mul_pd(_mm_loadu_pd(blocked + k), force);
+			power = _mm_add_pd(power, _mm_mul_pd(_mm_add_pd(_mm_loadu_pd(before + k), held), _mm_loadu_pd(velocities + k)));
+			_mm_storeu_pd(before + k, held);
+			_mm_storeu_pd(forces + k, _mm_sub_pd(force, held));
+		}
+		return _mm_cvtsd_f64(power) + _mm_cvtsd_f64(_mm_unpackhi_pd(power, power));
+	}
 };
 
 } // namespace contact_law

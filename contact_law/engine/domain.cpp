@@ -74,16 +74,14 @@ void Domain::addOtherForces(bool behind)
 	if (behind) beginMoving();
 	addForces(Both, 0, sortedBlocks, behind);
 	if (cell.on) sums.boundary.complete(cell, s.dt);
-	completeForces(end);
 	if (behind) integrateUpTo(end);
+	completeForces(end);
 }
 
 void Domain::moveBehind(void* owner, int batch)
 {
 	Domain& domain = *static_cast<EventCall*>(owner)->domain;
-	const int complete = domain.completed[batch];
-	domain.completeForces(complete);
-	domain.integrateUpTo(complete);
+	domain.integrateUpTo(domain.completed[batch]);
 }
 
 void Domain::completeForces(int grain)
@@ -110,6 +108,7 @@ void Domain::integrateUpTo(int grain)
 	while (moved < grain) {
 		Group& group = lists.group(moved);
 		const int to = std::min(grain, group.last);
+		completeForces(to); // group by group, while its grains are in the cache
 		if (s.convects()) convect(moved, to);
 		s.passes->integrate(s.grains.data() + moved, s.grains.data() + to, s.inverseMass.data() + moved,
 		        s.inverseInertia.data() + moved, s.dt, movedLatest);
