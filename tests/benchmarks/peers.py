@@ -19,6 +19,8 @@ import numpy as np
 from analysis.theory import pair_constants
 
 TIME = 1e-9  # s
+WIDEST = 1500  # edge of a box [grain radii] that LAMMPS can divide into bins of its own size
+BINS = 400  # along the edge of a wider one
 SKIN = 0.3  # grain radii; 0.1 to 0.6 measured the same
 PHYSICS = {
     "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
@@ -37,6 +39,7 @@ run {steps}
 LAMMPS_INPUT = (
     """units lj
 atom_style sphere
+atom_modify sort 1000 {bin_edge}
 boundary {boundary}
 newton off
 {processors}
@@ -45,7 +48,7 @@ read_data grains.data
 pair_style granular
 pair_coeff * * jkr {young} 0 {poisson} {surface_energy} tangential mindlin NULL 0 {friction} rolling sds {rolling_stiffness} 0 {rolling_friction} twisting marshall damping velocity
 neighbor {skin} bin
-neigh_modify delay 0 every 1 check yes
+neigh_modify delay 0 every 1 check yes binsize {bin_edge}
 """
     + RUN_AND_COUNT
 )
@@ -106,6 +109,25 @@ def version(code):
     return next(group for group in found.groups() if group) if found else "unknown"
 
 
+def box_edges(scene):
+    """(lowest, highest) coordinate of the cell, or of a box in which all grains stay; in grain radii."""
+    reach = 2 * abs(scene.position).max()
+    return (0, scene.edge / scene.radius[0]) if scene.edge else (-reach / scene.radius[0], reach / scene.radius[0])
+
+
+def bin_edge(scene):
+    """Of LAMMPS's bins, in grain radii; 0: its own, of which there are too many where fragments are far apart."""
+    low, high = box_edges(scene)
+    return (high - low) / BINS if high - low > WIDEST else 0
+
+
+def last_words(done):
+    """Of a program: its error, or else the end of what it printed."""
+    printed = f"{done.stdout}\n{done.stderr}"
+    errors = re.findall(r"^ERROR.*$", printed, re.M)
+    return errors[-1] if errors else printed[-1500:]
+
+
 def measure(code, scene, steps, cores=1, skin=SKIN):
     """{contacts, grains, steps, seconds, rate, fraction} of a run of `steps` steps; rate: contact updates a second of the time loop.
 
@@ -120,6 +142,7 @@ def measure(code, scene, steps, cores=1, skin=SKIN):
                 skin=skin,
                 boundary="p p p" if scene.edge else "f f f",
                 processors=f"processors {cores} 1 1",
+                bin_edge=bin_edge(scene),
                 **scaled_constants(scene),
             )
         )
@@ -131,7 +154,7 @@ def measure(code, scene, steps, cores=1, skin=SKIN):
         fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
     if done.returncode or not loop:
-        raise PeerFailed(f"{' '.join(command)} failed:\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
+        raise PeerFailed(f"{' '.join(command)} failed: {last_words(done)}")
     counted = re.findall(
         r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M
     )  # grains and contacts (twice, once from each grain)
@@ -179,10 +202,8 @@ def write_grains(path, scene):
     """A data file that both read: id, type, diameter, density, position; id, velocity, spin."""
     r = scene.radius[0]
     assert len(scene.materials) == 1 and (scene.radius == r).all(), "peers are measured on like grains"
-    reach = 2 * abs(scene.position).max() / r
-    low, high, position = (
-        (0, scene.edge / r, scene.position % scene.edge) if scene.edge else (-reach, reach, scene.position)
-    )
+    low, high = box_edges(scene)
+    position = scene.position % scene.edge if scene.edge else scene.position
     spin = np.zeros_like(scene.velocity) if scene.spin is None else scene.spin
     moving = np.hstack([scene.velocity * TIME / r, spin * TIME])
     with open(path, "w") as file:
