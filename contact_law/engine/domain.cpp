@@ -74,20 +74,32 @@ void Domain::addOtherForces(bool behind)
 	if (behind) beginMoving();
 	addForces(Both, 0, sortedBlocks, behind);
 	if (cell.on) sums.boundary.complete(cell, s.dt);
-	if (behind) integrateUpTo(end);
-	completeForces(end);
+	if (behind)
+		completeAndIntegrateUpTo(end);
+	else
+		completeForces(end);
 }
 
 void Domain::moveBehind(void* owner, int batch)
 {
 	Domain& domain = *static_cast<EventCall*>(owner)->domain;
-	domain.integrateUpTo(domain.completed[batch]);
+	domain.completeAndIntegrateUpTo(domain.completed[batch]);
 }
 
 void Domain::completeForces(int grain)
 {
 	outside.add(s.grains.data(), s.dt, grain);
 	constraints.withhold(s.grains.data(), s.dt, grain);
+}
+
+// Group by group, while its grains are in the cache.
+void Domain::completeAndIntegrateUpTo(int grain)
+{
+	while (moved < grain) {
+		const int to = std::min(grain, lists.group(moved).last);
+		completeForces(to);
+		integrateUpTo(to);
+	}
 }
 
 void Domain::beginMoving()
@@ -108,7 +120,6 @@ void Domain::integrateUpTo(int grain)
 	while (moved < grain) {
 		Group& group = lists.group(moved);
 		const int to = std::min(grain, group.last);
-		completeForces(to); // group by group, while its grains are in the cache
 		if (s.convects()) convect(moved, to);
 		s.passes->integrate(s.grains.data() + moved, s.grains.data() + to, s.inverseMass.data() + moved,
 		        s.inverseInertia.data() + moved, s.dt, movedLatest);

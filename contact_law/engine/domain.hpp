@@ -99,6 +99,7 @@ private:
 	static void moveBehind(void* owner, int batch);
 	void convect(int first, int last);
 	void completeForces(int grain); // of grains below that, which have those of all contacts
+	void completeAndIntegrateUpTo(int grain);
 	void integrateUpTo(int grain);
 	void beginMoving();
 	void finishGroup(Group&);

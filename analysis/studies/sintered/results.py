@@ -7,7 +7,7 @@ from typing import Mapping
 import numpy as np
 import pandas
 
-from ...measures.outcome import BOUNCING, STICKING
+from ...measures.outcome import BOUNCING, STICKING, UNDECIDED
 from ...runs.format import BROKEN_BONDS
 from ...statistics import mean_and_error, pair_weights, resampling_error, stretch
 from .measure import LOST, PARTS
@@ -55,8 +55,8 @@ class Point:
 
     @property
     def sticking(self):
-        """How many runs ended in sticking."""
-        return self.number(STICKING)
+        """How many runs ended in one piece, which is S17's sticking, whether their halves still swing or not."""
+        return self.number(STICKING) + self.number(UNDECIDED)
 
     @property
     def bouncing(self):

@@ -1,17 +1,12 @@
 """Snapshots of one collision for each T_vis: A22 Fig. 1."""
 
-import numpy as np
-
-from ....figures.sphere_raster import paint_spheres
-from ....figures.style import AGGREGATE_COLOURS, styled
+from ....figures.collision_view import draw_view, reach
+from ....figures.style import styled
 from ...definition import StudyFigure
 from .. import paper
 from .common import letter, one_run_each, own_times, panels, run_folder, time_label
 
-MICRO = 1e6
-PIXELS = 420  # across a panel
-VIEW = 4.5  # half width of a panel in characteristic radii, and more at the end if
-HELD = 0.95  # that fraction of the grains reaches farther: the rest is left outside
+VIEW = 4.5  # half width of a panel in characteristic radii, and more at the end, where grains are farther
 
 
 @styled
@@ -29,29 +24,13 @@ def snapshots(results):
     unit = first.derived["grainRadius"]
     least = VIEW * shown[0][1].characteristic_radius / unit
     for places, states in zip(axes, (early, late)):
-        half = least if states is early else max([least] + [_reach(state) / unit for state, _ in states])
+        half = least if states is early else max([least] + [reach(state) / unit for state, _ in states])
         for place, (state, name) in zip(places, states):
-            _draw(place, state, unit, half, name)
+            draw_view(place, state, unit, half, name)
         for place in places[len(states) :]:
             place.set_axis_off()
     letter([place for row in axes for place in row if place.axison], "")
     return figure
-
-
-def _reach(state):
-    """Half width [m] of a square around the origin that holds HELD of the grains."""
-    return float(np.quantile(np.abs(state.position[:, :2]).max(axis=1), HELD))
-
-
-def _draw(place, state, unit, half, name):
-    window, pixel = (-half, half, -half, half), 2 * half / PIXELS
-    colour = np.array(AGGREGATE_COLOURS)[state.aggregate]
-    image = paint_spheres(state.position / unit, state.radius / unit, colour, window, pixel, fading=half)
-    place.imshow(image, extent=window, origin="lower", interpolation="antialiased")
-    text = rf"{state.time * MICRO:.2f} $\mu$s, {name}"
-    place.text(0.03, 0.97, text, transform=place.transAxes, va="top", fontsize=9)
-    place.set_xticks([])
-    place.set_yticks([])
 
 
 FIGURES = (
