@@ -24,4 +24,5 @@ def draw_view(axes, state, unit, half, text=""):
     axes.text(0.03, 0.97, f"{time}, {text}" if text else time, transform=axes.transAxes, va="top", fontsize=9)
     axes.set_xticks([])
     axes.set_yticks([])
-    axes.spines[:].set(visible=True, color="0.75")
+    axes.spines[:].set_visible(True)
+    axes.spines[:].set_color("0.75")

@@ -168,7 +168,7 @@ def test_comparison_and_figures(runs, tmp_path, capsys):
     assert lines["exponent, in the plane"]["paper"] == 0.97
     drawn = {file.name for file in (tmp_path / "out").glob("*.png")}
     figures = {"fig06_contacts", "fig08_velocity", "fig11_beta", "fig12_fragments", "fig13_compacted", "fig14_energy"}
-    assert {f"{name}.png" for name in figures | {"fig15_necks", "fig17_chains", "modes"}} <= drawn
+    assert {f"{name}.png" for name in figures | {"fig15_necks", "fig17_chains", "modes", "fig07_snapshots"}} <= drawn
     assert main(["study", "sintered", str(tmp_path / "out" / "runs.csv"), "--json"]) == 0
     assert differences(json.loads(capsys.readouterr().out)["sections"], answer["sections"]) == []
 
