@@ -64,7 +64,7 @@ def velocity_axis(axes, velocities):
         for t in (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 100)
         if low / 1.12 <= t <= high * 1.12
     ]
-    axes.set_xticks(ticks if len(ticks) > 1 else [low, high])
+    axes.set_xticks(ticks if len(ticks) > 1 else sorted({low, high}))
     axes.set_xticks([], minor=True)
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:.3g}")
     axes.set_xlabel("collision velocity  [m/s]")
