@@ -58,6 +58,7 @@ private:
 	void gatherCandidates(const Group&, const PeriodicCell&);
 	int* nextOf(int i, int j);
 	void findDue();
+	void fetchAhead(const Group*) const;
 	void look(Group&, int index, const PeriodicCell&);
 	int stepsUntilTouch(const Group&, double gap, double closing) const;
 
