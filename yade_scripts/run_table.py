@@ -45,8 +45,10 @@ def run_batch(table, options):
     command = batch_command(table, log_name(table), options)
     lines = []
     # yade-batch ends without flushing: what it still had in its buffer would be lost.
-    how = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    with subprocess.Popen(command, env={**os.environ, "PYTHONUNBUFFERED": "1"}, **how) as batch:
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
+    ) as batch:
         for line in batch.stdout:
             print(line, end="", flush=True)
             lines.append(line)

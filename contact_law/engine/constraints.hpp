@@ -13,17 +13,7 @@ struct Constrained {
 	Vec3<double> force { 0, 0, 0 }, torque { 0, 0, 0 }; // withheld now
 };
 
-// 1 for each degree of freedom that is blocked, 0 for the others: x, y, z, about x, y, z.
-using BlockedRow = std::array<double, 6>;
-constexpr std::array<BlockedRow, 64> allBlockedRows()
-{
-	std::array<BlockedRow, 64> rows {};
-	for (unsigned bits = 0; bits < rows.size(); ++bits)
-		for (unsigned k = 0; k < 6; ++k)
-			rows[bits][k] = bits >> k & 1;
-	return rows;
-}
-constexpr auto blockedRows = allBlockedRows();
+static_assert(offsetof(Constrained, torque) == offsetof(Constrained, force) + sizeof(Vec3<double>), "read as six numbers in a row");
 
 // Of one domain's grains. Forces are withheld as soon as they are complete, so that all that comes after (kicks, kinetic energy) knows nothing of it.
 class Constraints {

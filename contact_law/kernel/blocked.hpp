@@ -2,6 +2,7 @@
 // YADE's State.blockedDOFs.
 #pragma once
 #include "vector3.hpp"
+#include <array>
 
 namespace contact_law {
 
@@ -13,6 +14,18 @@ inline Vec3<double> componentsOf(const Vec3<double>& v, unsigned bits)
 
 inline Vec3<double> blockedForce(const Vec3<double>& force, unsigned blocked) { return componentsOf(force, blocked & 7); }
 inline Vec3<double> blockedTorque(const Vec3<double>& torque, unsigned blocked) { return componentsOf(torque, blocked >> 3 & 7); }
+
+// 1 for each degree of freedom that is blocked, 0 for the others: x, y, z, about x, y, z.
+using BlockedRow = std::array<double, 6>;
+constexpr std::array<BlockedRow, 64> allBlockedRows()
+{
+	std::array<BlockedRow, 64> rows {};
+	for (unsigned bits = 0; bits < rows.size(); ++bits)
+		for (unsigned k = 0; k < 6; ++k)
+			rows[bits][k] = bits >> k & 1;
+	return rows;
+}
+constexpr auto blockedRows = allBlockedRows();
 
 // 1/inertia that a torque meets: none turns a grain whose turning is blocked about all axes.
 inline double inverseInertiaOf(double inverseInertia, unsigned blocked) { return (blocked >> 3 & 7) == 7 ? 0 : inverseInertia; }

@@ -94,15 +94,17 @@ class Results:
         """[Point] in the plane, xi_crit = 2 Angstrom, without drag, springs cut, and with these attributes."""
         return self.select(**{**MAIN, **values})
 
-    def paired(self, column, first, second):
-        """Values (n,) of a column in the runs of one point of the main BCCA runs less another's, {attribute: value}, seed by
-        seed: n seeds that both have."""
-        values = [self._of_seeds(column, {**MAIN, "growth_velocity": 0.0, **point}) for point in (first, second)]
-        return (values[0] - values[1]).dropna().to_numpy()
+    def runs(self, **values):
+        """The rows of `table` in the plane, xi_crit = 2 Angstrom, without drag, springs cut, and with these values in their
+        columns."""
+        return runs_with(self.table, **{**MAIN, **values})
 
-    def _of_seeds(self, column, point):
-        chosen = np.logical_and.reduce([np.isclose(self.table[k], v, rtol=2e-3, atol=0) for k, v in point.items()])
-        return self.table[chosen].groupby("packing_seed")[column].mean()
+    def paired(self, column, first, second):
+        """Values (n,) of a column in the BCCA runs() with `first` {column: value} less those with `second`, seed by seed: n seeds
+        that both have."""
+        chosen = [self.runs(growth_velocity=0.0, **values) for values in (first, second)]
+        values = [runs.groupby("packing_seed")[column].mean() for runs in chosen]
+        return (values[0] - values[1]).dropna().to_numpy()
 
 
 MAIN = MappingProxyType({"planar": 1, "criticalRolling": 2e-10, "viscoelasticTime": 0.0, "cut": 1})
@@ -115,6 +117,12 @@ def same(a, b):
     (True, False)
     """
     return abs(a - b) <= 2e-3 * max(abs(a), abs(b))
+
+
+def runs_with(table, **values):
+    """The rows of a table of runs that have these values in their columns, printed alike."""
+    chosen = [table[name].map(lambda found, value=value: same(found, value)) for name, value in values.items()]
+    return table[np.logical_and.reduce(chosen)]
 
 
 def make_results(table):
@@ -130,10 +138,8 @@ def make_results(table):
     keys = [table[name].map(lambda value: float(f"{value:.6g}")) for name in POINT]
     points = tuple(_point(key, runs) for key, runs in table.groupby(keys))
     fits = {}
-    papers = table[np.isclose(table.criticalRolling, MAIN["criticalRolling"], rtol=2e-3, atol=0) & (table.cut == 1)]
     for planar, drag in sorted({(p.planar, p.viscoelasticTime) for p in points}):
-        own = (papers.planar == planar) & np.isclose(papers.viscoelasticTime, drag, rtol=2e-3, atol=0)
-        fits[planar, drag] = fit_broken(papers[own])
+        fits[planar, drag] = fit_broken(runs_with(table, **{**MAIN, "planar": planar, "viscoelasticTime": drag}))
     return Results(table, points, MappingProxyType(fits))
 
 

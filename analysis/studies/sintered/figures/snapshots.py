@@ -7,7 +7,6 @@ from ....theory.chains import stretching_period
 from ....theory.pair_constants import ICE, pair_constants
 from ...definition import StudyFigure
 from .. import paper
-from ..results import MAIN, same
 from .common import beta_label, growth_label, panels
 
 # (beta, V_c [m/s]) of BCCA aggregates, from top to bottom; and for V_g = 3 m/s.
@@ -34,11 +33,8 @@ def _figure(collisions, growth, periods):
 
 def _first(results, growth, neck, velocity):
     """The run (a row) of a collision with the lowest seed; None without one."""
-    wanted = {**MAIN, "growth_velocity": growth, "neck": neck, "velocity": velocity}
-    runs = [
-        r for r in results.table.itertuples() if all(same(getattr(r, name), value) for name, value in wanted.items())
-    ]
-    return min(runs, key=lambda row: row.packing_seed, default=None)
+    runs = results.runs(growth_velocity=growth, neck=neck, velocity=velocity).sort_values("packing_seed")
+    return next(runs.itertuples(), None)
 
 
 def _draw_row(places, row, periods):
