@@ -30,7 +30,7 @@ def turned(v, angle):
 # ---- constants (MODEL.md, "Pair constants" and "Sintered bonds"); m: young, poisson, density, surfaceEnergy, ... ----
 
 
-def pair(m1, r1, m2, r2, damping, beta):
+def pair(m1, r1, m2, r2, damping, beta, sliding_factor=1):
     """Constants of a contact of grains with radii r1, r2, which necks (beta) have shrunk at constant mass."""
     s = shrunk_radius(beta)
     r1, r2, mass1, mass2 = s * r1, s * r2, *(4 / 3 * pi * m.density * r**3 for m, r in ((m1, r1), (m2, r2)))
@@ -41,7 +41,8 @@ def pair(m1, r1, m2, r2, damping, beta):
     a0 = (9 * pi * gamma * R**2 / E) ** (1 / 3)  # A22 (1)
     c = SimpleNamespace(r1=r1, r2=r2, R=R, a0=a0, d0=a0**2 / (3 * R), Fc=3 * pi * gamma * R)  # A22 (2), (6)
     c.dc = (9 / 16) ** (1 / 3) * c.d0  # A22 (3)
-    c.kr, c.ks, c.kt = 4 * c.Fc / R, 8 * a0 * G, 16 / 3 * G_twist * a0**3  # A22 (14), (18), (23)
+    c.kr, c.kt = 4 * c.Fc / R, 16 / 3 * G_twist * a0**3  # A22 (14), (23)
+    c.ks = sliding_factor * 8 * a0 * G  # A22 (18); 2: S17 (11) and (12)
     c.zeta_crit, c.phi_crit = G_twist / G * a0 / (16 * pi), 1 / (16 * pi)  # A22 (19), (24)
     c.xi_crit = (m1.criticalRolling + m2.criticalRolling) / 2
     c.viscous = sum(m.viscoelasticTime / m.poisson**2 for m in (m1, m2)) * E  # A22 (7): 2 A E*
@@ -208,12 +209,14 @@ class Scene:
     half_step: v and w are of half a step before x (YADE's functors), not of the same moment (the fused engine).
     `energies`: by channel, at the present positions."""
 
-    def __init__(self, materials, radii, x, v, w, dt, damping=0.0, neck=0.0, half_step=False, limit="held"):
+    def __init__(
+        self, materials, radii, x, v, w, dt, damping=0.0, neck=0.0, half_step=False, limit="held", sliding_factor=1.0
+    ):
         self.materials, self.radii = [SimpleNamespace(**m) for m in materials], np.array(radii)
         self.x, self.v, self.w, self.dt = np.array(x), np.array(v), np.array(w), dt
         self.mass = 4 / 3 * pi * np.array([m.density for m in self.materials])[:, None] * self.radii[:, None] ** 3
         self.inertia = 0.4 * self.mass * self.radii[:, None] ** 2
-        self.damping, self.neck, self.limit = damping, neck, limit
+        self.damping, self.neck, self.limit, self.sliding_factor = damping, neck, limit, sliding_factor
         self.contacts, self.constants, self.lost = {}, {}, dict.fromkeys(LOST, 0.0)
         self.forces(dt if half_step else 0.0, start=True)
         if not half_step:
@@ -239,7 +242,8 @@ class Scene:
     def pair_step(self, i, j, x, old, dt, start):
         if (i, j) not in self.constants:
             grains = self.materials[i], self.radii[i], self.materials[j], self.radii[j], self.neck
-            self.constants[i, j] = pair(*grains[:4], self.damping, self.neck), bond(*grains) if self.neck else None
+            contact = pair(*grains[:4], self.damping, self.neck, self.sliding_factor)
+            self.constants[i, j] = contact, bond(*grains) if self.neck else None
         c, b = self.constants[i, j]
         p = SimpleNamespace(i=i, j=j, x=x, v=self.v[i] - self.v[j], w1=self.w[i], w2=self.w[j], drag=0.0, bonded=False)
         p.distance, p.mass = sqrt(x @ x), 1 / (1 / self.mass[i, 0] + 1 / self.mass[j, 0])

@@ -20,18 +20,18 @@ def soft(**other):
     )
 
 
-def constants(material1, radius1, material2=None, radius2=None, damping=0):
-    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping)
+def constants(material1, radius1, material2=None, radius2=None, damping=0, sliding_factor=1):
+    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, slidingStiffnessFactor=sliding_factor)
     return functor.pairConstants(material1, radius1, material2 or material1, radius2 or radius1)
 
 
-def functor_engines(damping=0, verlet=0.0, neck=0, **law):
+def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
     return [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=verlet),
         InteractionLoop(
             [Ig2_Sphere_Sphere_ScGeom()],
-            [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck)],
+            [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)],
             [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)],
         ),
         NewtonIntegrator(damping=0),

@@ -57,27 +57,27 @@ class GrainParameters(Parameters):
 def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
     """{name: value} of a contact of two of these grains (SI), by the plugin's names, where no YADE runs.
 
-    grains: anything with the attributes of Material, and viscoelasticTime [s] if there is drag; radii: of the two [m],
-    both grainRadius when left out. With a neck, under 'bond', those of a bond of two grains of grainRadius. A run takes
+    grains: anything with the attributes of Material, viscoelasticTime [s] if there is drag, and slidingStiffnessFactor
+    where it is not 1; radii: of the two [m], both grainRadius when left out. With a neck, under 'bond', those of a bond of two grains of grainRadius. A run takes
     the constants from the plugin; a test holds the two together. Sources: analysis.theory.
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]
     radii = radii or (grains.grainRadius, grains.grainRadius)
     properties.append(getattr(grains, "viscoelasticTime", 0.0))
-    found = dict(_pair_constants(*properties, *radii, linearDamping))
+    found = dict(_pair_constants(*properties, *radii, linearDamping, getattr(grains, "slidingStiffnessFactor", 1.0)))
     if neck:
         found["bond"] = dict(_bond_constants(*properties, grains.grainRadius, neck))
     return found
 
 
 @lru_cache
-def _pair_constants(*properties_radii_and_damping):
+def _pair_constants(*properties_radii_and_law):
     from analysis import theory  # takes a moment, and runs within YADE do without
 
-    *properties, radius1, radius2, damping = properties_radii_and_damping
+    *properties, radius1, radius2, damping, sliding = properties_radii_and_law
     material = theory.Material(*properties)
-    return _by_plugins_names(theory.pair_constants(material, radius1, material, radius2, damping))
+    return _by_plugins_names(theory.pair_constants(material, radius1, material, radius2, damping, sliding))
 
 
 @lru_cache

@@ -54,6 +54,7 @@ def require_measured(parameters):
     """Raise ParameterError for a collision of which nothing was measured."""
     if parameters.packing == "file":
         _refuse("packing = file")
+    _require_usual_sliding(parameters)
     if parameters.sizes != EQUAL:
         _refuse(f"sizes = {parameters.sizes}")
     if parameters.initialOverlap != 1:
@@ -62,6 +63,7 @@ def require_measured(parameters):
 
 def require_measured_compression(parameters, constants):
     """Raise ParameterError for a compression of which nothing was measured."""
+    _require_usual_sliding(parameters)
     if parameters.finalPressure is not None:
         _refuse("finalPressure, which may end a run at any filling")
     if not FILLINGS[0] <= parameters.finalFilling <= FILLINGS[1]:
@@ -75,6 +77,11 @@ def require_measured_compression(parameters, constants):
             f"a rolling energy of {rolling_energy(constants):.3g} F_c delta_c, only {ROLLINGS[0]:g} to {ROLLINGS[1]:g} "
             "(other than ice, or another criticalRolling)"
         )
+
+
+def _require_usual_sliding(parameters):
+    if parameters.slidingStiffnessFactor != 1:
+        _refuse(f"slidingStiffnessFactor = {parameters.slidingStiffnessFactor:g}")
 
 
 def _refuse(what):

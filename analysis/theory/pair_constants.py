@@ -66,11 +66,11 @@ def time_unit(density, radius, reduced_young, surface_energy):
     return 0.95 * density**0.5 * radius ** (7.0 / 6.0) / (reduced_young ** (1.0 / 3.0) * surface_energy ** (1.0 / 6.0))
 
 
-def pair_constants(material1, radius1, material2=None, radius2=None, linear_damping=0.0):
+def pair_constants(material1, radius1, material2=None, radius2=None, linear_damping=0.0, sliding_factor=1.0):
     """PairConstants of two grains: materials and radii [m]; the second grain equals the first where it is
     left out.
 
-    linear_damping is K13's k_n (dimensionless). Sources: the module's head and PairConstants.
+    linear_damping is K13's k_n, sliding_factor what k_s is over 8 a0 G* (S17's eqs 11 and 12: 2), both dimensionless. Sources: the module's head and PairConstants.
     """
     material2 = material1 if material2 is None else material2
     radius2 = radius1 if radius2 is None else radius2
@@ -98,7 +98,7 @@ def pair_constants(material1, radius1, material2=None, radius2=None, linear_damp
         pull_off_overlap=(9.0 / 16.0) ** (1.0 / 3.0) * delta0,
         pull_off_force=pull_off_force,
         rolling_stiffness=4.0 * pull_off_force / R,
-        sliding_stiffness=8.0 * a0 * sliding_shear,
+        sliding_stiffness=sliding_factor * 8.0 * a0 * sliding_shear,
         twisting_stiffness=16.0 / 3.0 * twisting_shear * a0**3,
         critical_sliding=twisting_shear / sliding_shear * a0 / (16.0 * pi),
         critical_rolling=0.5 * sum(m.critical_rolling for m in both),

@@ -8,7 +8,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 5;            // 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3
+	constexpr int formatNumber = 6; // 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
 	{
@@ -104,7 +104,8 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(domainCount(), named("domains"));
 	archive.same(int(options.cell.on), named("O.periodic"));
 	archive.same(setting.material.size(), named("the number of materials"));
-	archive.same(setting.linearDamping, named("linearDamping"));
+	archive.same(setting.pairs.linearDamping, named("linearDamping"));
+	archive.same(setting.pairs.slidingStiffnessFactor, named("slidingStiffnessFactor"));
 	archive.same(setting.neck, named("neck"));
 	std::size_t necks = setting.necks.size();
 	archive.number(necks);

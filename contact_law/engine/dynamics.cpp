@@ -54,7 +54,7 @@ void Dynamics::prepare(const Grains& grains, const Materials& materials)
 	indexHere.resize(count);
 	setting.passes = &instructionSet(options.instructions);
 	setting.material = materials;
-	setting.linearDamping = options.linearDamping;
+	setting.pairs = options.pairs;
 	setting.neck = options.neck;
 	if (setting.neck > 0) setting.necks = { setting.neck };
 	setting.mechanisms = options.mechanisms;

@@ -39,7 +39,8 @@ struct ListAge {
 class Dynamics {
 public:
 	struct Options {
-		double dt = 0, linearDamping = 0;
+		double dt = 0;
+		PairOptions pairs;
 		double neck = 0; // of sintered bonds over the grains' radius; 0: none
 		unsigned mechanisms = AllSprings;
 		LimitRule limit = LimitRule::Held;

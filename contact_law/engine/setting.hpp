@@ -17,7 +17,7 @@ struct Setting {
 	std::vector<int> kind;                                   // of each grain
 	std::vector<Orientation> orientation;                    // likewise; none where the scene doesn't ask for them
 	std::vector<unsigned> blocked;                           // likewise (kernel/blocked.hpp)
-	double linearDamping = 0;
+	PairOptions pairs;
 	double neck = 0; // radius of sintered bonds' necks over that of the grains, the largest, by which all grains have shrunk; 0: none
 	std::vector<double> necks; // of the bonds in the scene, each once
 	bool uniform = true;
@@ -46,9 +46,8 @@ struct Setting {
 	}
 	PairConstants<double> constantsOf(int i, int j) const
 	{
-		return uniform
-		        ? common
-		        : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], linearDamping, neck);
+		return uniform ? common
+		               : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], pairs, neck);
 	}
 	bool uniformBonds() const { return uniform && necks.size() <= 1; }
 	BondConstants<double> bondOf(int i, int j, double beta) const

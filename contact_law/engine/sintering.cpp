@@ -18,7 +18,7 @@ void Dynamics::shrinkGrains()
 	setting.leastKick = Setting::leastKickOver * setting.smallestRadius / setting.dt;
 	const Material& m = setting.material[setting.kind[0]];
 	const double r = setting.grainRadius[0];
-	setting.common = deriveShrunkPair(m, r, m, r, setting.linearDamping, setting.neck);
+	setting.common = deriveShrunkPair(m, r, m, r, setting.pairs, setting.neck);
 	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.necks.size() == 1 ? setting.necks[0] : setting.neck);
 }
 

@@ -30,12 +30,12 @@ namespace neck {
 /* Ordinary contacts between grains that sintering has shrunk, r1 and r2 their radii before (beta = 0: as they are). Mass is conserved:
  * what the necks took counts as if it were in the grains still. */
 inline PairConstants<double> deriveShrunkPair(
-        Material material1, double radius1, Material material2, double radius2, double linearDamping, double beta)
+        Material material1, double radius1, Material material2, double radius2, const PairOptions& options, double beta)
 {
 	const double shrunk = neck::shrunkRadius(beta), volume = shrunk * shrunk * shrunk;
 	material1.density /= volume;
 	material2.density /= volume;
-	return derivePair(material1, shrunk * radius1, material2, shrunk * radius2, linearDamping);
+	return derivePair(material1, shrunk * radius1, material2, shrunk * radius2, options);
 }
 
 } // namespace contact_law

@@ -17,6 +17,12 @@ struct Material {
 	double viscoelasticTime; // T_vis [s]
 };
 
+// What a scene sets for all its pairs, whatever they are made of.
+struct PairOptions {
+	double linearDamping = 0;          // k_n, K13 (4)
+	double slidingStiffnessFactor = 1; // k_s over A22's (18); 2: of S17's (11) and (12)
+};
+
 /* The constants of a contact, listed once: name, whether a step's forces read it, and what it is. From this list follow the members
  * below, the attributes of JKRWadaConstants, their copying, and what the engine holds of a contact in scenes with several kinds of pairs
  * (engine/arrays.hpp). */
@@ -67,7 +73,7 @@ constexpr PairConstant<T> pairConstantsOf[] = {
  * (A22 eqs 18, 19). The rest is a rule: geometric mean of the surface energies, arithmetic mean of xi_crit and of the
  * viscous coefficient T_vis/nu^2. A time unit for two unlike grains is that of equal ones of radius 2R and mass 2m*. */
 inline PairConstants<double> derivePair(
-        const Material& material1, double radius1, const Material& material2, double radius2, double linearDamping = 0)
+        const Material& material1, double radius1, const Material& material2, double radius2, const PairOptions& options = {})
 {
 	const Material &m1 = material1, &m2 = material2;
 	const double G1 = m1.young / (2 * (1 + m1.poisson)), G2 = m2.young / (2 * (1 + m2.poisson));
@@ -90,12 +96,12 @@ inline PairConstants<double> derivePair(
 	c.equilibriumContactRadius = std::cbrt(9 * pi * gamma * R * R / c.reducedYoung); // A22 (1)
 	const double a0 = c.equilibriumContactRadius;
 	c.equilibriumOverlap = a0 * a0 / (3 * R);
-	c.pullOffOverlap = std::cbrt(9. / 16.) * c.equilibriumOverlap;       // A22 (3)
-	c.pullOffForce = 3 * pi * gamma * R;                                 // A22 (6)
-	c.rollingStiffness = 4 * c.pullOffForce / R;                         // A22 (14)
-	c.slidingStiffness = 8 * a0 * c.reducedShear;                        // A22 (18)
-	c.twistingStiffness = 16. / 3. * twistingShear * a0 * a0 * a0;       // A22 (23)
-	c.criticalSliding = twistingShear / c.reducedShear * a0 / (16 * pi); // A22 (19)
+	c.pullOffOverlap = std::cbrt(9. / 16.) * c.equilibriumOverlap;                 // A22 (3)
+	c.pullOffForce = 3 * pi * gamma * R;                                           // A22 (6)
+	c.rollingStiffness = 4 * c.pullOffForce / R;                                   // A22 (14)
+	c.slidingStiffness = options.slidingStiffnessFactor * 8 * a0 * c.reducedShear; // A22 (18)
+	c.twistingStiffness = 16. / 3. * twistingShear * a0 * a0 * a0;                 // A22 (23)
+	c.criticalSliding = twistingShear / c.reducedShear * a0 / (16 * pi);           // A22 (19)
 	c.criticalRolling = (m1.criticalRolling + m2.criticalRolling) / 2;
 	c.criticalTwisting = criticalTwistingAngle;
 	c.dragPerContactRadius = 2 * viscosity * c.reducedYoung; // A22 (7)
@@ -104,7 +110,7 @@ inline PairConstants<double> derivePair(
 	const double density = mass / (4 * pi / 3 * radius * radius * radius);
 	// K13 (2) with E* for E (see MODEL.md)
 	c.timeUnit = 0.95 * std::sqrt(density) * std::pow(radius, 7. / 6.) / (std::cbrt(c.reducedYoung) * std::pow(gamma, 1. / 6.));
-	c.linearDrag = linearDamping * mass / c.timeUnit; // K13 (4)
+	c.linearDrag = options.linearDamping * mass / c.timeUnit; // K13 (4)
 	c.complete();
 	return c;
 }

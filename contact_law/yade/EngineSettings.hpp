@@ -10,7 +10,7 @@ constexpr const char* otherEngine = "; a new JKRWadaEngine, made after writeInte
 struct EngineSettings {
 	int domains;
 	std::string instructions;
-	double linearDamping, neck;
+	double linearDamping, slidingStiffnessFactor, neck;
 	bool sliding, rolling, twisting;
 	std::string limit;
 	bool orientations;
@@ -21,6 +21,7 @@ struct EngineSettings {
 		visit("domains", before.domains, now.domains);
 		visit("instructions", before.instructions, now.instructions);
 		visit("linearDamping", before.linearDamping, now.linearDamping);
+		visit("slidingStiffnessFactor", before.slidingStiffnessFactor, now.slidingStiffnessFactor);
 		visit("neck", before.neck, now.neck);
 		visit("sliding", before.sliding, now.sliding);
 		visit("rolling", before.rolling, now.rolling);

@@ -34,7 +34,7 @@ namespace {
 	}
 	void requirePositive(const std::string& what, Real value, const std::string& unit)
 	{
-		require(value > 0 && std::isfinite(value), what, value, ("> 0 [" + unit + "]").c_str());
+		require(value > 0 && std::isfinite(value), what, value, ("> 0" + unit).c_str());
 	}
 	void requireNotNegative(const std::string& what, Real value, const std::string& unit)
 	{
@@ -44,12 +44,12 @@ namespace {
 
 void JKRMat::requireInRange() const
 {
-	requirePositive("JKRMat: young", young, "Pa");
+	requirePositive("JKRMat: young", young, " [Pa]");
 	require(poisson >= 0 && poisson <= 0.5 && (poisson > 0 || viscoelasticTime == 0), "JKRMat: poisson", poisson,
 	        "from 0 to 0.5, and above 0 with drag");
-	requirePositive("JKRMat: density", density, "kg/m^3");
-	requirePositive("JKRMat: surfaceEnergy", surfaceEnergy, "J/m^2");
-	requirePositive("JKRMat: criticalRolling", criticalRolling, "m");
+	requirePositive("JKRMat: density", density, " [kg/m^3]");
+	requirePositive("JKRMat: surfaceEnergy", surfaceEnergy, " [J/m^2]");
+	requirePositive("JKRMat: criticalRolling", criticalRolling, " [m]");
 	requireNotNegative("JKRMat: viscoelasticTime", viscoelasticTime, " [s]");
 }
 
@@ -58,6 +58,7 @@ void JKRMat::postLoad(JKRMat&) { requireInRange(); }
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange() const
 {
 	requireNotNegative("linearDamping", linearDamping, "");
+	requirePositive("slidingStiffnessFactor", slidingStiffnessFactor, "");
 	require(neck >= 0 && neck <= contact_law::largestNeck, "neck", neck, "0 (no bonds), or up to 0.7 for sintered bonds");
 }
 
@@ -138,7 +139,7 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	const auto& second = *YADE_CAST<JKRMat*>(material2.get());
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
 	const auto derived =
-	        contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, linearDamping, neck);
+	        contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, options(), neck);
 	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
 	phys->setConstants(constants.of(derived));
 	if (neck != 0 && scene->iter < bondsBefore)
@@ -161,7 +162,7 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
 		const auto materialOf = [&](Body::id_t id) { return YADE_CAST<JKRMat*>((*now.bodies)[id]->material.get())->forKernel(); };
 		const auto first = materialOf(interaction->getId1()), second = materialOf(interaction->getId2());
 		const auto shrunk =
-		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, linearDamping, neck));
+		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, options(), neck));
 		if (phys->bonded || !phys->touching)
 			phys->constants = shrunk; // of the contact that may come
 		else {
@@ -176,8 +177,8 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange(const JKRMat& material1, Real
 	requireInRange();
 	material1.requireInRange();
 	material2.requireInRange();
-	requirePositive("radius1", radius1, "m");
-	requirePositive("radius2", radius2, "m");
+	requirePositive("radius1", radius1, " [m]");
+	requirePositive("radius2", radius2, " [m]");
 }
 
 boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(
@@ -185,7 +186,7 @@ boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(
 {
 	requireInRange(*material1, radius1, *material2, radius2);
 	JKRWadaConstants constants;
-	constants.set(contact_law::deriveShrunkPair(material1->forKernel(), radius1, material2->forKernel(), radius2, linearDamping, neck));
+	constants.set(contact_law::deriveShrunkPair(material1->forKernel(), radius1, material2->forKernel(), radius2, options(), neck));
 	return constants.pyDict();
 }
 

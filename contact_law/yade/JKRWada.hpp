@@ -128,6 +128,7 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
 	SharedBonds bonds;
 
+	contact_law::PairOptions options() const { return { linearDamping, slidingStiffnessFactor }; }
 	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
 
 public:
@@ -146,6 +147,7 @@ public:
 		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains. With a neck, grains that touch at the start are sintered (Sirono & Ueno 2017): a linear elastic bond holds them "
 		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by the volume of two necks each.",
 		((Real, linearDamping, 0, Attr::triggerPostLoad, "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
+		((Real, slidingStiffnessFactor, 1, Attr::triggerPostLoad, "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); 2: eqs 11 and 12 of Sirono & Ueno (2017) as printed."))
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
 		,

@@ -51,7 +51,7 @@ namespace {
 
 EngineSettings JKRWadaEngine::settings() const
 {
-	return { domains, instructions, linearDamping, neck, sliding, rolling, twisting, limit, orientations };
+	return { domains, instructions, linearDamping, slidingStiffnessFactor, neck, sliding, rolling, twisting, limit, orientations };
 }
 
 void JKRWadaEngine::requireInRange() const
@@ -63,6 +63,8 @@ void JKRWadaEngine::requireInRange() const
 	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
 	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
 		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
+	if (!(slidingStiffnessFactor > 0 && std::isfinite(slidingStiffnessFactor)))
+		refuseInEngine("slidingStiffnessFactor = " + text(slidingStiffnessFactor) + ": must be > 0");
 	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
 		refuseInEngine("neck = " + text(neck) + ": must be 0 (no bonds), or up to 0.7 for sintered bonds");
 	if (contact_law::limitRuleNumber(limit) < 0) refuseInEngine("limit = " + text(limit) + ": must be 'held' or 'cut'");
@@ -79,7 +81,7 @@ void JKRWadaEngine::requireOwnScene() const
 contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
 {
 	Dynamics::Options options;
-	options.linearDamping = linearDamping;
+	options.pairs = { linearDamping, slidingStiffnessFactor };
 	options.neck = neck;
 	options.domains = domains;
 	options.threads = threads;

@@ -73,6 +73,7 @@ public:
 		((int, domains, 0, , "Parts that the grains are divided into, for the threads. 0: by the number of bodies, 2 up to 24,000, then 4, 8 ... up to 64, so that results do not depend on the machine. Another number changes results by rounding."))
 		((std::string, instructions, "", , "Instruction set: 'avx512', 'avx2', 'portable', or '' for the best this machine has. Another one changes results by rounding."))
 		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
+		((Real, slidingStiffnessFactor, 1, , "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); 2: eqs 11 and 12 of Sirono & Ueno (2017) as printed."))
 		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that touch at the start are bonded, all others as shrunk as they "
 			"(:yref:`Ip2_JKRMat_JKRMat_JKRWadaPhys.neck`). After sinter(): the largest neck of any bond."))
 		((bool, sliding, true, , "Whether contacts resist sliding (bonds always do; likewise below)."))

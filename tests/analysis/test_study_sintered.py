@@ -13,6 +13,7 @@ from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS, CHANNELS
 from analysis.studies.sintered import paper
 from analysis.studies.sintered.bouncing import chain_grains, predicted_ratio
+from analysis.studies.sintered.comparison import remarks
 from analysis.studies.sintered.measure import energy_ratio, measure
 from analysis.studies.sintered.results import fit_curve, make_results
 from analysis.theory import ICE
@@ -63,6 +64,7 @@ def made_run(path, velocity, neck, seed, largest=GRAINS, growth=0.0, broken=None
         "velocity": velocity,
         "viscoelasticTime": 0.0,
         "limit": "cut",
+        "slidingStiffnessFactor": 2.0,
         "impact": 0.0,
         "duration": 24.4e-6,
         "seed": 1 if growth else seed,
@@ -132,12 +134,15 @@ def test_points_and_the_fit_of_made_runs(runs):
     assert fit_curve(paper.FIT, [1.0]) == pytest.approx([3.7e-2])
 
 
-def test_runs_with_held_springs_are_points_of_their_own(tmp_path):
-    for limit in ("held", "cut"):
-        made_run(tmp_path / limit, 30.0, 0.7, 1, limit=limit)
+def test_runs_with_another_law_are_points_of_their_own(tmp_path):
+    laws = {"held": {"limit": "held"}, "W07": {"slidingStiffnessFactor": 1.0}, "S17": {}}
+    for name, law in laws.items():
+        made_run(tmp_path / name, 30.0, 0.7, 1, **law)
     table = pandas.DataFrame([measure(open_run(path)) for path in sorted(tmp_path.iterdir())])
     results = make_results(table)
-    assert sorted(point.cut for point in results.points) == [0, 1] and len(results.main()) == 1
+    assert sorted((point.cut, point.sliding_factor) for point in results.points) == [(0, 2.0), (1, 1.0), (1, 2.0)]
+    assert len(results.main()) == len(results.runs()) == len(results.sintered()) == 1
+    assert len(list(remarks(results))) == 3  # of both others, and no fit
 
 
 def test_the_chain_model_of_points(runs):

@@ -23,16 +23,18 @@ def given():
     materials = [{name: getattr(b.mat, name) for name in names} for b in O.bodies]
     return dict(materials=materials, radii=[b.shape.radius for b in O.bodies], x=positions(), v=[list(b.state.vel) for b in O.bodies],
                 w=[list(b.state.angVel) for b in O.bodies], dt=O.dt)
-def tracks(start, steps, damping, neck, limit):
+def tracks(start, steps, damping=0, neck=0, limit="held", sliding_factor=1):
+    new_scene(parameters["step"] * unit, damping=damping, neck=neck, limit=limit, sliding_factor=sliding_factor)
     start()
-    result["given"] = {**given(), "damping": damping, "neck": neck, "limit": limit}
+    result["given"] = {**given(), "damping": damping, "neck": neck, "limit": limit, "sliding_factor": sliding_factor}
     x, e = record(steps + 1)
     result["functors"] = x[:steps], [[one[name] for name in parameters["channels"]] for one in e[1:]]  # their energies are of the positions a step ago
     if neck:
         law = O.engines[2].lawDispatcher.functors[0]
         result["broken"] = [law.brokenByStretching, law.brokenBySliding, law.brokenByRolling, law.brokenByTwisting]
+    new_scene(parameters["step"] * unit)
     start()
-    fused_engine(linearDamping=damping, neck=neck, limit=limit)
+    fused_engine(linearDamping=damping, neck=neck, limit=limit, slidingStiffnessFactor=sliding_factor)
     x, e = record(steps)
     result["engine"] = x, [[one[name] for name in parameters["channels"]] for one in e]
 """
@@ -104,6 +106,12 @@ CASES = {
         {"limit": "cut"},
         "sliding rolling twisting drag",
     ),
+    "S17's sliding": (
+        "converging(12, 1, [ICE, SOFT], [1e-7, 1.5e-7], speed=12)",
+        300,
+        {"limit": "cut", "sliding_factor": 2},
+        "sliding rolling twisting connection",
+    ),
     "bonded": (
         "cluster(12, 4, [ICE], [1e-7], speed=10, spin=2e8)",
         250,
@@ -122,17 +130,10 @@ CASES = {
 @pytest.mark.parametrize("case", list(CASES))
 def test_functors_and_engine_are_the_reference_law(yade, case):
     grains, steps, options, working = CASES[case]
-    damping, neck, step = options.get("damping", 0), options.get("neck", 0), options.get("step", 0.1)
-    limit = options.get("limit", "held")
+    law = {name: value for name, value in options.items() if name not in ("step", "modes")}
     found = yade(
-        SCENE
-        + f"""
-def start():
-    new_scene({step} * unit, damping={damping}, neck={neck}, limit={limit!r})
-    {grains}
-tracks(start, {steps}, {damping}, {neck}, {limit!r})
-""",
-        {"channels": CHANNELS},
+        SCENE + f"tracks(lambda: {grains}, {steps}, **parameters['law'])",
+        {"channels": CHANNELS, "step": options.get("step", 0.1), "law": law},
     )
     differences, last = compared(found, steps)
     print(case, differences, last, found.get("broken"))
@@ -140,7 +141,7 @@ tracks(start, {steps}, {damping}, {neck}, {limit!r})
         assert last[name if name in last and name not in MODES else f"{name}Dissipation"] > 1e-4 * sum(
             map(abs, last.values())
         ), name
-    if neck:
+    if "neck" in law:
         assert np.count_nonzero(found["broken"]) >= options["modes"], found["broken"]
     for way, (position, energies) in differences.items():
         assert position < TOLERANCE, (way, position)

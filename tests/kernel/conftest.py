@@ -43,10 +43,12 @@ class Kernel:
         ]
         getattr(self.library, name)(*converted)
 
-    def constants(self, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7, damping=0.0):
+    def constants(self, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7, damping=0.0, sliding=1.0):
         out = np.empty(len(self.constant_names))
         self.call(
-            "pairConstants", array(material1), float(radius1), array(material2), float(radius2), float(damping), out
+            "pairConstants",
+            *(array(material1), float(radius1), array(material2), float(radius2)),
+            *(float(damping), float(sliding), out),
         )
         return SimpleNamespace(array=out, **dict(zip(self.constant_names, out)))
 

@@ -30,9 +30,11 @@ extern "C" {
 const char* constantNames() { return CONTACT_LAW_PAIR_CONSTANTS(NAME) "inverseEquilibriumOverlap"; }
 const char* bondConstantNames() { return CONTACT_LAW_BOND_CONSTANTS(NAME); }
 
-void pairConstants(const double* material1, double radius1, const double* material2, double radius2, double linearDamping, double* out)
+void pairConstants(const double* material1, double radius1, const double* material2, double radius2, double linearDamping,
+        double slidingStiffnessFactor, double* out)
 {
-	const PairConstants<double> c = derivePair(material(material1), radius1, material(material2), radius2, linearDamping);
+	const PairOptions options { linearDamping, slidingStiffnessFactor };
+	const PairConstants<double> c = derivePair(material(material1), radius1, material(material2), radius2, options);
 	for (const auto& constant : pairConstantsOf<double>)
 		*out++ = c.*constant.member;
 }

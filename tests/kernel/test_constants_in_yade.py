@@ -7,7 +7,7 @@ import pytest
 SCRIPT = """
 import pydoc
 from scenes import *
-functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=0.02)
+functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=0.02, slidingStiffnessFactor=2)
 result["pair"] = functor.pairConstants(ice(), 1e-7, soft(viscoelasticTime=4e-12), 3e-7)
 result["bond"] = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=0.4).bondConstants(ice(), 1e-7, soft(), 3e-7)
 for cls in (JKRWadaConstants, JKRWadaBond):
@@ -18,7 +18,7 @@ for cls in (JKRWadaConstants, JKRWadaBond):
 def test_attributes_are_the_kernels_constants_to_the_bit(yade, kernel):
     found = yade(SCRIPT)
     soft = (3e9, 0.33, 1300.0, 0.05, 1.1e-9, 4e-12)
-    pair = kernel.constants(kernel.ice, 1e-7, soft, 3e-7, 0.02)
+    pair = kernel.constants(kernel.ice, 1e-7, soft, 3e-7, 0.02, 2)
     assert set(found["pair"]) == set(kernel.constant_names) - {"inverseEquilibriumOverlap"}
     assert found["pair"] == {name: getattr(pair, name) for name in found["pair"]}
     bond = kernel.bond_constants(0.4, kernel.ice, 1e-7, soft, 3e-7)

@@ -53,6 +53,17 @@ def test_energies_of_table_2_of_a22(kernel):
         assert float(f"{ours:.1e}") == printed, name
 
 
+def test_sliding_as_s17_prints_it(kernel):
+    """F_nt = G a0^2/(2 pi) at u_nt = (2 - nu) a0/(16 pi): S17 eqs 11 and 12. Only the stiffness changes."""
+    ours, printed = kernel.constants(), kernel.constants(sliding=2)
+    young, poisson = kernel.ice[:2]
+    shear, a0 = young / (2 * (1 + poisson)), printed.equilibriumContactRadius
+    assert printed.criticalSliding == pytest.approx((2 - poisson) * a0 / (16 * np.pi), rel=1e-14)
+    assert printed.slidingStiffness * printed.criticalSliding == pytest.approx(shear * a0**2 / (2 * np.pi), rel=1e-14)
+    changed = [name for name in kernel.constant_names if getattr(ours, name) != getattr(printed, name)]
+    assert changed == ["slidingStiffness"]
+
+
 def test_time_unit_and_rolling_energy_of_silicate(kernel):
     c = kernel.constants(kernel.silicate, 6e-7, kernel.silicate, 6e-7)
     assert c.timeUnit == pytest.approx(1.71e-9, rel=3e-3)

@@ -135,6 +135,7 @@ def test_constants_for_estimates_are_the_plugins(yade):
         {"material": "silicate", "viscoelasticTime": 1e-11, "young": 30e9, "surfaceEnergy": 0.1},
         {"density": 800, "criticalRolling": 2e-9},
         {"neck": 0.3},
+        {"neck": 0.5, "slidingStiffnessFactor": 2},
         {"neck": 0.65, "material": "silicate"},
     ]
     found = yade(
@@ -280,6 +281,7 @@ def test_so_do_runs_of_every_other_kind(tmp_path):
         ({"strainRate": 1e-5, "finalFilling": 0.6}, "finalFilling = 0.6, only 0.1 to 0.5"),
         ({"strainRate": 1e-5, "grains": 40}, "fewer than 64 grains"),
         ({"strainRate": 1e-5, "limit": "cut"}, "limit = cut in a compression"),
+        ({"strainRate": 1e-5, "slidingStiffnessFactor": 2}, "slidingStiffnessFactor = 2"),
         ({"strainRate": 1e-5, "material": "silicate"}, "a rolling energy of 183 F_c delta_c, only 2.5 to 60 "),
     ],
     ids=str,

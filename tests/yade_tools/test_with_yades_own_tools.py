@@ -164,6 +164,7 @@ result["after"] = energies()
         ("functor.neck = 2", "neck = 2: must be 0 (no bonds), or up to 0.7"),
         ("functor.linearDamping = -1", "linearDamping = -1: must be >= 0"),
         ("Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=float('nan'))", "linearDamping = nan: must be >= 0"),
+        ("functor.slidingStiffnessFactor = 0", "slidingStiffnessFactor = 0: must be > 0"),
         ("material.surfaceEnergy = 0", "surfaceEnergy = 0: must be > 0 [J/m^2]"),
         ("JKRMat(young=-1)", "young = -1: must be > 0 [Pa]"),
     ],

@@ -49,6 +49,9 @@ class RunParameters(Parameters):
         one_of(["held", "cut"]),
         "displacements of contacts at their limits: held there (W07), or their springs cut and new ones formed (S17)",
     )
+    slidingStiffnessFactor: float = parameter(
+        1.0, POSITIVE, "stiffness of sliding k_s over 8 a0 G*: 1 (W07, A22), or 2 (S17 eqs 11 and 12 as printed)", "1"
+    )
     threads: int | None = parameter(
         None,
         Check(">= 1", lambda n: n >= 1),

@@ -56,11 +56,14 @@ def material_of(grains):
 def pair_constants(grains, neck=0.0, linearDamping=0.0):
     """The plugin's constants (SI) of a contact between two grains of the run, and of a bond under 'bond'.
 
-    grains: materials.GrainParameters. The former are of grains that have not sintered, as packings and the time unit
+    grains: materials.GrainParameters with slidingStiffnessFactor. The former are of grains that have not sintered, as packings and the time unit
     have them; 'bond' is None when nothing is sintered, else the attributes of JKRWadaBond and shrunkRadius [m].
     """
     two = 2 * (material_of(grains), grains.grainRadius)
-    constants = {**Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=linearDamping).pairConstants(*two), "bond": None}
+    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(
+        linearDamping=linearDamping, slidingStiffnessFactor=grains.slidingStiffnessFactor
+    )
+    constants = {**functor.pairConstants(*two), "bond": None}
     if neck:
         sintered = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=neck)
         constants["bond"] = {
@@ -98,11 +101,12 @@ def start(scene, schedule, recorder):
     omega.dt = scene.time_step
     _publish(recorder)
     runner = PyRunner(command="history.sample()", iterPeriod=schedule.interval, initRun=True)
+    law = {"slidingStiffnessFactor": parameters.slidingStiffnessFactor, **scene.law}
     if parameters.engine == "functors":
-        omega.engines = functor_engines(parameters.grainRadius, runner, parameters.limit, **scene.law)
+        omega.engines = functor_engines(parameters.grainRadius, runner, parameters.limit, **law)
         return schedule.steps + 1, runner, lambda: None
     runner.iterPeriod = 1
-    fused = JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, limit=parameters.limit, **scene.law)
+    fused = JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, limit=parameters.limit, **law)
     omega.dt *= schedule.interval
     omega.engines = [fused, runner]
     return schedule.steps // schedule.interval, runner, lambda: (fused.prepare(), recorder.sample())

@@ -38,6 +38,7 @@ FOLDER = "runs/sintered-grown"
 GRAINS, START = 1024, 512
 STUCK, ATTEMPTS = 0.9, 5
 RADIUS = 1e-7  # m
+SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
 CROSSINGS = 3.0  # a collision lasts as long as the two take to move so many times their diameters at V_g,
 LONGEST = 24.4e-6  # s, and no longer than this: 20,000 periods (sintered.py)
 
@@ -111,6 +112,7 @@ def _collide(aggregate, grown, files, run):
         velocity=grown.velocity,
         criticalRolling=grown.rolling * 1e-10,
         limit="cut",
+        slidingStiffnessFactor=SLIDING,
         duration=duration,
         states=2,
         threads=1,

@@ -3,6 +3,7 @@
 from ...report.beside_paper import section_of_lines
 from ...report.section import Section
 from .lines import compare
+from .results import LAW
 from .tables import bouncing_section, necks_section, points_section
 
 LEGEND = (
@@ -33,6 +34,9 @@ def remarks(results):
     held = int((table.cut == 0).sum())
     if held:
         yield f"{held} runs hold springs at their limits (limit = held), which is not S17's rule: points of their own"
+    softer = int((table.sliding_factor != LAW["sliding_factor"]).sum())
+    if softer:
+        yield f"{softer} runs have another sliding spring than S17's eqs 11 and 12 as printed: points of their own"
     for (planar, drag), fit in results.fits.items():
         if fit is None and not drag:
             where = "in the plane" if planar else "in space"

@@ -169,21 +169,17 @@ def _freedom(runs):
 def _broken(results):
     lines = []
     for planar in (1, 0):
-        points = results.select(planar=planar, cut=1, criticalRolling=2e-10, viscoelasticTime=0.0)
-        table = results.table
-        chosen = (table.planar == planar) & (table.neck > 0) & (table.cut == 1) & (table.viscoelasticTime == 0)
-        total = int(table.loc[chosen, list(BROKEN_BONDS)].to_numpy().sum())
-        if not points or not total:
+        runs = results.sintered(planar=planar)
+        broken = runs[list(BROKEN_BONDS)].sum()
+        total = int(broken.sum())
+        if not total:
             continue
-        rolling = int(table.loc[chosen, "brokenByRolling"].sum())
-        others = ", ".join(
-            f"{n.removeprefix('brokenBy').lower()} {table.loc[chosen, n].sum() / total:.1%}" for n in BROKEN_BONDS
-        )
+        others = ", ".join(f"{n.removeprefix('brokenBy').lower()} {broken[n] / total:.1%}" for n in BROKEN_BONDS)
         where = "in the plane" if planar else "in space"
-        note = f"{total} necks of {int(chosen.sum())} runs: {others}"
+        note = f"{total} necks of {len(runs)} runs: {others}"
         if planar:
             note += f"; paper: more than {paper.BY_ROLLING:.0%}"
-        lines.append(Line(f"necks broken by rolling, {where}", "", rolling / total, None, note=note))
+        lines.append(Line(f"necks broken by rolling, {where}", "", broken["brokenByRolling"] / total, None, note=note))
     notes = ("All runs together, as the paper has it; by point in the table of broken necks.",)
     return "which mode breaks necks (section 5.3)", lines, notes
 

@@ -13,7 +13,10 @@ from ...statistics import mean_and_error, pair_weights, resampling_error, stretc
 from .measure import LOST, PARTS
 
 # What tells points apart; every run of a point has another seed.
-POINT = ("planar", "criticalRolling", "viscoelasticTime", "cut", "growth_velocity", "neck", "velocity")
+POINT = (
+    *("planar", "criticalRolling", "viscoelasticTime", "cut", "sliding_factor"),
+    *("growth_velocity", "neck", "velocity"),
+)
 MEANS = (
     "contacts",
     "initial_radius",
@@ -40,6 +43,7 @@ class Point:
     criticalRolling: float
     viscoelasticTime: float
     cut: int
+    sliding_factor: float
     growth_velocity: float
     neck: float
     velocity: float
@@ -80,7 +84,7 @@ class Fit:
 @dataclass(frozen=True)
 class Results:
     """table (a row a run, measure.COLUMNS), points ([Point], sorted), fits ({(planar, T_vis): Fit or None} of the runs with
-    xi_crit = 2 Angstrom and cut springs)."""
+    xi_crit = 2 Angstrom and S17's LAW)."""
 
     table: pandas.DataFrame
     points: tuple
@@ -91,13 +95,17 @@ class Results:
         return [p for p in self.points if all(same(getattr(p, name), value) for name, value in values.items())]
 
     def main(self, **values):
-        """[Point] in the plane, xi_crit = 2 Angstrom, without drag, springs cut, and with these attributes."""
+        """[Point] in the plane, xi_crit = 2 Angstrom, without drag, S17's LAW, and with these attributes."""
         return self.select(**{**MAIN, **values})
 
     def runs(self, **values):
-        """The rows of `table` in the plane, xi_crit = 2 Angstrom, without drag, springs cut, and with these values in their
+        """The rows of `table` in the plane, xi_crit = 2 Angstrom, without drag, S17's LAW, and with these values in their
         columns."""
         return runs_with(self.table, **{**MAIN, **values})
+
+    def sintered(self, **values):
+        """The rows of `table` of sintered aggregates, without drag, S17's LAW, and with these values in their columns."""
+        return runs_with(self.table[self.table.neck > 0], **{**LAW, "viscoelasticTime": 0.0, **values})
 
     def paired(self, column, first, second):
         """Values (n,) of a column in the BCCA runs() with `first` {column: value} less those with `second`, seed by seed: n seeds
@@ -107,7 +115,8 @@ class Results:
         return (values[0] - values[1]).dropna().to_numpy()
 
 
-MAIN = MappingProxyType({"planar": 1, "criticalRolling": 2e-10, "viscoelasticTime": 0.0, "cut": 1})
+LAW = MappingProxyType({"cut": 1, "sliding_factor": 2.0})  # of ordinary contacts: section 3.2, eqs 10 to 12
+MAIN = MappingProxyType({"planar": 1, "criticalRolling": 2e-10, "viscoelasticTime": 0.0, **LAW})
 
 
 def same(a, b):

@@ -7,6 +7,7 @@ from ...report.section import Column, Section
 from . import paper
 from .bouncing import chain_grains, predicted_ratio
 from .lines import probability
+from .results import LAW, POINT, same
 
 _POINT = (
     Column("", lambda r: "plane" if r["planar"] else "space"),
@@ -115,8 +116,7 @@ def _decisive(record):
 
 
 def _parameters(point):
-    names = ("planar", "growth_velocity", "neck", "velocity", "criticalRolling", "viscoelasticTime", "cut", "runs")
-    return {name: getattr(point, name) for name in names}
+    return {name: getattr(point, name) for name in (*POINT, "runs")}
 
 
 def _special(record):
@@ -127,6 +127,8 @@ def _special(record):
         parts.append(f"T_vis = {record['viscoelasticTime'] * 1e12:g} ps")
     if not record["cut"]:
         parts.append("held")
+    if not same(record["sliding_factor"], LAW["sliding_factor"]):
+        parts.append("W07's k_s" if record["sliding_factor"] == 1 else f"k_s {record['sliding_factor']:g} times W07's")
     return ", ".join(parts)
 
 

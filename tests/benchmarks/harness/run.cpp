@@ -59,12 +59,12 @@ namespace {
 	{
 		Dynamics::Options options;
 		options.dt = scene.head.step;
-		options.linearDamping = scene.head.linearDamping;
+		options.pairs.linearDamping = scene.head.linearDamping;
 		options.neck = scene.head.neck;
 		options.domains = domains;
 		options.threads = threads;
 		options.instructions = instructions;
-		bool drag = options.linearDamping > 0;
+		bool drag = options.pairs.linearDamping > 0;
 		for (const MaterialRecord& material : scene.materials)
 			drag = drag || material.viscoelasticTime > 0;
 		options.mechanisms = contact_law::mechanismsOf(true, true, true, drag);

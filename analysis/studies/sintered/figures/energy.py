@@ -85,7 +85,7 @@ def against_energy(results):
 @styled
 def modes(results):
     """Which mode breaks necks, in per cent of all that broke, by beta in the plane and in space."""
-    table = results.table[(results.table.neck > 0) & (results.table.cut == 1) & (results.table.viscoelasticTime == 0)]
+    table = results.sintered()
     groups = [
         (("plane" if planar else "space") + f"\n{beta_label(neck)}", runs[list(BROKEN_BONDS)].sum().to_numpy())
         for (planar, neck), runs in table.groupby([1 - table.planar, table.neck])

@@ -48,7 +48,7 @@ def _draw_row(places, row, periods):
     for place in places[len(states) :]:
         place.set_axis_off()
     places[0].set_title(
-        f"{growth_label(row.growth_velocity)}, {beta_label(row.neck)}, {row.velocity:.3g} m/s", fontsize=9
+        f"{growth_label(row.growth_velocity)}, {beta_label(row.neck)}, {row.velocity:.3g} m/s", fontsize=9, loc="left"
     )
 
 
