@@ -49,6 +49,15 @@ def test_what_differs_from_pair_to_pair_drops_out():
     assert scattered.growth[500, 0.0].error[0] > 0.05 and row["growth"][1] == pytest.approx(0.0, abs=1e-12)
 
 
+def test_the_cross_section_of_merging():
+    """Without drag they merge at B_off = 0 alone, with it up to B_off^2 = 1/2, of offsets 0, 1/2 and 1."""
+    made = table(sizes=(500,))
+    reach = np.where(made.viscoelasticTime > 0, 0.6, 0.1)
+    made["growth"] = np.where(made.impact**2 < reach, 0.9, 0.0)
+    (row,) = drag_section(make_results(made)).records
+    assert row["merging"] == pytest.approx((0.5, 0.0))  # 1/4 and 3/4 of pi b_max^2
+
+
 def test_exponent_of_the_size():
     rows = small_section(make_results(table())).records
     known = [row for row in rows if row["exponent"] is not None]

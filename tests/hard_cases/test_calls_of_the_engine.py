@@ -157,6 +157,6 @@ result["long"] = load(lambda items: items.append(items[-1]))
 """
     )
     assert found["same"] == ""
-    assert "is of format 99, which another version wrote: it must be 5" in found["format"]
-    assert "is of format 1, which another version wrote: it must be 5" in found["headless"]
+    assert "is of format 99, which another version wrote: it must be 6" in found["format"]
+    assert "is of format 1, which another version wrote: it must be 6" in found["headless"]
     assert "cut off" in found["short"] and "too long" in found["long"], found

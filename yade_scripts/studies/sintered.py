@@ -143,9 +143,9 @@ vibration, 1.22 ns each, is the longest duration, 10,000 above 10 m/s (no larges
 a run ends earlier when no pieces can meet again; grains in contact at the end are one piece.
 Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/sintered.py."""
 COST = {
-    "desk": "At most 13 core hours (110 s a row of beta = 0.7 to its end, 50 s unsintered: trial rows beside others on a busy machine), "
+    "desk": "At most 10 core hours (110 s a row of beta = 0.7 to 24.4 us, 50 s unsintered: trial rows beside others on a busy machine), "
     "and one to grow the aggregates.",
-    "full": "At most 50 core hours by the cost of the desk's rows, and three to grow the aggregates.",
+    "full": "At most 36 core hours by the cost of the desk's rows, and three to grow the aggregates.",
 }
 
 

@@ -15,6 +15,7 @@ from .threshold import threshold_velocity
 
 LOST = 0.05
 SMALL = 10  # grains of a fragment that counts as small
+MERGED = 0.5  # f_gro above which two aggregates have merged; two remnants have some 0, all in one piece is 1
 
 
 @dataclass(frozen=True)
@@ -33,13 +34,15 @@ class Growth(Curve):
 class Results:
     """table (a row a run, measure.COLUMNS), and by (grains, T_vis): growth (Growth), where some velocity has B_off from 0 to 1;
     head_on (Curve of f_gro at B_off = 0); small (Curve of the mean over B_off of the mass in small fragments, over that of one
-    aggregate) and remnants (Curve of <f_gro> and half of that)."""
+    aggregate), remnants (Curve of <f_gro> and half of that) and merging (Curve of the mean over B_off of whether they merge: a
+    cross-section over pi b_max^2)."""
 
     table: pandas.DataFrame
     growth: Mapping
     head_on: Mapping
     small: Mapping
     remnants: Mapping
+    merging: Mapping
 
     @property
     def sizes(self):
@@ -92,6 +95,7 @@ def make_results(table):
         curves(table[head_on], table.growth[head_on], head_on_mean),
         curves(table, small),
         curves(table, table.growth + 0.5 * small),
+        curves(table, (table.growth > MERGED).astype(float)),
     )
 
 

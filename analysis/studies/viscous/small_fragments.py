@@ -9,7 +9,7 @@ import numpy as np
 from ...report.section import Column, Section
 from ...statistics import resampling_error
 from .curves import difference, of_other_pairs, with_error
-from .results import SMALL, picoseconds
+from .results import MERGED, SMALL, picoseconds
 
 
 def drag_section(results):
@@ -20,12 +20,13 @@ def drag_section(results):
         times = [growth.viscous_time for growth in results.of_size(grains)]
         low, high = (grains, times[0]), (grains, times[-1])
         for velocity in results.growth[high].velocities if low != high else ():
-            growth, small, remnants = (
+            growth, small, remnants, merging = (
                 difference(curves[high], curves[low], velocity)
-                for curves in (results.growth, results.small, results.remnants)
+                for curves in (results.growth, results.small, results.remnants, results.merging)
             )
             if growth is not None:
                 row = {"grains": grains, "velocity": float(velocity), "growth": growth, "remnants": remnants}
+                row["merging"] = merging
                 half = -0.5 * small[0], None if small[1] is None else 0.5 * small[1]
                 rows.append({**row, "small": half, "T_vis": times[-1], "less": times[0]})
     if not rows:
@@ -37,12 +38,16 @@ def drag_section(results):
         Column("<f_gro>", lambda r: with_error(*r["growth"])),
         Column("half the small fragments", lambda r: with_error(*r["small"])),
         Column("the rest", lambda r: with_error(*r["remnants"])),
+        Column("merging", lambda r: with_error(*r["merging"]), long="cross-section of merging [pi b_max^2]"),
     )
     intro = (
         f"Difference of means over B_off. Small: fragments of {SMALL} grains or fewer, their mass over that of an aggregate. Each "
-        "of two like remnants loses half of them, a merged one all."
+        f"of two like remnants loses half of them, a merged one all. Merging: f_gro above {MERGED:g}."
     )
-    notes = ("Errors are joint, from resampling pairs of aggregates; rows of one size are the same pairs.",)
+    notes = (
+        "Errors are joint, from resampling pairs of aggregates; rows of one size are the same pairs. Merging goes in steps of the "
+        "offsets (1/12): an error of 0 says that the pairs agree to one.",
+    )
     return Section("what drag changes", columns, tuple(rows), intro, notes)
 
 
