@@ -20,6 +20,8 @@ FIT_NOTES = (
     "What this can't tell: whether n is 3 below the fitted range, which takes larger clusters and slower boundaries; and "
     "K13's own errors, which it doesn't give.",
 )
+LEAST_FRACTION = 5e-4  # of all dissipation: less than the tables show tells no largest channel
+
 CHANNEL_NOTES = (
     "Fractions of all that was dissipated until then, boundaries' work that is still stored or moving left out.",
     "What this can't tell: which contacts pay. Dissipation of the first approach, when free clusters are pressed "
@@ -135,7 +137,9 @@ def _channels(results):
                 continue
             fractions = {channel: value / total for channel, value in lost.items()}
             modes = {name: fractions[f"{name}Dissipation"] for name in ("rolling", "twisting", "sliding")}
-            records.append({**group.parameters, "filling": filling, **fractions, "largest": max(modes, key=modes.get)})
+            largest = max(modes, key=modes.get)
+            largest = largest if modes[largest] >= LEAST_FRACTION else None
+            records.append({**group.parameters, "filling": filling, **fractions, "largest": largest})
     columns = (
         *PARAMETERS,
         Column("filling", lambda r: f"{r['filling']:g}"),
@@ -144,11 +148,11 @@ def _channels(results):
         Column("sliding", lambda r: f"{r['slidingDissipation']:.3f}"),
         Column("damping", lambda r: f"{r['drag']:.3f}"),
         Column("connection + disconnection", lambda r: f"{r['connection'] + r['disconnection']:.3f}"),
-        Column("largest of the three", lambda r: r["largest"]),
+        Column("largest of the three", lambda r: r["largest"] or "-"),
     )
     intro = (
-        "K13 sections 3.4, 3.5: rolling below a filling of 0.1 where xi_crit is 8 Å or less; twisting above, and "
-        "everywhere at 32 Å."
+        "K13 sections 3.4, 3.5: rolling is the largest where xi_crit is 8 Å or less, and twisting sets in above a filling of "
+        "0.1; at 16 Å they are comparable, at 32 Å twisting is the largest."
     )
     return Section("where the energy goes", columns, tuple(records), intro, CHANNEL_NOTES)
 
