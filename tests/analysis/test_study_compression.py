@@ -85,6 +85,18 @@ def test_dependence_on_the_parameters(found):
     assert next(row["runs"] for row in rows if row["criticalRolling"] == 0.8e-9 and row["linearDamping"] == 0.01) == 4
 
 
+def test_what_a_parameter_changes_by_the_same_clusters(found):
+    """Twice the pressure at twice E_roll, of clusters that have 0.8 and 1.2 of it otherwise; k_n = 0 has another step too."""
+    _, content, _ = found
+    (row,) = section(content, "one parameter changed")
+    logarithms = -np.log([0.8, 1.2])
+    assert (row["parameter"], row["from"], row["to"], row["seeds"]) == ("xi_crit [Å]", 8.0, 16.0, 2)
+    assert row["ratio"] == pytest.approx(np.exp(logarithms.mean()), rel=1e-3)
+    assert row["error"] == pytest.approx(logarithms.std(ddof=1) / np.sqrt(2), rel=2e-2)
+    # Student's t with one degree of freedom is Cauchy's distribution
+    assert row["chance"] == pytest.approx(1 - 2 / np.pi * np.arctan(logarithms.mean() / row["error"]), rel=1e-2)
+
+
 def test_silicate_at_300_pascal(found):
     _, content, _ = found
     rows = section(content, "silicate at 300 Pa")

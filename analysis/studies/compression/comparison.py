@@ -10,6 +10,7 @@ from ...theory.compression import DENSEST, compressive_strength_dense, tensile_s
 from . import paper
 from .curve import FILLINGS
 from .measure import ENERGY_FILLINGS, LOST_CHANNELS
+from .paired import changes
 
 FIT_NOTES = (
     "P0 and n: least squares of the logarithm of the mean over the seeds, from where boundaries are slower than sound "
@@ -44,6 +45,7 @@ def sections(results):
         if group.fit.reason is None and (group is results.main or group.seeds > 1):
             yield section_of_lines(f"compressive strength: {label(group)}", _fit_lines(group), ())
     yield _dependence(results)
+    yield from _changes(results)
     yield from _silicate(results)
     yield _channels(results)
     yield _beyond(results.main)
@@ -107,6 +109,34 @@ def _dependence(results):
         Column("P0 (n = 3) r0^3/E_roll", lambda r: _with_error(r["ratio"], r["ratio_error"])),
     )
     return Section("dependence on the parameters", columns, tuple(records), notes=FIT_NOTES)
+
+
+def _changes(results):
+    found = changes(results)
+    if not found:
+        return
+    units = {"strainRate": ("C_v", 1), "linearDamping": ("k_n", 1), "criticalRolling": ("xi_crit [Å]", 1e10)}
+    records = []
+    for change in found:
+        name, unit = units.get(change.name, ("step [t0]", 1))
+        values = (unit * group.parameters[change.name] for group in (change.base, change.group))
+        parameters = {name: change.group.parameters[name] for name in ("material", "grains")}
+        what = dict(zip(("from", "to"), values), parameter=name, seeds=change.seeds)
+        records.append({**parameters, **what, "ratio": change.ratio, "error": change.error, "chance": change.chance})
+    columns = (
+        Column("material", lambda r: r["material"]),
+        Column("N", lambda r: f"{r['grains']}"),
+        Column("changed", lambda r: f"{r['parameter']}: {r['from']:g} to {r['to']:g}"),
+        Column("seeds", lambda r: f"{r['seeds']}"),
+        Column("P r0^3/E_roll changes by", lambda r: _with_error(r["ratio"], r["error"] and r["ratio"] * r["error"])),
+        Column("p", lambda r: "-" if r["chance"] is None else f"{r['chance']:.2g}"),
+    )
+    intro = (
+        "Factor, mean over the fillings at which both are static (K13 eqs 26, 27) up to 0.1, by pairs of runs that start from "
+        "one cluster. K13: 1 for C_v and k_n, and for xi_crit up to 8 Å; not at 16 and 32 Å."
+    )
+    notes = ("p: chance of a factor as far from 1, by Student's t. Rows share the runs they are compared with.",)
+    yield Section("one parameter changed, the same clusters", columns, tuple(records), intro, notes)
 
 
 def _silicate(results):
