@@ -58,9 +58,13 @@ def _draw_mean(axes, group):
         fmt="o-",
         color=OURS,
         markersize=4,
-        label=f"mean of {group.seeds}",
+        label=_mean(group),
         zorder=4,
     )
+
+
+def _mean(group):
+    return f"mean of {group.seeds} runs" if group.seeds > 1 else "one run"
 
 
 def _title(group):
@@ -78,7 +82,7 @@ def linear_figure(results):
     figure, axes = panels(1, 1, 6.0, 4.6)
     place = axes[0, 0]
     covered = group.covered & (group.mean_pressure > 0)
-    place.semilogx(group.mean_pressure[covered], FILLINGS[covered], "o-", color=OURS, label=f"mean of {group.seeds}")
+    place.semilogx(group.mean_pressure[covered], FILLINGS[covered], "o-", color=OURS, label=_mean(group))
     pressure = np.geomspace(1.0, 1e6, 200)
     thin = filling_at(pressure, group.scale)
     place.semilogx(pressure[thin < 0.3], thin[thin < 0.3], "--", color=PAPER, label="K13 eq 25")
