@@ -76,7 +76,8 @@ def _fit_lines(group):
     of_log, of_exponent = fit.errors
     note = f"{fit.runs} runs, {fit.bins} bins of the filling, {fit.between[0]:.2g} to {fit.between[1]:.2g}"
     together = "" if fit.correlation is None else f"; correlation with n {fit.correlation:+.3f}"
-    yield Line("n", "", fit.exponent, of_exponent, paper.EXPONENT, note=note)
+    freedom = fit.runs - 1 or None
+    yield Line("n", "", fit.exponent, of_exponent, paper.EXPONENT, note=note, freedom=freedom)
     yield Line(
         "P0",
         "Pa",
@@ -84,9 +85,10 @@ def _fit_lines(group):
         None if of_log is None else fit.scale * of_log,
         group.scale,
         note="paper: E_roll/r0^3" + together,
+        freedom=freedom,
     )
     error = None if fit.at_three_error is None else fit.at_three * fit.at_three_error
-    yield Line("P0 with n = 3", "Pa", fit.at_three, error, group.scale, note="paper: E_roll/r0^3")
+    yield Line("P0 with n = 3", "Pa", fit.at_three, error, group.scale, note="paper: E_roll/r0^3", freedom=freedom)
 
 
 def _dependence(results):
@@ -146,9 +148,9 @@ def _silicate(results):
         return
     lines = []
     for group in groups:
-        ours, error = mean_and_error(group.table.filling_at_300.dropna())
+        found = group.table.filling_at_300.dropna()
         for source, theirs in paper.SILICATE_FILLINGS.items():
-            lines.append(Line(f"filling at 300 Pa, {source}", "", ours, error, theirs, note=label(group)))
+            lines.append(_of_seeds(f"filling at 300 Pa, {source}", "", found, theirs, label(group)))
     notes = (
         "Grains of 0.6 um; Seizinger et al. press BPCA aggregates between walls, Guettler et al. fit experiments with a "
         "mixture of grains: their numbers as K13 gives them.",
@@ -225,7 +227,7 @@ def _beyond(group):
 def _structure(results):
     group = results.main
     lines = [
-        Line(f"D at a filling of {filling:g}", "", *mean_and_error(values), paper.DIMENSION)
+        _of_seeds(f"D at a filling of {filling:g}", "", values, paper.DIMENSION)
         for filling, values in group.dimensions().items()
     ]
     if lines:
@@ -241,12 +243,13 @@ def _tensile(results):
     columns = ["material", "grains", "strainRate", "finalFilling", "stretched_axes", "surface_energy", "grainRadius"]
     for key, runs in results.stretched.groupby(columns, sort=True):
         material, grains, rate, _, axes, surface, radius = key
-        ours, error = mean_and_error(runs.tensile_strength)
         start = float(runs.largest_filling.mean())
         theirs = float(tensile_strength(start, surface, radius)) if axes == 1 else None
         place = f"{runs.tensile_filling.mean() / start:.2f} of the filling before"
         note = f"{material}, N = {grains}, C_v = {rate:g}, {len(runs)} runs, along {_axes(axes)}; largest at {place}"
-        lines.append(Line(f"tensile strength from a filling of {start:.3g}", "Pa", ours, error, theirs, note=note))
+        lines.append(
+            _of_seeds(f"tensile strength from a filling of {start:.3g}", "Pa", runs.tensile_strength, theirs, note)
+        )
     if lines:
         notes = (
             "Tension: minus the boundaries' work over the change of volume, averaged over 1000 t0. Paper: T19, 0.6 MPa "
@@ -254,6 +257,11 @@ def _tensile(results):
             "checked against the text of T19.",
         )
         yield section_of_lines("tensile strength", lines, notes)
+
+
+def _of_seeds(quantity, unit, values, theirs, note=""):
+    """Line of the mean of values, one a seed."""
+    return Line(quantity, unit, *mean_and_error(values), theirs, note=note, freedom=len(values) - 1 or None)
 
 
 def _axes(number_of_them):
