@@ -135,7 +135,7 @@ def _changes(results):
     )
     intro = (
         "Factor, mean over the fillings at which both are static (K13 eqs 26, 27) up to 0.1, by pairs of runs that start from "
-        "one cluster. K13: 1 for C_v and k_n, and for xi_crit up to 8 Å; not at 16 and 32 Å."
+        "one cluster. K13: 1 for C_v and k_n, and for xi_crit up to 8 Å; not quite at 16 and not at 32 Å."
     )
     notes = ("p: chance of a factor as far from 1, by Student's t. Rows share the runs they are compared with.",)
     yield Section("one parameter changed, the same clusters", columns, tuple(records), intro, notes)

@@ -40,7 +40,7 @@ def changes(results):
     found = []
     for base in _bases(results.groups):
         steps = [group for group in results.groups if _different(base, group) == ["stepFraction"]]
-        for group in results.groups:
+        for group in (group for group in results.groups if group is not base):
             name, other = next(_one_away(group, (base, *steps)), (None, None))
             change = _change(name, other, group) if name in CHANGED else None
             found += [change] if change else []
