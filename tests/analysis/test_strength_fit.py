@@ -53,6 +53,14 @@ def test_one_seed_has_no_errors_and_too_few_bins_a_reason():
     assert fit_strength(FILLINGS, gaps, 0.005, 0.1).bins == 6
 
 
+def test_bins_in_which_one_seed_alone_is_pressed_are_not_fitted():
+    """Two of three clusters pull at first: without the third the mean has no logarithm."""
+    pressures = np.tile(SCALE * FILLINGS**3, (3, 1))
+    pressures[:2, FILLINGS < 0.02] *= -0.4
+    fit = fit_strength(FILLINGS, pressures, 0.005, 0.1)
+    assert fit.bins == 6 and fit.scale == pytest.approx(SCALE) and np.isfinite(fit.errors).all()
+
+
 def compression(power=3.0, low=0.004, high=0.5, samples=20_001):
     """A made history: P = SCALE phi^power, constant strain rate, 1e6 s long."""
     time = np.linspace(0.0, 1e6, samples)

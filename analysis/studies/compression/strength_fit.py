@@ -34,11 +34,14 @@ class StrengthFit:
 
 def fit_strength(filling, pressure, low, high):
     """StrengthFit of pressure (S, K) [Pa] of S seeds at filling factors (K,): least squares of the logarithm of the mean
-    over the seeds (K13 takes the arithmetic mean), over the bins from low to high in which every seed has a value."""
+    over the seeds (K13 takes the arithmetic mean), over the bins from low to high in which every seed has a value and the mean
+    is positive whichever seed is left out: below, only some clusters touch their images yet."""
     pressure = np.asarray(pressure, dtype=float)
     used = (filling >= low * (1 - 1e-9)) & (filling <= high * (1 + 1e-9)) & np.isfinite(pressure).all(axis=0)
-    used &= pressure.mean(axis=0) > 0
-    runs, bins = len(pressure), int(used.sum())
+    runs = len(pressure)
+    left_out = [np.delete(pressure, s, axis=0) for s in range(runs)] if runs > 1 else [pressure]
+    used &= np.all([rest.mean(axis=0) > 0 for rest in left_out], axis=0)
+    bins = int(used.sum())
     if bins < FEWEST_BINS:
         reason = f"{bins} bins of the filling factor between {low:.3g} and {high:.3g}: a power law needs {FEWEST_BINS}"
         return StrengthFit((low, high), runs, bins, reason=reason)
@@ -65,7 +68,7 @@ def fit_strength(filling, pressure, low, high):
 
 
 def _fit(x, pressure):
-    """(ln P0, n, ln P0 with n = 3); NaN where the mean of the remaining seeds is not positive in some bin."""
-    y = np.log(np.where(pressure > 0, pressure, np.nan))
-    exponent, offset = np.polyfit(x, y, 1) if np.isfinite(y).all() else (np.nan, np.nan)
+    """(ln P0, n, ln P0 with n = 3)."""
+    y = np.log(pressure)
+    exponent, offset = np.polyfit(x, y, 1)
     return offset, exponent, (y - EXPONENT * x).mean()
