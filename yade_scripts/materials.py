@@ -58,8 +58,9 @@ def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
     """{name: value} of a contact of two of these grains (SI), by the plugin's names, where no YADE runs.
 
     grains: anything with the attributes of Material, viscoelasticTime [s] if there is drag, and slidingStiffnessFactor
-    where it is not 1; radii: of the two [m], both grainRadius when left out. With a neck, under 'bond', those of a bond of two grains of grainRadius. A run takes
-    the constants from the plugin; a test holds the two together. Sources: analysis.theory.
+    where it is not 1; radii: of the two [m], both grainRadius when left out. With a neck, under 'bond', those of a bond
+    of two grains of grainRadius. A run takes the constants from the plugin; a test holds the two together. Sources:
+    analysis.theory.
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]

@@ -70,7 +70,8 @@ def pair_constants(material1, radius1, material2=None, radius2=None, linear_damp
     """PairConstants of two grains: materials and radii [m]; the second grain equals the first where it is
     left out.
 
-    linear_damping is K13's k_n, sliding_factor what k_s is over 8 a0 G* (S17's eqs 11 and 12: 2), both dimensionless. Sources: the module's head and PairConstants.
+    linear_damping is K13's k_n, sliding_factor what k_s is over 8 a0 G* (S17's eqs 11 and 12: 2), both
+    dimensionless. Sources: the module's head and PairConstants.
     """
     material2 = material1 if material2 is None else material2
     radius2 = radius1 if radius2 is None else radius2

@@ -56,8 +56,8 @@ def material_of(grains):
 def pair_constants(grains, neck=0.0, linearDamping=0.0):
     """The plugin's constants (SI) of a contact between two grains of the run, and of a bond under 'bond'.
 
-    grains: materials.GrainParameters with slidingStiffnessFactor. The former are of grains that have not sintered, as packings and the time unit
-    have them; 'bond' is None when nothing is sintered, else the attributes of JKRWadaBond and shrunkRadius [m].
+    grains: materials.GrainParameters with slidingStiffnessFactor. The former are of grains that have not sintered, as
+    packings and the time unit have them; 'bond' is None when nothing is sintered, else the attributes of JKRWadaBond and shrunkRadius [m].
     """
     two = 2 * (material_of(grains), grains.grainRadius)
     functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(

@@ -22,7 +22,6 @@ FIT_NOTES = (
     "K13's own errors, which it doesn't give.",
 )
 LEAST_FRACTION = 5e-4  # of all dissipation: less than the tables show tells no largest channel
-
 CHANNEL_NOTES = (
     "Fractions of all that was dissipated until then, boundaries' work that is still stored or moving left out.",
     "What this can't tell: which contacts pay. Dissipation of the first approach, when free clusters are pressed "
@@ -117,17 +116,21 @@ def _changes(results):
     found = changes(results)
     if not found:
         return
-    units = {"strainRate": ("C_v", 1), "linearDamping": ("k_n", 1), "criticalRolling": ("xi_crit [Å]", 1e10)}
+    shown = {
+        "strainRate": ("C_v", 1),
+        "linearDamping": ("k_n", 1),
+        "criticalRolling": ("xi_crit [Å]", 1e10),
+        "stepFraction": ("step [t0]", 1),
+    }
     records = []
     for change in found:
-        name, unit = units.get(change.name, ("step [t0]", 1))
-        values = (unit * group.parameters[change.name] for group in (change.base, change.group))
-        parameters = {name: change.group.parameters[name] for name in ("material", "grains")}
-        what = dict(zip(("from", "to"), values), parameter=name, seeds=change.seeds)
-        records.append({**parameters, **what, "ratio": change.ratio, "error": change.error, "chance": change.chance})
+        parameter, unit = shown[change.name]
+        old, new = change.base.parameters, change.group.parameters
+        record = {"material": new["material"], "grains": new["grains"], "parameter": parameter}
+        record.update({"from": unit * old[change.name], "to": unit * new[change.name], "seeds": change.seeds})
+        records.append({**record, "ratio": change.ratio, "error": change.error, "chance": change.chance})
     columns = (
-        Column("material", lambda r: r["material"]),
-        Column("N", lambda r: f"{r['grains']}"),
+        *PARAMETERS[:2],
         Column("changed", lambda r: f"{r['parameter']}: {r['from']:g} to {r['to']:g}"),
         Column("seeds", lambda r: f"{r['seeds']}"),
         Column("P r0^3/E_roll changes by", lambda r: _with_error(r["ratio"], r["error"] and r["ratio"] * r["error"])),

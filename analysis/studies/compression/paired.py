@@ -11,6 +11,7 @@ from ...statistics import mean_and_error, student_chance
 from .curve import FILLINGS
 from .paper import EXPONENT, VALID_TO
 from .results import KEYS
+from .strength_fit import within
 
 CHANGED = ("strainRate", "linearDamping", "criticalRolling", "stepFraction")
 
@@ -18,7 +19,7 @@ CHANGED = ("strainRate", "linearDamping", "criticalRolling", "stepFraction")
 @dataclass(frozen=True)
 class Change:
     """Runs of `group` beside those of `base`, of which they differ in the parameter `name`, by the `seeds` that both have:
-    ratio of P r0^3/E_roll, the mean of its logarithm and its error (None: one seed), between the filling factors `between`."""
+    ratio of P r0^3/E_roll, the mean of its logarithm and its error (None: one seed)."""
 
     name: str
     base: object
@@ -26,7 +27,6 @@ class Change:
     seeds: int
     ratio: float
     error: float | None
-    between: tuple
 
     @property
     def chance(self):
@@ -70,7 +70,7 @@ def _different(first, second):
 
 def _change(name, base, group):
     low = max(base.fit.between[0], group.fit.between[0])
-    used = (FILLINGS >= low * (1 - 1e-9)) & (FILLINGS <= VALID_TO * (1 + 1e-9)) & base.covered & group.covered
+    used = within(FILLINGS, low, VALID_TO) & base.covered & group.covered
     sums = [
         dict(zip(g.table.seed, (g.pressure / FILLINGS**EXPONENT)[:, used].sum(axis=1) / g.scale)) for g in (group, base)
     ]
@@ -78,4 +78,4 @@ def _change(name, base, group):
     if not seeds:
         return None
     mean, error = mean_and_error([np.log(sums[0][seed] / sums[1][seed]) for seed in seeds])
-    return Change(name, base, group, len(seeds), float(np.exp(mean)), error, (low, VALID_TO))
+    return Change(name, base, group, len(seeds), float(np.exp(mean)), error)

@@ -32,25 +32,29 @@ class StrengthFit:
     reason: str = None
 
 
+def within(filling, low, high):
+    """(K,) bool: the filling factors (K,) from low to high, both included."""
+    return (filling >= low * (1 - 1e-9)) & (filling <= high * (1 + 1e-9))
+
+
 def fit_strength(filling, pressure, low, high):
     """StrengthFit of pressure (S, K) [Pa] of S seeds at filling factors (K,): least squares of the logarithm of the mean
     over the seeds (K13 takes the arithmetic mean), over the bins from low to high in which every seed has a value and the mean
     is positive whichever seed is left out: below, only some clusters touch their images yet."""
     pressure = np.asarray(pressure, dtype=float)
-    used = (filling >= low * (1 - 1e-9)) & (filling <= high * (1 + 1e-9)) & np.isfinite(pressure).all(axis=0)
     runs = len(pressure)
-    left_out = [np.delete(pressure, s, axis=0) for s in range(runs)] if runs > 1 else [pressure]
-    used &= np.all([rest.mean(axis=0) > 0 for rest in left_out], axis=0)
+    rests = np.array([np.delete(pressure, s, axis=0).mean(axis=0) for s in range(runs)]) if runs > 1 else pressure
+    used = within(filling, low, high) & np.isfinite(pressure).all(axis=0) & (rests > 0).all(axis=0)
     bins = int(used.sum())
     if bins < FEWEST_BINS:
         reason = f"{bins} bins of the filling factor between {low:.3g} and {high:.3g}: a power law needs {FEWEST_BINS}"
         return StrengthFit((low, high), runs, bins, reason=reason)
-    x, sample = np.log(filling[used]), pressure[:, used]
-    best = _fit(x, sample.mean(axis=0))
+    x = np.log(filling[used])
+    best = _fit(x, pressure[:, used].mean(axis=0))
     values = dict(scale=float(np.exp(best[0])), exponent=float(best[1]), at_three=float(np.exp(best[2])))
     if runs < 2:
         return StrengthFit((low, high), runs, bins, **values)
-    rest = np.array([_fit(x, np.delete(sample, s, axis=0).mean(axis=0)) for s in range(runs)])
+    rest = np.array([_fit(x, mean) for mean in rests[:, used]])
     away = rest - rest.mean(axis=0)
     covariance = (runs - 1) / runs * away.T @ away
     error = np.sqrt(np.diag(covariance))

@@ -25,8 +25,8 @@ def drag_section(results):
                 for curves in (results.growth, results.small, results.remnants, results.merging)
             )
             if growth is not None:
-                row = {"grains": grains, "velocity": float(velocity), "growth": growth, "remnants": remnants}
-                row["merging"] = merging
+                row = {"grains": grains, "velocity": float(velocity), "growth": growth}
+                row |= {"remnants": remnants, "merging": merging}
                 half = -0.5 * small[0], None if small[1] is None else 0.5 * small[1]
                 rows.append({**row, "small": half, "T_vis": times[-1], "less": times[0]})
     if not rows:
