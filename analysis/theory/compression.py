@@ -44,7 +44,7 @@ def filling_at(pressure, scale, densest=None):
 def tensile_strength(filling, surface_energy, grain_radius):
     """0.6 MPa (gamma/0.1 J/m^2) (r0/0.1 um)^-1 phi^1.8 [Pa], phi before the stretching: T19.
 
-    Number and exponent from memory of that paper, whose text was not at hand: to be checked before it is cited."""
+    That paper's text was not at hand; Pamdeas (a program for dust in discs, disruption.cpp) quotes the same from it."""
     scale = 6e5 * (surface_energy / 0.1) / (grain_radius / 1e-7)
     return scale * np.asarray(filling, dtype=float) ** 1.8
 

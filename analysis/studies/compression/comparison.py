@@ -256,8 +256,8 @@ def _tensile(results):
     if lines:
         notes = (
             "Tension: minus the boundaries' work over the change of volume, averaged over 1000 t0. Paper: T19, 0.6 MPa "
-            "phi^1.8 for ice, along one axis; its largest tension is at about half of the filling. The formula was not "
-            "checked against the text of T19.",
+            "phi^1.8 for ice, along one axis, as Pamdeas, a program for dust in discs, quotes it (T19's own text was not at "
+            "hand); its largest tension is at about half of the filling.",
         )
         yield section_of_lines("tensile strength", lines, notes)
 
