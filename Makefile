@@ -18,7 +18,7 @@
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
-# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (ten to twenty minutes)
+# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/scripts/results/slurm.md
 # make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it

@@ -1,6 +1,6 @@
 """Tries every fault at every file-system call of every scenario (faults/scenarios.py), and writes results/faults.md.
 
-    python3 tests/persistence/enumerate_faults.py [-j JOBS] [--out FILE]      ten to twenty minutes on two cores
+    python3 tests/persistence/enumerate_faults.py [-j JOBS] [--out FILE]      six to twenty minutes on two cores
 
 Exit status: 0 when nothing was lost, otherwise 1, with one line on stderr for each case.
 """
