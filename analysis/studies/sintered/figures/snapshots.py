@@ -2,6 +2,7 @@
 
 from ....figures.collision_view import draw_view, reach
 from ....figures.style import styled
+from ....measures.fragments import fragment_labels
 from ....runs.table import run_folder
 from ....theory.chains import stretching_period
 from ....theory.pair_constants import ICE, pair_constants
@@ -43,8 +44,9 @@ def _draw_row(places, row, periods):
     chosen = sorted({run.states.nearest(number * period) for number in periods})
     states = [run.states[k] for k in chosen]
     half = 1.1 * reach(states[0], held=1.0) / row.grain_radius  # what flies farther leaves the panel
-    for place, state in zip(places, states):
-        draw_view(place, state, row.grain_radius, half)
+    draw_view(places[0], states[0], row.grain_radius, half)
+    for place, state in zip(places[1:], states[1:]):
+        draw_view(place, state, row.grain_radius, half, centre=_centre_of_largest(state))
     for place in places[len(states) :]:
         place.set_axis_off()
     places[0].set_title(
@@ -52,10 +54,15 @@ def _draw_row(places, row, periods):
     )
 
 
+def _centre_of_largest(state):
+    """Mean position (3,) [m] of the grains of the largest piece."""
+    return state.position[fragment_labels(len(state.position), state.contact_pairs) == 0].mean(axis=0)
+
+
 FIGURES = (
     StudyFigure(
         "fig07_snapshots",
-        "S17 Fig. 7: collisions of BCCA aggregates (one seed), at the paper's times or the run's own end.",
+        "S17 Fig. 7: collisions of BCCA aggregates (one seed), at the paper's times or the run's own end, around the largest piece.",
         _figure(_BCCA, 0.0, _TIMES),
         vector=False,
     ),
