@@ -90,7 +90,7 @@ def _figure_of_beta(quantity):
         made, axes = panels(1, len(drawn))
         for place, (rolling, draw) in zip(axes[0], drawn):
             draw(place)
-            place.text(0.03, 0.05, rf"$\xi_c$ = {rolling * 1e10:g} $\AA$", transform=place.transAxes)
+            place.set_title(rf"$\xi_c$ = {rolling * 1e10:g} $\AA$", fontsize=10)
             place.set_ylim(0, None)
         legend(axes[0, 0])
         letter(axes, "BCCA")

@@ -20,6 +20,7 @@ from .common import (
     neck_colour,
     order_colour,
     panels,
+    velocity_axis,
 )
 
 
@@ -103,8 +104,23 @@ def modes(results):
         bottom += height
     axes[0, 0].set_xticks(range(len(groups)), [label for label, _ in groups], fontsize=8)
     axes[0, 0].set_ylabel("broken necks  [per cent]")
-    legend(axes[0, 0], fontsize=8, loc="lower right")
+    legend(axes[0, 0], fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
+
+
+def _chains_of_beta(place, compacted):
+    for number, (value, own) in enumerate(lines_of(compacted, "growth_velocity")):
+        _ratios(place, [p.neck for p in own], own, order_colour(number), growth_label(value))
+    place.set_xlabel(r"$\beta$")
+
+
+def _chains_of_velocity(place, bcca):
+    for neck, own in lines_of(bcca, "neck"):
+        _ratios(place, [p.velocity for p in own], own, neck_colour(neck), beta_label(neck))
+    loops = [(p.velocity, predicted_ratio(p, paper.LOOP_GRAINS)) for p in bcca if p.neck == 0.7]
+    if loops:
+        place.plot(*zip(*sorted(loops)), "s:", color="0.4", markersize=4, label=r"$\beta$ = 0.7, loops: N = 22")
+    velocity_axis(place, [p.velocity for p in bcca])
 
 
 @styled
@@ -114,19 +130,12 @@ def chain_model(results):
     bcca = [p for p in results.main(growth_velocity=0.0) if p.neck]
     if not compacted and not bcca:
         return None
-    figure, axes = panels(1, 2)
-    for number, (value, own) in enumerate(lines_of(compacted, "growth_velocity")):
-        _ratios(axes[0, 0], [p.neck for p in own], own, order_colour(number), growth_label(value))
-    for neck, own in lines_of(bcca, "neck"):
-        _ratios(axes[0, 1], [p.velocity for p in own], own, neck_colour(neck), beta_label(neck))
-    loops = [(p.velocity, predicted_ratio(p, paper.LOOP_GRAINS)) for p in bcca if p.neck == 0.7]
-    if loops:
-        axes[0, 1].plot(*zip(*sorted(loops)), "s:", color="0.4", markersize=4, label=r"$\beta$ = 0.7, loops: N = 22")
-        axes[0, 1].set_xscale("log")
-    for place, label in zip(axes[0], (r"$\beta$", "collision velocity  [m/s]")):
+    drawn = [(draw, points) for draw, points in ((_chains_of_beta, compacted), (_chains_of_velocity, bcca)) if points]
+    figure, axes = panels(1, len(drawn))
+    for place, (draw, points) in zip(axes[0], drawn):
+        draw(place, points)
         place.axhline(1.0, color="0.6", lw=0.8)
         place.set_yscale("log")
-        place.set_xlabel(label)
         place.set_ylabel("$F_c/F_{max}$  (filled: half or more bounce)")
         legend(place, fontsize=7)
     letter(axes, "")
