@@ -62,13 +62,15 @@ def _centre_of_largest(state):
 FIGURES = (
     StudyFigure(
         "fig07_snapshots",
-        "S17 Fig. 7: collisions of BCCA aggregates (one seed), at the paper's times or the run's own end, around the largest piece.",
+        "S17 Fig. 7: collisions of BCCA aggregates (one seed), at the paper's times or the run's own end; "
+        "later ones around the largest piece.",
         _figure(_BCCA, 0.0, _TIMES),
         vector=False,
     ),
     StudyFigure(
         "fig09_snapshots",
-        "S17 Fig. 9: compacted aggregates at 3 m/s (one seed), at the saved states nearest to the paper's times.",
+        "S17 Fig. 9: compacted aggregates at 3 m/s (one seed), at the saved states nearest to the paper's times; "
+        "later ones around the largest piece.",
         _figure(_COMPACTED, 3.0, _COMPACTED_TIMES),
         vector=False,
     ),
