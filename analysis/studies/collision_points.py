@@ -127,8 +127,8 @@ class Phases:
     """Change of the channels in the runs of one parameter set and outcome: outcome, seeds (their number);
     compression (start to t_max), parting (t_max to the end), and where the largest return speed was measured (seeds in
     `timed`) parting's two parts, release (t_max to it) and stretching (from it to the end): by channel (mean, error) in
-    fractions of K(0); bulk and returned (mean, error): (v/v_col)^2 at the end and at the largest return speed. Nones
-    where no run was timed."""
+    fractions of K(0); bulk and returned (mean, error): (v/v_col)^2 at the end and at the largest return speed; when (mean,
+    error): its time [s]. Nones where no run was timed."""
 
     outcome: str
     seeds: int
@@ -139,6 +139,7 @@ class Phases:
     stretching: dict
     bulk: tuple
     returned: tuple
+    when: tuple
 
 
 @dataclass(frozen=True)
@@ -203,6 +204,7 @@ def _phases(kind, runs):
         stretching=_changes(timed, at_return, at_end),
         bulk=mean_and_error(runs.bulk),
         returned=_returned(runs),
+        when=mean_and_error(timed.return_time) if len(timed) else None,
     )
 
 

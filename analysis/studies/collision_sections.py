@@ -28,7 +28,7 @@ def outcome_section(points, parameters):
         Column("outcomes", lambda b: ", ".join(f"{number} {kind}" for kind, number in b["outcomes"].items())),
         Column("sticking probability", lambda b: _both_ways(b["sticking"])),
         Column("restitution", lambda b: _both_ways(b["restitution"])),
-        Column("bulk K at the end", lambda b: _per_cent(b["bulk"])),
+        Column("K in bulk motion at the end", lambda b: _per_cent(b["bulk"])),
     )
     return Section(
         "how collisions end",
@@ -50,6 +50,7 @@ def return_section(points, parameters):
             "outcome": phases.outcome,
             "seeds": phases.timed,
             "returned": phases.returned,
+            "when": phases.when,
             "release": {c: value[0] for c, value in phases.release.items()},
             "stretching": {c: value[0] for c, value in phases.stretching.items()},
             "bulk": phases.bulk,
@@ -64,17 +65,18 @@ def return_section(points, parameters):
         *parameters,
         Column("outcome", lambda b: b["outcome"]),
         Column("seeds", lambda b: str(b["seeds"])),
-        Column("returned bulk K", lambda b: _per_cent(b["returned"])),
+        Column("K in bulk motion, returned", lambda b: _per_cent(b["returned"])),
+        Column("at [ns]", lambda b: _nanoseconds(b["when"])),
         Column("normal", lambda b: _two_parts(b, "normal"), long="normal (JKR potential)"),
         Column("dissipation", lambda b: f"{_lost(b['release'])} | {_lost(b['stretching'])}"),
-        Column("bulk K at the end", lambda b: _per_cent(b["bulk"])),
+        Column("K in bulk motion at the end", lambda b: _per_cent(b["bulk"])),
     )
     return Section(
         "what comes back",
         columns,
         rows,
-        intro="Bulk K: (v/v_col)^2, the fraction of K(0) in the motion of the halves; returned: at the largest return "
-        "speed, with standard error. Normal energy and all dissipation: change in per cent of K(0) from t_max to the "
+        intro="K in bulk motion: (v/v_col)^2, the fraction of K(0) in the relative motion of the halves; returned: at the largest "
+        "return speed, with standard error. Normal energy and all dissipation: change in per cent of K(0) from t_max to the "
         "largest return speed | from there to the end. That split needs no decided outcome.",
     )
 
@@ -125,6 +127,11 @@ def _per_cent(pair):
         return "-"
     mean, error = pair
     return f"{100 * mean:.2g} %" + (f" +- {100 * error:.1g}" if error else "")
+
+
+def _nanoseconds(pair):
+    mean, error = pair
+    return f"{1e9 * mean:.0f}" + (f" +- {1e9 * error:.0f}" if error else "")
 
 
 def _both_ways(ends):

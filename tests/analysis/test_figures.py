@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from PIL import Image
 
 from analysis.figures.of_run.energy import energy_figure
 from analysis.figures.of_run.forces import force_kinds, forces_figure
 from analysis.figures.of_run.grains import grains_figure
 from analysis.figures.of_run.motion import motion_figure
+from analysis.figures.save import save_small
 from analysis.figures.sphere_raster import paint_spheres
+from analysis.figures.style import new_figure
 from analysis.measures.compression import maximum_compression
 from analysis.measures.ledger import fractions
 from analysis.runs.folder import open_run
@@ -100,3 +103,17 @@ def test_states_are_shown_at_the_times_asked_for(run):
     for make in (grains_figure, forces_figure):
         figure = make(run, [*times, times[-1]])
         assert [axes.get_title(loc="left") for axes in figure.axes] == expected
+
+
+def test_colours_of_what_is_drawn_are_kept_in_a_small_picture(tmp_path):
+    """Blues that differ by a few parts in 255, on a background of thousands of shades."""
+    figure = new_figure(4, 3)
+    axes = figure.subplots()
+    axes.imshow(np.random.default_rng(1).random((60, 60, 3)), extent=(0, 5, -1, 1), aspect="auto")
+    blues = [(32, 100 + 3 * k, 172) for k in range(5)]
+    for k, colour in enumerate(blues):
+        axes.plot([k + 0.5], [0.0], "s", markersize=9, color=np.array(colour) / 255.0)
+    save_small(figure, tmp_path / "small.png")
+    with Image.open(tmp_path / "small.png") as picture:
+        pixels = {colour for _, colour in picture.convert("RGB").getcolors(10**6)}
+    assert set(blues) <= pixels and len(pixels) <= 256

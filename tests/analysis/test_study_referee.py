@@ -3,16 +3,21 @@ together, the filling of the zones as a covariate, predictions."""
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas
 import pytest
 from made_collisions import FILLING, MODULI, OFFSET, made_points
+from scipy.stats import kstest
 from written_runs import RADIUS
 
+from analysis.runs.format import CHANNELS
 from analysis.runs.table import read_table
 from analysis.statistics import pooled_scatter
+from analysis.studies.collision_points import at_maximum
 from analysis.studies.elastoplastic import paper, prediction
+from analysis.studies.elastoplastic.energy_by_size import energy_size_section
 from analysis.studies.elastoplastic.joint_fit import JointSearch, joint_fit
 from analysis.studies.elastoplastic.measure import COLUMNS
 from analysis.studies.elastoplastic.points import points_of, resampled
@@ -134,6 +139,36 @@ def test_slope_on_the_zones_and_adjusted_means():
     assert np.mean(adjusted) == pytest.approx(2.0, abs=4 * np.std(adjusted) / 200**0.5)
     assert np.std(adjusted) == pytest.approx(np.sqrt(np.mean(np.square(stated))), rel=0.2)
     assert np.std(adjusted) < np.std(plain) and np.median(worth) > 1.3
+
+
+def test_slope_of_the_time_is_in_nanoseconds():
+    """t_max that is 2 ns a grain radius of R (zone_filling - 1) and 150 ns where that is 0, without scatter."""
+    table = made_table(np.random.default_rng(8), 8)
+    away = table.radius / RADIUS * (table.zone_filling - 1)
+    table["t_max"] = 1e-9 * (150.0 + 2.0 * away)
+    slope = fit_slope(table, of="t_max")
+    assert slope.slope == pytest.approx(2.0) and slope.explained == pytest.approx(1.0)
+    assert [each.adjusted for each in adjust(table, slope, of="t_max")] == pytest.approx([150.0] * 3)
+
+
+def test_energy_that_depends_on_size_and_energy_that_does_not():
+    """60 sets of 3 x 8 pairs: a change of 4 % of K(0) from the smallest to the largest size is found as that, with an error as
+    large as its scatter; p is even where there is none."""
+    random, found, errors, none = np.random.default_rng(9), [], [], []
+    for _ in range(60):
+        table = made_table(random, 8).assign(**{at_maximum(c): 0.0 for c in CHANNELS})
+        share = 0.02 * random.normal(size=(2, len(table)))
+        table[at_maximum("slidingDissipation")] = 0.8 + 0.04 * (table.radius / RADIUS - 40.0) / 40.0 + share[0]
+        table[at_maximum("normal")] = 0.1 + share[1]
+        filling = SimpleNamespace(size_fit=SimpleNamespace(velocity=paper.VELOCITY))
+        results = SimpleNamespace(by_filling={0.4: filling}, runs=lambda factor, velocity, table=table: table)
+        lost, stored = energy_size_section(results).records
+        found.append(lost["change"][0])
+        errors.append(lost["change"][1])
+        none.append(stored["chance"])
+    assert np.mean(found) == pytest.approx(0.04, abs=4 * np.std(found) / 60**0.5)
+    assert np.mean(errors) == pytest.approx(np.std(found), rel=0.35)
+    assert kstest(none, "uniform").pvalue > 1e-3
 
 
 def test_a_covariate_of_no_use_explains_nothing():

@@ -25,12 +25,11 @@ _COLUMNS = (
 
 def model_section(results, filling):
     """Section of one results.Filling; None where A24 has no fit at this filling factor."""
-    factor, unit = filling.factor, results.grain_radius
+    factor = filling.factor
     if factor not in paper.YOUNG:
         return None
     rows = tuple(_row(filling.points, k, filling, results) for k in range(len(filling.points)))
     moduli = f"{paper.YIELD_STRESS[factor] / 1e6:g} MPa, {paper.YOUNG[factor] / 1e6:g} MPa"
-    ours = "A24's" if filling.offset is None else f"{filling.offset / unit:.3f} r"
     return Section(
         f"filling {factor:g}: d_max and t_max beside A24's fitted model",
         _COLUMNS,
@@ -38,8 +37,18 @@ def model_section(results, filling):
         intro=f"A24's model: Andrews's spheres with {moduli} and A24's delta_offset = {paper.OFFSET[factor]:g} r, turned into "
         "d_max and t_max with that offset, so that no offset of ours is in the differences. errors: the difference in our "
         "standard errors of the mean; p: its chance by Student's t with one degree of freedom less than seeds (A24's errors, "
-        f"which it doesn't give, not counted). tau_max with the delta_offset fitted here ({ours}). The same pairs recur at all "
-        "velocities of a size: the rows are not independent.",
+        "which it doesn't give, not counted). tau_max: both with A24's delta_offset, so that it differs by as much as t_max. The "
+        "same pairs recur at all velocities of a size: the rows are not independent.",
+    )
+
+
+def papers_model(results, filling, radius, velocity):
+    """(d_max [m], t_max [s]) of A24's fitted model at one results.Filling that A24 fits, radius [grain radii] and velocity
+    [m/s], floats or arrays; its own moduli (eqs 34, 35) and delta_offset (eqs 18, 20)."""
+    factor, unit = filling.factor, results.grain_radius
+    moduli = paper.YIELD_STRESS[factor], paper.YOUNG[factor]
+    return predicted(
+        velocity, radius * unit, unit, factor * results.grain_density, *moduli, paper.OFFSET[factor] * unit
     )
 
 
@@ -48,10 +57,9 @@ def _row(points, k, filling, results):
     d, t = points.samples[k]
     velocity, radius = float(points.velocity[k]), float(points.radius[k])
     offset = paper.OFFSET[factor] * unit
-    moduli = paper.YIELD_STRESS[factor], paper.YOUNG[factor]
-    model_d, model_t = predicted(velocity, radius, unit, factor * results.grain_density, *moduli, offset)
-    own = offset if filling.offset is None else filling.offset
+    model_d, model_t = papers_model(results, filling, radius / unit, velocity)
     d, t = mean_and_error(d / unit), mean_and_error(t * 1e9)
+    approach = 2e9 * (unit - offset) / velocity
     row = {
         "radius": round(radius / unit, 3),
         "velocity": velocity,
@@ -60,8 +68,8 @@ def _row(points, k, filling, results):
         "model_d_max": float(model_d) / unit,
         "t_max": t,
         "model_t_max": float(model_t) * 1e9,
-        "tau_max": (t[0] - 2e9 * (unit - own) / velocity, t[1]),
-        "model_tau_max": float(model_t - 2.0 * (unit - offset) / velocity) * 1e9,
+        "tau_max": (t[0] - approach, t[1]),
+        "model_tau_max": float(model_t) * 1e9 - approach,
         "units": "grain radii, m/s, ns",
     }
     for name, value, model in (("d", d, row["model_d_max"]), ("t", t, row["model_t_max"])):

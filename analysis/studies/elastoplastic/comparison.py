@@ -5,6 +5,7 @@ from ...report.section import Column, Section
 from ...statistics import RESAMPLES
 from ..collision_sections import energy_section, outcome_section, return_section
 from .beside_model import model_section
+from .energy_by_size import energy_size_section
 from .lines import compare
 from .zone_sections import zone_sections
 
@@ -40,6 +41,9 @@ def sections(results):
     returned = return_section(results.bounces, _POINT)
     if returned:
         yield returned
+    by_size = energy_size_section(results)
+    if by_size:
+        yield by_size
     yield energy_section(results.bounces, _POINT)
 
 

@@ -37,7 +37,8 @@ class Filling:
     """Results at one filling factor: factor, points with resamples (d_max, t_max), size_fits (SizeFit by
     DEFINITIONS), offset [m] and offset_source, velocity_fits (VelocityFit by what is special about it; ''
     comes first), joint (JointFit), differences ({definition: size_fit.JointDifference from A24's line, None without}),
-    covariates ({zone_fit.COVARIATES: Slope, None without}), adjusted ([zone_fit.Adjusted] of the sizes), slope (of d_max on
+    covariates ({zone_fit.COVARIATES: Slope of d_max, None without}), adjusted ([zone_fit.Adjusted] of d_max by size),
+    time_zone (the same two of t_max: Slope on the filling of the zones, [Adjusted]; None and [] without), slope (of d_max on
     the start's offset at the velocity of the size fit, its error), corrections ({index of point there: Correction} in grain
     radii), coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson
     (value, error), grain_radius [m]."""
@@ -53,6 +54,7 @@ class Filling:
     differences: Mapping
     covariates: Mapping
     adjusted: list
+    time_zone: tuple
     slope: tuple
     corrections: Mapping
     coordination: tuple
@@ -138,6 +140,7 @@ def _filling(filling, table):
         _differences(filling, size_fits, points, at_velocity, covariates, r),
         covariates,
         adjusted,
+        _time_zone(at_velocity),
         slope,
         corrections,
         # A pair has the same packings at every velocity.
@@ -201,6 +204,12 @@ def _covariates(table):
     slopes = {name: fit_slope(table, column) for name, column in COVARIATES.items()}
     zone = next(iter(slopes.values()))
     return slopes, [] if zone is None else adjust(table, zone)
+
+
+def _time_zone(table):
+    """time_zone of Filling from the runs at one velocity."""
+    slope = fit_slope(table, of="t_max")
+    return slope, [] if slope is None else adjust(table, slope, of="t_max")
 
 
 def _corrections(points, table, velocity):

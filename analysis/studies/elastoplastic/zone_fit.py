@@ -1,12 +1,13 @@
-"""d_max against the filling of the two zones that meet: a covariate that the packings give before they collide.
+"""d_max and t_max against the filling of the two zones that meet: a covariate that the packings give before they collide.
 
 At one velocity and filling factor, with x the zones' filling over that of the aggregates (start.COLUMNS) and i the size,
 
     d_max = m_i + b R (x - 1) + scatter
 
-with one slope b for all sizes, and a scatter [grain radii] that is the same at all sizes, as the size fit has it. The zone (0.25 R deep and wide) was chosen on the first 39 pairs of each filling, so that
-what it explains of these flatters it: prediction.py tests it on pairs that were not run by then. All errors are from
-resampled pairs of aggregates."""
+with one slope b for all sizes, and a scatter [grain radii] that is the same at all sizes, as the size fit has it; t_max [ns]
+likewise. The zone (0.25 R deep and wide) was chosen by the d_max of the first 39 pairs of each filling, so that what it
+explains of these flatters it: prediction.py tests it on pairs that were not run by then. All errors are from resampled pairs
+of aggregates."""
 
 from dataclasses import dataclass
 
@@ -20,14 +21,15 @@ COVARIATES = {
     "direction of the crystals": "bond_direction",
     "chance offset of the centres of mass": "offset",
 }
+UNITS = {"d_max": "r", "t_max": "ns"}  # of what is measured, as it is given here
 
 
 @dataclass(frozen=True)
 class Slope:
-    """d_max against a covariate: slope and correlation with their errors, both about the means of each size; explained:
-    the fraction of the variance of d_max, less what a covariate of no use would explain (adjusted R^2, may be
-    negative); runs, sizes (their number); scatter [grain radii]: standard deviation of d_max about the slope, total: about
-    the means; slopes (B,): resampled."""
+    """What is measured (a key of UNITS, in that unit) against a covariate: slope and correlation with their errors, both about
+    the means of each size; explained: the fraction of the variance, less what a covariate of no use would explain (adjusted
+    R^2, may be negative); runs, sizes (their number); scatter: standard deviation about the slope, total: about the means;
+    slopes (B,): resampled."""
 
     slope: float
     slope_error: float
@@ -53,8 +55,9 @@ class Slope:
 
 @dataclass(frozen=True)
 class Adjusted:
-    """Mean of d_max [grain radii] at one size (radius in grain radii, seeds) with its error, mean x - 1 with its error,
-    correlation with x at this size (None below four seeds), and the mean read off at x = 1 with its error."""
+    """Mean of what is measured (a key of UNITS, in that unit) at one size (radius in grain radii, seeds) with its error, mean
+    x - 1 with its error, correlation with x at this size (None below four seeds), and the mean read off at x = 1 with its
+    error."""
 
     radius: float
     seeds: int
@@ -67,11 +70,12 @@ class Adjusted:
     adjusted_error: float
 
 
-def fit_slope(table, covariate="zone_filling"):
-    """Slope of the runs of one filling and velocity (DataFrame of measure.COLUMNS) against a column; None where fewer than
-    FEWEST degrees of freedom are left, or the column has gaps or does not vary within the sizes."""
+def fit_slope(table, covariate="zone_filling", of="d_max"):
+    """Slope of what is measured (`of`: a key of UNITS) in the runs of one filling and velocity (DataFrame of measure.COLUMNS)
+    against a column; None where fewer than FEWEST degrees of freedom are left, or the column has gaps or does not vary
+    within the sizes."""
     group = (table.radius / table.grain_radius).round(3).to_numpy()
-    x, y = _regressor(table, covariate), (table.d_max / table.grain_radius).to_numpy(dtype=float)
+    x, y = _regressor(table, covariate), _measured(table, of)
     sizes = np.unique(group).size
     if np.isnan(x).any() or len(x) - sizes - 1 < FEWEST:
         return None
@@ -98,17 +102,23 @@ def fit_slope(table, covariate="zone_filling"):
     )
 
 
+def _measured(table, of):
+    """What is measured (n,), in its unit of UNITS."""
+    values = table.d_max / table.grain_radius if of == "d_max" else 1e9 * table[of]
+    return values.to_numpy(dtype=float)
+
+
 def _regressor(table, covariate):
     """The covariate of the runs in grain radii: lengths as they are, numbers times R."""
     length = table.radius if covariate != "offset" else 1.0
     return (table[covariate] * length / table.grain_radius).to_numpy(dtype=float)
 
 
-def adjust(table, slope):
-    """[Adjusted] of each size of the runs of one filling and velocity, with a fit_slope on zone_filling."""
+def adjust(table, slope, of="d_max"):
+    """[Adjusted] of each size of the runs of one filling and velocity, with a fit_slope of the same on zone_filling."""
     found = []
     for radius, runs in table.groupby((table.radius / table.grain_radius).round(3)):
-        x, d = runs.zone_filling.to_numpy() - 1.0, (runs.d_max / runs.grain_radius).to_numpy()
+        x, d = runs.zone_filling.to_numpy() - 1.0, _measured(runs, of)
         n = len(d)
         plain = d.std(ddof=1) / np.sqrt(n) if n > 1 else slope.total
         found.append(

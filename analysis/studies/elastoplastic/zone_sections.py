@@ -1,17 +1,28 @@
 """What the packings explain of d_max, and what they predicted of it: sections of the report."""
 
 from ...report.section import Column, Section
-from . import prediction
+from ...statistics import student_chance
+from . import paper, prediction
+from .beside_model import papers_model
 from .lines import paper_line_at
 
 
 def zone_sections(results):
-    """Sections: what each covariate explains, the means adjusted for the filling of the zones, predictions beside runs."""
+    """Sections: what each covariate explains, the means of d_max and t_max adjusted for the filling of the zones, predictions
+    beside runs."""
     rows = tuple(_explained(results))
     if rows:
         yield Section("what explains the scatter of d_max", _EXPLAINED, rows, intro=_EXPLAINED_INTRO)
         yield Section(
-            "d_max adjusted for the filling of the zones", _ADJUSTED, tuple(_adjusted(results)), intro=_ADJUSTED_INTRO
+            "largest compression adjusted for the filling of the zones",
+            _ADJUSTED,
+            tuple(_adjusted(results)),
+            intro=_ADJUSTED_INTRO,
+        )
+    times = tuple(_adjusted_times(results))
+    if times:
+        yield Section(
+            "time of the largest compression adjusted for the filling of the zones", _TIMES, times, intro=_TIMES_INTRO
         )
     predictions = prediction.read()
     if predictions is not None:
@@ -19,7 +30,10 @@ def zone_sections(results):
     if predictions is not None and len(predictions):
         compared = prediction.compare(predictions, results.table)
         yield Section(
-            "d_max predicted beforehand", _PREDICTED, tuple(vars(each) for each in compared), intro=_PREDICTED_INTRO
+            "largest compression predicted beforehand",
+            _PREDICTED,
+            tuple(vars(each) for each in compared),
+            intro=_PREDICTED_INTRO,
         )
 
 
@@ -32,6 +46,11 @@ _EXPLAINED_INTRO = (
 _ADJUSTED_INTRO = (
     "Lengths in grain radii. zone: mean filling of the two zones that meet, less that of the aggregates. adjusted: read off "
     "where both are equal, with the common slope and the common scatter about it."
+)
+_TIMES_INTRO = (
+    "At the velocity of the size fit, less A24's fitted model, with A24's delta_offset. correlation, explained: of t_max and the "
+    "filling of the zones about the means of each size, as for d_max. p: Student's t with the degrees of freedom of the scatter "
+    "about the slope; A24's errors not counted."
 )
 _PREDICTED_INTRO = (
     "predictions.csv, written before these pairs were run, beside their runs as far as they are in the table. within: in the "
@@ -61,6 +80,16 @@ _ADJUSTED = (
     Column("paper's line", lambda b: "-" if b["paper"] is None else f"{b['paper']:.3f} +- {b['paper_error']:.3f}"),
     Column("diff*", lambda b: _both(b, "mean", "error")),
     Column("adjusted diff*", lambda b: _both(b, "adjusted", "adjusted_error")),
+)
+_TIMES = (
+    Column("filling", lambda b: f"{b['filling']:g}"),
+    Column("R [r]", lambda b: f"{b['radius']:g}"),
+    Column("seeds", lambda b: str(b["seeds"])),
+    Column("correlation", lambda b: f"{b['of_all'][0]:.2f} +- {b['of_all'][1]:.2f}"),
+    Column("explained", lambda b: f"{100 * b['explained']:.0f} %"),
+    Column("t_max less A24's model [ns]", lambda b: f"{b['mean'] - b['model']:+.1f} +- {b['error']:.1f}"),
+    Column("adjusted", lambda b: f"{b['adjusted'] - b['model']:+.1f} +- {b['adjusted_error']:.1f}"),
+    Column("p", lambda b: f"{b['chance']:.2g}"),
 )
 _PREDICTED = (
     Column("filling", lambda b: f"{b['filling']:g}"),
@@ -99,6 +128,20 @@ def _adjusted(results):
         for each in filling.adjusted:
             theirs, error = paper_line_at(filling, each.radius)
             yield {"filling": factor, **vars(each), "paper": theirs, "paper_error": error}
+
+
+def _adjusted_times(results):
+    for factor, filling in results.by_filling.items():
+        slope, sizes = filling.time_zone
+        for each in sizes if factor in paper.YOUNG else ():
+            model = 1e9 * papers_model(results, filling, each.radius, filling.size_fit.velocity)[1]
+            chance = student_chance((each.adjusted - model) / each.adjusted_error, slope.freedom)
+            own = {
+                "of_all": (slope.correlation, slope.correlation_error),
+                "explained": slope.explained,
+                "chance": chance,
+            }
+            yield {"filling": factor, **vars(each), **own, "model": float(model), "units": "grain radii, ns"}
 
 
 def _both(row, mean, error):

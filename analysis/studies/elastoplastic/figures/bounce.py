@@ -9,6 +9,7 @@ from ....theory.andrews import Spheres, restitution
 from ...definition import StudyFigure
 from .. import paper
 from .common import (
+    FILLING_COLOURS,
     OURS,
     PAPER,
     filling_text,
@@ -21,7 +22,6 @@ from .common import (
 )
 
 _SHOWN = tuple(c for c in CHANNELS if c != "kinetic")
-_FILLING_COLOURS = ("#c62828", "#2166ac", "#1b8a8f", "#e08214")
 
 
 @styled
@@ -37,7 +37,7 @@ def outcome_figure(results):
         series = [b for b in own if b.radius == radius]
         x = [b.velocity * 1.02 ** (number - 0.5 * len(colours)) for b in series]
         _series(axes[:, 0], x, series, colour, f"$R$ = {radius:g} $r$")
-    for number, (other, colour) in enumerate(zip(results.by_filling, _FILLING_COLOURS)):
+    for number, (other, colour) in enumerate(zip(results.by_filling, FILLING_COLOURS)):
         series = _at_size_velocity(results, other)
         _series(axes[:, 1], [b.radius + 0.5 * number for b in series], series, colour, f"filling {other:g}")
     _draw_theory(axes[1, 0], results, filling, np.array([b.velocity for b in own]))
@@ -50,11 +50,16 @@ def outcome_figure(results):
         row[1].set_xticks(sorted({b.radius for b in results.bounces}))
     for place in (*axes[0], axes[1, 0]):
         legend(place, fontsize=8, loc="best")
-    letter(axes, "")
-    velocity = results.by_filling[filling].size_fit.velocity
-    axes[0, 0].set_title(filling_text(filling), loc="right", fontsize=10, color="0.3")
-    axes[0, 1].set_title(f"{velocity:.4g} m/s", loc="right", fontsize=10, color="0.3")
+    _name_panels(axes, results, filling)
     return figure
+
+
+def _name_panels(axes, results, filling):
+    """Letters, and what is held fixed: the filling on the left, the velocity on the right."""
+    letter(axes, "")
+    left, right = np.atleast_2d(axes)[0]
+    left.set_title(filling_text(filling), loc="right", fontsize=10, color="0.3")
+    right.set_title(f"{results.by_filling[filling].size_fit.velocity:.4g} m/s", loc="right", fontsize=10, color="0.3")
 
 
 def _at_size_velocity(results, filling):
@@ -89,7 +94,7 @@ def _draw_theory(axes, results, factor, velocities):
 
 @styled
 def returned_figure(results):
-    """Fraction of K(0) in the motion of the halves at their largest return speed, against velocity (main filling, by size)
+    """Fraction of K(0) in bulk motion of the halves at their largest return speed, against velocity (main filling, by size)
     and against size (at the velocity of the size fit, by filling), beside Andrews's restitution squared; None where no
     run has it."""
     if not any(b.returned for b in results.bounces):
@@ -100,11 +105,11 @@ def returned_figure(results):
     for radius, colour in size_colours(b.radius for b in own).items():
         series = [b for b in own if b.radius == radius]
         _returned_series(axes[0, 0], [b.velocity for b in series], series, colour, f"$R$ = {radius:g} $r$")
-    for other, colour in zip(results.by_filling, _FILLING_COLOURS):
+    for other, colour in zip(results.by_filling, FILLING_COLOURS):
         series = [b for b in _at_size_velocity(results, other) if b.returned]
         _returned_series(axes[0, 1], [b.radius for b in series], series, colour, f"filling {other:g}")
     if filling in paper.YOUNG and own:
-        v = np.geomspace(min(b.velocity for b in own), max(b.velocity for b in own) * 1.001, 60)
+        v = np.geomspace(min(b.velocity for b in own) / 1.1, max(b.velocity for b in own) * 1.1, 60)
         spheres = Spheres(1.0, filling * results.grain_density, paper.YIELD_STRESS[filling], paper.YOUNG[filling])
         axes[0, 0].plot(v, 100 * restitution(v, spheres) ** 2, "--", color=PAPER, label="Andrews, A24's moduli")
     if own:
@@ -114,7 +119,7 @@ def returned_figure(results):
         place.set_ylabel("returned bulk motion  [% of $K(0)$]")
         place.set_ylim(0.0, 1.15 * place.get_ylim()[1])
         legend(place, fontsize=9)
-    letter(axes, filling_text(filling))
+    _name_panels(axes[0], results, filling)
     return figure
 
 

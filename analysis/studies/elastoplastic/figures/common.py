@@ -1,18 +1,24 @@
 """What this study's figures have in common."""
 
+import numpy as np
+
 from ....figures.panels import OURS, PAPER, legend, letter, panels, scatter_of_seeds, size_colours, velocity_axis
 from .. import paper
 
 ELASTIC, RIGID = "#6b8fb5", "#b58a5a"
+# None of them a size's.
+FILLING_COLOURS = ("#4a7a1e", "#b8358b", "#555555", "#3b3b8f")
 MEGA = 1e6
 
 __all__ = [
     "ELASTIC",
+    "FILLING_COLOURS",
     "MEGA",
     "OURS",
     "PAPER",
     "RIGID",
     "filling_text",
+    "fit_text",
     "is_papers_velocity",
     "legend",
     "letter",
@@ -34,6 +40,15 @@ def filling_text(filling, velocity=None):
 def main_filling(results):
     """The filling factor that A24 shows most: 0.4, or the largest there is."""
     return 0.4 if 0.4 in results.by_filling else max(results.by_filling)
+
+
+def fit_text(values, limits):
+    """Moduli [MPa] and delta_offset [grain radii] of a joint_fit.JointFit (values and limits in SI units but for the offset) for
+    a legend; only E*'s lower limit where it has no upper one."""
+    sigma, young, offset = values
+    bounded = np.isfinite(limits[1][1])
+    text = f"{young / MEGA:.3g} MPa" if bounded else f"{limits[1][0] / MEGA:.2g} MPa or more"
+    return f"{sigma / MEGA:.3g} MPa, {text}, {offset:.2f} $r$"
 
 
 def is_papers_velocity(velocity):

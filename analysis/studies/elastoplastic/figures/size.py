@@ -7,15 +7,18 @@ from ....figures.style import NANO, styled
 from ....theory.andrews import stress_if_rigid, young_if_elastic
 from ...definition import StudyFigure
 from .. import paper
+from ..beside_model import papers_model
 from ..lines import paper_line_at
 from ..velocity_fit import predicted
 from .common import (
     ELASTIC,
+    FILLING_COLOURS,
     MEGA,
     OURS,
     PAPER,
     RIGID,
     filling_text,
+    fit_text,
     is_papers_velocity,
     legend,
     letter,
@@ -91,9 +94,10 @@ def _draw_difference(axes, filling, theirs, sizes, radii, colours):
 
 @styled
 def time_figure(results, filling):
-    """t_max against R with fits and limits, each with the delta_offset that belongs to it: Fig. 7."""
+    """(a) t_max against R with fits and limits, each with the delta_offset that belongs to it: Fig. 7; (b) t_max less A24's
+    fitted model, every filling that A24 fits."""
     fit, unit = filling.size_fit, results.grain_radius
-    figure, axes = panels(1, 1, 6.4, 4.8)
+    figure, axes = panels(1, 2, 5.6, 4.6)
     place = axes[0, 0]
     sizes = list(size_points(results, filling))
     colours = size_colours(radius for radius, *_ in sizes)
@@ -108,9 +112,33 @@ def time_figure(results, filling):
     place.set_ylim(0.0, None)
     place.set_xlabel("aggregate radius $R$  [grain radii]")
     place.set_ylabel("time of the largest compression $t_{max}$  [ns]")
-    legend(place, fontsize=8.5)
-    letter(axes, filling_text(filling.factor, fit.velocity))
+    legend(place, fontsize=8)
+    _draw_lateness(axes[0, 1], results)
+    letter(axes, f"{fit.velocity:.4g} m/s")
+    place.set_title(filling_text(filling.factor), loc="right", fontsize=10, color="0.3")
     return figure
+
+
+def _draw_lateness(axes, results):
+    """t_max less A24's model against R, and the same adjusted for the zones that meet."""
+    axes.axhline(0.0, color=PAPER, linestyle="--", label="A24's model")
+    factors = [factor for factor in results.by_filling if factor in paper.YOUNG]
+    for shift, factor, colour in zip((-0.5, 0.5), factors, FILLING_COLOURS):
+        filling = results.by_filling[factor]
+        for number, (radius, _, t_max) in enumerate(size_points(results, filling)):
+            later = (t_max - papers_model(results, filling, radius, filling.size_fit.velocity)[1]) * NANO
+            scatter_of_seeds(axes, radius + shift, later, colour, None if number else f"filling {factor:g}")
+        for number, each in enumerate(filling.time_zone[1]):
+            model = papers_model(results, filling, each.radius, filling.size_fit.velocity)[1] * NANO
+            options = {"fmt": "s", "capsize": 3, "markerfacecolor": "none", "color": colour}
+            label = None if number else f"filling {factor:g}, adjusted for the zones that meet"
+            place = [each.radius + shift + 1.5], [each.adjusted - model]
+            axes.errorbar(*place, yerr=[each.adjusted_error], label=label, **options)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.3 * (high - low))
+    axes.set_xlabel("aggregate radius $R$  [grain radii]")
+    axes.set_ylabel("$t_{max}$ less A24's model  [ns]")
+    legend(axes, loc="upper left", fontsize=8.5)
 
 
 def _models(results, filling):
@@ -119,8 +147,8 @@ def _models(results, filling):
     density = factor * results.grain_density
     if filling.joint.reason is None:
         *moduli, offset = filling.joint.values
-        text = f"our fit to all runs: {moduli[0] / MEGA:.3g}, {moduli[1] / MEGA:.3g} MPa, {offset:.2f} $r$"
-        yield moduli, offset * unit, OURS, "-", text
+        text = fit_text(filling.joint.values, filling.joint.limits)
+        yield moduli, offset * unit, OURS, "-", f"our fit to all runs: {text}"
     if factor in paper.YOUNG and is_papers_velocity(fit.velocity):
         moduli, offset = (paper.YIELD_STRESS[factor], paper.YOUNG[factor]), paper.OFFSET[factor]
         text = f"A24's fit: {moduli[0] / MEGA:g}, {moduli[1] / MEGA:g} MPa, {offset:g} $r$"

@@ -14,6 +14,7 @@ from .common import (
     PAPER,
     RIGID,
     filling_text,
+    fit_text,
     legend,
     letter,
     of_main_filling,
@@ -72,8 +73,7 @@ def _models(results, filling):
     density, joint = factor * results.grain_density, filling.joint
     if joint.reason is None:
         *moduli, offset = joint.values
-        label = f"fit to all runs: {moduli[0] / MEGA:.3g}, {moduli[1] / MEGA:.3g} MPa, {offset:.2f} $r$"
-        yield moduli, offset * unit, OURS, "-", label
+        yield moduli, offset * unit, OURS, "-", f"fit to all runs: {fit_text(joint.values, joint.limits)}"
     if factor in paper.YOUNG:
         moduli, offset = (paper.YIELD_STRESS[factor], paper.YOUNG[factor]), paper.OFFSET[factor]
         label = f"A24: {moduli[0] / MEGA:g}, {moduli[1] / MEGA:g} MPa, {offset:g} $r$"

@@ -11,7 +11,7 @@ from .common import OURS, PAPER, filling_text, legend, panels, size_colours
 @styled
 def zone_figure(results):
     """d_max less the mean of its size against R times the filling of the zones less its mean, with the common slope, one
-    panel a filling; predictions as open squares where they have not run, at the value predicted. None without zones."""
+    panel a filling; values predicted beforehand as open squares. None without zones."""
     shown = {
         factor: filling for factor, filling in results.by_filling.items() if next(iter(filling.covariates.values()))
     }
