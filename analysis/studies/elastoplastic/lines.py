@@ -1,9 +1,10 @@
 """Our numbers beside A24's, as lines of tables."""
 
 import numpy as np
+from scipy.stats import chi2
 
 from ...report.beside_paper import Line
-from ...statistics import mean_and_error, pooled_scatter
+from ...statistics import mean_and_error, pooled_scatter, scatter
 from ...theory.aggregates import bulk_modulus, cpe_coordination
 from ...theory.andrews import Spheres, restitution, stress_if_rigid
 from . import paper
@@ -126,7 +127,19 @@ def _d_max_lines(results, filling):
         lines.append(
             Line(name + ", by each aggregate's own grains", "r", *mean_and_error(own), theirs, error, freedom=few)
         )
-    return lines
+    return lines + list(_offset_line(results, filling, at))
+
+
+def _offset_line(results, filling, at):
+    """Whether the chance offsets d(0) + 2 r, which have mean 0, have it here at all sizes (points `at`)."""
+    chosen = [results.runs(filling.factor, filling.points.radius[k], filling.points.velocity[k]).offset for k in at]
+    number, means = (np.array([f(each) for each in chosen], dtype=float) for f in (len, np.mean))
+    pooled, _ = pooled_scatter([scatter(each) for each in chosen], number)
+    if pooled:
+        square = float(np.sum(number * (means / pooled) ** 2))
+        listed = ", ".join(f"{mean / results.grain_radius:+.2f}" for mean in means)
+        note = f"means {listed} r; p = {chi2.sf(square, len(at)):.2g} that their mean is 0"
+        yield Line(f"chance offsets d(0) + 2 r of all sizes, chi^2({len(at)})", "", square, note=note)
 
 
 def _line_error(radius, filling, expected):
