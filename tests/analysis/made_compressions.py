@@ -4,9 +4,11 @@ import numpy as np
 from written_runs import PAIR, RADIUS, record, state_arrays, write_run
 
 from analysis.runs.format import COMPRESSION
+from analysis.theory import SILICATE
 from analysis.theory.compression import rolling_energy
 
 GRAINS = 512
+CONSTANTS = ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling")
 
 
 def compression_record(seed, **others):
@@ -20,15 +22,17 @@ def compression_record(seed, **others):
         "linearDamping": 0.01,
         "criticalRolling": 0.8e-9,
         "grainRadius": RADIUS,
+        "slidingStiffnessFactor": 1.0,
         "stepFraction": 0.2,
         "finalFilling": 0.5,
         "viscoelasticTime": 0.0,
         **others,
     }
     about = {**record(1.0, given), "kind": "compression", "seed": seed}
-    energy = rolling_energy(0.1, given["grainRadius"], given["criticalRolling"])
-    derived = {**about["derived"], "criticalRolling": given["criticalRolling"], "rollingEnergy": energy}
-    return {**about, "derived": {**derived, "grainRadius": given["grainRadius"]}}
+    own = {name: given[name] for name in CONSTANTS if name in given}
+    derived = {**about["derived"], **own}
+    energy = rolling_energy(derived["surfaceEnergy"], derived["grainRadius"], derived["criticalRolling"])
+    return {**about, "derived": {**derived, "rollingEnergy": energy}}
 
 
 def compression_history(pressure, low=0.002, high=0.5, rate=3e-7, samples=3000, stretched=False):
@@ -56,15 +60,32 @@ def compression_history(pressure, low=0.002, high=0.5, rate=3e-7, samples=3000, 
     return history
 
 
-def made_compression(path, seed, pressure, states=True, stretched=False, **others):
+def made_compression(path, seed, pressure, states=True, stretched=False, high=0.5, **others):
     """Write a run folder; its states are a simple cubic lattice in the cell."""
-    history = compression_history(pressure, stretched=stretched)
+    history = compression_history(pressure, high=high, stretched=stretched)
     return write_run(path, compression_record(seed, **others), history, _states(history) if states else [])
 
 
 def _states(history):
-    site = np.stack(np.meshgrid(*3 * [np.arange(8)]), axis=-1).reshape(-1, 3)
-    for row in np.searchsorted(history["filling"][:3000], (0.003, 0.0101, 0.0305, 0.102)):
+    """At fillings of 0.003 and 0.0101, where the cell is not connected along z yet, 0.0305 and 0.102."""
+    site = np.stack(np.meshgrid(*3 * [np.arange(8)], indexing="ij"), axis=-1).reshape(-1, 3)
+    neighbour = (site[:, None] + np.eye(3, dtype=int)) % 8 @ (64, 8, 1)
+    pairs = np.stack([np.repeat(np.arange(GRAINS), 3), neighbour.ravel()], axis=1)
+    within_z = np.repeat(site[:, 2] < 7, 3) | (np.arange(3 * GRAINS) % 3 < 2)
+    for number, row in enumerate(np.searchsorted(history["filling"][:3000], (0.003, 0.0101, 0.0305, 0.102))):
         edge = history["edge_x"][row]
-        state = state_arrays(history["time"][row], site * edge / 8, np.zeros((GRAINS, 3)), np.zeros(GRAINS, int))
+        still = np.zeros((GRAINS, 3)), np.zeros(GRAINS, int)
+        state = state_arrays(history["time"][row], site * edge / 8, *still, pairs if number > 1 else pairs[within_z])
         yield {**state, "cell_size": np.full(3, edge)}
+
+
+# K13's silicate, by the parameters' names.
+SILICATE_GRAINS = {
+    "material": "silicate",
+    "grainRadius": 6e-7,
+    "young": SILICATE.young,
+    "poisson": SILICATE.poisson,
+    "density": SILICATE.density,
+    "surfaceEnergy": SILICATE.surface_energy,
+    "criticalRolling": SILICATE.critical_rolling,
+}

@@ -1,16 +1,32 @@
-"""A compression as a function of the filling factor: from the history of a run to values at fixed filling factors."""
+"""A compression as a function of the filling factor: from the history of a run to values at fixed filling factors.
+
+The pressure is the work of the grains on the boundaries over the change of volume. Between two samples that is the mean of
+the virial's pressure (K13 eq 21, damping forces included) over all steps between them, as K13 averages over every step; the
+virial's own series is of the moment of each sample, which misses oscillations faster than samples."""
 
 import numpy as np
 
-# Eight a decade, 0.001 to 0.56; a bin reaches half-way to its neighbours.
-FILLINGS = 10.0 ** (np.arange(-24, -1) / 8.0)
-HALF_BIN = 10.0 ** (1.0 / 16.0)
+from ...theory.aggregates import bcca_coordination
+from ...theory.compression import compressive_strength_dense
+
+# Eight a decade from 0.001 to 0.24, where a bin reaches half-way to its neighbours. Above, pressure rises too steeply for
+# bins as wide: these are narrow, and the last are those that runs to 0.5 and 0.64 cover.
+LOOSE = 10.0 ** (np.arange(-24, -4) / 8.0)
+DENSE = np.array([0.30, 0.35, 0.40, 0.45, 0.49, 0.55, 0.60, 0.625])
+FILLINGS = np.concatenate([LOOSE, DENSE])
+# A bin is from its filling factor over this to that times this.
+HALF_BINS = np.concatenate([np.full(len(LOOSE), 10.0 ** (1.0 / 16.0)), np.full(len(DENSE), 1.02)])
 AVERAGED = 1000.0  # t0 over which K13 averages the pressure (section 2.4)
 
 
 def compressing(history):
     """(T,) bool: the samples up to the largest filling factor; those after it are of the stretching."""
     return np.arange(len(history["filling"])) <= int(np.argmax(history["filling"]))
+
+
+def volume(history):
+    """Volume of the cell (T,) [m^3]."""
+    return np.prod([history[f"edge_{axis}"] for axis in "xyz"], axis=0)
 
 
 def windows(time, width):
@@ -23,29 +39,58 @@ def windows(time, width):
     return list(zip(starts[:whole], ends[:whole]))
 
 
-def averaged(history, names, width):
-    """{name: (K,)} means of series over successive windows of `width` [s] while the cell shrinks (K13 section 2.4)."""
+def pressure_over(history, width):
+    """(filling factors (K,), pressures (K,) [Pa]) over successive windows of `width` [s] while the cell shrinks (K13
+    section 2.4)."""
+    return _work_over_volume(history, compressing(history), width)
+
+
+def tension(history, width):
+    """(filling factors (K,), tensions (K,) [Pa]) over successive windows of `width` [s] while the cell is stretched. Along
+    one axis it is the stress on that axis, the tangential forces included. Empty without stretching."""
+    after = ~compressing(history)
+    after[np.argmax(history["filling"])] = True
+    if after.sum() < 3:
+        return np.array([]), np.array([])
+    fillings, pressures = _work_over_volume(history, after, width)
+    return fillings, -pressures
+
+
+def _work_over_volume(history, part, width):
+    time, work, filling = (history[name][part] for name in ("time", "boundaryWork", "filling"))
+    size = volume(history)[part]
+    # From the first sample of a window to that of the next.
+    edges = [(a, min(b, len(time) - 1)) for a, b in windows(time, width) if a < len(time) - 1]
+    pressures = [(work[b] - work[a]) / (size[b] - size[a]) for a, b in edges]
+    return np.array([filling[a : b + 1].mean() for a, b in edges]), np.array(pressures)
+
+
+def pressure_at(history):
+    """Pressure (K,) [Pa] at FILLINGS: the mean, over the time that the cell spends in the bin around each, of the pressure
+    over that of T23's formula, times the formula at the filling factor itself, so that the bin's width leaves no bias where
+    the pressure rises as the formula does. NaN where the run does not cover the bin."""
     part = compressing(history)
-    edges = windows(history["time"][part], width)
-    return {name: np.array([history[name][part][a:b].mean() for a, b in edges]) for name in names}
+    filling, size = history["filling"][part], volume(history)[part]
+    pressure = np.diff(history["boundaryWork"][part]) / np.diff(size)
+    between = np.sqrt(filling[1:] * filling[:-1])
+    return compressive_strength_dense(FILLINGS, 1.0) * _binned(
+        filling, between, pressure / compressive_strength_dense(between, 1.0)
+    )
 
 
-def pressure_at(history, fillings=FILLINGS, power=3.0):
-    """Pressure (K,) [Pa] at filling factors (K,): the mean of P/phi^power over the bin around each, times phi^power, which
-    leaves no bias of the bin's width where P goes with that power; NaN where the run does not cover the bin."""
-    reduced = history["pressure"] / history["filling"] ** power
-    return fillings**power * binned(history, reduced, fillings)
-
-
-def binned(history, values, fillings=FILLINGS):
-    """Means (K,) of values (T,) over the bins around the filling factors (K,), while the cell shrinks; NaN where the run
-    does not cover the bin."""
+def coordination_at(history):
+    """Coordination number (K,) at FILLINGS: as pressure_at(), by the difference from A24 eq 45."""
     part = compressing(history)
-    filling, values = history["filling"][part], values[part]
-    found = np.full(len(fillings), np.nan)
-    for k, centre in enumerate(fillings):
-        low, high = centre / HALF_BIN, centre * HALF_BIN
-        inside = (filling >= low) & (filling < high)
+    filling = history["filling"][part]
+    away = history["coordination"][part] - bcca_coordination(filling)
+    return bcca_coordination(FILLINGS) + _binned(filling, filling, away)
+
+
+def _binned(filling, places, values):
+    """Means (K,) of values (M,) at filling factors `places` (M,) over the bins; filling (T,): of the run's samples."""
+    found = np.full(len(FILLINGS), np.nan)
+    for k, (low, high) in enumerate(zip(FILLINGS / HALF_BINS, FILLINGS * HALF_BINS)):
+        inside = (places >= low) & (places < high)
         if inside.any() and filling[0] <= low and filling[-1] >= high * (1.0 - 1e-9):
             found[k] = values[inside].mean()
     return found
@@ -63,34 +108,21 @@ def at_filling(history, name, filling):
 def filling_at_pressure(history, pressure, width):
     """The filling factor from which on the pressure, averaged over `width` [s], stays above `pressure` [Pa]; NaN where it
     never does, or always did."""
-    means = averaged(history, ("filling", "pressure"), width)
-    below = np.flatnonzero(means["pressure"] < pressure)
-    if not len(below) or below[-1] + 1 == len(means["pressure"]):
+    fillings, pressures = pressure_over(history, width)
+    below = np.flatnonzero(pressures < pressure)
+    if not len(below) or below[-1] + 1 == len(pressures):
         return float("nan")
     k = below[-1]
-    return float(
-        np.exp(
-            np.interp(
-                np.log(pressure),
-                np.log(np.maximum(means["pressure"][k : k + 2], 1e-3 * pressure)),
-                np.log(means["filling"][k : k + 2]),
-            )
-        )
-    )
+    logarithms = np.log(np.maximum(pressures[k : k + 2], 1e-3 * pressure))
+    return float(np.exp(np.interp(np.log(pressure), logarithms, np.log(fillings[k : k + 2]))))
 
 
-def tension(history, width):
-    """(filling factors (K,), tensions (K,) [Pa]) while the cell is stretched: minus the work of the grains on the
-    boundaries per change of volume, over successive windows of `width` [s]. Along one axis it is the stress on that axis,
-    the tangential forces included. Empty without stretching."""
-    after = ~compressing(history)
-    after[np.argmax(history["filling"])] = True
-    if after.sum() < 3:
-        return np.array([]), np.array([])
-    time, work = history["time"][after], history["boundaryWork"][after]
-    volume = np.prod([history[f"edge_{axis}"][after] for axis in "xyz"], axis=0)
-    filling = history["filling"][after]
-    # From the first sample of a window to that of the next.
-    edges = [(a, min(b, len(time) - 1)) for a, b in windows(time, width) if a < len(time) - 1]
-    stress = [-(work[b] - work[a]) / (volume[b] - volume[a]) for a, b in edges]
-    return np.array([filling[a : b + 1].mean() for a, b in edges]), np.array(stress)
+def filling_at_share(history, one, other, share):
+    """The filling factor from which on, to the end of the compression, the series `one` is at least `share` of the series
+    `other`, both counted from the start; NaN where it never is, or always was."""
+    part = compressing(history)
+    less = [history[name][part] - history[name][0] for name in (one, other)]
+    below = np.flatnonzero(less[0] < share * less[1])
+    if not len(below) or below[-1] + 1 == part.sum():
+        return float("nan")
+    return float(history["filling"][part][below[-1] + 1])

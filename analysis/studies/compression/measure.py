@@ -4,14 +4,27 @@ import numpy as np
 
 from ...measures.ledger import work_closure
 from ...measures.of_run import derived_constants
+from ...measures.percolation import spanned_axes
 from ...measures.structure import fractal_dimension, grains_within
 from ...runs.format import LOST_CHANNELS
 from ...runs.table import Column
 from ..definition import NotMeasured
 from . import paper
-from .curve import AVERAGED, FILLINGS, at_filling, binned, compressing, filling_at_pressure, pressure_at, tension
+from .curve import (
+    AVERAGED,
+    FILLINGS,
+    at_filling,
+    compressing,
+    coordination_at,
+    filling_at_pressure,
+    filling_at_share,
+    pressure_at,
+    tension,
+)
+from .scene import NUMBERS, OF_GRAINS
 
-ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.5)
+ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.4, 0.5, 0.6)
+TWISTING_SHARES = (0.001, 0.1)  # of the rolling dissipation
 STRUCTURE_SCALE = (3.0, 10.0)  # grain radii between which the fractal dimension is taken
 NEAREST = 0.15  # of the filling factor: how far away the state may be
 ORIGINS = 2000
@@ -19,6 +32,7 @@ ORIGINS = 2000
 PRESSURES = {f"P_{filling:.4f}": filling for filling in FILLINGS}
 COORDINATIONS = {f"Z_{filling:.4f}": filling for filling in FILLINGS}
 ENERGIES = {(name, filling): f"{name}_{filling:g}" for filling in ENERGY_FILLINGS for name in LOST_CHANNELS}
+TWISTING = {share: f"twisting_{share:g}" for share in TWISTING_SHARES}
 DIMENSIONS = {f"D_{filling:g}": filling for filling in paper.STRUCTURE_FILLINGS}
 
 COLUMNS = (
@@ -26,25 +40,40 @@ COLUMNS = (
     Column("grains", "", "number of grains N", kind="i"),
     Column("strainRate", "1/t0", "C_v"),
     Column("linearDamping", "", "k_n"),
-    Column("criticalRolling", "m", "xi_crit"),
     Column("stepFraction", "t0", "time step"),
     Column("finalFilling", "", "filling factor at which the compression was to end"),
     Column("seed", "", "random seed of the cluster", kind="i"),
     Column("grainRadius", "m", "radius of a grain"),
+    Column("young", "Pa", "Young's modulus"),
+    Column("poisson", "", "Poisson's ratio"),
+    Column("density", "kg/m^3", "density of a grain"),
+    Column("surfaceEnergy", "J/m^2", "gamma"),
+    Column("criticalRolling", "m", "xi_crit"),
+    Column("slidingStiffnessFactor", "", "k_s over Wada's"),
     Column("rolling_energy", "J", "E_roll (K13 eq 1)"),
-    Column("surface_energy", "J/m^2", "gamma"),
     Column("grain_mass", "kg", "mass of a grain"),
     Column("time_unit", "s", "t0"),
     Column("initial_filling", "", "filling factor of the first cell"),
     Column("largest_filling", "", "largest filling factor that was reached"),
+    Column("last_filling", "", "filling factor at the end, after the stretching"),
+    Column(
+        "spanned_from",
+        "",
+        "filling factor from which on contacts connect the cell with its images on all axes",
+        gaps=True,
+    ),
     Column("closure", "", "largest error of the energy ledger over the largest work of the boundaries"),
     Column("filling_at_300", "", "filling factor at 300 Pa", gaps=True),
     Column("tensile_strength", "Pa", "largest tension while the cell is stretched", gaps=True),
     Column("tensile_filling", "", "filling factor at which the tension is largest", gaps=True),
     Column("stretched_axes", "", "number of axes along which the cell is stretched", kind="i"),
-    *(Column(name, "Pa", f"pressure at the filling {f:.4f}", gaps=True) for name, f in PRESSURES.items()),
+    *(Column(name, "Pa", f"pressure at the filling {f:.4f}, by the work", gaps=True) for name, f in PRESSURES.items()),
     *(Column(name, "", f"coordination number at the filling {f:.4f}", gaps=True) for name, f in COORDINATIONS.items()),
     *(Column(name, "J", f"{c} until the filling {f:g}", gaps=True) for (c, f), name in ENERGIES.items()),
+    *(
+        Column(name, "", f"filling factor from which on twisting has lost {share:g} of what rolling has", gaps=True)
+        for share, name in TWISTING.items()
+    ),
     *(
         Column(
             name,
@@ -70,14 +99,20 @@ def measure(run):
         **scene,
         "initial_filling": float(history["filling"][0]),
         "largest_filling": float(history["filling"].max()),
+        "last_filling": float(history["filling"][-1]),
+        "spanned_from": _spanned_from(run),
         "closure": work_closure(history) or 0.0,
         "filling_at_300": filling_at_pressure(history, paper.SILICATE_PRESSURE, width),
         "tensile_strength": strength,
         "tensile_filling": strength_filling,
         "stretched_axes": _stretched_axes(history),
         **dict(zip(PRESSURES, map(float, pressure))),
-        **dict(zip(COORDINATIONS, map(float, binned(history, history["coordination"])))),
+        **dict(zip(COORDINATIONS, map(float, coordination_at(history)))),
         **{name: at_filling(history, channel, filling) for (channel, filling), name in ENERGIES.items()},
+        **{
+            name: filling_at_share(history, "twistingDissipation", "rollingDissipation", share)
+            for share, name in TWISTING.items()
+        },
         **{name: _dimension(run, filling) for name, filling in DIMENSIONS.items()},
     }
 
@@ -91,8 +126,24 @@ def state_at(run, filling):
     state = run.states[run.states.nearest(time)]
     if state.cell_size is None:
         return None
-    there = np.interp(state.time, run.history["time"], run.history["filling"])
-    return state if abs(there / filling - 1.0) <= NEAREST else None
+    return state if abs(_filling_of(run, state) / filling - 1.0) <= NEAREST else None
+
+
+def _filling_of(run, state):
+    return float(np.interp(state.time, run.history["time"], run.history["filling"]))
+
+
+def _spanned_from(run):
+    """Filling factor of the loosest state from which on every state of the compression spans its cell along all axes
+    (measures.percolation); inf where the densest does not, NaN without states."""
+    found, last = float("inf") if len(run.states) else float("nan"), run.history["time"][compressing(run.history)][-1]
+    for state in (run.states[k] for k in reversed(range(len(run.states)))):
+        if state.time > last * (1.0 + 1e-9):
+            continue
+        if state.cell_size is None or spanned_axes(state.position, state.contact_pairs, state.cell_size) < 3:
+            return found
+        found = _filling_of(run, state)
+    return found
 
 
 def _dimension(run, filling):
@@ -121,15 +172,11 @@ def _stretched_axes(history):
 def _scene(run):
     """The columns that say what was compressed."""
     parameters = run.parameters
-    names = {
-        "criticalRolling": "criticalRolling",
-        "grainRadius": "grainRadius",
-        "rolling_energy": "rollingEnergy",
-        "surface_energy": "surfaceEnergy",
-        "grain_mass": "grainMass",
-        "time_unit": "timeUnit",
-    }
-    constants = derived_constants(run, names)
-    given = {name: float(parameters[name]) for name in ("strainRate", "linearDamping", "stepFraction", "finalFilling")}
-    whole = {name: int(parameters[name]) for name in ("grains", "seed")}
-    return {"material": str(parameters.get("material", "")), **whole, **given, **constants}
+    of_material = [name for name in OF_GRAINS if name != "slidingStiffnessFactor"]
+    others = {"rolling_energy": "rollingEnergy", "grain_mass": "grainMass", "time_unit": "timeUnit"}
+    constants = derived_constants(run, {**{name: name for name in of_material}, **others})
+    whole = {name: int(parameters[name]) for name in NUMBERS if name in ("grains", "seed")}
+    given = {name: float(parameters[name]) for name in NUMBERS if name not in whole}
+    # Runs of a version without this parameter have Wada's stiffness.
+    sliding = {"slidingStiffnessFactor": float(parameters.get("slidingStiffnessFactor", 1.0))}
+    return {"material": str(parameters.get("material", "")), **whole, **given, **constants, **sliding}

@@ -10,7 +10,7 @@ import numpy as np
 from ...statistics import mean_and_error, student_chance
 from .curve import FILLINGS
 from .paper import EXPONENT, VALID_TO
-from .results import KEYS
+from .scene import KEYS
 from .strength_fit import within
 
 CHANGED = ("strainRate", "linearDamping", "criticalRolling", "stepFraction")

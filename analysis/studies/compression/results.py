@@ -7,18 +7,17 @@ import pandas
 
 from ...theory.compression import bcca_filling, static_from, strength_scale
 from . import paper
-from .curve import FILLINGS
-from .measure import COORDINATIONS, DIMENSIONS, ENERGIES, PRESSURES
+from .curve import FILLINGS, HALF_BINS
+from .measure import COORDINATIONS, DIMENSIONS, ENERGIES, PRESSURES, TWISTING
+from .scene import KEYS
 from .strength_fit import StrengthFit, fit_strength
-
-# What a group's runs have in common; seeds and the end of the compression differ.
-KEYS = ("material", "grains", "strainRate", "linearDamping", "criticalRolling", "grainRadius", "stepFraction")
 
 
 @dataclass(frozen=True)
 class Group:
-    """Runs of one set of parameters: parameters (dict, KEYS), table (a row a seed, the run that went furthest), pressure
-    and coordination (S, K) at FILLINGS, scale (E_roll/r0^3 [Pa]), fit (StrengthFit), name (what is special about it)."""
+    """Runs of one set of parameters: parameters (dict, scene.KEYS), table (a row a seed, the run that went furthest),
+    pressure and coordination (S, K) at FILLINGS, scale (E_roll/r0^3 [Pa] of these grains), fit (StrengthFit), static_from
+    (the filling factor above which boundaries are slower than sound, K13 eqs 26, 27)."""
 
     parameters: dict
     table: pandas.DataFrame
@@ -26,6 +25,7 @@ class Group:
     coordination: np.ndarray
     scale: float
     fit: StrengthFit
+    static_from: float
 
     @property
     def seeds(self):
@@ -42,8 +42,13 @@ class Group:
         return self.pressure.mean(axis=0)
 
     def energy(self, channel, filling):
-        """Mean over the seeds of what a channel has lost until a filling factor of measure.ENERGY_FILLINGS [J]."""
-        return float(self.table[ENERGIES[channel, filling]].mean())
+        """(S,) what a channel has lost until a filling factor of measure.ENERGY_FILLINGS [J]; NaN where a run ends before."""
+        return self.table[ENERGIES[channel, filling]].to_numpy(dtype=float)
+
+    def twisting_from(self, share):
+        """Filling factors (n,) from which on twisting has lost `share`, one of measure.TWISTING_SHARES, of what rolling has,
+        of the seeds where it is passed."""
+        return self.table[TWISTING[share]].dropna().to_numpy(dtype=float)
 
     def dimensions(self):
         """{filling: (S,) fractal dimensions} of the fillings that have some."""
@@ -65,12 +70,33 @@ class Results:
         return tuple(group for group in self.groups if group.parameters["material"] == material)
 
     @property
-    def main(self):
-        """The group that is shown first: K13's fiducial one of ice if it is there, else the first that was fitted."""
+    def of_k13s_grains(self):
+        """Groups of K13's ice and damping, of any number of grains and C_v; all of ice, or all, where there are none."""
         of_ice = self.of("ice") or self.groups
-        fiducial = [group for group in of_ice if paper.is_fiducial(group.parameters)]
-        fitted = [group for group in of_ice if group.fit.reason is None]
-        return (fiducial or fitted or of_ice)[0]
+        return tuple(group for group in of_ice if paper.has_fiducial_grains(group.parameters)) or of_ice
+
+    @property
+    def main(self):
+        """The group that is shown first: of of_k13s_grains that of the most clusters, then the largest and slowest; one
+        that was fitted if there is one."""
+        return max(
+            self.of_k13s_grains, key=lambda group: (group.fit.reason is None, group.seeds, *_size_and_rate(group))
+        )
+
+    @property
+    def larger(self):
+        """The group of of_k13s_grains with the most grains, if that has more than main; None otherwise."""
+        largest = max(self.of_k13s_grains, key=lambda group: (group.parameters["grains"], group.seeds))
+        return largest if largest.parameters["grains"] > self.main.parameters["grains"] else None
+
+    @property
+    def shown(self):
+        """(main,), or (main, larger)."""
+        return (self.main,) if self.larger is None else (self.main, self.larger)
+
+
+def _size_and_rate(group):
+    return group.parameters["grains"], -group.parameters["strainRate"], group.parameters["stepFraction"]
 
 
 def family(results, name):
@@ -96,17 +122,24 @@ def _group(parameters, runs):
     furthest = runs.sort_values(["seed", "largest_filling"], kind="stable").drop_duplicates("seed", keep="last")
     first = furthest.iloc[0]
     pressure = furthest[list(PRESSURES)].to_numpy(dtype=float)
-    low = max(
-        float(bcca_filling(first.grains)),
-        static_from(
-            first.strainRate, first.grains, first.grainRadius, first.time_unit, first.rolling_energy, first.grain_mass
-        ),
+    scale = strength_scale(first.rolling_energy, first.grainRadius)
+    static = static_from(
+        first.strainRate, first.grains, first.grainRadius, first.time_unit, first.rolling_energy, first.grain_mass
     )
+    low = max(float(bcca_filling(first.grains)), static, _spanned_from(furthest))
     return Group(
         parameters,
         furthest,
         pressure,
         furthest[list(COORDINATIONS)].to_numpy(dtype=float),
-        strength_scale(first.rolling_energy, first.grainRadius),
+        scale,
         fit_strength(FILLINGS, pressure, low, paper.VALID_TO),
+        static,
     )
+
+
+def _spanned_from(runs):
+    """The loosest filling factor whose bin lies above those at which any run's contacts come to span its cell; 0 where no
+    run's states tell."""
+    known = runs.spanned_from.dropna()
+    return float((FILLINGS[FILLINGS / HALF_BINS >= known.max() * (1.0 - 1e-9)]).min(initial=1.0)) if len(known) else 0.0

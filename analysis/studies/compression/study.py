@@ -6,6 +6,7 @@ from ..definition import Study
 from .comparison import remarks, sections
 from .measure import COLUMNS, measure
 from .results import make_results
+from .scene import MEASURED, NUMBERS
 
 STUDY = Study(
     question="Which pressure compresses a fluffy aggregate to a given filling factor, and on which properties of the grains does it "
@@ -14,17 +15,9 @@ STUDY = Study(
     # BCCA clusters in cells that shrink uniformly, without viscous drag.
     scene=Scene(
         name="K13's scene",
-        values={"viscoelasticTime": 0.0, "packing": "bcca"},
-        numbers=(
-            "grains",
-            "strainRate",
-            "linearDamping",
-            "criticalRolling",
-            "grainRadius",
-            "stepFraction",
-            "finalFilling",
-            "seed",
-        ),
+        values={"viscoelasticTime": 0.0, "packing": "bcca", "limit": "held"},
+        numbers=NUMBERS,
+        measured=MEASURED,
         kind=COMPRESSION.name,
     ),
     columns=COLUMNS,

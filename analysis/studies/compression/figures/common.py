@@ -5,8 +5,9 @@ import numpy as np
 from ....figures.panels import OURS, PAPER, legend, letter, panels
 from ....theory.compression import compressive_strength, compressive_strength_dense
 
-__all__ = ["OURS", "PAPER", "colours_of", "legend", "letter", "panels", "pressure_axes", "draw_formulae"]
+__all__ = ["LARGER", "OURS", "PAPER", "colours_of", "legend", "letter", "panels", "pressure_axes", "draw_formulae"]
 
+LARGER = "#c62828"  # the same with more grains
 _COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#8c5a2b", "#c62828", "#4d4d4d")
 
 

@@ -6,6 +6,7 @@ from ....figures.style import styled
 from ....runs.format import COLOURS, LABELS
 from ....runs.table import run_folder
 from ...definition import StudyFigure
+from ..channel_sections import LABELS as OWN_LABELS
 from ..curve import compressing
 from ..measure import LOST_CHANNELS
 from ..results import family
@@ -14,14 +15,17 @@ from .common import legend, letter, panels
 _STYLES = ("-", "--", ":")
 
 
-def _draw_energy(axes, row, style="-", named=True):
+def _draw_energy(axes, row, style="-"):
+    """Each channel is named once, whichever line has it."""
     history = run_folder(row).history
+    named = set(axes.get_legend_handles_labels()[1])
     part = compressing(history)
     for channel in LOST_CHANNELS:
         lost = history[channel][part] - history[channel][0]
         if lost.max() > 0:
             shown = lost > 0
-            label = LABELS[channel] if named else None
+            text = OWN_LABELS.get(channel, LABELS[channel])
+            label = None if text in named else text
             axes.plot(history["filling"][part][shown], lost[shown], style, color=COLOURS[channel], label=label)
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -36,7 +40,7 @@ def damping_figure(results):
     groups = family(results, "linearDamping") or (results.main,)
     figure, axes = panels(1, 1, 6.4, 4.8)
     for group, style in zip(groups, _STYLES):
-        _draw_energy(axes[0, 0], next(group.table.itertuples()), style, group is groups[0])
+        _draw_energy(axes[0, 0], next(group.table.itertuples()), style)
     styles = {"-": "solid", "--": "dashed", ":": "dotted"}
     texts = [f"$k_n$ = {group.parameters['linearDamping']:g} {styles[s]}" for group, s in zip(groups, _STYLES)]
     legend(axes[0, 0], loc="upper left", fontsize=8)

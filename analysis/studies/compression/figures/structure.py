@@ -23,31 +23,38 @@ def _states(run):
 
 @styled
 def structure_figure(results):
-    """N(< r) of one run of the main group at the paper's filling factors."""
-    group = results.main
-    found = [_states(run_folder(row)) for row in group.table.itertuples()]
-    states = max(found, key=len)
-    if not states:
+    """N(< r) of one run of the main group, and of that with more grains, at the paper's filling factors."""
+    found = [
+        (group, max((_states(run_folder(row)) for row in group.table.itertuples()), key=len)) for group in results.shown
+    ]
+    found = [(group, states) for group, states in found if states]
+    if not found:
         return None
-    figure, axes = panels(1, 1, 6.4, 4.8)
-    place = axes[0, 0]
+    figure, axes = panels(1, len(found), 6.0, 4.8)
+    for place, (group, states) in zip(axes[0], found):
+        _draw_structure(place, group, states)
+    letter(axes, "dashed: D = 3 at each filling (eq 29)")
+    return figure
+
+
+def _draw_structure(place, group, states):
     distance = np.geomspace(1.5, 100.0, 40)
-    for (filling, state), colour in zip(states.items(), colours_of(states)):
+    colours = dict(zip(paper.STRUCTURE_FILLINGS, colours_of(paper.STRUCTURE_FILLINGS)))
+    for filling, state in states.items():
         radius = state.radius.mean()
         reached = distance[distance * radius < 1.5 * state.cell_size.min()]
         counts = grains_within(state.position, reached * radius, state.cell_size, ORIGINS // 4)
-        place.plot(reached, counts, color=colour, label=f"$\\phi$ = {filling:g}")
-        place.plot(distance, filling * distance**3, "--", color=colour, linewidth=0.8)
+        place.plot(reached, counts, color=colours[filling], label=f"$\\phi$ = {filling:g}")
+        place.plot(distance, filling * distance**3, "--", color=colours[filling], linewidth=0.8)
     place.plot(distance, distance**2, "-", color="0.8", linewidth=3, zorder=0, label="D = 2")
-    place.axhline(group.parameters["grains"], linestyle=":", color="0.4")
+    grains = group.parameters["grains"]
+    place.axhline(grains, linestyle=":", color="0.4", label=f"N = {grains}")
     place.set_xscale("log")
     place.set_yscale("log")
-    place.set_ylim(1.0, 10.0 * group.parameters["grains"])
+    place.set_ylim(1.0, 10.0 * grains)
     place.set_xlabel("distance $r_{in}/r_0$")
     place.set_ylabel("number of grains $N(r < r_{in})$")
     legend(place, loc="upper left")
-    letter(axes, "dashed: D = 3 at each filling (eq 29)")
-    return figure
 
 
 @styled
@@ -73,9 +80,11 @@ def tension_figure(results):
             color="#c62828",
         )
     filling = np.geomspace(0.5 * results.stretched.largest_filling.min(), 0.65, 50)
-    first = results.stretched.iloc[0]
-    theirs = tensile_strength(filling, first.surface_energy, first.grainRadius)
-    right.plot(filling, theirs, "--", color=PAPER, label="Tatsuuma et al. (2019), one axis")
+    kinds = results.stretched[["surfaceEnergy", "grainRadius"]].drop_duplicates()
+    for gamma, radius in kinds.itertuples(index=False):
+        of = f", gamma = {gamma:g} J/m$^2$, $r_0$ = {radius * 1e6:g} um" if len(kinds) > 1 else ""
+        theirs = tensile_strength(filling, gamma, radius)
+        right.plot(filling, theirs, "--", color=PAPER, label=f"Tatsuuma et al. (2019), one axis{of}")
     left.set_xlabel("filling factor over that before the stretching")
     left.set_ylabel("tension  [Pa]")
     right.set_xscale("log")
