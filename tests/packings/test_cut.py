@@ -85,6 +85,8 @@ def test_command_line(run):
         packing = packings.load(run / name)
         assert 0.25 < packing.parameters["filling"] < 0.55
         assert overlaps(packing) == pytest.approx(OVERLAP, rel=2e-3)
+        of_ice = {name: getattr(MATERIALS["ice"], name) for name in ("young", "poisson", "surfaceEnergy")}
+        assert {name: packing.parameters[name] for name in of_ice} == of_ice
         assert f"{name}: {packing.grains} grains" in done.stdout
 
 

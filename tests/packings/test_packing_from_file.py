@@ -1,6 +1,7 @@
 """Saved packings in a run: read back to the bit, and what is wrong with one said in one line before anything runs."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -76,12 +77,69 @@ def test_what_is_wrong_with_a_file(tmp_path, position, radius, message):
     assert str(error.value).startswith(path) and "\n" not in str(error.value)
 
 
+SOFTER = replace(MATERIALS["ice"], surfaceEnergy=0.02)
+# Young's modulus and surface energy in proportion: contacts at rest as of ice, with other forces.
+AS_DEEP = replace(MATERIALS["ice"], young=3.5e9, surfaceEnergy=0.05)
+
+
+def pair_of(material, path, *told, **parameters):
+    """A file of two grains at rest, and which constants of their material it tells."""
+    overlap = equilibrium_overlap(material)
+    position = np.array([[0.0, 0, 0], [2 * RADIUS - overlap, 0, 0]])
+    given = {name: getattr(material, name) for name in told}
+    return write(path, position, np.full(2, RADIUS), overlap=overlap, **given, **parameters)
+
+
+@pytest.mark.parametrize(
+    "material, told, message",
+    [
+        (
+            SOFTER,
+            ("young", "poisson", "surfaceEnergy"),
+            "made of grains with surfaceEnergy = 0.02, not 0.1; must be a pack",
+        ),
+        (
+            SOFTER,
+            (),
+            "its contacts overlap by 3.49e-10 m, those of these grains at rest by 1.02e-09 m; must be a packing",
+        ),
+        (AS_DEEP, ("young", "poisson", "surfaceEnergy"), "made of grains with young = 3.5e+09, not 7e+09; must be"),
+    ],
+)
+def test_grains_of_another_material_are_refused(tmp_path, material, told, message):
+    """A sphere cut out of a cell of other grains: contacts that are out of rest have an energy that nobody put in."""
+    path = pair_of(material, tmp_path / "a.npz", *told, packing="compressed")
+    with pytest.raises(packings.PackingError) as error:
+        packing_from_file(path, RADIUS, OVERLAP, grains=MATERIALS["ice"])
+    assert message in str(error.value) and str(error.value).startswith(path) and "\n" not in str(error.value)
+    assert packing_from_file(path, RADIUS, equilibrium_overlap(material), grains=material).grains == 2
+
+
+def test_a_run_compares_its_own_grains(tmp_path):
+    path = pair_of(SOFTER, tmp_path / "a.npz", "young", "poisson", "surfaceEnergy", packing="compressed")
+    with pytest.raises(packings.PackingError, match="made of grains with surfaceEnergy = 0.02, not 0.1"):
+        place(CollisionParameters.parse(dict(packing="file", file=path)), OVERLAP)
+    own = CollisionParameters.parse(dict(packing="file", file=path, surfaceEnergy=0.02))
+    assert place(own, equilibrium_overlap(SOFTER))[0].grains == 2
+
+
+def test_packings_that_tell_no_material_go_on_working(tmp_path):
+    """Of another program, or of cpe that was made loose on purpose."""
+    other = write(tmp_path / "other.npz", GOOD, np.full(2, RADIUS))
+    assert packing_from_file(other, RADIUS, OVERLAP, grains=MATERIALS["ice"]).grains == 2
+    packings.save(str(tmp_path / "cpe.npz"), packings.cpe(0.3, 6 * RADIUS, RADIUS, 0.5 * OVERLAP, 1))
+    assert packing_from_file(str(tmp_path / "cpe.npz"), RADIUS, OVERLAP, grains=MATERIALS["ice"]).grains > 10
+
+
 def test_parameters_that_are_none(tmp_path):
     np.savez(tmp_path / "a.npz", position=GOOD, radius=[RADIUS] * 2, seed=1, parameters="[1, 2]")
     with pytest.raises(packings.PackingError, match="parameters is no JSON object"):
         packing_from_file(str(tmp_path / "a.npz"), RADIUS, OVERLAP)
     path = write(tmp_path / "b.npz", GOOD, np.array([RADIUS] * 2), grainRadius="thick")
     with pytest.raises(packings.PackingError, match="grainRadius among its parameters is 'thick'; must be a number"):
+        packing_from_file(path, RADIUS, OVERLAP)
+    path = write(tmp_path / "c.npz", GOOD, np.array([RADIUS] * 2), overlap="deep")
+    with pytest.raises(packings.PackingError, match="overlap among its parameters is 'deep'; must be a number"):
         packing_from_file(path, RADIUS, OVERLAP)
 
 

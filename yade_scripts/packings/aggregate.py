@@ -171,7 +171,7 @@ def make(parameters, overlap, index):
     """
     radius, seed, planar = parameters.grainRadius, parameters.seed, bool(parameters.planar)
     if parameters.packing == "file":
-        return packing_from_file(parameters.file, radius, overlap, planar)
+        return packing_from_file(parameters.file, radius, overlap, planar, parameters)
     if parameters.packing == "cpe":
         overlap *= parameters.initialOverlap
         packing = cpe(parameters.filling, parameters.radius * radius, radius, overlap, seed, index, planar)

@@ -8,7 +8,7 @@ starts from contacts that have neither slid, rolled nor twisted.
 
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -26,6 +26,8 @@ from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Para
 AT_REST = 1e-3  # of the equilibrium overlap: contacts closer to it are at rest
 DEEPEST = 1.05  # equilibrium overlaps that a contact may keep where all cannot be at rest together
 MOST_MOVES = 20
+# What contacts at rest depend on, beside the radius: a packing says it, and a run compares it with its own (from_file.py).
+OF_CONTACTS = ("young", "poisson", "surfaceEnergy")
 
 
 @dataclass(frozen=True)
@@ -39,13 +41,14 @@ class CutParameters(Parameters):
 @dataclass(frozen=True)
 class PeriodicState:
     """A state of a compression: position (N,3), radius (N,), contact_pairs (M,2), cell_size (3,), overlap of grains at
-    rest, all in m."""
+    rest, all in m; material: {name: value} of OF_CONTACTS, SI, as far as they are known."""
 
     position: np.ndarray
     radius: np.ndarray
     contact_pairs: np.ndarray
     cell_size: np.ndarray
     overlap: float
+    material: dict = field(default_factory=dict)
 
 
 def read_periodic_state(path):
@@ -55,7 +58,9 @@ def read_periodic_state(path):
         with open(run) as file:
             record = json.load(file)
         state = read_state(path, COMPRESSION, record.get("format", FORMAT))
-        overlap = float(record["derived"]["equilibriumOverlap"])
+        derived = record["derived"]
+        overlap = float(derived["equilibriumOverlap"])
+        material = {name: float(derived[name]) for name in OF_CONTACTS if name in derived}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RunFolderError) as error:
         reason = " ".join(str(error).split())
         raise PackingError(
@@ -63,7 +68,7 @@ def read_periodic_state(path):
         ) from None
     if state.cell_size is None:
         raise PackingError(f"from = {path}: not of a periodic cell; must be a state of a compression")
-    return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap)
+    return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap, material)
 
 
 def cut(state, parameters, index=0):
@@ -98,6 +103,7 @@ def cut(state, parameters, index=0):
         grainRadius=grain_radius,
         filling=len(kept) / parameters.radius**3,
         overlap=state.overlap,
+        **state.material,
         index=index,
         dropped=len(inside) - len(kept),
         largestMotion=float(np.linalg.norm(moved - position, axis=1).max()),
