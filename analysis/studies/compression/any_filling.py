@@ -11,7 +11,7 @@ from . import paper
 from .curve import FILLINGS
 from .measure import STRUCTURE_SCALE
 from .scene import KEYS
-from .shown import PARAMETERS, chance_text, grains_text, label, line_of_seeds, mean_with_error, scientific, with_error
+from .shown import PARAMETERS, chance_text, label, line_of_seeds, material_text, mean_with_error, scientific, with_error
 
 
 def beyond_sections(results):
@@ -104,7 +104,7 @@ def _tensile(results):
         known = axes == 1
         theirs = float(tensile_strength(start, found["surfaceEnergy"], found["grainRadius"])) if known else None
         note = (
-            f"{grains_text(found)}, N = {found['grains']}, C_v = {found['strainRate']:g}, k_n = {found['linearDamping']:g}, "
+            f"{material_text(found)}, N = {found['grains']}, C_v = {found['strainRate']:g}, k_n = {found['linearDamping']:g}, "
             f"xi_crit = {found['criticalRolling'] * 1e10:.3g} Å, step {found['stepFraction']:g} t0, {len(runs)} runs, along "
             f"{_axes(axes)}; largest at {runs.tensile_filling.mean() / start:.2f} of the filling before"
         )

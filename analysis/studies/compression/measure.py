@@ -8,6 +8,7 @@ from ...measures.percolation import spanned_axes
 from ...measures.structure import fractal_dimension, grains_within
 from ...runs.format import LOST_CHANNELS
 from ...runs.table import Column
+from .. import grains
 from ..definition import NotMeasured
 from . import paper
 from .curve import (
@@ -21,7 +22,7 @@ from .curve import (
     pressure_at,
     tension,
 )
-from .scene import NUMBERS, OF_GRAINS
+from .scene import NUMBERS
 
 ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.4, 0.5, 0.6)
 TWISTING_SHARES = (0.001, 0.1)  # of the rolling dissipation
@@ -43,13 +44,7 @@ COLUMNS = (
     Column("stepFraction", "t0", "time step"),
     Column("finalFilling", "", "filling factor at which the compression was to end"),
     Column("seed", "", "random seed of the cluster", kind="i"),
-    Column("grainRadius", "m", "radius of a grain"),
-    Column("young", "Pa", "Young's modulus"),
-    Column("poisson", "", "Poisson's ratio"),
-    Column("density", "kg/m^3", "density of a grain"),
-    Column("surfaceEnergy", "J/m^2", "gamma"),
-    Column("criticalRolling", "m", "xi_crit"),
-    Column("slidingStiffnessFactor", "", "k_s over Wada's"),
+    *grains.COLUMNS,
     Column("rolling_energy", "J", "E_roll (K13 eq 1)"),
     Column("grain_mass", "kg", "mass of a grain"),
     Column("time_unit", "s", "t0"),
@@ -172,11 +167,8 @@ def _stretched_axes(history):
 def _scene(run):
     """The columns that say what was compressed."""
     parameters = run.parameters
-    of_material = [name for name in OF_GRAINS if name != "slidingStiffnessFactor"]
-    others = {"rolling_energy": "rollingEnergy", "grain_mass": "grainMass", "time_unit": "timeUnit"}
-    constants = derived_constants(run, {**{name: name for name in of_material}, **others})
+    constants = {"rolling_energy": "rollingEnergy", "grain_mass": "grainMass", "time_unit": "timeUnit"}
     whole = {name: int(parameters[name]) for name in NUMBERS if name in ("grains", "seed")}
     given = {name: float(parameters[name]) for name in NUMBERS if name not in whole}
-    # Runs of a version without this parameter have Wada's stiffness.
-    sliding = {"slidingStiffnessFactor": float(parameters.get("slidingStiffnessFactor", 1.0))}
-    return {"material": str(parameters.get("material", "")), **whole, **given, **constants, **sliding}
+    material = {"material": str(parameters.get("material", ""))}
+    return {**material, **whole, **given, **grains.grain_constants(run), **derived_constants(run, constants)}

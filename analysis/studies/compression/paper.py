@@ -2,7 +2,7 @@
 
 from math import isclose
 
-from ...theory import ICE, SILICATE
+from ..grains import other_grains
 
 SEEDS = 10
 EXPONENT = 3.0  # eqs 23, 25
@@ -17,39 +17,14 @@ FIDUCIAL = {"grains": 16384, "strainRate": 3e-7, "linearDamping": 0.01}
 # Section 3.5: up to this xi_crit [m] rolling dissipates most, and eq 25 holds.
 LARGEST_ROLLING = 0.8e-9
 
-
-def _grains(material, radius):
-    """By the names of scene.OF_GRAINS."""
-    return {
-        "grainRadius": radius,
-        "young": material.young,
-        "poisson": material.poisson,
-        "density": material.density,
-        "surfaceEnergy": material.surface_energy,
-        "criticalRolling": material.critical_rolling,
-        "slidingStiffnessFactor": 1.0,
-    }
-
-
-# Table 1 and section 2.1.
-GRAINS = {"ice": _grains(ICE, 0.1e-6), "silicate": _grains(SILICATE, 0.6e-6)}
-
 # Section 3.7, silicate at this pressure [Pa]: filling factors of K13, of Seizinger et al. (2012), and of the experiments'
 # formula of Guettler et al. (2009).
 SILICATE_PRESSURE = 300.0
 SILICATE_FILLINGS = {"K13": 0.24, "Seizinger et al. (2012)": 0.21, "Guettler et al. (2009)": 0.17}
 
 
-def other_grains(parameters):
-    """[name] of what differs from K13's grains of that material, parameters: a mapping with material and scene.OF_GRAINS;
-    all names for a material that K13 does not have."""
-    theirs = GRAINS.get(parameters["material"], {})
-    names = next(iter(GRAINS.values()))
-    return [n for n in names if n not in theirs or not isclose(parameters[n], theirs[n], rel_tol=1e-6)]
-
-
 def has_k13s_grains(parameters):
-    """Whether parameters (as other_grains() takes them) are of K13's grains of that material, xi_crit included."""
+    """Whether parameters (as grains.other_grains() takes them) are of K13's grains of that material, xi_crit included."""
     return not other_grains(parameters)
 
 

@@ -1,15 +1,7 @@
-"""What tells one compression from another, in one list: the groups, the key of a run and its columns follow from it."""
+"""What tells one compression from another, in one list: the groups and the key of a run follow from it."""
 
-# The grains, and the law between them: everything that sets a pressure, E_roll or t0.
-OF_GRAINS = (
-    "grainRadius",
-    "young",
-    "poisson",
-    "density",
-    "surfaceEnergy",
-    "criticalRolling",
-    "slidingStiffnessFactor",
-)
+from ..grains import OF_GRAINS
+
 OF_CELL = ("grains", "strainRate", "linearDamping", "stepFraction")
 # What the runs of a group have in common; seeds and the end of the compression differ.
 KEYS = ("material", *OF_CELL, *OF_GRAINS)

@@ -5,41 +5,26 @@ import numpy as np
 from ...report.beside_paper import Line, number
 from ...report.section import Column
 from ...statistics import mean_and_error
-from .paper import other_grains
-
-# Symbol, unit in which it is shown, and that unit in SI, of the grains' constants.
-_CONSTANTS = {
-    "grainRadius": ("r0", " um", 1e-6),
-    "young": ("E", " GPa", 1e9),
-    "poisson": ("nu", "", 1.0),
-    "density": ("rho", " kg/m^3", 1.0),
-    "surfaceEnergy": ("gamma", " J/m^2", 1.0),
-    "slidingStiffnessFactor": ("k_s factor", "", 1.0),
-}
+from ..grains import grains_text
 
 
-def grains_text(parameters):
-    """The material, and in brackets what differs from K13's grains of it; xi_crit has a place of its own."""
-    others = [
-        f"{symbol} = {parameters[name] / si:.4g}{unit}"
-        for name, (symbol, unit, si) in _CONSTANTS.items()
-        if name in other_grains(parameters)
-    ]
-    return parameters["material"] + (f" ({', '.join(others)})" if others else "")
+def material_text(parameters):
+    """The material and what differs from K13's grains of it; xi_crit has a place of its own."""
+    return grains_text(parameters, but=("criticalRolling",))
 
 
 def label(group):
     """A group's parameters in a line."""
     p = group.parameters
     return (
-        f"{grains_text(p)}, N = {p['grains']}, C_v = {p['strainRate']:g}, k_n = {p['linearDamping']:g}, "
+        f"{material_text(p)}, N = {p['grains']}, C_v = {p['strainRate']:g}, k_n = {p['linearDamping']:g}, "
         f"xi_crit = {p['criticalRolling'] * 1e10:.3g} Å, step {p['stepFraction']:g} t0"
     )
 
 
 # Of a group of runs, in every table.
 PARAMETERS = (
-    Column("material", grains_text),
+    Column("material", material_text),
     Column("N", lambda r: f"{r['grains']}"),
     Column("C_v", lambda r: f"{r['strainRate']:g}"),
     Column("k_n", lambda r: f"{r['linearDamping']:g}"),

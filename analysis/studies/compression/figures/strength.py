@@ -10,7 +10,7 @@ from ....theory.compression import compressive_strength_dense, filling_at
 from ...definition import StudyFigure
 from .. import paper
 from ..curve import AVERAGED, FILLINGS, pressure_over
-from ..shown import grains_text
+from ..shown import material_text
 from .common import LARGER, OURS, PAPER, colours_of, draw_formulae, legend, letter, panels, pressure_axes
 
 
@@ -71,7 +71,7 @@ def _mean(group):
 
 def _title(group):
     p = group.parameters
-    return f"{grains_text(p)}, $C_v$ = {p['strainRate']:g}, $k_n$ = {p['linearDamping']:g}"
+    return f"{material_text(p)}, $C_v$ = {p['strainRate']:g}, $k_n$ = {p['linearDamping']:g}"
 
 
 @styled

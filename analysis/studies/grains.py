@@ -1,0 +1,64 @@
+"""Of which grains a run is: the constants that tell them apart, in one list; columns, keys and labels follow from it."""
+
+from math import isclose
+
+from ..measures.of_run import derived_constants
+from ..runs.table import Column
+from ..theory import ICE, SILICATE
+
+COLUMNS = (
+    Column("grainRadius", "m", "radius of a grain"),
+    Column("young", "Pa", "Young's modulus"),
+    Column("poisson", "", "Poisson's ratio"),
+    Column("density", "kg/m^3", "density of a grain"),
+    Column("surfaceEnergy", "J/m^2", "gamma"),
+    Column("criticalRolling", "m", "xi_crit"),
+    Column("slidingStiffnessFactor", "", "k_s over Wada's"),
+)
+OF_GRAINS = tuple(column.name for column in COLUMNS)
+
+# Symbol, unit in which it is shown, and that unit in SI.
+_SHOWN = {
+    "grainRadius": ("r0", " um", 1e-6),
+    "young": ("E", " GPa", 1e9),
+    "poisson": ("nu", "", 1.0),
+    "density": ("rho", " kg/m^3", 1.0),
+    "surfaceEnergy": ("gamma", " J/m^2", 1.0),
+    "criticalRolling": ("xi_crit", " Å", 1e-10),
+    "slidingStiffnessFactor": ("k_s factor", "", 1.0),
+}
+
+
+def _of_paper(material, radius):
+    values = (radius, material.young, material.poisson, material.density, material.surface_energy)
+    return dict(zip(OF_GRAINS, (*values, material.critical_rolling, 1.0)))
+
+
+# K13's, Table 1 and section 2.1; its ice is that of A22 and A24 too.
+PAPERS = {"ice": _of_paper(ICE, 0.1e-6), "silicate": _of_paper(SILICATE, 0.6e-6)}
+
+
+def grain_constants(run):
+    """{name: value} (SI) of OF_GRAINS of a RunFolder; RunFolderError where one is missing."""
+    *of_material, sliding = OF_GRAINS
+    # Runs of a version without that parameter have Wada's stiffness.
+    return {
+        **derived_constants(run, {name: name for name in of_material}),
+        sliding: float(run.parameters.get(sliding, 1.0)),
+    }
+
+
+def other_grains(parameters):
+    """[name] of what differs from the papers' grains of that material, parameters: a mapping with material and OF_GRAINS;
+    all names for a material that they do not have."""
+    theirs = PAPERS.get(parameters["material"], {})
+    return [n for n in OF_GRAINS if n not in theirs or not isclose(parameters[n], theirs[n], rel_tol=1e-6)]
+
+
+def grains_text(parameters, but=()):
+    """The material, and in brackets what differs from the papers' grains of it, without the names `but`."""
+    others = []
+    for name in (name for name in other_grains(parameters) if name not in but):
+        symbol, unit, si = _SHOWN[name]
+        others.append(f"{symbol} = {parameters[name] / si:.4g}{unit}")
+    return parameters["material"] + (f" ({', '.join(others)})" if others else "")
