@@ -53,3 +53,44 @@ def test_other_packings_from_files_are_left_out(tmp_path, capsys):
     made_run(tmp_path / "b", 20.0, 10**0.5, 1, 0.0, packing="file")
     assert main(["study", "compressed", str(tmp_path), "--json"]) == 0
     assert "neither CPE aggregates nor spheres cut out of compressed cells, left out" in capsys.readouterr().err
+
+
+def test_compression_is_measured_from_the_first_touch(tmp_path, capsys):
+    """A zero of d that lies elsewhere in one kind changes d_max and its ratio, and the compression not at all."""
+    for seed in (1, 2, 3):
+        made_run(tmp_path / f"cpe{seed}", 20.0, 10**0.5, seed, 0.1 * seed)
+        compressed_run(tmp_path / f"cut{seed}", seed, cut=0.0, shift=0.1 * seed - 0.3)
+    assert main(["study", "compressed", str(tmp_path), "--json"]) == 0
+    rows = {row["quantity"]: row for row in json.loads(capsys.readouterr().out)["sections"][0]["rows"]}
+    own, touch, d = (rows[name] for name in ("compression from the first touch", "d at the first touch", "d_max"))
+    assert own["ratio"][0] == pytest.approx(1.0, abs=1e-9) and own["cpe"][1] < 1e-9
+    assert own["cpe"][0] == pytest.approx(d["cpe"][0] - touch["cpe"][0])
+    assert touch["compressed"][0] == pytest.approx(touch["cpe"][0] - 0.3) and d["ratio"][0] < 0.9
+
+
+@pytest.mark.parametrize(
+    "changed, shown",
+    [
+        ({"surfaceEnergy": 0.05}, "ice (gamma = 0.05 J/m^2)"),
+        ({"criticalRolling": 4e-10}, "ice (xi_crit = 4 Å)"),
+        ({"timeStep": 0.2}, "ice"),
+    ],
+)
+def test_private_grains_and_steps_are_kept_apart(tmp_path, capsys, changed, shown):
+    """The same pairs of other grains are neither duplicates nor of the same means."""
+    for seed in (1, 2):
+        for kind in ("own", "other"):
+            paths = [tmp_path / f"{kind}-cpe{seed}", tmp_path / f"{kind}-cut{seed}"]
+            made_run(paths[0], 20.0, 10**0.5, seed, 0.1 * seed)
+            compressed_run(paths[1], seed, cut=0.0, shift=0.1 * seed)
+            for path in paths if kind == "other" else ():
+                record = json.loads((path / "run.json").read_text())
+                unit = record["derived"]["timeUnit"]
+                record["derived"].update({name: v * unit if name == "timeStep" else v for name, v in changed.items()})
+                (path / "run.json").write_text(json.dumps(record))
+    assert main(["study", "compressed", str(tmp_path), "--json"]) == 0
+    out, err = capsys.readouterr()
+    rows = [row for row in json.loads(out)["sections"][0]["rows"] if row["quantity"] == "d_max"]
+    assert "the same" not in err and [row["cpe"][2] for row in rows] == [2, 2]
+    assert main(["study", "compressed", str(tmp_path)]) == 0
+    assert shown in capsys.readouterr().out

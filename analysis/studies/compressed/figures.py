@@ -14,18 +14,19 @@ _MARKERS = ("o", "s", "^", "D")
 
 @styled
 def compression_figure(results):
-    """d_max and t_max against velocity, of both kinds at every filling: single pairs, and their means with errors."""
+    """Compression from the first touch and its time against velocity, of both kinds at every filling: single pairs, and their
+    means with errors."""
     table = results.table
     figure, axes = panels(1, 2, 4.8, 4.2)
-    shown = (table.d_max / table.grain_radius, 1e9 * table.t_max)
+    shown = (table.compression / table.grainRadius, 1e9 * table.t_max)
     for marker, (nominal, of_filling) in zip(_MARKERS, table.groupby(table.nominal.round(6))):
         for kind, runs in of_filling.groupby("compressed"):
             for place, values in zip(axes[0], shown):
                 _draw(place, runs, values[runs.index], _COLOURS[kind], marker, f"{KINDS[kind]}, {nominal:g}")
     for place in axes[0]:
         velocity_axis(place, table.velocity)
-    axes[0, 0].set_ylabel("$d_{max}$  [r]")
-    axes[0, 1].set_ylabel("$t_{max}$ after the first touch  [ns]")
+    axes[0, 0].set_ylabel("compression from the first touch  [r]")
+    axes[0, 1].set_ylabel("its time after the first touch  [ns]")
     legend(axes[0, 0], fontsize=8)
     letter(axes, "")
     return figure
@@ -46,4 +47,10 @@ def _draw(place, runs, values, colour, marker, label):
     )
 
 
-FIGURES = (StudyFigure("compression", "Largest compression and its time, CPE and compressed.", compression_figure),)
+FIGURES = (
+    StudyFigure(
+        "compression",
+        "Largest compression from the first touch on and its time, CPE and compressed.",
+        compression_figure,
+    ),
+)

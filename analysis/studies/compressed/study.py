@@ -12,18 +12,26 @@ from ...statistics import mean_and_error, scatter
 from ..collision_points import HEAD_ON_ICE, at_maximum, collision_point
 from ..collision_sections import energy_section, outcome_section, return_section
 from ..definition import Study
+from ..grains import OF_GRAINS, grains_text
 from .measure import COLUMNS, measure
 
 KINDS = {0: "CPE", 1: "compressed"}
+# What the runs of a comparison have in common.
+SCENES = ("nominal", "velocity", "step", "material", *OF_GRAINS)
+_OF_SCENE = (
+    Column("grains", grains_text),
+    Column("filling", lambda r: f"{r['nominal']:g}"),
+    Column("v [m/s]", lambda r: f"{r['velocity']:.4g}"),
+    Column("step [t0]", lambda r: f"{r['step']:.3g}"),
+)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """One quantity at one filling and velocity [m/s]: cpe and compressed (mean, standard error, pairs), and the chance p of
-    such a difference of the means by Welch's t; None where one of them has no scatter."""
+    """One quantity of one scene (dict, the names of SCENES): cpe and compressed (mean, standard error, pairs), and the chance
+    p of such a difference of the means by Welch's t; None where one of them has no scatter."""
 
-    nominal: float
-    velocity: float
+    scene: dict
     quantity: str
     unit: str
     cpe: tuple
@@ -54,7 +62,9 @@ def quantities(runs):
     return [
         ("contacts of a grain", "", runs.coordination),
         ("filling", "", runs.filling),
-        ("d_max", "r", runs.d_max / runs.grain_radius),
+        ("compression from the first touch", "r", runs.compression / runs.grainRadius),
+        ("d at the first touch", "r", runs.d_touch / runs.grainRadius),
+        ("d_max", "r", runs.d_max / runs.grainRadius),
         ("t_max after the touch", "ns", 1e9 * runs.t_max),
         ("largest return speed", "of v", runs.return_speed.fillna(0.0) / runs.velocity),
         ("sliding until t_max", "% of K(0)", lost["slidingDissipation"]),
@@ -67,10 +77,12 @@ def quantities(runs):
 def results(table):
     """Results of a table of runs (measure.COLUMNS)."""
     comparisons, points = [], []
-    for (nominal, velocity), runs in table.groupby([table.nominal.round(6), table.velocity.round(6)]):
+    scenes = [table[name].map("{:.9g}".format) if name != "material" else table[name] for name in SCENES]
+    for _, runs in table.groupby(scenes):
+        scene = {name: runs[name].iloc[0] for name in SCENES}
         kinds = {kind: own for kind, own in runs.groupby("compressed")}
         for kind, own in kinds.items():
-            points.append(collision_point({"kind": KINDS[kind], "nominal": nominal, "velocity": velocity}, own))
+            points.append(collision_point({"kind": KINDS[kind], **scene}, own))
         if len(kinds) < 2:
             continue
         for (name, unit, cpe), (*_, cut) in zip(quantities(kinds[0]), quantities(kinds[1])):
@@ -78,24 +90,25 @@ def results(table):
             scattered = all(scatter(values) > 0 for values in both)
             p = float(ttest_ind(*both, equal_var=False).pvalue) if scattered else None
             means = [(*mean_and_error(values), len(values)) for values in both]
-            comparisons.append(Comparison(float(nominal), float(velocity), name, unit, *means, p))
+            comparisons.append(Comparison(scene, name, unit, *means, p))
     return Results(table, comparisons, points)
 
 
 def sections(found):
     """Sections of the comparison, then what collisions of each kind do."""
     if found.comparisons:
-        rows = tuple({**vars(each), "ratio": each.ratio} for each in found.comparisons)
+        rows = tuple({**each.scene, **vars(each), "ratio": each.ratio} for each in found.comparisons)
         notes = (
             "Errors: standard errors over the pairs; p: Welch's t. Rows of one filling and velocity are the same runs.",
-            "Both kinds have the same radius and, within 1 %, the same filling factor; contacts differ. d is from the "
-            "centres of mass, as in A24.",
+            "Both kinds have the same radius and, within 1 %, the same filling factor; contacts differ. d = 2 R less the "
+            "distance of the halves, from the centres of mass, as in A24: at the first touch it is below 0 by about as much as "
+            "it grows afterwards, so that a ratio of d_max is one of differences from a zero that no aggregate meets at. "
+            "Compressions are compared from the first touch on.",
         )
         yield Section("CPE and compressed aggregates", _COLUMNS, rows, notes=notes)
     parameters = (
         Column("aggregates", lambda b: b["kind"]),
-        Column("filling", lambda b: f"{b['nominal']:g}"),
-        Column("v [m/s]", lambda b: f"{b['velocity']:.4g}"),
+        *_OF_SCENE,
     )
     for make in (outcome_section, return_section, energy_section):
         section = make(found.points, parameters)
@@ -114,8 +127,7 @@ def _ratio(values):
 
 
 _COLUMNS = (
-    Column("filling", lambda r: f"{r['nominal']:g}"),
-    Column("v [m/s]", lambda r: f"{r['velocity']:.4g}"),
+    *_OF_SCENE,
     Column("quantity", lambda r: r["quantity"] + (f" [{r['unit']}]" if r["unit"] else "")),
     Column("CPE (pairs)", lambda r: _mean(r["cpe"])),
     Column("compressed (pairs)", lambda r: _mean(r["compressed"])),
@@ -129,9 +141,9 @@ STUDY = Study(
     title="Collisions of CPE and of compressed aggregates",
     scene=Scene(
         name="A24's scene, or one of compressed aggregates",
-        values=HEAD_ON_ICE,
+        values={**HEAD_ON_ICE, "limit": "held"},
         numbers=("velocity",),
-        measured=("compressed", "nominal", "radius", "pair"),
+        measured=("compressed", "nominal", "radius", "pair", "step", *OF_GRAINS),
     ),
     columns=COLUMNS,
     measure=measure,
