@@ -222,8 +222,21 @@ def test_private_grains_are_not_k13s(tmp_path):
     found = analyse_runs(find("compression"), [tmp_path])
     assert found.results.main.parameters["surfaceEnergy"] == 0.1 and found.results.larger is None
     assert [group.seeds for group in found.results.of_k13s_grains] == [1]
+    (row, *_) = section(json.loads(analyse(tmp_path, "--json").stdout), "strength at any filling")
+    assert row["surfaceEnergy"] == 0.1
     (silicate,) = section({"sections": [vars(s) | {"rows": s.records} for s in found.report.sections]}, "silicate")
     assert silicate["paper"] is None and np.isfinite(silicate["ours"])
+
+
+def test_k13s_silicate_is_shown_before_other_silicate(tmp_path):
+    """Fig. 13 draws the first: K13's, though the other has more clusters."""
+    made_compression(tmp_path / "own", 1, power(), states=False, **SILICATE_GRAINS)
+    for seed in (1, 2):
+        made_compression(
+            tmp_path / f"b{seed}", seed, power(), states=False, **{**SILICATE_GRAINS, "surfaceEnergy": 0.1}
+        )
+    rows = section(json.loads(analyse(tmp_path, "--json").stdout), "silicate at 300 Pa")
+    assert [row["paper"] for row in rows] == [0.24, 0.21, 0.17, None]
 
 
 def test_tension_of_unlike_runs_is_not_pooled(tmp_path):

@@ -14,6 +14,10 @@ from .scene import KEYS
 from .shown import PARAMETERS, chance_text, label, line_of_seeds, material_text, mean_with_error, scientific, with_error
 
 
+# Columns that say the same in every row of K13's grains and damping.
+_OF_FIDUCIAL = ("material", "k_n", "xi_crit [Å]")
+
+
 def beyond_sections(results):
     """Sections of K13's grains at any filling, of the fractal structure and of tension."""
     yield strength_section(results.of_k13s_grains)
@@ -24,9 +28,9 @@ def beyond_sections(results):
 def strength_section(groups):
     """Pressure and coordination number beside the formulae, at each filling of each group, by the clusters that reach it."""
     records = [record for group in groups for record in _records(group)]
+    fiducial = all(paper.has_fiducial_grains(group.parameters) for group in groups)
     columns = (
-        *PARAMETERS[1:3],
-        PARAMETERS[-1],
+        *(column for column in PARAMETERS if not (fiducial and column.head in _OF_FIDUCIAL)),
         Column("filling", lambda r: f"{r['filling']:.3g}"),
         Column("runs", lambda r: f"{r['runs']}"),
         Column("P [Pa]", lambda r: scientific(*r["pressure"])),
@@ -38,7 +42,8 @@ def strength_section(groups):
         Column("p", lambda r: chance_text(r["coordination_chance"])),
     )
     notes = (
-        "Of ice with K13's grains and damping. Means over the clusters that reach a filling factor, with standard errors; p: "
+        ("Of ice with K13's grains and damping. " if fiducial else "")
+        + "Means over the clusters that reach a filling factor, with standard errors; p: "
         "chance of a mean as far from the formula, by Student's t. Rows of one N are the same clusters.",
         "From where boundaries are slower than sound (K13 eqs 26, 27) and the cells of all clusters are spanned, as the fits; "
         "below, clusters are isolated or pressed by the boundaries' motion.",

@@ -66,8 +66,9 @@ class Results:
     stretched: pandas.DataFrame
 
     def of(self, material):
-        """Groups of a material, those without a fit included."""
-        return tuple(group for group in self.groups if group.parameters["material"] == material)
+        """Groups of a material, those without a fit included; those of K13's grains first."""
+        own = [group for group in self.groups if group.parameters["material"] == material]
+        return tuple(sorted(own, key=lambda group: not paper.has_k13s_grains(group.parameters)))
 
     @property
     def of_k13s_grains(self):
