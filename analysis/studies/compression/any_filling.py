@@ -13,7 +13,6 @@ from .measure import STRUCTURE_SCALE
 from .scene import KEYS
 from .shown import PARAMETERS, chance_text, label, line_of_seeds, material_text, mean_with_error, scientific, with_error
 
-
 # Columns that say the same in every row of K13's grains and damping.
 _OF_FIDUCIAL = ("material", "k_n", "xi_crit [Å]")
 
