@@ -78,8 +78,8 @@ inline StoredEnergy<T> bondEnergy(const BondConstants<T>& b, const ContactGeomet
 
 // ---- breaking ----
 
-// Limit: a bond breaks when one mode alone holds what the neck's surfaces cost, whether the neck is stretched or pressed (S17 section 3.1,
-// eq 6).
+// Limit: a bond breaks when one mode alone holds pi a^2 gamma, whether the neck is stretched or pressed (S17 section 3.1, eq 6). gamma is per
+// surface (F_c = 3 pi gamma R): the two surfaces that a break leaves have twice this energy.
 template <class T> inline MaskOf<T> bondBreaks(const BondConstants<T>& b, const StoredEnergy<T>& e)
 {
 	return (b.breakingEnergy < e.normal) | (b.breakingEnergy < e.sliding) | (b.breakingEnergy < e.rolling)

@@ -142,9 +142,10 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	        contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, options(), neck);
 	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
 	phys->setConstants(constants.of(derived));
-	if (neck != 0 && scene->iter < bondsBefore)
-		phys->setBond(
-		        bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, neck)));
+	if (neck != 0 && scene->iter < bondsBefore) {
+		const Real own = sinteredEarly > 0 ? sinteredEarly : neck;
+		phys->setBond(bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, own)));
+	}
 	interaction->phys = phys;
 }
 
@@ -153,6 +154,7 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
 	requireLoopAtRest("sinter()");
 	require(neckNow > 0 && neckNow <= contact_law::largestNeck, "sinter(): neck", neckNow, "> 0 and up to 0.7");
 	const Scene& now = *Omega::instance().getScene();
+	if (now.iter < bondsBefore && sinteredEarly == 0) sinteredEarly = neck > 0 ? neck : neckNow;
 	neck = std::max(neck, neckNow);
 	for (const auto& interaction : *now.interactions) {
 		if (!interaction->isReal()) continue;
@@ -165,6 +167,8 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
 		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, options(), neck));
 		if (phys->bonded || !phys->touching)
 			phys->constants = shrunk; // of the contact that may come
+		else if (phys->bondToCome)
+			phys->constantsToCome = shrunk; // sintered since the latest step: the bond keeps its neck
 		else {
 			phys->bondToCome = bonds.of(contact_law::deriveBond(first, geometry->refR1, second, geometry->refR2, neckNow));
 			phys->constantsToCome = shrunk;

@@ -145,11 +145,12 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_JKRMat_JKRMat_JKRWadaPhys, IPhysFunctor,
 		"Makes a :yref:`JKRWadaPhys` from two :yref:`JKRMat` and the radii of the grains. With a neck, grains that touch at the start are sintered (Sirono & Ueno 2017): a linear elastic bond holds them "
-		"until one of its modes has the energy of the neck's two surfaces. All other contacts are ordinary ones between grains that have shrunk by the volume of two necks each.",
+		"until one of its modes has the energy pi a^2 gamma (a: the neck's radius). All other contacts are ordinary ones between grains that have shrunk by the volume of two necks each.",
 		((Real, linearDamping, 0, Attr::triggerPostLoad, "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
 		((Real, slidingStiffnessFactor, 1, Attr::triggerPostLoad, "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); 2: eqs 11 and 12 of Sirono & Ueno (2017) as printed."))
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 r2/(r1+r2)); 0: nothing is sintered."))
-		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step.")),
+		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at the first step."))
+		((Real, sinteredEarly, 0, Attr::readonly|Attr::hidden, "Neck of these bonds where sinter() was called before they were made: that of the first call, or the functor's before it; 0: neck.")),
 		,
 		.def("sinter", &Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter, boost::python::arg("neck"),
 			"All contacts become bonds of this neck when their forces are next evaluated, without strain where the grains are then; existing bonds keep their own neck. All grains shrink by the largest neck, which "

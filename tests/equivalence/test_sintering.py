@@ -100,6 +100,32 @@ result["broken"] = broken()
     assert found["difference"] < 1e-10 and max(found["energies"].values()) < 1e-9, found
 
 
+@pytest.mark.parametrize("steps", [0, 80])
+def test_sintered_twice_at_once_a_contact_keeps_the_first_neck(yade, steps):
+    """Before the first step, and on a running scene: with no step between, the second call finds bonds of the first already."""
+    found = yade(
+        SCENE
+        + """
+for name in ("functors", "engine"):
+    start(grains=converging if parameters["steps"] else cluster, speed=20.0 if parameters["steps"] else 1.0)
+    if name == "engine": fused_engine()
+    run(parameters["steps"], {})
+    contact_law.sinter(0.3)
+    contact_law.sinter(0.5)
+    run(1, {})
+    bonded = contact_law.snapshot()["contact_neck"]
+    owner = O.engines[0] if name == "engine" else O.engines[2].physDispatcher.functors[0]
+    result[name] = [sorted(set(bonded[bonded > 0].tolist())), int((bonded > 0).sum()), owner.neck]
+    if name == "functors": result["radius"] = [i.phys.constants.radius1 / 1e-7 for i in O.interactions if i.isReal]
+""",
+        {"steps": steps},
+    )
+    assert found["functors"] == found["engine"], found
+    necks, bonds, largest = found["engine"]
+    assert necks == [0.3] and bonds > 5 and largest == 0.5
+    assert found["radius"] == pytest.approx([0.9806] * len(found["radius"]), rel=1e-4)  # R' of the largest neck
+
+
 @pytest.mark.parametrize("kind,count,speed", [("like", 125, 20.0), ("unlike", 216, 12.0)])
 def test_same_bits_on_one_and_two_threads_and_after_a_checkpoint(yade, kind, count, speed):
     found = yade(

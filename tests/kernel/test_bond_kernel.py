@@ -116,7 +116,7 @@ def test_each_mode_breaks_at_the_energy_of_the_surfaces(kernel, mode):
 
 
 def test_all_modes_together_break_it_no_sooner(kernel):
-    """S17: any one mode. Three modes at 0.9 of the energy each hold more than the surfaces cost, and the bond holds."""
+    """S17: any one mode. Three modes at 0.9 of the energy each hold more than pi a^2 gamma, and the bond holds."""
     b = kernel.bond_constants(0.4)
     rest = 1.99e-7
     one = {name: modes(kernel, b, rest, np.sqrt(0.9))[name] for name in ("stretch", "roll", "twist")}

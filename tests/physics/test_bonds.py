@@ -49,7 +49,7 @@ DRIVEN = {
 
 
 @pytest.mark.parametrize("mode", list(DRIVEN))
-def test_each_mode_breaks_for_good_at_the_energy_of_the_surfaces(yade, mode):
+def test_each_mode_breaks_for_good_at_its_breaking_energy(yade, mode):
     """Two grains moved at given rates (all degrees of freedom blocked): the bond breaks in the step in which one mode's energy passes pi a^2 gamma, the books have
     what it held, and what is left is an ordinary contact of the shrunk grains if these overlap (beta = 0.2), and nothing if they don't (0.6)."""
     how, which, displacement, stiffness = DRIVEN[mode]
