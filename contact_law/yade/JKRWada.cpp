@@ -144,7 +144,8 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	phys->setConstants(constants.of(derived));
 	if (neck != 0 && scene->iter < bondsBefore) {
 		const Real own = sinteredEarly > 0 ? sinteredEarly : neck;
-		phys->setBond(bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, own)));
+		phys->setBond(
+		        bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, own)));
 	}
 	interaction->phys = phys;
 }
