@@ -5,8 +5,9 @@ With f1 >= f2 the fractions of their mass in the two heaviest fragments at the e
 
     never met      no contact between the aggregates at any time
     sticking       f1 >= 0.9
-    bouncing       f1 + f2 >= 0.9 and f2 >= 0.25
-    fragmentation  everything else
+    bouncing       f1 + f2 >= 0.9 and f2 >= 0.25, and of each of the two pieces at least OWN is mass of one
+                   aggregate, of one each
+    fragmentation  everything else: also a part torn off one aggregate, and a merged body that broke in two
 
 The coefficient of restitution is 0 for sticking. For bouncing it is minus the relative velocity of the centres of mass
 of the two heaviest fragments, projected on the direction of the aggregates' relative velocity at the start, over that
@@ -26,6 +27,10 @@ from .fragments import (
 )
 
 NEVER_MET, STICKING, BOUNCING, FRAGMENTATION = "never met", "sticking", "bouncing", "fragmentation"
+
+# Of the mass of a piece that bounced, so much at least is of one aggregate. Aggregates that part where they had touched
+# exchange what stuck to the other side: up to a tenth of a piece, as sticking leaves out up to a tenth.
+OWN = 0.9
 
 # Of a run that ends in one piece while its halves still part, at more than this fraction of the largest speed of
 # their return: a sixteenth of that kinetic energy is left, which may yet part them.
@@ -48,17 +53,27 @@ class Outcome:
     excluded_grains: int
 
 
-def classify(f1, f2):
-    """Name of the outcome for the mass fractions f1 >= f2 of the two heaviest fragments: the rule at the module's head.
+def classify(f1, f2, parted=True):
+    """Name of the outcome for the mass fractions f1 >= f2 of the two heaviest fragments, parted: whether these are the two
+    aggregates again (have_parted). The rule at the module's head.
 
-    >>> classify(0.5, 0.5), classify(0.95, 0.01), classify(0.5, 0.1)
-    ('bouncing', 'sticking', 'fragmentation')
+    >>> classify(0.5, 0.5), classify(0.95, 0.01), classify(0.5, 0.1), classify(0.5, 0.5, parted=False)
+    ('bouncing', 'sticking', 'fragmentation', 'fragmentation')
     """
     if f1 >= 0.9:
         return STICKING
-    if f1 + f2 >= 0.9 and f2 >= 0.25:
+    if f1 + f2 >= 0.9 and f2 >= 0.25 and parted:
         return BOUNCING
     return FRAGMENTATION
+
+
+def have_parted(shares):
+    """Whether two pieces are the two aggregates again: shares (2,) of aggregate 1 in the mass of either piece.
+
+    >>> have_parted([0.0, 1.0]), have_parted([0.95, 0.1]), have_parted([0.75, 0.0]), have_parted([0.4, 0.6])
+    (True, True, False, False)
+    """
+    return 1.0 - min(shares) >= OWN and max(shares) >= OWN
 
 
 def restitution(initial_velocity, final_velocity):
@@ -98,11 +113,13 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
     fractions = fragment_masses(labels, mass * counted) / mass[counted].sum()
     heaviest = np.argsort(-fractions, kind="stable")[:2]
     f1, f2 = (float(fractions[k]) for k in heaviest) if len(heaviest) == 2 else (float(fractions[0]), 0.0)
-    kind = classify(f1, f2) if met else NEVER_MET
+    pieces = [(labels == k) & counted for k in heaviest]
+    shares = [np.average(aggregate[piece], weights=mass[piece]) if piece.any() else 0.0 for piece in pieces]
+    kind = classify(f1, f2, have_parted(shares)) if met else NEVER_MET
     ratio = 0.0 if kind == STICKING else None
     if kind == BOUNCING:
-        pieces = [(labels == k) & counted for k in heaviest]
-        ratio = _restitution(aggregate, mass, counted, pieces, start_velocity, end_velocity)
+        first, second = (pieces[k] for k in np.argsort(shares))
+        ratio = _restitution(aggregate, mass, counted, first, second, start_velocity, end_velocity)
     largest = int(fragment_sizes(labels).max())
     return Outcome(
         kind,
@@ -115,9 +132,8 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
     )
 
 
-def _restitution(aggregate, mass, counted, pieces, start_velocity, end_velocity):
-    # The fragment richer in aggregate 1 stands for aggregate 1: otherwise the sign would depend on which is heavier.
-    first, second = sorted(pieces, key=lambda piece: np.average(aggregate[piece], weights=mass[piece]))
+def _restitution(aggregate, mass, counted, first, second, start_velocity, end_velocity):
+    # first: the piece of aggregate 0, second: that of aggregate 1.
     before = [mean_velocity(start_velocity, mass, counted & (aggregate == k)) for k in (0, 1)]
     after = [mean_velocity(end_velocity, mass, piece) for piece in (first, second)]
     return restitution(before[1] - before[0], after[1] - after[0])

@@ -118,7 +118,7 @@ def test_sticking():
     assert outcome.growth_efficiency == 1.0 and outcome.fragments == 1
 
 
-@pytest.mark.parametrize("moved", [0, 3, -3])
+@pytest.mark.parametrize("moved", [0, 2, -2])
 def test_bouncing_with_known_restitution_whichever_fragment_is_heavier(moved):
     cut = 20 + moved
     velocity = np.where(np.arange(40)[:, None] < cut, [[-0.3, 0.1, 0]], [[0.3, 0.1, 0]])
@@ -132,6 +132,23 @@ def test_pieces_that_passed_each_other_have_no_restitution():
     velocity = np.repeat([[0.5, 0, 0], [-0.5, 0, 0]], 20, axis=0)
     outcome = _outcome(_start(), _state(velocity, _chain(0, 20) + _chain(20, 20), 20))
     assert outcome.kind == "bouncing" and outcome.restitution is None
+
+
+@pytest.mark.parametrize(
+    "pieces",
+    [
+        (range(0, 13), range(13, 40)),  # a part torn off aggregate 0, the rest still holds aggregate 1
+        (range(0, 17), range(17, 40)),  # three grains more than a tenth of the second piece
+        (range(0, 40, 2), range(1, 40, 2)),  # a merged body that broke in two
+    ],
+)
+def test_two_large_pieces_that_are_not_the_two_aggregates_are_fragments(pieces):
+    """Two pieces with nine tenths of the mass and more than a quarter each, flying apart: no bounce, no restitution."""
+    pairs = [[i, j] for piece in pieces for i, j in zip(piece, piece[1:])]
+    velocity = np.where(np.isin(np.arange(40), pieces[0])[:, None], [[-0.3, 0, 0]], [[0.3, 0, 0]])
+    outcome = _outcome(_start(), _state(velocity, pairs, 20))
+    assert sum(outcome.mass_fractions) == 1.0 and min(outcome.mass_fractions) > 0.25
+    assert outcome.kind == "fragmentation" and outcome.restitution is None
 
 
 def test_fragmentation():

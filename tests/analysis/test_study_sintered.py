@@ -14,8 +14,12 @@ from analysis.runs.format import BROKEN_BONDS, CHANNELS
 from analysis.studies.sintered import paper
 from analysis.studies.sintered.bouncing import chain_grains, predicted_ratio
 from analysis.studies.sintered.comparison import remarks
+from analysis.studies.sintered.fits import OWN, Law, fit
+from analysis.studies.sintered.growth import critical_velocity
+from analysis.studies.sintered.loops import loops
+from analysis.studies.sintered.measure import PARTS as MEASURED_PARTS
 from analysis.studies.sintered.measure import energy_ratio, measure
-from analysis.studies.sintered.results import fit_curve, make_results
+from analysis.studies.sintered.results import make_results
 from analysis.theory import ICE
 
 GRAINS = 400  # of both aggregates: chains of 200
@@ -105,8 +109,11 @@ def test_one_run(runs):
     assert row["brokenByRolling"] > 6 * row["brokenBySliding"] > 0 == row["brokenByTwisting"]
     assert row["part_kinetic"] == pytest.approx(0.45) and row["part_elastic"] == pytest.approx(0.05)
     assert row["part_rolling_friction"] == pytest.approx(0.4) and row["part_stretching"] == pytest.approx(0.1)
-    assert sum(row[name] for name in row if name.startswith("part_")) == pytest.approx(1.0) and row["closure"] < 1e-12
+    assert sum(row[f"part_{name}"] for name in MEASURED_PARTS) == pytest.approx(1.0) and row["closure"] < 1e-12
     assert row["ended_by"]
+    # 1,250 periods of 1.22 ns fall next to two fifths of the record, in which half of K(0) is lost evenly
+    assert row["left_1250"] == pytest.approx(0.8) and np.isnan(row["left_5000"]) and np.isnan(row["part_necks_5000"])
+    assert (row["loops_at_start"], row["loop_grains_at_start"], row["loops"], row["loop_grains"]) == (0, 0, 0, 0)
 
 
 def test_a_compacted_pair_keeps_its_origin(runs):
@@ -126,12 +133,60 @@ def test_points_and_the_fit_of_made_runs(runs):
     falls = results.paired("largest", {"neck": 0.0, "velocity": 10.0}, {"neck": 0.7, "velocity": 10.0})
     assert sorted(falls) == pytest.approx([0.0, 0.0, 0.5, 0.5])
     assert len(results.paired("largest", {"neck": 0.0, "velocity": 10.0}, {"neck": 0.65, "velocity": 10.0})) == 0
-    fit = results.fits[1, 0.0]
-    assert fit.points == 9 and fit.runs == 36  # not BCCA of beta = 0.2, not those in which no neck broke
-    assert fit.amplitude == pytest.approx(AMPLITUDE, rel=0.1) and fit.exponent == pytest.approx(EXPONENT, abs=0.04)
-    assert 0 < fit.exponent_error < 0.2 and 0 < fit.amplitude_error < 0.2 * AMPLITUDE
-    assert fit_curve(fit, [2.0]) == pytest.approx([fit.amplitude * 2**fit.exponent])
-    assert fit_curve(paper.FIT, [1.0]) == pytest.approx([3.7e-2])
+    # not BCCA of beta = 0.2; of the compacted ones, in which no neck broke, those of beta = 0.7
+    every = results.fits[1, 0.0]["beta >= 0.3"]
+    assert (every.points, every.runs, every.empty, every.seeds) == (10, 40, 1, 4)
+    own = results.fits[1, 0.0][OWN]
+    assert (own.points, own.runs) == (4, 16)
+    for law in (every.means, own.means):
+        assert law.amplitude == pytest.approx(AMPLITUDE, rel=0.1) and law.exponent == pytest.approx(EXPONENT, abs=0.04)
+        assert 0 < law.exponent_error < 0.2 and 0 < law.amplitude_error < 0.2 * AMPLITUDE
+    # the end's energies, as the runs have ended before 5,000 periods
+    assert point.means["left_5000"] == point.means["left_20000"] == (pytest.approx(0.5), pytest.approx(0.0))
+    assert point.means["cut_energy"][0] == pytest.approx(2 * point.means["cut_per_grain"][0] / point.energy_ratio)
+
+
+def made_counts(seeds, ratios, law, grains=2048):
+    """Table of runs whose broken necks are Poisson numbers about a Law."""
+    random = np.random.default_rng(3)
+    rows = [(seed, ratio, random.poisson(grains * law.at(ratio))) for seed in range(seeds) for ratio in ratios]
+    return pandas.DataFrame(rows, columns=["packing_seed", "energy_ratio", "broken"]).assign(grains=grains)
+
+
+def test_both_fits_find_a_law_and_counts_know_runs_without_a_broken_neck():
+    true = Law(0.05, 1.4)
+    many = fit(made_counts(40, (0.1, 0.3, 1.0, 3.0), true), ["energy_ratio"])
+    for law in (many.means, many.counts):
+        assert abs(law.amplitude - 0.05) < 4 * law.amplitude_error and abs(law.exponent - 1.4) < 4 * law.exponent_error
+        assert law.amplitude_error < 0.002 and law.exponent_error < 0.05
+    assert many.empty == 0 and many.points == 4
+    # means of all runs: at the lowest ratio most have no broken neck, and those that have one alone would be far too high
+    few = fit(made_counts(40, (0.01, 0.3, 1.0, 3.0), true), ["energy_ratio"])
+    assert few.empty == 0 and few.means.exponent == pytest.approx(1.4, abs=0.1)
+    none = fit(made_counts(40, (1e-6, 0.3, 1.0, 3.0), true), ["energy_ratio"])
+    assert none.empty == 1 and none.points == 4 and none.counts.exponent == pytest.approx(1.4, abs=0.05)
+
+
+def test_a_fit_needs_two_energies_with_broken_necks():
+    table = made_counts(3, (1e-6, 1.0), Law(0.05, 1.4))
+    assert fit(table, ["energy_ratio"]) is None and fit(table[:0], ["energy_ratio"]) is None
+
+
+def test_loops_of_a_lattice_and_what_hangs_on_it():
+    """Two triangles with a common side, a square apart from them, and chains between and beside."""
+    pairs = [[0, 1], [1, 2], [2, 0], [1, 3], [2, 3], [3, 4], [4, 5], [5, 6], [6, 7], [7, 8], [8, 5], [8, 9], [10, 11]]
+    assert loops(12, pairs) == (3, 8)
+    assert loops(12, pairs[5:6]) == (0, 0) and loops(3, []) == (0, 0)
+
+
+def test_the_critical_velocity_and_its_interval():
+    rows = [(v, seed, 1 - v / 80 + 0.02 * (seed - 2)) for v in (10.0, 20.0, 50.0) for seed in (1, 2, 3)]
+    table = pandas.DataFrame(rows, columns=["velocity", "packing_seed", "largest"])
+    found = critical_velocity(table)
+    assert found.velocity == pytest.approx(40.0) and found.low < 40 < found.high < 50 and found.seeds == 3
+    early = critical_velocity(table[table.velocity < 30])
+    assert early.velocity == early.low == early.high == np.inf and early.highest == 20
+    assert critical_velocity(table[table.velocity < 15]) is None
 
 
 def test_runs_with_another_law_are_points_of_their_own(tmp_path):
@@ -143,6 +198,7 @@ def test_runs_with_another_law_are_points_of_their_own(tmp_path):
     assert sorted((point.cut, point.sliding_factor) for point in results.points) == [(0, 2.0), (1, 1.0), (1, 2.0)]
     assert len(results.main()) == len(results.runs()) == len(results.sintered()) == 1
     assert len(list(remarks(results))) == 3  # of both others, and no fit
+    assert results.fits == {(1, 0.0): {}}
 
 
 def test_the_chain_model_of_points(runs):
@@ -168,9 +224,14 @@ def test_comparison_and_figures(runs, tmp_path, capsys):
     assert lines["fraction that bounces, V_g = 3 m/s, beta = 0.7, 3 m/s"]["ours"] == 1.0
     assert lines["rolling friction takes, unsintered, 10 m/s"]["ours"] == pytest.approx(0.4)
     assert point_of(answer, 0.0, 10.0)["largest"][0] == 1.0
-    assert lines["kinetic and elastic at the end, beta = 0.5, 10 m/s"]["ours"] == pytest.approx(0.5)
+    assert lines["kinetic and elastic after 5000 periods, beta = 0.5, 10 m/s"]["ours"] == pytest.approx(0.5)
+    assert lines["kinetic and elastic after 1250 periods, beta = 0.5, 10 m/s"]["ours"] == pytest.approx(0.8)
     assert lines["necks broken by rolling, in the plane"]["ours"] == pytest.approx(7 / 8, abs=0.02)
-    assert lines["exponent, in the plane"]["paper"] == 0.97
+    assert "Fisher's exact p = 1" in bounce["note"]
+    assert lines["mean largest piece is half, unsintered, in the plane"]["ours"] is None
+    assert lines["R_g/R of the largest piece, beta = 0.7 less unsintered, 30 m/s"]["ours"] == pytest.approx(0)
+    fits = [s for s in answer["sections"] if s["heading"].startswith("broken necks, N_cut")][0]["rows"]
+    assert fits[0]["selection"] == OWN and fits[0]["means_exponent"][0] == pytest.approx(EXPONENT, abs=0.04)
     drawn = {file.name for file in (tmp_path / "out").glob("*.png")}
     figures = {"fig06_contacts", "fig08_velocity", "fig11_beta", "fig12_fragments", "fig13_compacted", "fig14_energy"}
     assert {f"{name}.png" for name in figures | {"fig15_necks", "fig17_chains", "modes", "fig07_snapshots"}} <= drawn

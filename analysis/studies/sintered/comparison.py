@@ -4,12 +4,12 @@ from ...report.beside_paper import section_of_lines
 from ...report.section import Section
 from .lines import compare
 from .results import LAW
-from .tables import bouncing_section, necks_section, points_section
+from .tables import bouncing_section, energy_section, fits_section, necks_section, points_section
 
 LEGEND = (
-    "error: standard error of the mean over seeds, each another pair of aggregates; -: one seed only.",
-    "The paper has five runs a point, draws their standard deviations and prints few numbers: where it prints a statement, the "
-    "note says whether our mean is within it.",
+    "error: standard error of the mean over seeds, each another pair of aggregates; -: one seed only. Error bars of figures are these too.",
+    "The paper has five runs a point, draws their standard deviations (2.2 times a standard error) and prints few numbers: where it prints "
+    "a statement, the note says whether our mean is within it.",
     "In brackets after a probability: Wilson's 95 % interval.",
 )
 
@@ -19,7 +19,8 @@ def sections(results):
     for heading, lines, notes in compare(results):
         if lines:
             yield section_of_lines(heading, lines, notes)
-    for section in (points_section(results), necks_section(results), bouncing_section(results)):
+    for make in (fits_section, points_section, necks_section, energy_section, bouncing_section):
+        section = make(results)
         if section is not None:
             yield section
     yield Section("how to read the tables", notes=LEGEND)
@@ -37,7 +38,7 @@ def remarks(results):
     softer = int((table.sliding_factor != LAW["sliding_factor"]).sum())
     if softer:
         yield f"{softer} runs have another sliding spring than S17's eqs 11 and 12 as printed: points of their own"
-    for (planar, drag), fit in results.fits.items():
-        if fit is None and not drag:
+    for (planar, drag), laws in results.fits.items():
+        if not laws and not drag:
             where = "in the plane" if planar else "in space"
             yield f"no fit of broken necks {where}: fewer than two energies with broken necks"

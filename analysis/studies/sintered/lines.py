@@ -1,14 +1,19 @@
-"""Our numbers beside S17's, as lines of tables, each group with what it can and cannot tell."""
+"""Our numbers beside S17's, as lines of tables, each group with what it can and cannot tell: what becomes of the aggregates."""
+
+from scipy.stats import fisher_exact
 
 from ...report.beside_paper import Line
-from ...runs.format import BROKEN_BONDS
 from ...statistics import mean_and_error, student_chance, wilson
 from . import paper
+from .energy_lines import broken, energy
+from .words import beside, beside_limits, limits, name_of, probability
+
+NO_ERRORS = "The paper prints no errors: diff* and p take its mean of five runs to scatter as ours. In diff it is taken as exact."
 
 
 def compare(results):
     """Yields (heading, [Line], (notes)) of results.Results."""
-    for group in (_efficiency, _bounces, _compacted, _energy, _broken, _fit):
+    for group in (_efficiency, _growth, _gyration, _bounces, _loops, _compacted, energy, broken):
         yield group(results)
 
 
@@ -17,62 +22,93 @@ def _bcca(results, neck, velocity):
     return found[0] if found else None
 
 
-def _name(point):
-    beta = f"beta = {point.neck:g}" if point.neck else "unsintered"
-    grown = f"V_g = {point.growth_velocity:g} m/s, " if point.growth_velocity else ""
-    return f"{grown}{beta}, {point.velocity:.3g} m/s"
-
-
-def probability(successes, trials):
-    """'3 of 10 (0.11 to 0.60)', with Wilson's interval.
-
-    >>> probability(0, 10)
-    '0 of 10 (0.00 to 0.28)'
-    """
-    low, high = wilson(successes, trials)
-    return f"{successes} of {trials} ({low:.2f} to {high:.2f})"
-
-
-def within(mean, error, least, most):
-    """Whether a mean is between limits (None: open), and if not how far off: in words.
-
-    >>> within(0.8, 0.1, 0.9, 1.0), within(0.95, None, 0.9, 1.0)
-    ('outside it by 1.0 errors', 'within it')
-    """
-    off = max((least - mean) if least is not None else 0.0, (mean - most) if most is not None else 0.0, 0.0)
-    if off == 0.0:
-        return "within it"
-    return f"outside it by {off / error:.1f} errors" if error else f"outside it by {off:.3g}"
-
-
-def _limits(least, most):
-    if least is None:
-        return f"at most {most:g}"
-    return f"{least:g} to {most:g}"
-
-
 def _efficiency(results):
     lines = []
     for neck, velocity, least, most, said in paper.STICKING_EFFICIENCY:
         point = _bcca(results, neck, velocity)
         if point is not None:
             mean, error = point.means["largest"]
-            note = (
-                f"paper: {said}, read as {_limits(least, most)}: {within(mean, error, least, most)}; {point.runs} seeds"
-            )
-            lines.append(Line(f"sticking efficiency, {_name(point)}", "", mean, error, note=note))
-    falls = results.paired("largest", {"neck": 0.4, "velocity": 30.0}, {"neck": 0.5, "velocity": 30.0})
-    if len(falls):
-        mean, error = mean_and_error(falls)
-        note = f"paper: decreases (Fig. 11); seed by seed, {len(falls)} seeds"
-        if error:
-            note += f", p = {student_chance(mean / error, len(falls) - 1):.2g} that there is none"
-        lines.append(Line("fall from beta = 0.4 to 0.5 at 30 m/s", "", mean, error, note=note))
+            stands = beside_limits(mean, error, point.runs, least, most)
+            note = f"paper: {said}, read as {limits(least, most)}: {stands}; {point.runs} seeds"
+            lines.append(Line(f"sticking efficiency, {name_of(point)}", "", mean, error, note=note))
+    for point in results.main(growth_velocity=0.0, neck=0.7):
+        if point.velocity > 1.01 * paper.BROKEN_ABOVE:
+            note = f"paper: above 10 m/s approximately {paper.BROKEN_EFFICIENCY:g} (section 5.2); {point.runs} seeds"
+            quantity = f"sticking efficiency above 10 m/s, {name_of(point)}"
+            lines.append(beside(quantity, "", point.means["largest"], paper.BROKEN_EFFICIENCY, point.runs, note))
+    lines += _paired(
+        results,
+        "largest",
+        "fall from beta = 0.4 to 0.5 at 30 m/s",
+        *({"neck": neck, "velocity": 30.0} for neck in (0.4, 0.5)),
+        "paper: decreases (Fig. 11)",
+    )
     notes = (
         "Limits are read from words (perfect, close to unity, rupture): a mean outside them by less than its error contradicts "
-        "nothing.",
+        "nothing. p beside a limit takes the limit as exact, though the paper's mean of five runs scatters too.",
+        NO_ERRORS,
     )
-    return "sticking efficiency of BCCA aggregates (Figs 8, 11)", lines, notes
+    return "sticking efficiency of BCCA aggregates (Figs 8, 10, 11)", lines, notes
+
+
+def _paired(results, column, quantity, first, second, said, unit=""):
+    """[Line] of the mean difference of a column between two points of the same seeds; [] without such seeds."""
+    values = results.paired(column, first, second)
+    if not len(values):
+        return []
+    mean, error = mean_and_error(values)
+    note = f"{said}; seed by seed, {len(values)} seeds"
+    if error:
+        note += f", p = {student_chance(mean / error, len(values) - 1):.2g} that there is none"
+    return [Line(quantity, unit, mean, error, note=note)]
+
+
+def _growth(results):
+    lines = []
+    for (planar, neck), found in results.critical.items():
+        if found is None:
+            continue
+        theirs = paper.CRITICAL_VELOCITIES.get(neck) if planar else None
+        reached = found.velocity <= found.highest
+        low, high = (f"{v:.3g}" if v <= found.highest else f"above {found.highest:g}" for v in (found.low, found.high))
+        where = ("unsintered" if not neck else f"beta = {neck:g}") + (", in the plane" if planar else ", in space")
+        note = f"95 %: {low} to {high} m/s; {found.seeds} seeds" + (
+            "" if reached else f"; not reached at {found.highest:g}"
+        )
+        lines.append(
+            Line(
+                f"mean largest piece is half, {where}",
+                "m/s",
+                found.velocity if reached else None,
+                None,
+                theirs,
+                note=note,
+            )
+        )
+    notes = (
+        "The paper's critical velocities for growth, 50 and 20 m/s (abstract), are read alike, as the velocity at which the mean "
+        "sticking efficiency falls below one half; ours is even between the two velocities about it, and nothing is known above the "
+        "fastest.",
+    )
+    return "critical velocity for growth of BCCA aggregates (abstract)", lines, notes
+
+
+def _gyration(results):
+    lines = []
+    for other in (0.0, 0.2):
+        name = f"beta = {other:g}" if other else "unsintered"
+        for velocity in (paper.SLOW, 15.0, 20.0, 30.0, 50.0):
+            said = "paper: above 0" if velocity < 10 else "paper: below 0"
+            if velocity < 10 and other:
+                said = "paper: says nothing"
+            points = ({"neck": neck, "velocity": velocity} for neck in (0.7, other))
+            quantity = f"R_g/R of the largest piece, beta = 0.7 less {name}, {velocity:.3g} m/s"
+            lines += _paired(results, "gyration_radius", quantity, *points, f"{said} (Fig. 8)")
+    notes = (
+        "The paper: unsintered aggregates are the smallest below 10 m/s, those of beta = 0.7 above, because of fragmentation "
+        "(section 5.1).",
+    )
+    return "gyration radius of BCCA aggregates (Fig. 8)", lines, notes
 
 
 def _bounces(results):
@@ -81,16 +117,40 @@ def _bounces(results):
     if point is not None:
         bounced, runs = paper.BOUNCES
         low, high = wilson(bounced, runs)
+        chance = fisher_exact([[bounced, runs - bounced], [point.bouncing, point.runs - point.bouncing]])[1]
         note = (
             f"ours {probability(point.bouncing, point.runs)}, paper {probability(bounced, runs)}: 2 of 5 alone allows {low:.2f} to "
-            f"{high:.2f}"
+            f"{high:.2f}; Fisher's exact p = {chance:.2g}"
         )
         lines.append(_fraction("bounces", point, point.bouncing, bounced / runs, note))
     point = _bcca(results, 0.7, paper.SLOW)
     if point is not None:
         note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
         lines.append(_fraction("sticks", point, point.sticking, 1.0, note))
-    return "bouncing of BCCA aggregates (section 5.1)", lines, ()
+    notes = (
+        "Bouncing is two large pieces, each of one aggregate to nine tenths (measures.outcome): separation at the new contacts, as "
+        "in section 5.4. Parts torn off at sintered necks, and merged bodies that break, are fragments.",
+    )
+    return "bouncing of BCCA aggregates (section 5.1)", lines, notes
+
+
+def _loops(results):
+    lines = []
+    point = _bcca(results, 0.7, 10.0)
+    if point is not None and point.means["loops_at_start"] is not None:
+        mean, error = point.means["loops_at_start"]
+        note = "both aggregates together; paper: no loops in a BCCA aggregate (section 5.4)"
+        lines.append(Line("independent loops at the start", "", mean, error, note=note))
+        for name, words in (("loop_size", "all loops"), ("new_loop_size", "without those of the start")):
+            if point.means[name] is not None:
+                quantity = f"grains in loops over loops at the end, {words}, {name_of(point)}"
+                lines.append(beside(quantity, "", point.means[name], paper.LOOP_SIZE, point.runs))
+    notes = (
+        "The paper counts 44 grains in a loop on average and takes half of them, N = 22, for eq. 18; how it finds loops, and when, isn't "
+        "said. Ours: grains on a closed way of contacts, over independent loops (contacts less grains plus pieces). "
+        "Our packings have loops at the start, since grains that end up between 2 R - delta_0 and 2 R apart count as touching.",
+    )
+    return "loops of grains (section 5.4)", lines, notes
 
 
 def _compacted(results):
@@ -111,93 +171,6 @@ def _compacted(results):
     return "compacted aggregates at V_c = V_g (Fig. 13)", lines, notes
 
 
-def _energy(results):
-    lines = []
-    point = _bcca(results, 0.0, 10.0)
-    if point is not None:
-        for name, words, theirs in (
-            ("rolling_friction", "rolling friction takes", paper.ROLLING_FRACTION),
-            ("stretching", "formation and breaking of contacts take", paper.DISCONNECTION_FRACTION),
-        ):
-            lines.append(_part(point, name, words, theirs))
-            mean, error = point.means["rolling_of_lost" if name == "rolling_friction" else "stretching_of_lost"]
-            lines.append(
-                Line("the same, of all that is lost", "", mean, error, theirs, None, words, _freedom(point.runs))
-            )
-    point = _bcca(results, 0.2, 10.0)
-    if point is not None:
-        lines.append(_part(point, "necks", "breaking of necks takes", paper.WEAK_NECK_FRACTION))
-    point = _bcca(results, 0.5, 10.0)
-    if point is not None:
-        (kinetic, first), (elastic, second) = point.means["part_kinetic"], point.means["part_elastic"]
-        error = _together(first, second)
-        lines.append(
-            Line(
-                f"kinetic and elastic at the end, {_name(point)}", "K(0)", kinetic + elastic, error, paper.UNDISSIPATED
-            )
-        )
-    notes = (
-        "The paper says 'approximately' and draws no errors: differences are in units of ours alone. Formation of contacts "
-        "counts as stretching here; the paper names breaking only.",
-        "Contacts that form have a negative potential energy, and what they release is dissipated too: all losses exceed K(0), the "
-        "elastic part is negative. The paper's parts add up to K(0); it doesn't say how it counts the potential.",
-    )
-    return "where the energy goes at 10 m/s (Fig. 14)", lines, notes
-
-
-def _part(point, name, words, theirs):
-    mean, error = point.means[f"part_{name}"]
-    return Line(
-        f"{words}, {_name(point)}", "K(0)", mean, error, theirs, None, f"{point.runs} seeds", _freedom(point.runs)
-    )
-
-
 def _fraction(what, point, number, theirs, note):
     """Of the runs of a point, those that do what is said."""
-    return Line(f"fraction that {what}, {_name(point)}", "", number / point.runs, None, theirs, None, note)
-
-
-def _together(first, second):
-    """Error of a sum or difference of two independent means; None where either is not known."""
-    return None if first is None or second is None else (first**2 + second**2) ** 0.5
-
-
-def _freedom(runs):
-    return runs - 1 if runs > 1 else None
-
-
-def _broken(results):
-    lines = []
-    for planar in (1, 0):
-        runs = results.sintered(planar=planar)
-        broken = runs[list(BROKEN_BONDS)].sum()
-        total = int(broken.sum())
-        if not total:
-            continue
-        others = ", ".join(f"{n.removeprefix('brokenBy').lower()} {broken[n] / total:.1%}" for n in BROKEN_BONDS)
-        where = "in the plane" if planar else "in space"
-        note = f"{total} necks of {len(runs)} runs: {others}"
-        if planar:
-            note += f"; paper: more than {paper.BY_ROLLING:.0%}"
-        lines.append(Line(f"necks broken by rolling, {where}", "", broken["brokenByRolling"] / total, None, note=note))
-    notes = ("All runs together, as the paper has it; by point in the table of broken necks.",)
-    return "which mode breaks necks (section 5.3)", lines, notes
-
-
-def _fit(results):
-    lines = []
-    for (planar, drag), fit in results.fits.items():
-        if fit is None:
-            continue
-        where = ("in the plane" if planar else "in space") + (f", T_vis = {drag * 1e12:.3g} ps" if drag else "")
-        known = planar and not drag
-        note = f"{fit.runs} runs, {fit.points} points"
-        amplitude, exponent = paper.FIT if known else (None, None)
-        lines.append(Line(f"amplitude, {where}", "", fit.amplitude, fit.amplitude_error, amplitude, None, note))
-        lines.append(Line(f"exponent, {where}", "", fit.exponent, fit.exponent_error, exponent, None, note))
-    notes = (
-        "Least squares of the logarithms of the points' means, without BCCA aggregates of beta = 0.2, as in the paper; errors "
-        "from resampling seeds, the same in all points. Amplitude and exponent are correlated.",
-        "Runs in which no neck broke have no logarithm and are left out; where they are many, the fit is too high at that end.",
-    )
-    return "broken necks, N_cut/N_t = amplitude (E_k/E_sint)^exponent (Fig. 15)", lines, notes
+    return Line(f"fraction that {what}, {name_of(point)}", "", number / point.runs, None, theirs, None, note)

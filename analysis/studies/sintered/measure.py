@@ -1,6 +1,6 @@
 """One row of numbers for each collision."""
 
-from math import pi
+from math import nan, pi
 
 import numpy as np
 
@@ -9,10 +9,12 @@ from ...measures.ledger import closure, initial_kinetic_energy
 from ...measures.of_run import derived_constants, met
 from ...runs.format import BROKEN_BONDS
 from ...runs.table import Column
-from ...theory.chains import breaking_energy
+from ...theory.chains import breaking_energy, stretching_period
+from ...theory.pair_constants import ICE, pair_constants
 from ..collision_points import OUTCOME_COLUMNS, outcome_values
 from ..definition import NotMeasured
 from . import paper
+from .loops import loops
 
 # The parts of Fig. 14: {column: (channels)}. What is left moves or is stored in contacts (elastic).
 PARTS = {
@@ -24,6 +26,10 @@ PARTS = {
     "necks": ("bondBreaking",),
     "drag": ("drag",),
 }
+# Times at which energies are measured beside the end, in periods of the stretching vibration: the paper doesn't print that of Fig. 14.
+TIMES = (1250, 2500, 5000, 10_000, 20_000)
+REACHED = 0.99  # a run has got to a time if it has this part of it
+EARLY = 5000  # the one at which every part is measured
 LOST = ("rolling_friction", "sliding_friction", "stretching", "necks", "drag")
 LABELS = {
     "kinetic": "kinetic",
@@ -64,6 +70,20 @@ COLUMNS = (
         Column(f"part_{name}", "K(0)", f"{LABELS[name]}: change from the start (kinetic: what is left)")
         for name in PARTS
     ),
+    *(
+        Column(f"left_{n}", "K(0)", f"kinetic and elastic energy after {n} periods", gaps=True, absent=nan)
+        for n in TIMES
+    ),
+    *(
+        Column(f"part_{name}_{EARLY}", "K(0)", f"{LABELS[name]} after {EARLY} periods", gaps=True, absent=nan)
+        for name in PARTS
+    ),
+    Column(
+        "loops_at_start", "", "independent loops of contacts in both aggregates at the start", gaps=True, absent=nan
+    ),
+    Column("loops", "", "the same at the end", gaps=True, absent=nan),
+    Column("loop_grains_at_start", "", "grains in loops at the start", gaps=True, absent=nan),
+    Column("loop_grains", "", "the same at the end", gaps=True, absent=nan),
     Column("ended_by", "", "whether the run ended before its duration, because nothing could meet or break", kind="b"),
     Column("closure", "", "largest error of the energy ledger over K(0)"),
     Column("time", "s", "time at the end"),
@@ -106,6 +126,9 @@ def measure(run):
         "necks_at_start": int(np.count_nonzero(start.contact_bonded)),
         **{name: int(history[name][-1]) if name in history else 0 for name in BROKEN_BONDS},
         **partition(history),
+        **partition_in_time(history, stretching_period(pair_constants(ICE, radius))),
+        **dict(zip(("loops_at_start", "loop_grains_at_start"), loops(grains, start.contact_pairs))),
+        **dict(zip(("loops", "loop_grains"), loops(grains, end.contact_pairs))),
         "ended_by": bool(history["time"][-1] < 0.999 * float(parameters["duration"])),
         "closure": closure(history),
         "time": float(history["time"][-1]),
@@ -148,11 +171,24 @@ def energy_ratio(neck, velocity, grainRadius, density, surfaceEnergy):
     return 0.25 * mass * velocity**2 / breaking_energy(neck, grainRadius, surfaceEnergy)
 
 
-def partition(history):
-    """{part_NAME: value} of PARTS, changes over K(0); they add up to 1 for an exact ledger."""
+def partition(history, row=-1):
+    """{part_NAME: value} of PARTS at a row of the history, changes over K(0); they add up to 1 for an exact ledger."""
     unit = initial_kinetic_energy(history)
     found = {}
     for name, channels in PARTS.items():
-        change = sum(history[c][-1] - history[c][0] for c in channels) / unit
+        change = sum(history[c][row] - history[c][0] for c in channels) / unit
         found[f"part_{name}"] = float(change + (name == "kinetic"))
+    return found
+
+
+def partition_in_time(history, period):
+    """{column: value} of the energies after TIMES periods [s], and of every part after EARLY; NaN where the run is not that
+    long."""
+    time, found = history["time"], {}
+    for number in TIMES:
+        reached = time[-1] >= REACHED * number * period
+        parts = partition(history, int(np.argmin(np.abs(time - number * period))))
+        found[f"left_{number}"] = parts["part_kinetic"] + parts["part_elastic"] if reached else nan
+        if number == EARLY:
+            found.update({f"{name}_{EARLY}": value if reached else nan for name, value in parts.items()})
     return found

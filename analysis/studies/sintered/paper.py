@@ -14,23 +14,28 @@ STICKING_EFFICIENCY = (
     (0.0, 50.0, 0.5, 1.0, "growth, more than 0.5 (Fig. 8)"),
     (0.7, SLOW, 0.95, 1.0, "sticking at <= 3.2 m/s (section 5.1)"),
     (0.7, 15.0, None, 0.9, "substantial disruption (Fig. 8)"),
-    (0.7, 20.0, 0.0, 0.5, "critical velocity for growth 20 m/s (abstract)"),
     (0.7, 30.0, 0.0, 0.5, "total rupture (Fig. 7)"),
     (0.2, 30.0, 0.5, 1.0, "almost as unsintered (section 5.1)"),
     (0.4, 30.0, 0.5, 1.0, "growth for beta <= 0.4 (section 5.3)"),
     (0.5, 30.0, 0.0, 0.5, "no growth above beta = 0.5 (section 5.3)"),
 )
+# V_c [m/s] above which beta = 0.7 has this efficiency, "approximately" (section 5.2, for V_g = 0 and 1 m/s).
+BROKEN_ABOVE, BROKEN_EFFICIENCY = 10.0, 0.2
+CRITICAL_VELOCITIES = {0.0: 50.0, 0.7: 20.0}  # for growth, m/s, by beta (abstract)
 BOUNCES = (2, 5)  # bounced, runs: beta = 0.7, 10 m/s (section 5.4)
 # V_g = V_c [m/s], least beta at which only bouncing is seen (None: sticking at all), xi_crit = 2 Angstrom: section 5.3, Fig. 13.
 COMPACTED = ((1.0, None), (3.0, 0.3), (5.0, 0.3))
 
 ROLLING_FRACTION = 0.8  # of K(0), unsintered at 10 m/s (Fig. 14)
 DISCONNECTION_FRACTION = 0.2  # of K(0), by breaking unsintered necks through stretching, there (Fig. 14)
-WEAK_NECK_FRACTION = 0.2  # of K(0), by breaking necks of beta = 0.2 through rolling at 10 m/s (Fig. 14)
-UNDISSIPATED = 0.4  # of K(0): kinetic and elastic energy at beta = 0.5, 10 m/s (section 5.3)
+WEAK_NECK_FRACTION = 0.2  # of "the kinetic energy", by breaking necks of beta = 0.2 through rolling at 10 m/s (Fig. 14)
+UNDISSIPATED = (
+    0.4  # of K(0): kinetic and elastic energy at beta = 0.5, 10 m/s, at a time that isn't printed (section 5.3)
+)
 BY_ROLLING = 0.9  # of the broken necks, at least (section 5.3)
 FIT = (3.7e-2, 0.97)  # N_cut/N_t = c (E_k/E_sint)^p, without BCCA aggregates of beta = 0.2 (Fig. 15)
 CONTACTS = {0.0: 2.0}  # a grain: "approximately two at low V_g and three at high V_g" (Fig. 6)
 FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
+LOOP_SIZE = 44  # grains in a loop of BCCA aggregates, beta = 0.7, 10 m/s, on average (section 5.4)
 LOOP_GRAINS = 22  # N of eq 18 in a BCCA aggregate that has formed loops (section 5.4)
 BASE = 100  # L of a BCCA aggregate's chains in grain radii (section 5.4)

@@ -1,4 +1,4 @@
-"""All results of a set of runs: points with their statistics, the fit of broken necks."""
+"""All results of a set of runs: points with their statistics, fits of broken necks, critical velocities for growth."""
 
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -9,14 +9,19 @@ import pandas
 
 from ...measures.outcome import BOUNCING, STICKING, UNDECIDED
 from ...runs.format import BROKEN_BONDS
-from ...statistics import mean_and_error, pair_weights, resampling_error, stretch
-from .measure import LOST, PARTS
+from ...statistics import mean_and_error
+from ...theory.chains import stretching_period
+from ...theory.pair_constants import ICE, pair_constants
+from . import fits, paper
+from .growth import critical_velocity
+from .measure import EARLY, LOST, PARTS, REACHED, TIMES
 
 # What tells points apart; every run of a point has another seed.
 POINT = (
     *("planar", "criticalRolling", "viscoelasticTime", "cut", "sliding_factor"),
     *("growth_velocity", "neck", "velocity"),
 )
+IN_TIME = (*(f"left_{number}" for number in TIMES), *(f"part_{name}_{EARLY}" for name in PARTS))
 MEANS = (
     "contacts",
     "initial_radius",
@@ -25,18 +30,22 @@ MEANS = (
     "fragments",
     "gyration_radius",
     "cut_per_grain",
+    "cut_energy",
     "by_rolling",
     "rolling_of_lost",
     "stretching_of_lost",
     *(f"part_{name}" for name in PARTS),
+    *IN_TIME,
+    *("loops_at_start", "loops", "loop_size", "new_loop_size"),
 )
 
 
 @dataclass(frozen=True)
 class Point:
     """The runs of one parameter set: those of POINT as attributes, energy_ratio (NaN: unsintered), runs (their number),
-    means {name: (mean, standard error or None)} of MEANS (by_rolling: over runs in which necks broke; None without any; X_of_lost:
-    fraction of all that was dissipated),
+    means {name: (mean, standard error or None)} of MEANS (by_rolling: over runs in which necks broke; cut_energy: N_cut E_sint
+    over K(0); X_of_lost: fraction of all that was dissipated; X_N: after N periods, or at the end of runs in
+    which nothing could meet or break any more before, None unless all have it),
     outcomes {kind: number}, grown (runs in which the largest piece has more than half the mass)."""
 
     planar: int
@@ -69,26 +78,16 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Fit:
-    """N_cut/N_t = amplitude (E_k/E_sint)^exponent through runs, with standard errors (None: too few seeds) and the number of
-    runs and of points."""
-
-    amplitude: float
-    exponent: float
-    amplitude_error: float
-    exponent_error: float
-    runs: int
-    points: int
-
-
-@dataclass(frozen=True)
 class Results:
-    """table (a row a run, measure.COLUMNS), points ([Point], sorted), fits ({(planar, T_vis): Fit or None} of the runs with
-    xi_crit = 2 Angstrom and S17's LAW)."""
+    """table (a row a run, measure.COLUMNS), points ([Point], sorted), fits ({(planar, T_vis): {selection of
+    fits.SELECTIONS: fits.Fit}}), critical ({(planar, beta): growth.Critical or None} of BCCA aggregates without drag, for the
+    paper's beta), both of the
+    runs with xi_crit = 2 Angstrom and S17's LAW."""
 
     table: pandas.DataFrame
     points: tuple
     fits: Mapping
+    critical: Mapping
 
     def select(self, **values):
         """[Point] with these attributes, to a relative 2e-3 (velocities are printed so)."""
@@ -110,7 +109,7 @@ class Results:
     def paired(self, column, first, second):
         """Values (n,) of a column in the BCCA runs() with `first` {column: value} less those with `second`, seed by seed: n seeds
         that both have."""
-        chosen = [self.runs(growth_velocity=0.0, **values) for values in (first, second)]
+        chosen = [self.runs(**{"growth_velocity": 0.0, **values}) for values in (first, second)]
         values = [runs.groupby("packing_seed")[column].mean() for runs in chosen]
         return (values[0] - values[1]).dropna().to_numpy()
 
@@ -137,27 +136,55 @@ def runs_with(table, **values):
 def make_results(table):
     """Results of a table of runs (measure.COLUMNS), at least one."""
     table = table.assign(broken=table[list(BROKEN_BONDS)].sum(axis=1))
+    table = _with_ended(table)
     lost = sum(table[f"part_{name}"] for name in LOST)
+    new_loops = table.loops - table.loops_at_start
     table = table.assign(
         cut_per_grain=table.broken / table.grains,
+        # K(0) is half an E_k = m V_c^2/4 a grain
+        cut_energy=2 * table.broken / table.grains / table.energy_ratio,
         rolling_of_lost=table.part_rolling_friction / lost,
         stretching_of_lost=table.part_stretching / lost,
         by_rolling=table.brokenByRolling / table.broken.where(table.broken > 0),
+        loop_size=table.loop_grains / table.loops.where(table.loops > 0),
+        new_loop_size=(table.loop_grains - table.loop_grains_at_start) / new_loops.where(new_loops > 0),
     )
     keys = [table[name].map(lambda value: float(f"{value:.6g}")) for name in POINT]
     points = tuple(_point(key, runs) for key, runs in table.groupby(keys))
-    fits = {}
+    laws = {}
     for planar, drag in sorted({(p.planar, p.viscoelasticTime) for p in points}):
-        fits[planar, drag] = fit_broken(runs_with(table, **{**MAIN, "planar": planar, "viscoelasticTime": drag}))
-    return Results(table, points, MappingProxyType(fits))
+        runs = runs_with(table, **{**MAIN, "planar": planar, "viscoelasticTime": drag})
+        laws[planar, drag] = fits.fit_all(runs[runs.neck > 0], POINT)
+    critical = {}
+    for planar, neck in sorted(
+        {(p.planar, p.neck) for p in points if p.neck in paper.CRITICAL_VELOCITIES}, reverse=True
+    ):
+        critical[planar, neck] = critical_velocity(
+            runs_with(table, **{**MAIN, "planar": planar, "neck": neck, "growth_velocity": 0.0})
+        )
+    return Results(table, points, MappingProxyType(laws), MappingProxyType(critical))
+
+
+def _with_ended(table):
+    """The table with the end's energies at the times that come after the end of runs in which nothing could meet or break any more."""
+    filled = {}
+    period = table.grain_radius.map(lambda radius: stretching_period(pair_constants(ICE, radius)))
+    for number in TIMES:
+        over = table.ended_by & (table.time < REACHED * number * period)
+        columns = {f"left_{number}": table.part_kinetic + table.part_elastic}
+        if number == EARLY:
+            columns.update({f"part_{name}_{EARLY}": table[f"part_{name}"] for name in PARTS})
+        filled.update({name: table[name].where(~over, last) for name, last in columns.items()})
+    return table.assign(**filled)
 
 
 def _point(key, runs):
     means = {}
     for name in MEANS:
         values = runs[name].to_numpy(dtype=float)
-        values = values[np.isfinite(values)]
-        means[name] = mean_and_error(values) if len(values) else None
+        known = values[np.isfinite(values)]
+        enough = len(known) == len(values) if name in IN_TIME else len(known)
+        means[name] = mean_and_error(known) if enough else None
     return Point(
         *(int(v) if n in ("planar", "cut") else v for n, v in zip(POINT, key)),
         float(runs.energy_ratio.iloc[0]),
@@ -166,45 +193,3 @@ def _point(key, runs):
         MappingProxyType(runs.outcome.value_counts().to_dict()),
         int((runs.largest > 0.5).sum()),
     )
-
-
-def is_fitted(table):
-    """Which runs (mask) the paper's fit is of: sintered, but not BCCA aggregates of beta = 0.2, with necks broken."""
-    weak = (table.growth_velocity == 0) & (table.neck < 0.25)
-    return (table.neck > 0) & ~weak & (table.broken > 0)
-
-
-def fit_broken(table):
-    """Fit of a table of runs (with `broken`), least squares of the logarithms of the points' means as in the paper; errors
-    from resampling seeds, each with all its runs. None for fewer than two energy ratios."""
-    table = table[is_fitted(table)]
-    ratios = np.array([float(f"{r:.4g}") for r in table.energy_ratio])
-    if len(np.unique(ratios)) < 2:
-        return None
-    group = table.groupby([*POINT, "energy_ratio"]).ngroup().to_numpy()
-    x, y = np.log(table.energy_ratio.to_numpy()), table.cut_per_grain.to_numpy()
-    slope, height = _line(x, y, group, np.ones((1, len(y))))
-    seeds = table.packing_seed.to_numpy()
-    errors = (None, None)
-    if len(np.unique(seeds)) > 2:
-        drawn = _line(x, y, group, pair_weights(seeds))
-        widen = stretch(len(np.unique(seeds)), 2)
-        errors = [resampling_error(values) * widen for values in (np.exp(drawn[1]), drawn[0])]
-    return Fit(float(np.exp(height[0])), float(slope[0]), *errors, len(table), len(np.unique(group)))
-
-
-def _line(x, y, group, weights):
-    """(slope, height) (B,) of ln <y> against x, one point a group (weighted mean of y), for weights (B, n)."""
-    names = np.unique(group)
-    where = np.array([x[group == name][0] for name in names])
-    mean = np.stack(
-        [(weights[:, group == n] @ y[group == n]) / weights[:, group == n].sum(axis=1) for n in names], axis=1
-    )
-    slope, height = np.polyfit(where, np.log(mean).T, 1)
-    return slope, height
-
-
-def fit_curve(fit, ratios):
-    """N_cut/N_t of a Fit, or of paper.FIT, at E_k/E_sint."""
-    amplitude, exponent = (fit.amplitude, fit.exponent) if isinstance(fit, Fit) else fit
-    return amplitude * np.asarray(ratios, dtype=float) ** exponent

@@ -141,10 +141,32 @@ def contacts(results):
 
 
 FIGURES = (
-    StudyFigure("fig06_contacts", "S17 Fig. 6: contacts a grain of the aggregates, against V_g.", contacts),
-    StudyFigure("fig08_velocity", "S17 Fig. 8: sticking efficiency and gyration radius against velocity.", of_velocity),
-    StudyFigure("fig10_growth", "S17 Fig. 10: sticking efficiency of compacted aggregates.", of_growth),
-    StudyFigure("fig11_beta", "S17 Fig. 11: sticking efficiency against beta.", _figure_of_beta("largest")),
-    StudyFigure("fig12_fragments", "S17 Fig. 12: mass in fragments against beta.", _figure_of_beta("fragments")),
-    StudyFigure("fig13_compacted", "S17 Fig. 13: compacted aggregates that collide at V_c = V_g.", compacted),
+    StudyFigure(
+        "fig06_contacts",
+        "S17 Fig. 6: contacts a grain of the aggregates, against V_g. Bars: standard errors.",
+        contacts,
+    ),
+    StudyFigure(
+        "fig08_velocity",
+        "S17 Fig. 8: sticking efficiency and gyration radius against velocity. Bars: standard errors.",
+        of_velocity,
+    ),
+    StudyFigure(
+        "fig10_growth", "S17 Fig. 10: sticking efficiency of compacted aggregates. Bars: standard errors.", of_growth
+    ),
+    StudyFigure(
+        "fig11_beta",
+        "S17 Fig. 11: sticking efficiency against beta. Bars: standard errors.",
+        _figure_of_beta("largest"),
+    ),
+    StudyFigure(
+        "fig12_fragments",
+        "S17 Fig. 12: mass in fragments against beta. Bars: standard errors.",
+        _figure_of_beta("fragments"),
+    ),
+    StudyFigure(
+        "fig13_compacted",
+        "S17 Fig. 13: compacted aggregates that collide at V_c = V_g. Bars: standard errors.",
+        compacted,
+    ),
 )

@@ -7,8 +7,8 @@ from ....runs.format import BROKEN_BONDS
 from ...definition import StudyFigure
 from .. import paper
 from ..bouncing import predicted_ratio
-from ..measure import LABELS, PARTS
-from ..results import fit_curve
+from ..fits import OWN, Law
+from ..measure import EARLY, LABELS, PARTS
 from .common import (
     PAPER,
     beta_label,
@@ -26,21 +26,27 @@ from .common import (
 
 @styled
 def partition(results):
-    """Parts of the energy at the end against beta, BCCA at 10 m/s: Fig. 14."""
+    """Parts of the energy after EARLY periods and at the end against beta, BCCA at 10 m/s: Fig. 14."""
     points = sorted(results.main(growth_velocity=0.0, velocity=10.0), key=lambda p: p.neck)
+    times = {f"_{EARLY}": f"after {EARLY:,} periods", "": "at the end"}
+    times = {ending: when for ending, when in times.items() if any(p.means[f"part_kinetic{ending}"] for p in points)}
     if len(points) < 2:
         return None
-    figure, axes = panels(1, 1, 6.0)
-    for number, name in enumerate(PARTS):
-        if any(abs(p.means[f"part_{name}"][0]) > 1e-3 for p in points):
-            draw_points(
-                axes[0, 0], [p.neck for p in points], points, f"part_{name}", order_colour(number), LABELS[name]
-            )
-    axes[0, 0].set_xlabel(r"$\beta$  (0: unsintered)")
-    axes[0, 0].set_ylabel("fraction of $K(0)$ at the end")
+    figure, axes = panels(1, len(times))
+    for place, (ending, when) in zip(axes[0], times.items()):
+        for number, name in enumerate(PARTS):
+            if any(abs(p.means[f"part_{name}"][0]) > 1e-3 for p in points):
+                necks = [p.neck for p in points]
+                draw_points(place, necks, points, f"part_{name}{ending}", order_colour(number), LABELS[name])
+        place.set_xlabel(r"$\beta$  (0: unsintered)")
+        place.set_ylabel(f"fraction of $K(0)$ {when}")
+        place.set_ylim(*_PARTS_RANGE)
     legend(axes[0, 0], fontsize=8)
     letter(axes, "BCCA, 10 m/s")
     return figure
+
+
+_PARTS_RANGE = (-0.5, 1.3)  # one for all panels
 
 
 def _kinds(results):
@@ -56,7 +62,8 @@ def _kinds(results):
 
 @styled
 def against_energy(results):
-    """Broken necks, mass in fragments and sticking efficiency against E_k/E_sint, with both fits: Fig. 15."""
+    """Broken necks, mass in fragments and sticking efficiency against E_k/E_sint, with S17's fit and ours of
+    its selection: Fig. 15."""
     kinds = _kinds(results)
     if not kinds:
         return None
@@ -73,10 +80,11 @@ def against_energy(results):
     ratios = [p.energy_ratio for _, points in kinds for p in points]
     x = np.geomspace(min(ratios), max(ratios), 50)
     first = axes[0, 0]
-    first.plot(x, fit_curve(paper.FIT, x), "--", color=PAPER, lw=1.2, label="S17's fit")
-    own = results.fits.get((1, 0.0))
+    first.plot(x, Law(*paper.FIT).at(x), "--", color=PAPER, lw=1.2, label="S17's fit")
+    own = results.fits.get((1, 0.0), {}).get(OWN)
     if own is not None:
-        first.plot(x, fit_curve(own, x), "-", color="0.4", lw=1.2, label="ours")
+        x = np.geomspace(own.lowest, own.highest, 50)
+        first.plot(x, own.counts.at(x), "-", color="0.4", lw=1.2, label=r"ours, $\beta$ = 0.7 (counts)")
     first.set_yscale("log")
     legend(first, fontsize=7)
     letter(axes, "")
@@ -155,8 +163,16 @@ def _ratios(place, x, points, colour, label):
 
 
 FIGURES = (
-    StudyFigure("fig14_energy", "S17 Fig. 14: where the energy is at the end, against beta.", partition),
-    StudyFigure("fig15_necks", "S17 Fig. 15: broken necks, fragments, sticking against the energy.", against_energy),
+    StudyFigure(
+        "fig14_energy",
+        "S17 Fig. 14: where the energy is, against beta, at two times. Bars: standard errors.",
+        partition,
+    ),
+    StudyFigure(
+        "fig15_necks",
+        "S17 Fig. 15: broken necks, fragments, sticking against the energy. Bars: standard errors.",
+        against_energy,
+    ),
     StudyFigure("fig17_chains", "S17 Fig. 17: the chain model, and which runs bounced.", chain_model),
     StudyFigure("modes", "Which mode breaks necks, in the plane and in space.", modes),
 )

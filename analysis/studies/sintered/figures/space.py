@@ -32,4 +32,8 @@ def beyond(results):
     return figure
 
 
-FIGURES = (StudyFigure("space", "Sintered BCCA aggregates in the plane, in space and with drag.", beyond),)
+FIGURES = (
+    StudyFigure(
+        "space", "Sintered BCCA aggregates in the plane, in space and with drag. Bars: standard errors.", beyond
+    ),
+)

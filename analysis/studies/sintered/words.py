@@ -1,0 +1,70 @@
+"""What the comparison's lines say in words, and how a printed number stands beside ours."""
+
+import numpy as np
+
+from ...report.beside_paper import Line
+from ...statistics import student_chance, wilson
+from . import paper
+
+
+def name_of(point):
+    """What a results.Point is of: V_g, beta, V_c."""
+    beta = f"beta = {point.neck:g}" if point.neck else "unsintered"
+    grown = f"V_g = {point.growth_velocity:g} m/s, " if point.growth_velocity else ""
+    return f"{grown}{beta}, {point.velocity:.3g} m/s"
+
+
+def probability(successes, trials):
+    """'3 of 10 (0.11 to 0.60)', with Wilson's interval.
+
+    >>> probability(0, 10)
+    '0 of 10 (0.00 to 0.28)'
+    """
+    low, high = wilson(successes, trials)
+    return f"{successes} of {trials} ({low:.2f} to {high:.2f})"
+
+
+def error_of_theirs(error, runs):
+    """Standard error of the paper's mean of paper.RUNS runs, if they scatter as our `runs` whose mean has this error."""
+    return error * (runs / paper.RUNS) ** 0.5
+
+
+def beside_limits(mean, error, runs, least, most):
+    """Whether a mean of `runs` runs is between limits (None: open), and if not how far off, in words. p: Student's, beside the limit
+    as it stands, and where the paper's mean has an error as ours.
+
+    >>> beside_limits(0.8, 0.1, 5, 0.9, 1.0)
+    "outside it by 1.0 errors (p = 0.37; 0.52 if the paper's 5 runs scatter as ours)"
+    >>> beside_limits(0.95, None, 1, 0.9, 1.0), beside_limits(0.8, None, 1, 0.9, 1.0)
+    ('within it', 'outside it by 0.1')
+    """
+    off = max((least - mean) if least is not None else 0.0, (mean - most) if most is not None else 0.0, 0.0)
+    if off == 0.0:
+        return "within it"
+    if not error:
+        return f"outside it by {off:.3g}"
+    alone = student_chance(off / error, runs - 1)
+    both = student_chance(off / np.hypot(error, error_of_theirs(error, runs)), runs - 1)
+    return f"outside it by {off / error:.1f} errors (p = {alone:.2g}; {both:.2g} if the paper's {paper.RUNS} runs scatter as ours)"
+
+
+def limits(least, most):
+    """'at most 0.5', '0.5 to 1'."""
+    return f"at most {most:g}" if least is None else f"{least:g} to {most:g}"
+
+
+def beside(quantity, unit, pair, theirs, runs, note=""):
+    """Line of our (mean, error) of `runs` runs beside a number that the paper prints without error: it is taken to scatter as ours."""
+    mean, error = pair
+    paper_error = error_of_theirs(error, runs) if error else None
+    return Line(
+        quantity,
+        unit,
+        mean,
+        error,
+        theirs,
+        paper_error,
+        note or f"{runs} seeds",
+        runs - 1 if runs > 1 else None,
+        shared=paper_error is not None,
+    )
