@@ -12,8 +12,8 @@
 #             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
 # make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
 #             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
-# make study-sintered  the collisions of Sirono & Ueno (2017), in runs/sintered: seven hours on two cores at most, or
-#             SIZE=full: all of the paper's, a day, in runs/sintered-full. make study-status STUDY=sintered
+# make study-sintered  the collisions of Sirono & Ueno (2017), in runs/sintered: six hours on two cores, or SIZE=full: all of
+#             the paper's, some 20 hours, in runs/sintered-full; SIZE=beyond: what the desk's leave open. make study-status STUDY=sintered
 # make study-compressed  collisions of compressed aggregates beside CPE ones, in runs/compressed: an hour on two cores
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it

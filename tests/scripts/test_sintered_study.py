@@ -25,7 +25,7 @@ def parameters(size):
 
 def test_committed_tables_are_what_the_generator_writes(tmp_path):
     sintered.write_tables(tmp_path)
-    for size in ("desk", "full"):
+    for size in sintered.TABLES:
         name = f"sintered-{size}.table"
         with open(os.path.join(STUDIES, name)) as file:
             assert file.read() == (tmp_path / name).read_text(), f"{name}: run yade_scripts/studies/sintered.py"
@@ -65,8 +65,22 @@ def test_desk_has_ten_seeds_of_what_the_paper_states():
     assert all(p.endWhenApart and p.slidingStiffnessFactor == 2 for p in desk.values())
 
 
+def test_beyond_stands_beside_the_desks_runs():
+    """Every row of beyond differs from a row of desk with the same seed in one thing alone."""
+    beyond, desk = parameters("beyond"), parameters("desk")
+    assert len(beyond) == 180 and not set(beyond) & set(desk)
+    for name, p in beyond.items():
+        if p.packing == "file":
+            assert not p.planar and "space" in p.file and name.replace("-space", "") in desk
+        else:
+            assert name.replace("-held", "").replace("-x30", "") in desk
+            assert (p.limit == "held") != (p.criticalRolling == 30e-10)
+    core_hours = {size: sintered.core_hours(size) for size in sintered.TABLES}
+    assert core_hours == pytest.approx({"desk": 9.9, "full": 38.6, "beyond": 3.6}, rel=0.02)  # those of STUDIES.md
+
+
 def test_grown_files_are_those_that_the_rows_read():
-    for size in ("desk", "full"):
+    for size in sintered.TABLES:
         wanted = {p.file for p in parameters(size).values() if p.file}
         assert wanted == {grown.file(0) for grown in sintered.grown(size)}
 
@@ -78,6 +92,17 @@ def test_a_growth_that_does_not_stick_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr(sintered_growth, "largest_piece_of_run", lambda run: load(run + "-0.npz"))
     with pytest.raises(sintered_growth.PackingError, match="512 grains did not stick at 50 m/s in 5 orientations"):
         sintered_growth.grow(Grown(50.0, 1))
+
+
+def test_aggregates_grow_in_space_too(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sintered_growth, "GRAINS", 32)
+    monkeypatch.setattr(sintered_growth, "START", 16)
+    os.makedirs(sintered_growth.FOLDER)
+    grown = Grown(3.0, 7, planar=0)
+    sintered_growth.grow(grown)
+    packing = load(grown.file(0))
+    assert 29 <= packing.grains <= 32 and np.ptp(packing.position[:, 2]) > 2e-7
 
 
 def test_a_small_table_from_growth_to_report(tmp_path, monkeypatch):

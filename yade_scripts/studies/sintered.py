@@ -1,7 +1,8 @@
 """Writes the tables of the study of Sirono & Ueno (2017, S17): python3 yade_scripts/studies/sintered.py
 
 full has the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper
-has five runs a point. desk is an evening on two cores: the points that decide the paper's statements, ten seeds each. Rows
+has five runs a point. desk is an evening on two cores: the points that decide the paper's statements, ten seeds each. beyond is what the
+desk's runs leave open: compacted aggregates in space, springs that are held at their limits, xi_crit = 30 Angstrom. Rows
 are in the order in which they are worth having: one seed of every point after another.
 
 Compacted aggregates are read from files that sintered_growth.py makes first.
@@ -31,7 +32,7 @@ ROOT = "10**0.5"  # m/s, the paper's 3.2
 @dataclass(frozen=True)
 class Point:
     """One set of parameters: beta (0: unsintered), V_c [m/s] (text), V_g [m/s] (0: BCCA), xi_crit [Angstrom], planar, T_vis
-    [s] (text)."""
+    [s] (text), limit (cut, or held: the rule of Wada et al. 2007)."""
 
     neck: float
     velocity: str
@@ -39,6 +40,7 @@ class Point:
     rolling: float = 2
     planar: int = 1
     drag: str = "0"
+    limit: str = "cut"
 
     def name(self, seed):
         """Of a row and its run folder: b0.7-v10-vg3-s1 and what else is special."""
@@ -47,6 +49,7 @@ class Point:
         parts += [f"x{self.rolling:g}"] if self.rolling != 2 else []
         parts += [] if self.planar else ["space"]
         parts += [f"T{1e12 * float(self.drag):g}ps"] if float(self.drag) else []
+        parts += [self.limit] if self.limit != "cut" else []
         return "-".join([*parts, f"s{seed}"])
 
     def row(self, seed, folder):
@@ -65,7 +68,7 @@ class Point:
             "velocity": self.velocity,
             "criticalRolling": f"{self.rolling:g}e-10",
             "viscoelasticTime": self.drag,
-            "limit": "cut",
+            "limit": self.limit,
             "slidingStiffnessFactor": SLIDING,
             "duration": DURATION if self.velocity == ROOT or float(self.velocity) <= FAST else DURATION_FAST,
             "endWhenApart": 1,
@@ -112,7 +115,16 @@ FULL = unique(
     [Point(n, f"{g:g}", g, 30) for g in GROWTH_30 for n in NECKS],
     SPACE,
 )
-TABLES = {"desk": unique(DESK, SPACE), "full": FULL}
+# What the desk's runs leave open, each beside points of theirs with the same seeds.
+BEYOND = unique(
+    points((0.7,), ("10", "30"), (1, 3, 10), planar=0),
+    [Point(0.7, f"{g}", g, planar=0) for g in (1, 3)],
+    points((0.7,), ("10", "20", "30"), limit="held"),
+    points((0,), ("10", "50"), limit="held"),
+    points((0, 0.4, 0.5, 0.7), ("30",), rolling=30),
+    points((0.7,), ("10",), rolling=30),
+)
+TABLES = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND}
 
 
 def grown(size):
@@ -142,18 +154,32 @@ slide with the spring of eqs 11 and 12 as printed (slidingStiffnessFactor = 2); 
 vibration, 1.22 ns each, is the longest duration, 10,000 above 10 m/s (no largest piece changed later in 21 runs), and
 a run ends earlier when no pieces can meet again; grains in contact at the end are one piece.
 Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/sintered.py."""
-COST = {
-    "desk": "At most 10 core hours (110 s a row of beta = 0.7 to 24.4 us, 50 s unsintered: trial rows beside others on a busy machine), "
-    "and one to grow the aggregates.",
-    "full": "At most 36 core hours by the cost of the desk's rows, and three to grow the aggregates.",
+# Wall time of a row [s]: mean of 160 rows of the desk's BCCA aggregates (3.17 core hours), one thread each, on a busy machine.
+# Compacted aggregates were not measured.
+ROW = 71.3
+GROWTH = {"desk": "one", "full": "three", "beyond": "less than one"}  # core hours to grow the aggregates
+WHICH = {
+    "desk": "A selection.",
+    "full": "All of the paper's.",
+    "beyond": "What the desk's runs leave open: compacted aggregates in space, springs held at the limits (limit = held), xi_crit = "
+    "30 Angstrom.",
 }
 
 
+def core_hours(size):
+    """Of a table's rows, by ROW."""
+    return ROW * len(rows(size)) / 3600
+
+
 def write_tables(folder):
-    """Write sintered-desk.table and sintered-full.table into a folder."""
-    for size, which in (("desk", "A selection."), ("full", "All of the paper's.")):
+    """Write sintered-desk.table, sintered-full.table and sintered-beyond.table into a folder."""
+    for size, which in WHICH.items():
+        cost = (
+            f"Some {core_hours(size):.0f} core hours (71 s a row, the mean of 160 rows of BCCA aggregates on a busy machine), and "
+            f"{GROWTH[size]} to grow the aggregates."
+        )
         path = os.path.join(folder, f"sintered-{size}.table")
-        table.write(path, rows(size), HEAD.format(which=which, cost=COST[size]))
+        table.write(path, rows(size), HEAD.format(which=which, cost=cost))
 
 
 if __name__ == "__main__":
