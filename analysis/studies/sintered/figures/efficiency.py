@@ -41,7 +41,7 @@ def of_velocity(results):
         _against_velocity(place, lines, quantity, neck_colour, beta_label)
     axes[0, 0].axhline(0.5, color="0.7", lw=0.8, zorder=0)
     axes[0, 0].set_ylim(0, 1.05)
-    axes[0, 1].set_yscale("log")
+    axes[0, 1].set_ylim(0, None)
     legend(axes[0, 0])
     letter(axes, "BCCA, 1,024 grains each")
     return figure

@@ -46,7 +46,7 @@ def partition(results):
     return figure
 
 
-_PARTS_RANGE = (-0.5, 1.3)  # one for all panels
+_PARTS_RANGE = (-0.6, 1.25)  # one for both panels
 
 
 def _kinds(results):
