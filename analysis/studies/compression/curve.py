@@ -39,6 +39,13 @@ def windows(time, width):
     return list(zip(starts[:whole], ends[:whole]))
 
 
+def pressures(history):
+    """(filling factors (K,), pressures (K,) [Pa]) between the samples while the cell shrinks, the fillings half-way."""
+    part = compressing(history)
+    filling, size = history["filling"][part], volume(history)[part]
+    return np.sqrt(filling[1:] * filling[:-1]), np.diff(history["boundaryWork"][part]) / np.diff(size)
+
+
 def pressure_over(history, width):
     """(filling factors (K,), pressures (K,) [Pa]) over successive windows of `width` [s] while the cell shrinks (K13
     section 2.4)."""
@@ -69,12 +76,9 @@ def pressure_at(history):
     """Pressure (K,) [Pa] at FILLINGS: the mean, over the time that the cell spends in the bin around each, of the pressure
     over that of T23's formula, times the formula at the filling factor itself, so that the bin's width leaves no bias where
     the pressure rises as the formula does. NaN where the run does not cover the bin."""
-    part = compressing(history)
-    filling, size = history["filling"][part], volume(history)[part]
-    pressure = np.diff(history["boundaryWork"][part]) / np.diff(size)
-    between = np.sqrt(filling[1:] * filling[:-1])
+    between, pressure = pressures(history)
     return compressive_strength_dense(FILLINGS, 1.0) * _binned(
-        filling, between, pressure / compressive_strength_dense(between, 1.0)
+        history["filling"][compressing(history)], between, pressure / compressive_strength_dense(between, 1.0)
     )
 
 
