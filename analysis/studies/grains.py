@@ -5,6 +5,7 @@ from math import isclose
 from ..measures.of_run import derived_constants
 from ..runs.table import Column
 from ..theory import ICE, SILICATE
+from .definition import NotMeasured
 
 COLUMNS = (
     Column("grainRadius", "m", "radius of a grain"),
@@ -53,6 +54,16 @@ def other_grains(parameters):
     all names for a material that they do not have."""
     theirs = PAPERS.get(parameters["material"], {})
     return [n for n in OF_GRAINS if n not in theirs or not isclose(parameters[n], theirs[n], rel_tol=1e-6)]
+
+
+def require_papers_grains(run, but=()):
+    """NotMeasured, with what differs, for a RunFolder of other grains than the papers' of its material, but for the names
+    `but`: a study without grains in its key would take such runs for seeds or duplicates of others."""
+    parameters = {"material": run.parameters["material"], **grain_constants(run)}
+    others = [name for name in other_grains(parameters) if name not in but]
+    if others:
+        values = ", ".join(f"{name} = {parameters[name]:g}" for name in others)
+        raise NotMeasured(f"{run.path}: other grains than the paper's ({values})")
 
 
 def grains_text(parameters, but=()):

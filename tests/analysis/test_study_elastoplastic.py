@@ -268,16 +268,27 @@ def test_what_does_not_belong_is_left_out_with_a_note(runs, tmp_path):
     made_run(tmp_path / "a" / "oblique", 40.0, 3.0, 2, 0.0, impact=0.5)
     made_run(tmp_path / "a" / "good", 40.0, 3.0, 3, 0.0)
     made_run(tmp_path / "b" / "again", 40.0, 3.0, 3, 0.0)
+    made_run(tmp_path / "b" / "cut", 40.0, 3.0, 4, 0.0, limit="cut")
+    other = made_run(tmp_path / "b" / "other", 40.0, 3.0, 5, 0.0)
+    record = json.loads((other / "run.json").read_text())
+    record["derived"]["surfaceEnergy"] = 0.02
+    (other / "run.json").write_text(json.dumps(record))
     done = analyse(tmp_path, "--json")
     assert done.returncode == 0
     notes = done.stderr.splitlines()
-    assert len(notes) == 3 and all(note.endswith("left out") for note in notes)
-    for text in ("late: has not ended", "oblique: impact = 0.5, A24's scene has 0.0", "again: the same filling"):
+    assert len(notes) == 5 and all(note.endswith("left out") for note in notes)
+    for text in (
+        "late: has not ended",
+        "oblique: impact = 0.5, A24's scene has 0.0",
+        "again: the same filling",
+        "cut: springs cut at their limits",
+        "other: other grains than the paper's (surfaceEnergy = 0.02)",
+    ):
         assert text in done.stderr
     answer = json.loads(done.stdout)
     table = analyse(tmp_path, "--format", "csv").stdout.splitlines()
     assert [line.split(",")[0] for line in table if line[0] != "#"] == ["run", "good"] and answer["notes"] == [
-        "3 runs left out (not ended, of another scene, or with nothing to measure)"
+        "5 runs left out (not ended, of another scene, or with nothing to measure)"
     ]
     assert ["only one size" in answer["remarks"][0], "has 3 velocities" in answer["remarks"][1]] == [True, True]
 

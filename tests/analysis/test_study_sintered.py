@@ -1,6 +1,7 @@
 """The study of S17 from made run folders whose answers are known: measured, compared, drawn, and read again from its table."""
 
 import json
+import re
 
 import numpy as np
 import pandas
@@ -11,6 +12,7 @@ from written_runs import MASS, RADIUS, record, state_arrays, write_run
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS, CHANNELS
+from analysis.studies.definition import NotMeasured
 from analysis.studies.sintered import paper
 from analysis.studies.sintered.bouncing import chain_grains, predicted_ratio
 from analysis.studies.sintered.comparison import remarks
@@ -95,6 +97,22 @@ def runs(tmp_path_factory):
         for neck in (0.2, 0.7):
             made_run(folder / f"vg3-b{neck}-s{seed}", 3.0, neck, seed, GRAINS // 2, growth=3.0, broken=0)
     return folder
+
+
+@pytest.mark.parametrize(
+    ("given", "derived", "said"),
+    [
+        ({"grains": 64}, {}, "aggregates of 64 grains, S17's have 1024"),
+        ({}, {"surfaceEnergy": 0.02}, "other grains than the paper's (surfaceEnergy = 0.02)"),
+    ],
+)
+def test_other_aggregates_and_grains_are_left_out(tmp_path, given, derived, said):
+    path = made_run(tmp_path / "run", 10.0, 0.7, 1, **given)
+    about = json.loads((path / "run.json").read_text())
+    about["derived"].update(derived)
+    (path / "run.json").write_text(json.dumps(about))
+    with pytest.raises(NotMeasured, match=re.escape(said)):
+        measure(open_run(path))
 
 
 def test_one_run(runs):

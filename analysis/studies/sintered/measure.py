@@ -13,6 +13,7 @@ from ...theory.chains import breaking_energy, stretching_period
 from ...theory.pair_constants import ICE, pair_constants
 from ..collision_points import OUTCOME_COLUMNS, outcome_values
 from ..definition import NotMeasured
+from ..grains import require_papers_grains
 from . import paper
 from .loops import loops
 
@@ -92,13 +93,17 @@ COLUMNS = (
 
 def measure(run):
     """{column: value} of a RunFolder of S17's scene that has ended. NotMeasured where the aggregates are of
-    another kind or of unlike grains, RunFolderError where something is missing."""
+    another kind, of unlike grains or of other grains than S17's (but for xi_crit and the sliding spring), RunFolderError
+    where something is missing."""
+    require_papers_grains(run, but=("criticalRolling", "slidingStiffnessFactor"))
     start, end, history = run.start, run.last, run.history
     if not np.allclose(start.radius, start.radius[0]):
         raise NotMeasured(f"{run.path}: grains of unlike radii, S17's are equal")
     parameters = run.parameters
     if parameters["packing"] not in PACKINGS:
         raise NotMeasured(f"{run.path}: packing = {parameters['packing']}, S17's are {' and '.join(PACKINGS)}")
+    if parameters["packing"] == "bcca" and parameters.get("grains", paper.GRAINS) != paper.GRAINS:
+        raise NotMeasured(f"{run.path}: aggregates of {parameters['grains']} grains, S17's have {paper.GRAINS}")
     constants = derived_constants(run, {name: name for name in ("grainRadius", "density", "surfaceEnergy")})
     radius, grains = constants["grainRadius"], len(start.radius)
     velocity, neck = float(parameters["velocity"]), float(parameters["neck"])
