@@ -66,7 +66,7 @@ def test_the_table_of_studies_is_that_of_their_tables():
     study, seen = None, set()
     for line in (TOP / "analysis/STUDIES.md").read_text().splitlines():
         cells = [cell.strip() for cell in line.split("|")[1:-1]]
-        if len(cells) != 8 or cells[2] not in ("first", "desk", "full", "beyond"):
+        if len(cells) != 8 or cells[2] not in ("first", "desk", "full", "beyond", "prediction"):
             continue
         study = cells[0].strip("`") or study
         found = rows.read(str(TOP / f"yade_scripts/studies/{study}-{cells[2]}.table"))

@@ -135,7 +135,10 @@ def test_the_viscous_tables_hold_the_papers_runs():
     predicted = [row.parameters for row in rows.read(os.path.join(STUDIES, "viscous-prediction.table"))]
     assert not {p.out for p in predicted} & {p.out for p in full + desk}
     of_size = [p for p in predicted if p.grains == 10_000]
-    assert {round(p.impact**2 * 12, 9) for p in of_size} == set(range(0, 13, 2)) and len(of_size) == 2 * 2 * 4 * 7
+    assert {round(p.impact**2 * 12, 9) for p in of_size} == set(range(13)) and len(of_size) == 2 * 2 * 4 * 13
+    # Every second offset stands before the others, which are the last block.
+    odd = [round(p.impact**2 * 12) % 2 for p in of_size]
+    assert odd == sorted(odd) and sum(odd) == 2 * 2 * 4 * 6 and len(predicted) == len(of_size) + 1
 
 
 def test_the_tables_hold_the_papers_runs():
