@@ -12,15 +12,20 @@ from ...runs.arrays import RunFolderError
 from ...runs.table import Column
 from ...theory import Material, pair_constants, sticking_velocity
 from ..definition import NotMeasured
+from ..grains import PAPERS, grain_constants, grains_text, other_grains
 from . import paper
+from .grid import SAME, offset_of_grid, time_of_grid, velocity_of_grid
 
 # A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
 DISSIPATION = ("rollingDissipation", "slidingDissipation", "twistingDissipation", "connection", "disconnection", "drag")
 
+ENOUGH = 0.9  # of the time that the paper gives its slowest collisions: r_c scatters from pair to pair
+FAST = 10.0  # m/s: A22 section 5.1 counts the pairs beyond
+
 COLUMNS = (
     Column("grains", "", "grains of each aggregate", kind="i"),
-    Column("impact", "", "B_off (A22 eq 27)"),
-    Column("velocity", "m/s", "collision velocity"),
+    Column("impact", "", "B_off (A22 eq 27); (k/12)^(1/2) where the run's is that rounded"),
+    Column("velocity", "m/s", "collision velocity; 10^(0.1 i) m/s where the run's is that rounded"),
     Column("viscoelasticTime", "s", "T_vis"),
     Column("seed", "", "random seed of the pair of aggregates", kind="i"),
     Column("grain_radius", "m", "radius of a grain"),
@@ -41,6 +46,13 @@ COLUMNS = (
         f"largest rms over the states of v_rel of pairs nearer than {NEAR:g} r (50.1 m/s, B_off^2 = 3/12)",
         gaps=True,
     ),
+    Column(
+        "fast_pairs",
+        "",
+        f"the same of the number of such pairs that approach, or that part, faster than {FAST:g} m/s; over N_tot",
+        gaps=True,
+        absent=float("nan"),
+    ),
     Column("closure", "", "largest error of the energy ledger over K(0)"),
     Column("time", "s", "time at the end"),
 )
@@ -48,15 +60,19 @@ COLUMNS = (
 
 def measure(run):
     """{column: value} of a RunFolder of A22's scene that has ended. NotMeasured where the two aggregates are not equally
-    large, RunFolderError where something is missing."""
+    large, the grains are others than A22's or the run is too short for its fragments to be final, RunFolderError where something
+    is missing."""
     start, end, history = run.start, run.last, run.history
     numbers = np.bincount(start.aggregate, minlength=2)
     if numbers[0] != numbers[1]:
         raise NotMeasured(f"{run.path}: aggregates of {numbers[0]} and {numbers[1]} grains, A22's are equal")
+    scene = _scene(run, int(numbers[0]))
+    _require_papers_grains(run)
+    _require_final(run, scene)
     sizes = fragment_sizes(fragment_labels(len(end.radius), end.contact_pairs))
     largest = int(sizes.max())
     return {
-        **_scene(run, int(numbers[0])),
+        **scene,
         "met": met(run),
         "largest": largest,
         "growth": growth_efficiency(largest, int(numbers[0]), int(numbers[1])),
@@ -64,31 +80,58 @@ def measure(run):
         "kinetic_at_start": initial_kinetic_energy(history),
         **{name: float(history[name][-1] - history[name][0]) for name in DISSIPATION},
         **{name: _last(history, name) for name in ("formed", "broken")},
-        "pair_speed": largest_pair_speed(run) if is_reference(run.parameters) else float("nan"),
+        **dict(
+            zip(("pair_speed", "fast_pairs"), largest_of_pairs(run) if is_reference(scene) else (float("nan"),) * 2)
+        ),
         "closure": closure(history),
         "time": float(history["time"][-1]),
     }
 
 
-def is_reference(parameters):
-    """Whether it is the collision that A22 looks at most: 50.1 m/s, B_off^2 = 3/12; parameters: mapping or row."""
-    velocity, impact = parameters["velocity"], parameters["impact"]
-    return abs(velocity / paper.VELOCITY - 1) < 2e-3 and abs(impact**2 - paper.SQUARE) < 1e-3
+def _require_papers_grains(run):
+    """NotMeasured where the grains of a run are not A22's (its Table 1, those of PAPERS)."""
+    grains = {"material": run.parameters.get("material"), **grain_constants(run)}
+    if grains["material"] not in PAPERS or other_grains(grains):
+        raise NotMeasured(f"{run.path}: grains of {grains_text(grains)}, A22's have none of these differences")
 
 
-def largest_pair_speed(run):
-    """Largest root mean square of v_rel [m/s] over the states of a RunFolder (A22 Fig. 12)."""
-    return float(np.nanmax([speed for _, speed in pair_speeds(run)]))
+def _require_final(run, scene):
+    """NotMeasured where a run ended with its duration before the aggregates' centres would have gone as many r_c as in the
+    paper's slowest collisions; runs that ended because nothing could meet any more are final."""
+    time, duration = float(run.history["time"][-1]), run.parameters.get("duration")
+    if duration is None or time < 0.999 * float(duration):
+        return
+    least = ENOUGH * paper.RADII_TRAVELLED * scene["characteristic_radius"] / scene["velocity"]
+    if time < least:
+        raise NotMeasured(
+            f"{run.path}: lasts {time:.3g} s, too short for final fragments: must be {least:.3g} s or more"
+        )
+
+
+def is_reference(row):
+    """Whether it is the collision that A22 looks at most: 50.1 m/s, B_off^2 = 3/12; row: mapping, measured."""
+    return abs(row["velocity"] / paper.VELOCITY - 1) < SAME and abs(row["impact"] ** 2 - paper.SQUARE) < SAME
+
+
+def largest_of_pairs(run):
+    """(largest root mean square of v_rel [m/s], largest number of pairs that approach or part faster than FAST over N_tot) over
+    the states of a RunFolder (A22 Fig. 12, section 5.1)."""
+    values = [own for _, own in _pairs_of_states(run)]
+    fast = max(np.count_nonzero(sign * own > FAST) for own in values for sign in (1, -1))
+    return float(np.nanmax([root_mean_square(own) for own in values])), fast / len(run.start.radius)
 
 
 def pair_speeds(run):
     """[(time [s], root mean square of v_rel [m/s])] of the states of a RunFolder."""
+    return [(time, root_mean_square(values)) for time, values in _pairs_of_states(run)]
+
+
+def _pairs_of_states(run):
+    """(time [s], v_rel (M,) [m/s] of pairs nearer than NEAR) of each state of a RunFolder."""
     distance = NEAR * run.derived["grainRadius"]
-    found = []
     for k, time in enumerate(run.states.times):
         arrays = run.states.arrays(k, ("position", "velocity"))
-        found.append((float(time), root_mean_square(pair_velocities(arrays["position"], arrays["velocity"], distance))))
-    return found
+        yield float(time), pair_velocities(arrays["position"], arrays["velocity"], distance)
 
 
 def sizes_text(sizes):
@@ -122,7 +165,9 @@ def _scene(run, grains):
         raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
     return {
         "grains": grains,
-        **{name: float(parameters[name]) for name in ("impact", "velocity", "viscoelasticTime")},
+        "impact": offset_of_grid(float(parameters["impact"])),
+        "velocity": velocity_of_grid(float(parameters["velocity"])),
+        "viscoelasticTime": time_of_grid(float(parameters["viscoelasticTime"])),
         "seed": int(parameters["seed"]),
         "grain_radius": radius,
         "energy_unit": pair.pull_off_force * pair.pull_off_overlap,

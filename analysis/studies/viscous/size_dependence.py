@@ -10,11 +10,18 @@ from ...report.section import Column, Section
 from ...statistics import resampling_error
 from . import paper
 from .curves import of_other_pairs, with_error
-from .results import picoseconds, threshold_error
+from .impact_mean import offsets_text
+from .results import make_results, over_offsets, picoseconds, threshold_error
 from .threshold import threshold_velocity
 
 EXPONENTS = (1 / 2, 1 / 3)  # p
 PREDICTED = (10_000, paper.GRAINS)  # grains: viscous-prediction.table has the first
+PREDICTED_FROM = (1, 2)  # seeds of the smaller sizes behind the gallery's predictions.csv
+_PAIRS = " and ".join(map(str, PREDICTED_FROM))
+NOTES = (
+    "Errors are joint over velocities, from resampling pairs of aggregates; the sizes are independent of each other.",
+    "diff: measured less extrapolated, in both errors. Rows of one T_vis are the same pairs and not independent.",
+)
 
 
 def extrapolation_weight(small, large, grains, exponent):
@@ -38,45 +45,94 @@ def extrapolate(small, large, grains, exponent):
 
 
 def size_section(results):
-    """Section of growth against size, measured where there are runs, and extrapolated from the two smallest sizes to the
-    others and PREDICTED; None without two sizes."""
-    records = [
-        *_of_quantity("<f_gro>", results.growth, threshold=True),
-        *_of_quantity("f_gro at B_off = 0", results.head_on, threshold=False),
-    ]
-    if not records:
-        return None
-    intro = "From the two smallest sizes by f = f_inf + c N^-p, beside runs where there are any."
-    notes = (
-        "Errors are joint over velocities, from resampling pairs of aggregates; the sizes are independent of each other.",
-        "diff: measured less extrapolated, in both errors. Rows of one T_vis are the same pairs and not independent.",
-    )
-    return Section("extrapolated to larger aggregates", _COLUMNS, tuple(records), intro, notes)
+    """Section of growth against size, measured where there are runs of the same offsets, and extrapolated from the two smallest
+    sizes to the others and PREDICTED; None without two sizes."""
+    intro = "From the two smallest sizes by f = f_inf + c N^-p, beside runs where there are any of the same offsets."
+    return _section("extrapolated to larger aggregates", _rows(results, PREDICTED), intro)
 
 
-def _of_quantity(name, growth, threshold):
-    """Rows of {(grains, T_vis): Curve}; threshold: v_fra of Growths too."""
-    sizes = sorted({grains for grains, _ in growth})
-    if len(sizes) < 2:
+def predicted_section(results):
+    """The same from the pairs PREDICTED_FROM of the two smallest sizes alone, of what has run; None where these are all, or where
+    nothing has run."""
+    intro = f"The same from the pairs {_PAIRS} of the two smallest sizes, from which predictions.csv was made before any larger ones ran."
+    return _section(f"extrapolated from pairs {_PAIRS}", _of_predicted_pairs(results), intro)
+
+
+def fewer_offsets_sections(results):
+    """Sections for each set of fewer offsets that a larger size has: the smaller sizes at these offsets alone, extrapolated, and
+    what the larger measured there."""
+    for offsets in fewer_offsets(results):
+        own = over_offsets(results, offsets)
+        sizes = tuple(sorted({key[0] for key, growth in results.growth.items() if growth.offsets == offsets}))
+        squares = ", ".join(f"{12 * square:.3g}" for square in offsets)
+        intro = f"Over the same {len(offsets)} offsets at all sizes, B_off^2 = ({squares})/12: not A22's eq 29, whose numbers here are of 13."
+        heading = f"extrapolated over the {len(offsets)} offsets that larger aggregates have"
+        for name, rows in (
+            ("", _rows(own, (), sizes, False)),
+            (f", from pairs {_PAIRS}", _of_predicted_pairs(own, sizes, False)),
+        ):
+            section = _section(heading + name, rows, intro)
+            if section is not None:
+                yield section
+
+
+def _section(heading, rows, intro):
+    rows = tuple(rows)
+    return Section(heading, _COLUMNS, rows, intro, NOTES) if rows else None
+
+
+def fewer_offsets(results):
+    """The sets of offsets (B_off^2, rising) that sizes beyond the two smallest have and these have not, fewest first."""
+    of_small = {growth.offsets for (grains, _), growth in results.growth.items() if grains in results.sizes[:2]}
+    others = {growth.offsets for (grains, _), growth in results.growth.items() if grains in results.sizes[2:]}
+    return sorted(others - of_small, key=len)
+
+
+def _of_predicted_pairs(results, sizes=(), head_on=True):
+    """Rows from the pairs PREDICTED_FROM of the two smallest sizes alone, of what has run; none where these are all."""
+    small, table = results.sizes[:2], results.table
+    if set(table.seed[table.grains.isin(small)]) <= set(PREDICTED_FROM):
         return
-    small, large, *others = sizes
+    kept = table[~table.grains.isin(small) | table.seed.isin(PREDICTED_FROM)]
+    own = make_results(kept, distributions=False)
+    yield from (row for row in _rows(own, (), sizes, head_on) if row["measured"] is not None)
+
+
+def _rows(results, beyond, sizes=(), head_on=True):
+    """Rows of <f_gro>, v_fra and, if it is asked for, of head-on collisions; to the sizes (those with runs where there are none)
+    and those beyond."""
+    yield from _of_quantity("<f_gro>", results.growth, beyond, sizes, threshold=True)
+    if head_on:
+        yield from _of_quantity("f_gro at B_off = 0", results.head_on, beyond, sizes, threshold=False)
+
+
+def _of_quantity(name, growth, beyond, sizes, threshold):
+    """Rows of {(grains, T_vis): Curve}; threshold: v_fra of Growths too."""
+    known = sorted({grains for grains, _ in growth})
+    if len(known) < 2:
+        return
+    small, large, *others = known
     for time in sorted({time for _, time in growth}):
-        if (small, time) in growth and (large, time) in growth:
-            pair = growth[small, time], growth[large, time]
-            for grains in sorted({*others, *PREDICTED}):
-                measured = growth.get((grains, time))
-                yield from _at_velocities(name, pair, measured, grains)
-                if threshold:
-                    yield _threshold(pair, measured, grains)
+        pair = growth.get((small, time)), growth.get((large, time))
+        if None in pair or pair[0].offsets != pair[1].offsets:
+            continue
+        for grains in sorted({*(sizes or others), *beyond}):
+            measured = growth.get((grains, time))
+            if measured is not None and measured.offsets != pair[0].offsets:
+                measured = None
+            yield from _at_velocities(name, pair, measured, grains)
+            if threshold:
+                yield _threshold(pair, measured, grains)
 
 
 def _at_velocities(name, pair, measured, grains):
     """A row for each velocity."""
     drawn = [extrapolate(*pair, grains, exponent) for exponent in EXPONENTS]
     for k, velocity in enumerate(drawn[0][0]):
-        found = [(mean[k], _error(resamples[:, k], pair)) for _, mean, resamples in drawn]
+        known = all(np.isfinite(growth.error[growth.place(velocity)]) for growth in pair)
+        found = [(mean[k], resampling_error(resamples[:, k]) if known else None) for _, mean, resamples in drawn]
         value = None if measured is None else measured.at(velocity)
-        yield _record(f"{name} at {velocity:.3g} m/s", pair, grains, found, value)
+        yield _record(f"{name} at {velocity:.3g} m/s{offsets_text(pair[0].offsets)}", pair, grains, found, value)
 
 
 def _threshold(pair, measured, grains):
@@ -88,12 +144,7 @@ def _threshold(pair, measured, grains):
         error = threshold_error(drawn) if all(growth.has_errors for growth in pair) else None
         found.append((threshold_velocity(velocities, mean), error))
     value = (measured.v_fra, measured.v_fra_error) if measured is not None and measured.v_fra is not None else None
-    return _record("v_fra [m/s]", pair, grains, found, value)
-
-
-def _error(resamples, pair):
-    """Standard error; None where one of the two sizes has one seed."""
-    return resampling_error(resamples) if all(growth.has_errors for growth in pair) else None
+    return _record(f"v_fra [m/s]{offsets_text(pair[0].offsets)}", pair, grains, found, value)
 
 
 def _record(quantity, pair, grains, extrapolated, measured):

@@ -11,10 +11,10 @@ STUDY = Study(
     "the fragments distributed? Arakawa, Tanaka & Kokubo (2022, A22), Impacts of viscous dissipation on collisional growth and "
     "fragmentation of dust aggregates.",
     title="Viscous dissipation, oblique collisions and fragments beside A22",
-    # Collisions of equal BPCA aggregates of equal ice grains, without bonds.
+    # Collisions of equal BPCA aggregates of equal ice grains, without bonds, springs held at their limits.
     scene=Scene(
         name="A22's scene",
-        values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal"},
+        values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal", "limit": "held"},
         numbers=("grains", "impact", "velocity", "viscoelasticTime", "seed"),
     ),
     columns=COLUMNS,

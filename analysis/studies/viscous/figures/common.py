@@ -1,15 +1,18 @@
 """What this study's figures have in common: colours of T_vis and B_off, the runs that A22 shows most."""
 
 import numpy as np
+from matplotlib import colormaps
 
 from ....figures.panels import PAPER, legend, letter, panels, velocity_axis
 from ....runs.table import run_folder
 from ....statistics import mean_and_error
 from .. import paper
-from ..results import picoseconds
+from ..impact_mean import offsets_text, spans
+from ..results import over_offsets, picoseconds
 
 __all__ = [
     "PAPER",
+    "comparable",
     "draw_curve",
     "impact_colour",
     "legend",
@@ -19,6 +22,7 @@ __all__ = [
     "own_times",
     "panels",
     "run_folder",
+    "size_label",
     "threshold_points",
     "time_colours",
     "time_label",
@@ -29,9 +33,10 @@ _COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#7b3fa0", "#8c5a2b")
 
 
 def time_colours(table):
-    """{T_vis [s]: colour} of a table's runs, no drag in blue."""
+    """{T_vis [s]: colour} of a table's runs, no drag in blue; from a colour map where they are more than _COLOURS."""
     times = sorted(set(table.viscoelasticTime.round(16)))
-    return {float(time): _COLOURS[i % len(_COLOURS)] for i, time in enumerate(times)}
+    colours = _COLOURS if len(times) <= len(_COLOURS) else colormaps["turbo"](np.linspace(0.05, 0.95, len(times)))
+    return dict(zip(map(float, times), colours))
 
 
 def time_label(time):
@@ -42,6 +47,22 @@ def time_label(time):
 def impact_colour(square):
     """Colour of B_off^2, from dark (head-on) to light."""
     return tuple(np.array((0.10, 0.15, 0.40)) + square * np.array((0.80, 0.60, 0.10)))
+
+
+def size_label(grains, curves):
+    """Words on the size of the aggregates of some Curves, with their offsets where these are not the paper's."""
+    numbers = sorted({offsets_text(curve.offsets) for curve in curves})
+    return f"{grains} grains each" + (numbers[0] if len(numbers) == 1 else ", unlike offsets")
+
+
+def comparable(results):
+    """(Results, words): over the offsets that all sizes have at the T_vis that several have, so that they can be compared."""
+    times = [time for _, time in results.growth]
+    several = [growth.offsets for (_, time), growth in results.growth.items() if times.count(time) > 1]
+    if len(set(several)) < 2:
+        return results, ""
+    common = sorted(set.intersection(*map(set, several)))
+    return (over_offsets(results, common), f"{len(common)} offsets") if spans(common) else (results, "unlike offsets")
 
 
 def mean_points(axes, x, samples, colour, label=None, marker="o", line="-"):

@@ -5,6 +5,7 @@ import numpy as np
 from ....figures.style import styled
 from ...definition import StudyFigure
 from .. import paper
+from ..grid import SAME
 from ..impact_mean import at_impacts
 from ..results import total_dissipation
 from .common import (
@@ -63,7 +64,7 @@ def over_time(results):
 
 def _of_square(results):
     """Table of the runs at B_off^2 = 3/12 of the largest size that has several velocities there; None without."""
-    table = results.table[(results.table.impact**2 - paper.SQUARE).abs() < 1e-3]
+    table = results.table[(results.table.impact**2 - paper.SQUARE).abs() < SAME]
     several = [grains for grains, runs in table.groupby("grains") if runs.velocity.round(6).nunique() > 1]
     return table[table.grains == max(several)] if several else None
 
@@ -124,7 +125,7 @@ def against_impact(results):
     table, grains = results.table, results.main_size
     if grains is None:
         return None
-    runs = table[(table.grains == grains) & ((table.velocity / paper.VELOCITY - 1).abs() < 2e-3)]
+    runs = table[(table.grains == grains) & ((table.velocity / paper.VELOCITY - 1).abs() < SAME)]
     times = sorted(runs.viscoelasticTime.round(16).unique())
     if not times:
         return None

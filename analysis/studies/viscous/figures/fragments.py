@@ -5,14 +5,20 @@ import numpy as np
 from ....figures.style import styled
 from ...definition import StudyFigure
 from .. import paper
+from ..results import at_velocities
 from ..size_distribution import fitted_curves
-from .common import PAPER, legend, letter, panels, time_colours, time_label
+from .common import PAPER, legend, letter, panels, size_label, time_colours, time_label
 
 LABELS = {
     "number": (r"$\langle Z_{cum}(\geq N) \rangle$", 0),
     "grains": (r"$\langle N_{cum}(\leq N) \rangle$", 1),
     "cross_section": (r"$\langle S_{cum}(\leq N) \rangle / S_1$", 2),
 }
+
+
+def distributions(results, growth):
+    """{velocity: SizeDistribution} of a Growth."""
+    return results.distributions[growth.grains, growth.viscous_time]
 
 
 def _draw(place, quantity, distributions, total, curve=True):
@@ -41,7 +47,7 @@ def of_velocities(quantity):
         velocities = [
             v
             for v in (paper.VELOCITY, 100.0)
-            if any(abs(u / v - 1) < 2e-3 for growth in shown for u in growth.distributions)
+            if any(at_velocities(v, distributions(results, growth)) for growth in shown)
         ]
         if not velocities:
             return None
@@ -51,13 +57,13 @@ def of_velocities(quantity):
             own = [
                 (d, colours[growth.viscous_time], time_label(growth.viscous_time))
                 for growth in shown
-                for u, d in growth.distributions.items()
-                if abs(u / velocity - 1) < 2e-3
+                for u, d in distributions(results, growth).items()
+                if at_velocities(u, (velocity,))
             ]
             _draw(place, quantity, own, 2 * results.main_size)
             place.text(0.5, 0.96, f"{velocity:.3g} m/s", transform=place.transAxes, ha="center", va="top")
         legend(axes[0, 0], fontsize=8)
-        letter(axes, f"{results.main_size} grains each")
+        letter(axes, size_label(results.main_size, shown))
         return drawn
 
     return figure
@@ -70,16 +76,17 @@ def around_threshold(results):
         return None
     growth = results.of_size(results.main_size)[-1]
     near = growth.v_fra or paper.VELOCITY
-    velocities = [v for v in growth.distributions if 0.6 < v / near < 1.7]
+    found = distributions(results, growth)
+    velocities = [v for v in found if 0.6 < v / near < 1.7]
     if not velocities:
         return None
     drawn, axes = panels(1, 3, 4.4, 4.2)
     shades = [str(0.75 - 0.75 * i / max(1, len(velocities) - 1)) for i in range(len(velocities))]
     for place, quantity in zip(axes[0], LABELS):
-        own = [(growth.distributions[v], shade, f"{v:.3g} m/s") for v, shade in zip(velocities, shades)]
+        own = [(found[v], shade, f"{v:.3g} m/s") for v, shade in zip(velocities, shades)]
         _draw(place, quantity, own, 2 * results.main_size)
     legend(axes[0, 0], fontsize=8)
-    letter(axes, f"{time_label(growth.viscous_time)}, {results.main_size} grains each")
+    letter(axes, f"{time_label(growth.viscous_time)}, {size_label(results.main_size, [growth])}")
     return drawn
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from ....figures.style import styled
 from ...definition import StudyFigure
 from .. import paper
-from ..impact_mean import at_impacts
+from ..impact_mean import at_impacts, offsets_text
 from ..results import picoseconds
 from .common import (
     PAPER,
@@ -15,6 +15,7 @@ from .common import (
     letter,
     mean_points,
     panels,
+    size_label,
     threshold_points,
     time_colours,
     time_label,
@@ -44,7 +45,7 @@ def growth_figure(results):
         place.text(0.03, 0.03, time_label(growth.viscous_time), transform=place.transAxes)
     axes[0, 0].set_ylabel("growth efficiency $f_{gro}$")
     legend(axes[0, -1], title="$B_{off}^2$", fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    letter(axes, f"{grains} grains each")
+    letter(axes, size_label(grains, of_size))
     return figure
 
 
@@ -61,7 +62,7 @@ def mean_growth_figure(results):
         place.axhline(0.0, color="0.6", lw=0.8)
         place.axvspan(*paper.V_FRA, color=PAPER, alpha=0.12, lw=0, label="A22: $v_{fra}$")
         velocity_axis(place, results.table.velocity)
-        place.text(0.03, 0.05, f"{grains} grains each", transform=place.transAxes)
+        place.text(0.03, 0.05, size_label(grains, results.of_size(grains)), transform=place.transAxes)
     axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
     legend(axes[0, 0], fontsize=8)
     letter(axes, "")
@@ -96,21 +97,26 @@ def thresholds_figure(results):
     figure, axes = panels(1, 1)
     place = axes[0, 0]
     known = results.table.drop_duplicates("viscoelasticTime").sort_values("viscoelasticTime")
-    place.plot(
-        known.viscoelasticTime * 1e12, known.sticking_velocity, "s--", color="0.35", label="$v_{stick}$, two grains"
-    )
+    times, sticking = known.viscoelasticTime.to_numpy() * 1e12, known.sticking_velocity.to_numpy()
+    finite = np.isfinite(sticking)
+    place.plot(times[finite], sticking[finite], "s--", color="0.35", label="$v_{stick}$, two grains")
+    top = max([150.0, *sticking[finite]]) * 1.3
+    for time in times[~finite]:
+        place.annotate("always\nstick", (time, top / 1.1), ha="center", va="top", fontsize=7, color="0.35")
+        place.plot(time, top / 1.05, "^", color="0.35", clip_on=False)
     shades = ("#9ecae1", "#4292c6", "#2166ac", "#08306b")
     for i, grains in enumerate(results.sizes):
         found = [growth for growth in results.of_size(grains) if growth.v_fra is not None]
-        if found:
-            times = [growth.viscous_time * 1e12 for growth in found]
+        for offsets in sorted({growth.offsets for growth in found}, key=len):
+            own = [growth for growth in found if growth.offsets == offsets]
             colour = shades[min(i, 3) if len(results.sizes) > 1 else 2]
-            label = f"$v_{{fra}}$, {grains} grains"
-            threshold_points(place, times, found, colour, label)
+            label = f"$v_{{fra}}$, {grains} grains{offsets_text(offsets)}"
+            threshold_points(place, [growth.viscous_time * 1e12 for growth in own], own, colour, label)
     place.axhspan(*paper.V_FRA, color=PAPER, alpha=0.12, lw=0, label="A22: $v_{fra}$")
     place.set_yscale("log")
-    place.set_ylim(3, 200)
-    place.set_yticks([5, 10, 20, 50, 100], ["5", "10", "20", "50", "100"])
+    place.set_ylim(min([3.0, *(0.7 * sticking[finite])]), top)
+    ticks = [tick for tick in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000) if place.get_ylim()[0] <= tick <= top]
+    place.set_yticks(ticks, [str(tick) for tick in ticks])
     place.set_yticks([], minor=True)
     place.set_xlabel("$T_{vis}$  [ps]")
     place.set_ylabel("threshold velocity  [m/s]")
@@ -127,15 +133,17 @@ def collapse_figure(results):
     figure, axes = panels(1, 2, 4.8, 4.2)
     colours = time_colours(results.table)
     for growth in results.of_size(grains):
+        # Where two grains always stick there is no v_stick to scale with.
         for place, scale in zip(axes[0], (1.0, growth.sticking_velocity)):
-            draw_curve(place, growth, colours[growth.viscous_time], f"{picoseconds(growth.viscous_time)} ps", scale)
+            if np.isfinite(scale):
+                draw_curve(place, growth, colours[growth.viscous_time], f"{picoseconds(growth.viscous_time)} ps", scale)
             place.axhline(0.0, color="0.6", lw=0.8)
     velocity_axis(axes[0, 0], results.table.velocity)
     axes[0, 1].set_xscale("log")
     axes[0, 1].set_xlabel("$v_{col}/v_{stick}(T_{vis})$")
     axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
     legend(axes[0, 0], fontsize=8, title="$T_{vis}$")
-    letter(axes, f"{grains} grains each")
+    letter(axes, size_label(grains, results.of_size(grains)))
     return figure
 
 

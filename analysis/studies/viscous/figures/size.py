@@ -6,14 +6,15 @@ from ....figures.style import styled
 from ...definition import StudyFigure
 from .. import paper
 from ..size_dependence import EXPONENTS, extrapolation_weight
-from .common import PAPER, legend, letter, panels, threshold_points, time_colours, time_label
+from .common import PAPER, comparable, legend, letter, panels, threshold_points, time_colours, time_label
 
 SHOWN = (50.0, 101.0)  # m/s: around v_fra
 
 
 @styled
 def size_figure(results):
-    """v_fra against the size of the aggregates, for every T_vis, and against T_vis, for every size."""
+    """v_fra against the size of the aggregates, for every T_vis, and against T_vis, for every size; over the same offsets."""
+    results, offsets = comparable(results)
     known = [growth for growth in results.growth.values() if growth.v_fra is not None]
     if not known:
         return None
@@ -36,22 +37,23 @@ def size_figure(results):
     axes[0, 0].set_ylabel("$v_{fra}$  [m/s]")
     for place in axes[0]:
         legend(place, fontsize=8)
-    letter(axes, "")
+    letter(axes, offsets)
     return figure
 
 
 @styled
 def size_growth_figure(results):
     """<f_gro> (above) and f_gro at B_off = 0 (below) against N^-1/2 at the velocities around v_fra, with lines through the two
-    smallest sizes to endless aggregates."""
+    smallest sizes to endless aggregates; over the same offsets."""
+    every, (results, offsets) = results, comparable(results)
     velocities = sorted({round(v, 6) for growth in results.growth.values() for v in growth.velocities})
     velocities = [v for v in velocities if SHOWN[0] < v < SHOWN[1]]
     if len(results.sizes) < 2 or not velocities:
         return None
     figure, axes = panels(2, len(velocities), 3.4, 3.4)
-    for row, curves, limit in ((axes[0], results.growth, 0.0), (axes[1], results.head_on, 1.0)):
+    for row, curves, limit in ((axes[0], results.growth, 0.0), (axes[1], every.head_on, 1.0)):
         for place, velocity in zip(row, velocities):
-            for time, colour in time_colours(results.table).items():
+            for time, colour in time_colours(every.table).items():
                 _points_of_sizes(place, curves, time, velocity, colour)
             place.axhline(limit, color="0.6", lw=0.8)
             place.axvline(paper.GRAINS**-0.5, color=PAPER, lw=4, alpha=0.3)
@@ -60,7 +62,7 @@ def size_growth_figure(results):
         place.set_title(f"{velocity:.3g} m/s", fontsize=10)
     for place in axes[1]:
         place.set_xlabel("$N^{-1/2}$")
-    axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
+    axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$" + (f", {offsets}" if offsets else ""))
     axes[1, 0].set_ylabel("$f_{gro}$ at $B_{off}$ = 0")
     legend(axes[1, 0], fontsize=8, loc="lower left")
     return figure

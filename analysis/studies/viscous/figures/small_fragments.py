@@ -3,7 +3,7 @@
 from ....figures.style import styled
 from ...definition import StudyFigure
 from ..results import SMALL
-from .common import draw_curve, legend, letter, panels, time_colours, time_label, velocity_axis
+from .common import draw_curve, legend, letter, panels, size_label, time_colours, time_label, velocity_axis
 
 
 @styled
@@ -20,7 +20,7 @@ def remnants_figure(results):
                 draw_curve(place, curve, colours[curve.viscous_time], time_label(curve.viscous_time))
             place.axhline(0.0, color="0.6", lw=0.8)
             velocity_axis(place, results.table.velocity)
-            place.text(0.03, 0.05, f"{grains} grains each", transform=place.transAxes)
+            place.text(0.03, 0.05, size_label(grains, results.of_size(grains)), transform=place.transAxes)
     axes[0, 0].set_ylabel(r"$\langle f_{gro} \rangle$")
     axes[1, 0].set_ylabel(r"$\langle f_{gro} + M_{small}/2M \rangle$")
     legend(axes[0, 0], fontsize=8)

@@ -1,0 +1,42 @@
+"""A22's grid of velocities, offsets and T_vis: numbers that a table rounds are those of the grid.
+
+Without it 50.1 m/s and 10^1.7 m/s would be two velocities to some means and one to others, and a pair of aggregates that
+has run at both would count twice."""
+
+from math import log10
+
+ROUNDED = 2e-3  # relative, of velocities: 50.1 for 10^1.7, 20 for 10^1.3 would be 2.4e-3
+OFFSET_ROUNDED = 1e-3  # of B_off
+TIME_DIGITS = 16  # of T_vis [s]
+SAME = 1e-6  # relative, of velocities of the table
+
+
+def velocity_of_grid(velocity):
+    """10^(0.1 i) m/s (A22 section 2.4) where a velocity [m/s] is that to ROUNDED, else the velocity.
+
+    >>> velocity_of_grid(50.1) == 10**1.7, velocity_of_grid(45.0)
+    (True, 45.0)
+    """
+    if velocity <= 0:
+        return velocity
+    nearest = 10 ** (round(10 * log10(velocity)) / 10)
+    return nearest if abs(velocity / nearest - 1) < ROUNDED else velocity
+
+
+def offset_of_grid(offset):
+    """(k/12)^(1/2) where B_off is that to OFFSET_ROUNDED, else B_off.
+
+    >>> offset_of_grid(0.2887) == (1 / 12) ** 0.5, offset_of_grid(0.3)
+    (True, 0.3)
+    """
+    nearest = (round(12 * offset**2) / 12) ** 0.5
+    return nearest if abs(offset - nearest) < OFFSET_ROUNDED else offset
+
+
+def time_of_grid(viscous_time):
+    """T_vis [s] to a ten-thousandth of a picosecond.
+
+    >>> time_of_grid(6.00000001e-12)
+    6e-12
+    """
+    return round(viscous_time, TIME_DIGITS)
