@@ -154,3 +154,47 @@ def test_runs_of_other_scenes_are_left_out(tmp_path, capsys):
     assert main(["study", "viscous", str(tmp_path)]) == 2
     said = capsys.readouterr().err
     assert "neck = 0.5, A22's scene has 0.0" in said and "sizes = two, A22's scene has equal" in said
+
+
+def changed(path, name, value):
+    """Change a derived constant of a run folder."""
+    about = json.loads((path / "run.json").read_text())
+    about["derived"][name] = value
+    (path / "run.json").write_text(json.dumps(about))
+
+
+def test_runs_of_other_grains_or_law_are_left_out(tmp_path, capsys):
+    for square in SQUARES:
+        made_run(tmp_path / f"b{square}", VELOCITIES[0], square, 0.0, 1, duration=6.34e-6)
+    made_run(tmp_path / "cut", VELOCITIES[0], 0.0, 0.0, 2, limit="cut")
+    made_run(tmp_path / "sliding", VELOCITIES[0], 0.0, 0.0, 3, slidingStiffnessFactor=2.0)
+    for name, value in (("criticalRolling", 8e-9), ("young", 54e9), ("surfaceEnergy", 0.025), ("density", 2000.0)):
+        changed(made_run(tmp_path / name, VELOCITIES[0], 0.0, 0.0, 1), name, value)
+    assert main(["study", "viscous", str(tmp_path), "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["provenance"]["runs"] == len(SQUARES)
+    for words in ("limit = cut", "k_s factor = 2", "xi_crit = 80", "E = 54 GPa", "gamma = 0.025", "rho = 2000"):
+        assert words in said.err
+
+
+def test_a_run_too_short_for_final_fragments_is_left_out(tmp_path, capsys):
+    """They last 2 us; at 0.1 m/s that is a fraction of r_c. One that ended before its duration has nothing left to meet."""
+    made_run(tmp_path / "short", 0.1, 0.0, 0.0, 1, duration=2e-6)
+    made_run(tmp_path / "apart", 0.1, 0.0, 0.0, 2, duration=6.34e-6)
+    made_run(tmp_path / "long", VELOCITIES[1], 0.0, 0.0, 3, duration=2e-6)
+    assert main(["study", "viscous", str(tmp_path), "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["provenance"]["runs"] == 2 and "short: lasts 2e-06 s, too short" in said.err
+
+
+def test_rounded_numbers_are_those_of_the_grid(tmp_path, capsys):
+    """50.1 m/s, B_off = 0.2887 and 6.00001 ps beside 10^1.7, (1/12)^(1/2) and 6 ps are the same run; 45 m/s is another."""
+    made_run(tmp_path / "a", VELOCITIES[1], 1 / 12, 6e-12, 1)
+    made_run(tmp_path / "b", 50.1, 0.2887**2, 6.00001e-12, 1)
+    made_run(tmp_path / "c", 45.0, 0.3**2, 6e-12, 1)
+    assert measure(open_run(tmp_path / "b"))["velocity"] == pytest.approx(VELOCITIES[1], rel=1e-15)
+    row = measure(open_run(tmp_path / "c"))
+    assert (row["velocity"], row["impact"]) == (45.0, pytest.approx(0.3, rel=1e-15))
+    assert main(["study", "viscous", str(tmp_path), "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["provenance"]["runs"] == 2 and "b: the same grains, impact, velocity" in said.err

@@ -8,7 +8,7 @@ from . import paper
 from .beside_one_pair import beside_one_pair
 from .impact_mean import Draws
 from .measure import sizes_from_text
-from .results import at_velocities, named
+from .results import at_velocities, named, pairs_text
 from .size_distribution import LARGEST_FITTED, SHORTEST, fitted_curves, power_law_with_errors, whole_numbers
 
 SHOWN = (paper.VELOCITY, 100.0)  # m/s: A22 Figs 6 to 8
@@ -77,7 +77,7 @@ def full_size(results):
         for number, mean, error, value in zip(DECADES, samples.mean(axis=0), errors, theirs):
             lines.append(Line(label.format(number), "", float(mean), error and float(error), float(value)))
     notes = (
-        f"One offset of the 13, {pairs} pairs; the paper's eqs 35 and 37 are for the mean over B_off, so that there is no p: this shows "
+        f"One offset of the 13, {pairs_text(pairs)}; the paper's eqs 35 and 37 are for the mean over B_off, so that there is no p: this shows "
         "whether the law can be right, not that it is.",
     )
     yield f"fragments at full size, 50.1 m/s, B_off^2 = 3/12, {paper.FITTED_TIME * 1e12:g} ps", lines, notes
@@ -90,5 +90,9 @@ def _exponent(sizes, total, draws, seeds):
     samples = np.array([cumulative_grains(own, numbers) for own in sizes], dtype=float)
     mean = samples.mean(axis=0)
     law = power_law_with_errors(numbers, mean, mean + draws.deviations(samples, seeds) if len(sizes) > 1 else None)
-    note = f"N = 10 to {total // 10}, {len(sizes)} pairs; c = {law.amplitude:.3g}" if law.exponent else "nothing to fit"
+    note = (
+        f"N = 10 to {total // 10}, {pairs_text(len(sizes))}; c = {law.amplitude:.3g}"
+        if law.exponent
+        else "nothing to fit"
+    )
     return Line("alpha", "", law.exponent, law.exponent_error, paper.EXPONENT, note=note)

@@ -7,7 +7,7 @@ from .beside_one_pair import beside_one_pair, beside_range
 from .curves import difference
 from .grid import SAME, time_of_grid
 from .impact_mean import offsets_text
-from .results import by_time, named, picoseconds, threshold_error
+from .results import by_time, named, pairs_text, picoseconds, threshold_error
 from .whole_pairs import whole_pairs
 
 
@@ -15,7 +15,7 @@ def thresholds(results):
     lines, (low, high) = [], paper.V_FRA
     for growth in results.growth.values():
         covered = f"{len(growth.velocities)} velocities"
-        note = f"paper: {low:g} to {high:g} m/s at {paper.GRAINS} grains; {covered}, {growth.pairs} pairs{_lost(growth.v_fra_resamples)}"
+        note = f"paper: {low:g} to {high:g} m/s at {paper.GRAINS} grains; {covered}, {pairs_text(growth.pairs)}{_lost(growth.v_fra_resamples)}"
         if growth.v_fra is None:
             end = "above" if growth.mean[-1] > 0 else "below" if growth.mean[0] <= 0 else "not within"
             note = f"{end} the velocities of the runs; {covered}"
@@ -106,7 +106,7 @@ def head_on(results):
         ((time, mean, error, pairs),) = by_time(own, own.growth)
         span = f"{velocities[0]:.3g}" + (f" to {velocities[-1]:.3g}" if len(velocities) > 1 else "")
         name = f"f_gro, B_off = 0, {span} m/s, T_vis = {picoseconds(time)} ps, {grains} grains"
-        note = f"{pairs} pairs, {len(velocities)} velocities; paper: about 1 from 20 to 100 m/s"
+        note = f"{pairs_text(pairs)}, {len(velocities)} velocities; paper: about 1 from 20 to 100 m/s"
         lines.append(beside_one_pair(name, "", mean, error, pairs, 1.0, note))
     if lines:
         notes = (

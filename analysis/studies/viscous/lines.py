@@ -8,7 +8,7 @@ from . import paper
 from .fragment_lines import fragments, full_size
 from .growth_lines import head_on, mean_growth, thresholds
 from .loss_lines import channels_by_offset, dissipation, events, pair_speeds
-from .results import by_time, named, picoseconds
+from .results import by_time, named, pairs_text, picoseconds
 
 
 def compare(results):
@@ -70,7 +70,7 @@ def _largest(results):
             spread / number**0.5 if spread else None,
             paper.LARGEST.get(time),
             spread,
-            f"{number} pairs",
+            f"{pairs_text(number)}",
             freedom,
             shared=True,
         )
@@ -104,7 +104,7 @@ def _largest_difference(runs, low, high):
         *mean_and_error(differences),
         paper.LARGEST[high] - paper.LARGEST[low] if known else None,
         scatter(differences) if several else None,
-        f"{len(differences)} pairs",
+        f"{pairs_text(len(differences))}",
         len(differences) - 1,
         shared=True,
     )

@@ -8,7 +8,7 @@ from . import paper
 from .beside_one_pair import beside_one_pair
 from .impact_mean import at_impacts
 from .measure import DISSIPATION, FAST
-from .results import at_velocities, by_time, picoseconds, total_dissipation
+from .results import at_velocities, by_time, pairs_text, picoseconds, total_dissipation
 
 
 def five_ways(runs):
@@ -23,11 +23,13 @@ def dissipation(results):
         for name, part in parts.items():
             for time, mean, error, number in by_time(runs, part / total):
                 label = f"{name}, T_vis = {picoseconds(time)} ps"
-                lines.append(Line(label, "of all that is lost", mean, error, note=f"{number} pairs"))
+                lines.append(Line(label, "of all that is lost", mean, error, note=f"{pairs_text(number)}"))
         unit = 2 * runs.grains * runs.energy_unit
         for time, mean, error, number in by_time(runs, parts["connection and disconnection"] / unit):
             label = f"E_dis,c/(N_tot F_c delta_c), T_vis = {picoseconds(time)} ps"
-            lines.append(Line(label, "", mean, error, note=f'{number} pairs; paper: "on the order of 1" around v_fra'))
+            lines.append(
+                Line(label, "", mean, error, note=f'{pairs_text(number)}; paper: "on the order of 1" around v_fra')
+            )
         for name in ("sliding", "twisting"):
             lines += list(_with_over_without(runs, name, parts[name]))
         notes = (
@@ -48,7 +50,9 @@ def _with_over_without(runs, name, values):
     if low != high and len(ratios):
         theirs, note = (1.0, "paper: hardly depends on T_vis") if name == "twisting" else (None, "paper: falls")
         label = f"{name}, {picoseconds(high)} ps over {picoseconds(low)} ps"
-        yield beside_one_pair(label, "", *mean_and_error(ratios), len(ratios), theirs, f"{len(ratios)} pairs; {note}")
+        yield beside_one_pair(
+            label, "", *mean_and_error(ratios), len(ratios), theirs, f"{pairs_text(len(ratios))}; {note}"
+        )
 
 
 def channels_by_offset(results):
@@ -82,7 +86,7 @@ def events(results):
         ):
             for time, mean, error, number in by_time(runs, values):
                 name = f"{quantity}/N_tot, T_vis = {picoseconds(time)} ps"
-                lines.append(Line(name, "", mean, error, note=f"{number} pairs; paper: {theirs} around v_fra"))
+                lines.append(Line(name, "", mean, error, note=f"{pairs_text(number)}; paper: {theirs} around v_fra"))
         if lines:
             notes = (
                 "50.1 m/s, B_off^2 = 3/12, all contacts that formed and broke since the start, those between grains of one "
@@ -95,12 +99,12 @@ def pair_speeds(results):
     lines = []
     for grains, runs in results.reference.groupby("grains"):
         for time, mean, error, number in by_time(runs, runs.pair_speed):
-            note = f"{number} pairs" + ("; paper: below 1 m/s" if time else "")
+            note = f"{pairs_text(number)}" + ("; paper: below 1 m/s" if time else "")
             name = f"largest rms of v_rel, T_vis = {picoseconds(time)} ps, {grains} grains"
             lines.append(Line(name, "m/s", mean, error, note=note))
         for time, mean, error, number in by_time(runs, runs.fast_pairs):
             name = f"largest N_pair(|v_rel| > {FAST:g} m/s)/N_tot, T_vis = {picoseconds(time)} ps, {grains} grains"
-            note = f"{number} pairs; paper: below {paper.FAST_PAIRS:g} at 0.32 and 0.63 us"
+            note = f"{pairs_text(number)}; paper: below {paper.FAST_PAIRS:g} at 0.32 and 0.63 us"
             lines.append(Line(name, "", mean, error, note=note))
     if lines:
         notes = (

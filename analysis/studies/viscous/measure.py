@@ -92,7 +92,7 @@ def _require_papers_grains(run):
     """NotMeasured where the grains of a run are not A22's (its Table 1, those of PAPERS)."""
     grains = {"material": run.parameters.get("material"), **grain_constants(run)}
     if grains["material"] not in PAPERS or other_grains(grains):
-        raise NotMeasured(f"{run.path}: grains of {grains_text(grains)}, A22's have none of these differences")
+        raise NotMeasured(f"{run.path}: grains of {grains_text(grains)}, A22's are ice without these")
 
 
 def _require_final(run, scene):

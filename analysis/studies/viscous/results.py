@@ -164,6 +164,15 @@ def at_velocities(velocity, wanted):
     return any(abs(velocity / each - 1) < SAME for each in wanted)
 
 
+def pairs_text(number):
+    """Words on so many pairs of aggregates.
+
+    >>> pairs_text(1), pairs_text(3)
+    ('1 pair', '3 pairs')
+    """
+    return f"{number} pair" + ("s" if number != 1 else "")
+
+
 def named(quantity, growth):
     """The quantity with T_vis, size and, where they are not the paper's, offsets of a Curve, as lines name it."""
     return f"{quantity}, T_vis = {picoseconds(growth.viscous_time)} ps, {growth.grains} grains{offsets_text(growth.offsets)}"

@@ -57,7 +57,7 @@ def drag_section(results):
     )
     notes = (
         "Errors are joint, from resampling pairs of aggregates; rows of one size are the same pairs. Merging goes in steps of the "
-        "offsets (1/12): an error of 0 says that the pairs agree to one.",
+        "offsets (1/12 where they are 13): an error of 0 says that the pairs agree to one.",
     )
     return Section("what drag changes", columns, tuple(rows), intro, notes)
 

@@ -5,10 +5,12 @@ would come from these alone: with pair 1 at 13 offsets and pair 2 head-on 0.03 m
 
 import numpy as np
 
+DIGITS = 9  # of B_off^2
+
 
 def offset_squares(runs):
     """B_off^2 (runs,) of a table of runs, to rounding."""
-    return (runs.impact.to_numpy(dtype=float) ** 2).round(6)
+    return (runs.impact.to_numpy(dtype=float) ** 2).round(DIGITS)
 
 
 def most_used(sets, allowed=lambda points: True):
