@@ -95,6 +95,7 @@ def test_fewer_offsets_are_said_and_never_stand_beside_all():
     found = lines_of(growth_lines.thresholds(results))
     names = [name for name in found if name.startswith("v_fra,")]
     assert [name.endswith(", 7 offsets") for name in names] == [False, False, True]
+    assert found[names[-1]].paper is None and found[names[-1]].ours > 60
     of_large = [row for row in size_section(results).records if row["grains"] == 10_000]
     assert all(row["measured"] is None for row in of_large if row["quantity"].startswith(("<f_gro>", "v_fra")))
     assert predicted_section(results) is not None

@@ -52,7 +52,10 @@ def remarks(results):
         if counted < there:
             offsets = f"{len(growth.offsets)} offsets"
             yield f"{scene}: {there - counted} of {there} runs are of pairs without all {offsets}, or of others, and are in no mean over B_off"
-    yield f"the energy ledger closes to {table.closure.max():.2g} of K(0) or better in all {len(table)} runs"
+    closed = ", ".join(
+        f"{worst:.2g} at {grains} grains" for grains, worst in table.groupby("grains").closure.max().items()
+    )
+    yield f"the energy ledger of every run closes, of K(0), to {closed} or better"
     if not np.isfinite(table.formed.astype(float)).any():
         yield "no numbers of connections and disconnections: the runs have not recorded them"
 

@@ -6,7 +6,7 @@ from ...measures.fragments import cumulative_grains, cumulative_number
 from ...report.beside_paper import Line
 from . import paper
 from .beside_one_pair import beside_one_pair
-from .impact_mean import Draws
+from .impact_mean import Draws, of_papers_offsets
 from .measure import sizes_from_text
 from .results import at_velocities, named, pairs_text
 from .size_distribution import LARGEST_FITTED, SHORTEST, fitted_curves, power_law_with_errors, whole_numbers
@@ -43,6 +43,7 @@ def _of_distribution(name, growth, velocity, found):
         ("small", found.power_law, paper.EXPONENT if fitted else None),
         ("large", found.large_law, paper.EXPONENT if drag else None),
     ):
+        theirs = of_papers_offsets(growth.offsets, theirs)
         if law.exponent is not None:
             yield beside_one_pair(
                 f"alpha, {label}, {name}",

@@ -6,7 +6,7 @@ from . import paper
 from .beside_one_pair import beside_one_pair, beside_range
 from .curves import difference
 from .grid import SAME, time_of_grid
-from .impact_mean import offsets_text
+from .impact_mean import of_papers_offsets, offsets_text
 from .results import by_time, named, pairs_text, picoseconds, threshold_error
 from .whole_pairs import whole_pairs
 
@@ -19,8 +19,8 @@ def thresholds(results):
         if growth.v_fra is None:
             end = "above" if growth.mean[-1] > 0 else "below" if growth.mean[0] <= 0 else "not within"
             note = f"{end} the velocities of the runs; {covered}"
-        name = named("v_fra", growth)
-        lines.append(beside_range(name, "m/s", growth.v_fra, growth.v_fra_error, growth.pairs, low, high, note))
+        found = (named("v_fra", growth), "m/s", growth.v_fra, growth.v_fra_error, growth.pairs)
+        lines.append(_beside_offsets(growth, found, low, high, note))
     lines += list(_v_fra_ratios(results))
     notes = (
         "v_fra: where <f_gro> first falls through 0, linear in ln v between velocities a quarter apart; the error is from "
@@ -28,9 +28,17 @@ def thresholds(results):
         f"The paper gives a range: within it there is no difference, beyond it p is against the nearer end, {low:g} or {high:g} m/s.",
         "Smaller aggregates than the paper's have fewer contacts for the same B_off: their v_fra tells how it depends on "
         "size, and does not test the paper's number.",
-        "A v_fra of fewer offsets than the paper's 13 says how many, and is another number: the head-on peak weighs more in it.",
+        "A v_fra of other offsets than the paper's 13 says how many, and is another number, beside none of the paper's: with fewer the "
+        "head-on peak weighs more.",
     )
     yield "threshold velocity of fragmentation", lines, notes
+
+
+def _beside_offsets(growth, found, low, high, note):
+    """beside_range of what was found of a Growth, or beside nothing where its offsets are not the paper's."""
+    if of_papers_offsets(growth.offsets, high) is None:
+        return beside_one_pair(*found, None, note)
+    return beside_range(*found, low, high, note)
 
 
 def _v_fra_ratios(results):
@@ -45,7 +53,9 @@ def _v_fra_ratios(results):
             name = f"v_fra({times}), {grains} grains{offsets_text(high.offsets)}"
             note = f"paper: 1; {_sticking_ratio(low, high)}{_lost(ratio)}"
             pairs = min(low.pairs, high.pairs)
-            yield beside_one_pair(name, "", high.v_fra / low.v_fra, error, pairs, 1.0, note)
+            yield beside_one_pair(
+                name, "", high.v_fra / low.v_fra, error, pairs, of_papers_offsets(high.offsets, 1.0), note
+            )
 
 
 def _sticking_ratio(low, high):
@@ -73,7 +83,7 @@ def mean_growth(results):
                 name, pairs = named(f"<f_gro> at {velocity:.3g} m/s", growth), int(growth.numbers[k])
                 found = (name, "", *growth.at(velocity), pairs)
                 if np.isfinite(most):
-                    lines.append(beside_range(*found, -np.inf, most, said))
+                    lines.append(_beside_offsets(growth, found, -np.inf, most, said))
                 else:
                     lines.append(beside_one_pair(*found, None, said))
     lines += list(_growth_differences(results))
@@ -93,7 +103,9 @@ def _growth_differences(results):
             times = f"{picoseconds(high.viscous_time)} ps less {picoseconds(low.viscous_time)} ps"
             name = f"<f_gro> at 50.1 m/s, {times}, {grains} grains{offsets_text(high.offsets)}"
             pairs = min(int(own.numbers[own.place(paper.VELOCITY)]) for own in (low, high))
-            yield beside_one_pair(name, "", *found, pairs, 0.0, "paper: hardly any difference")
+            yield beside_one_pair(
+                name, "", *found, pairs, of_papers_offsets(high.offsets, 0.0), "paper: hardly any difference"
+            )
 
 
 def head_on(results):

@@ -47,6 +47,11 @@ def offsets_text(offsets):
     return "" if same or len(offsets) < FEWEST_IMPACTS else f", {len(offsets)} offsets"
 
 
+def of_papers_offsets(offsets, theirs):
+    """The paper's number `theirs` for means over offsets (B_off^2, rising), None where these are not the paper's."""
+    return None if offsets_text(offsets) else theirs
+
+
 class Draws:
     """RESAMPLES weights of each seed of one size: deviations() of a mean over runs of some of them."""
 

@@ -32,13 +32,14 @@ def growth_figure(results):
     of_size = results.of_size(grains)
     figure, axes = panels(1, len(of_size), 4.2, 4.4)
     for place, growth in zip(axes[0], of_size):
+        label = "mean" if offsets_text(growth.offsets) else "mean (29)"
         runs = table[(table.grains == grains) & ((table.viscoelasticTime - growth.viscous_time).abs() < 1e-16)]
         for square in np.unique((runs.impact**2).round(6)):
             own = runs[((runs.impact**2) - square).abs() < 1e-5]
             velocities = np.unique(own.velocity.round(6))
             samples = [own.growth[own.velocity.round(6) == v] for v in velocities]
             mean_points(place, velocities, samples, impact_colour(square), f"{12 * square:.3g}/12")
-        place.plot(growth.velocities, growth.mean, color="0.55", lw=4, zorder=0, label="mean (29)")
+        place.plot(growth.velocities, growth.mean, color="0.55", lw=4, zorder=0, label=label)
         place.axhline(0.0, color="0.7", lw=0.8, zorder=0)
         velocity_axis(place, table.velocity)
         place.set_ylim(-1.05, 1.05)

@@ -30,7 +30,9 @@ def size_figure(results):
             shade = str(0.7 - 0.6 * (i + 1) / len(results.sizes))
             x = [g.viscous_time * 1e12 for g in own]
             threshold_points(axes[0, 1], x, own, shade, f"{grains} grains")
-    axes[0, 0].plot([paper.GRAINS] * 2, paper.V_FRA, color=PAPER, lw=4, alpha=0.5, label="A22")
+    axes[0, 0].plot(
+        [paper.GRAINS] * 2, paper.V_FRA, color=PAPER, lw=4, alpha=0.5, label="A22" + (", 13 offsets" if offsets else "")
+    )
     axes[0, 0].set_xscale("log")
     axes[0, 0].set_xlabel("grains of an aggregate")
     axes[0, 1].set_xlabel("$T_{vis}$  [ps]")
