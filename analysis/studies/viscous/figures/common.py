@@ -76,7 +76,14 @@ def draw_curve(axes, curve, colour, label, scale=1.0):
     """Means of a Curve with errors against velocity over scale [m/s]; open where the error is not known."""
     x, known = curve.velocities / scale, np.isfinite(curve.error)
     axes.errorbar(
-        x, curve.mean, np.nan_to_num(curve.error), fmt="o-", color=colour, capsize=3, mfc="white", label=label
+        x,
+        curve.mean,
+        np.nan_to_num(curve.error),
+        fmt="o-",
+        color=colour,
+        capsize=3,
+        mfc=colour if known.all() else "white",
+        label=label,
     )
     axes.plot(x[known], curve.mean[known], "o", color=colour, zorder=3)
 
