@@ -14,12 +14,12 @@ SAME = 1e-6  # relative, of velocities of the table
 def velocity_of_grid(velocity):
     """10^(0.1 i) m/s (A22 section 2.4) where a velocity [m/s] is that to ROUNDED, else the velocity.
 
-    >>> velocity_of_grid(50.1) == 10**1.7, velocity_of_grid(45.0)
+    >>> velocity_of_grid(50.1) == 10 ** (0.1 * 17), velocity_of_grid(45.0)
     (True, 45.0)
     """
     if velocity <= 0:
         return velocity
-    nearest = 10 ** (round(10 * log10(velocity)) / 10)
+    nearest = 10 ** (0.1 * round(10 * log10(velocity)))
     return nearest if abs(velocity / nearest - 1) < ROUNDED else velocity
 
 

@@ -46,7 +46,7 @@ def size_figure(results):
 @styled
 def size_growth_figure(results):
     """<f_gro> (above) and f_gro at B_off = 0 (below) against N^-1/2 at the velocities around v_fra, with lines through the two
-    smallest sizes to endless aggregates; over the same offsets."""
+    smallest sizes to endless aggregates; over the same offsets; open where the error is not known."""
     every, (results, offsets) = results, comparable(results)
     velocities = sorted({round(v, 6) for growth in results.growth.values() for v in growth.velocities})
     velocities = [v for v in velocities if SHOWN[0] < v < SHOWN[1]]
@@ -77,12 +77,14 @@ def _points_of_sizes(place, curves, time, velocity, colour):
     for grains in sizes:
         at = curves[grains, time].at(velocity) if (grains, time) in curves else None
         if at is not None:
-            found.append((grains, at[0], at[1] or 0.0))
+            found.append((grains, *at))
     if not found:
         return
     grains, mean, error = zip(*found)
-    x = np.array(grains, dtype=float) ** -EXPONENTS[0]
-    place.errorbar(x, mean, error, fmt="o", color=colour, capsize=3, label=time_label(time))
+    x, known = np.array(grains, dtype=float) ** -EXPONENTS[0], np.array([own is not None for own in error])
+    for own, fill, label in ((known, colour, time_label(time)), (~known, "white", None)):
+        values = (x[own], np.array(mean)[own], np.array([each or 0.0 for each in error])[own])
+        place.errorbar(*values, fmt="o", color=colour, mfc=fill, capsize=3, label=label)
     if [*grains[:2]] == sizes[:2]:
         endless = mean[1] + extrapolation_weight(*grains[:2], np.inf, EXPONENTS[0]) * (mean[1] - mean[0])
         place.plot([x[0], 0.0], [mean[0], endless], "--", color=colour, lw=0.9)
