@@ -173,7 +173,9 @@ def test_runs_of_other_grains_or_law_are_left_out(tmp_path, capsys):
     assert main(["study", "viscous", str(tmp_path), "--json"]) == 0
     said = capsys.readouterr()
     assert json.loads(said.out)["provenance"]["runs"] == len(SQUARES)
-    for words in ("limit = cut", "k_s factor = 2", "xi_crit = 80", "E = 54 GPa", "gamma = 0.025", "rho = 2000"):
+    for words in ("limit = cut", "slidingStiffnessFactor = 2", "criticalRolling = 8e-09", "young = 5.4e+10"):
+        assert words in said.err
+    for words in ("surfaceEnergy = 0.025", "density = 2000"):
         assert words in said.err
 
 

@@ -12,7 +12,7 @@ from ...runs.arrays import RunFolderError
 from ...runs.table import Column
 from ...theory import Material, pair_constants, sticking_velocity
 from ..definition import NotMeasured
-from ..grains import PAPERS, grain_constants, grains_text, other_grains
+from ..grains import require_papers_grains
 from . import paper
 from .grid import SAME, offset_of_grid, time_of_grid, velocity_of_grid
 
@@ -67,7 +67,7 @@ def measure(run):
     if numbers[0] != numbers[1]:
         raise NotMeasured(f"{run.path}: aggregates of {numbers[0]} and {numbers[1]} grains, A22's are equal")
     scene = _scene(run, int(numbers[0]))
-    _require_papers_grains(run)
+    require_papers_grains(run)
     _require_final(run, scene)
     sizes = fragment_sizes(fragment_labels(len(end.radius), end.contact_pairs))
     largest = int(sizes.max())
@@ -86,13 +86,6 @@ def measure(run):
         "closure": closure(history),
         "time": float(history["time"][-1]),
     }
-
-
-def _require_papers_grains(run):
-    """NotMeasured where the grains of a run are not A22's (its Table 1, those of PAPERS)."""
-    grains = {"material": run.parameters.get("material"), **grain_constants(run)}
-    if grains["material"] not in PAPERS or other_grains(grains):
-        raise NotMeasured(f"{run.path}: grains of {grains_text(grains)}, A22's are ice without these")
 
 
 def _require_final(run, scene):
