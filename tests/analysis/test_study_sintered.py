@@ -99,20 +99,25 @@ def runs(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize(
-    ("given", "derived", "said"),
-    [
-        ({"grains": 64}, {}, "aggregates of 64 grains, S17's have 1024"),
-        ({}, {"surfaceEnergy": 0.02}, "other grains than the paper's (surfaceEnergy = 0.02)"),
-    ],
-)
-def test_other_aggregates_and_grains_are_left_out(tmp_path, given, derived, said):
-    path = made_run(tmp_path / "run", 10.0, 0.7, 1, **given)
+def test_runs_of_other_grains_are_left_out(tmp_path):
+    path = made_run(tmp_path / "run", 10.0, 0.7, 1)
     about = json.loads((path / "run.json").read_text())
-    about["derived"].update(derived)
+    about["derived"]["surfaceEnergy"] = 0.02
     (path / "run.json").write_text(json.dumps(about))
-    with pytest.raises(NotMeasured, match=re.escape(said)):
+    with pytest.raises(NotMeasured, match=re.escape("other grains than the paper's (surfaceEnergy = 0.02)")):
         measure(open_run(path))
+
+
+def test_aggregates_of_unlike_size_are_no_seeds_of_one_point(runs):
+    """Of 400 and 800 grains: the commoner; beside aggregates of the paper's size only these. Compacted ones differ anyway."""
+    measured = pandas.DataFrame([measure(open_run(path)) for path in sorted(runs.glob("*-s[12]"))])
+    bcca = measured[measured.growth_velocity == 0]
+    for other, left in ((2 * GRAINS, len(bcca)), (2 * paper.GRAINS, 1)):
+        found = make_results(pandas.concat([measured, bcca.iloc[:1].assign(grains=other)], ignore_index=True))
+        own = found.table[found.table.growth_velocity == 0]
+        assert len(own) == left and own.grains.nunique() == 1 and found.other_sizes == len(bcca) + 1 - left
+        assert len(found.table) - len(own) == len(measured) - len(bcca)
+        assert any("of another number of grains" in line for line in remarks(found))
 
 
 def test_one_run(runs):

@@ -29,6 +29,8 @@ def sections(results):
 def remarks(results):
     """Lines that say what could not be told, and why."""
     table = results.table
+    if results.other_sizes:
+        yield f"{results.other_sizes} runs of BCCA aggregates of another number of grains are in no point and no fit"
     open_ended = int((~table.ended_by).sum())
     if open_ended:
         yield f"{open_ended} of {len(table)} runs went on to their duration: pieces may still have met or parted later"

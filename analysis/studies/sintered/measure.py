@@ -102,8 +102,6 @@ def measure(run):
     parameters = run.parameters
     if parameters["packing"] not in PACKINGS:
         raise NotMeasured(f"{run.path}: packing = {parameters['packing']}, S17's are {' and '.join(PACKINGS)}")
-    if parameters["packing"] == "bcca" and parameters.get("grains", paper.GRAINS) != paper.GRAINS:
-        raise NotMeasured(f"{run.path}: aggregates of {parameters['grains']} grains, S17's have {paper.GRAINS}")
     constants = derived_constants(run, {name: name for name in ("grainRadius", "density", "surfaceEnergy")})
     radius, grains = constants["grainRadius"], len(start.radius)
     velocity, neck = float(parameters["velocity"]), float(parameters["neck"])

@@ -79,7 +79,8 @@ class Point:
 
 @dataclass(frozen=True)
 class Results:
-    """table (a row a run, measure.COLUMNS), points ([Point], sorted), fits ({(planar, T_vis): {selection of
+    """table (a row a run, measure.COLUMNS), other_sizes (number of runs left out of it: BCCA aggregates of another number of
+    grains), points ([Point], sorted), fits ({(planar, T_vis): {selection of
     fits.SELECTIONS: fits.Fit}}), critical ({(planar, beta): growth.Critical or None} of BCCA aggregates without drag, for the
     paper's beta), both of the
     runs with xi_crit = 2 Angstrom and S17's LAW."""
@@ -88,6 +89,7 @@ class Results:
     points: tuple
     fits: Mapping
     critical: Mapping
+    other_sizes: int = 0
 
     def select(self, **values):
         """[Point] with these attributes, to a relative 2e-3 (velocities are printed so)."""
@@ -135,6 +137,7 @@ def runs_with(table, **values):
 
 def make_results(table):
     """Results of a table of runs (measure.COLUMNS), at least one."""
+    everything, table = len(table), _of_one_size(table)
     table = table.assign(broken=table[list(BROKEN_BONDS)].sum(axis=1))
     table = _with_ended(table)
     lost = sum(table[f"part_{name}"] for name in LOST)
@@ -162,7 +165,19 @@ def make_results(table):
         critical[planar, neck] = critical_velocity(
             runs_with(table, **{**MAIN, "planar": planar, "neck": neck, "growth_velocity": 0.0})
         )
-    return Results(table, points, MappingProxyType(laws), MappingProxyType(critical))
+    laws, critical = MappingProxyType(laws), MappingProxyType(critical)
+    return Results(table, points, laws, critical, everything - len(table))
+
+
+def _of_one_size(table):
+    """The runs of BCCA aggregates of S17's number of grains, or of the commonest where none has that; those of compacted
+    aggregates, which differ in size, all."""
+    compacted = table.growth_velocity > 0
+    sizes = table.grains[~compacted]
+    own = 2 * paper.GRAINS
+    if len(sizes) and not (sizes == own).any():
+        own = sizes.mode().iloc[0]
+    return table[compacted | (table.grains == own)]
 
 
 def _with_ended(table):

@@ -15,7 +15,7 @@ STUDY = Study(
         name="S17's scene",
         values={"material": "ice", "impact": 0.0, "sizes": "equal"},
         numbers=("velocity", "neck", "planar", "viscoelasticTime"),
-        measured=("criticalRolling", "growth_velocity", "cut", "sliding_factor", "packing_seed"),
+        measured=("criticalRolling", "growth_velocity", "cut", "sliding_factor", "grains", "packing_seed"),
     ),
     columns=COLUMNS,
     measure=measure,
