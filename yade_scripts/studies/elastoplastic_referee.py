@@ -10,6 +10,9 @@ from dataclasses import dataclass
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 STEP = 0.2  # t0, as the runs that are compared with these
+# t0, of long runs at 1 to 2.5 m/s: one at R = 40 and 1 m/s has the same outcome, d_max, t_max and largest return speed as with 0.1 to
+# 5e-5 r, 20 ps and 3e-4 m/s, and closes the ledger to 9e-5 of K(0).
+LONGER_STEP = 0.3
 DEFAULT = "64.6*{radius}*1.936532021439599e-10"  # s, A24's 1000 ns at R = 80, in proportion to R
 SIZES = (0.4, 0.3)
 PREDICTED = range(101, 109)
@@ -37,7 +40,7 @@ LONG = "runs/elastoplastic-long"
 @dataclass(frozen=True)
 class Block:
     """comment; fillings, radii, velocities (i of 10^(0.1 i) m/s), seeds; duration [s] (text, None: DEFAULT); drag [s];
-    remove: whether loose grains are; overlap at the start; folder of the run folders. LONG holds pairs that have run before, for longer: analysed by itself."""
+    remove: whether loose grains are; overlap at the start; step [t0]; folder of the run folders. LONG holds pairs that have run before, for longer: analysed by itself."""
 
     comment: str
     fillings: tuple
@@ -48,6 +51,7 @@ class Block:
     drag: tuple = ("0",)
     remove: int = 0
     overlap: float = 1.0
+    step: float = STEP
     folder: str = "runs/elastoplastic"
 
     def scenes(self):
@@ -61,10 +65,11 @@ class Block:
 
     def hours(self):
         """Core hours, from the 6.55 h that the 172 runs of elastoplastic-desk.table took on one core each."""
-        return sum(
+        at_step = sum(
             core_hours(filling, radius, float(self.duration) if self.duration else 12.5e-9 * radius)
             for filling, radius, *_ in self.scenes()
         )
+        return at_step * STEP / self.step
 
 
 def core_hours(filling, radius, duration):
@@ -122,6 +127,7 @@ REFEREE = (
         (0, 2, 4),
         range(1, 21),
         "3e-6",
+        step=LONGER_STEP,
         folder=LONG,
     ),
     Block(
@@ -132,6 +138,7 @@ REFEREE = (
         (0, 1, 2, 3),
         range(1, 7),
         "2e-6",
+        step=LONGER_STEP,
     ),
     Block(
         "Outcomes at R = 60, followed for 3 us, beside those of R = 40 and 80.",
@@ -140,6 +147,7 @@ REFEREE = (
         (0, 2, 4),
         range(1, 11),
         "3e-6",
+        step=LONGER_STEP,
         folder=LONG,
     ),
 )
@@ -155,7 +163,10 @@ def rows(block):
         duration = block.duration or DEFAULT.format(radius=radius)
         start = drag, block.remove, f"{block.overlap:g}", duration
         yield tuple(
-            map(str, (name, f"{filling:g}", radius, f"10**(0.1*{i})", seed, *start, STEP, 1, f"{block.folder}/{name}"))
+            map(
+                str,
+                (name, f"{filling:g}", radius, f"10**(0.1*{i})", seed, *start, block.step, 1, f"{block.folder}/{name}"),
+            )
         )
 
 
