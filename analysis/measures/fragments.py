@@ -1,8 +1,9 @@
 """Fragments: grains connected by contacts, and what became of two aggregates' mass."""
 
 import numpy as np
-from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
+
+from .network import contact_network
 
 
 def fragment_labels(grains, contact_pairs):
@@ -12,9 +13,7 @@ def fragment_labels(grains, contact_pairs):
     >>> fragment_labels(5, [[1, 2], [2, 4]]).tolist()
     [1, 0, 0, 2, 0]
     """
-    pairs = np.asarray(contact_pairs, dtype=np.intp).reshape(-1, 2)
-    graph = coo_matrix((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains))
-    _, labels = connected_components(graph, directed=False)
+    _, labels = connected_components(contact_network(grains, contact_pairs), directed=False)
     _, first, sizes = np.unique(labels, return_index=True, return_counts=True)
     rank = np.empty(len(sizes), dtype=np.intp)
     rank[np.lexsort((first, -sizes))] = np.arange(len(sizes))

@@ -1,8 +1,9 @@
 """Whether the contacts of a periodic cell reach from it to its own images, and along how many axes."""
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.sparse.csgraph import connected_components
+
+from .network import contact_network, spanning_forest
 
 
 def spanned_axes(position, pairs, cell_size):
@@ -22,8 +23,8 @@ def spanned_axes(position, pairs, cell_size):
         return 0
     first, second = pairs.T
     crossed = np.round((position[first] - position[second]) / cell_size).astype(int)
-    network = coo_matrix((np.ones(len(pairs)), (first, second)), shape=(grains, grains)).tocsr()
-    image = _images(network, grains, {**_steps(first, second, crossed), **_steps(second, first, -crossed)})
+    network = contact_network(grains, pairs)
+    image = _images(network, {**_steps(first, second, crossed), **_steps(second, first, -crossed)})
     windings = crossed - (image[second] - image[first])
     piece = connected_components(network, directed=False)[1][first]
     wound = windings.any(axis=1)
@@ -36,14 +37,10 @@ def _steps(here, there, crossed):
     return {(a, b): step for a, b, step in zip(here.tolist(), there.tolist(), crossed)}
 
 
-def _images(network, grains, steps):
+def _images(network, steps):
     """(N,3) int: in which image of the cell each grain is, seen along the contacts from the first grain of its piece."""
-    image, seen = np.zeros((grains, 3), dtype=int), np.zeros(grains, dtype=bool)
-    for start in range(grains):
-        if seen[start]:
-            continue
-        order, before = breadth_first_order(network, start, directed=False)
-        seen[order] = True
-        for grain in order[1:]:
-            image[grain] = image[before[grain]] + steps[int(before[grain]), int(grain)]
+    order, parent = spanning_forest(network)
+    image = np.zeros((len(parent), 3), dtype=int)
+    for grain in order[parent[order] >= 0]:
+        image[grain] = image[parent[grain]] + steps[int(parent[grain]), int(grain)]
     return image

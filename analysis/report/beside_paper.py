@@ -65,6 +65,20 @@ class Line:
         return {name: getattr(self, name) for name in names}
 
 
+def error_of_theirs(error, runs, theirs):
+    """Standard error of a paper's mean of `theirs` runs, if they scatter as our `runs` whose mean has this error; None where
+    ours has none."""
+    return None if error is None else error * (runs / theirs) ** 0.5
+
+
+def line_of_runs(quantity, unit, ours, runs, paper, theirs, note=""):
+    """Line of our (mean, standard error or None) of `runs` independent runs beside a paper's mean of `theirs` runs (paper;
+    None: it gives none), which it prints without error: its runs are taken to scatter as ours, so that p is of both."""
+    mean, error = ours
+    scatter = None if paper is None else error_of_theirs(error, runs, theirs)
+    return Line(quantity, unit, mean, error, paper, scatter, note, runs - 1, shared=True)
+
+
 def section_of_lines(heading, lines, notes=()):
     """Section of a list of Line."""
     return Section(heading, _COLUMNS, tuple(line.record for line in lines), notes=tuple(notes))

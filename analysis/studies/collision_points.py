@@ -24,6 +24,7 @@ HEAD_ON_ICE = MappingProxyType(
         "viscoelasticTime": 0.0,
         "neck": 0.0,
         "planar": 0,
+        "limit": "held",
         "material": "ice",
         "removeLooseGrains": 0,
         "initialOverlap": 1.0,

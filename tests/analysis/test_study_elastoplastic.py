@@ -281,7 +281,7 @@ def test_what_does_not_belong_is_left_out_with_a_note(runs, tmp_path):
         "late: has not ended",
         "oblique: impact = 0.5, A24's scene has 0.0",
         "again: the same filling",
-        "cut: springs cut at their limits",
+        "cut: limit = cut, A24's scene has held",
         "other: other grains than the paper's (surfaceEnergy = 0.02)",
     ):
         assert text in done.stderr

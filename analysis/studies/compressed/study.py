@@ -141,7 +141,7 @@ STUDY = Study(
     title="Collisions of CPE and of compressed aggregates",
     scene=Scene(
         name="A24's scene, or one of compressed aggregates",
-        values={**HEAD_ON_ICE, "limit": "held"},
+        values=dict(HEAD_ON_ICE),
         numbers=("velocity",),
         measured=("compressed", "nominal", "radius", "pair", "step", *OF_GRAINS),
     ),

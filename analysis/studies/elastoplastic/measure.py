@@ -16,7 +16,6 @@ from ..collision_points import (
     outcome_values,
     return_values,
 )
-from ..definition import NotMeasured
 from ..grains import require_papers_grains
 from .start import COLUMNS as START_COLUMNS
 from .start import start_values
@@ -51,11 +50,9 @@ COLUMNS = (
 
 
 def measure(run):
-    """{column: value} of a RunFolder of A24's scene that has ended. NotMeasured where the grains or the rule at the limits are
-    not A24's, or the aggregates never met or never turned around, RunFolderError where something is missing."""
+    """{column: value} of a RunFolder of A24's scene that has ended. NotMeasured where the grains are not A24's, or the
+    aggregates never met or never turned around, RunFolderError where something is missing."""
     require_papers_grains(run)
-    if run.parameters.get("limit", "held") != "held":
-        raise NotMeasured(f"{run.path}: springs cut at their limits, A24 holds them")
     history = run.history
     maximum, exceeded = largest_compression(run)
     scene = _scene(run)

@@ -38,7 +38,7 @@ class Filling:
     DEFINITIONS), offset [m] and offset_source, velocity_fits (VelocityFit by what is special about it; ''
     comes first), joint (JointFit), differences ({definition: size_fit.JointDifference from A24's line, None without}),
     covariates ({zone_fit.COVARIATES: Slope of d_max, None without}), adjusted ([zone_fit.Adjusted] of d_max by size),
-    time_zone (the same two of t_max: Slope on the filling of the zones, [Adjusted]; None and [] without), slope (of d_max on
+    zone_times (the same two of t_max: Slope on the filling of the zones, [Adjusted]; None and [] without), slope (of d_max on
     the start's offset at the velocity of the size fit, its error), corrections ({index of point there: Correction} in grain
     radii), coordination (mean inside the aggregates, its error), bulk_modulus [Pa] of eq 41, poisson
     (value, error), grain_radius [m]."""
@@ -54,7 +54,7 @@ class Filling:
     differences: Mapping
     covariates: Mapping
     adjusted: list
-    time_zone: tuple
+    zone_times: tuple
     slope: tuple
     corrections: Mapping
     coordination: tuple
@@ -140,7 +140,7 @@ def _filling(filling, table):
         _differences(filling, size_fits, points, at_velocity, covariates, r),
         covariates,
         adjusted,
-        _time_zone(at_velocity),
+        _zone_times(at_velocity),
         slope,
         corrections,
         # A pair has the same packings at every velocity.
@@ -206,8 +206,8 @@ def _covariates(table):
     return slopes, [] if zone is None else adjust(table, zone)
 
 
-def _time_zone(table):
-    """time_zone of Filling from the runs at one velocity."""
+def _zone_times(table):
+    """zone_times of Filling from the runs at one velocity."""
     slope = fit_slope(table, of="t_max")
     return slope, [] if slope is None else adjust(table, slope, of="t_max")
 

@@ -132,7 +132,7 @@ def _adjusted(results):
 
 def _adjusted_times(results):
     for factor, filling in results.by_filling.items():
-        slope, sizes = filling.time_zone
+        slope, sizes = filling.zone_times
         for each in sizes if factor in paper.YOUNG else ():
             model = 1e9 * papers_model(results, filling, each.radius, filling.size_fit.velocity)[1]
             chance = student_chance((each.adjusted - model) / each.adjusted_error, slope.freedom)

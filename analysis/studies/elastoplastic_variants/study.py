@@ -12,6 +12,7 @@ from ...runs.arrays import RunFolderError
 from ...runs.collect import Scene
 from ...runs.table import Column, read_table
 from ...statistics import mean_and_error, student_chance
+from ..collision_points import HEAD_ON_ICE
 from ..definition import Study
 from ..elastoplastic import measure as unchanged
 from ..elastoplastic.prediction import GALLERY
@@ -148,7 +149,7 @@ STUDY = Study(
     title="Elastoplastic collisions with one thing changed beside the same without",
     scene=Scene(
         name="A24's scene and its variants",
-        values={"packing": "cpe", "impact": 0.0, "neck": 0.0, "planar": 0, "material": "ice"},
+        values={"packing": "cpe", **{name: value for name, value in HEAD_ON_ICE.items() if name not in NAMES}},
         numbers=("filling", "radius", "velocity", "seed"),
         measured=NAMES,
     ),

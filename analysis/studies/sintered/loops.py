@@ -1,8 +1,8 @@
 """Loops of a packing: how many there are, and which grains belong to one (S17 section 5.4)."""
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+from ...measures.network import contact_network, spanning_forest
 
 
 def loops(grains, pairs):
@@ -15,18 +15,14 @@ def loops(grains, pairs):
     (1, 3)
     """
     pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains)).tocsr()
-    pieces, piece = connected_components(graph, directed=False)
-    parent, depth = np.full(grains, -1), np.zeros(grains, dtype=int)
-    for root in np.unique(piece, return_index=True)[1]:
-        order, before = breadth_first_order(graph, root, directed=False)
-        for grain in order[1:]:
-            parent[grain] = before[grain]
-            depth[grain] = depth[before[grain]] + 1
+    order, parent = spanning_forest(contact_network(grains, pairs))
+    depth = np.zeros(grains, dtype=int)
+    for grain in order[parent[order] >= 0]:
+        depth[grain] = depth[parent[grain]] + 1
     inside = np.zeros(grains, dtype=bool)
     for i, j in pairs[(parent[pairs[:, 0]] != pairs[:, 1]) & (parent[pairs[:, 1]] != pairs[:, 0])]:
         while i != j:  # up the tree to where both ways meet
             inside[[i, j]] = True
             i, j = (parent[i], j) if depth[i] >= depth[j] else (i, parent[j])
         inside[i] = True
-    return len(pairs) - grains + int(pieces), int(inside.sum())
+    return len(pairs) - grains + int((parent < 0).sum()), int(inside.sum())

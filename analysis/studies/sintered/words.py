@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...report.beside_paper import Line
+from ...report.beside_paper import error_of_theirs, line_of_runs
 from ...statistics import student_chance, wilson
 from . import paper
 
@@ -24,11 +24,6 @@ def probability(successes, trials):
     return f"{successes} of {trials} ({low:.2f} to {high:.2f})"
 
 
-def error_of_theirs(error, runs):
-    """Standard error of the paper's mean of paper.RUNS runs, if they scatter as our `runs` whose mean has this error."""
-    return error * (runs / paper.RUNS) ** 0.5
-
-
 def beside_limits(mean, error, runs, least, most):
     """Whether a mean of `runs` runs is between limits (None: open), and if not how far off, in words. p: Student's, beside the limit
     as it stands, and where the paper's mean has an error as ours.
@@ -44,7 +39,7 @@ def beside_limits(mean, error, runs, least, most):
     if not error:
         return f"outside it by {off:.3g}"
     alone = student_chance(off / error, runs - 1)
-    both = student_chance(off / np.hypot(error, error_of_theirs(error, runs)), runs - 1)
+    both = student_chance(off / np.hypot(error, error_of_theirs(error, runs, paper.RUNS)), runs - 1)
     return f"outside it by {off / error:.1f} errors (p = {alone:.2g}; {both:.2g} if the paper's {paper.RUNS} runs scatter as ours)"
 
 
@@ -54,17 +49,5 @@ def limits(least, most):
 
 
 def beside(quantity, unit, pair, theirs, runs, note=""):
-    """Line of our (mean, error) of `runs` runs beside a number that the paper prints without error: it is taken to scatter as ours."""
-    mean, error = pair
-    paper_error = error_of_theirs(error, runs) if error else None
-    return Line(
-        quantity,
-        unit,
-        mean,
-        error,
-        theirs,
-        paper_error,
-        note or f"{runs} seeds",
-        runs - 1 if runs > 1 else None,
-        shared=paper_error is not None,
-    )
+    """Line of our (mean, error) of `runs` runs beside the paper's number."""
+    return line_of_runs(quantity, unit, pair, runs, theirs, paper.RUNS, note or f"{runs} seeds")

@@ -1,14 +1,12 @@
-"""Lines beside a paper that has one pair of aggregates and states no errors: its number is taken to scatter as one of our
-pairs, so that p is of both."""
+"""Lines beside a paper that has one pair of aggregates."""
 
-from ...report.beside_paper import Line
+from ...report.beside_paper import line_of_runs
 
 
 def beside_one_pair(quantity, unit, mean, error, pairs, theirs, note=""):
     """Line of our mean over pairs of aggregates, with its standard error (None: not known), beside the paper's number
     (None: it gives none)."""
-    scatter = None if error is None or theirs is None else error * pairs**0.5
-    return Line(quantity, unit, mean, error, theirs, scatter, note, pairs - 1, shared=True)
+    return line_of_runs(quantity, unit, (mean, error), pairs, theirs, 1, note)
 
 
 def beside_range(quantity, unit, mean, error, pairs, low, high, note=""):

@@ -128,7 +128,7 @@ def _draw_lateness(axes, results):
         for number, (radius, _, t_max) in enumerate(size_points(results, filling)):
             later = (t_max - papers_model(results, filling, radius, filling.size_fit.velocity)[1]) * NANO
             scatter_of_seeds(axes, radius + shift, later, colour, None if number else f"filling {factor:g}")
-        for number, each in enumerate(filling.time_zone[1]):
+        for number, each in enumerate(filling.zone_times[1]):
             model = papers_model(results, filling, each.radius, filling.size_fit.velocity)[1] * NANO
             options = {"fmt": "s", "capsize": 3, "markerfacecolor": "none", "color": colour}
             label = None if number else f"filling {factor:g}, adjusted for the zones that meet"

@@ -1,0 +1,29 @@
+"""The network of contacts of a packing: grains joined by pairs."""
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+
+def contact_network(grains, pairs):
+    """Sparse matrix (N,N) of N = `grains` grains with an entry for each of pairs (M,2) int, as scipy's csgraph takes it."""
+    pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
+    return coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains)).tocsr()
+
+
+def spanning_forest(network):
+    """(order (N,), parent (N,)) int of a tree of contacts in each piece of a contact_network, rooted in its first grain: every
+    grain comes after its parent in `order`; parent is -1 for roots.
+
+    >>> order, parent = spanning_forest(contact_network(4, [[1, 2], [2, 3]]))
+    >>> order.tolist(), parent.tolist()
+    ([0, 1, 2, 3], [-1, -1, 1, 2])
+    """
+    parent = np.full(network.shape[0], -1)
+    piece = connected_components(network, directed=False)[1]
+    orders = []
+    for root in np.unique(piece, return_index=True)[1]:
+        order, before = breadth_first_order(network, root, directed=False)
+        parent[order[1:]] = before[order[1:]]
+        orders.append(order)
+    return np.concatenate(orders) if orders else np.empty(0, dtype=int), parent
