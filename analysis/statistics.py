@@ -25,6 +25,36 @@ def mean_and_error(values):
     return float(values.mean()), float(scatter(values) / np.sqrt(len(values))) if len(values) > 1 else None
 
 
+def ratio_and_error(above, below):
+    """(ratio of the means, standard error) of values (n,) and (n,), a pair of which is of one draw: leaving one draw out at a time
+    (the jackknife). The error is None for one draw, or where the rest has nothing below; the ratio is NaN without anything below.
+
+    >>> ratio_and_error([1.0, 3.0], [2.0, 6.0]), ratio_and_error([1.0], [2.0])
+    ((0.5, 0.0), (0.5, None))
+    """
+    above, below = np.asarray(above, dtype=float), np.asarray(below, dtype=float)
+    number, whole = len(above), below.sum()
+    ratio = float(above.sum() / whole) if whole else float("nan")
+    rest = whole - below
+    if number < 2 or not rest.all():
+        return ratio, None
+    without = (above.sum() - above) / rest
+    return ratio, float(np.sqrt(number - 1) * _without_rounding(without.std(), without))
+
+
+def ratio_of_two(above, below):
+    """(ratio, standard error) of two independent (mean, standard error or None), to first order; None where one is 0 or has no
+    error.
+
+    >>> ratio_of_two((1.0, 0.3), (2.0, 0.8))
+    (0.5, 0.25)
+    """
+    ratio = above[0] / below[0] if below[0] else float("nan")
+    if not above[0] or not below[0] or above[1] is None or below[1] is None:
+        return ratio, None
+    return ratio, float(abs(ratio) * np.hypot(above[1] / above[0], below[1] / below[0]))
+
+
 def scatter(values):
     """Standard deviation of values (n,) about their mean, n - 1 degrees of freedom; NaN for one value, 0 where they agree
     to rounding."""

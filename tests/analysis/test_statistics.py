@@ -10,6 +10,8 @@ from analysis.statistics import (
     mean_and_error,
     pair_weights,
     percentile_error,
+    ratio_and_error,
+    ratio_of_two,
     resampling_error,
     scatter,
     smoothed_scatter,
@@ -25,6 +27,21 @@ _VELOCITIES = tuple(10 ** (0.1 * i) for i in range(8))
 def test_mean_and_error():
     assert mean_and_error([1.0, 2.0, 6.0]) == (3.0, pytest.approx((14 / 2 / 3) ** 0.5))
     assert mean_and_error([4.0]) == (4.0, None)
+
+
+def test_a_ratio_of_means_and_its_error():
+    """Over a constant it is a mean's; of draws that are correlated it is smaller than of independent ones."""
+    values = [1.0, 2.0, 6.0]
+    assert ratio_and_error(values, [2.0, 2.0, 2.0]) == pytest.approx(np.array(mean_and_error(values)) / 2)
+    draws = np.random.default_rng(3)
+    below = draws.normal(10.0, 1.0, 400)
+    above = 3 * below + draws.normal(0.0, 0.5, 400)
+    together = ratio_and_error(above, below)
+    assert together == (pytest.approx(3.0, abs=0.01), pytest.approx(0.5 / 10 / 20, rel=0.2))
+    apart = ratio_of_two(mean_and_error(above), mean_and_error(below))
+    assert apart[0] == pytest.approx(together[0]) and apart[1] == pytest.approx(0.3 * 2**0.5 / 20, rel=0.2)
+    assert ratio_and_error([1.0, 2.0], [0.0, 3.0]) == (1.0, None)  # one draw left out leaves nothing below
+    assert np.isnan(ratio_and_error([1.0, 2.0], [0.0, 0.0])[0]) and np.isnan(ratio_of_two((1.0, 0.1), (0.0, 0.0))[0])
 
 
 @pytest.mark.parametrize("value", [0.1, 1e-9, 3e7])

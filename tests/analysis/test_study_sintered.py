@@ -262,6 +262,52 @@ def test_comparison_and_figures(runs, tmp_path, capsys):
     assert differences(json.loads(capsys.readouterr().out)["sections"], answer["sections"]) == []
 
 
+def lines_of_runs(folder, capsys):
+    """{quantity: record} of the lines beside the paper."""
+    assert main(["study", "sintered", str(folder), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    return {row["quantity"]: row for s in answer["sections"] for row in s["rows"] if "quantity" in row}
+
+
+def test_compacted_aggregates_beside_others(tmp_path, capsys):
+    for seed in (1, 2, 3, 4):
+        more = {"broken": 160 + seed, "seed": seed}
+        made_run(tmp_path / f"bcca{seed}", 30.0, 0.7, seed, broken=100 + 5 * seed)
+        for growth, largest in ((1.0, GRAINS), (3.0, GRAINS - 40 * seed)):
+            made_run(tmp_path / f"fast{growth}-{seed}", 30.0, 0.7, largest=largest, growth=growth, **more)
+        made_run(tmp_path / f"slow{seed}", 10.0, 0.7, seed, GRAINS // 2 if seed < 4 else GRAINS, growth=3.0, broken=0)
+        made_run(tmp_path / f"unsintered{seed}", 3.0, 0.0, seed, growth=3.0)
+    found = lines_of_runs(tmp_path, capsys)
+    assert found["contacts a grain, V_g = 3 m/s"]["ours"] == pytest.approx(2 * (GRAINS - 2) / GRAINS)
+    assert found["fraction that sticks, V_g = 3 m/s, unsintered, 3 m/s"]["ours"] == 1.0
+    bounces = found["fraction that bounces, V_g = 3 m/s, beta = 0.7, 10 m/s"]
+    assert bounces["ours"] == 0.75 and "3 of 4" in bounces["note"] and "1 stick" in bounces["note"]
+    assert found["sticking efficiency, V_g = 1 m/s, beta = 0.7, 30 m/s"]["paper"] == paper.BROKEN_EFFICIENCY
+    assert "outside it" in found["sticking efficiency, V_g = 3 m/s, beta = 0.7, 30 m/s"]["note"]
+    ratio = found["N_cut/N_t over BCCA's, V_g = 1 m/s, beta = 0.7, 30 m/s"]
+    assert ratio["ours"] == pytest.approx(162.5 / 112.5) and ratio["paper"] == 1.0 and 0.02 < ratio["error"] < 0.06
+    assert "mass in fragments less BCCA's, V_g = 1 m/s, beta = 0.7, 30 m/s" not in found  # neither has any
+
+
+def test_space_and_other_laws_beside_the_plane(tmp_path, capsys):
+    changes = {"plane": {}, "space": {"planar": 0}, "held": {"limit": "held"}}
+    for seed in (1, 2, 3):
+        broken = {"plane": 80 + 8 * seed, "space": 40, "held": 120 + 12 * seed}
+        for name, change in changes.items():
+            largest = GRAINS if name == "plane" else GRAINS // 2
+            made_run(tmp_path / f"{name}{seed}", 30.0, 0.7, seed, largest, broken=broken[name], **change)
+    found = lines_of_runs(tmp_path, capsys)
+    ratio = found["N_cut/N_t in space over the plane, beta = 0.7, 30 m/s"]
+    assert ratio["ours"] == pytest.approx(40 / 96) and ratio["paper"] == 1.0 and ratio["chance"] < 0.05
+    bounces = found["fraction that bounces, space less plane, beta = 0.7, 30 m/s"]
+    assert bounces["ours"] == 1.0 and "Fisher's exact p = 0.1" in bounces["note"]
+    assert found["necks broken by twisting in space, beta = 0.7, 30 m/s"]["ours"] == 0.0
+    assert found["sticking efficiency, held less main, beta = 0.7, 30 m/s"]["ours"] == -0.5
+    # seed by seed, so that what pairs have in common drops out
+    ratio = found["N_cut/N_t, held over main, beta = 0.7, 30 m/s"]
+    assert ratio["ours"] == pytest.approx(1.5) and ratio["error"] == 0.0
+
+
 def point_of(answer, neck, velocity):
     """The record of a point of BCCA aggregates in the section of all points."""
     points = [s for s in answer["sections"] if s["heading"] == "all points"][0]["rows"]

@@ -2,10 +2,22 @@
 
 from ...report.beside_paper import section_of_lines
 from ...report.section import Section
-from .lines import compare
+from . import beyond_lines, compacted_lines, energy_lines, lines
 from .results import LAW
 from .tables import bouncing_section, energy_section, fits_section, necks_section, points_section
 
+# The groups of lines beside the paper: f(results) -> (heading, [Line], (notes)).
+GROUPS = (
+    *(lines.efficiency, lines.growth, lines.gyration, lines.bounces, lines.loops),
+    *(
+        compacted_lines.contacts,
+        compacted_lines.at_growth_velocity,
+        compacted_lines.at_any_velocity,
+        compacted_lines.beside_bcca,
+    ),
+    *(energy_lines.energy, energy_lines.broken),
+    beyond_lines.in_space,
+)
 LEGEND = (
     "error: standard error of the mean over seeds, each another pair of aggregates; -: one seed only. Error bars of figures are these too.",
     "The paper has five runs a point, draws their standard deviations (2.2 times a standard error) and prints few numbers: where it prints "
@@ -16,9 +28,9 @@ LEGEND = (
 
 def sections(results):
     """Sections of results.Results: one for each subject, with an honest read as notes, then every point."""
-    for heading, lines, notes in compare(results):
-        if lines:
-            yield section_of_lines(heading, lines, notes)
+    for heading, found, notes in (*(group(results) for group in GROUPS), *beyond_lines.changes(results)):
+        if found:
+            yield section_of_lines(heading, found, notes)
     for make in (fits_section, points_section, necks_section, energy_section, bouncing_section):
         section = make(results)
         if section is not None:

@@ -1,20 +1,12 @@
-"""Our numbers beside S17's, as lines of tables, each group with what it can and cannot tell: what becomes of the aggregates."""
-
-from scipy.stats import fisher_exact
+"""Our numbers beside S17's, as lines of tables, each group with what it can and cannot tell: what becomes of BCCA aggregates. A group is
+(heading, [Line], (notes)) of results.Results."""
 
 from ...report.beside_paper import Line
-from ...statistics import mean_and_error, student_chance, wilson
+from ...statistics import wilson
 from . import paper
-from .energy_lines import broken, energy
-from .words import beside, beside_limits, limits, name_of, probability
+from .words import beside, beside_limits, fraction_line, limits, name_of, other_fraction, paired_line, probability
 
 NO_ERRORS = "The paper prints no errors: diff* and p take its mean of five runs to scatter as ours. In diff it is taken as exact."
-
-
-def compare(results):
-    """Yields (heading, [Line], (notes)) of results.Results."""
-    for group in (_efficiency, _growth, _gyration, _bounces, _loops, _compacted, energy, broken):
-        yield group(results)
 
 
 def _bcca(results, neck, velocity):
@@ -22,7 +14,7 @@ def _bcca(results, neck, velocity):
     return found[0] if found else None
 
 
-def _efficiency(results):
+def efficiency(results):
     lines = []
     for neck, velocity, least, most, said in paper.STICKING_EFFICIENCY:
         point = _bcca(results, neck, velocity)
@@ -36,7 +28,7 @@ def _efficiency(results):
             note = f"paper: above 10 m/s approximately {paper.BROKEN_EFFICIENCY:g} (section 5.2); {point.runs} seeds"
             quantity = f"sticking efficiency above 10 m/s, {name_of(point)}"
             lines.append(beside(quantity, "", point.means["largest"], paper.BROKEN_EFFICIENCY, point.runs, note))
-    lines += _paired(
+    lines += paired_line(
         results,
         "largest",
         "fall from beta = 0.4 to 0.5 at 30 m/s",
@@ -51,19 +43,7 @@ def _efficiency(results):
     return "sticking efficiency of BCCA aggregates (Figs 8, 10, 11)", lines, notes
 
 
-def _paired(results, column, quantity, first, second, said, unit=""):
-    """[Line] of the mean difference of a column between two points of the same seeds; [] without such seeds."""
-    values = results.paired(column, first, second)
-    if not len(values):
-        return []
-    mean, error = mean_and_error(values)
-    note = f"{said}; seed by seed, {len(values)} seeds"
-    if error:
-        note += f", p = {student_chance(mean / error, len(values) - 1):.2g} that there is none"
-    return [Line(quantity, unit, mean, error, note=note)]
-
-
-def _growth(results):
+def growth(results):
     lines = []
     for (planar, neck), found in results.critical.items():
         if found is None:
@@ -93,7 +73,7 @@ def _growth(results):
     return "critical velocity for growth of BCCA aggregates (abstract)", lines, notes
 
 
-def _gyration(results):
+def gyration(results):
     lines = []
     for other in (0.0, 0.2):
         name = f"beta = {other:g}" if other else "unsintered"
@@ -103,7 +83,7 @@ def _gyration(results):
                 said = "paper: says nothing"
             points = ({"neck": neck, "velocity": velocity} for neck in (0.7, other))
             quantity = f"R_g/R of the largest piece, beta = 0.7 less {name}, {velocity:.3g} m/s"
-            lines += _paired(results, "gyration_radius", quantity, *points, f"{said} (Fig. 8)")
+            lines += paired_line(results, "gyration_radius", quantity, *points, f"{said} (Fig. 8)")
     notes = (
         "The paper: unsintered aggregates are the smallest below 10 m/s, those of beta = 0.7 above, because of fragmentation "
         "(section 5.1).",
@@ -111,22 +91,22 @@ def _gyration(results):
     return "gyration radius of BCCA aggregates (Fig. 8)", lines, notes
 
 
-def _bounces(results):
+def bounces(results):
     lines = []
     point = _bcca(results, 0.7, 10.0)
     if point is not None:
         bounced, runs = paper.BOUNCES
         low, high = wilson(bounced, runs)
-        chance = fisher_exact([[bounced, runs - bounced], [point.bouncing, point.runs - point.bouncing]])[1]
+        chance = other_fraction(point.bouncing, point.runs, bounced, runs)
         note = (
             f"ours {probability(point.bouncing, point.runs)}, paper {probability(bounced, runs)}: 2 of 5 alone allows {low:.2f} to "
             f"{high:.2f}; Fisher's exact p = {chance:.2g}"
         )
-        lines.append(_fraction("bounces", point, point.bouncing, bounced / runs, note))
+        lines.append(fraction_line("bounces", point, point.bouncing, bounced / runs, note))
     point = _bcca(results, 0.7, paper.SLOW)
     if point is not None:
         note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
-        lines.append(_fraction("sticks", point, point.sticking, 1.0, note))
+        lines.append(fraction_line("sticks", point, point.sticking, 1.0, note))
     notes = (
         "Bouncing is two large pieces, each of one aggregate to nine tenths (measures.outcome): separation at the new contacts, as "
         "in section 5.4. Parts torn off at sintered necks, and merged bodies that break, are fragments.",
@@ -134,7 +114,7 @@ def _bounces(results):
     return "bouncing of BCCA aggregates (section 5.1)", lines, notes
 
 
-def _loops(results):
+def loops(results):
     lines = []
     point = _bcca(results, 0.7, 10.0)
     if point is not None and point.means["loops_at_start"] is not None:
@@ -151,26 +131,3 @@ def _loops(results):
         "Our packings have loops at the start, since grains that end up between 2 R - delta_0 and 2 R apart count as touching.",
     )
     return "loops of grains (section 5.4)", lines, notes
-
-
-def _compacted(results):
-    lines = []
-    for growth, least in paper.COMPACTED:
-        points = results.main(growth_velocity=growth, velocity=growth)
-        for point in points:
-            if point.neck:
-                bounces = least is not None and point.neck >= least
-                expected = "only bouncing" if bounces else ("sticking" if least is None else "bouncing and sticking")
-                note = f"paper: {expected}; ours {probability(point.bouncing, point.runs)} bounce"
-                theirs = 1.0 if bounces else (0.0 if least is None else None)
-                lines.append(_fraction("bounces", point, point.bouncing, theirs, note))
-    notes = (
-        "Our compacted aggregates are two BCCA clusters of 512 grains that have collided at V_g; the paper doesn't say from what its "
-        "own start. Their contacts a grain, on which the outcome depends (section 5.5), are in the table of all points.",
-    )
-    return "compacted aggregates at V_c = V_g (Fig. 13)", lines, notes
-
-
-def _fraction(what, point, number, theirs, note):
-    """Of the runs of a point, those that do what is said."""
-    return Line(f"fraction that {what}, {name_of(point)}", "", number / point.runs, None, theirs, None, note)

@@ -25,6 +25,12 @@ CRITICAL_VELOCITIES = {0.0: 50.0, 0.7: 20.0}  # for growth, m/s, by beta (abstra
 BOUNCES = (2, 5)  # bounced, runs: beta = 0.7, 10 m/s (section 5.4)
 # V_g = V_c [m/s], least beta at which only bouncing is seen (None: sticking at all), xi_crit = 2 Angstrom: section 5.3, Fig. 13.
 COMPACTED = ((1.0, None), (3.0, 0.3), (5.0, 0.3))
+UNSINTERED_COMPACTED = 3.0  # V_g = V_c [m/s] at which "the non-sintered aggregates stick perfectly" (Fig. 9)
+# beta = 0.7, Fig. 10 (section 5.2), as (V_g, V_c) [m/s]: those that stick, and those whose "collisional outcome is bouncing". "Above
+# 30 m/s fragmentation occurs", and of V_g = 0 and 1 m/s the efficiency above BROKEN_ABOVE is BROKEN_EFFICIENCY.
+COMPACTED_STICKING = ((1.0, SLOW),)
+COMPACTED_BOUNCING = tuple((growth, velocity) for growth in (3.0, 10.0) for velocity in (SLOW, 10.0))
+COMPACTED_BROKEN = ((3.0, 30.0), (10.0, 30.0))
 
 ROLLING_FRACTION = 0.8  # of K(0), unsintered at 10 m/s (Fig. 14)
 DISCONNECTION_FRACTION = 0.2  # of K(0), by breaking unsintered necks through stretching, there (Fig. 14)
@@ -34,7 +40,11 @@ UNDISSIPATED = (
 )
 BY_ROLLING = 0.9  # of the broken necks, at least (section 5.3)
 FIT = (3.7e-2, 0.97)  # N_cut/N_t = c (E_k/E_sint)^p, without BCCA aggregates of beta = 0.2 (Fig. 15)
-CONTACTS = {0.0: 2.0}  # a grain: "approximately two at low V_g and three at high V_g" (Fig. 6)
+CONTACTS_SAID = "approximately two at low V_g and three at high V_g (Fig. 6)"
+AS_MANY_FRAGMENTS, FEWER_FRAGMENTS = (
+    (1.0,),
+    (3.0, 10.0),
+)  # V_g [m/s] whose fragments are as BCCA's, and fewer (section 5.3)
 FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
 LOOP_SIZE = 44  # grains in a loop of BCCA aggregates, beta = 0.7, 10 m/s, on average (section 5.4)
 LOOP_GRAINS = 22  # N of eq 18 in a BCCA aggregate that has formed loops (section 5.4)

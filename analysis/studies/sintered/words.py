@@ -1,9 +1,10 @@
 """What the comparison's lines say in words, and how a printed number stands beside ours."""
 
 import numpy as np
+from scipy.stats import fisher_exact
 
-from ...report.beside_paper import error_of_theirs, line_of_runs
-from ...statistics import student_chance, wilson
+from ...report.beside_paper import Line, error_of_theirs, line_of_runs
+from ...statistics import mean_and_error, student_chance, wilson
 from . import paper
 
 
@@ -51,3 +52,29 @@ def limits(least, most):
 def beside(quantity, unit, pair, theirs, runs, note=""):
     """Line of our (mean, error) of `runs` runs beside the paper's number."""
     return line_of_runs(quantity, unit, pair, runs, theirs, paper.RUNS, note or f"{runs} seeds")
+
+
+def other_fraction(successes, trials, theirs, of):
+    """Chance (Fisher's exact test) that two sets of runs with one and the same probability differ so much.
+
+    >>> round(other_fraction(0, 5, 2, 5), 2)
+    0.44
+    """
+    return float(fisher_exact([[theirs, of - theirs], [successes, trials - successes]])[1])
+
+
+def fraction_line(what, point, number, theirs, note):
+    """Line: of the runs of a point, those that do what is said."""
+    return Line(f"fraction that {what}, {name_of(point)}", "", number / point.runs, None, theirs, None, note)
+
+
+def paired_line(results, column, quantity, first, second, said, unit=""):
+    """[Line] of the mean difference of a column between two points of the same seeds; [] without such seeds."""
+    values = results.paired(column, first, second)
+    if not len(values):
+        return []
+    mean, error = mean_and_error(values)
+    note = f"{said}; seed by seed, {len(values)} seeds"
+    if error:
+        note += f", p = {student_chance(mean / error, len(values) - 1):.2g} that there is none"
+    return [Line(quantity, unit, mean, error, note=note)]
