@@ -10,13 +10,14 @@ from .words import beside, beside_limits, fraction_line, limits, name_of, probab
 def contacts(results):
     """Fig. 6."""
     lines = []
-    for growth in (0.0, *paper.GROWTH_VELOCITIES):
-        points = results.main(growth_velocity=growth)
-        if points and (growth or lines or results.main(growth_velocity=1.0)):
-            most = max(points, key=lambda point: point.runs)  # points of one V_g share their aggregates
-            name = f"V_g = {growth:g} m/s" if growth else "BCCA"
-            note = f"paper: {paper.CONTACTS_SAID}; {most.runs} pairs"
-            lines.append(Line(f"contacts a grain, {name}", "", *most.means["contacts"], note=note))
+    growths = sorted({point.growth_velocity for point in results.main()})
+    for growth in growths if any(growths) else ():
+        most = max(
+            results.main(growth_velocity=growth), key=lambda point: point.runs
+        )  # those of one V_g share aggregates
+        name = f"V_g = {growth:g} m/s" if growth else "BCCA"
+        note = f"paper: {paper.CONTACTS_SAID}; {most.runs} seeds"
+        lines.append(Line(f"contacts a grain, {name}", "", *most.means["contacts"], note=note))
     notes = (
         "Our compacted aggregates are two BCCA clusters of 512 grains that have collided at V_g; the paper doesn't say from what its "
         "own start.",
