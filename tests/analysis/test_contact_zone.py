@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from small_collision import cluster
 
-from analysis.measures.contact_zone import bond_direction, loose_fraction, zone_filling, zone_volume
+from analysis.measures.contact_zone import bond_direction, loose_fraction, rigid_approach, zone_filling, zone_volume
 from analysis.measures.return_phase import largest_return_speed
 from analysis.studies.collision_points import return_values
 from analysis.studies.elastoplastic.start import start_values
@@ -48,6 +48,28 @@ def test_direction_of_a_face_centred_lattice(axis, expected):
     pairs = [[0, k] for k in range(1, 13)]
     assert bond_direction(turned, pairs) == pytest.approx(expected, rel=1e-12)
     assert np.isnan(bond_direction(turned, []))
+
+
+@pytest.mark.parametrize("number", [1, 7, 60])
+def test_rigid_approach_is_what_all_pairs_say(number):
+    """Two random clouds, each moved towards the other until so many pairs are close; deep grains count too."""
+    random = np.random.default_rng(number)
+    first, second = random.uniform(-4, 0, (150, 3)), random.uniform(0, 4, (150, 3)) + [3.0, -4.0, -4.0]
+    first[:, 0] *= 5
+    found = rigid_approach(first, second, 1.0, number)
+    for approach, closer in ((found * (1 - 1e-9), number - 1), (found * (1 + 1e-9), number)):
+        # a pair counts once it has come within reach, also when the grains have passed each other
+        aside = np.hypot(*(first[:, None, 1:] - second[None, :, 1:]).transpose(2, 0, 1))
+        gap = second[None, :, 0] - first[:, None, 0] - np.sqrt(np.maximum(1.0 - aside**2, 0.0))
+        assert ((aside <= 1.0) & (gap <= approach)).sum() == closer
+    assert np.isnan(rigid_approach(first, second + [0.0, 50.0, 0.0], 1.0, 1))
+
+
+def test_rigid_approach_of_two_rows():
+    """Three grains in a row behind each other, head on to one."""
+    row = np.array([[0.0, 0, 0], [-2, 0, 0], [-4, 0, 0]])
+    assert rigid_approach(row, [[5.0, 0, 0]], 2.0, 1) == pytest.approx(3.0)
+    assert rigid_approach(row, [[5.0, 1.2, 0]], 2.0, 2) == pytest.approx(7.0 - 1.6)
 
 
 def test_loose_grains():

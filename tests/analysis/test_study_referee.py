@@ -2,7 +2,6 @@
 together, the filling of the zones as a covariate, predictions."""
 
 import re
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -27,7 +26,7 @@ from analysis.studies.elastoplastic.start_offset import common_slope
 from analysis.studies.elastoplastic.velocity_fit import predicted
 from analysis.studies.elastoplastic.zone_fit import adjust, fit_slope
 
-GALLERY = Path(prediction.PREDICTIONS).parent
+GALLERY = prediction.GALLERY
 VELOCITIES = [10 ** (0.1 * i) for i in range(8)]
 
 
@@ -200,22 +199,28 @@ def test_predictions_hold_what_they_promise():
         means.append(abs(own.d_max.mean() / RADIUS - mean) < error)
         gain.append(result.gain)
         assert result.bias == pytest.approx(own.d_max.mean() / RADIUS - mean, abs=1e-9)
+    # A covariate that is a length, in m, predicts the same.
+    length = prediction.fit(old.assign(rigid_touch=old.zone_filling * old.radius), 0.4, covariate="rigid_touch")
+    for name, value in prediction.predict(length, 60.0, 1.02 * 60 * RADIUS).items():
+        assert value == pytest.approx(prediction.predict(model, 60.0, 1.02)[name], rel=1e-9)
     assert np.mean(within) == pytest.approx(0.95, abs=0.02) and np.mean(means) == pytest.approx(0.68, abs=0.11)
     assert np.median(gain) > 1.2
     (unrun,) = prediction.compare(pandas.DataFrame(rows), old)
     assert (unrun.run, unrun.within, unrun.bias) == (0, None, None)
 
 
-def test_committed_predictions_follow_from_the_committed_runs():
-    """They were made from the rows without the predicted pairs; nothing but these rows and the zones' filling is in them."""
+@pytest.mark.parametrize("chosen", prediction.SETS, ids=lambda each: each.file)
+def test_committed_predictions_follow_from_the_committed_runs(chosen):
+    """They were made from the rows without the predicted pairs; nothing but these rows and the packings are in them."""
     table, _ = read_table(GALLERY / "runs.csv", COLUMNS)
-    rows = prediction.read()
+    rows = prediction.read(chosen.path)
     table = table[~table.seed.isin(rows.seed)]
-    made_from = int(re.search(r"Made from (\d+) runs", prediction.PREDICTIONS.read_text()).group(1))
+    made_from = int(re.search(r"Made from (\d+) runs", chosen.path.read_text()).group(1))
     if len(table) != made_from:
         pytest.skip(f"the gallery holds {len(table)} other runs: the predictions are of the {made_from} before them")
-    assert sorted(rows.seed.unique()) == list(range(101, 109)) and len(rows) == 16
+    assert sorted(rows.seed.unique()) == list(chosen.seeds) and len(rows) == 2 * len(chosen.seeds)
     for row in rows.itertuples():
-        expected = prediction.predict(prediction.fit(table, row.filling), 60.0, row.zone_filling)
+        model = prediction.fit(table, row.filling, chosen.velocity, chosen.covariate)
+        expected = prediction.predict(model, chosen.radius, getattr(row, chosen.covariate))
         for name, value in expected.items():
             assert getattr(row, name) == pytest.approx(value, rel=1e-5)

@@ -11,7 +11,7 @@ from analysis.studies.elastoplastic.measure import COLUMNS
 from yade_scripts.studies import elastoplastic_packings, elastoplastic_referee
 
 STUDIES = os.path.dirname(elastoplastic_referee.__file__)
-RUNS = prediction.PREDICTIONS.parent / "runs.csv"
+RUNS = prediction.GALLERY / "runs.csv"
 
 
 def rows(name):
@@ -31,12 +31,13 @@ def test_committed_tables_are_what_the_generator_writes(tmp_path):
 
 def test_predicted_pairs_are_in_no_other_table():
     new = {(row["filling"], row["radius"], row["seed"]) for row in rows("elastoplastic-prediction.table")}
-    assert new == {(f, "60", str(seed)) for f in ("0.4", "0.3") for seed in elastoplastic_packings.NEW["seed"]}
+    wanted = {(f"{f:g}", f"{e.radius}", str(s)) for e in prediction.SETS for f in prediction.FILLINGS for s in e.seeds}
+    assert new == wanted and len(new) == 36
     others = [n for n in os.listdir(STUDIES) if n.endswith(".table") and n != "elastoplastic-prediction.table"]
     for name in others:
         assert not new & {(row.get("filling"), row.get("radius"), row.get("seed")) for row in rows(name)}
-    predicted = prediction.read()
-    assert {(f"{r.filling:g}", f"{r.radius / 1e-7:g}", str(r.seed)) for r in predicted.itertuples()} == new
+    predicted = [row for each in prediction.SETS for row in prediction.read(each.path).itertuples()]
+    assert {(f"{r.filling:g}", f"{r.radius / 1e-7:g}", str(r.seed)) for r in predicted} == new
 
 
 def test_rows_have_folders_of_their_own():
@@ -66,6 +67,8 @@ def test_packings_made_again_are_those_of_the_runs():
         assert offset == pytest.approx(row.offset, abs=1e-9 * row.grain_radius)
         for name, value in values.items():
             assert getattr(row, name) == pytest.approx(value, rel=1e-9)
+    with pytest.raises(SystemExit, match="must be one of predictions.csv, predictions_slow.csv"):
+        elastoplastic_packings.main(["predict", str(RUNS), "other.csv"])
     assert not table[["zone_filling", "loose_grains"]].isna().any().any()
 
 

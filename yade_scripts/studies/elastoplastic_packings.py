@@ -3,8 +3,9 @@
     python3 yade_scripts/studies/elastoplastic_packings.py fill RUNS.csv
         makes the packings of all rows again and writes what analysis.studies.elastoplastic.start measures of them into
         the table, where it has no such values (rows of runs that were measured without them)
-    python3 yade_scripts/studies/elastoplastic_packings.py predict RUNS.csv PREDICTIONS.csv
-        writes the predicted d_max of the pairs of NEW, from their packings and the rows of RUNS.csv
+    python3 yade_scripts/studies/elastoplastic_packings.py predict RUNS.csv FILE
+        writes the predicted d_max of the pairs of a set of analysis.studies.elastoplastic.prediction.SETS, by the name of FILE,
+        from their packings and the rows of RUNS.csv
     python3 yade_scripts/studies/elastoplastic_packings.py zones RUNS.csv
         prints how d_max at 10^0.5 m/s goes with the filling of zones of other depths and radii
 
@@ -28,8 +29,6 @@ from analysis.studies.elastoplastic.start import start_values
 from analysis.studies.elastoplastic.zone_fit import fit_slope
 from yade_scripts.packings import contacts, cpe, moved
 
-# In no table so far, and not to be run before the predictions were committed.
-NEW = {"filling": (0.4, 0.3), "radius": 60, "seed": tuple(range(101, 109))}
 _SAME = 1e-9  # of the offset, in grain radii
 
 
@@ -74,20 +73,22 @@ def fill(file):
 
 
 def predict(runs, file):
-    """Write predictions of the pairs of NEW from a table of runs; theirs, once they are there, are never among them."""
+    """Write predictions of the pairs of a set, that of the file's name, from a table of runs; theirs, once they are there, are
+    never among them."""
+    (chosen,) = (each for each in prediction.SETS if each.file == os.path.basename(file))
     table, _ = read_table(runs, COLUMNS)
-    table = table[~table.seed.isin(NEW["seed"])]
+    table = table[~table.seed.isin(chosen.seeds)]
     first, rows, means = table.iloc[0], [], {}
-    radius = NEW["radius"] * first.grain_radius
-    for filling in NEW["filling"]:
-        model = prediction.fit(table, filling)
-        for seed in NEW["seed"]:
+    radius = chosen.radius * first.grain_radius
+    for filling in prediction.FILLINGS:
+        model = prediction.fit(table, filling, chosen.velocity, chosen.covariate)
+        for seed in chosen.seeds:
             offset, values = before_contact(filling, radius, first.grain_radius, first.overlap, seed)
             row = {"filling": filling, "radius": radius, "velocity": model.velocity, "seed": seed, "offset": offset}
-            rows.append({**row, **values, **prediction.predict(model, NEW["radius"], values["zone_filling"])})
-        zones = [row["zone_filling"] for row in rows if row["filling"] == filling]
-        means[filling] = prediction.predict_mean(model, NEW["radius"], zones)
-    prediction.write(file, rows, len(table), means)
+            rows.append({**row, **values, **prediction.predict(model, chosen.radius, values[chosen.covariate])})
+        x = [row[chosen.covariate] for row in rows if row["filling"] == filling]
+        means[filling] = prediction.predict_mean(model, chosen.radius, x)
+    prediction.write(file, rows, len(table), means, chosen.covariate)
 
 
 def zones(runs):
@@ -113,6 +114,9 @@ def main(arguments):
     if len(arguments) == 2 and arguments[0] == "fill":
         print(f"{fill(arguments[1])} rows filled")
     elif len(arguments) == 3 and arguments[0] == "predict":
+        names = [each.file for each in prediction.SETS]
+        if os.path.basename(arguments[2]) not in names:
+            sys.exit(f"{arguments[2]}: must be one of {', '.join(names)}")
         predict(*arguments[1:])
     elif len(arguments) == 2 and arguments[0] == "zones":
         for line in zones(arguments[1]):

@@ -2,20 +2,24 @@
 
 Runs that test what the gallery says of Arakawa et al. (2024), in blocks; each block's comment says what it decides and about
 how many core hours it takes. The first table holds the pairs whose d_max was predicted beforehand
-(analysis/gallery/elastoplastic/predictions.csv). Blocks are in the order in which they are worth having.
+(analysis.studies.elastoplastic.prediction). Blocks are in the order in which they are worth having.
 """
 
+import math
 import os
+import sys
 from dataclasses import dataclass
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
+from analysis.studies.elastoplastic import prediction
+
 STEP = 0.2  # t0, as the runs that are compared with these
 # t0, of long runs at 1 to 2.5 m/s: one at R = 40 and 1 m/s has the same outcome, d_max, t_max and largest return speed as with 0.1 to
 # 5e-5 r, 20 ps and 3e-4 m/s, and closes the ledger to 9e-5 of K(0).
 LONGER_STEP = 0.3
 DEFAULT = "64.6*{radius}*1.936532021439599e-10"  # s, A24's 1000 ns at R = 80, in proportion to R
 SIZES = (0.4, 0.3)
-PREDICTED = range(101, 109)
 COLUMNS = (
     "description",
     "filling",
@@ -77,14 +81,15 @@ def core_hours(filling, radius, duration):
     return 0.341 * (filling / 0.4) ** 2.07 * (radius / 80.0) ** 3.21 * duration / 1e-6
 
 
-PREDICTION = (
+PREDICTION = tuple(
     Block(
-        "Pairs whose d_max was predicted from their packings alone: analysis/gallery/elastoplastic/predictions.csv.",
-        SIZES,
-        (60,),
-        (5,),
-        PREDICTED,
-    ),
+        f"Pairs whose d_max was predicted from their packings alone: analysis/gallery/elastoplastic/{each.file}.",
+        prediction.FILLINGS,
+        (each.radius,),
+        (round(10 * math.log10(each.velocity)),),
+        each.seeds,
+    )
+    for each in prediction.SETS
 )
 REFEREE = (
     Block(

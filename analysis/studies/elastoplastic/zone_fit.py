@@ -20,7 +20,9 @@ COVARIATES = {
     "filling of the zones that meet": "zone_filling",
     "direction of the crystals": "bond_direction",
     "chance offset of the centres of mass": "offset",
+    "overlap of a rigid approach": "rigid_touch",
 }
+LENGTHS = ("offset", "rigid_touch")  # the others are numbers
 UNITS = {"d_max": "r", "t_max": "ns"}  # of what is measured, as it is given here
 
 
@@ -110,7 +112,7 @@ def _measured(table, of):
 
 def _regressor(table, covariate):
     """The covariate of the runs in grain radii: lengths as they are, numbers times R."""
-    length = table.radius if covariate != "offset" else 1.0
+    length = 1.0 if covariate in LENGTHS else table.radius
     return (table[covariate] * length / table.grain_radius).to_numpy(dtype=float)
 
 

@@ -5,6 +5,9 @@ from ...statistics import student_chance
 from . import paper, prediction
 from .beside_model import papers_model
 from .lines import paper_line_at
+from .zone_fit import COVARIATES, fit_slope
+
+ZONE, RIGID = (name for name, column in COVARIATES.items() if column in ("zone_filling", "rigid_touch"))
 
 
 def zone_sections(results):
@@ -24,17 +27,12 @@ def zone_sections(results):
         yield Section(
             "time of the largest compression adjusted for the filling of the zones", _TIMES, times, intro=_TIMES_INTRO
         )
-    predictions = prediction.read()
-    if predictions is not None:
-        predictions = predictions[predictions.filling.round(6).isin(list(results.by_filling))]
-    if predictions is not None and len(predictions):
-        compared = prediction.compare(predictions, results.table)
-        yield Section(
-            "largest compression predicted beforehand",
-            _PREDICTED,
-            tuple(vars(each) for each in compared),
-            intro=_PREDICTED_INTRO,
-        )
+    rows = tuple(_at_velocities(results))
+    if rows:
+        yield Section("what explains d_max at other velocities", _AT_VELOCITIES, rows, intro=_AT_VELOCITIES_INTRO)
+    compared = tuple(_predicted(results))
+    if compared:
+        yield Section("largest compression predicted beforehand", _PREDICTED, compared, intro=_PREDICTED_INTRO)
 
 
 _EXPLAINED_INTRO = (
@@ -52,8 +50,12 @@ _TIMES_INTRO = (
     "filling of the zones about the means of each size, as for d_max. p: Student's t with the degrees of freedom of the scatter "
     "about the slope; A24's errors not counted."
 )
+_AT_VELOCITIES_INTRO = (
+    "Correlation with d_max about the means of each size, errors by resampling pairs. The rows of one filling are the same pairs: one "
+    "statement, not several."
+)
 _PREDICTED_INTRO = (
-    "predictions.csv, written before these pairs were run, beside their runs as far as they are in the table. within: in the "
+    "Files of predictions, written before these pairs were run, beside their runs as far as they are in the table. within: in the "
     "95 % interval; gain: mean square error without the covariate over that with it; bias: measured less predicted."
 )
 _EXPLAINED = (
@@ -91,7 +93,17 @@ _TIMES = (
     Column("adjusted", lambda b: f"{b['adjusted'] - b['model']:+.1f} +- {b['adjusted_error']:.1f}"),
     Column("p", lambda b: f"{b['chance']:.2g}"),
 )
+_AT_VELOCITIES = (
+    Column("filling", lambda b: f"{b['filling']:g}"),
+    Column("velocity [m/s]", lambda b: f"{b['velocity']:.3g}"),
+    Column("runs", lambda b: str(b["runs"])),
+    *(
+        Column(name, lambda b, name=name: "-" if b[name] is None else f"{b[name][0]:.2f} +- {b[name][1]:.2f}")
+        for name in (ZONE, RIGID)
+    ),
+)
 _PREDICTED = (
+    Column("file", lambda b: b["file"]),
     Column("filling", lambda b: f"{b['filling']:g}"),
     Column("R [r]", lambda b: f"{b['radius']:g}"),
     Column("predicted", lambda b: str(b["predicted"])),
@@ -121,6 +133,28 @@ def _explained(results):
                 "total": slope.total,
                 "worth": slope.worth,
             }
+
+
+def _at_velocities(results):
+    """Correlations at each velocity but that of the size fit, where enough pairs have run."""
+    runs = results.table.assign(at=results.table.velocity.map(lambda v: float(f"{v:.6g}")))
+    for (factor, velocity), own in runs.groupby([runs["filling"].round(6), "at"]):
+        if abs(velocity / paper.VELOCITY - 1.0) < 1e-3:
+            continue
+        slopes = {name: fit_slope(own, COVARIATES[name]) for name in (ZONE, RIGID)}
+        found = {n: (s.correlation, s.correlation_error) if s else None for n, s in slopes.items()}
+        if any(found.values()):
+            yield {"filling": factor, "velocity": velocity, "runs": len(own), **found}
+
+
+def _predicted(results):
+    """Records of prediction.Comparison of each set's file, of the fillings that have run."""
+    for each in prediction.SETS:
+        predictions = prediction.read(each.path)
+        if predictions is not None:
+            predictions = predictions[predictions.filling.round(6).isin(list(results.by_filling))]
+            for compared in prediction.compare(predictions, results.table) if len(predictions) else ():
+                yield {"file": each.file, **vars(compared)}
 
 
 def _adjusted(results):
