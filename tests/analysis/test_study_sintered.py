@@ -297,8 +297,10 @@ def test_space_and_other_laws_beside_the_plane(tmp_path, capsys):
             largest = GRAINS if name == "plane" else GRAINS // 2
             made_run(tmp_path / f"{name}{seed}", 30.0, 0.7, seed, largest, broken=broken[name], **change)
     found = lines_of_runs(tmp_path, capsys)
-    ratio = found["N_cut/N_t in space over the plane, beta = 0.7, 30 m/s"]
+    ratio = found["N_cut/N_t, space over plane, beta = 0.7, 30 m/s"]
     assert ratio["ours"] == pytest.approx(40 / 96) and ratio["paper"] == 1.0 and ratio["chance"] < 0.05
+    touching = "N_cut over the largest number of contacts between the aggregates, space over plane, beta = 0.7, 30 m/s"
+    assert found[touching]["ours"] == pytest.approx(40 / 96) and found[touching]["paper"] is None
     bounces = found["fraction that bounces, space less plane, beta = 0.7, 30 m/s"]
     assert bounces["ours"] == 1.0 and "Fisher's exact p = 0.1" in bounces["note"]
     assert found["necks broken by twisting in space, beta = 0.7, 30 m/s"]["ours"] == 0.0

@@ -26,12 +26,18 @@ def in_space(results):
 
 
 def _necks_in_space(point, plane):
-    pair = ratio_of_two(point.means["cut_per_grain"], plane.means["cut_per_grain"])
-    if not pair[1]:
-        return []
-    runs = min(point.runs, plane.runs)
-    note = f"paper: the same (section 6.2); {point.runs} and {plane.runs} seeds"
-    return [Line(f"N_cut/N_t in space over the plane, {name_of(point)}", "", *pair, 1.0, None, note, runs - 1)]
+    lines, runs = [], min(point.runs, plane.runs)
+    for name, words, said in (
+        ("cut_per_grain", "N_cut/N_t", "paper: the same (section 6.2); "),
+        ("cut_per_touching", "N_cut over the largest number of contacts between the aggregates", ""),
+    ):
+        both = point.means[name], plane.means[name]
+        pair = ratio_of_two(*both) if all(both) else (None, None)
+        if pair[1]:
+            note = f"{said}{point.runs} and {plane.runs} seeds"
+            quantity = f"{words}, space over plane, {name_of(point)}"
+            lines.append(Line(quantity, "", *pair, 1.0 if said else None, None, note, runs - 1))
+    return lines
 
 
 def _bounces_in_space(point, plane):

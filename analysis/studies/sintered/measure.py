@@ -59,6 +59,7 @@ COLUMNS = (
     Column("contacts", "", "contacts a grain at the start"),
     Column("initial_radius", "", "gyration radius of an aggregate at the start, mean of both, in R"),
     Column("met", "", "whether the aggregates touched", kind="b"),
+    Column("touching", "", "largest number of contacts between the aggregates", gaps=True, absent=nan),
     *OUTCOME_COLUMNS,
     Column("largest", "", "sticking efficiency: fraction of the mass in the largest piece"),
     Column("second", "", "fraction of the mass in the second one"),
@@ -123,6 +124,7 @@ def measure(run):
             np.mean([gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)]) / radius
         ),
         "met": met(run),
+        "touching": int(history["contacts_between"].max()),
         **outcome_values(run, velocity),
         **pieces(end.position, end.contact_pairs, radius),
         "energy_ratio": energy_ratio(neck, velocity, **constants) if neck else float("nan"),

@@ -30,6 +30,7 @@ MEANS = (
     "fragments",
     "gyration_radius",
     "cut_per_grain",
+    "cut_per_touching",
     "cut_energy",
     "by_rolling",
     "rolling_of_lost",
@@ -144,6 +145,7 @@ def make_results(table):
     new_loops = table.loops - table.loops_at_start
     table = table.assign(
         cut_per_grain=table.broken / table.grains,
+        cut_per_touching=table.broken / table.touching.where(table.touching > 0),
         # K(0) is half an E_k = m V_c^2/4 a grain
         cut_energy=2 * table.broken / table.grains / table.energy_ratio,
         rolling_of_lost=table.part_rolling_friction / lost,
