@@ -262,11 +262,12 @@ def test_comparison_and_figures(runs, tmp_path, capsys):
     assert differences(json.loads(capsys.readouterr().out)["sections"], answer["sections"]) == []
 
 
-def lines_of_runs(folder, capsys):
-    """{quantity: record} of the lines beside the paper."""
+def lines_of_runs(folder, capsys, held=False):
+    """{quantity: record} of the lines beside the paper, or of those of springs that are held."""
     assert main(["study", "sintered", str(folder), "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
-    return {row["quantity"]: row for s in answer["sections"] for row in s["rows"] if "quantity" in row}
+    chosen = [s for s in answer["sections"] if s["heading"].startswith("springs held: ") == held]
+    return {row["quantity"]: row for s in chosen for row in s["rows"] if "quantity" in row}
 
 
 def test_compacted_aggregates_beside_others(tmp_path, capsys):
@@ -308,6 +309,9 @@ def test_space_and_other_laws_beside_the_plane(tmp_path, capsys):
     # seed by seed, so that what pairs have in common drops out
     ratio = found["N_cut/N_t, held over main, beta = 0.7, 30 m/s"]
     assert ratio["ours"] == pytest.approx(1.5) and ratio["error"] == 0.0
+    # each law beside the paper
+    name = "sticking efficiency, beta = 0.7, 30 m/s"
+    assert found[name]["ours"] == 1.0 and lines_of_runs(tmp_path, capsys, held=True)[name]["ours"] == 0.5
 
 
 def point_of(answer, neck, velocity):

@@ -3,7 +3,7 @@
 from ...report.beside_paper import section_of_lines
 from ...report.section import Section
 from . import beyond_lines, compacted_lines, energy_lines, lines
-from .results import LAW
+from .results import LAW, of_law
 from .tables import bouncing_section, energy_section, fits_section, necks_section, points_section
 
 # The groups of lines beside the paper: f(results) -> (heading, [Line], (notes)).
@@ -18,6 +18,8 @@ GROUPS = (
     *(energy_lines.energy, energy_lines.broken),
     beyond_lines.in_space,
 )
+# Those that are repeated with springs that are held at their limits.
+HELD = (lines.efficiency, lines.growth, lines.gyration, lines.bounces, energy_lines.energy)
 LEGEND = (
     "error: standard error of the mean over seeds, each another pair of aggregates; -: one seed only. Error bars of figures are these too.",
     "The paper has five runs a point, draws their standard deviations (2.2 times a standard error) and prints few numbers: where it prints "
@@ -28,7 +30,10 @@ LEGEND = (
 
 def sections(results):
     """Sections of results.Results: one for each subject, with an honest read as notes, then every point."""
-    for heading, found, notes in (*(group(results) for group in GROUPS), *beyond_lines.changes(results)):
+    held = of_law(results, cut=0)
+    groups = [*(group(results) for group in GROUPS), *beyond_lines.changes(results)]
+    groups += [(f"springs held: {heading}", *rest) for heading, *rest in (group(held) for group in HELD)]
+    for heading, found, notes in groups:
         if found:
             yield section_of_lines(heading, found, notes)
     for make in (fits_section, points_section, necks_section, energy_section, bouncing_section):

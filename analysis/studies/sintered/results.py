@@ -1,6 +1,6 @@
 """All results of a set of runs: points with their statistics, fits of broken necks, critical velocities for growth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Mapping
 
@@ -16,6 +16,8 @@ from . import fits, paper
 from .growth import critical_velocity
 from .measure import EARLY, LOST, PARTS, REACHED, TIMES
 
+LAW = MappingProxyType({"cut": 1, "sliding_factor": 2.0})  # of ordinary contacts: section 3.2, eqs 10 to 12
+MAIN = MappingProxyType({"planar": 1, "criticalRolling": 2e-10, "viscoelasticTime": 0.0})
 # What tells points apart; every run of a point has another seed.
 POINT = (
     *("planar", "criticalRolling", "viscoelasticTime", "cut", "sliding_factor"),
@@ -84,30 +86,31 @@ class Results:
     grains), points ([Point], sorted), fits ({(planar, T_vis): {selection of
     fits.SELECTIONS: fits.Fit}}), critical ({(planar, beta): growth.Critical or None} of BCCA aggregates without drag, for the
     paper's beta), both of the
-    runs with xi_crit = 2 Angstrom and S17's LAW."""
+    runs with xi_crit = 2 Angstrom and the law; law ({column: value} of ordinary contacts, LAW: S17's)."""
 
     table: pandas.DataFrame
     points: tuple
     fits: Mapping
     critical: Mapping
     other_sizes: int = 0
+    law: Mapping = field(default_factory=lambda: LAW)
 
     def select(self, **values):
         """[Point] with these attributes, to a relative 2e-3 (velocities are printed so)."""
         return [p for p in self.points if all(same(getattr(p, name), value) for name, value in values.items())]
 
     def main(self, **values):
-        """[Point] in the plane, xi_crit = 2 Angstrom, without drag, S17's LAW, and with these attributes."""
-        return self.select(**{**MAIN, **values})
+        """[Point] in the plane, xi_crit = 2 Angstrom, without drag, of the law, and with these attributes."""
+        return self.select(**{**MAIN, **self.law, **values})
 
     def runs(self, **values):
-        """The rows of `table` in the plane, xi_crit = 2 Angstrom, without drag, S17's LAW, and with these values in their
+        """The rows of `table` in the plane, xi_crit = 2 Angstrom, without drag, of the law, and with these values in their
         columns."""
-        return runs_with(self.table, **{**MAIN, **values})
+        return runs_with(self.table, **{**MAIN, **self.law, **values})
 
     def sintered(self, **values):
-        """The rows of `table` of sintered aggregates, without drag, S17's LAW, and with these values in their columns."""
-        return runs_with(self.table[self.table.neck > 0], **{**LAW, "viscoelasticTime": 0.0, **values})
+        """The rows of `table` of sintered aggregates, without drag, of the law, and with these values in their columns."""
+        return runs_with(self.table[self.table.neck > 0], **{**self.law, "viscoelasticTime": 0.0, **values})
 
     def paired(self, column, first, second):
         """Values (n,) of a column in the BCCA runs() with `first` {column: value} less those with `second`, seed by seed: n seeds
@@ -115,10 +118,6 @@ class Results:
         chosen = [self.runs(**{"growth_velocity": 0.0, **values}) for values in (first, second)]
         values = [runs.groupby("packing_seed")[column].mean() for runs in chosen]
         return (values[0] - values[1]).dropna().to_numpy()
-
-
-LAW = MappingProxyType({"cut": 1, "sliding_factor": 2.0})  # of ordinary contacts: section 3.2, eqs 10 to 12
-MAIN = MappingProxyType({"planar": 1, "criticalRolling": 2e-10, "viscoelasticTime": 0.0, **LAW})
 
 
 def same(a, b):
@@ -156,19 +155,23 @@ def make_results(table):
     )
     keys = [table[name].map(lambda value: float(f"{value:.6g}")) for name in POINT]
     points = tuple(_point(key, runs) for key, runs in table.groupby(keys))
-    laws = {}
-    for planar, drag in sorted({(p.planar, p.viscoelasticTime) for p in points}):
-        runs = runs_with(table, **{**MAIN, "planar": planar, "viscoelasticTime": drag})
+    found = Results(table, points, fits={}, critical={}, other_sizes=everything - len(table))
+    return of_law(found)
+
+
+def of_law(results, **law):
+    """The same Results with another law as the main one: LAW with these columns changed, and fits and critical velocities of it."""
+    law = MappingProxyType({**LAW, **law})
+    found = replace(results, law=law)
+    laws, critical = {}, {}
+    for planar, drag in sorted({(p.planar, p.viscoelasticTime) for p in found.points}):
+        runs = found.runs(planar=planar, viscoelasticTime=drag)
         laws[planar, drag] = fits.fit_all(runs[runs.neck > 0], POINT)
-    critical = {}
     for planar, neck in sorted(
-        {(p.planar, p.neck) for p in points if p.neck in paper.CRITICAL_VELOCITIES}, reverse=True
+        {(p.planar, p.neck) for p in found.points if p.neck in paper.CRITICAL_VELOCITIES}, reverse=True
     ):
-        critical[planar, neck] = critical_velocity(
-            runs_with(table, **{**MAIN, "planar": planar, "neck": neck, "growth_velocity": 0.0})
-        )
-    laws, critical = MappingProxyType(laws), MappingProxyType(critical)
-    return Results(table, points, laws, critical, everything - len(table))
+        critical[planar, neck] = critical_velocity(found.runs(planar=planar, neck=neck, growth_velocity=0.0))
+    return replace(found, fits=MappingProxyType(laws), critical=MappingProxyType(critical))
 
 
 def _of_one_size(table):
