@@ -52,10 +52,14 @@ class Point:
         parts += [self.limit] if self.limit != "cut" else []
         return "-".join([*parts, f"s{seed}"])
 
+    def grown(self, seed):
+        """The Grown that collides, of a compacted one."""
+        return Grown(self.growth, seed, self.rolling, self.planar, self.limit)
+
     def row(self, seed, folder):
         """A table's row."""
         name = self.name(seed)
-        grown = Grown(self.growth, seed, self.rolling, self.planar)
+        grown = self.grown(seed)
         return {
             "description": name,
             "packing": "file" if self.growth else "bcca",
@@ -126,6 +130,8 @@ BEYOND = unique(
     points((0,), ("20", "30"), limit="held"),
     points((0.2, 0.5), ("10", "30"), limit="held"),
     points((0.4,), ("30",), limit="held"),
+    points((0.7,), ("10", "30"), (1, 3), limit="held"),
+    [Point(0.7, f"{g}", g, limit="held") for g in (1, 3)],
     points((0, 0.4, 0.5, 0.7), ("30",), rolling=30),
     points((0.7,), ("10",), rolling=30),
 )
@@ -134,12 +140,7 @@ TABLES = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND}
 
 def grown(size):
     """[Grown] that the rows of a table need, each once."""
-    wanted = (
-        Grown(point.growth, seed, point.rolling, point.planar)
-        for seed in SEEDS
-        for point in TABLES[size]
-        if point.growth
-    )
+    wanted = (point.grown(seed) for seed in SEEDS for point in TABLES[size] if point.growth)
     return list(dict.fromkeys(wanted))
 
 

@@ -45,17 +45,19 @@ LONGEST = 24.4e-6  # s, and no longer than this: 20,000 periods (sintered.py)
 
 @dataclass(frozen=True)
 class Grown:
-    """An aggregate: V_g [m/s], seed, xi_crit [Angstrom], planar."""
+    """An aggregate: V_g [m/s], seed, xi_crit [Angstrom], planar, limit (of collide.py)."""
 
     velocity: float
     seed: int
     rolling: float = 2.0
     planar: int = 1
+    limit: str = "cut"
 
     @property
     def name(self):
         """Of its file, without ending."""
-        return f"vg{self.velocity:g}-x{self.rolling:g}-{'plane' if self.planar else 'space'}-s{self.seed}"
+        held = "" if self.limit == "cut" else f"-{self.limit}"
+        return f"vg{self.velocity:g}-x{self.rolling:g}-{'plane' if self.planar else 'space'}{held}-s{self.seed}"
 
     def file(self, index):
         """Path of the packing of target (0) or projectile (1)."""
@@ -75,6 +77,7 @@ def grow(grown):
         **aggregate.parameters,
         "growthVelocity": grown.velocity,
         "criticalRolling": grown.rolling * 1e-10,
+        "limit": grown.limit,
         "start": START,
         "generations": generation,
     }
@@ -111,7 +114,7 @@ def _collide(aggregate, grown, files, run):
         planar=grown.planar,
         velocity=grown.velocity,
         criticalRolling=grown.rolling * 1e-10,
-        limit="cut",
+        limit=grown.limit,
         slidingStiffnessFactor=SLIDING,
         duration=duration,
         states=2,
