@@ -8,7 +8,8 @@
     python3 yade_scripts/study.py yade_scripts/studies/compression-desk.table                  all rows (with yade-batch)
     yade -n -x yade_scripts/compress.py --help                    the parameters
 
-Numbers may be written as arithmetic: strainRate=3*10**-7.
+Numbers may be written as arithmetic: strainRate=3*10**-7. A22, K13, S17 and W07 are papers (contact_law/MODEL.md); t0 is the
+time unit of the contact.
 
 Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing
 was run), 1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder

@@ -171,13 +171,13 @@ def collision_reason(parameters, constants, limit):
     necks = f", necks of {parameters.neck:g}" if parameters.neck else ""
     grains = parameters.grains + parameters.of_projectile().grains
     scene = f"{grains} grains at {parameters.velocity:.3g} m/s, {drag}{necks}"
-    return _reason(collision_errors(parameters, constants), parameters, limit, "K(0)", scene)
+    return _reason(collision_errors(parameters, constants), parameters, limit, "of K(0)", scene)
 
 
 def compression_reason(parameters, constants, limit):
     """The same of a compression."""
     scene = f"to a filling of {parameters.finalFilling:.3g}, k_n = {parameters.linearDamping:g}"
-    return _reason(compression_errors(parameters, constants), parameters, limit, "the work of the boundaries", scene)
+    return _reason(compression_errors(parameters, constants), parameters, limit, "of the work of the boundaries", scene)
 
 
 def _reason(errors, parameters, limit, unit, scene):

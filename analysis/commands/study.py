@@ -139,8 +139,9 @@ def _commands(options):
 def _list(options):
     from ..studies.find import find, names
 
+    width = max(map(len, names()))
     for name in names():
-        print(f"{name:<16} {find(name).title}")
+        print(f"{name:<{width}}  {find(name).title}")
     return 0
 
 

@@ -158,11 +158,12 @@ def _t_max(numbers):
 
 def _channel_table(run, numbers):
     unit, name_of_unit = _energy_unit(run, numbers)
-    rows = [f"  {'energy':<24}{'final [J]':>14}{'change [J]':>14}{f'change/{name_of_unit}':>14}"]
+    width = max(map(len, LABELS.values())) + 1
+    rows = [f"  {'energy':<{width}}{'final [J]':>14}{'change [J]':>14}{f'change/{name_of_unit}':>14}"]
     for name in CHANNELS:
         change = numbers[name] - run.history[name][0]
         fraction = f"{change / unit:.3%}" if unit > 0 else "-"
-        rows.append(f"  {LABELS[name]:<24}{numbers[name]:>14.5g}{change:>14.4g}{fraction:>14}")
+        rows.append(f"  {LABELS[name]:<{width}}{numbers[name]:>14.5g}{change:>14.4g}{fraction:>14}")
     about = ", the largest work of the boundaries" if name_of_unit == "W" else ""
     rows.append(f"  {name_of_unit} = {unit:.5g} J{about}")
     return "\n".join(rows)

@@ -1,6 +1,7 @@
 """Parameters: defaults, values, and one clear line for everything that is wrong."""
 
 import math
+import re
 import time
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from yade_scripts import stability
 from yade_scripts.experiments import collision
 from yade_scripts.experiments.collision import CollisionParameters
+from yade_scripts.experiments.compression import CompressionParameters
 from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings import grain_number
 from yade_scripts.parameters import ParameterError
@@ -237,6 +239,12 @@ def test_threads_of_the_fused_engine_are_its_own():
     assert complete({"threads": "2"}).threads == 2
     with pytest.raises(ParameterError, match="threads = 99999: more than this machine has cores; must be 1 to "):
         complete({"threads": "99999"})
+
+
+@pytest.mark.parametrize("parameters", [CollisionParameters, CompressionParameters])
+def test_help_lists_each_parameter_once(parameters):
+    listed = re.findall(r"^  (\w+)", parameters.help_text(), re.M)
+    assert sorted(listed) == sorted(parameters.columns())
 
 
 def test_names_of_run_folders():

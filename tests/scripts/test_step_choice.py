@@ -310,7 +310,9 @@ def test_a_run_says_and_keeps_what_it_chose(run):
     assert derived["timeStep"] == values["stepFraction"] * derived["timeUnit"]
     line = next(line for line in process.stdout.splitlines() if line.startswith("step: "))
     assert line == f'step: {derived["stepChoice"]}'
-    assert derived["stepChoice"].startswith(f'{values["stepFraction"]:g} t0 for a ledger error of at most 0.0003 K(0)')
+    assert derived["stepChoice"].startswith(
+        f'{values["stepFraction"]:g} t0 for a ledger error of at most 0.0003 of K(0)'
+    )
     assert values["stepFraction"] == completed(tolerance=3e-4, radius=4, velocity=30)[0].stepFraction
 
 

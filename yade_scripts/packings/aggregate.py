@@ -66,7 +66,7 @@ class AggregateParameters(GrainParameters):
         "1",
     )
     removeLooseGrains: int = parameter(
-        0, SWITCH, "1: grains of a cpe aggregate that are not connected with the most of them are left out"
+        0, SWITCH, "1: grains of a cpe aggregate outside its largest connected piece are left out"
     )
     initialOverlap: float = parameter(
         1.0,

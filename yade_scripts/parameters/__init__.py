@@ -127,9 +127,10 @@ class Parameters:
         """The parameters under the headings of their classes."""
         columns, lines = cls.columns(), []
         for owner in cls.__mro__:
-            own = owner.__dict__.get("__annotations__", {})
+            own = [name for name in owner.__dict__.get("__annotations__", {}) if name in columns]
             if own:
-                lines += ["", owner.__doc__.splitlines()[0].rstrip(".") + ":"] + [columns[name].help() for name in own]
+                lines += ["", owner.__doc__.splitlines()[0].rstrip(".") + ":"]
+                lines += [columns.pop(name).help() for name in own]
         return "\n".join(["Parameters, as name=value or as columns of a table:"] + lines)
 
     def filled_in(self):

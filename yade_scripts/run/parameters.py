@@ -55,7 +55,8 @@ class RunParameters(Parameters):
     threads: int | None = parameter(
         None,
         Check(">= 1", lambda n: n >= 1),
-        "of the processor: 1 or 2 for the fused engine; for the functors those that yade -j or yade-batch set",
+        "of the fused engine, at most the machine's cores (those that yade -j or yade-batch set); the functors have "
+        "those of YADE",
         of_consequence=False,
     )
     states: int = parameter(
