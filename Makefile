@@ -4,23 +4,21 @@
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
-# make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic:
-#             one to two hours on two cores; SIZE=full: all of the paper's, a day or two, in runs/elastoplastic-full; SIZE=first: one
-#             figure in a quarter of an hour. All ends in one page, runs/elastoplastic/elastoplastic.html (analysis/STUDIES.md).
-#             Stop it at will; called again it resumes. make study-status tells from another shell how far it is.
-# make study-viscous  the collisions of Arakawa et al. (2022), in runs/viscous: five hours on two cores, or SIZE=full: all
-#             of the paper's, five days, in runs/viscous-full. make study-status STUDY=viscous
-# make study-compression  the compressions of Kataoka et al. (2013), in runs/compression: six hours on two cores, or
-#             SIZE=full: all of the paper's, five days, in runs/compression-full. make study-status STUDY=compression
-# make study-sintered  the collisions of Sirono & Ueno (2017), in runs/sintered: six hours on two cores, or SIZE=full: all of
-#             the paper's, some 20 hours, in runs/sintered-full; SIZE=beyond: what the desk's leave open. make study-status STUDY=sintered
-# make study-compressed  collisions of compressed aggregates beside CPE ones, in runs/compressed: an hour on two cores
+# make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
+#             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
+#             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.
+# make study-viscous  those of Arakawa et al. (2022), or SIZE=full
+# make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full
+# make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
+# make study-compressed  collisions of compressed aggregates beside CPE ones
+# make study-status STUDY=viscous  how far a study is, from another shell
+# make gallery-viscous  analyses its runs again, into analysis/gallery/viscous
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/scripts/results/slurm.md
-# make lint   tells what is not formatted, or looks like a slip (ruff, clang-format); make format puts the format right
+# make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
 #             tests/yade_tools/results/debian.md. SYSTEMS=sid: unstable
