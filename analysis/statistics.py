@@ -1,6 +1,6 @@
 """Statistics of runs that differ by their seeds: errors, intervals, and a bootstrap over pairs of aggregates.
 
-Whether there is scatter at all is told by the number of runs, never by a standard deviation of exactly 0: rounding
+Whether there is scatter at all is decided by the number of runs, never by a standard deviation of exactly 0: rounding
 makes that 1e-17, or not, from one processor to another."""
 
 import numpy as np

@@ -1,5 +1,5 @@
 """What the packings alone say of the place where two aggregates meet: how many grains are there, how far rigid aggregates would
-approach, how the lattice lies to the collision axis, and which grains hang on nothing."""
+approach, how the lattice lies to the collision axis, and which grains are outside the largest piece."""
 
 import numpy as np
 from scipy.spatial import cKDTree

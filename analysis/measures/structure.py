@@ -12,7 +12,7 @@ def grains_within(position, distance, cell_size=None, origins=None):
     of a grain (K13 section 3.6).
 
     position (N,3), anywhere; cell_size (3,): edges of the periodic cell, None in open space; origins: at most so many
-    grains are looked from, evenly chosen among them (None: all). One unit for all lengths.
+    grains, evenly chosen among them, are taken as centres (None: all). One unit for all lengths.
 
     >>> grains_within([[0.0, 0, 0], [1, 0, 0]], [0.5, 1.5]).tolist(), grains_within([[0.0, 0, 0]], [1.5], [1.0] * 3).tolist()
     ([1.0, 2.0], [19.0])
