@@ -9,6 +9,7 @@ import pytest
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND, CollisionParameters, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.packings.aggregate import make
 from yade_scripts.packings.from_file import packing_from_file
 from yade_scripts.parameters import ParameterError
 
@@ -174,3 +175,17 @@ def test_parameters_that_contradict(cells, message):
     with pytest.raises(ParameterError) as error:
         CollisionParameters.parse(cells)
     assert message in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("packing", [dict(radius=4), dict(packing="bpca", grains=20), dict(packing="bcca", grains=20)])
+def test_what_was_made_for_softer_grains_is_refused_and_loose_on_purpose_is_not(tmp_path, packing):
+    """Contacts of ice are at a fifth of the overlap that grains ten times as soft have at rest: drawn together, those of a
+    cpe packing released 13 K(0) at 3 m/s."""
+    path = str(tmp_path / "a.npz")
+    packings.save(path, make(CollisionParameters.parse(packing), OVERLAP, 0))
+    soft = CollisionParameters.parse(dict(packing="file", file=path, young=0.7e9))
+    with pytest.raises(packings.PackingError, match=r"made of grains with young = 7e\+09, not 7e\+08; must be"):
+        place(soft, equilibrium_overlap(soft))
+    if "grains" not in packing:
+        packings.save(path, make(CollisionParameters.parse(dict(packing, initialOverlap=0.2)), OVERLAP, 0))
+    assert place(CollisionParameters.parse(dict(packing="file", file=path)), OVERLAP)[0].grains > 10

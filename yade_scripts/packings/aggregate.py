@@ -1,12 +1,13 @@
 """The aggregate that a run's parameters ask for."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings import grain_sizes
 from yade_scripts.packings.bcca import bcca
 from yade_scripts.packings.bpca import bpca
+from yade_scripts.packings.cut import OF_CONTACTS
 from yade_scripts.packings.filling import grain_number
 from yade_scripts.packings.from_file import packing_from_file
 from yade_scripts.packings.grain_sizes import EQUAL, LOGNORMAL, SIZES, TWO
@@ -167,11 +168,18 @@ def require_growable(packing, name, grains):
 def make(parameters, overlap, index):
     """Aggregate number index of a run, around the origin.
 
-    parameters: AggregateParameters; overlap: of touching grains of grainRadius [m]. Raises PackingError.
+    parameters: AggregateParameters; overlap: of touching grains of grainRadius [m]. What is made says of which material,
+    so that a run of other grains does not start with contacts out of rest (from_file.py). Raises PackingError.
     """
-    radius, seed, planar = parameters.grainRadius, parameters.seed, bool(parameters.planar)
     if parameters.packing == "file":
-        return packing_from_file(parameters.file, radius, overlap, planar, parameters)
+        return packing_from_file(parameters.file, parameters.grainRadius, overlap, bool(parameters.planar), parameters)
+    packing = _made(parameters, overlap, index)
+    material = {name: getattr(parameters, name) for name in OF_CONTACTS}
+    return replace(packing, parameters={**packing.parameters, **material})
+
+
+def _made(parameters, overlap, index):
+    radius, seed, planar = parameters.grainRadius, parameters.seed, bool(parameters.planar)
     if parameters.packing == "cpe":
         overlap *= parameters.initialOverlap
         packing = cpe(parameters.filling, parameters.radius * radius, radius, overlap, seed, index, planar)
