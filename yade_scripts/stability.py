@@ -76,16 +76,17 @@ def equivalent_filling(packing, filling, planar, constants):
     return filling
 
 
-def limit_of_unlike(grains, constants, radius_range):
+def limit_of_unlike(grains, constants, radius_range, packing="bpca"):
     """Largest stable stepFraction [t0 of constants] of aggregates of grains of unlike size.
 
-    grains: as for materials.pair_constants; radius_range: (smallest, largest) [m]. The fastest vibration is that of the
-    smallest grain among the largest ones: its contacts are stiffer than among its own kind.
+    grains: as for materials.pair_constants; radius_range: (smallest, largest) [m]; packing: "bcca", "bpca" or "file". The
+    fastest vibration is that of the smallest grain among the largest ones: its contacts are stiffer than among its own
+    kind.
     """
     stiffest = pair_constants(grains, radius_range)
     smallest = pair_constants(grains, (radius_range[0], radius_range[0]))
     stiffest.update(reducedMass=smallest["reducedMass"], timeUnit=constants["timeUnit"])
-    return step_limit(stiffest, equivalent_filling("bpca", None, False, stiffest))
+    return step_limit(stiffest, equivalent_filling(packing, None, False, stiffest))
 
 
 def require_stable(step, limit, depends_on):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from yade_scripts import packings
-from yade_scripts.experiments.collision import KIND, CollisionParameters, place
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.experiments.collision import KIND, CollisionParameters, place, require_step_of_files, step_limit
+from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
 from yade_scripts.packings.aggregate import make
 from yade_scripts.packings.from_file import packing_from_file
 from yade_scripts.parameters import ParameterError
@@ -189,3 +189,35 @@ def test_what_was_made_for_softer_grains_is_refused_and_loose_on_purpose_is_not(
     if "grains" not in packing:
         packings.save(path, make(CollisionParameters.parse(dict(packing, initialOverlap=0.2)), OVERLAP, 0))
     assert place(CollisionParameters.parse(dict(packing="file", file=path)), OVERLAP)[0].grains > 10
+
+
+def test_the_step_of_files_is_that_of_their_smallest_grain(tmp_path):
+    """Read from a file, grains of unlike size allow no longer step than where they are made in the run."""
+    path = str(tmp_path / "a.npz")
+    sizes = dict(packing="bpca", grains=40, sizes="two", sizeRatio=0.5)
+    packings.save(path, make(CollisionParameters.parse(sizes), OVERLAP, 0))
+    constants = pair_constants(MATERIALS["ice"])
+    made = step_limit(CollisionParameters.parse(sizes), constants)
+
+    def require(step, **others):
+        parameters = CollisionParameters.parse(dict(packing="file", file=path, stepFraction=step, **others))
+        _, pair, _ = place(parameters, OVERLAP)
+        require_step_of_files(parameters, constants, pair)
+
+    assert made < 0.2
+    require(0.7 * made)  # files may be denser than what grows
+    with pytest.raises(
+        ParameterError, match="stepFraction = .*: unstable at this filling and drag, with the radii of the files"
+    ):
+        require(1.01 * made)
+    packings.save(path, packings.bpca(40, RADIUS, OVERLAP, 1))
+    require(0.3)
+
+
+def test_contacts_of_the_smallest_grain_of_a_file_must_be_small(tmp_path):
+    tiny = RADIUS / 1e4
+    path = write(tmp_path / "a.npz", np.array([[0.0, 0, 0], [2 * RADIUS, 0, 0]]), np.array([RADIUS, tiny]))
+    parameters = CollisionParameters.parse(dict(packing="file", file=path, stepFraction=1e-9))
+    pair = [packings.load(path)] * 2
+    with pytest.raises(ParameterError, match="grainRadius = 1e-11: contacts at rest have a radius of"):
+        require_step_of_files(parameters, pair_constants(MATERIALS["ice"]), pair)

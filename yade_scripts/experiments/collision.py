@@ -126,6 +126,25 @@ def step_limit(parameters, constants):
     return min(limit, stability.limit_of_unlike(parameters, constants, parameters.radius_range()))
 
 
+def require_step_of_files(parameters, constants, pair):
+    """Raise ParameterError when the step is unstable for the smallest grain of packings from files, whose radii are known
+    only now, or contacts of such grains are too large.
+
+    parameters: complete; constants: as for complete(); pair: of Packing.
+    """
+    radii = np.concatenate([packing.radius for packing in pair])
+    smallest, largest = float(radii.min()), float(radii.max())
+    if parameters.packing != "file" or smallest == largest:
+        return
+    require_small_contacts(pair_constants(parameters, (smallest, smallest)))
+    unlike = stability.limit_of_unlike(parameters, constants, (smallest, largest), parameters.packing)
+    stability.require_stable(
+        parameters.stepFraction,
+        min(step_limit(parameters, constants), unlike),
+        "filling and drag, with the radii of the files",
+    )
+
+
 def reason_of_step(parameters, constants):
     """How complete() came to parameters.stepFraction, in one line."""
     if parameters.tolerance is None:
@@ -157,6 +176,7 @@ def prepare(parameters, threads):
     constants = yade_scene.pair_constants(parameters, parameters.neck)
     parameters = complete(parameters, constants, threads)
     parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
+    require_step_of_files(parameters, constants, pair)
     touch = _time_of_touch(pair, velocities, constants["bond"])
     parameters = with_duration(parameters, constants["timeUnit"], touch)
     aggregate_radius = parameters.radius * parameters.grainRadius
