@@ -126,7 +126,7 @@ void JKRWadaEngine::start(Moment moment)
 {
 	requireAlone(*scene);
 	const bool continued = !savedState.empty();
-	if (continued) SceneForces::restorePermanent(*scene, savedForces);
+	SceneForces::restorePermanent(*scene, savedForces);
 	std::shared_ptr<Run> run;
 	try {
 		run = newRun(moment);
@@ -141,6 +141,7 @@ void JKRWadaEngine::start(Moment moment)
 	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
 		current->dynamics.read(current->now);
 		current->grains.setWritten(current->now);
+		current->watch.motionsChanged(); // losses so far may be below zero, after sinter()
 		continueBooking();
 	} else
 		booked = false;
@@ -148,17 +149,24 @@ void JKRWadaEngine::start(Moment moment)
 		SceneCell::takeVelocityGradient(*scene, current->dynamics);
 	else
 		SceneCell::applyVelocityGradient(*scene, current->dynamics);
-	savedState.clear();
+	forgetSaved();
+}
+
+void JKRWadaEngine::forgetSaved() { savedState.clear(), savedForces.clear(); }
+
+// Whether O.energy has the energies of this run still: a script may have cleared it.
+bool JKRWadaEngine::isInOEnergy() const
+{
+	int kinetic = -1;
+	scene->energy->findId("kinetic", kinetic, false, false);
+	return booked && kinetic >= 0;
 }
 
 // O.energy holds what this run has booked before it was saved.
 void JKRWadaEngine::continueBooking()
 {
-	int kinetic = -1;
-	scene->energy->findId("kinetic", kinetic, false, false);
-	booked = booked && kinetic >= 0; // unless a script has cleared it
-	if (!booked) return;
-	writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
+	booked = isInOEnergy();
+	if (booked) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
 }
 
 void JKRWadaEngine::requireSound(const Run& run)
@@ -255,6 +263,7 @@ void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 	failure = "the run broke down at t = " + text(time) + " s: " + what
 	        + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s" + advice;
 	current.reset();
+	forgetSaved(); // by an earlier O.save, of another moment than the bodies are
 	refuseInEngine(failure);
 }
 
@@ -315,7 +324,7 @@ void JKRWadaEngine::handOver()
 	scene->iter += 1;
 	scene->dt = smallStep;
 	current.reset();
-	savedState.clear(); // of an earlier O.save
+	forgetSaved(); // by an earlier O.save
 }
 
 void JKRWadaEngine::writeBodies() { current->grains.write(current->now, orientations, current->dynamics.threadCount()); }
@@ -333,10 +342,17 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 void JKRWadaEngine::preSave(JKRWadaEngine&)
 {
 	const auto rest = atRest("O.save()");
-	if (!current) return; // before the first step: what was loaded, if anything, is saved again
-	const bool here = current->scene.lock() == Omega::instance().getScene();
-	savedState = here ? current->dynamics.save() : std::vector<Real>();
-	savedForces = here ? SceneForces::permanent(*scene) : std::vector<Real>();
+	const shared_ptr<Scene> saved = Omega::instance().getScene();
+	if (!current) { // before the first step: what was loaded, if anything, is saved again, but for forces set since
+		if (saved->forces.getPermForceUsed()) savedForces = SceneForces::permanent(*saved);
+		return;
+	}
+	if (current->scene.lock() != saved) return forgetSaved();
+	scene = saved.get();
+	// what is saved is that of the state that is saved: a script may have changed it, or not have asked for energies, since the last step
+	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
+	savedState = current->dynamics.save();
+	savedForces = SceneForces::permanent(*scene);
 }
 
 bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<double>& necks) const

@@ -29,6 +29,8 @@ class JKRWadaEngine : public GlobalEngine {
 	std::shared_ptr<Run> newRun(Moment);
 	void start(Moment);
 	void continueBooking();
+	void forgetSaved();
+	bool isInOEnergy() const;
 	static void requireSound(const Run&);
 	void enter(Moment);
 	void takeChanges();

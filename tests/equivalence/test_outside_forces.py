@@ -165,6 +165,31 @@ result["without"] = state() == straight
     assert found["same"] and found["work"] != 0 and not found["without"], found
 
 
+@pytest.mark.parametrize("loaded", [False, True])
+def test_permanent_forces_that_are_saved_before_the_first_step_hold(yade, loaded):
+    """Of a scene that was never stepped, and of one that was loaded and not stepped since."""
+    found = yade(
+        SCENE
+        + """
+def run(saved):
+    new_scene(unit)
+    cluster(5, 1, [ice()], [1e-7], 1.0, 0)
+    fused_engine(subSteps=10)
+    if parameters["loaded"]:
+        O.run(3, True)
+        O.save("stepped.xml"); O.load("stepped.xml")
+    push()
+    if saved: O.save("pushed.xml"); O.load("pushed.xml")
+    O.run(10, True)
+    return state()
+result["same"] = run(True) == run(False)
+result["work"] = O.energy["externalWork"]
+""",
+        {"loaded": loaded},
+    )
+    assert found["same"] and found["work"] != 0, found
+
+
 def test_what_holds_and_what_is_refused(yade):
     found = yade(
         SCENE

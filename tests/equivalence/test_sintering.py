@@ -156,6 +156,28 @@ result["necks"], result["broken"] = runs[0][2], broken()
     assert found["necks"] == [0, 0.4, 0.6] and sum(found["broken"]) > 20
 
 
+def test_a_checkpoint_after_sintering_continues_where_losses_are_below_zero(yade):
+    """Contacts at rest hold a negative potential: booked as disconnection, it is all that this scene has lost."""
+    found = yade(
+        SCENE
+        + """
+def end(saved):
+    start(grains=cluster, speed=0.1)
+    fused_engine()
+    run(20, {10: 0.5})
+    if saved:
+        O.save("sintered.yade.gz")
+        O.load("sintered.yade.gz")
+    run(20, {})
+    return positions(), energies()
+straight, loaded = end(False), end(True)
+result["same"] = bool((straight[0] == loaded[0]).all()) and straight[1] == loaded[1]
+result["lost"] = sum(straight[1][name] for name in LOST) / straight[1]["kinetic"]
+"""
+    )
+    assert found["same"] and found["lost"] < -1, found
+
+
 def test_bonds_of_several_necks_go_to_the_functors_and_back(yade):
     found = yade(
         SCENE

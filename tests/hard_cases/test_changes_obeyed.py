@@ -197,12 +197,40 @@ result["always"] = run(lambda k: True)
 result["late"] = run(lambda k: k > 40)
 result["paused"] = run(lambda k: k < 30 or k > 40)
 result["loaded late"] = run(lambda k: k > 40, load=True)
+result["loaded in the pause"] = run(lambda k: k < 30 or k > 40, load=True)
 """
     )
     always = found.pop("always")
     assert always["slidingDissipation"] > 0 and always["disconnection"] > 0
     for name, energies in found.items():
         assert energies == pytest.approx(always, rel=1e-9, abs=1e-12 * always["connection"]), name
+
+
+def test_energies_are_those_of_velocities_that_were_set_and_saved(yade):
+    """A call that takes the change over stands between it and O.save, or none: O.energy after loading has what it has without."""
+    found = yade(
+        SCENE
+        + """
+def run(written, saved):
+    new_scene(0.1 * unit)
+    cluster(4, 1, [ice()], [1e-7], 1.0, 0)
+    fused_engine(subSteps=5)
+    O.dt *= 5
+    O.run(5, True)
+    for b in O.bodies:
+        b.state.vel = 3 * b.state.vel
+    if written: O.engines[0].writeInteractions()
+    if saved:
+        O.save("set.yade")
+        O.load("set.yade")
+    O.step()
+    return energies()
+result["straight"] = run(False, False)
+result["others"] = [run(False, True), run(True, False), run(True, True)]
+"""
+    )
+    for others in found["others"]:
+        assert others == pytest.approx(found["straight"], rel=1e-9, abs=1e-12 * found["straight"]["kinetic"])
 
 
 @pytest.mark.parametrize("tracked", ["functors", "both"])

@@ -140,6 +140,33 @@ result["contacts"] = O.engines[0].statistics()["contacts"]
     assert found["same"] and found["contacts"] == 3
 
 
+def test_after_a_failure_a_checkpoint_holds_nothing_of_an_earlier_one(yade):
+    """The engine's arrays of an O.save long before the failure are not those of the last good state."""
+    found = yade(
+        SCENE
+        + """
+def run(saved_before):
+    new_scene(0.1 * unit)
+    cluster(12, 1, [ice()], [1e-7], 3.0, 1e7)
+    fused_engine(exportInteractions=True)
+    O.run(30, True)
+    if saved_before: O.save("early.yade.gz")
+    O.run(200, True)
+    kept = Vector3(O.bodies[0].state.vel)
+    O.bodies[0].state.vel = Vector3(1e5, 0, 0)
+    failed = refusal()
+    O.bodies[0].state.vel = kept
+    O.save("good.yade.gz")
+    O.load("good.yade.gz")
+    O.run(50, True)
+    return everything(), energies(), failed
+result["runs"] = [run(False), run(True)]
+"""
+    )
+    assert "body 0 moves at 1e+05 m/s" in found["runs"][0][2]
+    assert found["runs"][0] == found["runs"][1]
+
+
 @pytest.mark.parametrize("engine", ["fused", "functors"])
 def test_a_collision_that_fails_keeps_its_last_good_state(yade, tmp_path, engine):
     """collide.py with its own guard on the step switched off: exit status 1, the names in run.json, and the last sample before as the last state."""
