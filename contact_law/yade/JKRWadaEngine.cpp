@@ -145,10 +145,8 @@ void JKRWadaEngine::start(Moment moment)
 		continueBooking();
 	} else
 		booked = false;
-	if (moment == Moment::BetweenSteps)
-		SceneCell::takeVelocityGradient(*scene, current->dynamics);
-	else
-		SceneCell::applyVelocityGradient(*scene, current->dynamics);
+	// that of the last step: one that was set since is taken by prepare(), or in the next step
+	SceneCell::applyVelocityGradient(*scene, current->dynamics);
 	forgetSaved();
 }
 

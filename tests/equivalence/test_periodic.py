@@ -165,3 +165,29 @@ result["stress"] = float(np.trace(stress))
     )
     assert found["cells"] > 5 and found["normals"] < 1e-12 and found["overlaps"] < 1e-12
     assert found["stress"] == pytest.approx(found["normal part"], rel=1e-6)  # sliding forces have no part in the trace
+
+
+@pytest.mark.parametrize("homo", [0, 1, 2])
+def test_a_look_at_the_contacts_does_not_move_the_cell(yade, homo):
+    """writeInteractions() before the first step, or the first step after loading, leaves a velocity gradient that was set for when it would hold without the call."""
+    found = yade(
+        SCENE
+        + """
+def end(*calls):
+    start("like", 1e-3, parameters["homo"])
+    fused_engine()
+    if "first" in calls: O.engines[0].writeInteractions()
+    O.run(20, True)
+    O.cell.velGrad = Matrix3(2e-3 / unit, 0, 0, 0, 0, 0, 0, 0, 0)
+    if "loaded" in calls:
+        O.save("half.yade.gz")
+        O.load("half.yade.gz")
+        O.engines[0].writeInteractions()
+    O.run(20, True)
+    return positions(), O.cell.hSize[0, 0], all_energies()
+straight = end()
+result["same"] = [bool((straight[0] == x).all()) and straight[1:] == tuple(rest) for x, *rest in [end("first"), end("loaded")]]
+""",
+        {"homo": homo},
+    )
+    assert found["same"] == [True, True]
