@@ -50,6 +50,8 @@ def main(arguments):
     if "--help" in arguments or not 1 <= len(files) <= 2:
         print(f"{__doc__}\n{AggregateParameters.help_text()}\n\nWith from=:\n{CutParameters.help_text()}")
         return 0 if "--help" in arguments else 2
+    if len(set(map(os.path.realpath, files))) < len(files):
+        raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
     texts = from_arguments(argument for argument in arguments if "=" in argument)
     if "from" in texts:
         state = read_periodic_state(texts.pop("from"))

@@ -93,6 +93,7 @@ def test_command_line(tmp_path):
         (["a.npz", "density=900"], "density: a packing doesn't depend on it; must be left out"),
         (["a.npz", "surfaceEnergy=1e4"], "grainRadius = 1e-07: contacts at rest have a radius of "),
         (["nowhere/a.npz"], "nowhere"),
+        (["a.npz", "./a.npz", "radius=3"], "./a.npz: given twice; must be two files, one for each aggregate"),
         (
             ["a.npz", "packing=file", "file=b.npz"],
             "packing = file: there is nothing to make; must be cpe, bcca or bpca",
