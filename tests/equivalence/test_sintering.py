@@ -178,6 +178,26 @@ result["lost"] = sum(straight[1][name] for name in LOST) / straight[1]["kinetic"
     assert found["same"] and found["lost"] < -1, found
 
 
+def test_grains_sintered_while_they_are_pressed_together_get_that_energy_back(yade):
+    """Contacts far beyond equilibrium hold more than their bonds do when these break: bondBreaking falls, all channels together stay, and the run goes on."""
+    found = yade(
+        SCENE
+        + """
+new_scene(0.02 * unit)
+converging(27, 0, [ice()], [1e-7], speed=25)
+fused_engine()
+run(62, {})
+before = energies()
+contact_law.sinter(0.2)
+_, sums = run(300, {})
+kinetic = before["kinetic"]
+result["regained"] = -min(e["bondBreaking"] for e in sums) / kinetic
+result["closure"] = max(abs(sum(e.values()) - sum(before.values())) for e in sums) / kinetic
+"""
+    )
+    assert found["regained"] > 0.2 and found["closure"] < 1e-3, found
+
+
 def test_bonds_of_several_necks_go_to_the_functors_and_back(yade):
     found = yade(
         SCENE
