@@ -312,6 +312,9 @@ def test_space_and_other_laws_beside_the_plane(tmp_path, capsys):
     # each law beside the paper
     name = "sticking efficiency, beta = 0.7, 30 m/s"
     assert found[name]["ours"] == 1.0 and lines_of_runs(tmp_path, capsys, held=True)[name]["ours"] == 0.5
+    assert main(["study", "sintered", str(tmp_path), "--figures", str(tmp_path / "out")]) == 0
+    drawn = {file.name for file in (tmp_path / "out").glob("*.png")}
+    assert {"held.png", "space.png"} <= drawn and "space_compacted.png" not in drawn
 
 
 def point_of(answer, neck, velocity):
