@@ -17,10 +17,11 @@ from analysis.statistics import pooled_scatter
 from analysis.studies.collision_points import at_maximum
 from analysis.studies.elastoplastic import paper, prediction
 from analysis.studies.elastoplastic.energy_by_size import energy_size_section
+from analysis.studies.elastoplastic.figures.zone import zone_figure
 from analysis.studies.elastoplastic.joint_fit import JointSearch, joint_fit
 from analysis.studies.elastoplastic.measure import COLUMNS
 from analysis.studies.elastoplastic.points import points_of, resampled
-from analysis.studies.elastoplastic.results import PAPER_RADII
+from analysis.studies.elastoplastic.results import PAPER_RADII, make_results
 from analysis.studies.elastoplastic.size_fit import fit_sizes, joint_difference, line_covariance
 from analysis.studies.elastoplastic.start_offset import common_slope
 from analysis.studies.elastoplastic.velocity_fit import predicted
@@ -207,6 +208,14 @@ def test_predictions_hold_what_they_promise():
     assert np.median(gain) > 1.2
     (unrun,) = prediction.compare(pandas.DataFrame(rows), old)
     assert (unrun.run, unrun.within, unrun.bias) == (0, None, None)
+
+
+def test_the_figure_of_the_zones_shows_the_predictions_of_its_covariate():
+    """From the gallery's rows: eight open squares a filling, none of the pairs that the rigid approach predicts."""
+    figure = zone_figure(make_results(read_table(GALLERY / "runs.csv", COLUMNS)[0]))
+    for place in figure.axes:
+        (predicted,) = [c for c in place.containers if "predicted" in c.get_label()]
+        assert predicted.get_label() == "predicted, $R$ = 60 $r$" and len(predicted.lines[0].get_xdata()) == 8
 
 
 @pytest.mark.parametrize("chosen", prediction.SETS, ids=lambda each: each.file)

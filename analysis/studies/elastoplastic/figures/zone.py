@@ -49,7 +49,8 @@ def zone_figure(results):
 
 
 def _draw_predictions(axes, filling, results):
-    rows = prediction.read()
+    (chosen,) = (each for each in prediction.SETS if each.covariate == "zone_filling")
+    rows = prediction.read(chosen.path)
     if rows is None:
         return
     for each in filling.adjusted:
