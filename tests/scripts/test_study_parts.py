@@ -281,3 +281,32 @@ def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
         screen.close()
     assert terminal.getvalue().count("\033[3A\033[J") == 2 and terminal.getvalue().endswith("\033[J")
     assert file.getvalue() == ""
+
+
+def test_the_step_of_every_row_is_stable(yade):
+    """Rows of the study tables would start: what their runs refuse of grains, necks and steps before packings are made."""
+    found = yade(
+        """
+from yade_scripts.experiments import collision, compression
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run.scene import pair_constants
+from yade_scripts.runner import rows
+refused, seen = [], set()
+for path in parameters["paths"]:
+    for row in rows.read(path):
+        p = row.parameters
+        alike = repr(p.changed(seed=1, out="", **({"file": None, "projectileFile": None} if hasattr(p, "file") else {})))
+        if alike in seen:
+            continue
+        seen.add(alike)
+        experiment = collision if row.kind is collision.KIND else compression
+        own = {"neck": p.neck} if experiment is collision else {"linearDamping": p.linearDamping}
+        try:
+            experiment.complete(p, pair_constants(p, **own), 1)
+        except ParameterError as error:
+            refused.append(f"{row.name}: {error}")
+result.update(refused=refused, seen=len(seen))
+""",
+        {"paths": [os.path.join(STUDIES, name) for name in TABLES]},
+    )
+    assert found["refused"] == [] and found["seen"] > 300

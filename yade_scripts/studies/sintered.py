@@ -24,7 +24,10 @@ DURATION = "24.4e-6"  # s
 # Above 10 m/s half of it: in 21 runs that went on (W07's sliding spring, two seeds) no largest piece changed after 9.2 us, and no part
 # of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by up to 0.05 K(0).
 FAST, DURATION_FAST = 10.0, "12.2e-6"  # m/s, s
-STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119
+STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates,
+STEP_COMPACTED = {
+    0.2: 0.09
+}  # t0, by beta: packings of files are taken for close-packed ones, in which they are to 0.0996
 STATES = 9  # Fig. 7 shows 0, 2,500, 5,000, 10,000 and 20,000 periods, Fig. 9 also 625 and 1,250
 ROOT = "10**0.5"  # m/s, the paper's 3.2
 
@@ -77,7 +80,7 @@ class Point:
             "duration": DURATION if self.velocity == ROOT or float(self.velocity) <= FAST else DURATION_FAST,
             "endWhenApart": 1,
             "states": STATES,
-            "stepFraction": STEP,
+            "stepFraction": STEP_COMPACTED.get(self.neck, STEP) if self.growth else STEP,
             "threads": 1,
             "out": f"{folder}/{name}",
         }
