@@ -11,7 +11,7 @@ import pandas
 
 from ...statistics import CONFIDENCE, student
 from . import paper
-from .zone_fit import LENGTHS, Slope, fit_slope
+from .zone_fit import LENGTHS, Slope, fit_slope, in_grain_radii
 
 GALLERY = Path(__file__).resolve().parents[2] / "gallery" / "elastoplastic"
 
@@ -77,7 +77,8 @@ class Model:
 
     def away(self, radius, x):
         """How far values x of the covariate lie from its mean at a radius [grain radii], as the slope takes it: in grain radii."""
-        return (x - self.means[radius][1]) * (1.0 / self.grain_radius if self.covariate in LENGTHS else radius)
+        difference, unit = x - self.means[radius][1], self.grain_radius
+        return in_grain_radii(difference, self.covariate, radius * unit, unit)
 
 
 def fit(table, filling, velocity=paper.VELOCITY, covariate="zone_filling"):

@@ -111,9 +111,13 @@ def _measured(table, of):
 
 
 def _regressor(table, covariate):
-    """The covariate of the runs in grain radii: lengths as they are, numbers times R."""
-    length = 1.0 if covariate in LENGTHS else table.radius
-    return (table[covariate] * length / table.grain_radius).to_numpy(dtype=float)
+    """The covariate of the runs (n,) in grain radii."""
+    return in_grain_radii(table[covariate], covariate, table.radius, table.grain_radius).to_numpy(dtype=float)
+
+
+def in_grain_radii(x, covariate, radius, grain_radius):
+    """A covariate in grain radii, as slopes take it: lengths as they are, numbers times R. radius, grain_radius: in m."""
+    return x * (1.0 if covariate in LENGTHS else radius) / grain_radius
 
 
 def adjust(table, slope, of="d_max"):

@@ -4,7 +4,7 @@ results.Results."""
 from ...report.beside_paper import Line
 from ...statistics import ratio_of_two, student_chance
 from . import paper
-from .words import beside, beside_limits, fraction_line, limits, name_of, probability
+from .words import beside, broken_lines, fraction_line, limits_line, name_of, probability, sticking_line
 
 
 def contacts(results):
@@ -31,7 +31,7 @@ def at_growth_velocity(results):
     for point in results.main(
         growth_velocity=paper.UNSINTERED_COMPACTED, velocity=paper.UNSINTERED_COMPACTED, neck=0.0
     ):
-        lines.append(_sticks(point))
+        lines.append(sticking_line(point))
     for growth, least in paper.COMPACTED:
         for point in results.main(growth_velocity=growth, velocity=growth):
             if point.neck:
@@ -45,28 +45,11 @@ def at_growth_velocity(results):
 
 def at_any_velocity(results):
     """Fig. 10."""
-    lines = [_sticks(point) for point in _points(results, paper.COMPACTED_STICKING)]
+    lines = [sticking_line(point) for point in _points(results, paper.COMPACTED_STICKING)]
     lines += [_bounces(point, "bouncing", 1.0) for point in _points(results, paper.COMPACTED_BOUNCING)]
-    for point in results.main(growth_velocity=1.0, neck=0.7):
-        if point.velocity > 1.01 * paper.BROKEN_ABOVE:
-            note = f"paper: above 10 m/s approximately {paper.BROKEN_EFFICIENCY:g} (section 5.2); {point.runs} seeds"
-            lines.append(
-                beside(
-                    f"sticking efficiency, {name_of(point)}",
-                    "",
-                    point.means["largest"],
-                    paper.BROKEN_EFFICIENCY,
-                    point.runs,
-                    note,
-                )
-            )
-    for point in _points(results, paper.COMPACTED_BROKEN):
-        mean, error = point.means["largest"]
-        stands = beside_limits(mean, error, point.runs, 0.0, 0.5)
-        note = (
-            f"paper: fragmentation above 30 m/s (section 5.2), read as {limits(0.0, 0.5)}: {stands}; {point.runs} seeds"
-        )
-        lines.append(Line(f"sticking efficiency, {name_of(point)}", "", mean, error, note=note))
+    lines += broken_lines(results.main(growth_velocity=1.0, neck=0.7), "sticking efficiency")
+    said = "fragmentation above 30 m/s (section 5.2)"
+    lines += [limits_line(point, said, 0.0, 0.5) for point in _points(results, paper.COMPACTED_BROKEN)]
     notes = (
         "The paper's five runs of a compacted aggregate are five orientations of one; ours are of so many aggregates, so that they "
         "scatter more if aggregates do.",
@@ -114,11 +97,6 @@ def _points(results, chosen):
         for growth, velocity in chosen
         for point in results.main(growth_velocity=growth, velocity=velocity, neck=0.7)
     ]
-
-
-def _sticks(point):
-    note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
-    return fraction_line("sticks", point, point.sticking, 1.0, note)
 
 
 def _bounces(point, expected, theirs):

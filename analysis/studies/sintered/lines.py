@@ -4,7 +4,17 @@
 from ...report.beside_paper import Line
 from ...statistics import wilson
 from . import paper
-from .words import beside, beside_limits, fraction_line, limits, name_of, other_fraction, paired_line, probability
+from .words import (
+    beside,
+    broken_lines,
+    fraction_line,
+    limits_line,
+    name_of,
+    other_fraction,
+    paired_line,
+    probability,
+    sticking_line,
+)
 
 NO_ERRORS = "The paper prints no errors: diff* and p take its mean of five runs to scatter as ours. In diff it is taken as exact."
 
@@ -19,15 +29,8 @@ def efficiency(results):
     for neck, velocity, least, most, said in paper.STICKING_EFFICIENCY:
         point = _bcca(results, neck, velocity)
         if point is not None:
-            mean, error = point.means["largest"]
-            stands = beside_limits(mean, error, point.runs, least, most)
-            note = f"paper: {said}, read as {limits(least, most)}: {stands}; {point.runs} seeds"
-            lines.append(Line(f"sticking efficiency, {name_of(point)}", "", mean, error, note=note))
-    for point in results.main(growth_velocity=0.0, neck=0.7):
-        if point.velocity > 1.01 * paper.BROKEN_ABOVE:
-            note = f"paper: above 10 m/s approximately {paper.BROKEN_EFFICIENCY:g} (section 5.2); {point.runs} seeds"
-            quantity = f"sticking efficiency above 10 m/s, {name_of(point)}"
-            lines.append(beside(quantity, "", point.means["largest"], paper.BROKEN_EFFICIENCY, point.runs, note))
+            lines.append(limits_line(point, said, least, most))
+    lines += broken_lines(results.main(growth_velocity=0.0, neck=0.7), "sticking efficiency above 10 m/s")
     lines += paired_line(
         results,
         "largest",
@@ -105,8 +108,7 @@ def bounces(results):
         lines.append(fraction_line("bounces", point, point.bouncing, bounced / runs, note))
     point = _bcca(results, 0.7, paper.SLOW)
     if point is not None:
-        note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
-        lines.append(fraction_line("sticks", point, point.sticking, 1.0, note))
+        lines.append(sticking_line(point))
     notes = (
         "Bouncing is two large pieces, each of one aggregate to nine tenths (measures.outcome): separation at the new contacts, as "
         "in section 5.4. Parts torn off at sintered necks, and merged bodies that break, are fragments.",

@@ -41,10 +41,7 @@ UNDISSIPATED = (
 BY_ROLLING = 0.9  # of the broken necks, at least (section 5.3)
 FIT = (3.7e-2, 0.97)  # N_cut/N_t = c (E_k/E_sint)^p, without BCCA aggregates of beta = 0.2 (Fig. 15)
 CONTACTS_SAID = "approximately two at low V_g and three at high V_g (Fig. 6)"
-AS_MANY_FRAGMENTS, FEWER_FRAGMENTS = (
-    (1.0,),
-    (3.0, 10.0),
-)  # V_g [m/s] whose fragments are as BCCA's, and fewer (section 5.3)
+FEWER_FRAGMENTS = (3.0, 10.0)  # V_g [m/s] of fewer fragments than BCCA's; at 1 almost as many (section 5.3)
 FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
 LOOP_SIZE = 44  # grains in a loop of BCCA aggregates, beta = 0.7, 10 m/s, on average (section 5.4)
 LOOP_GRAINS = 22  # N of eq 18 in a BCCA aggregate that has formed loops (section 5.4)

@@ -78,3 +78,34 @@ def paired_line(results, column, quantity, first, second, said, unit=""):
     if error:
         note += f", p = {student_chance(mean / error, len(values) - 1):.2g} that there is none"
     return [Line(quantity, unit, mean, error, note=note)]
+
+
+def sticking_line(point):
+    """Line of the runs of a point that stick, where all of the paper's do."""
+    note = f"paper: all stick; ours {probability(point.sticking, point.runs)}"
+    return fraction_line("sticks", point, point.sticking, 1.0, note)
+
+
+def limits_line(point, said, least, most):
+    """Line of the sticking efficiency of a point beside what the paper says in words, read as limits."""
+    mean, error = point.means["largest"]
+    stands = beside_limits(mean, error, point.runs, least, most)
+    note = f"paper: {said}, read as {limits(least, most)}: {stands}; {point.runs} seeds"
+    return Line(f"sticking efficiency, {name_of(point)}", "", mean, error, note=note)
+
+
+def broken_lines(points, quantity):
+    """[Line] of the sticking efficiency of those of the points that are faster than paper.BROKEN_ABOVE, beside the paper's."""
+    said = f"paper: above {paper.BROKEN_ABOVE:g} m/s approximately {paper.BROKEN_EFFICIENCY:g} (section 5.2)"
+    return [
+        beside(
+            f"{quantity}, {name_of(point)}",
+            "",
+            point.means["largest"],
+            paper.BROKEN_EFFICIENCY,
+            point.runs,
+            f"{said}; {point.runs} seeds",
+        )
+        for point in points
+        if point.velocity > 1.01 * paper.BROKEN_ABOVE
+    ]
