@@ -77,7 +77,7 @@ def predict(runs, file):
     never among them."""
     (chosen,) = (each for each in prediction.SETS if each.file == os.path.basename(file))
     table, _ = read_table(runs, COLUMNS)
-    table = table[~table.seed.isin(chosen.seeds)]
+    table = prediction.before(table, chosen)
     first, rows, means = table.iloc[0], [], {}
     radius = chosen.radius * first.grain_radius
     for filling in prediction.FILLINGS:

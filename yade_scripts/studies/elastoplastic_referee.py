@@ -119,13 +119,6 @@ REFEREE = (
         range(1, 11),
         overlap=1e-3,
     ),
-    Block(
-        "A24's Fig. 4 and the scatter at R = 80: its ten seeds at 3.162 m/s (three have run).",
-        SIZES,
-        (80,),
-        (5,),
-        range(4, 11),
-    ),
     Block("R = 70 of A24's Figs 5 and 6.", SIZES, (70,), (5,), range(1, 6)),
     Block(
         "Outcomes at R = 40, followed for 3 us: sticking at 1 to 2.5 m/s. Pairs that have run for less are among them:\n"

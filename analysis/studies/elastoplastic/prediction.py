@@ -35,6 +35,7 @@ class Set:
 SETS = (
     Set("predictions.csv", "zone_filling", paper.VELOCITY, 60, range(101, 109)),
     Set("predictions_slow.csv", "rigid_touch", 1.0, 40, range(201, 211)),
+    Set("predictions_large.csv", "zone_filling", paper.VELOCITY, 80, range(4, 11)),
 )
 FILLINGS = (0.4, 0.3)
 _HEAD = """\
@@ -79,6 +80,12 @@ class Model:
         """How far values x of the covariate lie from its mean at a radius [grain radii], as the slope takes it: in grain radii."""
         difference, unit = x - self.means[radius][1], self.grain_radius
         return in_grain_radii(difference, self.covariate, radius * unit, unit)
+
+
+def before(table, chosen):
+    """Rows of a table of runs (DataFrame of measure.COLUMNS) without the pairs of a Set: what its predictions may know."""
+    radius = (table.radius / table.grain_radius).round(3)
+    return table[~(table.seed.isin(chosen.seeds) & (radius == chosen.radius))]
 
 
 def fit(table, filling, velocity=paper.VELOCITY, covariate="zone_filling"):

@@ -1,6 +1,7 @@
 """d_max against the filling of the two zones that meet: how much of the scatter the packings explain, and what they predict."""
 
 import numpy as np
+import pandas
 
 from ....figures.style import styled
 from ...definition import StudyFigure
@@ -49,14 +50,13 @@ def zone_figure(results):
 
 
 def _draw_predictions(axes, filling, results):
-    (chosen,) = (each for each in prediction.SETS if each.covariate == "zone_filling")
-    rows = prediction.read(chosen.path)
-    if rows is None:
-        return
+    chosen = [each for each in prediction.SETS if each.covariate == "zone_filling"]
+    rows = [prediction.read(each.path) for each in chosen]
     for each in filling.adjusted:
-        radius = each.radius * results.grain_radius
-        own = rows[(rows.filling.round(6) == filling.factor) & ((rows.radius / radius - 1.0).abs() < 1e-6)]
-        if len(own):
+        own = [r for c, r in zip(chosen, rows) if r is not None and c.radius == each.radius]
+        if own:
+            own = pandas.concat(own)
+            own = own[own.filling.round(6) == filling.factor]
             x = each.radius * (own.zone_filling - 1.0 - each.zone)
             y, error = own.d_max / results.grain_radius - each.mean, own.d_max_error / results.grain_radius
             options = {"fmt": "s", "markerfacecolor": "none", "color": PAPER, "elinewidth": 0.7, "markersize": 5}
