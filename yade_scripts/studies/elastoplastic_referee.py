@@ -132,13 +132,13 @@ REFEREE = (
         folder=LONG,
     ),
     Block(
-        "E* at 0.4: R = 80 at 1 to 2 m/s, where tau v/delta differs most between elastic and rigid-plastic spheres; with 2 us\n"
-        "also the outcomes and v_min of the largest size.",
+        "E* at 0.4: R = 80 at 1 to 2 m/s, where tau v/delta differs most between elastic and rigid-plastic spheres, until the\n"
+        "halves have parted fastest.",
         (0.4,),
         (80,),
         (0, 1, 2, 3),
         range(1, 7),
-        "2e-6",
+        "8e-7",
         step=LONGER_STEP,
     ),
     Block(
