@@ -10,6 +10,7 @@ doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
 
 import os
 import sys
+from dataclasses import dataclass
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from yade_scripts.run.stop_signals import end_quietly
@@ -17,12 +18,21 @@ from yade_scripts.run.stop_signals import end_quietly
 end_quietly()
 from analysis.version import version_text
 from yade_scripts import materials, packings
-from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
 from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
-from yade_scripts.parameters import ParameterError
+from yade_scripts.parameters import ParameterError, one_of, parameter
 from yade_scripts.run.arguments import from_arguments
 
 WITHOUT_EFFECT = ("density", "criticalRolling", "viscoelasticTime")
+
+
+@dataclass(frozen=True)
+class MadeParameters(AggregateParameters):
+    """How the aggregates are made."""
+
+    packing: str = parameter(
+        "cpe", one_of(MADE), "close-packed and extracted, cluster-cluster or particle-cluster aggregation"
+    )
 
 
 def make_packing(file, parameters, index):
@@ -48,7 +58,9 @@ def main(arguments):
         return 0
     files = [argument for argument in arguments if "=" not in argument]
     if "--help" in arguments or not 1 <= len(files) <= 2:
-        print(f"{__doc__}\n{AggregateParameters.help_text()}\n\nWith from=:\n{CutParameters.help_text()}")
+        print(
+            f"{__doc__}\n{MadeParameters.help_text((*WITHOUT_EFFECT, 'file'))}\n\nWith from=:\n{CutParameters.help_text()}"
+        )
         return 0 if "--help" in arguments else 2
     if len(set(map(os.path.realpath, files))) < len(files):
         raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
@@ -62,9 +74,7 @@ def main(arguments):
     for name in WITHOUT_EFFECT:
         if name in texts:
             raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
-    parameters = AggregateParameters.parse(texts)
-    if parameters.packing == "file":
-        raise ParameterError("packing = file: there is nothing to make; must be cpe, bcca or bpca")
+    parameters = MadeParameters.parse(texts)
     for index, file in enumerate(files):
         make_packing(file, parameters, index)
     return 0

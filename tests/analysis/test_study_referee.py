@@ -214,7 +214,9 @@ def test_the_figure_of_the_zones_shows_the_predictions_of_its_covariate():
     """From the gallery's rows: eight and seven open squares a filling, none of the pairs that the rigid approach predicts."""
     figure = zone_figure(make_results(read_table(GALLERY / "runs.csv", COLUMNS)[0]))
     for place in figure.axes:
-        predicted = {c.get_label(): len(c.lines[0].get_xdata()) for c in place.containers if "predicted" in c.get_label()}
+        predicted = {
+            c.get_label(): len(c.lines[0].get_xdata()) for c in place.containers if "predicted" in c.get_label()
+        }
         assert predicted == {"predicted, $R$ = 60 $r$": 8, "predicted, $R$ = 80 $r$": 7}
 
 

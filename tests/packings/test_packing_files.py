@@ -96,7 +96,7 @@ def test_command_line(tmp_path):
         (["a.npz", "./a.npz", "radius=3"], "./a.npz: given twice; must be two files, one for each aggregate"),
         (
             ["a.npz", "packing=file", "file=b.npz"],
-            "packing = file: there is nothing to make; must be cpe, bcca or bpca",
+            "packing = file: must be cpe or bcca or bpca",
         ),
     ],
 )
@@ -105,3 +105,11 @@ def test_command_line_errors(tmp_path, arguments, message):
     assert failed.returncode != 0
     assert message in failed.stderr and failed.stderr.count("\n") == 1
     assert os.listdir(tmp_path) == []
+
+
+def test_help_offers_what_a_packing_may_be_made_of(tmp_path):
+    shown = make_packing(tmp_path, "--help").stdout
+    assert "cpe or bcca or bpca" in " ".join(shown.split())
+    for refused in ("density", "criticalRolling", "viscoelasticTime", "file"):
+        assert f"\n  {refused}" not in shown
+    assert "\n  surfaceEnergy" in shown

@@ -2,6 +2,7 @@
 
 import io
 import os
+import sys
 
 import pytest
 from running import TOP
@@ -12,7 +13,7 @@ from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constant
 from yade_scripts.run import agreement, table
 from yade_scripts.runner import cost, rows, view
 from yade_scripts.runner.screen import Screen
-from yade_scripts.studies import elastoplastic, viscous
+from yade_scripts.studies import elastoplastic, table_script, viscous
 
 STUDIES = os.path.join(TOP, "yade_scripts", "studies")
 TABLES = sorted(name for name in os.listdir(STUDIES) if name.endswith(".table"))
@@ -112,6 +113,21 @@ def test_committed_tables_are_what_the_generator_writes(tmp_path, study, sizes):
     for name in os.listdir(tmp_path):
         with open(os.path.join(STUDIES, name)) as file:
             assert file.read() == (tmp_path / name).read_text(), f"{name}: run yade_scripts/studies/{own}.py"
+
+
+def test_scripts_that_write_tables_say_what_they_do_and_refuse_arguments(tmp_path, monkeypatch, capsys):
+    """Asked for help, or given what they don't take, they write nothing."""
+    calls = []
+    for arguments, written in (("--help", 0), ("desk", 0), (None, 1)):
+        monkeypatch.setattr(sys, "argv", ["study.py"] + ([arguments] if arguments else []))
+        if arguments == "desk":
+            with pytest.raises(SystemExit) as ended:
+                table_script.main(calls.append, tmp_path, "Writes tables.")
+            assert ended.value.code == 2 and capsys.readouterr().err == "desk: takes no arguments but --help\n"
+        else:
+            table_script.main(calls.append, tmp_path, "Writes tables.")
+        assert len(calls) == written
+        assert capsys.readouterr().out == ("Writes tables.\n" if arguments == "--help" else "")
 
 
 def test_the_viscous_tables_hold_the_papers_runs():

@@ -19,6 +19,7 @@ from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, Param
 MOST_GRAINS = 5_000_000
 MOST_GROWN = {"bcca": 100_000, "bpca": 2_000_000}  # made in a minute, in minutes
 GRAINS_GROWN = 1024
+MADE = ("cpe", *MOST_GROWN)
 OF_CPE = ("removeLooseGrains", "initialOverlap")
 OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
 
@@ -29,7 +30,7 @@ class AggregateParameters(GrainParameters):
 
     packing: str = parameter(
         "cpe",
-        one_of(["cpe", "bcca", "bpca", "file"]),
+        one_of([*MADE, "file"]),
         "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, or read from file",
     )
     filling: float | None = parameter(

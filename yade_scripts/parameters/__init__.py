@@ -123,9 +123,9 @@ class Parameters:
         return cls(**values).filled_in()
 
     @classmethod
-    def help_text(cls):
-        """The parameters under the headings of their classes."""
-        columns, lines = cls.columns(), []
+    def help_text(cls, without=()):
+        """The parameters but these under the headings of their classes."""
+        columns, lines = {name: each for name, each in cls.columns().items() if name not in without}, []
         for owner in cls.__mro__:
             own = [name for name in owner.__dict__.get("__annotations__", {}) if name in columns]
             if own:

@@ -12,6 +12,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from yade_scripts.run import table
+from yade_scripts.studies import table_script
 
 # t0; K13 takes 0.1. The pressure, by the work of the boundaries, is that at a step of 0.05 to 1 % below a filling of 0.1 and to
 # 2 % above, with damping and without, less than seeds differ (tests/benchmarks/results/compression_step.md).
@@ -89,4 +90,4 @@ def write_tables(folder):
 
 
 if __name__ == "__main__":
-    write_tables(HERE)
+    table_script.main(write_tables, HERE, __doc__)

@@ -12,6 +12,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from yade_scripts.run import table
+from yade_scripts.studies import table_script
 
 FASTEST_STEP = 0.2  # t0; the ledger closes to 5e-4 of the kinetic energy or better
 REFERENCE = 5  # i of the velocity 10^0.5 m/s at which sizes are compared (Figs 5 to 7)
@@ -124,4 +125,4 @@ def write_tables(folder):
 
 
 if __name__ == "__main__":
-    write_tables(HERE)
+    table_script.main(write_tables, HERE, __doc__)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from analysis.studies.elastoplastic import prediction
+from yade_scripts.studies import table_script
 
 STEP = 0.2  # t0, as the runs that are compared with these
 # t0, of long runs at 1 to 2.5 m/s: one at R = 40 and 1 m/s has the same outcome, d_max, t_max and largest return speed as with 0.1 to
@@ -213,4 +214,4 @@ def write_tables(folder):
 
 
 if __name__ == "__main__":
-    write_tables(HERE)
+    table_script.main(write_tables, HERE, __doc__)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from yade_scripts.run import table
+from yade_scripts.studies import table_script
 from yade_scripts.studies.sintered_growth import SLIDING, Grown
 
 GRAINS = 1024
@@ -192,4 +193,4 @@ def write_tables(folder):
 
 
 if __name__ == "__main__":
-    write_tables(HERE)
+    table_script.main(write_tables, HERE, __doc__)

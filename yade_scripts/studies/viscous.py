@@ -16,6 +16,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from yade_scripts.run import table
+from yade_scripts.studies import table_script
 
 TWELFTHS = range(13)  # B_off^2 in twelfths
 EXPONENTS = range(13, 21)  # i of 10^(0.1 i) m/s
@@ -124,4 +125,4 @@ def write_tables(folder):
 
 
 if __name__ == "__main__":
-    write_tables(HERE)
+    table_script.main(write_tables, HERE, __doc__)
