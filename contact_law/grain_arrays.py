@@ -19,20 +19,17 @@ def snapshot():
     from yade.wrapper import JKRWadaSnapshot
 
     raw = JKRWadaSnapshot().read()
-    vectors = {
-        name: np.frombuffer(raw[name]).reshape(-1, 3).copy() for name in ("position", "velocity", "angular_velocity")
-    }
-    pairs = np.frombuffer(raw["contact_pairs"], dtype=np.int32).reshape(-1, 2).copy()
-    neck = np.frombuffer(raw["contact_neck"]).copy()
-    cell = {"cell_size": np.frombuffer(raw["cell_size"]).copy()} if "cell_size" in raw else {}
+    vectors = {name: np.frombuffer(raw[name]).reshape(-1, 3) for name in ("position", "velocity", "angular_velocity")}
+    neck = np.frombuffer(raw["contact_neck"])
+    cell = {"cell_size": np.frombuffer(raw["cell_size"])} if "cell_size" in raw else {}
     return {
         **cell,
         "time": raw["time"],
-        "ids": np.frombuffer(raw["ids"], dtype=np.int32).copy(),
+        "ids": np.frombuffer(raw["ids"], dtype=np.int32),
         **vectors,
-        "radius": np.frombuffer(raw["radius"]).copy(),
-        "contact_pairs": pairs,
-        "contact_normal_force": np.frombuffer(raw["contact_normal_force"]).copy(),
+        "radius": np.frombuffer(raw["radius"]),
+        "contact_pairs": np.frombuffer(raw["contact_pairs"], dtype=np.int32).reshape(-1, 2),
+        "contact_normal_force": np.frombuffer(raw["contact_normal_force"]),
         "contact_bonded": neck > 0,
         "contact_neck": neck,
     }

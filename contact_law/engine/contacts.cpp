@@ -56,20 +56,58 @@ ContactNow contactNow(const Dynamics& dynamics, const BondList& list, int lane)
 	return n;
 }
 
-double normalForceNow(const Dynamics& dynamics, const Contact& c)
+double normalForceNow(const Dynamics& dynamics, const ContactList& list, int lane)
 {
-	Vec3<double> separation = separationOf(dynamics.state().grains[c.i], dynamics.state().grains[c.j]);
+	const Setting& setting = dynamics.state();
+	const int i = list.first(lane), j = list.second(lane);
+	PairConstants<double> unlike;
+	if (!setting.uniform) unlike = setting.constantsOf(i, j);
+	const PairConstants<double>& c = setting.uniform ? setting.common : unlike;
+	Vec3<double> separation = separationOf(setting.grains[i], setting.grains[j]);
 	nearestImage(dynamics.cell(), separation);
-	const auto g = geometryOf(separation, c.constants.radius1 + c.constants.radius2);
-	return contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce + c.drag;
+	ContactForces<double> f {};
+	normal::addForces(c, geometryOf(separation, c.radius1 + c.radius2), f);
+	return setting.hasDrag() ? f.normalForce + list.drag(lane) : f.normalForce;
 }
 
-double normalForceNow(const Dynamics& dynamics, const Bond& b)
+double normalForceNow(const Dynamics& dynamics, const BondList& list, int lane)
 {
+	const Bond b = list.get(lane, dynamics.state().commonBond);
 	Vec3<double> separation = separationOf(dynamics.state().grains[b.i], dynamics.state().grains[b.j]);
 	nearestImage(dynamics.cell(), separation);
 	const auto g = geometryOf(separation, b.rest);
 	return bondForces(b.constants, g, b.history).normalForce;
+}
+
+namespace {
+	double neckOf(const ContactList&, int, const Setting&) { return 0; }
+	double neckOf(const BondList& list, int lane, const Setting& setting) { return list.get(lane, setting.commonBond).constants.neck; }
+
+	template <class Lists> NormalForces normalForcesOf(const Dynamics& dynamics, const Domain& domain, Lists Domain::*lists)
+	{
+		NormalForces found;
+		const std::size_t most = (domain.*lists)[0].size() + (domain.*lists)[1].size();
+		found.grains.reserve(2 * most), found.forces.reserve(most), found.necks.reserve(most);
+		eachLaneOf(dynamics, domain, lists, [&](const auto& list, int lane, int first, int second) {
+			found.grains.push_back(first);
+			found.grains.push_back(second);
+			found.forces.push_back(normalForceNow(dynamics, list, lane));
+			found.necks.push_back(neckOf(list, lane, dynamics.state()));
+		});
+		return found;
+	}
+}
+
+std::vector<NormalForces> normalForces(const Dynamics& dynamics)
+{
+	const auto& domains = dynamics.parts();
+	std::vector<NormalForces> found(2 * domains.size());
+#pragma omp parallel for num_threads(dynamics.threadCount())
+	for (std::size_t d = 0; d < domains.size(); ++d) {
+		found[d] = normalForcesOf(dynamics, *domains[d], &Domain::contacts);
+		found[domains.size() + d] = normalForcesOf(dynamics, *domains[d], &Domain::bonds);
+	}
+	return found;
 }
 
 int contactCount(const Dynamics& dynamics)

@@ -22,39 +22,33 @@ ContactNow swapped(const ContactNow&);
 ContactHistory<double> swapped(const ContactHistory<double>&);
 ContactNow contactNow(const Dynamics&, const ContactList&, int lane);
 ContactNow contactNow(const Dynamics&, const BondList&, int lane);
-double normalForceNow(const Dynamics&, const Contact&); // elastic and viscous, positive when repulsive [N]
-double normalForceNow(const Dynamics&, const Bond&);    // elastic [N]
+double normalForceNow(const Dynamics&, const ContactList&, int lane); // elastic and viscous, positive when repulsive [N]
+double normalForceNow(const Dynamics&, const BondList&, int lane);    // elastic [N]
 
+template <class Lists, class Visit> void eachLaneOf(const Dynamics& dynamics, const Domain& domain, Lists Domain::*lists, Visit&& visit)
+{
+	for (int sort = 0; sort < 2; ++sort) { // a border contact where its first grain lives
+		const auto& list = (domain.*lists)[sort];
+		for (int lane = 0; lane < list.size(); ++lane)
+			if (list.alive(lane)) visit(list, lane, dynamics.given(list.first(lane)), dynamics.given(list.second(lane)));
+	}
+}
 template <class Lists, class Visit> void eachLane(const Dynamics& dynamics, Lists Domain::*lists, Visit&& visit)
 {
 	for (const auto& domain : dynamics.parts())
-		for (int sort = 0; sort < 2; ++sort) { // a border contact where its first grain lives
-			const auto& list = (*domain.*lists)[sort];
-			for (int lane = 0; lane < list.size(); ++lane)
-				if (list.alive(lane))
-					visit(list, lane, dynamics.given(list.first(lane)), dynamics.given(list.second(lane)));
-		}
+		eachLaneOf(dynamics, *domain, lists, visit);
 }
 // Of every contact (but bonds) once: visit(list, lane, its first and its second grain).
 template <class Visit> void eachContactLane(const Dynamics& dynamics, Visit&& visit) { eachLane(dynamics, &Domain::contacts, visit); }
 template <class Visit> void eachBondLane(const Dynamics& dynamics, Visit&& visit) { eachLane(dynamics, &Domain::bonds, visit); }
 
-// visit(Contact, its first and second grain, normal force now)
-template <class Visit> void eachContact(const Dynamics& dynamics, Visit&& visit)
-{
-	eachContactLane(dynamics, [&](const ContactList& list, int lane, int first, int second) {
-		const Contact c = dynamics.state().contactOf(list, lane);
-		visit(c, first, second, normalForceNow(dynamics, c));
-	});
-}
-// visit(Bond, likewise)
-template <class Visit> void eachBond(const Dynamics& dynamics, Visit&& visit)
-{
-	eachBondLane(dynamics, [&](const BondList& list, int lane, int first, int second) {
-		const Bond b = list.get(lane, dynamics.state().commonBond);
-		visit(b, first, second, normalForceNow(dynamics, b));
-	});
-}
+// Contacts and bonds of one domain: grains (first and second of each), normal forces [N], necks over the grains' radius (0: no bond).
+struct NormalForces {
+	std::vector<int> grains;
+	std::vector<double> forces, necks;
+};
+// The contacts of each domain, then the bonds of each; by all threads.
+std::vector<NormalForces> normalForces(const Dynamics&);
 
 int contactCount(const Dynamics&); // bonds among them
 int bondCount(const Dynamics&);

@@ -101,8 +101,11 @@ Diagnosis largestForce(const Dynamics& dynamics)
 		if (found.grain >= 0 && std::abs(force) <= std::abs(found.force)) return;
 		found = ofPair(dynamics, { i, j }, relativeOverlap(dynamics.state(), i, j, separationNow(dynamics, i, j)), force);
 	};
-	eachContact(dynamics, [&](const Contact& c, int, int, double force) { consider(c.i, c.j, force); });
-	eachBond(dynamics, [&](const Bond& b, int, int, double force) { consider(b.i, b.j, force); });
+	const auto look = [&](const auto& list, int lane, int, int) {
+		consider(list.first(lane), list.second(lane), normalForceNow(dynamics, list, lane));
+	};
+	eachContactLane(dynamics, look);
+	eachBondLane(dynamics, look);
 	return found;
 }
 

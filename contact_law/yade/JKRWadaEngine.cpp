@@ -353,24 +353,20 @@ void JKRWadaEngine::preSave(JKRWadaEngine&)
 	savedForces = SceneForces::permanent(*scene);
 }
 
-bool JKRWadaEngine::addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<double>& necks) const
+bool JKRWadaEngine::hasStarted() const
 {
 	requireOwnScene();
-	if (!current) return false;
-	current->grains.requireThere(*Omega::instance().getScene());
-	const auto add = [&](int first, int second, double normalForce, double neckOfBond) {
-		pairs.push_back(first);
-		pairs.push_back(second);
-		normalForces.push_back(normalForce);
-		necks.push_back(neckOfBond);
-	};
-	eachContact(
-	        current->dynamics, [&](const contact_law::Contact&, int first, int second, double force) { add(first, second, force, 0); });
-	eachBond(current->dynamics, [&](const contact_law::Bond& bond, int first, int second, double force) {
-		add(first, second, force, bond.constants.neck);
-	});
-	return true;
+	return bool(current);
 }
+
+std::size_t JKRWadaEngine::bodyCount() const { return current->grains.size(); }
+
+void JKRWadaEngine::readBodies(const SceneGrains::Columns& to) const
+{
+	current->grains.readNow(*Omega::instance().getScene(), current->dynamics.threadCount(), to);
+}
+
+std::vector<contact_law::NormalForces> JKRWadaEngine::normalForces() const { return contact_law::normalForces(current->dynamics); }
 
 boost::python::dict JKRWadaEngine::statistics() const
 {

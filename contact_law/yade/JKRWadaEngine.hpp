@@ -1,9 +1,10 @@
 // The fused engine: neighbour search, contact law and leapfrog of JKR-Wada grains in arrays of its own.
 #pragma once
-#include "../engine/dynamics.hpp"
+#include "../engine/contacts.hpp"
 #include "EnergyChannels.hpp"
 #include "EngineSettings.hpp"
 #include "SceneCell.hpp"
+#include "SceneGrains.hpp"
 #include <core/GlobalEngine.hpp>
 #include <boost/python.hpp>
 #include <memory>
@@ -50,8 +51,11 @@ public:
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
-	// Adds this engine's contacts to a snapshot (JKRWadaSnapshot), by the ids of their bodies; false before the first step.
-	bool addContacts(std::vector<int>& pairs, std::vector<double>& normalForces, std::vector<double>& necks) const;
+	// For JKRWadaSnapshot, from the first step on: the bodies as they are now, and the contacts by the ids of their bodies.
+	bool hasStarted() const;
+	std::size_t bodyCount() const;
+	void readBodies(const SceneGrains::Columns&) const;
+	std::vector<contact_law::NormalForces> normalForces() const;
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
 	// clang-format off

@@ -7,23 +7,36 @@
 #include <core/Omega.hpp>
 #include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
+#include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace yade {
 
 YADE_PLUGIN((JKRWadaSnapshot));
 
+using contact_law::NormalForces;
+
 namespace {
+	// Numbers that Python reads and may change.
+	template <class T> struct Column {
+		boost::python::object bytes;
+		explicit Column(std::size_t size)
+		        : bytes(boost::python::handle<>(PyByteArray_FromStringAndSize(nullptr, Py_ssize_t(size * sizeof(T)))))
+		{
+		}
+		explicit Column(const std::vector<T>& values)
+		        : Column(values.size())
+		{
+			std::copy(values.begin(), values.end(), data());
+		}
+		T* data() { return reinterpret_cast<T*>(PyByteArray_AS_STRING(bytes.ptr())); }
+	};
+
 	struct Grains {
 		std::vector<double> position, velocity, angularVelocity, radius;
 		std::vector<int> ids, rowOf; // rowOf: by body id, -1 where the body is no sphere
 	};
-
-	template <class T> boost::python::object bytes(const std::vector<T>& values)
-	{
-		return boost::python::object(boost::python::handle<>(
-		        PyBytes_FromStringAndSize(reinterpret_cast<const char*>(values.data()), Py_ssize_t(values.size() * sizeof(T)))));
-	}
 
 	void append(std::vector<double>& to, const Vector3r& v)
 	{
@@ -80,6 +93,65 @@ namespace {
 		}
 		return grains;
 	}
+
+	void put(boost::python::dict& result, const Grains& grains)
+	{
+		result["ids"] = Column(grains.ids).bytes;
+		result["position"] = Column(grains.position).bytes;
+		result["velocity"] = Column(grains.velocity).bytes;
+		result["angular_velocity"] = Column(grains.angularVelocity).bytes;
+		result["radius"] = Column(grains.radius).bytes;
+	}
+
+	// Its bodies are spheres, and there is one of every id.
+	void putBodies(boost::python::dict& result, const JKRWadaEngine& fused)
+	{
+		const std::size_t count = fused.bodyCount();
+		Column<int> ids(count);
+		Column<double> position(3 * count), velocity(3 * count), angularVelocity(3 * count), radius(count);
+		std::iota(ids.data(), ids.data() + count, 0);
+		fused.readBodies({ position.data(), velocity.data(), angularVelocity.data(), radius.data() });
+		result["ids"] = ids.bytes;
+		result["position"] = position.bytes;
+		result["velocity"] = velocity.bytes;
+		result["angular_velocity"] = angularVelocity.bytes;
+		result["radius"] = radius.bytes;
+	}
+
+	template <class T> boost::python::object joined(const std::vector<NormalForces>& parts, std::vector<T> NormalForces::*member)
+	{
+		std::size_t size = 0;
+		for (const NormalForces& part : parts)
+			size += (part.*member).size();
+		Column<T> all(size);
+		T* to = all.data();
+		for (const NormalForces& part : parts)
+			to = std::copy((part.*member).begin(), (part.*member).end(), to);
+		return all.bytes;
+	}
+
+	void putContacts(boost::python::dict& result, const std::vector<NormalForces>& parts)
+	{
+		result["contact_pairs"] = joined(parts, &NormalForces::grains);
+		result["contact_normal_force"] = joined(parts, &NormalForces::forces);
+		result["contact_neck"] = joined(parts, &NormalForces::necks);
+	}
+
+	NormalForces normalForces(const Scene& scene, const Grains& grains)
+	{
+		NormalForces found;
+		for (const auto& interaction : *scene.interactions) {
+			if (!interaction->isReal()) continue;
+			const auto* phys = dynamic_cast<const JKRWadaPhys*>(interaction->phys.get());
+			const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
+			if (!phys || !geometry || !phys->touching) continue;
+			found.grains.push_back(grains.rowOf[interaction->getId1()]);
+			found.grains.push_back(grains.rowOf[interaction->getId2()]);
+			found.forces.push_back(phys->normalForce.dot(geometry->normal));
+			found.necks.push_back(phys->bonded ? phys->bond->neck : 0);
+		}
+		return found;
+	}
 }
 
 boost::python::dict JKRWadaSnapshot::read() const
@@ -88,38 +160,22 @@ boost::python::dict JKRWadaSnapshot::read() const
 	Scene& scene = *Omega::instance().getScene();
 	const auto* fused = fusedEngine(scene);
 	const auto rest = fused ? fused->atRest("contact_law.snapshot()") : std::unique_lock<std::mutex>();
-	const Grains grains = readGrains(scene, fused);
-	std::vector<int> pairs;
-	std::vector<double> normalForce;
-	std::vector<double> necks;
-	const bool fromEngine = fused && fused->addContacts(pairs, normalForce, necks);
-	for (const auto& interaction : *scene.interactions) {
-		if (fromEngine) break;
-		if (!interaction->isReal()) continue;
-		const auto* phys = dynamic_cast<const JKRWadaPhys*>(interaction->phys.get());
-		const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
-		if (!phys || !geometry || !phys->touching) continue;
-		pairs.push_back(grains.rowOf[interaction->getId1()]);
-		pairs.push_back(grains.rowOf[interaction->getId2()]);
-		normalForce.push_back(phys->normalForce.dot(geometry->normal));
-		necks.push_back(phys->bonded ? phys->bond->neck : 0);
-	}
 	boost::python::dict result;
-	result["time"] =
-	        fromEngine && fused->inStep() ? scene.time + scene.dt : scene.time; // within a step the engine is at its end already
-	result["ids"] = bytes(grains.ids);
-	result["position"] = bytes(grains.position);
-	result["velocity"] = bytes(grains.velocity);
-	result["angular_velocity"] = bytes(grains.angularVelocity);
-	result["radius"] = bytes(grains.radius);
+	result["time"] = scene.time;
+	if (fused && fused->hasStarted()) {
+		if (fused->inStep()) result["time"] = scene.time + scene.dt; // within a step the engine is at its end already
+		putBodies(result, *fused);
+		putContacts(result, fused->normalForces());
+	} else {
+		const Grains grains = readGrains(scene, fused);
+		put(result, grains);
+		putContacts(result, { normalForces(scene, grains) });
+	}
 	if (scene.isPeriodic) {
 		std::vector<double> size;
 		append(size, scene.cell->hSize.diagonal());
-		result["cell_size"] = bytes(size);
+		result["cell_size"] = Column(size).bytes;
 	}
-	result["contact_pairs"] = bytes(pairs);
-	result["contact_normal_force"] = bytes(normalForce);
-	result["contact_neck"] = bytes(necks);
 	return result;
 }
 

@@ -14,7 +14,7 @@ public:
 		,
 		,
 		.def("read", &JKRWadaSnapshot::read,
-			"Dict of bytes objects (double or 32-bit int, in the order of body ids) and the time [s]. Call it from a PyRunner that stands last among the engines.")
+			"Dict of bytearrays (double or 32-bit int, in the order of body ids) and the time [s]. Call it from a PyRunner that stands last among the engines.")
 	);
 	// clang-format on
 };

@@ -145,6 +145,24 @@ void SceneGrains::requireThere(const Scene& scene) const
 	}
 }
 
+void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) const
+{
+	requireThere(scene);
+	const bool theirOwn = forAll(size(), threads, [&](std::size_t k) {
+		const Kept& kept = bodies[k];
+		const State& state = *kept.state;
+		for (int i = 0; i < 3; ++i) {
+			to.position[3 * k + i] = state.pos[i];
+			to.velocity[3 * k + i] = state.vel[i];
+			to.angularVelocity[3 * k + i] = state.angVel[i];
+		}
+		to.radius[k] = kept.sphere->radius;
+		return kept.body->state == kept.state && kept.body->shape == kept.sphere;
+	});
+	for (std::size_t k = 0; k < size() && !theirOwn; ++k)
+		if (!sameBody(k)) refuseChange(k);
+}
+
 bool SceneGrains::sameBody(std::size_t k) const
 {
 	const Kept& kept = bodies[k];

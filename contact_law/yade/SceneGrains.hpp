@@ -28,6 +28,11 @@ public:
 
 	// Throws std::runtime_error when the scene has not the bodies any more that it had.
 	void requireThere(const Scene&) const;
+	// What the bodies are now, with what a script has changed, row by row: vectors (size(), 3), radii (size()). Throws likewise.
+	struct Columns {
+		double *position, *velocity, *angularVelocity, *radius;
+	};
+	void readNow(const Scene&, int threads, const Columns&) const;
 	/* Calls changed(index, motion) for bodies that a script has moved, pushed or blocked since they were written.
 	 * Throws std::runtime_error for a change that the engine cannot follow: of bodies, their radius, mass, inertia, material, shape or mask; of materials. */
 	template <class Changed> void eachChange(const Scene&, bool orientations, int threads, Changed&& changed) const;

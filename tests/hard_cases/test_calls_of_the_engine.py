@@ -109,6 +109,31 @@ for case in parameters["cases"]:
     assert not any(message for case, message in found.items() if case.startswith("at rest")), found
 
 
+def test_a_snapshot_has_what_a_script_has_changed(yade):
+    """Bodies as they are now, in arrays of the caller's own; a body that was given another state is refused."""
+    found = yade(
+        SCENE
+        + """
+chain()
+for _ in range(20): O.step()
+O.bodies[1].state.vel = Vector3(1, 2, 3)
+O.bodies[2].state.pos += Vector3(0, 0, 1e-9)
+shot = contact_law.snapshot()
+result["velocity"] = shot["velocity"][1].tolist()
+result["here"] = [row == list(b.state.pos) for row, b in zip(shot["position"].tolist(), O.bodies)]
+result["ids"] = shot["ids"].tolist() == [b.id for b in O.bodies]
+shot["position"] += 1.0
+shot["contact_normal_force"][:] = 0
+again = contact_law.snapshot()
+result["own"] = bool((again["position"] < 1e-3).all()) and bool(again["contact_normal_force"].any())
+O.bodies[2].state = State()
+result["said"] = said(lambda: contact_law.snapshot())
+"""
+    )
+    assert found["velocity"] == [1, 2, 3] and all(found["here"]) and found["ids"] and found["own"]
+    assert "body 2 was given another state after the start" in found["said"]
+
+
 def test_a_pyrunner_may_call_the_engine_while_the_loop_runs(yade):
     found = yade(
         SCENE
