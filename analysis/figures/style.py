@@ -44,7 +44,7 @@ def run_title(run, addition=None):
     p = run.parameters
     known = [
         ("filling", "filling {}"),
-        ("radius", "aggregate radius {} $r_p$"),
+        ("radius", "aggregate radius {} $r$"),
         ("grains", "{} grains per aggregate"),
         ("velocity", "{} m/s"),
         ("impact", "impact {}"),

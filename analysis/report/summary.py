@@ -10,7 +10,7 @@ from ..runs.format import CHANNELS, COLLISION, COMPRESSION, LABELS
 _PARAMETERS = (
     ("packing", ""),
     ("filling", ""),
-    ("radius", "r_p"),
+    ("radius", "r"),
     ("grains", "per aggregate"),
     ("velocity", "m/s"),
     ("impact", ""),

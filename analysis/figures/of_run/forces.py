@@ -107,4 +107,4 @@ def _legend(figure, run):
     strip = 0.35 / figure.get_figheight()
     figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
     figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False)
-    figure.suptitle(run_title(run, f"slab $|z|$ $\\leq$ {_HALF_SLAB:g} $r_p$"), fontsize=10, color="0.3")
+    figure.suptitle(run_title(run, f"slab $|z|$ $\\leq$ {_HALF_SLAB:g} $r$"), fontsize=10, color="0.3")

@@ -47,7 +47,7 @@ def _mark(axes, maximum, grain_radius, d):
     bound = "" if maximum.inside else " (largest so far)"
     late = maximum.time * NANO > 0.6 * axes.dataLim.x1
     axes.annotate(
-        f"$d_{{max}}$ = {top:.3f} $r_p$ at {maximum.time * NANO:.1f} ns{bound}",
+        f"$d_{{max}}$ = {top:.3f} $r$ at {maximum.time * NANO:.1f} ns{bound}",
         (maximum.time * NANO, top),
         xytext=(-6 if late else 6, 9),
         textcoords="offset points",
