@@ -17,6 +17,7 @@ from analysis.statistics import pooled_scatter
 from analysis.studies.collision_points import at_maximum
 from analysis.studies.elastoplastic import paper, prediction
 from analysis.studies.elastoplastic.energy_by_size import energy_size_section
+from analysis.studies.elastoplastic.figures.motion import shown_rows
 from analysis.studies.elastoplastic.figures.zone import zone_figure
 from analysis.studies.elastoplastic.joint_fit import JointSearch, joint_fit
 from analysis.studies.elastoplastic.measure import COLUMNS
@@ -235,3 +236,13 @@ def test_committed_predictions_follow_from_the_committed_runs(chosen):
         expected = prediction.predict(model, chosen.radius, getattr(row, chosen.covariate))
         for name, value in expected.items():
             assert getattr(row, name) == pytest.approx(value, rel=1e-5)
+
+
+def test_motion_is_shown_of_runs_whose_folders_are_at_hand():
+    """Among rows of a table, runs of a smaller size that can be drawn are shown; of a table alone, the largest size."""
+    table, _ = read_table(GALLERY / "runs.csv", COLUMNS)
+    assert {round(row.radius / row.grain_radius) for row in shown_rows(make_results(table))} == {80}
+    mixed = table.copy()
+    mixed.loc[(table.radius == 6e-6) & (table.seed < 3), "folder"] = "somewhere"
+    rows = shown_rows(make_results(mixed))
+    assert {row.folder for row in rows} == {"somewhere"} and {row.seed for row in rows} == {1, 2}

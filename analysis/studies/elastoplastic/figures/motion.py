@@ -21,10 +21,13 @@ _SNAPSHOT_TIMES = tuple(k * 100e-9 for k in range(6))  # s, A24 Fig. 3
 
 def shown_rows(results):
     """Rows (namedtuples of the table) of the point whose motion is shown: of the main filling, at the velocity of its size
-    fit, the largest size that has three seeds (or as many as any has)."""
+    fit, the largest size that has three seeds (or as many as any has). Of these, where there are any, the runs whose folders
+    are at hand."""
     filling = main_filling(results)
     velocity = results.by_filling[filling].size_fit.velocity
     runs = results.runs(filling, velocity=velocity)
+    if runs.folder.notna().any():
+        runs = runs[runs.folder.notna()]
     seeds = runs.radius.value_counts()
     radius = max(seeds[seeds >= min(_ENOUGH, seeds.max())].index)
     return list(runs[runs.radius == radius].sort_values("seed").itertuples())
