@@ -60,9 +60,7 @@ double normalForceNow(const Dynamics& dynamics, const ContactList& list, int lan
 {
 	const Setting& setting = dynamics.state();
 	const int i = list.first(lane), j = list.second(lane);
-	PairConstants<double> unlike;
-	if (!setting.uniform) unlike = setting.constantsOf(i, j);
-	const PairConstants<double>& c = setting.uniform ? setting.common : unlike;
+	const PairConstants<double> c = setting.constantsOf(i, j);
 	Vec3<double> separation = separationOf(setting.grains[i], setting.grains[j]);
 	nearestImage(dynamics.cell(), separation);
 	ContactForces<double> f {};

@@ -94,28 +94,33 @@ namespace {
 		return grains;
 	}
 
-	void put(boost::python::dict& result, const Grains& grains)
+	struct GrainColumns {
+		Column<int> ids;
+		Column<double> position, velocity, angularVelocity, radius;
+	};
+	GrainColumns columnsOf(const Grains& grains)
 	{
-		result["ids"] = Column(grains.ids).bytes;
-		result["position"] = Column(grains.position).bytes;
-		result["velocity"] = Column(grains.velocity).bytes;
-		result["angular_velocity"] = Column(grains.angularVelocity).bytes;
-		result["radius"] = Column(grains.radius).bytes;
+		return { Column(grains.ids), Column(grains.position), Column(grains.velocity), Column(grains.angularVelocity),
+			Column(grains.radius) };
 	}
-
 	// Its bodies are spheres, and there is one of every id.
-	void putBodies(boost::python::dict& result, const JKRWadaEngine& fused)
+	GrainColumns columnsOf(const JKRWadaEngine& fused)
 	{
 		const std::size_t count = fused.bodyCount();
-		Column<int> ids(count);
-		Column<double> position(3 * count), velocity(3 * count), angularVelocity(3 * count), radius(count);
-		std::iota(ids.data(), ids.data() + count, 0);
-		fused.readBodies({ position.data(), velocity.data(), angularVelocity.data(), radius.data() });
-		result["ids"] = ids.bytes;
-		result["position"] = position.bytes;
-		result["velocity"] = velocity.bytes;
-		result["angular_velocity"] = angularVelocity.bytes;
-		result["radius"] = radius.bytes;
+		GrainColumns all { Column<int>(count), Column<double>(3 * count), Column<double>(3 * count), Column<double>(3 * count),
+			Column<double>(count) };
+		std::iota(all.ids.data(), all.ids.data() + count, 0);
+		fused.readBodies({ all.position.data(), all.velocity.data(), all.angularVelocity.data(), all.radius.data() });
+		return all;
+	}
+
+	void putGrains(boost::python::dict& result, const GrainColumns& all)
+	{
+		result["ids"] = all.ids.bytes;
+		result["position"] = all.position.bytes;
+		result["velocity"] = all.velocity.bytes;
+		result["angular_velocity"] = all.angularVelocity.bytes;
+		result["radius"] = all.radius.bytes;
 	}
 
 	template <class T> boost::python::object joined(const std::vector<NormalForces>& parts, std::vector<T> NormalForces::*member)
@@ -164,11 +169,11 @@ boost::python::dict JKRWadaSnapshot::read() const
 	result["time"] = scene.time;
 	if (fused && fused->hasStarted()) {
 		if (fused->inStep()) result["time"] = scene.time + scene.dt; // within a step the engine is at its end already
-		putBodies(result, *fused);
+		putGrains(result, columnsOf(*fused));
 		putContacts(result, fused->normalForces());
 	} else {
 		const Grains grains = readGrains(scene, fused);
-		put(result, grains);
+		putGrains(result, columnsOf(grains));
 		putContacts(result, { normalForces(scene, grains) });
 	}
 	if (scene.isPeriodic) {

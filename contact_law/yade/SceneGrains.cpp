@@ -8,7 +8,7 @@ using contact_law::GrainInput;
 using contact_law::GrainMotion;
 
 namespace {
-	void copy(const Vector3r& from, double (&to)[3])
+	void copy(const Vector3r& from, double* to)
 	{
 		for (int k = 0; k < 3; ++k)
 			to[k] = from[k];
@@ -147,19 +147,22 @@ void SceneGrains::requireThere(const Scene& scene) const
 
 void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) const
 {
-	requireThere(scene);
-	const bool theirOwn = forAll(size(), threads, [&](std::size_t k) {
+	const auto read = [&](std::size_t k) {
 		const Kept& kept = bodies[k];
-		const State& state = *kept.state;
-		for (int i = 0; i < 3; ++i) {
-			to.position[3 * k + i] = state.pos[i];
-			to.velocity[3 * k + i] = state.vel[i];
-			to.angularVelocity[3 * k + i] = state.angVel[i];
-		}
+		copy(kept.state->pos, to.position + 3 * k);
+		copy(kept.state->vel, to.velocity + 3 * k);
+		copy(kept.state->angVel, to.angularVelocity + 3 * k);
 		to.radius[k] = kept.sphere->radius;
-		return kept.body->state == kept.state && kept.body->shape == kept.sphere;
-	});
-	for (std::size_t k = 0; k < size() && !theirOwn; ++k)
+		return isThere(scene, k) && kept.body->state == kept.state && kept.body->shape == kept.sphere;
+	};
+	if (scene.bodies->size() == size() && forAll(size(), threads, read)) return;
+	requireSame(scene);
+}
+
+void SceneGrains::requireSame(const Scene& scene) const
+{
+	requireThere(scene);
+	for (std::size_t k = 0; k < size(); ++k)
 		if (!sameBody(k)) refuseChange(k);
 }
 

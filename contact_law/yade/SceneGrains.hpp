@@ -59,6 +59,7 @@ private:
 	std::string firstBodyOf(int kind) const;
 	bool isThere(const Scene& scene, std::size_t k) const { return (*scene.bodies)[k] == bodies[k].body; }
 	bool sameBody(std::size_t k) const;
+	void requireSame(const Scene&) const;
 	[[noreturn]] void refuseChange(std::size_t k) const;
 	void requireSameMaterials() const;
 
@@ -87,9 +88,7 @@ template <class Changed> void SceneGrains::eachChange(const Scene& scene, bool o
 	const auto moved = [&](std::size_t k) { return !sameMotion(*bodies[k].state, written[k], orientations); };
 	const auto untouched = [&](std::size_t k) { return isThere(scene, k) && sameBody(k) && !moved(k); };
 	if (scene.bodies->size() == size() && forAll(size(), threads, untouched)) return;
-	requireThere(scene);
-	for (std::size_t k = 0; k < size(); ++k)
-		if (!sameBody(k)) refuseChange(k);
+	requireSame(scene);
 	for (std::size_t k = 0; k < size(); ++k)
 		if (moved(k)) changed(k, motionOf(*bodies[k].state));
 }

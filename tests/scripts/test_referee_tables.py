@@ -41,9 +41,8 @@ def test_predicted_pairs_are_in_no_other_table():
         for seed in each.seeds
     }
     assert new == predicted and len(new) == 50
-    paper = (
-        "elastoplastic-full.table"  # all that A24 ran, pairs that are predicted here among them; it has not been run
-    )
+    # all that A24 ran, pairs that are predicted here among them; it has not been run
+    paper = "elastoplastic-full.table"
     others = {n for n in os.listdir(STUDIES) if n.endswith(".table")} - {"elastoplastic-prediction.table", paper}
     for name in others:
         assert not new & {tuple(row.get(k) for k in key) for row in rows(name)}

@@ -26,9 +26,8 @@ DURATION = "24.4e-6"  # s
 # of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by up to 0.05 K(0).
 FAST, DURATION_FAST = 10.0, "12.2e-6"  # m/s, s
 STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates,
-STEP_COMPACTED = {
-    0.2: 0.09
-}  # t0, by beta: packings of files are taken for close-packed ones, in which they are to 0.0996
+# t0, by beta: packings of files are taken for close-packed ones, in which they are to 0.0996
+STEP_COMPACTED = {0.2: 0.09}
 STATES = 9  # Fig. 7 shows 0, 2,500, 5,000, 10,000 and 20,000 periods, Fig. 9 also 625 and 1,250
 ROOT = "10**0.5"  # m/s, the paper's 3.2
 

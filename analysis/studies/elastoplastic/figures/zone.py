@@ -1,7 +1,6 @@
 """d_max against the filling of the two zones that meet: how much of the scatter the packings explain, and what they predict."""
 
 import numpy as np
-import pandas
 
 from ....figures.style import styled
 from ...definition import StudyFigure
@@ -50,13 +49,13 @@ def zone_figure(results):
 
 
 def _draw_predictions(axes, filling, results):
-    chosen = [each for each in prediction.SETS if each.covariate == "zone_filling"]
-    rows = [prediction.read(each.path) for each in chosen]
-    for each in filling.adjusted:
-        own = [r for c, r in zip(chosen, rows) if r is not None and c.radius == each.radius]
-        if own:
-            own = pandas.concat(own)
-            own = own[own.filling.round(6) == filling.factor]
+    by_radius = {each.radius: each for each in filling.adjusted}
+    for chosen in prediction.SETS:
+        rows = prediction.read(chosen.path)
+        if chosen.covariate != "zone_filling" or chosen.radius not in by_radius or rows is None:
+            continue
+        each, own = by_radius[chosen.radius], rows[rows.filling.round(6) == filling.factor]
+        if len(own):
             x = each.radius * (own.zone_filling - 1.0 - each.zone)
             y, error = own.d_max / results.grain_radius - each.mean, own.d_max_error / results.grain_radius
             options = {"fmt": "s", "markerfacecolor": "none", "color": PAPER, "elinewidth": 0.7, "markersize": 5}
