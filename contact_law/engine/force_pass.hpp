@@ -175,7 +175,7 @@ template <class Pack> struct Passes {
 		ContactForces<Pack> f = ContactForces<Pack>::none();
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
-		unsigned events = buffer.events >> at & allLanes, slips = bitsOf(beyondLimits<mechanisms>(c, f, h.twist)) & ~events;
+		unsigned events = buffer.events >> at & allLanes, slips = bitsOf(beyondLimits<mechanisms>(c, f, h)) & ~events;
 		if (__builtin_expect((events | slips) != 0, 0)) {
 			keep(old, before, at);
 			if (pass.cut) {

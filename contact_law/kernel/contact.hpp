@@ -74,13 +74,20 @@ template <class T> struct Displacements {
 	T twist;
 };
 
+/* Grains that slide with resistance and roll without: their pointers are freed of the rolling displacement whenever it is beyond the limit
+ * of resisted rolling, which takes no force. Pointers that have rolled far from the contact would no longer tell how far grains slid. */
+constexpr bool rollsFreely(unsigned mechanisms) { return mechanisms & Sliding && !(mechanisms & Rolling); }
+
 // Whether a displacement is beyond its limit; f: the forces at this instant.
-template <unsigned mechanisms, class T> inline MaskOf<T> beyondLimits(const PairConstants<T>& c, const ContactForces<T>& f, const T& twist)
+template <unsigned mechanisms, class T>
+inline MaskOf<T> beyondLimits(const PairConstants<T>& c, const ContactForces<T>& f, const ContactHistory<T>& h)
 {
 	MaskOf<T> beyond = T(1.) < T(0.);
-	if constexpr (bool(mechanisms & Twisting)) beyond = beyond | twisting::beyondLimit(c, twist);
+	if constexpr (bool(mechanisms & Twisting)) beyond = beyond | twisting::beyondLimit(c, h.twist);
 	if constexpr (bool(mechanisms & Sliding)) beyond = beyond | sliding::beyondLimit(c, f.slidingDisplacement);
 	if constexpr (bool(mechanisms & Rolling)) beyond = beyond | rolling::beyondLimit(c, f.rollingDisplacement);
+	if constexpr (rollsFreely(mechanisms))
+		beyond = beyond | rolling::beyondLimit(c, rolling::displacement(h.pointers, c.reducedRadius));
 	return beyond;
 }
 
@@ -107,12 +114,12 @@ inline MaskOf<T> returnToLimits(const PairConstants<T>& c, const Vec3<T>& normal
 		slid = sliding::beyondLimit(c, zeta);
 		if (anyOf(slid)) p = choose<T>(slid, sliding::returned(p, c.radius1, c.radius2, zeta, c.criticalSliding), p);
 	}
-	if constexpr (bool(mechanisms & Rolling)) {
+	if constexpr (bool(mechanisms & (Sliding | Rolling))) {
 		rolled = rolling::beyondLimit(c, xi);
+		const T limit = rollsFreely(mechanisms) ? none : c.criticalRolling;
 		if (anyOf(rolled))
-			p = choose<T>(rolled,
-			        rolling::returned(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), c.criticalRolling),
-			        p);
+			p = choose<T>(
+			        rolled, rolling::returned(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit), p);
 	}
 	const MaskOf<T> pointersMoved = slid | rolled;
 	if (!anyOf(pointersMoved)) return pointersMoved;
@@ -121,6 +128,7 @@ inline MaskOf<T> returnToLimits(const PairConstants<T>& c, const Vec3<T>& normal
 	if constexpr (bool(mechanisms & Sliding)) bySliding = sliding::dissipation(c, normal, before.sliding, zeta, p, moved, t);
 	if constexpr (bool(mechanisms & Rolling)) byRolling = rolling::dissipation(c, before.rolling, xi, p, moved, t);
 	const T both = bySliding + byRolling;
+	if constexpr (rollsFreely(mechanisms)) rolled = none < none;
 	lost.sliding = lost.sliding + choose(counted, choose(rolled, choose(slid, bySliding, none), both), none);
 	lost.rolling = lost.rolling + choose(counted, choose(rolled, choose(slid, byRolling, both), none), none);
 	return pointersMoved;

@@ -165,13 +165,15 @@ namespace cut {
 		InStep<SlidingSpring> slide(s, before.sliding, p);
 		InStep<RollingSpring> roll(s, before.rolling, p);
 		const bool slides = mechanisms & Sliding && slide.beyondLimit(), rolls = mechanisms & Rolling && roll.beyondLimit();
-		if (!slides && !rolls) return;
+		const bool freed = rollsFreely(mechanisms) && roll.beyondLimit();
+		if (!slides && !rolls && !freed) return;
 		if (slides) slide.cutIn(p);
 		if (rolls) roll.cutIn(p);
+		if (freed) p = RollingSpring::displaced(s, p, -RollingSpring::displacement(s, p));
 		result.pointersMoved = true;
 		const double bySliding = mechanisms & Sliding ? slide.book(p, result.added) : 0;
 		const double byRolling = mechanisms & Rolling ? roll.book(p, result.added) : 0;
-		lost.sliding += slides ? rolls ? bySliding : bySliding + byRolling : 0;
+		lost.sliding += slides || freed ? rolls ? bySliding : bySliding + byRolling : 0;
 		lost.rolling += rolls ? slides ? byRolling : bySliding + byRolling : 0;
 	}
 
