@@ -48,8 +48,8 @@ def outcome_figure(results):
         velocity_axis(row[0], [b.velocity for b in own])
         row[1].set_xlabel("aggregate radius  [grain radii]")
         row[1].set_xticks(sorted({b.radius for b in results.bounces}))
-    for place in (*axes[0], axes[1, 0]):
-        legend(place, fontsize=8, loc="best")
+    for place, corner in zip((*axes[0], axes[1, 0]), ("lower right", "lower center", "center")):
+        legend(place, fontsize=8, loc=corner)
     _name_panels(axes, results, filling)
     return figure
 
