@@ -107,6 +107,14 @@ def test_it_ends_at_a_pressure(tmp_path):
     assert about["parameters"]["finalFilling"] == pytest.approx(0.65, abs=0.005)
 
 
+def test_a_cell_that_is_looser_than_stretching_would_leave_it(tmp_path):
+    done = compress(tmp_path, *SMALL, "finalPressure=2e3", "stretch=x", "stretchFilling=0.4", "out=run")
+    last = read_arrays(tmp_path, "run", "history.npz")["filling"][-1]
+    said = f"compress.py: stretchFilling = 0.4: the pressure was reached at a filling of {last:.3g}; the cell is not stretched"
+    assert done.returncode == 0 and messages(done) == [said]
+    assert last < 0.4 and read_json(tmp_path, "run", "run.json")["outcome"] == "completed"
+
+
 @pytest.mark.parametrize("axes, grows", [("x", (True, False, False)), ("xyz", (True, True, True))])
 def test_stretching(tmp_path, axes, grows):
     """The same cell afterwards: to 0.3 of the largest filling, under tension, with a ledger that closes."""

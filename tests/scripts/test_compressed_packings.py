@@ -68,3 +68,12 @@ def test_a_cell_that_is_not_there_and_one_of_another_filling(made_cell, monkeypa
     monkeypatch.setattr(compressed, "TOLERANCE", 1e-9)
     with pytest.raises(PackingError, match="no sphere of that filling in 3 places; must be another cell"):
         compressed.cut_pair(0.4, 3)
+
+
+def test_the_script_says_what_it_does(capsys):
+    compressed.main(["--help"])
+    assert "compressed.py cut" in capsys.readouterr().out
+    with pytest.raises(SystemExit) as ended:
+        compressed.main(["cuts"])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err == "compressed.py: must be called with cut or tables; --help says more\n"

@@ -1,6 +1,7 @@
 """Static compression of a BCCA cluster in a shrinking periodic cell, and its loosening: parameters, scene, series,
 estimate (K13 section 2)."""
 
+import sys
 from dataclasses import dataclass
 from math import log, pi
 
@@ -64,7 +65,8 @@ class CompressionParameters(GrainParameters, RunParameters):
     stretchFilling: float | None = parameter(
         None,
         Check("> 0 and below finalFilling", lambda x: x > 0),
-        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins)",
+        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins); at finalPressure the cell "
+        "may be looser already: then it is not stretched",
         "1",
     )
     states: int = parameter(
@@ -289,6 +291,12 @@ class Ending:
             return False
         axes = AXES[self.parameters.stretch]
         if not axes:
+            return True
+        if self._loose is not None and filling <= self._loose:
+            sys.stderr.write(
+                f"compress.py: stretchFilling = {self._loose:g}: the pressure was reached at a filling of {filling:.3g}; "
+                "the cell is not stretched\n"
+            )
             return True
         _deform([self.rate * (axis in axes) for axis in range(3)])
         return False

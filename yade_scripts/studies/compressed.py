@@ -119,8 +119,11 @@ def main(arguments):
                 cut_pair(filling, seed)
         except PackingError as error:
             sys.exit(f"compressed.py: {error}")
+    elif "--help" in arguments:
+        print(__doc__)
     else:
-        sys.exit("compressed.py: must be called with cut or tables")
+        print("compressed.py: must be called with cut or tables; --help says more", file=sys.stderr)
+        sys.exit(2)
 
 
 if __name__ == "__main__":
