@@ -105,10 +105,11 @@ template <class Pack> struct Passes {
 	static void fetchGrains(const ForcePass& pass, int index)
 	{
 		if (index >= pass.endBlock) return;
-		for (const int j : pass.blocks[index].j) {
-			__builtin_prefetch(&pass.grains[j].x);
-			__builtin_prefetch(&pass.grains[j].wz);
-		}
+		for (const auto& grains : { pass.blocks[index].i, pass.blocks[index].j })
+			for (int lane = 0; lane < lanes; ++lane) {
+				__builtin_prefetch(&pass.grains[grains[lane]].x);
+				__builtin_prefetch(&pass.grains[grains[lane]].wz);
+			}
 	}
 	template <bool uniform> static void fetchBlock(const ForcePass& pass, int index)
 	{

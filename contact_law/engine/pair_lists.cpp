@@ -155,6 +155,8 @@ const std::vector<NeighbourPair>& PairLists::overlapping(const PeriodicCell& cel
 			const NeighbourPair& coming = due[k + ahead].group->pairs[due[k + ahead].index];
 			__builtin_prefetch(&s.grains[coming.own]);
 			__builtin_prefetch(&s.grains[coming.other]);
+			__builtin_prefetch(&s.radius[coming.own]);
+			__builtin_prefetch(&s.radius[coming.other]);
 		}
 		look(*due[k].group, due[k].index, cell);
 	}
@@ -173,29 +175,40 @@ void PairLists::fetchAhead(const Group* group) const
 	if (end - group > 2) __builtin_prefetch(group[2].soonestOf.data());
 }
 
+// Stretches of pairs first, whose steps come from memory meanwhile.
 void PairLists::findDue()
 {
-	due.clear();
+	dueStretches.clear();
 	for (Group& group : own()) {
 		fetchAhead(&group);
 		if (group.soonest > step) continue;
 		group.soonest = Group::never;
-		for (std::size_t part = 0; part < group.soonestOf.size(); ++part) {
-			int& soonest = group.soonestOf[part];
-			if (soonest <= step) {
-				soonest = Group::never;
-				const int first = int(part) * Group::stretch,
-				          last = std::min(first + Group::stretch, int(group.next.size()));
-				for (int k = first; k < last; ++k)
-					if (group.next[k] <= step) {
-						due.push_back({ &group, k });
-						__builtin_prefetch(&group.pairs[k]); // for overlapping()
-					} else
-						soonest = std::min(soonest, group.next[k]);
-			}
-			group.soonest = std::min(group.soonest, soonest);
-		}
+		for (int part = 0; part < int(group.soonestOf.size()); ++part)
+			if (group.soonestOf[part] <= step) {
+				dueStretches.push_back({ &group, part });
+				const int first = part * Group::stretch;
+				__builtin_prefetch(&group.next[first]);
+				__builtin_prefetch(&group.next[std::min(first + Group::stretch, int(group.next.size())) - 1]);
+			} else
+				group.soonest = std::min(group.soonest, group.soonestOf[part]);
 	}
+	due.clear();
+	for (const Due& stretch : dueStretches)
+		findDue(*stretch.group, stretch.index);
+}
+
+void PairLists::findDue(Group& group, int part)
+{
+	const int first = part * Group::stretch, last = std::min(first + Group::stretch, int(group.next.size()));
+	int soonest = Group::never;
+	for (int k = first; k < last; ++k)
+		if (group.next[k] <= step) {
+			due.push_back({ &group, k });
+			__builtin_prefetch(&group.pairs[k]); // for overlapping()
+		} else
+			soonest = std::min(soonest, group.next[k]);
+	group.soonestOf[part] = soonest;
+	group.soonest = std::min(group.soonest, soonest);
 }
 
 void PairLists::look(Group& group, int index, const PeriodicCell& cell)

@@ -58,6 +58,7 @@ private:
 	void gatherCandidates(const Group&, const PeriodicCell&);
 	int* nextOf(int i, int j);
 	void findDue();
+	void findDue(Group&, int part);
 	void fetchAhead(const Group*) const;
 	void look(Group&, int index, const PeriodicCell&);
 	int stepsUntilTouch(const Group&, double gap, double closing) const;
@@ -72,7 +73,7 @@ private:
 		Group* group;
 		int index; // of the pair
 	};
-	std::vector<Due> due; // pairs to look at now
+	std::vector<Due> due, dueStretches; // pairs to look at now, of stretches that have any
 	std::vector<int> foundNext, found;
 };
 
