@@ -200,32 +200,36 @@ void Dynamics::outdateLists()
 
 /* After a step's drift, before its forces. Groups' ranges since the latest check tell how far each group's grains may have come closer to others; for the steps to come
  * their kicks are bounded, and a kick beyond its bound brings the next check at once. */
-template <class Mine, class Wait>
-bool Dynamics::keepLists(ListAge& age, const VelocityRange& range, const Vec3<double>& growth, Mine&& mine, Wait&& wait)
+ListWork Dynamics::listWork(ListAge& age, const VelocityRange& range, const Vec3<double>& growth) const
 {
 	const Vec3<double> moved = Images<double>::times(mostCells, growth);
-	const double across = std::sqrt(dot(moved, moved)),
-	             approach = setting.dt * range.diagonal() + across; // an image moves with its cell
+	ListWork work;
+	work.across = std::sqrt(dot(moved, moved));
+	const double approach = setting.dt * range.diagonal() + work.across; // an image moves with its cell
 	age.sinceBoxes += approach;
 	++age.sinceCheck;
 	const bool early = std::any_of(domains.begin(), domains.end(), [](const auto& domain) { return domain->mustCheck(); });
-	if (!(age.outdated || early || age.sinceCheck >= age.checkAfter)) return false;
-	const int next = int(std::max(1., std::min(mostStepsToCheck, 0.2 * setting.farGap / approach)));
-	const double margin = boxMargin * setting.largestRadius;
-	if (age.outdated || age.sinceBoxes > 0.5 * margin) {
-		mine([](Domain& domain, int) { domain.lists.measureBoxes(); });
-		wait();
-		mine([&](Domain& domain, int d) {
-			if (d == 0) setMostCells();
-			domain.lists.findNearby(domain.cell, reach() + margin);
-		});
-		age.sinceBoxes = 0;
-	}
-	mine([&](Domain& domain, int) { domain.lists.check(domain.cell, age.sinceCheck, next, across, age.outdated); });
+	if (!(age.outdated || early || age.sinceCheck >= age.checkAfter)) return work;
+	work.check = true;
+	work.all = age.outdated;
+	work.steps = age.sinceCheck;
+	work.stepsToNext = int(std::max(1., std::min(mostStepsToCheck, 0.2 * setting.farGap / approach)));
+	work.boxes = age.outdated || age.sinceBoxes > 0.5 * boxMargin * setting.largestRadius;
+	if (work.boxes) age.sinceBoxes = 0;
 	age.sinceCheck = 0;
-	age.checkAfter = next;
+	age.checkAfter = work.stepsToNext;
 	age.outdated = false;
-	return true;
+	return work;
+}
+
+void Dynamics::keepLists(int d, const ListWork& work)
+{
+	Domain& domain = *domains[d];
+	if (work.boxes) {
+		if (d == 0) setMostCells();
+		domain.lists.findNearby(domain.cell, reach() + boxMargin * setting.largestRadius);
+	}
+	if (work.check) domain.lists.check(domain.cell, work.steps, work.stepsToNext, work.across, work.all);
 }
 
 Dynamics::Counters Dynamics::counters() const
@@ -272,30 +276,35 @@ void Dynamics::addForces()
 }
 
 // A run as one of its threads makes it; all threads take the same decisions from the same numbers. Returns the steps made.
-long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier& barrier)
+long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, Shares shares, Barrier& barrier)
 {
-	const auto mine = [&](auto&& what) {
-		for (std::size_t d = thread; d < domains.size(); d += threads)
-			what(*domains[d], int(d));
-	};
 	const Vec3<double> rate = (1 / setting.dt) * growth;
 	ListAge age = listAge;
 	if (std::sqrt(dot(mostCells, mostCells)) * std::sqrt(dot(rate - cell().rate, rate - cell().rate)) > setting.leastKick)
 		age.outdated = true;
 	const double fastest = fastestThatHolds();
-	mine([](Domain& domain, int) { domain.integrate(); });
+	shares.each([&](int d) { domains[d]->integrate(); });
 	for (long step = 1; step <= steps; ++step) {
 		barrier.wait();
 		const VelocityRange range = velocities();
 		if (range.fastestComponent() > fastest) return step - 1;
-		mine([&](Domain& domain, int) { domain.cell.advance(sizeAtEnd - double(steps - step) * growth, rate); });
-		const bool checked = keepLists(age, range, growth, mine, [&] { barrier.wait(); });
-		mine([](Domain& domain, int) { domain.addFirstForces(); });
+		const ListWork lists = listWork(age, range, growth);
+		if (lists.boxes) {
+			shares.each([&](int d) { domains[d]->lists.measureBoxes(); });
+			barrier.wait();
+		}
+		shares.each([&](int d) {
+			domains[d]->cell.advance(sizeAtEnd - double(steps - step) * growth, rate);
+			keepLists(d, lists);
+			domains[d]->addFirstForces();
+		});
 		barrier.wait();
-		if (checked) mine([](Domain& domain, int) { domain.lists.clearAfterCheck(); });
-		mine([=](Domain& domain, int) { domain.addOtherForces(step < steps); });
+		shares.each([&](int d) {
+			if (lists.check) domains[d]->lists.clearAfterCheck();
+			domains[d]->addOtherForces(step < steps);
+		});
 	}
-	if (thread == 0) listAge = age;
+	if (shares.thread == 0) listAge = age;
 	return steps;
 }
 
@@ -331,11 +340,12 @@ long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 	if (velocitiesSet) takeVelocities();
 	const int threads = threadCount();
 	Barrier barrier(threads);
+	std::vector<Share> all(domains.size());
 	long made = steps;
 	const Vec3<double> growth = (1. / double(steps)) * (to - cell().size);
 #pragma omp parallel num_threads(threads)
 	{
-		const long here = runThread(steps, growth, to, omp_get_thread_num(), threads, barrier);
+		const long here = runThread(steps, growth, to, Shares(all, omp_get_thread_num(), threads), barrier);
 		if (omp_get_thread_num() == 0) made = here;
 	}
 	contactUpdates += made * contactCount(*this);

@@ -4,6 +4,7 @@
 #pragma once
 #include "barrier.hpp"
 #include "domain.hpp"
+#include "shares.hpp"
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -34,6 +35,13 @@ struct ListAge {
 	int sinceCheck = 0;    // steps
 	int checkAfter = 1;    // steps, or fewer when kicks exceed their bounds
 	bool outdated = false; // grains have been moved otherwise than by steps since
+};
+
+// What a step does for them, the same in all domains.
+struct ListWork {
+	bool boxes = false, check = false, all = false; // measure boxes and find groups nearby; check the lists; look at all pairs
+	int steps = 0, stepsToNext = 0;                 // since the latest check; to the next
+	double across = 0;                              // by how much boundaries move images in a step [m]
 };
 
 class Dynamics {
@@ -129,10 +137,10 @@ private:
 	void setMostCells();
 	void makeLists();
 	void outdateLists(); // grains have been moved otherwise than by a step
-	// mine(what) calls what(domain, its number) for a thread's domains, wait() lets the threads come together. Returns whether lists were checked.
-	template <class Mine, class Wait> bool keepLists(ListAge&, const VelocityRange&, const Vec3<double>& growth, Mine&&, Wait&&);
+	ListWork listWork(ListAge&, const VelocityRange&, const Vec3<double>& growth) const; // of this step; the age goes on
+	void keepLists(int domain, const ListWork&);
 	long runEvenly(long steps, const Vec3<double>& sizeAtEnd);
-	long runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, int thread, int threads, Barrier&);
+	long runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, Shares, Barrier&);
 	Domain& domainOf(int index);
 	void changeForce(Domain&, int index, Vec3<double> force, Vec3<double> torque, Onset); // by that much
 	double fastestThatHolds() const;                                                      // velocity component that a step may have

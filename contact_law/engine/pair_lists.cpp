@@ -116,7 +116,7 @@ void PairLists::searchAnew(const PeriodicCell& cell)
 
 void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across, bool lookAtAll)
 {
-	holds = true;
+	holdsNow = true;
 	for (Group& group : own()) {
 		VelocityRange around, bound;
 		double kicks = 0;
@@ -135,12 +135,13 @@ void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, doub
 			group.lookAtAll();
 		group.kickNearby = kicks;
 		group.speedNearby = speed;
-		holds = holds && ahead <= s.farGap;
+		holdsNow = holdsNow && ahead <= s.farGap;
 	}
 }
 
 void PairLists::clearAfterCheck()
 {
+	holds = holdsNow;
 	for (Group& group : own())
 		group.clearAfterCheck(s.leastKick);
 }

@@ -66,7 +66,7 @@ private:
 	Setting& s;
 	int begin, end, firstGroup, endGroup;
 	int step = 0;
-	bool holds = false;
+	bool holds = false, holdsNow = false; // by the latest check; the first is read by other threads, in another part of a step than clearAfterCheck()
 	Candidates candidates;
 	std::vector<NeighbourPair> foundPairs, overlaps;
 	struct Due {
