@@ -29,6 +29,13 @@ struct Box { // around grains' centres [m]
 	Vec3<double> centre() const { return { 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]) }; }
 };
 
+// Some groups of a domain that follow each other, with a box around theirs: one look tells that all of them are far away.
+struct alignas(64) GroupCluster {
+	static constexpr int most = 8;
+	int first, last; // groups, the last one not among them
+	Box box;
+};
+
 /* What the neighbour lists know of a group (pair_lists.hpp). Its own domain writes all of it; other domains read ranges, bounds and boxes, in another part of a step
  * than that in which they are written. */
 struct alignas(64) Group {

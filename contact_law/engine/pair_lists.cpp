@@ -9,6 +9,7 @@ PairLists::PairLists(Setting& setting, int begin_, int end_)
         , begin(begin_)
         , end(end_)
         , firstGroup(int(setting.groups.size()))
+        , firstCluster(int(setting.clusters.size()))
 {
 	for (int first = begin; first < end; first += grainsInGroup) {
 		s.groups.emplace_back();
@@ -17,6 +18,9 @@ PairLists::PairLists(Setting& setting, int begin_, int end_)
 		s.groups.back().kickBound = s.leastKick;
 	}
 	endGroup = int(s.groups.size());
+	for (int first = firstGroup; first < endGroup; first += GroupCluster::most)
+		s.clusters.push_back({ first, std::min(first + GroupCluster::most, endGroup), {} });
+	endCluster = int(s.clusters.size());
 }
 
 PairLists::Stretch PairLists::own() const { return { s.groups.data() + firstGroup, s.groups.data() + endGroup }; }
@@ -32,23 +36,39 @@ Box PairLists::boxOf(const Group& group) const
 
 void PairLists::measureBoxes()
 {
-	for (Group& group : own())
-		group.box = boxOf(group);
+	for (int c = firstCluster; c < endCluster; ++c) {
+		GroupCluster& cluster = s.clusters[c];
+		cluster.box = {};
+		for (int g = cluster.first; g < cluster.last; ++g) {
+			s.groups[g].box = boxOf(s.groups[g]);
+			cluster.box.include(s.groups[g].box);
+		}
+	}
+}
+
+namespace {
+	// Whether two boxes, or images of them, are within reach of each other.
+	bool areNear(const Box& a, const Box& b, const PeriodicCell& cell, double reach)
+	{
+		Vec3<double> centres = a.centre() - b.centre();
+		nearestImage(cell, centres);
+		double squared = 0;
+		for (int k = 0; k < 3; ++k) {
+			const double apart = std::abs((&centres.x)[k]) - 0.5 * (a.edge(k) + b.edge(k));
+			if (apart > 0) squared += apart * apart;
+		}
+		return squared <= reach * reach;
+	}
 }
 
 void PairLists::findNearby(const PeriodicCell& cell, double reach)
 {
 	for (Group& group : own()) {
 		group.nearby.clear();
-		for (const Group& other : s.groups) {
-			Vec3<double> centres = group.box.centre() - other.box.centre();
-			nearestImage(cell, centres);
-			double squared = 0;
-			for (int k = 0; k < 3; ++k) {
-				const double apart = std::abs((&centres.x)[k]) - 0.5 * (group.box.edge(k) + other.box.edge(k));
-				if (apart > 0) squared += apart * apart;
-			}
-			if (squared <= reach * reach) group.nearby.push_back(int(&other - s.groups.data()));
+		for (const GroupCluster& cluster : s.clusters) {
+			if (!areNear(group.box, cluster.box, cell, reach)) continue;
+			for (int g = cluster.first; g < cluster.last; ++g)
+				if (areNear(group.box, s.groups[g].box, cell, reach)) group.nearby.push_back(g);
 		}
 	}
 }

@@ -64,7 +64,7 @@ private:
 	int stepsUntilTouch(const Group&, double gap, double closing) const;
 
 	Setting& s;
-	int begin, end, firstGroup, endGroup;
+	int begin, end, firstGroup, endGroup, firstCluster, endCluster;
 	int step = 0;
 	bool holds = false, holdsNow = false; // by the latest check; the first is read by other threads, in another part of a step than clearAfterCheck()
 	Candidates candidates;

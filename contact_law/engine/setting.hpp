@@ -11,6 +11,7 @@ namespace contact_law {
 struct Setting {
 	Aligned<Grain> grains;                                   // then, for each domain, two dummies that dead lanes point to
 	std::vector<Group> groups;                               // of all domains
+	std::vector<GroupCluster> clusters;                      // of them, by rising number
 	std::vector<double> inverseMass, inverseInertia, radius; // radius: of the grain as contacts have it, shrunk where necks are
 	std::vector<double> grainRadius;                         // before
 	std::vector<Material> material;                          // kinds of material
