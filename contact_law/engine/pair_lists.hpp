@@ -66,7 +66,8 @@ private:
 	Setting& s;
 	int begin, end, firstGroup, endGroup, firstCluster, endCluster;
 	int step = 0;
-	bool holds = false, holdsNow = false; // by the latest check; the first is read by other threads, in another part of a step than clearAfterCheck()
+	bool holdsNow = false; // by the latest check
+	bool holds = false;    // likewise from clearAfterCheck() on: other threads read it in the part of a step in which check() is called
 	Candidates candidates;
 	std::vector<NeighbourPair> foundPairs, overlaps;
 	struct Due {

@@ -6,7 +6,7 @@
 
 namespace contact_law {
 
-struct alignas(64) Share { // a domain
+struct alignas(64) Share {             // a domain
 	std::atomic<long> taken { 0 }; // how often so far
 };
 
