@@ -54,5 +54,5 @@ def run_title(run, addition=None):
         value = p.get(key)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or (key == "impact" and not value):
             continue
-        parts.append(text.format(f"{value:.4g}"))
+        parts.append(text.format(f"{value:,}" if isinstance(value, int) else f"{value:.4g}"))
     return ", ".join(parts + [addition] * bool(addition))
