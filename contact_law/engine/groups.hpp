@@ -57,6 +57,8 @@ struct alignas(64) Group {
 
 	static constexpr int never = 2147483647, stretch = 16;
 
+	int endOfStretch(int part) const { return std::min((part + 1) * stretch, int(next.size())); } // the pair behind its last one
+
 	// A pair is to be looked at in a step, at the latest.
 	void lookAt(int pair, int step)
 	{

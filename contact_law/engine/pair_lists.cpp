@@ -207,22 +207,21 @@ void PairLists::findDue()
 		for (int part = 0; part < int(group.soonestOf.size()); ++part)
 			if (group.soonestOf[part] <= step) {
 				dueStretches.push_back({ &group, part });
-				const int first = part * Group::stretch;
-				__builtin_prefetch(&group.next[first]);
-				__builtin_prefetch(&group.next[std::min(first + Group::stretch, int(group.next.size())) - 1]);
+				__builtin_prefetch(&group.next[part * Group::stretch]);
+				__builtin_prefetch(&group.next[group.endOfStretch(part) - 1]);
 			} else
 				group.soonest = std::min(group.soonest, group.soonestOf[part]);
 	}
 	due.clear();
-	for (const Due& stretch : dueStretches)
-		findDue(*stretch.group, stretch.index);
+	for (const auto& [group, part] : dueStretches)
+		findDue(*group, part);
 }
 
 void PairLists::findDue(Group& group, int part)
 {
-	const int first = part * Group::stretch, last = std::min(first + Group::stretch, int(group.next.size()));
+	const int last = group.endOfStretch(part);
 	int soonest = Group::never;
-	for (int k = first; k < last; ++k)
+	for (int k = part * Group::stretch; k < last; ++k)
 		if (group.next[k] <= step) {
 			due.push_back({ &group, k });
 			__builtin_prefetch(&group.pairs[k]); // for overlapping()

@@ -72,9 +72,9 @@ private:
 	std::vector<NeighbourPair> foundPairs, overlaps;
 	struct Due {
 		Group* group;
-		int index; // of the pair
+		int index; // of the pair, or of the stretch of pairs
 	};
-	std::vector<Due> due, dueStretches; // pairs to look at now, of stretches that have any
+	std::vector<Due> due, dueStretches; // pairs to look at now, and stretches that have any
 	std::vector<int> foundNext, found;
 };
 

@@ -34,6 +34,7 @@ public:
 private:
 	bool take(int d)
 	{
+		// Most domains are taken already; to read that leaves the line with the other threads, where an exchange that fails fetches it.
 		long before = calls;
 		return all[d].taken.load(std::memory_order_relaxed) == before
 		        && all[d].taken.compare_exchange_strong(before, calls + 1, std::memory_order_relaxed);

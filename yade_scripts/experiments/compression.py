@@ -1,7 +1,6 @@
 """Static compression of a BCCA cluster in a shrinking periodic cell, and its loosening: parameters, scene, series,
 estimate (K13 section 2)."""
 
-import sys
 from dataclasses import dataclass
 from math import log, pi
 
@@ -14,6 +13,7 @@ from yade_scripts.materials import GrainParameters, pair_constants, require_smal
 from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
+from yade_scripts.parameters.errors import tell
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 
@@ -293,9 +293,9 @@ class Ending:
         if not axes:
             return True
         if self._loose is not None and filling <= self._loose:
-            sys.stderr.write(
-                f"compress.py: stretchFilling = {self._loose:g}: the pressure was reached at a filling of {filling:.3g}; "
-                "the cell is not stretched\n"
+            tell(
+                f"stretchFilling = {self._loose:g}: the pressure was reached at a filling of {filling:.3g}; "
+                "the cell is not stretched"
             )
             return True
         _deform([self.rate * (axis in axes) for axis in range(3)])

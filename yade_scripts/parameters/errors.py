@@ -1,7 +1,8 @@
 """Wrong input ends a script with one line on stderr and exit status 2."""
 
+import os
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 
 class InputError(Exception):
@@ -16,3 +17,9 @@ def one_line_errors(script):
     except (InputError, ImportError, MemoryError) as error:
         sys.stderr.write(f'{script}: {" ".join(str(error).split()) or type(error).__name__}\n')
         sys.exit(2)
+
+
+def tell(text):
+    """One line on stderr that begins with the script's name; nothing when it can't be written."""
+    with suppress(OSError):
+        sys.stderr.write(f"{os.path.basename(sys.argv[0])}: {text}\n")

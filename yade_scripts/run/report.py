@@ -8,6 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from yade_scripts.parameters.errors import tell
 from yade_scripts.run import checkpoint
 from yade_scripts.run.closing_line import closing_line
 from yade_scripts.run.loop import one_line
@@ -73,9 +74,9 @@ class Report:
 
     def _tell(self, outcome):
         """The last line of the log, and one on stderr for a failure; neither when it can't be written."""
+        if outcome.startswith("failed"):
+            tell(outcome)
         try:
-            if outcome.startswith("failed"):
-                sys.stderr.write(f"{os.path.basename(sys.argv[0])}: {outcome}\n")
             print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
         except OSError:  # what is left in the buffer would fail again at exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
