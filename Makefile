@@ -79,7 +79,7 @@ YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/
 # -Wno-...: the compiler's own avx512fintrin.h warns.
 ENGINE_FLAGS := $(FLAGS) -O3 -fno-math-errno -fno-trapping-math
 AVX2_FLAGS   := -mavx2 -mfma -ffp-contract=fast
-AVX512_FLAGS := -mavx512f -mavx512dq -mavx512vl -mfma -ffp-contract=fast -Wno-uninitialized -Wno-maybe-uninitialized
+AVX512_FLAGS := -mavx512f -mavx512cd -mavx512dq -mavx512vl -mfma -ffp-contract=fast -Wno-uninitialized -Wno-maybe-uninitialized
 $(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := $(AVX2_FLAGS)
 $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 

@@ -42,6 +42,8 @@ namespace avx2 {
 		}
 	}
 
+	static inline void scatterAddInOrder(Grain* grains, const int* index, const Pack values[6]) { scatterAdd(grains, index, values); }
+
 	static void integrate(
 	        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 	{

@@ -39,14 +39,42 @@ namespace avx512 {
 		out[8] = _mm512_i32gather_pd(rows, &grains[0].wz, 8);
 	}
 
+	// Rows that are added to a grain's second line, from what is to be added to eight grains' force and torque.
+	static inline void asRows(const Pack values[6], __m512d r[8])
+	{
+		r[0] = r[1] = _mm512_setzero_pd();
+		for (int k = 0; k < 6; ++k)
+			r[2 + k] = values[k].v;
+		transpose(r);
+	}
+
 	static inline void scatterAdd(Grain* grains, const int* index, const Pack values[6])
 	{
-		__m512d r[8] = { _mm512_setzero_pd(), _mm512_setzero_pd(), values[0].v, values[1].v, values[2].v, values[3].v, values[4].v,
-			values[5].v };
-		transpose(r);
+		__m512d r[8];
+		asRows(values, r);
 		for (int lane = 0; lane < 8; ++lane) {
 			double* line = &grains[index[lane]].wz;
 			_mm512_store_pd(line, _mm512_add_pd(_mm512_load_pd(line), r[lane]));
+		}
+	}
+
+	/* The same where equal grains follow each other: their sum stays in a register, where one addition would wait for the store of the one
+	 * before. In lists that are not quite in order they need not follow each other. */
+	static inline void scatterAddInOrder(Grain* grains, const int* index, const Pack values[6])
+	{
+		const __m256i to = _mm256_load_si256(reinterpret_cast<const __m256i*>(index));
+		const __m256i one = _mm256_permutevar8x32_epi32(to, _mm256_set_epi32(6, 5, 4, 3, 2, 1, 0, 0)), earlier = _mm256_conflict_epi32(to);
+		const unsigned asBefore = _mm256_cmpeq_epi32_mask(to, one) & 0xfe;
+		if (__builtin_expect(_mm256_test_epi32_mask(earlier, earlier) != asBefore, 0)) return scatterAdd(grains, index, values);
+		__m512d r[8], was[8];
+		asRows(values, r);
+		for (int lane = 0; lane < 8; ++lane)
+			was[lane] = _mm512_load_pd(&grains[index[lane]].wz);
+		__m512d sum;
+		for (int lane = 0; lane < 8; ++lane) {
+			const __mmask8 goesOn = -(asBefore >> lane & 1);
+			sum = _mm512_add_pd(lane ? _mm512_mask_mov_pd(was[lane], goesOn, sum) : was[lane], r[lane]);
+			_mm512_store_pd(&grains[index[lane]].wz, sum);
 		}
 	}
 

@@ -7,6 +7,7 @@
 #include "../kernel/contact.hpp"
 #include "../kernel/turning.hpp"
 #include "arrays.hpp"
+#include "several.hpp"
 #include <type_traits>
 
 namespace contact_law {
@@ -16,9 +17,9 @@ constexpr int grainsAhead = 2 * batchSize, blocksAhead = 4 * batchSize;
 
 struct alignas(64) BatchBuffer {
 	double spin1[3][lanes], spin2[3][lanes];
-	double normal[3][lanes], velocity[3][lanes], inverseDistance[lanes], normalForce[lanes], twistIncrement[lanes];
-	double drag[lanes], overlap[lanes]; // in scenes with drag
-	unsigned events, slips;             // lanes (bits) that need scalar treatment; that slip
+	double normal[3][lanes], velocity[3][lanes], inverseDistance[lanes], overlap[lanes], normalForce[lanes], twistIncrement[lanes];
+	double drag[lanes];     // in scenes with drag
+	unsigned events, slips; // lanes (bits) that need scalar treatment; that slip
 	LaneForces out;
 };
 
@@ -70,13 +71,17 @@ template <class Pack> struct Passes {
 			to.*pairConstantsOf<Pack>[k].member = Pack(c.*pairConstantsOf<double>[k].member);
 		return to;
 	}
-	static PairConstants<Pack> load(const ConstantsBlock& c, int at) { return loadKept(c, at, std::make_index_sequence<keptCount>()); }
-	template <std::size_t... k> static PairConstants<Pack> loadKept(const ConstantsBlock& c, int at, std::index_sequence<k...>)
+	// Constants of which field(k) are the kept ones.
+	template <class T, class Field> static PairConstants<T> fromKept(const Field& field)
 	{
-		PairConstants<Pack> to {};
-		((to.*keptConstants<Pack>[k] = Pack::load(c.field[k] + at)), ...);
-		to.pullOffOverlap = Pack(normal::pullOffRatio) / to.inverseEquilibriumOverlap;
-		to.criticalTwisting = Pack(criticalTwistingAngle);
+		return fromKept<T>(field, std::make_index_sequence<keptCount>());
+	}
+	template <class T, class Field, std::size_t... k> static PairConstants<T> fromKept(const Field& field, std::index_sequence<k...>)
+	{
+		PairConstants<T> to {};
+		((to.*keptConstants<T>[k] = field(k)), ...);
+		to.pullOffOverlap = T(normal::pullOffRatio) / to.inverseEquilibriumOverlap;
+		to.criticalTwisting = T(criticalTwistingAngle);
 		return to;
 	}
 
@@ -124,9 +129,9 @@ template <class Pack> struct Passes {
 			__builtin_prefetch(reinterpret_cast<const char*>(block) + line);
 	}
 
-	// First sweep: where `width` contacts stand, their normal forces, and how far they twisted.
+	// First sweep: where `width` contacts stand, and how far they twisted.
 	template <unsigned mechanisms, bool periodic>
-	static void sweepNormal(const ForcePass& pass, Crossing<Pack, periodic>& crossing, const PairConstants<Pack>& c, int index,
+	static void sweepGeometry(const ForcePass& pass, Crossing<Pack, periodic>& crossing, const PairConstants<Pack>& c, int index,
 	        BatchBuffer& buffer, int at)
 	{
 		Pair pair = gatherPair(pass.grains, pass.blocks[index], at);
@@ -135,13 +140,6 @@ template <class Pack> struct Passes {
 		const Pack inUnits = g.overlap * c.inverseEquilibriumOverlap;
 		// normal::beyondPullOff() without a division; where the two differ by rounding, contactStep() decides
 		const typename Pack::Mask care = (inUnits < Pack(-normal::pullOffRatio)) | (Pack(largestFittedOverlap) < inUnits);
-		ContactForces<Pack> f;
-		Vec3<Pack> velocity {};
-		if constexpr (bool(mechanisms & Drag)) velocity = drag::velocityNow(pair.velocity, load(pass.drags[index].velocity, at));
-		normalForces<mechanisms>(c, g, velocity, f);
-		Pack radial = f.normalForce;
-		if constexpr (bool(mechanisms & Drag)) radial = radial + f.drag;
-
 		if constexpr (bool(mechanisms & Twisting))
 			twisting::increment(g.normal, g.inverseDistance, pair.velocity, pair.spin1 - pair.spin2, Pack(pass.dt))
 			        .store(buffer.twistIncrement + at);
@@ -150,15 +148,48 @@ template <class Pack> struct Passes {
 		store(g.normal, buffer.normal, at);
 		store(pair.velocity, buffer.velocity, at);
 		g.inverseDistance.store(buffer.inverseDistance + at);
-		radial.store(buffer.normalForce + at);
+		g.overlap.store(buffer.overlap + at);
 		buffer.events |= bitsOf(care) << at;
-		if constexpr (bool(mechanisms & Drag)) {
-			f.drag.store(buffer.drag + at);
-			g.overlap.store(buffer.overlap + at);
+	}
+
+	/* Second sweep: normal forces of all blocks of a batch side by side. They are one long chain of operations, and a processor that waits
+	 * for it doesn't look far enough ahead to begin with the next block. Of blocks behind the last one, what the buffers hold is taken. */
+	using Batch = Several<Pack, batchSize>;
+	template <unsigned mechanisms, bool uniform>
+	static void sweepNormal(const ForcePass& pass, const PairConstants<Pack>& same, int first, BatchBuffer* buffers, int at)
+	{
+		const auto index = [&](int b) { return std::min(first + b, pass.endBlock - 1); };
+		const auto buffered = [&](double (BatchBuffer::*field)[lanes]) {
+			return Batch::each([&](int b) { return Pack::load(buffers[b].*field + at); });
+		};
+		const auto axes = [&](const auto& rows) { // rows(b): three rows of lanes
+			const auto axis = [&](int k) { return Batch::each([&](int b) { return Pack::load(rows(b)[k] + at); }); };
+			return Vec3<Batch> { axis(0), axis(1), axis(2) };
+		};
+		const auto constant = [&](int k, int b) {
+			if constexpr (uniform) return same.*keptConstants<Pack>[k];
+			else return Pack::load(pass.constants[index(b)].field[k] + at);
+		};
+		const auto c = fromKept<Batch>([&](int k) { return Batch::each([&](int b) { return constant(k, b); }); });
+		const ContactGeometry<Batch> g { axes([&](int b) { return buffers[b].normal; }), buffered(&BatchBuffer::inverseDistance),
+			buffered(&BatchBuffer::overlap) };
+		ContactForces<Batch> f;
+		Vec3<Batch> velocity {};
+		if constexpr (bool(mechanisms & Drag))
+			velocity = drag::velocityNow(axes([&](int b) { return buffers[b].velocity; }),
+			        axes([&](int b) { return pass.drags[index(b)].velocity; }));
+		normalForces<mechanisms>(c, g, velocity, f);
+		for (int b = 0; b < batchSize; ++b) {
+			Pack radial = f.normalForce.part[b];
+			if constexpr (bool(mechanisms & Drag)) {
+				f.drag.part[b].store(buffers[b].drag + at);
+				radial = radial + f.drag.part[b];
+			}
+			radial.store(buffers[b].normalForce + at);
 		}
 	}
 
-	// Second sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before`
+	// Third sweep: the pointers turn with the grains; springs, and the sum of all forces. For blocks with slips or events `before`
 	// keeps the history before the step.
 	template <unsigned mechanisms>
 	static void sweepTangential(const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer,
@@ -263,15 +294,15 @@ template <class Pack> struct Passes {
 	}
 	static PairConstants<Pack> constants(const ForcePass& pass, const PairConstants<Pack>&, int index, int at, std::false_type)
 	{
-		return load(pass.constants[index], at);
+		return fromKept<Pack>([&](int k) { return Pack::load(pass.constants[index].field[k] + at); });
 	}
 
-	// The kicks of `width` contacts to their grains; returns the forces on the first ones.
+	// The kicks of `width` contacts to their grains, of which the lists are in the order of first grains; returns the forces on these.
 	static Vec3<Pack> scatter(Grain* grains, const int* to1, const int* to2, const LaneForces& out, int at)
 	{
 		const Vec3<Pack> f = load(out.force, at), t1 = load(out.torque1, at), t2 = load(out.torque2, at);
 		const Pack onFirst[6] { f.x, f.y, f.z, t1.x, t1.y, t1.z }, onSecond[6] { -f.x, -f.y, -f.z, t2.x, t2.y, t2.z };
-		scatterAdd(grains, to1 + at, onFirst);
+		scatterAddInOrder(grains, to1 + at, onFirst);
 		scatterAdd(grains, to2 + at, onSecond);
 		return f;
 	}
@@ -279,6 +310,9 @@ template <class Pack> struct Passes {
 	template <unsigned mechanisms, bool uniform, bool periodic> [[gnu::flatten]] static void forces(const ForcePass& pass)
 	{
 		BatchBuffer buffers[batchSize];
+		ContactBlock before[batchSize];
+		for (BatchBuffer& buffer : buffers) // of blocks that there may not be
+			std::fill_n(buffer.overlap, lanes, 0.);
 		const PairConstants<Pack> same = spread(*pass.uniform);
 		DissipationOf<Pack> lost;
 		Crossing<Pack, periodic> crossing(pass.cell);
@@ -289,27 +323,28 @@ template <class Pack> struct Passes {
 		for (int first = pass.firstBlock, batch = 0; first < pass.endBlock; first += batchSize, ++batch) {
 			const int count = pass.endBlock - first < batchSize ? pass.endBlock - first : batchSize;
 			ContactBlock* blocks = pass.blocks + first;
+			const auto c = [&](int b, int at) -> decltype(auto) {
+				return constants(pass, same, first + b, at, std::bool_constant<uniform>());
+			};
 			for (int b = 0; b < count; ++b) {
 				fetchGrains(pass, first + b + grainsAhead);
 				buffers[b].events = buffers[b].slips = 0;
 				for (int at = 0; at < lanes; at += width)
-					sweepNormal<mechanisms, periodic>(pass, crossing,
-					        constants(pass, same, first + b, at, std::bool_constant<uniform>()), first + b, buffers[b],
-					        at);
+					sweepGeometry<mechanisms, periodic>(pass, crossing, c(b, at), first + b, buffers[b], at);
 			}
+			for (int at = 0; at < lanes; at += width)
+				sweepNormal<mechanisms, uniform>(pass, same, first, buffers, at);
 			for (int b = 0; b < count; ++b) {
 				fetchBlock<uniform>(pass, first + b + blocksAhead);
-				ContactBlock before;
-				const auto c = [&](int at) -> decltype(auto) {
-					return constants(pass, same, first + b, at, std::bool_constant<uniform>());
-				};
 				for (int at = 0; at < lanes; at += width)
-					sweepTangential<mechanisms>(pass, c(at), first + b, buffers[b], before, at, lost);
+					sweepTangential<mechanisms>(pass, c(b, at), first + b, buffers[b], before[b], at, lost);
+			}
+			for (int b = 0; b < count; ++b) {
 				if (__builtin_expect(buffers[b].slips != 0, 0))
 					for (int at = 0; at < lanes; at += width)
-						sweepSlips<mechanisms>(pass, c(at), first + b, buffers[b], before, at, lost);
+						sweepSlips<mechanisms>(pass, c(b, at), first + b, buffers[b], before[b], at, lost);
 				if (__builtin_expect(buffers[b].events != 0, 0))
-					pass.events(pass.owner, first + b, buffers[b].events, before, buffers[b].out);
+					pass.events(pass.owner, first + b, buffers[b].events, before[b], buffers[b].out);
 			}
 			for (int b = 0; b < count; ++b) {
 				const int* to1 = pass.addFirst ? blocks[b].i : trash;

@@ -10,7 +10,8 @@ InstructionSet portablePasses();
 const InstructionSet& instructionSet(const std::string& name)
 {
 	static const InstructionSet sets[] = { avx512Passes(), avx2Passes(), portablePasses() };
-	const bool here[] = { __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"),
+	const bool here[] = { __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq")
+		        && __builtin_cpu_supports("avx512vl"),
 		__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"), true };
 	for (int k = 0; k < 3; ++k)
 		if (here[k] && (name.empty() || name == sets[k].name)) return sets[k];

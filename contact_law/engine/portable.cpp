@@ -20,6 +20,8 @@ namespace portable {
 		        g.tz += values[5].v;
 	}
 
+	static inline void scatterAddInOrder(Grain* grains, const int* index, const Pack values[6]) { scatterAdd(grains, index, values); }
+
 	static void integrate(
 	        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
 	{
