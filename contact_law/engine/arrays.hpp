@@ -159,8 +159,10 @@ struct alignas(32) VelocityRange {
 	}
 };
 
-struct BondPass;        // bond_list.hpp
-struct NeighbourSearch; // neighbour_search.hpp
+struct BondPass;  // bond_list.hpp
+struct BoxSearch; // neighbour_search.hpp, as the next two
+struct Candidates;
+struct NeighbourSearch;
 
 // One instruction set's compiled passes, by mechanisms (contact_state.hpp), whether all pairs are of one kind, and (forces) whether the
 // scene is periodic.
@@ -171,9 +173,10 @@ struct InstructionSet {
 	double (*sumOfProduct)(
 	        double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
-	void (*bondForces[2])(const BondPass&); // by whether the scene is periodic
+	void (*bondForces[2])(const BondPass&); // by whether the scene is periodic, as in the searches below
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
-	int (*closeGrains[2])(const NeighbourSearch&, int* found); // by whether the scene is periodic (neighbour_search.hpp)
+	void (*addInBox[2])(const BoxSearch&, Candidates&);
+	int (*closeGrains[2])(const NeighbourSearch&, int* found);
 };
 
 } // namespace contact_law

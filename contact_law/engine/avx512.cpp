@@ -63,7 +63,8 @@ namespace avx512 {
 	static inline void scatterAddInOrder(Grain* grains, const int* index, const Pack values[6])
 	{
 		const __m256i to = _mm256_load_si256(reinterpret_cast<const __m256i*>(index));
-		const __m256i one = _mm256_permutevar8x32_epi32(to, _mm256_set_epi32(6, 5, 4, 3, 2, 1, 0, 0)), earlier = _mm256_conflict_epi32(to);
+		const __m256i one = _mm256_permutevar8x32_epi32(to, _mm256_set_epi32(6, 5, 4, 3, 2, 1, 0, 0)),
+		              earlier = _mm256_conflict_epi32(to);
 		const unsigned asBefore = _mm256_cmpeq_epi32_mask(to, one) & 0xfe;
 		if (__builtin_expect(_mm256_test_epi32_mask(earlier, earlier) != asBefore, 0)) return scatterAdd(grains, index, values);
 		__m512d r[8], was[8];

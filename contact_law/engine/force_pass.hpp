@@ -159,7 +159,7 @@ template <class Pack> struct Passes {
 	static void sweepNormal(const ForcePass& pass, const PairConstants<Pack>& same, int first, BatchBuffer* buffers, int at)
 	{
 		const auto index = [&](int b) { return std::min(first + b, pass.endBlock - 1); };
-		const auto buffered = [&](double (BatchBuffer::*field)[lanes]) {
+		const auto buffered = [&](double(BatchBuffer::*field)[lanes]) {
 			return Batch::each([&](int b) { return Pack::load(buffers[b].*field + at); });
 		};
 		const auto axes = [&](const auto& rows) { // rows(b): three rows of lanes
@@ -167,8 +167,10 @@ template <class Pack> struct Passes {
 			return Vec3<Batch> { axis(0), axis(1), axis(2) };
 		};
 		const auto constant = [&](int k, int b) {
-			if constexpr (uniform) return same.*keptConstants<Pack>[k];
-			else return Pack::load(pass.constants[index(b)].field[k] + at);
+			if constexpr (uniform)
+				return same.*keptConstants<Pack>[k];
+			else
+				return Pack::load(pass.constants[index(b)].field[k] + at);
 		};
 		const auto c = fromKept<Batch>([&](int k) { return Batch::each([&](int b) { return constant(k, b); }); });
 		const ContactGeometry<Batch> g { axes([&](int b) { return buffers[b].normal; }), buffered(&BatchBuffer::inverseDistance),
@@ -401,7 +403,7 @@ template <class Pack> struct Passes {
 
 	static InstructionSet all(const char* name, decltype(InstructionSet::integrate) integrate)
 	{
-		InstructionSet set { name, {}, {}, &sumOfProduct, integrate, {}, nullptr, {} };
+		InstructionSet set { name, {}, {}, &sumOfProduct, integrate, {}, nullptr, {}, {} };
 		fill<0>(set);
 		return set;
 	}

@@ -11,16 +11,28 @@ struct Candidates {
 	int count = 0;
 
 	void clear() { count = 0; }
+	void makeRoomFor(int more)
+	{
+		if (std::size_t(count + more + lanes) <= x.size()) return;
+		const std::size_t size = 2 * (count + more) + 64 * lanes;
+		for (auto* numbers : { &x, &y, &z, &radius })
+			numbers->resize(size);
+		grain.resize(size);
+	}
 	void add(int index, const Grain& g, double itsRadius)
 	{
-		if (std::size_t(count + lanes) > x.size()) {
-			for (auto* numbers : { &x, &y, &z, &radius })
-				numbers->resize(2 * count + 64 * lanes);
-			grain.resize(2 * count + 64 * lanes);
-		}
 		x[count] = g.x, y[count] = g.y, z[count] = g.z, radius[count] = itsRadius;
 		grain[count++] = index;
 	}
+};
+
+// A box, and the grains from `first` up to, but not including, `last`.
+struct BoxSearch {
+	const Grain* grains;
+	const double* radius;
+	const PeriodicCell& cell;
+	Vec3<double> centre, half; // half its edges [m]
+	int first, last;
 };
 
 // A grain at a position, and the candidates from `first` up to, but not including, `last`.
@@ -34,6 +46,29 @@ struct NeighbourSearch {
 
 template <class Pack> struct NeighbourPasses {
 	static constexpr int width = Pack::width;
+
+	// Adds the grains with their centres in the box to the candidates.
+	template <bool periodic> static void addInBox(const BoxSearch& box, Candidates& to)
+	{
+		const Vec3<Pack> centre = Images<Pack>::spread(box.centre), half = Images<Pack>::spread(box.half);
+		const Images<Pack> images(box.cell);
+		to.makeRoomFor(box.last - box.first);
+		for (int at = box.first; at < box.last; at += width) {
+			alignas(64) int index[lanes];
+			for (int k = 0; k < width; ++k)
+				index[k] = std::min(at + k, box.last - 1);
+			Pack g[9];
+			gather(box.grains, index, g);
+			Vec3<Pack> d { g[0] - centre.x, g[1] - centre.y, g[2] - centre.z };
+			if constexpr (periodic) d = d + images.distance(images.shift(d));
+			const unsigned outside = bitsOf((half.x < absolute(d.x)) | (half.y < absolute(d.y)) | (half.z < absolute(d.z)));
+			const unsigned all = (1u << std::min(width, box.last - at)) - 1;
+			for (unsigned inside = all & ~outside; inside; inside &= inside - 1) {
+				const int grain = at + __builtin_ctz(inside);
+				to.add(grain, box.grains[grain], box.radius[grain]);
+			}
+		}
+	}
 
 	// Candidates whose surfaces are closer than the gap, by rising index; returns how many.
 	template <bool periodic> static int closeGrains(const NeighbourSearch& search, int* found)
@@ -58,6 +93,8 @@ template <class Pack> struct NeighbourPasses {
 
 	static InstructionSet addTo(InstructionSet set)
 	{
+		set.addInBox[false] = &addInBox<false>;
+		set.addInBox[true] = &addInBox<true>;
 		set.closeGrains[false] = &closeGrains<false>;
 		set.closeGrains[true] = &closeGrains<true>;
 		return set;

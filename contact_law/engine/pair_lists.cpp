@@ -76,17 +76,14 @@ void PairLists::findNearby(const PeriodicCell& cell, double reach)
 void PairLists::gatherCandidates(const Group& group, const PeriodicCell& cell)
 {
 	const Box box = boxOf(group); // now, not when boxes were measured
-	const Vec3<double> centre = box.centre();
 	const double reach = 2 * s.largestRadius + s.farGap;
+	const Vec3<double> half { 0.5 * box.edge(0) + reach, 0.5 * box.edge(1) + reach, 0.5 * box.edge(2) + reach };
 	candidates.clear();
-	for (const int g : group.nearby)
-		for (int i = s.groups[g].first; i < s.groups[g].last; ++i) {
-			Vec3<double> d = positionOf(s.grains[i]) - centre;
-			nearestImage(cell, d);
-			if (std::abs(d.x) <= 0.5 * box.edge(0) + reach && std::abs(d.y) <= 0.5 * box.edge(1) + reach
-			        && std::abs(d.z) <= 0.5 * box.edge(2) + reach)
-				candidates.add(i, s.grains[i], s.radius[i]);
-		}
+	for (const int g : group.nearby) {
+		const Group& its = s.groups[g];
+		s.passes->addInBox[cell.on](
+		        { s.grains.data(), s.radius.data(), cell, box.centre(), half, its.first, its.last }, candidates);
+	}
 }
 
 void PairLists::search(Group& group, const PeriodicCell& cell)
