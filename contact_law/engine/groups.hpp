@@ -85,17 +85,20 @@ struct alignas(64) Group {
 		widen();
 		return false;
 	}
-	// Bounds that have become far too wide are drawn closer.
+	// Bounds that have become far too wide are drawn closer, in no direction further: other groups go on with those that they know.
 	void clearAfterCheck(double leastKick)
 	{
 		sinceTrial.join(sinceCheck);
 		sinceCheck.clear();
 		if (++checksSinceTrial < 16) return;
 		checksSinceTrial = 0;
-		kickBound = std::max({ leastKick, 0.5 * kickBound, 2 * sinceTrial.largestKick() });
+		kickBound = std::min(kickBound, std::max({ leastKick, 0.5 * kickBound, 2 * sinceTrial.largestKick() }));
 		if (bound.diagonal() > 4 * sinceTrial.diagonal() + 8 * kickBound) {
+			const VelocityRange wide = bound;
 			bound = sinceTrial;
 			widen();
+			for (int k = 0; k < 3; ++k)
+				bound.least[k] = std::max(bound.least[k], wide.least[k]), bound.most[k] = std::min(bound.most[k], wide.most[k]);
 		}
 		sinceTrial.clear();
 	}
