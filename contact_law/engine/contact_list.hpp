@@ -46,6 +46,15 @@ public:
 	int second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
 	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
 
+	int aliveCount() const // by blocks: lanes behind the last one are dead
+	{
+		int count = 0;
+		for (const ContactBlock& block : blocks)
+			for (int k = 0; k < lanes; ++k)
+				count += block.i[k] != dummy;
+		return count;
+	}
+
 	Contact get(int lane, const PairConstants<double>& pairConstants) const
 	{
 		const ContactBlock& b = blocks[lane / lanes];

@@ -317,8 +317,7 @@ int Domain::contactCount() const
 {
 	int count = bonds[Both].aliveCount() + bonds[First].aliveCount();
 	for (int sort = Both; sort <= First; ++sort)
-		for (int lane = 0; lane < contacts[sort].size(); ++lane)
-			count += contacts[sort].alive(lane);
+		count += contacts[sort].aliveCount();
 	return count;
 }
 

@@ -370,6 +370,8 @@ template <class Pack> struct Passes {
 		const Images<Pack> images(*pass.cell); // once a step at most: open scenes have their images here too, without a shift
 		StoredEnergy<Pack> sum { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
 		for (int b = pass.firstBlock; b < pass.endBlock; ++b) {
+			fetchBlock<uniform>(pass, b + blocksAhead);
+			fetchGrains(pass, b + grainsAhead);
 			ContactBlock& block = pass.blocks[b];
 			for (int at = 0; at < lanes; at += width) {
 				const PairConstants<Pack> c = constants(pass, same, b, at, std::bool_constant<uniform>());

@@ -98,7 +98,8 @@ struct alignas(64) Group {
 			bound = sinceTrial;
 			widen();
 			for (int k = 0; k < 3; ++k)
-				bound.least[k] = std::max(bound.least[k], wide.least[k]), bound.most[k] = std::min(bound.most[k], wide.most[k]);
+				bound.least[k] = std::max(bound.least[k], wide.least[k]),
+				bound.most[k] = std::min(bound.most[k], wide.most[k]);
 		}
 		sinceTrial.clear();
 	}
