@@ -59,10 +59,16 @@ public:
 	void place(const Contact&); // one that this domain's grains have, i < j; to be followed by sortContacts() and markTouching()
 	void place(const std::vector<Constrained>&);
 	void place(const std::vector<OutsideForce>&);
-	// All contacts and bonds of which this domain has the first grain, its constrained grains and outside forces; they are placed anew when grains have changed their order.
-	void takeOut(std::vector<Contact>&, std::vector<Bond>&, std::vector<Constrained>&, std::vector<OutsideForce>&);
-	void markTouching();   // in the neighbour lists, all that touch
-	void takeVelocities(); // as they are now, for drag in the next step
+	struct Contents { // what a domain held before grains changed their order
+		std::vector<ContactList> contacts;
+		std::vector<BondList> bonds;
+		std::vector<Constrained> constrained;
+		std::vector<OutsideForce> outside;
+	};
+	Contents takeOut();
+	void place(const Contents&, const std::vector<int>& to); // what is now this domain's; to: new indices of grains; likewise
+	void markTouching();                                     // in the neighbour lists, all that touch
+	void takeVelocities();                                   // as they are now, for drag in the next step
 	StoredEnergy<double> energies();
 	double kineticEnergy()
 	        const; // 1/2 m v(-dt/2) v(+dt/2) of own grains, and what events of the latest step add; in it no convective acceleration, but
@@ -101,6 +107,7 @@ private:
 	void completeForces(int grain); // of grains below that, which have those of all contacts
 	void completeAndIntegrateUpTo(int grain);
 	void integrateUpTo(int grain);
+	template <class List, class Get> void place(const List&, const std::vector<int>& to, List (&own)[3], const Get&);
 	void beginMoving();
 	void finishGroup(Group&);
 	void sortIfWorthwhile();

@@ -1,5 +1,6 @@
 // What a domain holds: contacts, bonds, and what concerns single grains, placed, taken out and sorted.
 #include "domain.hpp"
+#include "contacts.hpp"
 #include <algorithm>
 
 namespace contact_law {
@@ -7,32 +8,60 @@ namespace contact_law {
 namespace {
 	constexpr double sortingCost = 1; // of a contact, over what one costs a step more for being out of order (measured)
 
-	template <class OfGrain> void moveAll(std::vector<OfGrain>& from, std::vector<OfGrain>& to)
-	{
-		to.insert(to.end(), from.begin(), from.end());
-		from.clear();
-	}
 	template <class OfGrain> void sortByGrain(std::vector<OfGrain>& all)
 	{
 		std::sort(all.begin(), all.end(), [](const OfGrain& a, const OfGrain& b) { return a.grain < b.grain; });
 	}
+	template <class OfGrain> std::vector<OfGrain> renumbered(std::vector<OfGrain> all, const std::vector<int>& to)
+	{
+		for (OfGrain& one : all)
+			one.grain = to[one.grain];
+		return all;
+	}
 }
 
-void Domain::takeOut(std::vector<Contact>& allContacts, std::vector<Bond>& allBonds, std::vector<Constrained>& allConstrained,
-        std::vector<OutsideForce>& allOutside)
+Domain::Contents Domain::takeOut()
 {
-	for (int sort = Both; sort <= First; ++sort) {
-		for (int lane = 0; lane < contacts[sort].size(); ++lane)
-			if (contacts[sort].alive(lane)) allContacts.push_back(s.contactOf(contacts[sort], lane));
-		for (int lane = 0; lane < bonds[sort].size(); ++lane)
-			if (bonds[sort].alive(lane)) allBonds.push_back(bonds[sort].get(lane, s.commonBond));
-	}
+	Contents all;
 	for (ContactList& list : contacts)
-		list.clear();
+		all.contacts.push_back(list), list.clear();
 	for (BondList& list : bonds)
-		list.clear();
-	moveAll(constraints.grains, allConstrained);
-	moveAll(outside.grains, allOutside);
+		all.bonds.push_back(list), list.clear();
+	all.constrained.swap(constraints.grains);
+	all.outside.swap(outside.grains);
+	return all;
+}
+
+void Domain::place(const Contents& all, const std::vector<int>& to)
+{
+	for (int sort = Both; sort <= First; ++sort) { // the domain of the second grain holds the same ones
+		place(all.contacts[sort], to, contacts, [this](const ContactList& list, int lane, int i, int j) {
+			Contact c = list.get(lane, s.constantsOf(std::min(i, j), std::max(i, j)));
+			if (i > j) c.velocity = -c.velocity;
+			return c;
+		});
+		place(all.bonds[sort], to, bonds, [this](const BondList& list, int lane, int i, int j) {
+			Bond b = list.get(lane, s.commonBond);
+			if (i > j) std::swap(b.constants.radius1, b.constants.radius2);
+			return b;
+		});
+	}
+	place(renumbered(all.constrained, to));
+	place(renumbered(all.outside, to));
+}
+
+// get(list, lane, i, j): one whose grains are i and j now.
+template <class List, class Get> void Domain::place(const List& from, const std::vector<int>& to, List (&own)[3], const Get& get)
+{
+	for (int lane = 0; lane < from.size(); ++lane) {
+		if (!from.alive(lane)) continue;
+		const int i = to[from.first(lane)], j = to[from.second(lane)];
+		if (!owns(i) && !owns(j)) continue;
+		auto one = get(from, lane, i, j);
+		one.i = std::min(i, j), one.j = std::max(i, j);
+		if (i > j) one.history = swapped(one.history);
+		own[sortOf(one.i, one.j)].append(one);
+	}
 }
 
 void Domain::place(const std::vector<Constrained>& all)

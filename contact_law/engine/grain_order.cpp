@@ -11,6 +11,7 @@ namespace {
 	struct Branch {
 		int firstDomain, lastDomain; // the last one not among them
 		int first, last;             // grains
+		bool isOneDomain() const { return lastDomain - firstDomain == 1; }
 	};
 
 	using Positions = std::vector<Vec3<double>>;
@@ -40,12 +41,8 @@ void Dynamics::orderGrains(const Positions& positions)
 {
 	original.resize(count);
 	std::iota(original.begin(), original.end(), 0);
-	std::vector<Branch> branches { { 0, domainCount(), 0, count } };
-	while (!branches.empty()) {
-		const Branch b = branches.back();
-		branches.pop_back();
-		const bool oneDomain = b.lastDomain - b.firstDomain == 1;
-		if (oneDomain && b.last - b.first <= leaf) continue;
+	const auto cut = [&](const Branch& b) -> std::pair<Branch, Branch> {
+		const bool oneDomain = b.isOneDomain();
 		const int middleDomain = (b.firstDomain + b.lastDomain) / 2;
 		const int middle = oneDomain ? middleOf(b.first, b.last) : beginOf(middleDomain);
 		const int axis = widestAxis(positions, original.data() + b.first, original.data() + b.last);
@@ -53,9 +50,28 @@ void Dynamics::orderGrains(const Positions& positions)
 			const double x = (&positions[i].x)[axis], y = (&positions[j].x)[axis];
 			return x != y ? x < y : i < j;
 		});
-		branches.push_back({ b.firstDomain, oneDomain ? b.lastDomain : middleDomain, b.first, middle });
-		branches.push_back({ oneDomain ? b.firstDomain : middleDomain, b.lastDomain, middle, b.last });
-	}
+		return { { b.firstDomain, oneDomain ? b.lastDomain : middleDomain, b.first, middle },
+			{ oneDomain ? b.firstDomain : middleDomain, b.lastDomain, middle, b.last } };
+	};
+	const auto cutDown = [&cut](const Branch& all, const auto& isDone) {
+		std::vector<Branch> branches { all }, done;
+		while (!branches.empty()) {
+			const Branch b = branches.back();
+			branches.pop_back();
+			if (isDone(b)) {
+				done.push_back(b);
+				continue;
+			}
+			const auto [lower, upper] = cut(b);
+			branches.push_back(lower);
+			branches.push_back(upper);
+		}
+		return done;
+	};
+	const auto ofDomains = cutDown({ 0, domainCount(), 0, count }, [](const Branch& b) { return b.isOneDomain(); });
+#pragma omp parallel for num_threads(threadCount())
+	for (std::size_t d = 0; d < ofDomains.size(); ++d)
+		cutDown(ofDomains[d], [](const Branch& b) { return b.last - b.first <= leaf; });
 	for (int k = 0; k < count; ++k)
 		indexHere[original[k]] = k;
 }
@@ -79,26 +95,6 @@ namespace {
 		for (std::size_t k = 0; k < from.size(); ++k)
 			values[k] = before[from[k]];
 	}
-
-	Contact renumbered(Contact c, int i, int j)
-	{
-		c.i = std::min(i, j), c.j = std::max(i, j);
-		if (i > j) {
-			c.history = swapped(c.history);
-			c.velocity = -c.velocity;
-			std::swap(c.constants.radius1, c.constants.radius2);
-		}
-		return c;
-	}
-	Bond renumbered(Bond b, int i, int j)
-	{
-		b.i = std::min(i, j), b.j = std::max(i, j);
-		if (i > j) {
-			b.history = swapped(b.history);
-			std::swap(b.constants.radius1, b.constants.radius2);
-		}
-		return b;
-	}
 }
 
 /* Where groups have spread (fragments that fly apart), grains are put into a new order: neighbours lie close again. Between two steps; nothing else changes but the order in
@@ -113,12 +109,9 @@ void Dynamics::reorder()
 	std::vector<int> from(count), to(count);
 	for (int k = 0; k < count; ++k)
 		from[k] = hereBefore[original[k]], to[from[k]] = k;
-	std::vector<Contact> contacts;
-	std::vector<Bond> bonds;
-	std::vector<Constrained> constrained;
-	std::vector<OutsideForce> outside;
+	std::vector<Domain::Contents> contents;
 	for (auto& domain : domains)
-		domain->takeOut(contacts, bonds, constrained, outside);
+		contents.push_back(domain->takeOut());
 	arrange(setting.grains, from);
 	for (auto* values : { &setting.inverseMass, &setting.inverseInertia, &setting.radius, &setting.grainRadius })
 		arrange(*values, from);
@@ -126,24 +119,13 @@ void Dynamics::reorder()
 	arrange(setting.orientation, from);
 	arrange(setting.blocked, from);
 	arrange(setting.displaced, from);
-	for (Contact& c : contacts)
-		c = renumbered(c, to[c.i], to[c.j]);
-	for (Bond& b : bonds)
-		b = renumbered(b, to[b.i], to[b.j]);
-	for (Constrained& c : constrained)
-		c.grain = to[c.grain];
-	for (OutsideForce& f : outside)
-		f.grain = to[f.grain];
 	for (auto& domain : domains)
 		for (EarlyKick& early : domain->early)
 			early.grain = to[early.grain];
+#pragma omp parallel for num_threads(threadCount())
 	for (auto& domain : domains) {
-		for (const Contact& c : contacts)
-			domain->place(c);
-		for (const Bond& b : bonds)
-			domain->place(b);
-		domain->place(constrained);
-		domain->place(outside);
+		for (const Domain::Contents& its : contents)
+			domain->place(its, to);
 		domain->sortContacts();
 	}
 	makeLists();
