@@ -1,13 +1,8 @@
-#include "JKRWadaEngine.hpp"
-#include "../engine/contacts.hpp"
 #include "../engine/exchange.hpp"
 #include "../engine/stability.hpp"
+#include "JKRWadaEngineRun.hpp"
 #include "RunningLoop.hpp"
-#include "SceneContacts.hpp"
 #include "SceneForces.hpp"
-#include "SceneGrains.hpp"
-#include "StepWatch.hpp"
-#include <boost/weak_ptr.hpp>
 
 namespace yade {
 
@@ -16,169 +11,6 @@ using contact_law::GrainMotion;
 
 YADE_PLUGIN((JKRWadaEngine));
 CREATE_LOGGER(JKRWadaEngine);
-
-struct JKRWadaEngine::Run {
-	SceneGrains grains;
-	SceneContacts contacts;
-	SceneCell cell;
-	EngineSettings settings; // at the start
-	bool stepBehind;         // until the first step: velocities came from the functors
-	Dynamics dynamics;
-	boost::weak_ptr<Scene> scene; // whose grains these are
-	std::vector<GrainMotion> now {};
-	StepWatch watch {};
-	std::vector<contact_law::OutsideForce> outside {}; // by ids, as they are held
-	EnergyChannels::WorkOn workOn {};                  // at any time: the scene then has the channel
-};
-
-namespace {
-	// Every scene has one engine that moves its grains.
-	void requireAlone(const Scene& scene)
-	{
-		int engines = 0;
-		for (const auto& engine : scene.engines) {
-			if (engine->dead) continue;
-			for (const char* other : { "NewtonIntegrator", "InteractionLoop" })
-				if (engine->getClassName() == other)
-					refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
-			engines += bool(dynamic_cast<const JKRWadaEngine*>(engine.get()));
-		}
-		if (engines > 1)
-			refuseInEngine("O.engines has " + std::to_string(engines)
-			        + " JKRWadaEngines: there must be one, which moves all grains once");
-	}
-}
-
-EngineSettings JKRWadaEngine::settings() const
-{
-	return { domains, instructions, linearDamping, slidingStiffnessFactor, neck, sliding, rolling, twisting, limit, orientations };
-}
-
-void JKRWadaEngine::requireInRange() const
-{
-	const auto atLeastOne = [](const char* name, int value) {
-		if (value < 1) refuseInEngine(std::string(name) + " = " + text(value) + ": must be >= 1");
-	};
-	atLeastOne("subSteps", subSteps), atLeastOne("threads", threads);
-	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
-	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
-		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
-	if (!(slidingStiffnessFactor > 0 && std::isfinite(slidingStiffnessFactor)))
-		refuseInEngine("slidingStiffnessFactor = " + text(slidingStiffnessFactor) + ": must be > 0");
-	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
-		refuseInEngine("neck = " + text(neck) + ": must be 0 (no bonds), or up to 0.7 for sintered bonds");
-	if (contact_law::limitRuleNumber(limit) < 0) refuseInEngine("limit = " + text(limit) + ": must be 'held' or 'cut'");
-}
-
-void JKRWadaEngine::requireOwnScene() const
-{
-	if (current && current->scene.lock() != Omega::instance().getScene())
-		refuseInEngine(
-		        "this engine moves the grains of another scene (O.reset() or O.switchScene() was called since its first step): "
-		        "a scene must have an engine of its own; make a new one");
-}
-
-contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
-{
-	Dynamics::Options options;
-	options.pairs = { linearDamping, slidingStiffnessFactor };
-	options.neck = neck;
-	options.domains = domains;
-	options.threads = threads;
-	options.instructions = instructions;
-	options.orientations = orientations;
-	bool drag = linearDamping > 0;
-	for (const auto& material : materials)
-		drag = drag || material.viscoelasticTime > 0;
-	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	options.limit = contact_law::LimitRule(contact_law::limitRuleNumber(limit));
-	return options;
-}
-
-// The grains of the scene, with contacts from the checkpoint, from O.interactions, or where they overlap.
-std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment)
-{
-	SceneGrains grains(*scene);
-	if (grains.size() == 0) refuseInEngine("there are no bodies");
-	const auto materials = grains.materials();
-	const bool continued = !savedState.empty();
-	Dynamics::Options options = optionsFor(materials);
-	options.dt = continued ? smallStep : scene->dt / subSteps;
-	SceneContacts contacts;
-	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
-	for (const auto& one : inherited.contacts)
-		if (one.bonded && one.neck > neck)
-			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)
-			        + ": must be the largest neck they were made with");
-	const bool inherits = !continued && !inherited.contacts.empty(), stepBehind = inherits && inherited.stepBehind;
-	if (!continued) SceneForces::dropThoseOfOtherEngines(*scene, grains.size(), threads, stepBehind);
-	SceneCell cell;
-	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
-	options.convective = SceneCell::convective(*scene);
-	const auto started = [&](auto&&... from) {
-		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), stepBehind,
-		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene() });
-	};
-	return continued ? started(savedState) : inherits ? started(inherited) : started();
-}
-
-void JKRWadaEngine::start(Moment moment)
-{
-	requireAlone(*scene);
-	const bool continued = !savedState.empty();
-	SceneForces::restorePermanent(*scene, savedForces);
-	std::shared_ptr<Run> run;
-	try {
-		run = newRun(moment);
-	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
-		refuseInEngine(refusal.what());
-	}
-	requireSound(*run);
-	current = run;
-	current->outside = contact_law::outsideForces(current->dynamics);
-	smallStep = run->dynamics.state().dt;
-	current->now = current->grains.motions();
-	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
-		current->dynamics.read(current->now);
-		current->grains.setWritten(current->now);
-		current->watch.motionsChanged(); // losses so far may be below zero, after sinter()
-		continueBooking();
-	} else
-		booked = false;
-	// that of the last step: one that was set since is taken by prepare(), or in the next step
-	SceneCell::applyVelocityGradient(*scene, current->dynamics);
-	forgetSaved();
-}
-
-void JKRWadaEngine::forgetSaved() { savedState.clear(), savedForces.clear(); }
-
-// Whether O.energy has the energies of this run still: a script may have cleared it.
-bool JKRWadaEngine::isInOEnergy() const
-{
-	int kinetic = -1;
-	scene->energy->findId("kinetic", kinetic, false, false);
-	return booked && kinetic >= 0;
-}
-
-// O.energy holds what this run has booked before it was saved.
-void JKRWadaEngine::continueBooking()
-{
-	booked = isInOEnergy();
-	if (booked) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
-}
-
-void JKRWadaEngine::requireSound(const Run& run)
-{
-	const Dynamics& dynamics = run.dynamics;
-	const std::string tooSmall = SceneCell::tooSmall(dynamics.cell(), dynamics);
-	if (!tooSmall.empty()) refuseInEngine(tooSmall);
-	const double step = dynamics.state().dt, unstable = contact_law::unstableStep(dynamics);
-	if (!(step > 0 && step < unstable))
-		refuseInEngine("the small step O.dt/subSteps is " + text(step) + " s: must be above 0 and below " + text(unstable)
-		        + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
-	const std::string deep = StepWatch::tooDeep(dynamics);
-	if (!deep.empty()) refuseInEngine(deep + " at the start: must be at most 1");
-}
 
 // What a script has changed since the last step holds from here on, or is refused.
 void JKRWadaEngine::takeChanges()
@@ -326,32 +158,6 @@ void JKRWadaEngine::handOver()
 }
 
 void JKRWadaEngine::writeBodies() { current->grains.write(current->now, orientations, current->dynamics.threadCount()); }
-
-void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking booking)
-{
-	const bool known = booking == Booking::AlreadyInOEnergy;
-	if (!booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
-	booked = true;
-	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics);
-	current->workOn.outside = current->workOn.outside || !current->outside.empty() || now.externalWork != 0;
-	channels.set(*scene, now, known, current->workOn);
-}
-
-void JKRWadaEngine::preSave(JKRWadaEngine&)
-{
-	const auto rest = atRest("O.save()");
-	const shared_ptr<Scene> saved = Omega::instance().getScene();
-	if (!current) { // before the first step: what was loaded, if anything, is saved again, but for forces set since
-		if (saved->forces.getPermForceUsed()) savedForces = SceneForces::permanent(*saved);
-		return;
-	}
-	if (current->scene.lock() != saved) return forgetSaved();
-	scene = saved.get();
-	// what is saved is that of the state that is saved: a script may have changed it, or not have asked for energies, since the last step
-	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
-	savedState = current->dynamics.save();
-	savedForces = SceneForces::permanent(*scene);
-}
 
 bool JKRWadaEngine::hasStarted() const
 {

@@ -33,6 +33,7 @@ class JKRWadaEngine : public GlobalEngine {
 	void forgetSaved();
 	bool isInOEnergy() const;
 	static void requireSound(const Run&);
+	static void requireAlone(const Scene&);
 	void enter(Moment);
 	void takeChanges();
 	void takeForces();

@@ -1,0 +1,24 @@
+// What JKRWadaEngine holds from its first step on, for its own files.
+#pragma once
+#include "JKRWadaEngine.hpp"
+#include "SceneContacts.hpp"
+#include "StepWatch.hpp"
+#include <boost/weak_ptr.hpp>
+
+namespace yade {
+
+struct JKRWadaEngine::Run {
+	SceneGrains grains;
+	SceneContacts contacts;
+	SceneCell cell;
+	EngineSettings settings; // at the start
+	bool stepBehind;         // until the first step: velocities came from the functors
+	contact_law::Dynamics dynamics;
+	boost::weak_ptr<Scene> scene; // whose grains these are
+	std::vector<contact_law::GrainMotion> now {};
+	StepWatch watch {};
+	std::vector<contact_law::OutsideForce> outside {}; // by ids, as they are held
+	EnergyChannels::WorkOn workOn {};                  // at any time: the scene then has the channel
+};
+
+} // namespace yade

@@ -1,0 +1,141 @@
+// How a run of JKRWadaEngine starts: what is asked for, whether it can be had, and the grains with their contacts.
+#include "../engine/exchange.hpp"
+#include "../engine/stability.hpp"
+#include "JKRWadaEngineRun.hpp"
+#include "SceneForces.hpp"
+
+namespace yade {
+
+using contact_law::Dynamics;
+
+// Every scene has one engine that moves its grains.
+void JKRWadaEngine::requireAlone(const Scene& scene)
+{
+	int engines = 0;
+	for (const auto& engine : scene.engines) {
+		if (engine->dead) continue;
+		for (const char* other : { "NewtonIntegrator", "InteractionLoop" })
+			if (engine->getClassName() == other)
+				refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
+		engines += bool(dynamic_cast<const JKRWadaEngine*>(engine.get()));
+	}
+	if (engines > 1)
+		refuseInEngine(
+		        "O.engines has " + std::to_string(engines) + " JKRWadaEngines: there must be one, which moves all grains once");
+}
+
+EngineSettings JKRWadaEngine::settings() const
+{
+	return { domains, instructions, linearDamping, slidingStiffnessFactor, neck, sliding, rolling, twisting, limit, orientations };
+}
+
+void JKRWadaEngine::requireInRange() const
+{
+	const auto atLeastOne = [](const char* name, int value) {
+		if (value < 1) refuseInEngine(std::string(name) + " = " + text(value) + ": must be >= 1");
+	};
+	atLeastOne("subSteps", subSteps), atLeastOne("threads", threads);
+	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
+	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
+		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
+	if (!(slidingStiffnessFactor > 0 && std::isfinite(slidingStiffnessFactor)))
+		refuseInEngine("slidingStiffnessFactor = " + text(slidingStiffnessFactor) + ": must be > 0");
+	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
+		refuseInEngine("neck = " + text(neck) + ": must be 0 (no bonds), or up to 0.7 for sintered bonds");
+	if (contact_law::limitRuleNumber(limit) < 0) refuseInEngine("limit = " + text(limit) + ": must be 'held' or 'cut'");
+}
+
+void JKRWadaEngine::requireOwnScene() const
+{
+	if (current && current->scene.lock() != Omega::instance().getScene())
+		refuseInEngine(
+		        "this engine moves the grains of another scene (O.reset() or O.switchScene() was called since its first step): "
+		        "a scene must have an engine of its own; make a new one");
+}
+
+contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
+{
+	Dynamics::Options options;
+	options.pairs = { linearDamping, slidingStiffnessFactor };
+	options.neck = neck;
+	options.domains = domains;
+	options.threads = threads;
+	options.instructions = instructions;
+	options.orientations = orientations;
+	bool drag = linearDamping > 0;
+	for (const auto& material : materials)
+		drag = drag || material.viscoelasticTime > 0;
+	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
+	options.limit = contact_law::LimitRule(contact_law::limitRuleNumber(limit));
+	return options;
+}
+
+// The grains of the scene, with contacts from the checkpoint, from O.interactions, or where they overlap.
+std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment)
+{
+	SceneGrains grains(*scene);
+	if (grains.size() == 0) refuseInEngine("there are no bodies");
+	const auto materials = grains.materials();
+	const bool continued = !savedState.empty();
+	Dynamics::Options options = optionsFor(materials);
+	options.dt = continued ? smallStep : scene->dt / subSteps;
+	SceneContacts contacts;
+	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
+	for (const auto& one : inherited.contacts)
+		if (one.bonded && one.neck > neck)
+			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)
+			        + ": must be the largest neck they were made with");
+	const bool inherits = !continued && !inherited.contacts.empty(), stepBehind = inherits && inherited.stepBehind;
+	if (!continued) SceneForces::dropThoseOfOtherEngines(*scene, grains.size(), threads, stepBehind);
+	SceneCell cell;
+	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
+	options.convective = SceneCell::convective(*scene);
+	const auto started = [&](auto&&... from) {
+		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), stepBehind,
+		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene() });
+	};
+	return continued ? started(savedState) : inherits ? started(inherited) : started();
+}
+
+void JKRWadaEngine::start(Moment moment)
+{
+	requireAlone(*scene);
+	const bool continued = !savedState.empty();
+	SceneForces::restorePermanent(*scene, savedForces);
+	std::shared_ptr<Run> run;
+	try {
+		run = newRun(moment);
+	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
+		refuseInEngine(refusal.what());
+	}
+	requireSound(*run);
+	current = run;
+	current->outside = contact_law::outsideForces(current->dynamics);
+	smallStep = run->dynamics.state().dt;
+	current->now = current->grains.motions();
+	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
+		current->dynamics.read(current->now);
+		current->grains.setWritten(current->now);
+		current->watch.motionsChanged(); // losses so far may be below zero, after sinter()
+		continueBooking();
+	} else
+		booked = false;
+	// that of the last step: one that was set since is taken by prepare(), or in the next step
+	SceneCell::applyVelocityGradient(*scene, current->dynamics);
+	forgetSaved();
+}
+
+void JKRWadaEngine::requireSound(const Run& run)
+{
+	const Dynamics& dynamics = run.dynamics;
+	const std::string tooSmall = SceneCell::tooSmall(dynamics.cell(), dynamics);
+	if (!tooSmall.empty()) refuseInEngine(tooSmall);
+	const double step = dynamics.state().dt, unstable = contact_law::unstableStep(dynamics);
+	if (!(step > 0 && step < unstable))
+		refuseInEngine("the small step O.dt/subSteps is " + text(step) + " s: must be above 0 and below " + text(unstable)
+		        + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
+	const std::string deep = StepWatch::tooDeep(dynamics);
+	if (!deep.empty()) refuseInEngine(deep + " at the start: must be at most 1");
+}
+
+} // namespace yade
