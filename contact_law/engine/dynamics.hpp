@@ -94,6 +94,9 @@ public:
 	/* All contacts become bonds of this neck, without strain where they are, beside existing bonds, which keep their own; all grains
 	 * shrink by the largest neck. What the contacts held is booked as disconnection. */
 	void sinter(double neck);
+	/* Steps of another length from now on [s]. Positions and velocities of this moment stay; the kinetic energy as a leapfrog counts it changes in second order of
+	 * the steps (time_step.cpp). */
+	void setStep(double dt);
 	void setThreads(int threads) { options.threads = threads; }
 
 	// ---- its state ----
@@ -126,6 +129,7 @@ private:
 	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
 	void shrinkGrains();
 	void bringVelocitiesToPositions();
+	void kickEarly(double time); // what kicks of this moment have beyond a half before it, through that time [s]
 	void makeDomains();
 	void inherit(const Inherited&);
 	void completeInheritedStep();

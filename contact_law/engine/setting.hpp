@@ -29,7 +29,8 @@ struct Setting {
 	double dt = 0, farGap = 0, smallestRadius = 0, largestRadius = 0; // farGap: between the surfaces of pairs in the neighbour lists
 	double leastKick = 0; // least bound on the change of a velocity in a step [m/s] (pair_lists.hpp), over r/dt:
 	static constexpr double leastKickOver = 1e-8; // a pair a hundredth of a radius apart is then not looked at for a thousand steps
-	Vec3<double> convective { 0, 0, 0 };          // a periodic cell's grains are accelerated by this times their velocity [1/s]
+	void setLeastKick() { leastKick = leastKickOver * smallestRadius / dt; }
+	Vec3<double> convective { 0, 0, 0 }; // a periodic cell's grains are accelerated by this times their velocity [1/s]
 	const InstructionSet* passes = nullptr;
 	std::vector<Vec3<double>> displaced; // of each grain, by a script since the latest step [m]; empty when none was
 

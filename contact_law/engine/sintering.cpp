@@ -15,7 +15,7 @@ void Dynamics::shrinkGrains()
 	setting.smallestRadius = *smallest;
 	setting.largestRadius = *largest;
 	setting.farGap = 0.8 * setting.smallestRadius;
-	setting.leastKick = Setting::leastKickOver * setting.smallestRadius / setting.dt;
+	setting.setLeastKick();
 	const Material& m = setting.material[setting.kind[0]];
 	const double r = setting.grainRadius[0];
 	setting.common = deriveShrunkPair(m, r, m, r, setting.pairs, setting.neck);
@@ -25,19 +25,9 @@ void Dynamics::shrinkGrains()
 // Velocities at the positions' moment. Forces go: half of their kick belongs after it.
 void Dynamics::bringVelocitiesToPositions()
 {
-	for (auto& domain : domains) {
-		for (const EarlyKick& early : domain->early) {
-			Grain& g = setting.grains[early.grain];
-			const unsigned blocked = setting.blocked[early.grain];
-			const double m = setting.dt * setting.inverseMass[early.grain],
-			             i = setting.dt * setting.inverseInertia[early.grain];
-			const Vec3<double> push = m * (early.force - blockedForce(early.force, blocked));
-			const Vec3<double> turn = i * (early.torque - blockedTorque(early.torque, blocked));
-			g.vx += push.x, g.vy += push.y, g.vz += push.z;
-			g.wx += turn.x, g.wy += turn.y, g.wz += turn.z;
-		}
+	kickEarly(setting.dt);
+	for (auto& domain : domains)
 		domain->early.clear();
-	}
 	for (int k = 0; k < count; ++k) {
 		Grain& g = setting.grains[k];
 		kick(setting, g, k, 0.5 * setting.dt);

@@ -33,9 +33,11 @@ class JKRWadaEngine : public GlobalEngine {
 	void forgetSaved();
 	bool isInOEnergy() const;
 	static void requireSound(const Run&);
+	static void requireStable(const contact_law::Dynamics&, Real step);
 	static void requireAlone(const Scene&);
 	void enter(Moment);
 	void takeChanges();
+	void takeStep();
 	void takeForces();
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();
@@ -70,7 +72,7 @@ public:
 		"O.cell.homoDeform means what it means with NewtonIntegrator, and O.energy['boundaryWork'] is what the grains did against the moving boundaries (minus what those did on them). A velocity gradient set between two O.steps "
 		"holds from the second O.step on, or at once when prepare() is called. "
 		"A run that blows up stops with the body, the contact and the time in the message, and leaves O.bodies as they were before the step. "
-		"What a script does between two O.steps to positions, velocities, blockedDOFs, O.cell.velGrad, threads, exportInteractions and O.trackEnergy holds from the next one on; any other change of the bodies, their materials "
+		"What a script does between two O.steps to positions, velocities, blockedDOFs, O.cell.velGrad, O.dt, subSteps, threads, exportInteractions and O.trackEnergy holds from the next one on; any other change of the bodies, their materials "
 		"or this engine is refused with a RuntimeError. "
 		"Forces and torques in O.forces, permanent or added by engines that stand before this one, act throughout the O.step; what they do is O.energy['externalWork'], with the sign turned. Without a ForceResetter among "
 		"O.engines this engine empties O.forces of what is not permanent. O.save keeps permanent forces. "
@@ -89,7 +91,7 @@ public:
 		((std::string, limit, contact_law::limitRuleNames[0], , "What happens to sliding, rolling and twisting springs of ordinary contacts at their limits. 'held': the displacement is held there (Wada et al. 2007). 'cut': the spring is cut, what it stores is lost, and a new one without strain takes its place (Sirono & Ueno 2017)."))
 		((bool, orientations, false, , "Whether to follow the bodies' orientations (State.ori); otherwise they stay as they were."))
 		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
-		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps that the run was started with [s]."))
+		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps of the latest step [s]."))
 		((bool, booked, false, Attr::readonly|Attr::hidden, "Whether O.energy has the energies of this run."))
 		((std::vector<Real>, savedState, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint (engine/checkpoint.cpp)."))
 		((std::vector<Real>, savedForces, , Attr::readonly|Attr::hidden, "Permanent forces of O.forces, in a checkpoint: id, force and torque each.")),

@@ -130,12 +130,17 @@ void JKRWadaEngine::requireSound(const Run& run)
 	const Dynamics& dynamics = run.dynamics;
 	const std::string tooSmall = SceneCell::tooSmall(dynamics.cell(), dynamics);
 	if (!tooSmall.empty()) refuseInEngine(tooSmall);
-	const double step = dynamics.state().dt, unstable = contact_law::unstableStep(dynamics);
+	requireStable(dynamics, dynamics.state().dt);
+	const std::string deep = StepWatch::tooDeep(dynamics);
+	if (!deep.empty()) refuseInEngine(deep + " at the start: must be at most 1");
+}
+
+void JKRWadaEngine::requireStable(const Dynamics& dynamics, Real step)
+{
+	const double unstable = contact_law::unstableStep(dynamics);
 	if (!(step > 0 && step < unstable))
 		refuseInEngine("the small step O.dt/subSteps is " + text(step) + " s: must be above 0 and below " + text(unstable)
 		        + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
-	const std::string deep = StepWatch::tooDeep(dynamics);
-	if (!deep.empty()) refuseInEngine(deep + " at the start: must be at most 1");
 }
 
 } // namespace yade

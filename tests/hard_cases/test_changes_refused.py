@@ -26,8 +26,9 @@ CHANGES = {
     "engine().domains = 3": ["domains was changed", "must stay 0, not 3"],
     "engine().instructions = 'portable'": ["instructions was changed", "must stay ''"],
     "engine().orientations = True": ["orientations was changed"],
-    "engine().subSteps = 2": ["the small step O.dt/subSteps was changed", "must stay"],
-    "O.dt *= 0.5": ["the small step O.dt/subSteps was changed"],
+    "O.dt *= 10": ["the small step O.dt/subSteps is", "must be above 0 and below"],
+    "O.dt = 0": ["the small step O.dt/subSteps is 0 s: must be above 0"],
+    "O.dt = float('nan')": ["the small step O.dt/subSteps is nan s: must be above 0"],
     "O.periodic = True": ["O.periodic was changed"],
     "O.bodies.erase(1)": ["body 1 was erased after the start"],
     "O.bodies.erase(3)": ["body 3 was erased after the start"],
@@ -80,7 +81,7 @@ CHANGES_AFTER_LOADING = {
     "O.periodic = True": ["O.periodic is another than in the checkpoint: it must be 0"],
     "O.bodies.erase(1)": ["body 1 was erased"],
     "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=O.bodies[0].material))": ["the number of bodies is another than in the checkpoint: it must be 4"],
-    "O.dt *= 0.5": ["the small step O.dt/subSteps was changed after the start"],
+    "O.dt *= 10": ["the small step O.dt/subSteps is", "must be above 0 and below"],
 }  # fmt: skip
 
 
