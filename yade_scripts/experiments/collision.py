@@ -9,6 +9,7 @@ from analysis.measures.compression import compression_and_velocity
 from analysis.measures.free_flight import has_come_to_rest
 from analysis.runs.format import COLLISION
 from yade_scripts import packings, stability, step_choice
+from yade_scripts.experiments import impact_step
 from yade_scripts.materials import pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.approach import first_touch
@@ -61,6 +62,13 @@ class CollisionParameters(AggregateParameters, RunParameters):
         "aggregates' radius: 12.5 ns for ice)",
         "s",
     )
+    impactStepFraction: float | None = parameter(
+        None,
+        POSITIVE,
+        "shorter time step, below stepFraction, until the aggregates have flown through each other: from the start to the "
+        "time of the first touch and of four radii of the larger one (stepFraction all the time)",
+        "t0",
+    )
     endWhenApart: int = parameter(
         0,
         SWITCH,
@@ -75,6 +83,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
             value = getattr(found, name)
             if value is not None and found.packing not in packings_with_it:
                 raise ParameterError(f"{name} = {value}: given with packing = {found.packing}; must be left out")
+        impact_step.require_usable(found)
         if found.projectileGrains is not None:
             require_growable(found.packing, "projectileGrains", found.projectileGrains)
         if found.neck and found.sizes != EQUAL:
@@ -180,6 +189,13 @@ def prepare(parameters, threads):
     touch = _time_of_touch(pair, velocities, constants["bond"])
     parameters = with_duration(parameters, constants["timeUnit"], touch)
     aggregate_radius = parameters.radius * parameters.grainRadius
+    controls, reason = [], reason_of_step(parameters, constants)
+    if parameters.impactStepFraction is not None:
+        until = (touch or 0.0) + impact_step.duration(parameters)
+        controls.append(impact_step.control(parameters, until))
+        reason = impact_step.reason(parameters, until)
+    if parameters.endWhenApart:
+        controls.append(_end_when_apart(parameters, constants))
     material = yade_scene.material_of(parameters)
     return Scene(
         parameters=parameters,
@@ -192,8 +208,8 @@ def prepare(parameters, threads):
         build=lambda: yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar)),
         series=lambda state: series(state, aggregate_radius),
         law={"neck": parameters.neck},
-        step_choice=reason_of_step(parameters, constants),
-        **({"control": _end_when_apart(parameters, constants)} if parameters.endWhenApart else {}),
+        step_choice=reason,
+        control=lambda recorder, state: any([control(recorder, state) for control in controls]),
     )
 
 
@@ -287,12 +303,17 @@ def estimate(parameters):
         neighbours = parameters.filling / full * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
     duration = parameters.duration
     if duration is None:
-        radius = parameters.radius or _typical_radius(parameters.packing, max(grains), planar)
         touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
-        duration = default_duration(radius, constants["timeUnit"], touch)
-    return Estimate(
-        sum(grains), sum(grains) * neighbours / 2, duration / constants["timeUnit"] / _step(parameters, constants)
-    )
+        duration = default_duration(_radius(parameters, grains), constants["timeUnit"], touch)
+    steps = duration / constants["timeUnit"] / _step(parameters, constants)
+    if parameters.impactStepFraction is not None:
+        steps += impact_step.more_steps(parameters.changed(radius=_radius(parameters, grains)), constants["timeUnit"])
+    return Estimate(sum(grains), sum(grains) * neighbours / 2, steps)
+
+
+def _radius(parameters, grains):
+    """Extent [grain radii] of the larger aggregate, of grains (both numbers)."""
+    return parameters.radius or _typical_radius(parameters.packing, max(grains), bool(parameters.planar))
 
 
 def expected(parameters, run):
