@@ -7,14 +7,14 @@ _COUNTED = {"commits": "commit", "machines": "machine", "versions": "versions", 
 
 def provenance(runs):
     """Dict of what made the runs (RunFolder): runs, commits, machines, versions (each {text: number of runs}),
-    stepFractions [t0] ({value: number}), steps (their sum) and hours (of wall time)."""
+    stepFractions [t0] ({value: number}), steps (their sum, as if there were no shorter ones) and hours (of wall time)."""
     records = [run.record for run in runs]
     return {
         "runs": len(runs),
         "commits": _count(str(r.get("commit", "unknown"))[:12] for r in records),
         "machines": _count(_machine(r.get("hardware") or {}) for r in records),
         "versions": _count(", ".join(f"{k} {v}" for k, v in (r.get("versions") or {}).items()) for r in records),
-        "stepFractions": _count(str(run.parameters.get("stepFraction", "unknown")) for run in runs),
+        "stepFractions": _count(_step(run.parameters) for run in runs),
         "steps": sum(int(run.derived.get("steps") or 0) for run in runs),
         "hours": round(sum(float(r.get("wallTime") or 0.0) for r in records) / 3600.0, 2),
     }
@@ -37,6 +37,11 @@ def provenance_lines(origin):
 
 def _count(texts):
     return dict(Counter(texts).most_common())
+
+
+def _step(parameters):
+    step, shorter = str(parameters.get("stepFraction", "unknown")), parameters.get("impactStepFraction")
+    return step if shorter is None else f"{step} (impact: {shorter})"
 
 
 def _machine(hardware):

@@ -48,7 +48,8 @@ def test_run_folder_is_complete(run):
     }
     assert (about["format"], about["kind"]) == (3, "collision")
     assert list(about["parameters"]) == list(CollisionParameters.columns())
-    of_others = ["projectileGrains", "projectileFile", "file", "sizeRatio", "sizeFraction", "sizeSpread", "tolerance"]
+    of_others = ["projectileGrains", "projectileFile", "impactStepFraction", "file"]
+    of_others += ["sizeRatio", "sizeFraction", "sizeSpread", "tolerance"]
     assert [name for name, value in about["parameters"].items() if value is None] == of_others
     assert about["derived"]["stepChoice"] == "as given"
     assert set(about["derived"]) == {

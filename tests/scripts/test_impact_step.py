@@ -8,6 +8,8 @@ from running import collide, messages, read_arrays, read_json
 from test_checkpoint import OFTEN, arrays, same_bits, stop_midway
 
 from analysis.measures.ledger import closure_history
+from analysis.runs.folder import open_run
+from analysis.runs.provenance import provenance
 from yade_scripts.experiments.collision import KIND, CollisionParameters
 from yade_scripts.parameters import ParameterError
 
@@ -96,3 +98,7 @@ def test_messages_are_one_line(tmp_path):
     assert messages(refused) == [
         "collide.py: impactStepFraction = 0.3: given with stepFraction = 0.2; must be below it"
     ]
+
+
+def test_tables_of_runs_tell_both_steps(shorter):
+    assert provenance([open_run(shorter)])["stepFractions"] == {"0.2 (impact: 0.06)": 1}

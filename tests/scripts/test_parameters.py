@@ -49,6 +49,7 @@ def test_defaults_are_the_scene_of_the_demo():
         "projectileGrains",
         "projectileFile",
         "duration",
+        "impactStepFraction",
         "file",
         "sizeRatio",
         "sizeFraction",
