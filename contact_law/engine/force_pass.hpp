@@ -271,16 +271,20 @@ template <class Pack> struct Passes {
 	static void keepDrag(
 	        const PairConstants<Pack>& c, DragBlock& d, const BatchBuffer& buffer, unsigned events, int at, DissipationOf<Pack>& lost)
 	{
-		const auto plain = maskOf(~events);
 		const DragMoment<Pack> before { Pack::load(d.drag + at), Pack::load(d.overlap + at) };
 		const DragMoment<Pack> now { Pack::load(buffer.drag + at), Pack::load(buffer.overlap + at) };
+		DragMoment<Pack> kept = now;
+		Vec3<Pack> velocity = load(buffer.velocity, at);
+		typename Pack::Mask plain = Pack(0.) < Pack(1.);
+		if (__builtin_expect(events != 0, 0)) {
+			plain = maskOf(~events);
+			velocity = choose<Pack>(plain, velocity, load(d.velocity, at));
+			kept = { choose(plain, now.force, before.force), choose(plain, now.overlap, before.overlap) };
+		}
 		bookDrag(c, before, now, plain, lost);
-		const Vec3<Pack> velocityBefore = load(d.velocity, at), velocity = load(buffer.velocity, at);
-		store({ choose(plain, velocity.x, velocityBefore.x), choose(plain, velocity.y, velocityBefore.y),
-		              choose(plain, velocity.z, velocityBefore.z) },
-		        d.velocity, at);
-		choose(plain, now.force, before.force).store(d.drag + at);
-		choose(plain, now.overlap, before.overlap).store(d.overlap + at);
+		store(velocity, d.velocity, at);
+		kept.force.store(d.drag + at);
+		kept.overlap.store(d.overlap + at);
 	}
 
 	static void keep(const ContactHistory<Pack>& h, ContactBlock& block, int at)

@@ -14,12 +14,13 @@ template <class T> inline Vec3<T> movedPointer(const Vec3<T>& pointer, const T& 
 	return inverseRoot(dot(moved, moved)) * moved;
 }
 
+template <class T> inline Vec3<T> choose(const MaskOf<T>& m, const Vec3<T>& yes, const Vec3<T>& no)
+{
+	return { choose(m, yes.x, no.x), choose(m, yes.y, no.y), choose(m, yes.z, no.z) };
+}
 template <class T> inline Pointers<T> choose(const MaskOf<T>& m, const Pointers<T>& yes, const Pointers<T>& no)
 {
-	const auto each = [&](const Vec3<T>& a, const Vec3<T>& b) {
-		return Vec3<T> { choose(m, a.x, b.x), choose(m, a.y, b.y), choose(m, a.z, b.z) };
-	};
-	return { each(yes.n1, no.n1), each(yes.n2, no.n2) };
+	return { choose<T>(m, yes.n1, no.n1), choose<T>(m, yes.n2, no.n2) };
 }
 
 // How the grains moved through the step.
