@@ -68,6 +68,7 @@ def test_together_with_an_early_end(tmp_path):
     "given, words",
     [
         ({"stepFraction": "0.1", "impactStepFraction": "0.1"}, "given with stepFraction = 0.1; must be below it"),
+        ({"stepFraction": "0.1", "impactStepFraction": "1e-9"}, "must be below it and at least a hundredth of it"),
         ({"stepFraction": "auto", "impactStepFraction": "0.1"}, "given with stepFraction = auto; must be left out"),
         ({"engine": "functors", "impactStepFraction": "0.01"}, "given with engine = functors; must be left out"),
         ({"impactStepFraction": "0"}, "impactStepFraction = 0: must be > 0 [t0]"),

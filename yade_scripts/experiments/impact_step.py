@@ -9,6 +9,7 @@ from math import ceil
 from yade_scripts.parameters import ParameterError
 from yade_scripts.stability import AUTO
 
+SHORTEST = 100  # parts of stepFraction: shorter ones would be a slip of the pen, and a run without end
 RADII = 4  # of the larger aggregate, that the two move against each other with the shorter step: both diameters
 
 
@@ -21,8 +22,8 @@ def require_usable(parameters):
         _refuse(step, f"stepFraction = {AUTO}", "be left out, or stepFraction be a number")
     if parameters.engine != "fused":
         _refuse(step, f"engine = {parameters.engine}", "be left out: their step stays the same")
-    if not step < parameters.stepFraction:
-        _refuse(step, f"stepFraction = {parameters.stepFraction:g}", "be below it")
+    if not parameters.stepFraction / SHORTEST <= step < parameters.stepFraction:
+        _refuse(step, f"stepFraction = {parameters.stepFraction:g}", "be below it and at least a hundredth of it")
 
 
 def duration(parameters):
