@@ -97,7 +97,7 @@ def test_messages_are_one_line(tmp_path):
     refused = collide(tmp_path, *RUN, "impactStepFraction=0.3")
     assert refused.returncode == 2
     assert messages(refused) == [
-        "collide.py: impactStepFraction = 0.3: given with stepFraction = 0.2; must be below it"
+        "collide.py: impactStepFraction = 0.3: given with stepFraction = 0.2; must be below it and at least a hundredth of it"
     ]
 
 
