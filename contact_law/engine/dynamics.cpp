@@ -149,6 +149,12 @@ void kick(const Setting& setting, Grain& p, int k, double time)
 	if (time < 0) p.vx /= 1 - time * c.x, p.vy /= 1 - time * c.y, p.vz /= 1 - time * c.z;
 }
 
+void Dynamics::kickAll(double time)
+{
+	for (int k = 0; k < count; ++k)
+		kick(setting, setting.grains[k], k, time);
+}
+
 int Dynamics::domainCount() const
 {
 	if (options.domains > 0) return std::min(options.domains, count);
@@ -256,8 +262,7 @@ void Dynamics::firstForces()
 	setting.dt = 0;
 	addForces();
 	setting.dt = dt;
-	for (int g = 0; g < count; ++g)
-		kick(setting, setting.grains[g], g, -0.5 * dt);
+	kickAll(-0.5 * dt);
 	takeVelocities();
 }
 

@@ -129,6 +129,7 @@ private:
 	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
 	void shrinkGrains();
 	void bringVelocitiesToPositions();
+	void kickAll(double time);   // kick() of every grain [s]
 	void kickEarly(double time); // what kicks of this moment have beyond a half before it, through that time [s]
 	void makeDomains();
 	void inherit(const Inherited&);

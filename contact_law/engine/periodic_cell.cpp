@@ -20,16 +20,15 @@ void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& conve
 	if (same(added, { 0, 0, 0 }) && same(convective, setting.convective)) return;
 	for (auto& domain : domains)
 		domain->sums.meanField += domain->kineticEnergy();
+	kickAll(0.5 * setting.dt);
 	for (int k = 0; k < count; ++k) {
 		Grain& p = setting.grains[k];
-		kick(setting, p, k, 0.5 * setting.dt);
 		p.vx += added.x * p.x, p.vy += added.y * p.y, p.vz += added.z * p.z;
 	}
 	setting.convective = convective;
 	velocitiesSet = true;
 	outdateLists();
-	for (int k = 0; k < count; ++k)
-		kick(setting, setting.grains[k], k, -0.5 * setting.dt);
+	kickAll(-0.5 * setting.dt);
 	for (auto& domain : domains) {
 		domain->sums.meanField -= domain->kineticEnergy();
 		domain->cell.rate = domain->cell.rate

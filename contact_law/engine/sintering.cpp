@@ -28,9 +28,9 @@ void Dynamics::bringVelocitiesToPositions()
 	kickEarly(setting.dt);
 	for (auto& domain : domains)
 		domain->early.clear();
+	kickAll(0.5 * setting.dt);
 	for (int k = 0; k < count; ++k) {
 		Grain& g = setting.grains[k];
-		kick(setting, g, k, 0.5 * setting.dt);
 		g.fx = g.fy = g.fz = g.tx = g.ty = g.tz = 0;
 	}
 }

@@ -24,11 +24,9 @@ void Dynamics::setStep(double dt)
 	const double before = setting.dt;
 	if (dt == before) return;
 	kickEarly(before - dt);
-	for (int k = 0; k < count; ++k) {
-		kick(setting, setting.grains[k], k, 0.5 * before);
-		kick(setting, setting.grains[k], k, -0.5 * dt);
-	}
-	options.dt = setting.dt = dt;
+	kickAll(0.5 * before);
+	kickAll(-0.5 * dt);
+	setting.dt = dt;
 	setting.setLeastKick();
 	for (auto& domain : domains) {
 		domain->sums.eventWork = 0;

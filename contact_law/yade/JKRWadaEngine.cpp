@@ -34,8 +34,7 @@ void JKRWadaEngine::takeStep()
 	current->dynamics.setStep(now);
 	smallStep = now;
 	current->watch.motionsChanged();
-	current->dynamics.read(current->now);
-	writeBodies(); // as in sinter()
+	bringBodies();
 }
 
 // The forces that others put on the grains hold through this O.step.
@@ -112,10 +111,7 @@ void JKRWadaEngine::prepare()
 	const auto rest = atRest("prepare()");
 	enter(Moment::BetweenSteps);
 	SceneCell::takeVelocityGradient(*scene, current->dynamics);
-	if (scene->isPeriodic) { // the mean velocity field is in the grains' velocities now
-		current->dynamics.read(current->now);
-		writeBodies();
-	}
+	if (scene->isPeriodic) bringBodies(); // the mean velocity field is in the grains' velocities now
 	if (exportInteractions) current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
 	if (scene->trackEnergy) writeEnergies(current->dynamics.energies());
 }
@@ -142,8 +138,7 @@ void JKRWadaEngine::sinter(Real neckNow)
 	neck = current->dynamics.state().neck;
 	current->settings.neck = neck;
 	current->watch.motionsChanged();
-	current->dynamics.read(current->now);
-	writeBodies(); // their velocities are the same but for rounding: a checkpoint must find them as the engine has them
+	bringBodies();
 	if (exportInteractions) current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
 	if (scene->trackEnergy) writeEnergies(current->dynamics.energies());
 }
@@ -168,6 +163,13 @@ void JKRWadaEngine::handOver()
 }
 
 void JKRWadaEngine::writeBodies() { current->grains.write(current->now, orientations, current->dynamics.threadCount()); }
+
+// After a change between steps. Velocities that are the same but for rounding too: a checkpoint must find them as the engine has them.
+void JKRWadaEngine::bringBodies()
+{
+	current->dynamics.read(current->now);
+	writeBodies();
+}
 
 bool JKRWadaEngine::hasStarted() const
 {

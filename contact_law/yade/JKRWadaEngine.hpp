@@ -41,6 +41,7 @@ class JKRWadaEngine : public GlobalEngine {
 	void takeForces();
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();
+	void bringBodies();
 	enum class Booking { Add, AlreadyInOEnergy };
 	void writeEnergies(const contact_law::Energies&, Booking = Booking::Add);
 

@@ -24,7 +24,8 @@ def unlike(base, time, change=lambda: None):
         change()
         O.step()
 def vibrating(kind, base):
-    'Four touching grains that vibrate, without slip or event.'
+    'Four touching grains that vibrate, without slip or event; the small step [t0]: base, shorter for bonds.'
+    if kind == "bonds": base *= 0.25
     drag = 1e-12 if kind == "drag" else 0.0
     new_scene(base * unit)
     material = ice(viscoelasticTime=drag)
@@ -41,6 +42,7 @@ def vibrating(kind, base):
     if kind == "force":
         O.forces.setPermF(0, Vector3(2e-9, 1e-9, 0))
         O.forces.setPermT(1, Vector3(0, 0, 1e-17))
+    return base
 """
 )
 
@@ -51,11 +53,8 @@ def test_trajectories_have_second_order(yade, kind):
     found = yade(
         STEPS
         + """
-kind = parameters["kind"]
 def end(base, factors):
-    base *= 0.25 if kind == "bonds" else 1
-    vibrating(kind, base)
-    through(base, 24.0, factors)
+    through(vibrating(parameters["kind"], base), 24.0, factors)
     return np.array([list(b.state.pos) + list(1e-10 * b.state.vel) + list(1e-17 * b.state.angVel) for b in O.bodies])
 reference = end(0.0025, (1,) * len(FACTORS)) # O.steps of the same length: by these YADE changes the cell
 result["errors"] = [float(np.abs(end(base, FACTORS) - reference).max() / 1e-7) for base in (0.08, 0.04, 0.02)]
@@ -141,7 +140,7 @@ def run(load):
         O.load("longer.yade.gz")
     for _ in range(20): O.step()
     return positions(), engine().statistics()["formed"] - formed
-(x, formed), (y, again) = run(False), run(True)
+(x, formed), (y, _) = run(False), run(True)
 result.update(same=bool((x == y).all()), formed=formed)
 """,
         {"steps": steps},
@@ -156,8 +155,7 @@ def test_the_ledger_closes_in_every_kind_of_scene(yade, kind):
         STEPS
         + """
 def closure(base):
-    base *= 0.25 if parameters["kind"] == "bonds" else 1
-    vibrating(parameters["kind"], base)
+    base = vibrating(parameters["kind"], base)
     O.step()
     total = lambda: sum(energy for _, energy in O.energy.items())
     start, kinetic, found = total(), sum(b.state.mass * b.state.vel.squaredNorm() / 2 for b in O.bodies), []
@@ -172,7 +170,7 @@ result["closures"] = [closure(base) for base in (0.08, 0.02)]
 
 
 @pytest.mark.parametrize("drag", [0.0, 2e-12])
-def test_the_ledger_closes_with_with_second_order(yade, drag):
+def test_the_ledger_closes_with_second_order(yade, drag):
     """While contacts form, slip and break: root mean square over six scenes, at steps a factor 4 apart (16; order 3/2 gives 8, first order 4)."""
     found = yade(
         STEPS

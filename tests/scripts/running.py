@@ -30,6 +30,13 @@ def collide(folder, *arguments, **more):
     )
 
 
+def collided(folder, *arguments):
+    """The same of a run that must come to its end."""
+    done = collide(folder, *arguments)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
 def messages(process):
     """What was written to stderr but for the two lines that YADE itself writes at each start."""
     return [

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from running import collide, messages, read_arrays, read_json
+from running import collide, collided, messages, read_arrays, read_json
 
 from analysis.measures.fragments import fragment_labels, fragment_sizes
 from analysis.runs.folder import open_run
@@ -19,8 +19,7 @@ def fragments(path):
 
 
 def completed(folder, *arguments):
-    done = collide(folder, *arguments)
-    assert done.returncode == 0, done.stderr
+    collided(folder, *arguments)
     return read_json(folder, "run", "run.json")
 
 

@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 import pytest
-from running import COLLIDE, collide, environment, messages, read_arrays, read_json
+from running import COLLIDE, collide, collided, environment, messages, read_arrays, read_json
 
 # A second or so of stepping, with a checkpoint after each few steps.
 RUN = ("radius=10", "velocity=10", "duration=400e-9", "threads=1")
@@ -53,8 +53,7 @@ def stop_midway(folder, arguments, signal_number):
 def straight(tmp_path_factory):
     """The arrays of the run without a stop."""
     folder = tmp_path_factory.mktemp("straight")
-    done = collide(folder, *RUN, "out=run")
-    assert done.returncode == 0, done.stderr
+    collided(folder, *RUN, "out=run")
     assert not (folder / "run" / "checkpoint").exists()
     return arrays(folder / "run")
 
@@ -72,8 +71,7 @@ def test_a_killed_run_resumes_to_the_same_bits(straight, killed, tmp_path):
     saved = read_arrays(run, "checkpoint", "recorder.npz")["rows"]
     assert 1 < len(saved) < len(straight["history.npz"]["time"])
     assert read_json(run, "run.json")["outcome"] == "running"
-    done = collide(tmp_path, *RUN, "out=run", "resume=1")
-    assert done.returncode == 0, done.stderr
+    collided(tmp_path, *RUN, "out=run", "resume=1")
     assert same_bits(arrays(run), straight)
     assert sorted(os.listdir(run)) == ["ended", "history.npz", "run.json", "states"]
     assert read_json(run, "run.json")["outcome"] == "completed"
@@ -84,8 +82,7 @@ def test_what_a_killed_writer_left_is_removed(killed, tmp_path):
     left = [run / ".history.npz.x.unfinished", run / "states" / ".000003.npz.x.unfinished"]
     for path in left:
         path.write_bytes(b"half")
-    done = collide(tmp_path, *RUN, "out=run", "resume=1")
-    assert done.returncode == 0, done.stderr
+    collided(tmp_path, *RUN, "out=run", "resume=1")
     assert not any(path.exists() for path in left)
 
 
@@ -94,8 +91,7 @@ def test_a_stopped_run_resumes_to_the_same_bits(straight, tmp_path):
     assert stop_midway(tmp_path, [*RUN, OFTEN, "out=run"], signal.SIGTERM).returncode == 143
     before = read_json(tmp_path, "run", "run.json")
     assert before["outcome"] == "interrupted"
-    done = collide(tmp_path, *RUN, "out=run", "resume=1")
-    assert done.returncode == 0, done.stderr
+    collided(tmp_path, *RUN, "out=run", "resume=1")
     assert same_bits(arrays(tmp_path / "run"), straight)
     assert read_json(tmp_path, "run", "run.json")["wallTime"] > before["wallTime"]
 
@@ -153,8 +149,7 @@ def test_yades_own_loop_resumes_to_rounding(tmp_path):
     arguments = ("radius=5", "velocity=30", "duration=12e-9", "engine=functors")
     assert collide(tmp_path, *arguments, "out=straight").returncode == 0
     stop_midway(tmp_path, [*arguments, "checkpointInterval=0.05", "out=run"], signal.SIGKILL)
-    done = collide(tmp_path, *arguments, "out=run", "resume=1")
-    assert done.returncode == 0, done.stderr
+    collided(tmp_path, *arguments, "out=run", "resume=1")
     one, other = arrays(tmp_path / "straight"), arrays(tmp_path / "run")
     assert one.keys() == other.keys()
     assert np.array_equal(one["history.npz"]["contacts"], other["history.npz"]["contacts"])

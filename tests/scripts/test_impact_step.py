@@ -4,7 +4,7 @@ import signal
 
 import numpy as np
 import pytest
-from running import collide, messages, read_arrays, read_json
+from running import collide, collided, messages, read_arrays, read_json
 from test_checkpoint import OFTEN, arrays, same_bits, stop_midway
 
 from analysis.measures.ledger import closure_history
@@ -17,21 +17,15 @@ RUN = ("radius=8", "velocity=30", "duration=400e-9", "threads=1", "stepFraction=
 SHORTER = (*RUN, "impactStepFraction=0.06", "out=run")
 
 
-def completed(folder, *arguments):
-    done = collide(folder, *arguments)
-    assert done.returncode == 0, done.stderr
-    return done
-
-
 @pytest.fixture(scope="module")
 def shorter(tmp_path_factory):
     folder = tmp_path_factory.mktemp("shorter")
-    assert "step: as given: 0.06 t0 until 1." in completed(folder, *SHORTER).stdout
+    assert "step: as given: 0.06 t0 until 1." in collided(folder, *SHORTER).stdout
     return folder / "run"
 
 
 def test_samples_stay_and_the_ledger_closes_better(shorter, tmp_path):
-    completed(tmp_path, *RUN, "out=run")
+    collided(tmp_path, *RUN, "out=run")
     about, longer = read_json(shorter, "run.json"), tmp_path / "run"
     one, other = read_arrays(shorter, "history.npz"), read_arrays(longer, "history.npz")
     assert np.allclose(one["time"], other["time"], rtol=1e-12, atol=0)
@@ -46,7 +40,7 @@ def test_samples_stay_and_the_ledger_closes_better(shorter, tmp_path):
 
 def test_a_stopped_run_resumes_to_the_same_bits(shorter, tmp_path):
     assert stop_midway(tmp_path, [*SHORTER, OFTEN], signal.SIGTERM).returncode == 143
-    completed(tmp_path, *SHORTER, "resume=1")
+    collided(tmp_path, *SHORTER, "resume=1")
     assert same_bits(arrays(tmp_path / "run"), arrays(shorter))
 
 
@@ -60,7 +54,7 @@ def test_together_with_an_early_end(tmp_path):
         "duration=6e-7",
         "viscoelasticTime=6e-12",
     )
-    completed(tmp_path, *run, "stepFraction=0.2", "impactStepFraction=0.1", "endWhenApart=1", "seed=3", "out=run")
+    collided(tmp_path, *run, "stepFraction=0.2", "impactStepFraction=0.1", "endWhenApart=1", "seed=3", "out=run")
     assert read_json(tmp_path, "run", "run.json")["timeReached"] < 5e-7
 
 
