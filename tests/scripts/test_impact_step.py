@@ -74,12 +74,13 @@ def test_what_does_not_go_together_is_refused(given, words):
     assert words in str(refused.value)
 
 
+@pytest.mark.parametrize("times", [0.2, 1])
 @pytest.mark.parametrize("packing", [{"radius": "20"}, {"packing": "bpca", "grains": "5000"}])
-def test_estimates_count_the_shorter_steps(packing):
+def test_estimates_count_the_shorter_steps(packing, times):
     """In a run of no more than the time until the touch and four radii, as many as the ratio of the steps."""
     usual = KIND.parse({**packing, "velocity": "30", "stepFraction": "0.2"})
     radius = usual.radius or 2.6 * 5000 ** (1 / 2.97)
-    duration = {"duration": f"{4 * radius * 1e-7 / 30}"}
+    duration = {"duration": f"{times * 4 * radius * 1e-7 / 30}"}
     both = [
         KIND.estimate(KIND.parse({**packing, **duration, "velocity": "30", "stepFraction": "0.2", **more}))
         for more in ({}, {"impactStepFraction": "0.05"})

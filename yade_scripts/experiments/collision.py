@@ -301,19 +301,15 @@ def estimate(parameters):
     else:
         full = packings.maximum_filling(parameters.grainRadius, constants["equilibriumOverlap"], planar)
         neighbours = parameters.filling / full * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
+    radius = parameters.radius or _typical_radius(parameters.packing, max(grains), planar)
     duration = parameters.duration
+    touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
     if duration is None:
-        touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
-        duration = default_duration(_radius(parameters, grains), constants["timeUnit"], touch)
+        duration = default_duration(radius, constants["timeUnit"], touch)
     steps = duration / constants["timeUnit"] / _step(parameters, constants)
     if parameters.impactStepFraction is not None:
-        steps += impact_step.more_steps(parameters.changed(radius=_radius(parameters, grains)), constants["timeUnit"])
+        steps += impact_step.more_steps(parameters.changed(radius=radius), touch, duration, constants["timeUnit"])
     return Estimate(sum(grains), sum(grains) * neighbours / 2, steps)
-
-
-def _radius(parameters, grains):
-    """Extent [grain radii] of the larger aggregate, of grains (both numbers)."""
-    return parameters.radius or _typical_radius(parameters.packing, max(grains), bool(parameters.planar))
 
 
 def expected(parameters, run):

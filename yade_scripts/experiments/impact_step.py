@@ -31,11 +31,10 @@ def duration(parameters):
     return RADII * parameters.radius * parameters.grainRadius / parameters.velocity
 
 
-def more_steps(parameters, time_unit):
-    """How many more steps than with stepFraction alone a run takes; time_unit: t0 [s]."""
-    if parameters.impactStepFraction is None:
-        return 0.0
-    return duration(parameters) / time_unit * (1 / parameters.impactStepFraction - 1 / parameters.stepFraction)
+def more_steps(parameters, touch, end, time_unit):
+    """How many more steps than with stepFraction alone a run takes; first touch, end of the run and t0 [s]."""
+    until = min(touch + duration(parameters), end)
+    return until / time_unit * (1 / parameters.impactStepFraction - 1 / parameters.stepFraction)
 
 
 def reason(parameters, until):
