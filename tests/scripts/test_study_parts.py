@@ -103,7 +103,7 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
 
 @pytest.mark.parametrize(
     "study, sizes",
-    [(elastoplastic, ("desk", "first", "full")), (viscous, ("desk", "full", "prediction"))],
+    [(elastoplastic, ("desk", "first", "full")), (viscous, ("desk", "full", "own", "prediction"))],
     ids=["elastoplastic", "viscous"],
 )
 def test_committed_tables_are_what_the_generator_writes(tmp_path, study, sizes):

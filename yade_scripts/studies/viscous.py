@@ -8,6 +8,9 @@ so they tell what its numbers are worth. Rows are in the order in which they are
 prediction holds larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran
 (analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size: every second offset first, then the
 others. The predictions are of all 13, which the first block alone does not test.
+
+own is the paper's own size at 50.1 m/s, three pairs with and without drag, followed to the paper's last time: the offsets about the edge of
+merging first, then all 13.
 """
 
 import os
@@ -30,6 +33,10 @@ STATES = 21  # every 0.317 us: the times of Figs 1, 10 and 11 are among them
 DESK = {500: (EXPONENTS, 4), 2000: (range(16, 21), 3)}
 REFERENCE_SEEDS, REFERENCE_PICOSECONDS = 3, (0, 6)  # at the paper's size
 STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for smaller aggregates: its ledger closes to 1e-3 of K(0)
+
+EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, of which the desk table has the same pairs
+# Followed to the end, with a shorter step while the aggregates fly through each other: the ledger closes to 1e-4 of K(0).
+FOLLOWED = {"endWhenApart": 0, "stepFraction": 0.2, "impactStepFraction": 0.1}
 
 PREDICTED_GRAINS, PREDICTED_SEEDS, PREDICTED_EXPONENTS = 10_000, 2, range(17, 21)
 # Seven offsets are no mean of A22's eq 29: the head-on peak has the weight 1/12 in place of 1/24, and <f_gro> of 2,000 grains at
@@ -76,7 +83,18 @@ def prediction():
     return first + [scene for scene in scenes if scene[1] in THE_OTHERS]
 
 
-def rows(scenes, folder):
+def own():
+    """Scenes of the paper's size at 50.1 m/s: offsets about the edge of merging first, pair by pair, then the others."""
+    scenes = [
+        (FULL_GRAINS, twelfths, REFERENCE[1], time, seed)
+        for seed in range(1, REFERENCE_SEEDS + 1)
+        for twelfths in TWELFTHS
+        for time in REFERENCE_PICOSECONDS
+    ]
+    return sorted(scenes, key=lambda scene: (scene[1] not in EDGE, scene[4]))
+
+
+def rows(scenes, folder, **others):
     """A table's rows, with run folders FOLDER/nGRAINS-vI-bTWELFTHS-tPS-sSEED."""
     found = []
     for grains, twelfths, i, time, seed in scenes:
@@ -96,6 +114,7 @@ def rows(scenes, folder):
                 "stepFraction": STEP if grains == FULL_GRAINS else LONGER_STEP,
                 "threads": 1,
                 "out": f"{folder}/{name}",
+                **others,
             }
         )
     return found
@@ -106,7 +125,7 @@ Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, durat
 
 
 def write_tables(folder):
-    """Write viscous-desk.table, viscous-prediction.table and viscous-full.table into a folder."""
+    """Write viscous-desk.table, viscous-prediction.table, viscous-full.table and viscous-own.table into a folder."""
     table.write(
         os.path.join(folder, "viscous-desk.table"),
         rows(desk(), "runs/viscous"),
@@ -121,6 +140,11 @@ def write_tables(folder):
         os.path.join(folder, "viscous-full.table"),
         rows(full(), "runs/viscous-full"),
         HEAD.format(which="All of the paper's."),
+    )
+    table.write(
+        os.path.join(folder, "viscous-own.table"),
+        rows(own(), "runs/viscous-own", **FOLLOWED),
+        HEAD.format(which="The paper's size at 50.1 m/s, to its last time: about the edge of merging first."),
     )
 
 
