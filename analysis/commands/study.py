@@ -8,29 +8,23 @@ from pathlib import Path
 
 from . import FAILED, complain
 
-FORMATS = ("text", "markdown", "json", "csv")
+FORMATS = {"text": "text", "markdown": "markdown", "json": "json", "csv": "csv"}
 
 
 def add_parser(commands):
     """Add the command to argparse's subparsers."""
-    from ..studies.find import names
-
     parser = commands.add_parser(
         "study",
         help="figures and numbers of a study from many runs, beside the paper's; without a name: list the studies",
         description="Fit and draw what a study does from runs of its scene, and print the numbers beside the paper's. "
         "Without a name: list the studies.",
     )
-    parser.set_defaults(command=_list)
-    studies = parser.add_subparsers(metavar="NAME")
-    for name in names():
-        _add_study(studies.add_parser(name, description=f"The study {name}: analysis/studies/{name}."), name)
-
-
-def _add_study(parser, name):
+    parser.add_argument(
+        "name", nargs="?", metavar="NAME", help="name of a study, or a file NAME.py of one's own that defines STUDY"
+    )
     parser.add_argument(
         "runs",
-        nargs="+",
+        nargs="*",
         metavar="RUNS",
         help="run folder, folder that holds run folders (one or two levels below), or runs.csv of an earlier "
         "analysis; runs that have not ended or are of another scene are left out with a note on stderr",
@@ -38,7 +32,7 @@ def _add_study(parser, name):
     parser.add_argument(
         "--figures",
         metavar="FOLDER",
-        help="write comparison.md, comparison.json, runs.csv (a row a run) and the figures there; made if it is missing",
+        help="write README.md, details.md, comparison.json, runs.csv (a row a run) and the figures there; made if it is missing",
     )
     parser.add_argument(
         "--page",
@@ -56,7 +50,7 @@ def _add_study(parser, name):
         dest="format",
         help="print JSON (SI units unless a unit is named): --format json",
     )
-    parser.set_defaults(command=run, name=name)
+    parser.set_defaults(command=run)
 
 
 def _page_file(text):
@@ -70,13 +64,18 @@ def run(options):
     # pandas and scipy take a moment to load, and the parser does without them.
     from ..runs.arrays import RunFolderError
     from ..studies.analyse import NothingToAnalyse, analyse
-    from ..studies.find import find
+    from ..studies.find import find, names
+    from ..studies.paper import PaperError
 
+    if not options.name:
+        return _list()
+    if not options.runs:
+        complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
+        return FAILED
     try:
         analysis = analyse(find(options.name), options.runs)
         _complain_of(analysis.found)
-        if options.figures or options.page:
-            _write(analysis, options)
+        written = _write(analysis, options) if options.figures or options.page else None
     except NothingToAnalyse as nothing:
         _complain_of(nothing.found)
         if not nothing.found.problems:
@@ -85,21 +84,29 @@ def run(options):
     except OSError as error:
         complain(f"{error.filename or options.page or options.figures}: {error.strerror}")
         return FAILED
-    except RunFolderError as error:
+    except KeyError:
+        complain(
+            f"no study {options.name}: must be one of {', '.join(names())}, or a file of one's own that defines STUDY"
+        )
+        return FAILED
+    except (PaperError, RunFolderError) as error:
         complain(error)
         return FAILED
-    print(_printed(options.format, analysis).rstrip("\n"))
+    print(getattr(analysis, FORMATS[options.format])().rstrip("\n"))
+    if written and options.format == "text":
+        print(f"written: {written}")
     return FAILED if analysis.found.problems else 0
 
 
 def _write(analysis, options):
-    """Figures and page, as far as they are wanted."""
+    """Figures and page, as far as they are wanted; what to open first."""
     with _folder(options.figures) as folder:
-        written = analysis.write(folder)
+        written = analysis.write(folder, tuple(_commands(options)))
         for name in written.undrawn:
             complain(f"{name}: not drawn: it needs the run folders, a table has only their numbers")
         if options.page:
-            _write_page(options.page, analysis.page(written, tuple(_commands(options))))
+            _write_page(options.page, analysis.page(written))
+    return options.page or folder / "README.md"
 
 
 @contextmanager
@@ -114,7 +121,7 @@ def _folder(wanted):
 
 def _write_page(file, text):
     """The page, whole or not there, and its PDF; a PDF of an earlier page goes where there can be none of this one."""
-    from ..report.page.pdf import NoPdf, write_pdf
+    from ..report.pdf import NoPdf, write_pdf
 
     file.parent.mkdir(parents=True, exist_ok=True)
     part, pdf = file.with_name(f".{file.name}.part"), file.with_suffix(".pdf")
@@ -128,15 +135,14 @@ def _write_page(file, text):
 
 
 def _commands(options):
-    """How to make the runs and the page again, without this machine's folders."""
+    """How to make it again, without this machine's folders."""
     runs = " ".join(
         path if not os.path.isabs(path) else os.path.basename(os.path.normpath(path)) for path in options.runs
     )
-    yield f"make study-{options.name}   # the runs of the study's table and this page, in runs/{options.name}"
-    yield f"python3 -m analysis study {options.name} {runs} --page {options.page.name}   # this page from its runs"
+    yield f"python3 -m analysis study {options.name} {runs} --figures FOLDER --page FILE.html"
 
 
-def _list(options):
+def _list():
     from ..studies.find import find, names
 
     width = max(map(len, names()))
@@ -148,13 +154,3 @@ def _list(options):
 def _complain_of(found):
     for line in (*found.notes, *found.problems):
         complain(line)
-
-
-def _printed(wanted, analysis):
-    from ..report.data import json_text
-    from ..report.markdown import markdown
-    from ..report.text import text
-
-    if wanted == "csv":
-        return analysis.csv()
-    return {"text": text, "markdown": markdown, "json": json_text}[wanted](analysis.report)

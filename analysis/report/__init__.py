@@ -1,2 +1,1 @@
-"""Results as text: sections (section.py) written for a terminal (text.py), as Markdown (markdown.py) and as JSON
-(data.py)."""
+"""What is said of runs: the summary of one (summary.py), how far many are (status.py), and a PDF of a page (pdf.py)."""

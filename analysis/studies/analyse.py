@@ -1,20 +1,26 @@
-"""From a study and paths to its results, report, table and figures."""
+"""From a study and paths to its results, pages, table and figures."""
 
+import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+
+import pandas
 
 from ..progress import progress
-from ..report.data import json_text
-from ..report.markdown import markdown
-from ..report.section import Report
 from ..runs.table import NoRunFolder, table_text
-from .definition import Study
+from .definition import Results, Study
 from .find import figures
 from .gather import Gathered, gather
+from .html import html_page
+from .page import DETAILS_FILE, PAGE_FILE, details, screen
+from .paper import Page, PaperError, read_paper
+from .predictions import predictions
+from .tables import quantity_table, tests_table, text_table
+from .verdict import judge
 
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
-TABLE_FILE, PAGE_FILE, DATA_FILE = "runs.csv", "comparison.md", "comparison.json"
+TABLE_FILE, DATA_FILE = "runs.csv", "comparison.json"
 
 
 class NothingToAnalyse(Exception):
@@ -27,86 +33,158 @@ class NothingToAnalyse(Exception):
 
 @dataclass(frozen=True)
 class Analysis:
-    """A study's results of a set of runs: found (gather.Gathered), results (of study.results), report."""
+    """A study's results of a set of runs: found (gather.Gathered), results (definition.Results), words (paper.Page), judgements
+    ([verdict.Judgement] of the paper's claims), predictions ([predictions.Prediction])."""
 
     study: Study
     found: Gathered
-    results: Any
-    report: Report
+    results: Results
+    words: Page
+    judgements: list
+    predictions: list
+
+    @property
+    def remarks(self):
+        """Lines that say what could not be done, and why."""
+        return tuple(self.study.remarks(self.results))
+
+    @property
+    def notes(self):
+        """What the files say of runs left out, without this machine's paths."""
+        found = self.found
+        lines = list(found.earlier)
+        if found.notes:
+            lines.append(f"{len(found.notes)} runs left out (not ended, of another scene, or with nothing to measure)")
+        if found.problems:
+            lines.append(f"{len(found.problems)} runs not readable")
+        return lines
+
+    def predictions_table(self):
+        """DataFrame of text of the predictions."""
+        return pandas.DataFrame([vars(p) for p in self.predictions]).rename(columns={"held": "held?"})
 
     def csv(self):
         """The table of runs as a file (str)."""
-        head = {"study": self.study.name, "provenance": self.report.provenance, "notes": list(self.report.notes)}
+        head = {"study": self.study.name, "provenance": self.found.provenance, "notes": self.notes}
         return table_text(self.found.table, self.study.columns, head)
 
-    def write(self, folder):
-        """Write table, comparison, JSON and figures into a folder (Path, made if it is missing): Written."""
+    def text(self):
+        """For a terminal (str): every quantity, then the paper's numbers."""
+        parts = []
+        for quantity in self.results.quantities.values():
+            unit = f" [{quantity.unit}]" if quantity.unit else ""
+            parts += [f"{quantity.name}{unit}: {quantity.meaning}", text_table(quantity_table(quantity))]
+        if self.judgements:
+            parts += [f"beside {self.words.paper}", text_table(tests_table(self.judgements))]
+        return "\n".join((*parts, *self.remarks))
+
+    def markdown(self):
+        """Both pages (str), without figures."""
+        return screen(self, {}, self.is_gallerys()) + "\n" + details(self, {})
+
+    def json(self):
+        """Everything as a JSON file (str), in SI units but for the paper's claims, which are in the unit named."""
+        content = {
+            "study": self.study.name,
+            "provenance": self.found.provenance,
+            "notes": self.notes,
+            "claims": [j.record for j in self.judgements],
+            "predictions": [vars(p) for p in self.predictions],
+            "quantities": {
+                q.name: {"meaning": q.meaning, "unit": q.unit, "scale": q.scale, "rows": _rows(q)}
+                for q in self.results.quantities.values()
+            },
+        }
+        return json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+    def is_gallerys(self):
+        """Whether the runs are those of the gallery, which the words of paper.toml are of."""
+        try:
+            kept = json.loads((GALLERY / self.study.name / DATA_FILE).read_text(encoding="utf-8"))
+            return kept["provenance"] == _plain(self.found.provenance)
+        except (OSError, ValueError, KeyError, TypeError):
+            return False
+
+    def write(self, folder, commands=()):
+        """Write pages, table, JSON and figures into a folder (Path, made if it is missing): Written. commands: lines that say how to make
+        all of it again."""
         folder.mkdir(parents=True, exist_ok=True)
         (folder / TABLE_FILE).write_text(self.csv(), encoding="utf-8")
-        (folder / DATA_FILE).write_text(json_text(self.report), encoding="utf-8")
+        (folder / DATA_FILE).write_text(self.json(), encoding="utf-8")
         drawn, undrawn = _draw(self.study, self.results, folder)
-        (folder / PAGE_FILE).write_text(markdown(self.report, drawn), encoding="utf-8")
-        return Written(folder, tuple(drawn), tuple(undrawn))
+        prose = folder.resolve() == GALLERY / self.study.name or self.is_gallerys()
+        texts = {PAGE_FILE: screen(self, drawn, prose), DETAILS_FILE: details(self, drawn, commands)}
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        return Written(folder, texts, drawn, tuple(undrawn))
 
-    def page(self, written, commands):
-        """The HTML page (str) with what was written in it. commands: lines that say how to make it again."""
-        from ..report.page.gallery_reading import gallery_reading
-        from ..report.page.render import page
-
-        pictures = [(written.folder / name, caption) for name, caption in written.figures]
+    def page(self, written):
+        """The HTML page (str) with what was written in it."""
         files = [written.folder / name for name in (TABLE_FILE, DATA_FILE)]
-        reading = gallery_reading(GALLERY / self.study.name, self.report.provenance)
-        return page(self.report, pictures, files, commands, reading)
+        return html_page(self.study.title, written.texts.values(), written.folder, files)
 
 
 @dataclass(frozen=True)
 class Written:
-    """What Analysis.write() left: folder (Path), figures ((file name, caption) of each that is there), undrawn (names of
-    those that could not be drawn because they need run folders)."""
+    """What Analysis.write() left: folder (Path), texts ({file name: Markdown}), figures ({name: (file name, caption)} of each that is
+    there), undrawn (names of those that could not be drawn because they need run folders)."""
 
     folder: Path
-    figures: tuple
+    texts: dict
+    figures: dict
     undrawn: tuple
 
 
 def analyse(study, paths):
     """Analysis of a definition.Study from run folders, folders that hold them and tables of earlier analyses (paths).
 
-    NothingToAnalyse where no run of its scene is among them; what is wrong with others is in .found."""
+    NothingToAnalyse where no run of its scene is among them, paper.PaperError where its paper.toml or predictions.csv can't be used;
+    what is wrong with runs is in .found."""
+    words, claims = read_paper(study.folder)
     found = gather(study, paths)
     if found.table is None:
         raise NothingToAnalyse(study, found)
     results = study.results(found.table)
-    sections, remarks = tuple(study.sections(results)), tuple(study.remarks(results))
-    report = Report(
-        study.name,
-        study.title,
-        found.provenance,
-        remarks,
-        tuple(_kept(found)),
-        sections,
-        question=study.question,
-        seeds=int(found.table["seed"].nunique()) if "seed" in found.table else None,
-    )
-    return Analysis(study, found, results, report)
+    try:
+        judged = judge(claims, results)
+    except (KeyError, ValueError) as error:
+        raise PaperError(f"{study.folder}: paper.toml: {error.args[0]}") from None
+    return Analysis(study, found, results, words, judged, predictions(study.folder, results))
 
 
-def _kept(found):
-    """What the files say of runs left out, without this machine's paths."""
-    yield from found.earlier
-    if found.notes:
-        yield f"{len(found.notes)} runs left out (not ended, of another scene, or with nothing to measure)"
-    if found.problems:
-        yield f"{len(found.problems)} runs not readable"
+def _rows(quantity):
+    """Records of a quantity's estimates."""
+    for key, estimate in quantity.values.items():
+        where = dict(zip(quantity.values.index.names, key)) if isinstance(key, tuple) else {}
+        low, high = estimate.interval()
+        yield {
+            **where,
+            "value": estimate.value,
+            "error": estimate.error,
+            "low": low,
+            "high": high,
+            "pairs": estimate.pairs,
+        }
+
+
+def _plain(value):
+    """The value as JSON can hold it: numpy's numbers as Python's, null for NaN and infinity."""
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if not isinstance(value, str) and hasattr(value, "__iter__"):
+        return [_plain(item) for item in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _draw(study, results, folder):
-    """([(file name, caption)] of the figures that are there, [name] of those that need run folders)."""
+    """({name: (file name, caption)} of the figures that are there, [name] of those that need run folders)."""
     # matplotlib is slow to load, and the numbers do without it.
     from ..figures.save import save_small, save_vector
 
-    there, undrawn = [], []
-    for figure in progress(figures(study.name), "drawing"):
+    there, undrawn = {}, []
+    for figure in progress(figures(study), "drawing"):
         file = folder / f"{figure.name}.png"
         try:
             drawn = figure.draw(results)
@@ -121,5 +199,5 @@ def _draw(study, results, folder):
             # One of an earlier analysis stays.
             undrawn.append(figure.name)
         if file.exists():
-            there.append((file.name, figure.caption))
+            there[figure.name] = (file.name, figure.caption)
     return there, undrawn

@@ -1,45 +1,87 @@
 """What a study is made of."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Callable
 
+import pandas
+
 from ..runs.collect import Scene
+from .runs import at, select
 
 
 class NotMeasured(Exception):
     """A sound run in which there is nothing to measure; the message is one line that says why."""
 
 
-def _nothing(results):
-    return ()
+@dataclass(frozen=True)
+class Quantity:
+    """What a study tells: name (a word: what paper.toml and figures call it), meaning (the sentence a table is headed with), values
+    (Series of Estimate or Fraction in SI units, indexed by what it depends on), unit in which it is shown (''), scale (that unit in SI)."""
+
+    name: str
+    meaning: str
+    values: pandas.Series
+    unit: str = ""
+    scale: float = 1.0
+
+    def at(self, **where):
+        """The Estimate or Fraction, in SI units, there; None where it is not known (runs.at)."""
+        try:
+            return at(self.values, **where)
+        except KeyError as error:
+            levels = ", ".join(self.values.index.names)
+            raise KeyError(f"{self.name} has no {error.args[0]}: it is by {levels}") from None
+
+    def shown(self, estimate):
+        """An estimate in the unit in which it is shown."""
+        return estimate if self.scale == 1.0 else estimate / self.scale
+
+
+@dataclass(frozen=True)
+class Results:
+    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError."""
+
+    table: pandas.DataFrame
+    quantities: dict
+
+    def __getitem__(self, name):
+        if name not in self.quantities:
+            raise KeyError(f"no quantity {name}: there are {', '.join(self.quantities)}")
+        return self.quantities[name]
+
+    def series(self, name, **where):
+        """Series of the estimates of a quantity at these values of some of its levels."""
+        return select(self[name].values, **where)
 
 
 @dataclass(frozen=True)
 class Study:
-    """title; scene (which runs); columns (runs.table.Column: what `measure` returns; the scene's numbers are among them);
+    """title; question (what it asks, and of which paper); scene (which runs); columns (runs.table.Column: what `measure` returns; the
+    numbers that tell runs apart are among them);
 
-    measure   RunFolder -> {column: value}, one row of the table; NotMeasured or RunFolderError where it can't
-    results   table (pandas.DataFrame, a row a run, at least one) -> whatever sections and figures need
-    sections  results -> report.section.Section of the comparison, in order
-    remarks   results -> lines (str) that say what could not be done, and why
-
-    question  what the study asks, and of which paper: the first lines of its page
-    name: that of the study's folder, filled in by find()."""
+    measure     RunFolder -> {column: value}, one row of the table; NotMeasured or RunFolderError where it can't
+    quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
+    remarks     Results -> lines (str) that say what could not be done, and why
+    folder (Path; find() fills it in): where paper.toml is, if there is one. name: the folder's."""
 
     title: str
+    question: str
     scene: Scene
     columns: tuple
     measure: Callable
-    results: Callable
-    sections: Callable
-    remarks: Callable = _nothing
-    question: str = ""
+    quantities: Callable
+    remarks: Callable = lambda results: ()
     name: str = ""
+    folder: object = field(default=None, compare=False)
+
+    def results(self, table):
+        """Results of a table of runs."""
+        return Results(table, {quantity.name: quantity for quantity in self.quantities(table)})
 
 
 @dataclass(frozen=True)
 class StudyFigure:
-    """A figure: file name without ending, caption, and draw: results -> matplotlib Figure, or None where the runs don't
+    """A figure: file name without ending, caption, and draw: Results -> matplotlib Figure, or None where the runs don't
     suffice. A figure that needs run folders takes them by runs.table.run_folder. vector: whether it is also saved as PDF;
     not where tens of thousands of lines or pixels would make that large."""
 

@@ -1,9 +1,10 @@
-"""Studies and their figures, found by their folders."""
+"""Studies and their figures, found by their folders, or by the path of a file of one's own."""
 
 import pkgutil
 from dataclasses import replace
 from importlib import import_module
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from pathlib import Path
 
 from .. import studies
 
@@ -14,22 +15,37 @@ def names():
 
 
 def find(name):
-    """definition.Study of that name; KeyError when there is none."""
+    """definition.Study of that name, or of a file NAME.py that defines STUDY (and FIGURES, if it has any); KeyError when there is none."""
+    if name.endswith(".py"):
+        return replace(_own(Path(name)).STUDY, name=Path(name).stem, folder=Path(name).resolve())
     if name not in names():
         raise KeyError(name)
-    return replace(_module(f"{name}.study").STUDY, name=name)
+    return replace(_module(f"{name}.study").STUDY, name=name, folder=Path(studies.__path__[0]) / name)
 
 
-def figures(name):
-    """definition.StudyFigure of a study, those of the paper (figNN_...) first, then by name."""
-    if not _has(f"{name}.figures"):
+def figures(study):
+    """Figures (definition.StudyFigure, curve_figure.CurveFigure) of a study, those of the paper (figNN_...) first, then by name."""
+    if study.folder.suffix == ".py":
+        modules = [_own(study.folder)]
+    elif not _has(f"{study.name}.figures"):
         return []
-    package = _module(f"{name}.figures")
-    modules = [package]
-    for module in pkgutil.iter_modules(getattr(package, "__path__", ())):
-        modules.append(_module(f"{name}.figures.{module.name}"))
+    else:
+        package = _module(f"{study.name}.figures")
+        inside = pkgutil.iter_modules(getattr(package, "__path__", ()))
+        modules = [package, *(_module(f"{study.name}.figures.{module.name}") for module in inside)]
     found = [figure for module in modules for figure in getattr(module, "FIGURES", ())]
     return sorted(found, key=lambda figure: (not figure.name.startswith("fig"), figure.name))
+
+
+def _own(file):
+    if not file.is_file():
+        raise KeyError(str(file))
+    spec = spec_from_file_location(f"own_study_{file.stem}", file)
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    if not hasattr(module, "STUDY"):
+        raise KeyError(f"{file} defines no STUDY")
+    return module
 
 
 def _module(name):

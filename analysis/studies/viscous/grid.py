@@ -8,7 +8,6 @@ from math import log10
 ROUNDED = 2e-3  # relative, of velocities: 50.1 for 10^1.7, 20 for 10^1.3 would be 2.4e-3
 OFFSET_ROUNDED = 1e-3  # of B_off
 TIME_DIGITS = 16  # of T_vis [s]
-SAME = 1e-6  # relative, of velocities of the table
 
 
 def velocity_of_grid(velocity):

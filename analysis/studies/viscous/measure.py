@@ -13,13 +13,16 @@ from ...runs.table import Column
 from ...theory import Material, pair_constants, sticking_velocity
 from ..definition import NotMeasured
 from ..grains import require_papers_grains
-from . import paper
-from .grid import SAME, offset_of_grid, time_of_grid, velocity_of_grid
+from .grid import offset_of_grid, time_of_grid, velocity_of_grid
 
 # A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
 DISSIPATION = ("rollingDissipation", "slidingDissipation", "twistingDissipation", "connection", "disconnection", "drag")
 
-ENOUGH = 0.9  # of the time that the paper gives its slowest collisions: r_c scatters from pair to pair
+# r_c that the aggregates' centres go until A22's last time, 6.34 us, in its slowest collisions: 10^1.3 m/s, r_c = 72.27 r of 1e-7 m.
+RADII_TRAVELLED = 10**1.3 * 6.34e-6 / 72.27e-7
+ENOUGH = 0.9  # of these: r_c scatters from pair to pair
+REFERENCE_VELOCITY, REFERENCE_SQUARE = 10**1.7, 3 / 12  # m/s, B_off^2: the collision that A22 shows most
+SAME = 1e-6  # relative, of the grid
 FAST = 10.0  # m/s: A22 section 5.1 counts the pairs beyond
 
 COLUMNS = (
@@ -94,7 +97,7 @@ def _require_final(run, scene):
     time, duration = float(run.history["time"][-1]), run.parameters.get("duration")
     if duration is None or time < 0.999 * float(duration):
         return
-    least = ENOUGH * paper.RADII_TRAVELLED * scene["characteristic_radius"] / scene["velocity"]
+    least = ENOUGH * RADII_TRAVELLED * scene["characteristic_radius"] / scene["velocity"]
     if time < least:
         raise NotMeasured(
             f"{run.path}: lasts {time:.3g} s, too short for final fragments: must be {least:.3g} s or more"
@@ -103,7 +106,7 @@ def _require_final(run, scene):
 
 def is_reference(row):
     """Whether it is the collision that A22 looks at most: 50.1 m/s, B_off^2 = 3/12; row: mapping, measured."""
-    return abs(row["velocity"] / paper.VELOCITY - 1) < SAME and abs(row["impact"] ** 2 - paper.SQUARE) < SAME
+    return abs(row["velocity"] / REFERENCE_VELOCITY - 1) < SAME and abs(row["impact"] ** 2 - REFERENCE_SQUARE) < SAME
 
 
 def largest_of_pairs(run):

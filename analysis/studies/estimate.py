@@ -1,0 +1,206 @@
+"""A number with its bootstrap draws over independent pairs of aggregates. What follows from such numbers keeps the draws, so that
+differences and ratios of what the same pairs gave have the right errors by themselves.
+
+A draw weighs every pair by an exponential random number (the Bayesian bootstrap, Rubin 1981). A pair's weights follow from its name
+alone: they are the same wherever the pair occurs, and independent of those of any other."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from zlib import crc32
+
+import numpy as np
+from scipy.stats import binomtest, fisher_exact
+from scipy.stats import t as student
+
+CONFIDENCE = 0.95
+DRAWS = 1000
+RANDOM_SEED = 20240124
+LOST = 0.05  # with this part of the draws undefined or more, the others would tell too small an error
+ROUNDING = 1e-12  # relative: draws that differ by less are the same number, rounded differently
+EXACT = math.inf  # pairs behind a number that has no scatter: a closed form
+
+
+@lru_cache(maxsize=100_000)
+def weights_of(pair):
+    """Weights (DRAWS,) of one pair of aggregates, by its name (str)."""
+    return np.random.default_rng([RANDOM_SEED, crc32(pair.encode())]).exponential(size=DRAWS)
+
+
+def weights_of_pairs(pairs):
+    """Weights (DRAWS, n) of n pairs, by their names."""
+    return np.stack([weights_of(pair) for pair in pairs], axis=1)
+
+
+def stretch(pairs, fitted=1):
+    """Factor of deviations of a statistic with `fitted` numbers, without which the draws of few pairs scatter too little (for a
+    mean exactly: the variance of Dirichlet weights is 1/(n + 1) of the sample's, n - 1 degrees of freedom)."""
+    return math.sqrt((pairs + 1) / (pairs - fitted))
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """value; draws (DRAWS,), NaN where undefined; pairs: the fewest independent pairs of aggregates behind it, EXACT for a closed form.
+
+    >>> a, b = mean({"1": 2.0, "2": 4.0, "3": 3.0}), mean({"1": 1.0, "2": 3.0, "3": 2.0})
+    >>> (a - b).value, round((a - b).error, 6), (a / 2).value
+    (1.0, 0.0, 1.5)
+    """
+
+    value: float
+    draws: np.ndarray
+    pairs: float
+
+    @property
+    def error(self):
+        """Standard error: the scatter of the draws; None for one pair, and where LOST of the draws or more are undefined; 0 where all pairs
+        gave the same number."""
+        if self.pairs == EXACT:
+            return 0.0
+        good = self.draws[np.isfinite(self.draws)]
+        if self.pairs < 2 or len(good) <= (1 - LOST) * len(self.draws):
+            return None
+        spread = float(good.std(ddof=1))
+        return spread if spread > ROUNDING * np.abs(good).max() else 0.0
+
+    def interval(self, confidence=CONFIDENCE):
+        """(low, high), Student's with one degree of freedom less than pairs; (None, None) without an error."""
+        error = self.error
+        if error is None or (error == 0 and self.pairs != EXACT):
+            return None, None
+        reach = error * self._quantile(0.5 + 0.5 * confidence) if error else 0.0
+        return self.value - reach, self.value + reach
+
+    def error_beside(self, runs):
+        """Standard error of the difference from the mean of so many independent runs of somebody else's that scatter as these
+        pairs do (math.inf: their number has no error); None without an error."""
+        error = self.error
+        return None if error is None else 0.0 if self.pairs == EXACT else error * math.sqrt(1 + self.pairs / runs)
+
+    def chance(self, value, runs=EXACT):
+        """p of a difference from such a number as large as this or larger, either way, by Student's t; None without an error."""
+        both = self.error_beside(runs)
+        if not both:
+            return None
+        return float(2 * student.sf(abs(self.value - value) / both, self.pairs - 1))
+
+    def _quantile(self, p):
+        return float(student.ppf(p, self.pairs - 1))
+
+    def __add__(self, other):
+        return _with(self, other, lambda a, b: a + b)
+
+    def __sub__(self, other):
+        return _with(self, other, lambda a, b: a - b)
+
+    def __mul__(self, other):
+        return _with(self, other, lambda a, b: a * b)
+
+    def __truediv__(self, other):
+        return _with(self, other, lambda a, b: a / b)
+
+    def __rsub__(self, other):
+        return _with(self, other, lambda a, b: b - a)
+
+    def __rtruediv__(self, other):
+        return _with(self, other, lambda a, b: b / a)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __neg__(self):
+        return self * -1.0
+
+    def __repr__(self):
+        return number_text(self.value, self.error)
+
+
+@dataclass(frozen=True, eq=False)
+class Fraction:
+    """How many of independent runs ended so: successes of pairs; undecided: runs that may have, and are in neither.
+
+    >>> Fraction(3, 5).value, Fraction(3, 5, undecided=1).bounds
+    (0.6, (0.6, 0.8))
+    """
+
+    successes: int
+    pairs: int
+    undecided: int = 0
+    error = None
+
+    @property
+    def value(self):
+        """The fraction, with undecided runs counted as no."""
+        return self.successes / self.pairs
+
+    @property
+    def bounds(self):
+        """(low, high): with every undecided run counted as no, and as yes."""
+        return self.value, (self.successes + self.undecided) / self.pairs
+
+    def interval(self, confidence=CONFIDENCE):
+        """(low, high): Wilson's interval, with the undecided runs counted either way."""
+        counts = (self.successes, self.successes + self.undecided)
+        low, high = (binomtest(k, self.pairs).proportion_ci(confidence, method="wilson") for k in counts)
+        return float(low.low), float(high.high)
+
+    def chance(self, value, runs=EXACT):
+        """p (Fisher; the binomial test where the other has no error) of the fraction `value` of so many runs; the larger of both ways
+        to count the undecided."""
+        counts = (self.successes, self.successes + self.undecided)
+        if runs == EXACT:
+            return max(binomtest(k, self.pairs, value).pvalue for k in counts)
+        theirs = round(value * runs)
+        tables = ([[k, self.pairs - k], [theirs, runs - theirs]] for k in counts)
+        return max(float(fisher_exact(table)[1]) for table in tables)
+
+    def __repr__(self):
+        return f"{self.successes} of {self.pairs}" + (f", {self.undecided} undecided" if self.undecided else "")
+
+
+def mean(of_pairs):
+    """Estimate of the mean of {pair's name: number}, at least one."""
+    values, n = np.array(list(of_pairs.values()), dtype=float), len(of_pairs)
+    value = float(values.mean())
+    if n < 2:
+        return Estimate(value, np.full(DRAWS, value), n)
+    weights = weights_of_pairs(of_pairs)
+    drawn = weights @ (values - value) / weights.sum(axis=1)
+    return Estimate(value, value + stretch(n) * drawn, n)
+
+
+def exact(value):
+    """Estimate without scatter."""
+    return Estimate(float(value), np.full(DRAWS, float(value)), EXACT)
+
+
+def combine(f, *estimates):
+    """Estimate of f(numbers): f is called once with the values, and once with all draws (arrays in, array out)."""
+    with np.errstate(all="ignore"):
+        value, draws = f(*(e.value for e in estimates)), f(*(e.draws for e in estimates))
+    return Estimate(float(value), np.broadcast_to(draws, DRAWS).astype(float), min(e.pairs for e in estimates))
+
+
+def curve(f, x, estimates):
+    """Estimate of f(x (K,), y (..., K)), for thresholds, fits and extrapolations; f works along the last axis."""
+    x = np.asarray(x, dtype=float)
+    return combine(lambda *y: f(x, np.stack(np.broadcast_arrays(*y), axis=-1)), *estimates)
+
+
+def _with(one, other, f):
+    if isinstance(other, Estimate):
+        return combine(f, one, other)
+    return combine(lambda a: f(a, other), one) if np.isscalar(other) else NotImplemented
+
+
+def number_text(value, error=None):
+    """'54.0 ± 1.0': the value to two digits of its error, or to four of its own.
+
+    >>> number_text(1.23456, 0.0191), number_text(1234.6, 21.0), number_text(0.5), number_text(None), number_text(12345.6, 1520.0)
+    ('1.235 ± 0.019', '1235 ± 21', '0.5', '-', '12300 ± 1500')
+    """
+    if value is None or not math.isfinite(value):
+        return "inf" if value == math.inf else "-"
+    if not error:
+        return f"{value:.4g}"
+    digits = 1 - math.floor(math.log10(float(f"{error:.1e}")))
+    return f"{round(value, digits):.{max(0, digits)}f} ± {round(error, digits):.{max(0, digits)}f}"

@@ -1,0 +1,53 @@
+"""What estimates depend on: how a table and a figure name it, in one list."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Level:
+    """symbol (plain text), math (for figures), unit in which it is shown, that unit in SI."""
+
+    symbol: str
+    math: str
+    unit: str = ""
+    scale: float = 1.0
+
+    def head(self):
+        """'T_vis [ps]'."""
+        return self.symbol + (f" [{self.unit}]" if self.unit else "")
+
+    def axis(self):
+        """The same for the axis of a figure."""
+        return self.math + (f"  [{self.unit}]" if self.unit else "")
+
+    def text(self, value):
+        """A value in that unit, without it."""
+        if not isinstance(value, (int, float)):
+            return str(value)
+        shown = float(f"{value / self.scale:.6g}")
+        return f"{shown:.0f}" if shown == round(shown) else f"{shown:.3g}"
+
+    def label(self, value, math=True):
+        """'$T_{vis}$ = 6 ps', for legends, panels and heads of columns (math=False); a word stands for itself."""
+        if isinstance(value, str):
+            return value
+        return f"{self.math if math else self.symbol} = {self.text(value)}" + (f" {self.unit}" if self.unit else "")
+
+
+_LEVELS = {
+    "velocity": Level("v", "$v$", "m/s"),
+    "viscoelasticTime": Level("T_vis", "$T_{vis}$", "ps", 1e-12),
+    "grains": Level("grains", "grains of each"),
+    "square": Level("12 B_off^2", "$12 B_{off}^2$", scale=1 / 12),
+    "filling": Level("φ", r"$\phi$"),
+    "radius": Level("R", "$R$", "r"),
+    "neck": Level("β", r"$\beta$"),
+    "growth_velocity": Level("V_g", "$V_g$", "m/s"),
+    "criticalRolling": Level("ξ_crit", r"$\xi_{crit}$", "Å", 1e-10),
+    "strainRate": Level("C_v", "$C_v$"),
+}
+
+
+def level(name):
+    """Level of that name; a name that is not in the list stands for itself."""
+    return _LEVELS.get(name) or Level(name, name)

@@ -1,0 +1,108 @@
+"""The pages of a study in Markdown: one screen that answers, and the details behind it. All studies have the same."""
+
+from ..measures.outcome import UNDECIDED
+from ..runs.provenance import provenance_lines
+from .paper import PaperError
+from .tables import claims_table, estimate_text, markdown_table, quantity_table, tests_table
+from .verdict import NO, UNTESTED, YES
+
+TEXT_ALONE = "The paper enters by its text and printed numbers alone; its figures were not measured."
+OURS = "Ours: mean ± standard error (independent pairs of aggregates). *Yes* and *no* by the tests declared in paper.toml; *untested*: not decided."
+WORDS = (("How our set-up differs", "differs"), ("New", "new"), ("Missing, and what it would cost", "missing"))
+DETAILS_FILE, PAGE_FILE = "details.md", "README.md"
+
+
+def screen(analysis, pictures, prose):
+    """The first screen (str) of an analyse.Analysis. pictures: {figure's name: (file name, caption)}; prose: whether the words of paper.toml
+    are of these runs. PaperError where these name what there is not."""
+    words, judged = analysis.words, [j for j in analysis.judgements if j.claim.row]
+    parts = [f"# {analysis.study.title}", analysis.study.question]
+    if words.paper:
+        parts.append(f"Beside {words.paper}. {TEXT_ALONE}")
+    parts.append(filled(words.verdict, analysis) if prose and words.verdict else counted(analysis.judgements))
+    if words.figure in pictures:
+        name, caption = pictures[words.figure]
+        parts.append(f"![{caption}]({name})\n\n{caption}")
+    if judged:
+        parts += [markdown_table(claims_table(judged)), OURS]
+    parts += [undecided(analysis.results.table)]
+    for head, name in WORDS:
+        text = getattr(words, name)
+        if text and (prose or name == "differs"):
+            parts.append(f"**{head}.**\n\n{filled(text, analysis)}")
+    return _joined(parts)
+
+
+def details(analysis, pictures, commands=()):
+    """Everything behind the first screen (str): tests, predictions, every quantity, figures, where the runs come from."""
+    parts = [f"# {analysis.study.title}: details"]
+    if analysis.judgements:
+        parts += [
+            "## Beside the paper",
+            markdown_table(tests_table(analysis.judgements)),
+            *_sentences(analysis.judgements),
+        ]
+    if analysis.predictions:
+        parts += ["## Predictions, made before the runs", markdown_table(analysis.predictions_table())]
+    parts.append("## Quantities")
+    for quantity in analysis.results.quantities.values():
+        head = f"**{quantity.name}**{f' [{quantity.unit}]' if quantity.unit else ''}: {quantity.meaning}"
+        parts += [head, markdown_table(quantity_table(quantity)) if len(quantity.values) else "No runs."]
+    if pictures:
+        parts += ["## Figures", *(f"![{caption}]({name})\n\n{caption}" for name, caption in pictures.values())]
+    lines = (*provenance_lines(analysis.found.provenance), *analysis.remarks, *analysis.notes)
+    parts += ["## Runs", "\n".join(f"- {line}" for line in lines), *(f"    {command}" for command in commands)]
+    return _joined(parts)
+
+
+def counted(judgements):
+    """One sentence on how many of a paper's statements these runs reproduce; '' without any.
+
+    >>> counted([])
+    ''
+    """
+    numbers = {kind: sum(j.verdict == kind for j in judgements) for kind in (YES, NO, UNTESTED)}
+    if not judgements:
+        return ""
+    return (
+        f"Of {len(judgements)} statements of the paper these runs reproduce {numbers[YES]}, contradict {numbers[NO]} and leave "
+        f"{numbers[UNTESTED]} untested."
+    )
+
+
+def undecided(table):
+    """A sentence on runs whose outcome is undecided; '' where there is none."""
+    number = int((table.outcome == UNDECIDED).sum()) if "outcome" in table else 0
+    return (
+        f"Undecided: {number} of {len(table)} runs ended before their outcome was; fractions have bounds with them on either side."
+        if number
+        else ""
+    )
+
+
+def filled(text, analysis):
+    """Words with their numbers: {{ say("quantity", column = value) }} gives '54.0 ± 1.0 m/s', or 'not run'. PaperError for a
+    quantity or column that there is not."""
+    # slow to load, and the numbers do without it
+    from jinja2 import Environment, StrictUndefined, TemplateError
+
+    def say(name, **where):
+        quantity = analysis.results[name]
+        estimate = quantity.at(**where)
+        return "not run" if estimate is None else estimate_text(quantity, estimate, unit=True)
+
+    try:
+        return Environment(undefined=StrictUndefined).from_string(text.strip()).render(say=say)
+    except (TemplateError, KeyError, ValueError) as error:
+        raise PaperError(
+            f"{analysis.study.name}: paper.toml: [page]: {error.args[0] if error.args else error}"
+        ) from None
+
+
+def _sentences(judgements):
+    said = [f"- {j.claim.label}: “{j.claim.sentence}” ({j.claim.source})" for j in judgements if j.claim.sentence]
+    return ["\n".join(said)] if said else []
+
+
+def _joined(parts):
+    return "\n\n".join(part.strip("\n") for part in parts if part) + "\n"

@@ -1,0 +1,108 @@
+"""A paper's numbers as data: NAME/paper.toml, and what the page of a study says in words.
+
+[page]
+paper = "Arakawa, Tanaka & Kokubo (2022)"     # written out: it heads the page
+figure = "fig03_mean_growth"                   # the one figure on it
+verdict, differs, new, missing                 # Markdown; {{ say("quantity", column = value) }} stands for "54.0 ± 1.0 m/s"
+
+[[claim]]
+quantity = "v_fra"                             # of the study
+label = "threshold velocity of fragmentation"  # how a table names it
+where = { grains = 50000, viscoelasticTime = 0 }   # SI
+value = 50.0        # as printed, in the quantity's unit; or low and/or high: limits that the paper's words set
+printed = "50 to 60 m/s"                       # how the paper prints it
+source = "section 3.2"
+sentence = "..."                               # the sentence it is from
+runs = 1                                       # independent pairs of aggregates behind the paper's number
+margin = 5.0        # agreement: our interval of the difference (or our interval) within this of the value (or of the limits)
+test = true         # in the page's family of tests; false: shown, not tested
+row = true          # on the page's first screen"""
+
+from dataclasses import dataclass, field, fields
+
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python 3.10
+    import tomli as tomllib
+
+FILE = "paper.toml"
+MOST_ROWS = 8
+
+
+class PaperError(Exception):
+    """A paper.toml that can't be used; the message is one line: which, where, what it must be."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One number or statement of a paper, as the head of this file describes it."""
+
+    quantity: str
+    label: str
+    printed: str
+    source: str
+    where: dict = field(default_factory=dict)
+    value: float = None
+    low: float = None
+    high: float = None
+    sentence: str = ""
+    runs: int = 1
+    margin: float = 0.0
+    test: bool = True
+    row: bool = False
+    note: str = ""
+
+    @property
+    def limits(self):
+        """(low, high) that it sets: its value twice, or limits, infinite where it sets none."""
+        if self.value is not None:
+            return self.value, self.value
+        return (-float("inf") if self.low is None else self.low), (float("inf") if self.high is None else self.high)
+
+
+@dataclass(frozen=True)
+class Page:
+    """Words of a page: paper (its name, written out), figure (name of the figure on the first screen), verdict, differs, new, missing
+    (Markdown with numbers by say())."""
+
+    paper: str = ""
+    figure: str = ""
+    verdict: str = ""
+    differs: str = ""
+    new: str = ""
+    missing: str = ""
+
+
+def read_paper(folder):
+    """(Page, (Claim, ...)) of a study's folder (Path; None: a study without one); empty where it has no paper.toml. PaperError."""
+    file = folder / FILE if folder else None
+    if file is None or not file.is_file():
+        return Page(), ()
+    try:
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise PaperError(f"{file}: {error}") from None
+    page = _made(Page, content.pop("page", {}), f"{file}: [page]")
+    claims = tuple(_claim(own, f"{file}: claim {k}") for k, own in enumerate(content.pop("claim", ()), 1))
+    if content:
+        raise PaperError(f"{file}: has {', '.join(content)}: must have page and claim alone")
+    if sum(claim.row for claim in claims) > MOST_ROWS:
+        raise PaperError(f"{file}: {sum(c.row for c in claims)} claims with row = true: must be {MOST_ROWS} at most")
+    return page, claims
+
+
+def _claim(values, where):
+    claim = _made(Claim, values, f"{where} ({values.get('label', 'without label')})")
+    if claim.test and claim.value is None and claim.low is None and claim.high is None:
+        raise PaperError(f"{where} ({claim.label}): is tested, and has no number: must have value, low or high")
+    return claim
+
+
+def _made(kind, values, where):
+    known = {f.name for f in fields(kind)}
+    if unknown := sorted(set(values) - known):
+        raise PaperError(f"{where}: has {', '.join(unknown)}: must be of {', '.join(sorted(known))}")
+    try:
+        return kind(**values)
+    except TypeError as error:
+        raise PaperError(f"{where}: {str(error).split('__init__() ')[-1]}") from None

@@ -1,0 +1,197 @@
+"""Groups of a table of runs, and estimates of each."""
+
+from copy import copy
+
+import numpy as np
+import pandas
+
+from .estimate import DRAWS, Estimate, Fraction, curve, mean, stretch, weights_of_pairs
+
+SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
+
+
+class Runs:
+    """A table of runs (DataFrame, a row a run), and what is independent in it.
+
+    pair        column that names a pair of aggregates
+    population  columns whose values have pairs of their own (the number of grains: pair 1 of 500 is not pair 1 of 2,000)"""
+
+    def __init__(self, table, pair="seed", population=()):
+        self.table, self.pair, self.population = table, pair, tuple(population)
+        self.average, self.points, self.weights = None, None, None
+
+    def of(self, table):
+        """The same for another table."""
+        found = copy(self)
+        found.table = table
+        return found
+
+    def where(self, **values):
+        """The runs with these values in their columns (numbers to SAME)."""
+        chosen = np.logical_and.reduce([alike(self.table[name], value) for name, value in values.items()])
+        return self.of(self.table[chosen])
+
+    def over(self, column, points, rule=None):
+        """The same, with each pair averaged over a column (offsets, say) before the pairs are. points: the values that a pair must have
+        all of to count; rule(points (K,), rising) -> weights (K,); None: equal."""
+        found = copy(self)
+        found.average, found.points = column, np.sort(np.asarray(points, dtype=float))
+        found.weights = np.ones(len(found.points)) if rule is None else np.asarray(rule(found.points), dtype=float)
+        return found
+
+    def estimates(self, values, by):
+        """Series of Estimate of the mean over pairs, by the columns `by`: of a column, or of a function table -> (runs,). Runs without
+        a value (NaN) don't count."""
+        return self._by(by, values)
+
+    def fractions(self, values, by, undecided=None):
+        """Series of Fraction: of runs for which a column, or a function table -> (runs,), is true; undecided: the same for runs that are
+        counted apart. A pair counts once: where it has several runs in a group, ValueError."""
+        maybe = pandas.Series(False, self.table.index) if undecided is None else self._values(undecided).astype(bool)
+        table = self.table.assign(value=self._values(values).astype(bool) & ~maybe, maybe=maybe)
+        found = {}
+        for key, rows in _groups(table, by):
+            if self._names(rows).duplicated().any():
+                raise ValueError(
+                    f"{dict(zip(by, key))}: a pair of aggregates has several runs, and would count more than once"
+                )
+            found[key] = Fraction(int(rows.value.sum()), len(rows), int(rows.maybe.sum()))
+        return _series(found, by)
+
+    def fit(self, f, names, by=(), fitted=None):
+        """Series of Estimate, by the columns `by` and `number`: names of the K numbers that f(rows (DataFrame), weights (B, n)) -> (B, K)
+        fits to all runs of a group at once. fitted: numbers fitted that count against the pairs (None: K)."""
+        found = {}
+        for key, rows in _groups(self.table, by):
+            labels, n = self._names(rows).to_list(), self._names(rows).nunique()
+            value = np.asarray(f(rows, np.ones((1, len(rows)))), dtype=float)[0]
+            draws = np.asarray(f(rows, weights_of_pairs(labels)), dtype=float) if n > 1 else value[None]
+            count = len(names) if fitted is None else fitted
+            drawn = value + (stretch(n, count) if n > count else np.nan) * (draws - value)
+            for k, name in enumerate(names):
+                found[(*key, name)] = Estimate(float(value[k]), np.broadcast_to(drawn[:, k], DRAWS), n)
+        return _series(found, (*by, "number"))
+
+    def _by(self, by, values):
+        """Series of Estimate of the mean over pairs."""
+        keys = [self.table[name].map(_key) for name in by]
+        names, values = (
+            self._names(self.table),
+            pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index),
+        )
+        if self.points is not None:
+            keys, names, values = self._averaged(keys, names, values)
+        of_pairs = values.dropna().groupby([*keys, names.rename("_pair")]).mean()
+        groups = of_pairs.groupby(level=list(range(len(by)))) if by else [((), of_pairs)]
+        found = {
+            key if isinstance(key, tuple) else (key,): mean(dict(zip(own.index.get_level_values(-1), own)))
+            for key, own in groups
+        }
+        return _series(found, by)
+
+    def _averaged(self, keys, names, values):
+        """The same, with each pair averaged over its points; pairs without all of them are left out."""
+        x = self.table[self.average].to_numpy(dtype=float)
+        places = np.abs(x[:, None] - self.points).argmin(axis=1)
+        there = alike(x, self.points[places])
+        index = [
+            *(key[there] for key in keys),
+            names[there].rename("_pair"),
+            pandas.Series(places[there], names.index[there], name="_point"),
+        ]
+        points = values[there].groupby(index).mean().unstack().reindex(columns=range(len(self.points))).dropna()
+        means = pandas.Series(points.to_numpy() @ (self.weights / self.weights.sum()), points.index)
+        levels = [pandas.Series(means.index.get_level_values(k), means.index) for k in range(means.index.nlevels)]
+        return levels[:-1], levels[-1], means
+
+    def _names(self, rows):
+        """Names of the pairs of a table's rows: with the population, so that they are unique."""
+        columns = [rows[name].map(_key).astype(str) for name in (*self.population, self.pair)]
+        return columns[0].str.cat(columns[1:], sep="|") if len(columns) > 1 else columns[0]
+
+    def _values(self, values):
+        return values(self.table) if callable(values) else self.table[values]
+
+
+def along(series, level, f):
+    """Series of Estimate of f(x (K,), y (..., K)) along one level of a Series of Estimate, x rising, for every value of the others."""
+    others = [name for name in series.index.names if name != level]
+    found = {}
+    for key, own in series.groupby(level=others) if others else [((), series)]:
+        own = own.sort_index(level=level)
+        key = key if isinstance(key, tuple) else (key,)
+        found[key] = curve(f, own.index.get_level_values(level), own.to_list())
+    return _series(found, others)
+
+
+def differences(first, second):
+    """Series of first less second, where both have an estimate."""
+    first, second = first.align(second, join="inner")
+    return first - second
+
+
+def ratios(first, second):
+    """Series of first over second, where both have an estimate."""
+    first, second = first.align(second, join="inner")
+    return first / second
+
+
+def together(of, level):
+    """One Series of {label: Series of the same levels}, with the label as one more level."""
+    frames = {label: own for label, own in of.items() if len(own)}
+    if not frames:
+        return pandas.Series(dtype=object)
+    joined = pandas.concat(frames, names=[level])
+    return joined.reorder_levels([*joined.index.names[1:], level])
+
+
+def at(series, **where):
+    """The one Estimate or Fraction of a Series at these values of its levels (numbers to SAME); None where there is none. KeyError for a
+    level that it lacks, ValueError where several are left."""
+    chosen = np.ones(len(series), dtype=bool)
+    for name, value in where.items():
+        chosen &= alike(series.index.get_level_values(name), value)
+    left = series[chosen]
+    if len(left) > 1:
+        raise ValueError(f"{where}: {len(left)} estimates, by {', '.join(series.index.names)}")
+    return left.iloc[0] if len(left) else None
+
+
+def select(series, **where):
+    """The part of a Series at these values of some levels, without these levels."""
+    for name, value in where.items():
+        series = series[alike(series.index.get_level_values(name), value)]
+    left = [name for name in series.index.names if name not in where]
+    return series.droplevel(list(where)) if left else series
+
+
+def alike(values, wanted):
+    """Whether values (n,) are printed as wanted (a number or (n,) numbers, or a word): booleans (n,).
+
+    >>> alike([50.1, 0.0], 10**1.7).tolist(), alike(["a", "b"], "b").tolist()
+    ([True, False], [False, True])
+    """
+    values = np.asarray(values)
+    if values.dtype.kind not in "fiub" or isinstance(wanted, str):
+        return values == wanted
+    return np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
+
+
+def _groups(table, by):
+    """((key, ...), rows) of a table by columns, keys rounded so that rounding of the last digits makes no group of its own."""
+    if not by:
+        yield (), table
+        return
+    for key, rows in table.groupby([table[name].map(_key) for name in by]):
+        yield key if isinstance(key, tuple) else (key,), rows
+
+
+def _key(value):
+    return float(f"{value:.9g}") if isinstance(value, float) else value
+
+
+def _series(found, by):
+    if not by:
+        return pandas.Series(list(found.values()), dtype=object)
+    index = pandas.MultiIndex.from_tuples(list(found), names=list(by))
+    return pandas.Series(list(found.values()), index, dtype=object)

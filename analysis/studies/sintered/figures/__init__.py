@@ -1,1 +1,0 @@
-"""The study's figures: modules with FIGURES."""

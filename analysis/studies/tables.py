@@ -1,0 +1,73 @@
+"""Tables of a study as DataFrames of text, and these as Markdown or for a terminal: every table of a page is made here."""
+
+import pandas
+
+from .estimate import EXACT, Fraction
+from .levels import level
+
+WIDEST = 8  # columns over which one of the things that a quantity depends on is spread
+
+
+def claims_table(judgements):
+    """The rows of a page: quantity, paper, ours, reproduced."""
+    rows = [
+        (f"{j.claim.label}{f' [{j.unit}]' if j.unit else ''}", j.claim.printed, j.ours_text, j.verdict)
+        for j in judgements
+    ]
+    return pandas.DataFrame(rows, columns=("quantity", "paper", "ours", "reproduced"))
+
+
+def tests_table(judgements):
+    """The same in full: with p, p after Holm's correction, why, and where the paper says it."""
+    rows = [(_p(j.p), _p(j.corrected), j.why, f"{j.claim.source}, {_runs(j.claim.runs)}") for j in judgements]
+    return claims_table(judgements).join(
+        pandas.DataFrame(rows, columns=("p", "p (Holm)", "why", "where the paper says it"))
+    )
+
+
+def quantity_table(quantity):
+    """A quantity against what it depends on; the last of these that has few values as columns."""
+    series = quantity.values.map(lambda estimate: estimate_text(quantity, estimate))
+    names = list(series.index.names)
+    if names == [None]:
+        return series.to_frame("")
+    few = [name for name in names if 1 < series.index.unique(name).size <= WIDEST] if len(names) > 1 else []
+    table = (series.unstack(few[-1]) if few else series.to_frame("value")).sort_index().fillna("")
+    heads = [level(few[-1]).label(value, math=False) for value in table.columns] if few else ["value"]
+    rows = [
+        [level(name).text(part) for name, part in zip(table.index.names, key if isinstance(key, tuple) else (key,))]
+        for key in table.index
+    ]
+    left = pandas.DataFrame(rows, columns=[level(name).head() for name in table.index.names])
+    return left.join(pandas.DataFrame(table.to_numpy(), columns=heads))
+
+
+def estimate_text(quantity, estimate, unit=False):
+    """'54.0 ± 1.0 (4)', the number of pairs in brackets, in the unit in which the quantity is shown; unit: with it, and without the
+    number of pairs."""
+    text = repr(quantity.shown(estimate) if not isinstance(estimate, Fraction) else estimate)
+    if unit:
+        return f"{text} {quantity.unit}" if quantity.unit else text
+    return text if isinstance(estimate, Fraction) or estimate.pairs == EXACT else f"{text} ({estimate.pairs:g})"
+
+
+def markdown_table(table):
+    """A DataFrame of text as Markdown (str)."""
+    rows = [list(map(str, table.columns)), *table.astype(str).to_numpy().tolist()]
+    cells = [" | ".join(cell.replace("|", "\\|") for cell in row) for row in rows]
+    return "\n".join([f"| {cells[0]} |", "|" + "---|" * len(table.columns), *(f"| {row} |" for row in cells[1:])])
+
+
+def text_table(table):
+    """The same for a terminal, words to the left."""
+    rows = [list(map(str, table.columns)), *table.astype(str).to_numpy().tolist()]
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return "\n".join("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
+
+
+def _p(value):
+    return "-" if value is None else f"{value:.2g}"
+
+
+def _runs(number):
+    return f"{number} run" + ("s" if number != 1 else "")

@@ -1,0 +1,157 @@
+"""A paper's claims beside our estimates: reproduced yes, no, or untested.
+
+no        they differ: p < 0.05 after Holm's correction over all tests of the page
+yes       our 95 % interval lies within the margin that was said before (of the value: the interval of the difference, with the error
+          of the paper's own runs, taken to scatter as ours; of limits: our own interval)
+untested  neither, or not run at that size, or not declared a test; `why` says which, and how many pairs would decide"""
+
+import math
+from dataclasses import dataclass
+
+from scipy.stats import norm
+from scipy.stats import t as student
+
+from .estimate import CONFIDENCE, EXACT, Fraction, number_text
+from .paper import Claim
+
+YES, NO, UNTESTED = "yes", "no", "untested"
+LEVEL = 1 - CONFIDENCE
+POWER = 0.8
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """claim; unit; ours (Estimate or Fraction in that unit; None: not run); p (None: not tested); corrected (p after Holm); verdict; why."""
+
+    claim: Claim
+    unit: str
+    ours: object
+    p: float
+    corrected: float
+    verdict: str
+    why: str
+
+    @property
+    def ours_text(self):
+        """'54.0 ± 1.0 (4)', with the number of pairs; '-' where it is not known."""
+        if self.ours is None:
+            return "-"
+        return repr(self.ours) + (
+            f" ({self.ours.pairs:g})" if self.ours.pairs != EXACT and not isinstance(self.ours, Fraction) else ""
+        )
+
+    @property
+    def record(self):
+        """All of it for JSON (dict)."""
+        claim, ours = self.claim, self.ours
+        low, high = (None, None) if ours is None else ours.interval()
+        numbers = (
+            {}
+            if ours is None
+            else {"value": ours.value, "error": ours.error, "low": low, "high": high, "pairs": ours.pairs}
+        )
+        return {
+            **{
+                name: getattr(claim, name)
+                for name in ("quantity", "label", "where", "printed", "source", "runs", "margin", "test", "row")
+            },
+            "limits": list(claim.limits),
+            "unit": self.unit,
+            "ours": numbers,
+            **{name: getattr(self, name) for name in ("p", "corrected", "verdict", "why")},
+        }
+
+
+def judge(claims, results):
+    """[Judgement] of claims beside definition.Results; KeyError for a quantity or level that there is not."""
+    found = [(claim, *_ours(claim, results)) for claim in claims]
+    chances = [_chance(claim, ours) if claim.test and ours is not None else None for claim, _, ours in found]
+    corrected = holm(chances)
+    return [
+        Judgement(claim, unit, ours, p, own, *_verdict(claim, ours, own))
+        for (claim, unit, ours), p, own in zip(found, chances, corrected)
+    ]
+
+
+def holm(chances):
+    """Holm's corrected p of a family, in its order; None where there was no test.
+
+    >>> holm([0.01, None, 0.04])
+    [0.02, None, 0.04]
+    """
+    order = sorted((p, k) for k, p in enumerate(chances) if p is not None)
+    corrected, largest = [None] * len(chances), 0.0
+    for place, (p, k) in enumerate(order):
+        largest = max(largest, min(1.0, p * (len(order) - place)))
+        corrected[k] = largest
+    return corrected
+
+
+def _ours(claim, results):
+    quantity = results[claim.quantity]
+    estimate = quantity.at(**claim.where)
+    return quantity.unit, None if estimate is None else quantity.shown(estimate)
+
+
+def _nearest(claim, ours):
+    """The value, or that one of the limits which is nearer to ours; ours itself within them."""
+    low, high = claim.limits
+    return min(max(ours.value, low), high)
+
+
+def _chance(claim, ours):
+    """p of a difference from the claim as large as ours; one-sided for limits, where it is 1 within them."""
+    nearest = _nearest(claim, ours)
+    if ours.pairs == EXACT:
+        return None
+    p = ours.chance(nearest, claim.runs)
+    if p is None or claim.value is not None:
+        return p
+    return 1.0 if nearest == ours.value else 0.5 * p
+
+
+def _verdict(claim, ours, corrected):
+    """(verdict, why)."""
+    if ours is None:
+        return UNTESTED, "no runs of ours there"
+    if not claim.test:
+        return UNTESTED, claim.note or "not declared a test"
+    low, high = (end + sign * claim.margin for end, sign in zip(claim.limits, (-1, 1)))
+    if ours.pairs == EXACT:
+        return (YES if low <= ours.value <= high else NO), "a closed form, without error"
+    if corrected is not None and corrected < LEVEL:
+        return NO, f"p = {corrected:.2g} after Holm's correction"
+    least, most = _interval(claim, ours)
+    if least is None:
+        return UNTESTED, "no error of ours: one pair, or no scatter" if ours.pairs < 2 else "no error of ours"
+    within = f"95 % interval {least:.3g} to {most:.3g}, agreement {low:.3g} to {high:.3g}"
+    if low <= least and most <= high:
+        return YES, within
+    return UNTESTED, f"{within}; {_needed(claim, ours)}"
+
+
+def _interval(claim, ours):
+    """Our interval; beside a value, widened by the error of the paper's own runs."""
+    if claim.value is None or isinstance(ours, Fraction):
+        return ours.interval()
+    both = ours.error_beside(claim.runs)
+    if not both:
+        return None, None
+    reach = both * float(student.ppf(1 - 0.5 * LEVEL, ours.pairs - 1))
+    return ours.value - reach, ours.value + reach
+
+
+def _needed(claim, ours):
+    """How many pairs would decide, with POWER, if the paper is right (within the margin) or ours is (beyond it)."""
+    if isinstance(ours, Fraction):
+        return f"{ours.pairs} runs don't decide"
+    scatter = ours.error * math.sqrt(ours.pairs)
+    low, high = claim.limits
+    away = max(claim.margin, low - ours.value, ours.value - high)
+    if not away > 0:
+        away = min(ours.value - low, high - ours.value)
+    reach = (norm.ppf(1 - 0.5 * LEVEL) + norm.ppf(POWER)) * scatter
+    inverse = (away / reach) ** 2 - (1 / claim.runs if claim.value is not None else 0.0)
+    if inverse <= 0:
+        return f"no number of pairs decides: the paper's {claim.runs} scatter by {number_text(scatter)}"
+    return f"some {max(ours.pairs, math.ceil(1 / inverse))} pairs would decide"
