@@ -9,7 +9,7 @@ import pandas
 
 from ..progress import progress
 from ..runs.table import NoRunFolder, table_text
-from .definition import Results, Study
+from .definition import GALLERY, SNAPSHOTS, Results, Study
 from .find import figures
 from .gather import Gathered, gather
 from .html import html_page
@@ -19,7 +19,6 @@ from .predictions import predictions
 from .tables import quantity_table, tests_table, text_table
 from .verdict import judge
 
-GALLERY = Path(__file__).resolve().parents[1] / "gallery"
 TABLE_FILE, DATA_FILE = "runs.csv", "comparison.json"
 
 
@@ -200,4 +199,14 @@ def _draw(study, results, folder):
             undrawn.append(figure.name)
         if file.exists():
             there[figure.name] = (file.name, figure.caption)
+    _keep(results.snapshots, folder / SNAPSHOTS)
     return there, undrawn
+
+
+def _keep(snapshots, folder):
+    """Write the states of which snapshots were drawn, so that they can be drawn again without run folders."""
+    from .snapshot_figure import write_snapshots
+
+    for run, states in snapshots.items():
+        folder.mkdir(exist_ok=True)
+        write_snapshots(folder / f"{run}.npz", states)

@@ -1,12 +1,15 @@
 """What a study is made of."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Callable
 
 import pandas
 
 from ..runs.collect import Scene
 from .runs import at, select
+
+GALLERY, SNAPSHOTS = Path(__file__).resolve().parents[1] / "gallery", "snapshots"
 
 
 class NotMeasured(Exception):
@@ -39,10 +42,14 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Results:
-    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError."""
+    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError. kept: folder (Path; None: there is none)
+    of the states that the gallery keeps of the study's runs; snapshots {run: [snapshot_figure.Snapshot]}: those that were read from
+    run folders."""
 
     table: pandas.DataFrame
     quantities: dict
+    kept: object = None
+    snapshots: dict = field(default_factory=dict)
 
     def __getitem__(self, name):
         if name not in self.quantities:
@@ -76,7 +83,8 @@ class Study:
 
     def results(self, table):
         """Results of a table of runs."""
-        return Results(table, {quantity.name: quantity for quantity in self.quantities(table)})
+        found = {quantity.name: quantity for quantity in self.quantities(table)}
+        return Results(table, found, GALLERY / self.name / SNAPSHOTS)
 
 
 @dataclass(frozen=True)
