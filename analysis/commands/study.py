@@ -64,7 +64,7 @@ def run(options):
     # pandas and scipy take a moment to load, and the parser does without them.
     from ..runs.arrays import RunFolderError
     from ..studies.analyse import NothingToAnalyse, analyse
-    from ..studies.find import find, names
+    from ..studies.find import NoSuchStudy, find
     from ..studies.paper import PaperError
 
     if not options.name:
@@ -84,12 +84,7 @@ def run(options):
     except OSError as error:
         complain(f"{error.filename or options.page or options.figures}: {error.strerror}")
         return FAILED
-    except KeyError:
-        complain(
-            f"no study {options.name}: must be one of {', '.join(names())}, or a file of one's own that defines STUDY"
-        )
-        return FAILED
-    except (PaperError, RunFolderError) as error:
+    except (NoSuchStudy, PaperError, RunFolderError) as error:
         complain(error)
         return FAILED
     print(getattr(analysis, FORMATS[options.format])().rstrip("\n"))

@@ -94,7 +94,7 @@ class Analysis:
                 for q in self.results.quantities.values()
             },
         }
-        return json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+        return _json_text(_plain(content)) + "\n"
 
     def is_gallerys(self):
         """Whether the runs are those of the gallery, which the words of paper.toml are of."""
@@ -166,6 +166,17 @@ def _rows(quantity):
         }
 
 
+def _json_text(value, margin=" "):
+    """JSON with one line for each record that holds no other."""
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    if not any(isinstance(part, (dict, list)) for part in parts):
+        return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    own = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(value)
+    lines = (f"{margin}{head}{_json_text(part, margin + ' ')}" for head, part in zip(own, parts))
+    start, end = "{}" if isinstance(value, dict) else "[]"
+    return start + "\n" + ",\n".join(lines) + f"\n{margin[:-1]}{end}"
+
+
 def _plain(value):
     """The value as JSON can hold it: numpy's numbers as Python's, null for NaN and infinity."""
     if isinstance(value, dict):
@@ -174,7 +185,9 @@ def _plain(value):
         return [_plain(item) for item in value]
     if hasattr(value, "item"):
         value = value.item()
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    if isinstance(value, float):
+        return float(f"{value:.10g}") if math.isfinite(value) else None
+    return value
 
 
 def _draw(study, results, folder):

@@ -5,14 +5,16 @@ from typing import Callable
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.ticker import LogLocator, NullFormatter
 
-from ..figures.panels import PAPER, legend, letter, panels
+from ..figures.panels import legend, letter, panels
 from ..figures.style import styled
 from .levels import level
 from .runs import alike, select
 
 _COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#7b3fa0", "#8c5a2b", "#111111")
 MARKERS = "osD^vP"
+WIDEST = 3  # panels beside each other
 
 
 def colours(values):
@@ -24,15 +26,11 @@ def colours(values):
 
 
 def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1.0):
-    """Estimates or Fractions at x (K,), with bars: standard errors, or intervals of fractions; open where the error is not known.
-
-    label gets the number of pairs."""
+    """Estimates or Fractions at x (K,), with bars: standard errors, or intervals of fractions; open where the error is not known."""
     value = np.array([estimate.value for estimate in estimates]) / scale
     errors = [_bar(estimate) for estimate in estimates]
     known = np.array([error is not None for error in errors], dtype=bool)
     bars = np.array([error or (0.0, 0.0) for error in errors]).T / scale
-    if label is not None:
-        label += f" ({_pairs(estimates)})"
     axes.plot(x, value, line, color=colour, lw=1.2)
     axes.errorbar(x, value, bars, fmt=marker, color=colour, capsize=3, markersize=5, mfc="white", label=label)
     axes.plot(np.asarray(x)[known], value[known], marker, color=colour, markersize=5, zorder=3)
@@ -40,14 +38,14 @@ def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1
 
 @dataclass(frozen=True)
 class CurveFigure:
-    """name, caption (as definition.StudyFigure); y: names of the quantities (one, or several: a row of panels each); x: the level on the
-    axis; colour, panel: levels that tell curves and panels apart (''); where: values of other levels; logarithmic: of 'x', 'y', 'xy', '';
-    y_label; limits: of y; level_line: where to draw a thin line (0.0, say); paper: (axes, {level: value} of the panel) -> None draws
-    what the paper prints. vector as in StudyFigure."""
+    """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis; colour, panel: levels that tell curves and
+    panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn; logarithmic: of 'x', 'y', 'xy', '';
+    y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are joined, '' where not; paper:
+    (axes, {level: value} of the panel) -> None draws what the paper prints. vector as in StudyFigure."""
 
     name: str
     caption: str
-    y: tuple
+    y: str
     x: str
     colour: str = ""
     panel: str = ""
@@ -56,6 +54,7 @@ class CurveFigure:
     y_label: str = ""
     limits: tuple = None
     level_line: float = None
+    line: str = "-"
     paper: Callable = None
     vector: bool = True
 
@@ -66,56 +65,93 @@ class CurveFigure:
 
 @styled
 def _draw(figure, results):
-    names = (figure.y,) if isinstance(figure.y, str) else figure.y
-    series = [select(results[name].values, **figure.where) for name in names]
-    shown = sorted({v for own in series for v in own.index.get_level_values(figure.panel)}) if figure.panel else [None]
-    if not any(map(len, series)) or not shown:
+    quantity = results[figure.y]
+    series = _chosen(quantity.values, figure.where)
+    if not len(series):
         return None
-    drawn, axes = panels(len(names), len(shown), 4.4, 3.8)
-    for name, own, row in zip(names, series, axes):
-        for value, place in zip(shown, row):
-            part = own if value is None else select(own, **{figure.panel: value})
-            _curves(place, figure, results[name], part, results.table)
-            _dress(place, figure, value)
-        row[0].set_ylabel(figure.y_label or f"{name} [{results[name].unit}]".replace(" []", ""))
-    legend(axes[0, 0], fontsize=8)
-    letter(axes, "")
+    shown = list(dict.fromkeys(series.index.get_level_values(figure.panel))) if figure.panel else [None]
+    shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
+    columns = min(len(shown), WIDEST)
+    drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
+    flat = axes.ravel()
+    for value, place in zip(shown, flat):
+        part = series if value is None else select(series, **{figure.panel: value})
+        _curves(place, figure, quantity, part, results.table)
+        _dress(place, figure, value, part)
+    for place in flat[len(shown) :]:
+        place.set_axis_off()
+    _share_y(flat[: len(shown)], figure)
+    for row in axes:
+        row[0].set_ylabel(figure.y_label or f"{figure.y} [{quantity.unit}]".replace(" []", ""))
+    legend(max(flat, key=lambda place: len(place.get_legend_handles_labels()[0])), fontsize=8)
+    letter(flat[: len(shown)], "")
     return drawn
+
+
+def _chosen(series, where):
+    """The part of a Series with these values of levels; a level given a tuple of values is kept."""
+    single = {name: value for name, value in where.items() if not isinstance(value, tuple)}
+    for name, values in where.items():
+        if isinstance(values, tuple):
+            own = series.index.get_level_values(name)
+            series = series[np.logical_or.reduce([alike(own, value) for value in values])]
+    return select(series, **single)
+
+
+def _share_y(places, figure):
+    """One scale for all panels of a quantity."""
+    limits = figure.limits or (None, None)
+    found = [place.get_ylim() for place in places]
+    low = min(own[0] for own in found) if limits[0] is None else limits[0]
+    high = max(own[1] for own in found) if limits[1] is None else limits[1]
+    for place in places:
+        place.set_ylim(low, high)
 
 
 def _curves(axes, figure, quantity, series, table):
     """The curves of one panel."""
+    same = len(_pairs(series)) == 1
     if not figure.colour:
-        return _curve(axes, figure, quantity, series, _COLOURS[-1], quantity.name, MARKERS[0])
+        return _curve(axes, figure, quantity, series, _COLOURS[-1], None, MARKERS[0])
     known = series.index.get_level_values(figure.colour)
     palette = colours(table[figure.colour] if figure.colour in table else known)
     for k, value in enumerate(sorted(set(known))):
         colour = next(own for key, own in palette.items() if alike([key], value)[0])
         own = select(series, **{figure.colour: value})
-        _curve(axes, figure, quantity, own, colour, level(figure.colour).label(value), MARKERS[k % len(MARKERS)])
+        label = level(figure.colour).label(value) + ("" if same and figure.panel else f", {pairs_text(own)}")
+        _curve(axes, figure, quantity, own, colour, label, MARKERS[k % len(MARKERS)])
 
 
 def _curve(axes, figure, quantity, series, colour, label, marker):
     series = series.sort_index()
     x = series.index.get_level_values(figure.x).to_numpy(dtype=float) / level(figure.x).scale
-    points(axes, x, series.to_list(), colour, label, marker, scale=quantity.scale)
+    points(axes, x, series.to_list(), colour, label, marker, figure.line, quantity.scale)
 
 
-def _dress(axes, figure, value):
+def _dress(axes, figure, value, series):
+    """Axes, thin line, what the paper has, and the title with the number of pairs."""
     if figure.level_line is not None:
         axes.axhline(figure.level_line, color="0.6", lw=0.8, zorder=0)
-    if "x" in figure.logarithmic:
-        axes.set_xscale("log")
-        axes.xaxis.set_major_formatter(lambda number, _: f"{number:.3g}")
-    if "y" in figure.logarithmic:
-        axes.set_yscale("log")
-    if figure.limits:
-        axes.set_ylim(*figure.limits)
+    for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
+        if name in figure.logarithmic:
+            getattr(axes, f"set_{name}scale")("log")
+            _plain_ticks(axis)
     if figure.paper:
         figure.paper(axes, {} if value is None else {figure.panel: value})
-    if value is not None:
-        axes.set_title(level(figure.panel).label(value), fontsize=10)
+    title = [] if value is None else [level(figure.panel).label(value)]
+    if len(_pairs(series)) == 1 and (figure.panel or not figure.colour):
+        title.append(pairs_text(series))
+    axes.set_title(", ".join(title), fontsize=10)
     axes.set_xlabel(level(figure.x).axis())
+
+
+def _plain_ticks(axis):
+    """Ticks of a logarithmic axis at 1, 2 and 5 where it spans less than two decades, with plain numbers."""
+    low, high = axis.get_view_interval()
+    steps = (1, 2, 5) if high < 50 * low else (1,)
+    axis.set_major_locator(LogLocator(subs=steps))
+    axis.set_major_formatter(lambda number, _: f"{number:g}")
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _bar(estimate):
@@ -127,8 +163,12 @@ def _bar(estimate):
 
 
 def _pairs(estimates):
-    numbers = sorted({estimate.pairs for estimate in estimates})
-    return f"{numbers[0]:g}" if len(numbers) == 1 else f"{numbers[0]:g} to {numbers[-1]:g}"
+    return sorted({estimate.pairs for estimate in estimates})
 
 
-__all__ = ["PAPER", "CurveFigure", "colours", "points"]
+def pairs_text(estimates):
+    """'4 pairs' or '2 to 4 pairs' behind estimates."""
+    numbers = _pairs(estimates)
+    if numbers == [1]:
+        return "1 pair"
+    return f"{numbers[0]:g} pairs" if len(numbers) == 1 else f"{numbers[0]:g} to {numbers[-1]:g} pairs"

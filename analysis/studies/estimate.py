@@ -201,6 +201,6 @@ def number_text(value, error=None):
     if value is None or not math.isfinite(value):
         return "inf" if value == math.inf else "-"
     if not error:
-        return f"{value:.4g}"
+        return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}"
     digits = 1 - math.floor(math.log10(float(f"{error:.1e}")))
     return f"{round(value, digits):.{max(0, digits)}f} ± {round(error, digits):.{max(0, digits)}f}"

@@ -9,17 +9,21 @@ from pathlib import Path
 from .. import studies
 
 
+class NoSuchStudy(Exception):
+    """No study of that name, or no file that defines one; the message is one line."""
+
+
 def names():
     """Names of all studies, sorted."""
     return sorted(m.name for m in pkgutil.iter_modules(studies.__path__) if m.ispkg and _has(f"{m.name}.study"))
 
 
 def find(name):
-    """definition.Study of that name, or of a file NAME.py that defines STUDY (and FIGURES, if it has any); KeyError when there is none."""
+    """definition.Study of that name, or of a file NAME.py that defines STUDY (and FIGURES, if it has any); NoSuchStudy."""
     if name.endswith(".py"):
         return replace(_own(Path(name)).STUDY, name=Path(name).stem, folder=Path(name).resolve())
     if name not in names():
-        raise KeyError(name)
+        raise NoSuchStudy(f"no study {name}: must be one of {', '.join(names())}, or a file NAME.py of one's own")
     return replace(_module(f"{name}.study").STUDY, name=name, folder=Path(studies.__path__[0]) / name)
 
 
@@ -39,12 +43,12 @@ def figures(study):
 
 def _own(file):
     if not file.is_file():
-        raise KeyError(str(file))
+        raise NoSuchStudy(f"{file}: no such file")
     spec = spec_from_file_location(f"own_study_{file.stem}", file)
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     if not hasattr(module, "STUDY"):
-        raise KeyError(f"{file} defines no STUDY")
+        raise NoSuchStudy(f"{file}: defines no STUDY")
     return module
 
 

@@ -8,7 +8,7 @@ from ..progress import progress
 from ..runs.arrays import RunFolderError
 from ..runs.collect import collect
 from ..runs.provenance import joined, provenance
-from ..runs.table import RUN, TableError, make_table, read_table
+from ..runs.table import FOLDER, RUN, TableError, make_table, read_table
 from .definition import NotMeasured
 
 
@@ -26,8 +26,9 @@ class Gathered:
 
 
 def gather(study, paths):
-    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers of the
-    scene only the first is taken: counted twice it would make errors too small."""
+    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers of the scene only the
+    first is counted: counted twice it would make errors too small. Where that is a row of a table, figures that need a run's states
+    take them from the folder of the other."""
     collection = collect(paths, study.scene)
     found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
     taken, tables, origins = {}, [], []
@@ -40,18 +41,20 @@ def gather(study, paths):
         tables.append(table)
         origins.append(origin)
         found.earlier += earlier
-    measured, runs = _measure(study, collection.runs, taken, found)
+    folders = {}
+    measured, runs = _measure(study, collection.runs, taken, found, folders)
     if measured:
         tables.append(make_table(measured))
         origins.append(provenance(runs))
     if tables:
         found.table = pandas.concat(tables, ignore_index=True) if len(tables) > 1 else tables[0]
         found.provenance = joined(origins) if len(origins) > 1 else origins[0]
+        found.table[FOLDER] = [folders.get(_key(study, row), row[FOLDER]) for row in found.table.to_dict("records")]
     return found
 
 
-def _measure(study, runs, taken, found):
-    """([(path, {column: value})], their RunFolders)."""
+def _measure(study, runs, taken, found, folders):
+    """([(path, {column: value})], their RunFolders); folders takes {key: path} of those that are in a table already."""
     measured, sources = [], []
     for run in progress(runs, "reading runs"):
         try:
@@ -65,6 +68,7 @@ def _measure(study, runs, taken, found):
         twin = taken.setdefault(_key(study, values), run.path)
         if twin is not run.path:
             found.notes.append(f"{run.path}: the same {_listed(study.scene.key)} as {twin}, left out")
+            folders.setdefault(_key(study, values), str(run.path))
             continue
         measured.append((run.path, values))
         sources.append(run)

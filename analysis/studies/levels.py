@@ -5,12 +5,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Level:
-    """symbol (plain text), math (for figures), unit in which it is shown, that unit in SI."""
+    """symbol (plain text), math (for figures), unit in which it is shown, that unit in SI; phrase: how a panel or legend names a value, where
+    '$v$ = 10 m/s' is not how one says it."""
 
     symbol: str
     math: str
     unit: str = ""
     scale: float = 1.0
+    phrase: str = ""
 
     def head(self):
         """'T_vis [ps]'."""
@@ -31,13 +33,15 @@ class Level:
         """'$T_{vis}$ = 6 ps', for legends, panels and heads of columns (math=False); a word stands for itself."""
         if isinstance(value, str):
             return value
+        if self.phrase:
+            return self.phrase.format(self.text(value))
         return f"{self.math if math else self.symbol} = {self.text(value)}" + (f" {self.unit}" if self.unit else "")
 
 
 _LEVELS = {
     "velocity": Level("v", "$v$", "m/s"),
     "viscoelasticTime": Level("T_vis", "$T_{vis}$", "ps", 1e-12),
-    "grains": Level("grains", "grains of each"),
+    "grains": Level("grains", "grains of an aggregate", phrase="{} grains each"),
     "square": Level("12 B_off^2", "$12 B_{off}^2$", scale=1 / 12),
     "filling": Level("φ", r"$\phi$"),
     "radius": Level("R", "$R$", "r"),

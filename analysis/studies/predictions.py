@@ -1,7 +1,7 @@
 """What was expected before runs were made: NAME/predictions.csv, a row each.
 
 what, commit        the prediction in words, and the commit that made it
-quantity, where, low, high   of the study, as in paper.toml (where: "grains=50000 velocity=50.1", SI; limits in the quantity's unit):
+quantity, where, low, high   of the study, as in paper.toml (where: "grains=50000; velocity=50.1", SI; limits in the quantity's unit):
                     what was run, and whether it held, follow from the runs
 expected, run, held    without a quantity, as it was decided at the time: expected and run in words"""
 
@@ -49,7 +49,9 @@ def predictions(folder, results):
 
 def _claim(row):
     limits = {name: float(row[name]) for name in ("low", "high") if row[name]}
-    where = {name: _value(value) for name, _, value in (part.partition("=") for part in row["where"].split())}
+    where = {
+        name.strip(): _value(value) for name, _, value in (part.partition("=") for part in row["where"].split(";"))
+    }
     return Claim(row["quantity"], row["what"], "", "", where, **limits)
 
 

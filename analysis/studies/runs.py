@@ -44,6 +44,10 @@ class Runs:
         a value (NaN) don't count."""
         return self._by(by, values)
 
+    def parts(self, of, by, level):
+        """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
+        return together({label: self.estimates(values, by) for label, values in of.items()}, level)
+
     def fractions(self, values, by, undecided=None):
         """Series of Fraction: of runs for which a column, or a function table -> (runs,), is true; undecided: the same for runs that are
         counted apart. A pair counts once: where it has several runs in a group, ValueError."""
@@ -140,7 +144,7 @@ def together(of, level):
     """One Series of {label: Series of the same levels}, with the label as one more level."""
     frames = {label: own for label, own in of.items() if len(own)}
     if not frames:
-        return pandas.Series(dtype=object)
+        return _series({}, (*next(iter(of.values())).index.names, level))
     joined = pandas.concat(frames, names=[level])
     return joined.reorder_levels([*joined.index.names[1:], level])
 
@@ -193,5 +197,7 @@ def _key(value):
 def _series(found, by):
     if not by:
         return pandas.Series(list(found.values()), dtype=object)
+    if not found:
+        return pandas.Series([], pandas.MultiIndex.from_arrays([[]] * len(by), names=list(by)), dtype=object)
     index = pandas.MultiIndex.from_tuples(list(found), names=list(by))
     return pandas.Series(list(found.values()), index, dtype=object)

@@ -124,10 +124,16 @@ def _verdict(claim, ours, corrected):
     least, most = _interval(claim, ours)
     if least is None:
         return UNTESTED, "no error of ours: one pair, or no scatter" if ours.pairs < 2 else "no error of ours"
-    within = f"95 % interval {least:.3g} to {most:.3g}, agreement {low:.3g} to {high:.3g}"
+    within = f"95 % interval {_range(least, most)}, agreement {_range(low, high)}"
     if low <= least and most <= high:
         return YES, within
     return UNTESTED, f"{within}; {_needed(claim, ours)}"
+
+
+def _range(low, high):
+    if math.isinf(low) or math.isinf(high):
+        return f"above {number_text(low)}" if math.isinf(high) else f"below {number_text(high)}"
+    return f"{number_text(low)} to {number_text(high)}"
 
 
 def _interval(claim, ours):

@@ -22,25 +22,31 @@ from .measure import COLUMNS, DISSIPATION, FAST, measure, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
 REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # the collision that A22 shows most
+EDGE = tuple(k / 12 for k in (2, 3, 4, 5))  # B_off^2 about which aggregates begin to merge
 CURVE = ("grains", "viscoelasticTime", "velocity")
 POINT = ("grains", "viscoelasticTime")
 FRAGMENTS_AT = (10**1.7, 100.0)  # m/s: A22 Figs 6 to 8
-SHARE = {"rolling": ("rollingDissipation",), "sliding": ("slidingDissipation",), "twisting": ("twistingDissipation",)}
-WAYS = {**SHARE, "connection and disconnection": ("connection", "disconnection"), "drag": ("drag",)}
+WAYS = {
+    "rolling": ("rollingDissipation",),
+    "sliding": ("slidingDissipation",),
+    "twisting": ("twistingDissipation",),
+    "connection and disconnection": ("connection", "disconnection"),
+    "drag": ("drag",),
+}
 
 
 def quantities(table):
     """Quantities of a table of runs (measure.COLUMNS)."""
-    table = table.assign(
-        square=(table.impact**2).round(9), lost=table[list(DISSIPATION)].sum(axis=1), total=2 * table.grains
-    )
+    ways = {name: table[list(channels)].sum(axis=1) for name, channels in WAYS.items()}
+    lost, unit = table[list(DISSIPATION)].sum(axis=1), 2 * table.grains * table.energy_unit
+    table = table.assign(square=(table.impact**2).round(9), lost=lost, unit=unit, **ways)
     runs = Runs(table, "seed", ("grains",))
     yield from _growth(runs.over("square", SQUARES, offset_weights), "", "13 offsets, A22 eq 29")
     yield from _growth(runs.over("square", SQUARES[::2], offset_weights), "_7", "every second offset")
     yield from _offsets(runs)
     yield from _energies(runs)
-    yield from _fragments(runs.over("square", SQUARES, offset_weights))
-    yield from _grains(table)
+    yield from _fragments(runs)
+    yield from _grains(runs)
 
 
 def _growth(runs, suffix, over):
@@ -49,131 +55,103 @@ def _growth(runs, suffix, over):
     yield Quantity(f"growth{suffix}", f"growth efficiency f_gro, mean over {over}", growth)
     v_fra = along(growth, "velocity", threshold_velocity) if len(growth) else growth
     yield Quantity(f"v_fra{suffix}", f"velocity at which that mean falls through 0 ({over})", v_fra, "m/s")
-    if not len(growth):
-        return
     half = runs.estimates(lambda t: [0.5 * _small(sizes) for sizes in t.fragments] / t.grains, CURVE)
-    merging = runs.estimates(lambda t: t.growth > MERGED, CURVE)
     with_drag = {
-        "f_gro": _drag(growth),
-        f"half the mass in fragments of {SMALL} grains or fewer": _drag(half) * -1.0,
+        "growth efficiency": _drag(growth),
+        "of it half the small fragments": -_drag(half),
         "the rest": _drag(growth) + _drag(half),
-        "cross-section of merging": _drag(merging),
+        "cross-section of merging": _drag(runs.estimates(lambda t: t.growth > MERGED, CURVE)),
     }
-    yield Quantity(
-        f"drag{suffix}", f"what drag changes: 6 ps less without, mean over {over}", together(with_drag, "of what")
+    meaning = (
+        f"what drag changes: 6 ps less without, mean over {over}; small fragments: of {SMALL} grains or fewer; merging: growth "
+        f"efficiency above {MERGED:g}"
     )
+    yield Quantity(f"drag{suffix}", meaning, together(with_drag, "part"))
 
 
 def _offsets(runs):
     """Collisions at single offsets."""
-    growth = runs.estimates("growth", (*CURVE, "square"))
-    head_on = select(growth, square=0.0)
+    head_on = runs.where(square=0.0).estimates("growth", CURVE)
     yield Quantity("head_on", "f_gro of head-on collisions", head_on)
-    at_offset = select(growth, velocity=REFERENCE["velocity"])
+    runs = runs.where(velocity=REFERENCE["velocity"])
+    at_offset = runs.estimates("growth", (*POINT, "square"))
     yield Quantity("at_offset", "f_gro at 50.1 m/s", at_offset)
     yield Quantity("drag_at_offset", "f_gro at 50.1 m/s, 6 ps less without drag", _drag(at_offset))
-    largest = runs.where(**REFERENCE).estimates("largest", POINT)
-    yield Quantity("largest", "grains of the largest fragment, 50.1 m/s, B_off^2 = 3/12", largest)
-    yield Quantity("drag_largest", "the same, 6 ps less without drag", _drag(largest))
-    loss = together(
-        {
-            name: runs.estimates(lambda t, c=c: t[list(c)].sum(axis=1) / t.kinetic_at_start, (*CURVE, "square"))
-            for name, c in WAYS.items()
-        },
-        "channel",
-    )
-    yield Quantity(
-        "loss_at_offset",
-        "lost in each way at 50.1 m/s, of K(0)",
-        select(loss, velocity=REFERENCE["velocity"]),
-        "%",
-        0.01,
-    )
+    edge = runs.over("square", EDGE).estimates("growth", POINT)
+    yield Quantity("drag_edge", "the same, mean over B_off^2 = 2/12 to 5/12", _drag(edge))
+    loss = runs.parts(_over("kinetic_at_start"), (*POINT, "square"), "channel")
+    yield Quantity("loss_at_offset", "lost in each way at 50.1 m/s, of K(0)", loss, "%", 0.01)
 
 
 def _energies(runs):
-    """Where the energy goes at A22's reference collision, and against velocity at its offset."""
+    """A22's reference collision: the largest fragment, where the energy goes, and the latter against velocity at its offset."""
     own, at_square = runs.where(**REFERENCE), runs.where(square=REFERENCE["square"])
-    lost = {name: own.estimates(lambda t, c=c: t[list(c)].sum(axis=1) / t.lost, POINT) for name, c in WAYS.items()}
-    yield Quantity(
-        "loss", "lost in each way, of all that is lost, 50.1 m/s, B_off^2 = 3/12", together(lost, "channel"), "%", 0.01
+    largest = own.estimates("largest", POINT)
+    yield Quantity("largest", "grains of the largest fragment, 50.1 m/s, B_off^2 = 3/12", largest)
+    yield Quantity("drag_largest", "the same, 6 ps less without drag", _drag(largest))
+    loss = own.parts(_over("lost"), POINT, "channel")
+    yield Quantity("loss", "lost in each way there, of all that is lost", loss, "%", 0.01)
+    lead = differences(
+        select(loss, channel="rolling"), _largest([select(loss, channel=way) for way in WAYS if way != "rolling"])
     )
-    others = [lost[name] for name in WAYS if name != "rolling"]
-    lead = differences(lost["rolling"], _largest(others))
-    yield Quantity("rolling_lead", "rolling less the largest of the other ways, there", lead, "%", 0.01)
-    total = {name: own.estimates(lambda t, c=c: t[list(c)].sum(axis=1), POINT) for name, c in WAYS.items()}
-    by_drag = {
-        name: ratios(select(total[name], viscoelasticTime=MOST_DRAG), select(total[name], viscoelasticTime=NO_DRAG))
-        for name in SHARE
-    }
-    yield Quantity("drag_ratio", "lost with 6 ps over without drag, there", together(by_drag, "channel"))
-    unit = lambda t: t.total * t.energy_unit
-    at_end = {
-        name: at_square.estimates(lambda t, c=c: t[list(c)].sum(axis=1) / unit(t), CURVE) for name, c in WAYS.items()
-    }
+    yield Quantity("rolling_lead", "rolling less the largest of the other ways", lead, "%", 0.01)
+    total = own.parts({name: name for name in WAYS if name != "drag"}, POINT, "channel")
+    by_drag = ratios(select(total, viscoelasticTime=MOST_DRAG), select(total, viscoelasticTime=NO_DRAG))
+    yield Quantity("drag_ratio", "lost there with 6 ps over without drag", by_drag)
+    at_end = at_square.parts(_over("unit"), CURVE, "channel")
+    yield Quantity("loss_per_grain", "lost in each way over N_tot F_c delta_c, B_off^2 = 3/12", at_end)
+    events = {"N_con": lambda t: t.formed, "N_cut": lambda t: t.broken, "both": lambda t: t.formed + t.broken}
+    per_grain = {name: lambda t, of=of: of(t) / (2 * t.grains) for name, of in events.items()}
     yield Quantity(
-        "loss_per_grain", "lost in each way over N_tot F_c delta_c, B_off^2 = 3/12", together(at_end, "channel")
+        "events", "contacts formed and broken over N_tot, B_off^2 = 3/12", at_square.parts(per_grain, CURVE, "event")
     )
-    events = {
-        name: at_square.estimates(lambda t, c=c: t[list(c)].sum(axis=1, min_count=len(c)) / t.total, CURVE)
-        for name, c in {"N_con": ("formed",), "N_cut": ("broken",), "both": ("formed", "broken")}.items()
-    }
-    yield Quantity("events", "contacts formed and broken over N_tot, B_off^2 = 3/12", together(events, "event"))
+    speed = own.estimates("pair_speed", POINT)
     yield Quantity(
-        "pair_speed",
-        "largest rms of v_rel of neighbours over the states, 50.1 m/s, B_off^2 = 3/12",
-        own.estimates("pair_speed", POINT),
-        "m/s",
+        "pair_speed", "largest rms of v_rel of neighbours over the states, 50.1 m/s, B_off^2 = 3/12", speed, "m/s"
     )
-    yield Quantity(
-        "fast_pairs",
-        f"neighbours that approach or part faster than {FAST:g} m/s, over N_tot, there",
-        own.estimates("fast_pairs", POINT),
-    )
+    fast = own.estimates("fast_pairs", POINT)
+    yield Quantity("fast_pairs", f"neighbours there that approach or part faster than {FAST:g} m/s, over N_tot", fast)
 
 
 def _fragments(runs):
-    """Sizes of fragments at FRAGMENTS_AT: cumulative means, and fits to them."""
+    """Sizes of fragments: cumulative means over offsets at FRAGMENTS_AT, fits to them, and one collision of the paper's size."""
+    own = runs.where(grains=50_000, **REFERENCE)
+    single = own.of(_by_size(own.table, cumulative_grains)).estimates("value", (*POINT, "fragment"))
+    yield Quantity("grains_in_fragments_full", "N_cum(<= N) of 50,000 grains each, 50.1 m/s, B_off^2 = 3/12", single)
     table = runs.table[np.logical_or.reduce([alike(runs.table.velocity, v) for v in FRAGMENTS_AT])]
+    runs = runs.over("square", SQUARES, offset_weights)
     found = {"grains_in_fragments": cumulative_grains, "cross_section": cumulative_cross_section}
-    means = {name: runs.of(_by_size(table, f)).estimates("value", (*CURVE, "fragment")) for name, f in found.items()}
+    grains, section = (runs.of(_by_size(table, f)).estimates("value", (*CURVE, "fragment")) for f in found.values())
     yield Quantity(
-        "grains_in_fragments", "<N_cum(<= N)>: grains in fragments of at most N grains", means["grains_in_fragments"]
+        "grains_in_fragments", "<N_cum(<= N)>: grains in fragments of at most N grains, mean over 13 offsets", grains
     )
-    fits = {
-        "small": lambda grains, n: n <= SMALL_FITTED * 2 * grains,
-        "large": lambda grains, n: (n >= LARGE_FITTED) & (n <= grains),
+    alphas = {
+        "small": _fitted(grains, lambda each, n: n <= SMALL_FITTED * 2 * each),
+        "large": _fitted(grains, lambda each, n: (n >= LARGE_FITTED) & (n <= each)),
     }
-    alphas = {name: _fitted(means["grains_in_fragments"], inside) for name, inside in fits.items()}
     meaning = f"alpha of f(N) = c N^-alpha: small: N to {SMALL_FITTED:.0%} of all grains, large: N from {LARGE_FITTED} to an aggregate's"
     yield Quantity("alpha", meaning, together(alphas, "fragments"))
-    section = means["cross_section"]
-    sizes = section.index.get_level_values("grains")
-    n = section.index.get_level_values("fragment")
-    small, every = (
-        section[keep].groupby(level=list(CURVE)).last() for keep in (n <= SMALL_FITTED * 2 * sizes, n == 2 * sizes)
-    )
-    share = 1.0 - ratios(small, every)
+    each, n = (section.index.get_level_values(name) for name in ("grains", "fragment"))
+    ends = [section[kept].groupby(level=list(CURVE)).last() for kept in (n <= SMALL_FITTED * 2 * each, n == 2 * each)]
+    share = 1.0 - ratios(*ends)
     yield Quantity(
         "large_share", f"part of the cross-section in fragments beyond {SMALL_FITTED:.0%} of all grains", share
     )
 
 
-def _grains(table):
+def _grains(runs):
     """What follows from the grains alone, and the aggregates."""
-    known = table.drop_duplicates("viscoelasticTime")
-    runs = Runs(known, "viscoelasticTime")
-    stick = runs.estimates("sticking_velocity", ("viscoelasticTime",)).map(lambda estimate: exact(estimate.value))
+    stick = runs.table.groupby("viscoelasticTime").sticking_velocity.first().map(exact)
     yield Quantity("v_stick", "sticking velocity of two grains head-on (A22 eq 30)", stick, "m/s")
-    without = [e for t, e in stick.items() if t[0] == NO_DRAG]
-    yield Quantity("v_stick_ratio", "over that without drag", stick / without[0] if without else stick[:0])
-    pairs = Runs(table, "seed", ("grains",))
-    yield Quantity(
-        "radius",
-        "characteristic radius of the aggregates",
-        pairs.estimates(lambda t: t.characteristic_radius / t.grain_radius, ("grains",)),
-        "r",
-    )
+    if NO_DRAG in stick:
+        yield Quantity("v_stick_ratio", "over that without drag", stick / stick[NO_DRAG])
+    radius = runs.estimates(lambda t: t.characteristic_radius / t.grain_radius, ("grains",))
+    yield Quantity("radius", "characteristic radius of the aggregates", radius, "r")
+
+
+def _over(column):
+    """{way: function table -> what is lost so, over a column}."""
+    return {name: lambda t, name=name: t[name] / t[column] for name in WAYS}
 
 
 def _largest(of):
@@ -189,7 +167,7 @@ def _by_size(table, cumulative):
     """The table with a row for each number of grains `fragment`, and the cumulative(sizes, numbers) of each run there as value."""
     parts = []
     for grains, runs in table.groupby("grains"):
-        numbers = np.unique(np.geomspace(1, 2 * grains, 40).round().astype(int))
+        numbers = np.unique(np.geomspace(1, 2 * grains, 60).round().astype(int))
         values = [cumulative(sizes_from_text(text), numbers) for text in runs.fragments]
         place = np.repeat(np.arange(len(runs)), len(numbers))
         parts.append(runs.iloc[place].assign(fragment=np.tile(numbers, len(runs)), value=np.concatenate(values)))
