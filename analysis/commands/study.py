@@ -147,5 +147,5 @@ def _list():
 
 
 def _complain_of(found):
-    for line in (*found.notes, *found.problems):
+    for line in (*found.notes, *found.shown, *found.problems):
         complain(line)

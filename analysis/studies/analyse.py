@@ -58,6 +58,11 @@ class Analysis:
             lines.append(f"{len(found.problems)} runs not readable")
         return lines
 
+    @property
+    def listed(self):
+        """Quantities that the details have tables of."""
+        return [quantity for quantity in self.results.quantities.values() if quantity.listed]
+
     def predictions_table(self):
         """DataFrame of text of the predictions."""
         return pandas.DataFrame([vars(p) for p in self.predictions]).rename(columns={"held": "held?"})
@@ -70,7 +75,7 @@ class Analysis:
     def text(self):
         """For a terminal (str): every quantity, then the paper's numbers."""
         parts = []
-        for quantity in self.results.quantities.values():
+        for quantity in self.listed:
             unit = f" [{quantity.unit}]" if quantity.unit else ""
             parts += [f"{quantity.name}{unit}: {quantity.meaning}", text_table(quantity_table(quantity))]
         if self.judgements:

@@ -19,13 +19,15 @@ class NotMeasured(Exception):
 @dataclass(frozen=True)
 class Quantity:
     """What a study tells: name (a word: what paper.toml and figures call it), meaning (the sentence a table is headed with), values
-    (Series of Estimate or Fraction in SI units, indexed by what it depends on), unit in which it is shown (''), scale (that unit in SI)."""
+    (Series of Estimate or Fraction in SI units, indexed by what it depends on), unit in which it is shown (''), scale (that unit in SI).
+    listed: whether the details have a table of it; curves of many points are for figures and comparison.json."""
 
     name: str
     meaning: str
     values: pandas.Series
     unit: str = ""
     scale: float = 1.0
+    listed: bool = True
 
     def at(self, **where):
         """The Estimate or Fraction, in SI units, there; None where it is not known (runs.at)."""

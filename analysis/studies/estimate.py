@@ -2,7 +2,9 @@
 differences and ratios of what the same pairs gave have the right errors by themselves.
 
 A draw weighs every pair by an exponential random number (the Bayesian bootstrap, Rubin 1981). A pair's weights follow from its name
-alone: they are the same wherever the pair occurs, and independent of those of any other."""
+alone: they are the same wherever the pair occurs, and independent of those of any other. A mean over points within a pair (offsets,
+say) has a second row of draws, in which every point of every pair has weights of its own: two pairs whose means agree by chance would
+have no error otherwise. An error is the larger of the two."""
 
 import math
 from dataclasses import dataclass
@@ -21,7 +23,7 @@ ROUNDING = 1e-12  # relative: draws that differ by less are the same number, rou
 EXACT = math.inf  # pairs behind a number that has no scatter: a closed form
 
 
-@lru_cache(maxsize=100_000)
+@lru_cache(maxsize=5000)
 def weights_of(pair):
     """Weights (DRAWS,) of one pair of aggregates, by its name (str)."""
     return np.random.default_rng([RANDOM_SEED, crc32(pair.encode())]).exponential(size=DRAWS)
@@ -40,7 +42,7 @@ def stretch(pairs, fitted=1):
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """value; draws (DRAWS,), NaN where undefined; pairs: the fewest independent pairs of aggregates behind it, EXACT for a closed form.
+    """value; draws (1 or 2, DRAWS), NaN where undefined: of pairs, and of single points where it is a mean over such; pairs: the fewest independent pairs of aggregates behind it, EXACT for a closed form.
 
     >>> a, b = mean({"1": 2.0, "2": 4.0, "3": 3.0}), mean({"1": 1.0, "2": 3.0, "3": 2.0})
     >>> (a - b).value, round((a - b).error, 6), (a / 2).value
@@ -57,11 +59,10 @@ class Estimate:
         gave the same number."""
         if self.pairs == EXACT:
             return 0.0
-        good = self.draws[np.isfinite(self.draws)]
-        if self.pairs < 2 or len(good) <= (1 - LOST) * len(self.draws):
+        if self.pairs < 2:
             return None
-        spread = float(good.std(ddof=1))
-        return spread if spread > ROUNDING * np.abs(good).max() else 0.0
+        errors = [_scatter(row) for row in self.draws]
+        return None if None in errors else max(errors)
 
     def interval(self, confidence=CONFIDENCE):
         """(low, high), Student's with one degree of freedom less than pairs; (None, None) without an error."""
@@ -161,29 +162,56 @@ def mean(of_pairs):
     """Estimate of the mean of {pair's name: number}, at least one."""
     values, n = np.array(list(of_pairs.values()), dtype=float), len(of_pairs)
     value = float(values.mean())
-    if n < 2:
-        return Estimate(value, np.full(DRAWS, value), n)
-    weights = weights_of_pairs(of_pairs)
-    drawn = weights @ (values - value) / weights.sum(axis=1)
-    return Estimate(value, value + stretch(n) * drawn, n)
+    return Estimate(value, value + deviations(values, list(of_pairs))[None], n)
+
+
+def mean_over_points(table, weights):
+    """Estimate of the mean over pairs of sum_k weights[k] y_k, from y as a DataFrame (a row a pair, its name the index; a column a
+    point), weights (K,) of sum 1."""
+    values = table.to_numpy(dtype=float)
+    value = float((values @ weights).mean())
+    of_pairs = deviations(values @ weights, list(table.index))
+    of_points = sum(
+        weight * deviations(own, [f"{pair} at {k}" for pair in table.index])
+        for k, (weight, own) in enumerate(zip(weights, values.T))
+    )
+    return Estimate(value, value + np.stack([of_pairs, of_points]), len(table))
+
+
+def deviations(values, names):
+    """Deviations (DRAWS,) of the mean of values (n,) of so named pairs; zeros for one."""
+    if len(values) < 2:
+        return np.zeros(DRAWS)
+    weights = weights_of_pairs(names)
+    return stretch(len(values)) * (weights @ (values - values.mean())) / weights.sum(axis=1)
 
 
 def exact(value):
     """Estimate without scatter."""
-    return Estimate(float(value), np.full(DRAWS, float(value)), EXACT)
+    return Estimate(float(value), np.full((1, DRAWS), float(value)), EXACT)
 
 
 def combine(f, *estimates):
     """Estimate of f(numbers): f is called once with the values, and once with all draws (arrays in, array out)."""
     with np.errstate(all="ignore"):
         value, draws = f(*(e.value for e in estimates)), f(*(e.draws for e in estimates))
-    return Estimate(float(value), np.broadcast_to(draws, DRAWS).astype(float), min(e.pairs for e in estimates))
+    draws = np.asarray(draws, dtype=float) + np.zeros((1, DRAWS))  # of a function that ignores them, too
+    return Estimate(float(value), draws, min(e.pairs for e in estimates))
 
 
 def curve(f, x, estimates):
     """Estimate of f(x (K,), y (..., K)), for thresholds, fits and extrapolations; f works along the last axis."""
     x = np.asarray(x, dtype=float)
     return combine(lambda *y: f(x, np.stack(np.broadcast_arrays(*y), axis=-1)), *estimates)
+
+
+def _scatter(row):
+    """Standard deviation of one row of draws; None with LOST of them or more undefined, 0 where they agree to rounding."""
+    good = row[np.isfinite(row)]
+    if len(good) <= (1 - LOST) * len(row):
+        return None
+    spread = float(good.std(ddof=1))
+    return spread if spread > ROUNDING * np.abs(good).max() else 0.0
 
 
 def _with(one, other, f):

@@ -16,13 +16,14 @@ from .definition import NotMeasured
 class Gathered:
     """What was found: table (DataFrame, a row a run; None where there is none), provenance (dict), notes (str, one a run
     left out), problems (str, one a path or run that could not be read), earlier (what tables that were read say of
-    runs left out)."""
+    runs left out), shown (str, one a run whose numbers are a table's: its states serve figures)."""
 
     table: pandas.DataFrame = None
     provenance: dict = None
     notes: list = field(default_factory=list)
     problems: list = field(default_factory=list)
     earlier: list = field(default_factory=list)
+    shown: list = field(default_factory=list)
 
 
 def gather(study, paths):
@@ -67,8 +68,12 @@ def _measure(study, runs, taken, found, folders):
             continue
         twin = taken.setdefault(_key(study, values), run.path)
         if twin is not run.path:
-            found.notes.append(f"{run.path}: the same {_listed(study.scene.key)} as {twin}, left out")
-            folders.setdefault(_key(study, values), str(run.path))
+            line = f"{run.path}: the same {_listed(study.scene.key)} as {twin}"
+            if isinstance(twin, str):  # a row of a table
+                folders.setdefault(_key(study, values), str(run.path))
+                found.shown.append(f"{line}, counted once")
+            else:
+                found.notes.append(f"{line}, left out")
             continue
         measured.append((run.path, values))
         sources.append(run)

@@ -45,7 +45,7 @@ def details(analysis, pictures, commands=()):
     if analysis.predictions:
         parts += ["## Predictions, made before the runs", markdown_table(analysis.predictions_table())]
     parts.append("## Quantities")
-    for quantity in analysis.results.quantities.values():
+    for quantity in analysis.listed:
         head = f"**{quantity.name}**{f' [{quantity.unit}]' if quantity.unit else ''}: {quantity.meaning}"
         parts += [head, markdown_table(quantity_table(quantity)) if len(quantity.values) else "No runs."]
     if pictures:

@@ -5,7 +5,7 @@ from copy import copy
 import numpy as np
 import pandas
 
-from .estimate import DRAWS, Estimate, Fraction, curve, mean, stretch, weights_of_pairs
+from .estimate import Estimate, Fraction, curve, mean, mean_over_points, stretch, weights_of_pairs
 
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
 
@@ -69,44 +69,36 @@ class Runs:
         for key, rows in _groups(self.table, by):
             labels, n = self._names(rows).to_list(), self._names(rows).nunique()
             value = np.asarray(f(rows, np.ones((1, len(rows)))), dtype=float)[0]
-            draws = np.asarray(f(rows, weights_of_pairs(labels)), dtype=float) if n > 1 else value[None]
+            draws = np.asarray(f(rows, weights_of_pairs(labels)), dtype=float)
             count = len(names) if fitted is None else fitted
             drawn = value + (stretch(n, count) if n > count else np.nan) * (draws - value)
             for k, name in enumerate(names):
-                found[(*key, name)] = Estimate(float(value[k]), np.broadcast_to(drawn[:, k], DRAWS), n)
+                found[(*key, name)] = Estimate(float(value[k]), drawn[None, :, k], n)
         return _series(found, (*by, "number"))
 
     def _by(self, by, values):
         """Series of Estimate of the mean over pairs."""
         keys = [self.table[name].map(_key) for name in by]
-        names, values = (
-            self._names(self.table),
-            pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index),
-        )
-        if self.points is not None:
-            keys, names, values = self._averaged(keys, names, values)
-        of_pairs = values.dropna().groupby([*keys, names.rename("_pair")]).mean()
-        groups = of_pairs.groupby(level=list(range(len(by)))) if by else [((), of_pairs)]
-        found = {
-            key if isinstance(key, tuple) else (key,): mean(dict(zip(own.index.get_level_values(-1), own)))
-            for key, own in groups
-        }
-        return _series(found, by)
-
-    def _averaged(self, keys, names, values):
-        """The same, with each pair averaged over its points; pairs without all of them are left out."""
+        values = pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index)
+        pair = self._names(self.table).rename("_pair")
+        if self.points is None:
+            of_pairs = values.dropna().groupby([*keys, pair]).mean()
+            return _series(
+                {key: mean(own.droplevel(list(range(len(by)))).to_dict()) for key, own in _parts(of_pairs, by)}, by
+            )
         x = self.table[self.average].to_numpy(dtype=float)
         places = np.abs(x[:, None] - self.points).argmin(axis=1)
-        there = alike(x, self.points[places])
-        index = [
-            *(key[there] for key in keys),
-            names[there].rename("_pair"),
-            pandas.Series(places[there], names.index[there], name="_point"),
-        ]
-        points = values[there].groupby(index).mean().unstack().reindex(columns=range(len(self.points))).dropna()
-        means = pandas.Series(points.to_numpy() @ (self.weights / self.weights.sum()), points.index)
-        levels = [pandas.Series(means.index.get_level_values(k), means.index) for k in range(means.index.nlevels)]
-        return levels[:-1], levels[-1], means
+        point = pandas.Series(places, self.table.index, name="_point").where(alike(x, self.points[places]))
+        cells = (
+            values.groupby([*keys, pair, point])
+            .mean()
+            .unstack("_point")
+            .reindex(columns=range(len(self.points)))
+            .dropna()
+        )
+        weights = self.weights / self.weights.sum()
+        found = {key: mean_over_points(own.droplevel(list(range(len(by)))), weights) for key, own in _parts(cells, by)}
+        return _series(found, by)
 
     def _names(self, rows):
         """Names of the pairs of a table's rows: with the population, so that they are unique."""
@@ -179,6 +171,12 @@ def alike(values, wanted):
     if values.dtype.kind not in "fiub" or isinstance(wanted, str):
         return values == wanted
     return np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
+
+
+def _parts(of_pairs, by):
+    """((key, ...), part) of what has the columns `by` and the pair in its index."""
+    for key, own in of_pairs.groupby(level=list(range(len(by)))) if by else [((), of_pairs)]:
+        yield key if isinstance(key, tuple) else (key,), own
 
 
 def _groups(table, by):

@@ -54,7 +54,7 @@ FIGURES = (
     ),
     CurveFigure(
         "fig03_mean_growth",
-        "Growth efficiency, mean over 13 offsets, against velocity (A22 Fig. 3, there for 50,000 grains). Bars: standard errors; in brackets: pairs of aggregates.",
+        "Growth efficiency, mean over 13 offsets, against velocity (A22 Fig. 3, there with 50,000 grains). Bars: standard errors.",
         "growth",
         paper=_threshold,
         y_label=r"$\langle f_{gro} \rangle$",

@@ -123,11 +123,14 @@ def _fragments(runs):
     found = {"grains_in_fragments": cumulative_grains, "cross_section": cumulative_cross_section}
     grains, section = (runs.of(_by_size(table, f)).estimates("value", (*CURVE, "fragment")) for f in found.values())
     yield Quantity(
-        "grains_in_fragments", "<N_cum(<= N)>: grains in fragments of at most N grains, mean over 13 offsets", grains
+        "grains_in_fragments",
+        "<N_cum(<= N)>: grains in fragments of at most N grains, mean over 13 offsets",
+        grains,
+        listed=False,
     )
     alphas = {
         "small": _fitted(grains, lambda each, n: n <= SMALL_FITTED * 2 * each),
-        "large": _fitted(grains, lambda each, n: (n >= LARGE_FITTED) & (n <= each)),
+        "large": _fitted(grains, lambda each, n: (n >= LARGE_FITTED) & (n <= each) & (each >= 10 * LARGE_FITTED)),
     }
     meaning = f"alpha of f(N) = c N^-alpha: small: N to {SMALL_FITTED:.0%} of all grains, large: N from {LARGE_FITTED} to an aggregate's"
     yield Quantity("alpha", meaning, together(alphas, "fragments"))
