@@ -113,7 +113,7 @@ def along(series, level, f):
     """Series of Estimate of f(x (K,), y (..., K)) along one level of a Series of Estimate, x rising, for every value of the others."""
     others = [name for name in series.index.names if name != level]
     found = {}
-    for key, own in series.groupby(level=others) if others else [((), series)]:
+    for key, own in series.groupby(level=others if len(others) > 1 else others[0]) if others else [((), series)]:
         own = own.sort_index(level=level)
         key = key if isinstance(key, tuple) else (key,)
         found[key] = curve(f, own.index.get_level_values(level), own.to_list())
@@ -175,7 +175,8 @@ def alike(values, wanted):
 
 def _parts(of_pairs, by):
     """((key, ...), part) of what has the columns `by` and the pair in its index."""
-    for key, own in of_pairs.groupby(level=list(range(len(by)))) if by else [((), of_pairs)]:
+    levels = list(range(len(by)))
+    for key, own in of_pairs.groupby(level=levels if len(by) > 1 else 0) if by else [((), of_pairs)]:
         yield key if isinstance(key, tuple) else (key,), own
 
 
@@ -184,7 +185,8 @@ def _groups(table, by):
     if not by:
         yield (), table
         return
-    for key, rows in table.groupby([table[name].map(_key) for name in by]):
+    keys = [table[name].map(_key) for name in by]
+    for key, rows in table.groupby(keys if len(keys) > 1 else keys[0]):
         yield key if isinstance(key, tuple) else (key,), rows
 
 

@@ -1,8 +1,8 @@
 """A paper's claims beside our estimates: reproduced yes, no, or untested.
 
-no        they differ: p < 0.05 after Holm's correction over all tests of the page
-yes       our 95 % interval lies within the margin that was said before (of the value: the interval of the difference, with the error
-          of the paper's own runs, taken to scatter as ours; of limits: our own interval)
+yes       our 95 % interval lies within the margin that was said before (about a value: the interval of the difference, with the error of
+          the paper's own runs, taken to scatter as ours; about limits: our own interval)
+no        ours lies beyond it: p < 0.05 after Holm's correction over all tests of the page, with the error of the paper's own runs
 untested  neither, or not run at that size, or not declared a test; `why` says which, and how many pairs would decide"""
 
 import math
@@ -93,19 +93,20 @@ def _ours(claim, results):
     return quantity.unit, None if estimate is None else quantity.shown(estimate)
 
 
-def _nearest(claim, ours):
-    """The value, or that one of the limits which is nearer to ours; ours itself within them."""
+def _agreement(claim):
+    """(low, high) of what agrees with a claim: its value or limits, and the margin."""
     low, high = claim.limits
-    return min(max(ours.value, low), high)
+    return low - claim.margin, high + claim.margin
 
 
 def _chance(claim, ours):
-    """p of a difference from the claim as large as ours; one-sided for limits, where it is 1 within them."""
-    nearest = _nearest(claim, ours)
+    """p of a number as far beyond agreement as ours, 1 within it; None for a closed form, and without an error."""
     if ours.pairs == EXACT:
         return None
+    low, high = _agreement(claim)
+    nearest = min(max(ours.value, low), high)
     p = ours.chance(nearest, claim.runs)
-    if p is None or claim.value is not None:
+    if p is None or low == high:
         return p
     return 1.0 if nearest == ours.value else 0.5 * p
 
@@ -116,7 +117,7 @@ def _verdict(claim, ours, corrected):
         return UNTESTED, "no runs of ours there"
     if not claim.test:
         return UNTESTED, claim.note or "not declared a test"
-    low, high = (end + sign * claim.margin for end, sign in zip(claim.limits, (-1, 1)))
+    low, high = _agreement(claim)
     if ours.pairs == EXACT:
         return (YES if low <= ours.value <= high else NO), "a closed form, without error"
     if corrected is not None and corrected < LEVEL:
@@ -152,10 +153,8 @@ def _needed(claim, ours):
     if isinstance(ours, Fraction):
         return f"{ours.pairs} runs don't decide"
     scatter = ours.error * math.sqrt(ours.pairs)
-    low, high = claim.limits
-    away = max(claim.margin, low - ours.value, ours.value - high)
-    if not away > 0:
-        away = min(ours.value - low, high - ours.value)
+    low, high = _agreement(claim)
+    away = max(low - ours.value, ours.value - high, min(ours.value - low, high - ours.value))
     reach = (norm.ppf(1 - 0.5 * LEVEL) + norm.ppf(POWER)) * scatter
     inverse = (away / reach) ** 2 - (1 / claim.runs if claim.value is not None else 0.0)
     if inverse <= 0:

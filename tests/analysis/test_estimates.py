@@ -1,0 +1,249 @@
+"""Tests of the engine of estimates: means over pairs of aggregates, what follows from them, and verdicts beside a paper.
+
+Random seeds are fixed; a statistical bound says how often it would fail for others."""
+
+import numpy as np
+import pandas
+import pytest
+
+from analysis.studies.definition import Quantity, Results
+from analysis.studies.estimate import Fraction, combine, exact, mean, number_text
+from analysis.studies.paper import Claim, PaperError, read_paper
+from analysis.studies.predictions import predictions
+from analysis.studies.runs import Runs, along, at, differences, ratios, select, together
+from analysis.studies.verdict import NO, UNTESTED, YES, judge
+
+
+def table(**columns):
+    return pandas.DataFrame(columns)
+
+
+def pairs(values, name="p"):
+    return {f"{name}{k}": value for k, value in enumerate(values)}
+
+
+def test_a_means_error_is_that_of_its_values():
+    """s/n^(1/2), to three standard errors of a thousand draws."""
+    values = [1.0, 2.0, 6.0, 3.5]
+    found = mean(pairs(values))
+    assert found.value == 3.125 and found.pairs == 4
+    assert found.error == pytest.approx(np.std(values, ddof=1) / 2, rel=0.07)
+    assert mean({"a": 1.0}).error is None and mean({"a": 1.0}).interval() == (None, None)
+    assert mean(pairs([0.3, 0.1 + 0.2, 0.3])).error == 0.0  # the same but for rounding
+    assert mean(pairs([0.0] * 6)).interval() == (None, None)  # no measurement of an error of 0
+
+
+def test_intervals_cover():
+    """The mean of four normal numbers lies in the 95 % interval in 400 sets 95 % of the time: 91 % at least."""
+    random = np.random.default_rng(5)
+    inside = 0
+    for k in range(400):
+        low, high = mean(pairs(random.normal(size=4), f"set{k}-")).interval()
+        inside += low < 0 < high
+    assert 0.91 < inside / 400 < 0.99
+
+
+def test_what_the_same_pairs_gave_keeps_its_correlation():
+    first, second = mean(pairs([1.0, 3.0, 8.0])), mean(pairs([2.0, 4.0, 9.0]))
+    assert (second - first).value == 1.0 and (second - first).error == 0.0
+    others = mean(pairs([2.0, 4.0, 9.0], "other"))
+    assert (others - first).error == pytest.approx(np.hypot(first.error, others.error), rel=0.1)
+    assert (first / mean(pairs([2.0, 6.0, 16.0]))).error == 0.0 and (2 * first - first - first).error == 0.0
+    assert combine(np.maximum, first, exact(100.0)).error == 0.0
+
+
+def test_an_estimate_with_lost_draws_has_no_error():
+    low = mean(pairs([0.1, 2.0, 3.0]))
+    root = combine(lambda x: np.where(x > 1.0, np.sqrt(np.abs(x)), np.nan), low)
+    assert root.value == pytest.approx(1.7**0.5) and root.error is None
+
+
+def made(values):
+    """Runs of {(size, velocity): {seed: value}}."""
+    rows = [(n, v, s, x) for (n, v), own in values.items() for s, x in own.items()]
+    return pandas.DataFrame(rows, columns=["grains", "velocity", "seed", "value"])
+
+
+def test_groups_and_populations():
+    """Pair 1 of one size is not pair 1 of another; a pair that ran twice counts once."""
+    runs = made({(500, 1.0): {1: 1.0, 2: 3.0}, (500, 10**1.7): {1: 2.0, 2: 4.0}, (2000, 1.0): {1: 1.0, 2: 3.0}})
+    runs = pandas.concat([runs, table(grains=[500], velocity=[1.0], seed=[1], value=[3.0])], ignore_index=True)
+    series = Runs(runs, population=("grains",)).estimates("value", ("grains", "velocity"))
+    assert at(series, grains=500, velocity=1.0).value == 2.5 and at(series, grains=500, velocity=50.1).value == 3.0
+    assert at(series, grains=500, velocity=7.0) is None
+    of_500, of_2000 = select(series, velocity=1.0, grains=500), select(series, velocity=1.0, grains=2000)
+    assert not np.array_equal(of_500.iloc[0].draws[0], of_2000.iloc[0].draws[0])
+    faster = differences(select(series, velocity=50.1), select(series, velocity=1.0))
+    assert faster.index.to_list() == [500] and faster.iloc[0].value == 0.5
+    assert ratios(series, series).map(lambda e: e.value).eq(1.0).all()
+    both = together({"a": series, "b": series * 2}, "what")
+    assert at(both, grains=2000, velocity=1.0, what="b").value == 4.0
+    with pytest.raises(ValueError, match="2 estimates"):
+        at(series, grains=500)
+
+
+OFFSETS = tuple(k / 12 for k in range(13))
+
+
+def of_offsets(cells):
+    """Runs of {seed: {offset: value}}."""
+    rows = [(s, x, y) for s, own in cells.items() for x, y in own.items()]
+    return Runs(pandas.DataFrame(rows, columns=["seed", "square", "value"]))
+
+
+def test_a_mean_over_points_counts_pairs_that_have_all_of_them():
+    whole = {seed: {x: seed * x for x in OFFSETS} for seed in (1, 2, 3)}
+    runs = of_offsets({**whole, 4: {x: 100.0 for x in OFFSETS[::2]}})
+    weights = lambda points: np.where((points == 0) | (points == 1), 0.5, 1.0)
+    found = runs.over("square", OFFSETS, weights).estimates("value", ()).iloc[0]
+    assert found.pairs == 3 and found.value == pytest.approx(2.0 * 0.5)
+    assert runs.over("square", OFFSETS[::2]).estimates("value", ()).iloc[0].pairs == 4
+
+
+def test_pairs_that_agree_by_chance_have_the_scatter_of_their_points():
+    """Both pairs' means are 0.5, though every offset differs by 1: the error is that of 13 independent points."""
+    up = {x: float(k % 2) for k, x in enumerate(OFFSETS)}
+    down = {x: 1 - y for x, y in up.items()}
+    found = of_offsets({1: up, 2: down}).over("square", OFFSETS).estimates("value", ()).iloc[0]
+    expected = (13 * (1 / 13) ** 2 * 0.5 / 2) ** 0.5
+    assert found.error == pytest.approx(expected, rel=0.15)
+    alike = of_offsets({1: up, 2: up}).over("square", OFFSETS).estimates("value", ()).iloc[0]
+    assert alike.error == 0.0
+
+
+def test_fits_along_a_level():
+    """A line through three velocities: its slope has the error of the difference of the ends."""
+    series = Runs(made({(1, v): {1: v, 2: 2.0 * v, 3: 3.5 * v} for v in (1.0, 2.0, 4.0)})).estimates(
+        "value", ("grains", "velocity")
+    )
+    slope = along(series, "velocity", lambda x, y: (y @ (x - x.mean())) / ((x - x.mean()) ** 2).sum()).iloc[0]
+    ends = (at(series, grains=1, velocity=4.0) - at(series, grains=1, velocity=1.0)) / 3.0
+    assert slope.value == pytest.approx(ends.value) and slope.error == pytest.approx(ends.error)
+
+
+def test_fits_to_all_runs_have_the_errors_of_least_squares():
+    """Slope of 40 pairs, one run each: the textbook's error to 15 %."""
+    random = np.random.default_rng(2)
+    x = random.uniform(0, 1, 40)
+    runs = table(seed=np.arange(40), x=x, value=3 * x + 0.2 * random.normal(size=40))
+
+    def line(rows, weights):
+        w, x, y = weights / weights.sum(axis=1, keepdims=True), rows.x.to_numpy(), rows.value.to_numpy()
+        mx, my = w @ x, w @ y
+        slope = (w @ (x * y) - mx * my) / (w @ x**2 - mx**2)
+        return np.stack([slope, my - slope * mx], axis=1)
+
+    found = Runs(runs).fit(line, ("slope", "height"))
+    residual = runs.value - np.polyval(np.polyfit(x, runs.value, 1), x)
+    textbook = np.sqrt(residual.var(ddof=2) / (40 * x.var()))
+    assert at(found, number="slope").value == pytest.approx(np.polyfit(x, runs.value, 1)[0])
+    assert at(found, number="slope").error == pytest.approx(textbook, rel=0.15)
+
+
+def test_fractions():
+    runs = made(
+        {
+            (1, 1.0): dict.fromkeys(range(10), "sticks"),
+            (1, 2.0): {0: "sticks", 1: "undecided", 2: "bounces", 3: "bounces"},
+        }
+    )
+    found = Runs(runs).fractions(lambda t: t.value == "sticks", ("velocity",), lambda t: t.value == "undecided")
+    assert found.iloc[0].interval() == pytest.approx((0.7225, 1.0), abs=1e-4)
+    assert found.iloc[1].bounds == (0.25, 0.5) and found.iloc[1].undecided == 1
+    assert found.iloc[1].interval()[1] > Fraction(1, 4).interval()[1]
+    assert Fraction(0, 5).chance(1.0, 5) == pytest.approx(2 / 252) and Fraction(5, 10).chance(0.5) == 1.0
+    with pytest.raises(ValueError, match="several runs"):
+        Runs(pandas.concat([runs, runs])).fractions("seed", ("velocity",))
+
+
+def of_mean(scatter, n=4):
+    """Results with one quantity q: the mean of n pairs with that value and standard error."""
+    values = np.linspace(-1, 1, n) * scatter[1] * np.sqrt(n) / np.std(np.linspace(-1, 1, n), ddof=1) + scatter[0]
+    series = Runs(made({(1, 1.0): dict(enumerate(values))})).estimates("value", ("grains",))
+    return Results(None, {"q": Quantity("q", "made", series)})
+
+
+@pytest.mark.parametrize(
+    "ours, claim, verdict",
+    [
+        ((10.0, 0.1), dict(value=10.2, margin=1.0), YES),
+        ((10.0, 0.1), dict(value=12.0, margin=1.0), NO),
+        ((10.0, 0.1), dict(value=10.2, margin=0.1), UNTESTED),  # no difference is no agreement
+        ((10.0, 1.0), dict(value=12.0, margin=1.0, runs=1), UNTESTED),  # the paper's one run scatters as ours
+        ((10.0, 0.1), dict(low=9.0), YES),
+        ((10.0, 0.1), dict(low=9.9), UNTESTED),
+        ((10.0, 0.1), dict(high=9.0, runs=100), NO),
+        ((10.0, 0.1), dict(low=9.0, high=9.5, margin=1.0, runs=100), YES),
+        ((10.0, 0.1), dict(value=12.0, margin=1.0, test=False), UNTESTED),
+        (
+            (10.0, 0.1),
+            dict(value=12.0, margin=1.0, where={"grains": 50000}),  # a claim about a size is tested at that size
+            UNTESTED,
+        ),
+        ((10.0, 0.1), dict(value=10.5, margin=0.45, runs=10_000), UNTESTED),  # beyond the margin, not surely
+    ],
+)
+def test_verdicts(ours, claim, verdict):
+    claim = Claim("q", "made", "", "", **{"where": {"grains": 1}, "runs": 4, **claim})
+    (found,) = judge([claim], of_mean(ours))
+    assert found.verdict == verdict and found.why
+
+
+def test_a_family_is_corrected_together():
+    """One difference at p = 0.02 stands alone, and not among ten tests (Holm)."""
+    results = of_mean((10.0, 0.1), 30)
+    one = Claim("q", "made", "", "", {"grains": 1}, value=10.45, runs=30, margin=0.1)
+    same = Claim("q", "made", "", "", {"grains": 1}, value=10.0, runs=30, margin=2.0)
+    (alone,) = judge([one], results)
+    family = judge([one] + [same] * 9, results)
+    assert 0.005 < alone.p < 0.02 and alone.verdict == NO and family[0].verdict == UNTESTED
+    assert family[0].corrected == pytest.approx(10 * alone.p) and family[1].verdict == YES
+
+
+def test_how_many_pairs_would_decide():
+    (few,) = judge([Claim("q", "made", "", "", {"grains": 1}, value=10.0, runs=100, margin=0.5)], of_mean((10.0, 0.3)))
+    assert few.verdict == UNTESTED and "pairs would decide" in few.why
+    (never,) = judge([Claim("q", "made", "", "", {"grains": 1}, value=10.0, runs=1, margin=0.5)], of_mean((10.0, 0.3)))
+    assert never.verdict == UNTESTED and "no number of pairs" in never.why
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("[page]\nfigur = 'x'", "figur"),
+        ("[[claim]]\nquantity = 'q'", "label"),
+        ("[[claim]]\nquantity = 'q'\nlabel = 'l'\nprinted = ''\nsource = ''", "must have value, low or high"),
+        (
+            "[[claim]]\nquantity = 'q'\nlabel = 'l'\nprinted = ''\nsource = ''\nvalue = 1\nrow = true\n" * 9,
+            "must be 8 at most",
+        ),
+        ("[[claim]", "paper.toml"),
+        ("[other]\na = 1", "other"),
+    ],
+)
+def test_a_paper_that_cannot_be_used_is_one_line(tmp_path, text, said):
+    (tmp_path / "paper.toml").write_text(text)
+    with pytest.raises(PaperError) as error:
+        read_paper(tmp_path)
+    assert said in str(error.value) and "\n" not in str(error.value)
+
+
+def test_predictions_are_held_against_the_runs(tmp_path):
+    head = "what,quantity,where,low,high,expected,commit,run,held\n"
+    rows = [
+        "above,q,grains=1,11,,,abc,,",
+        "about,q,grains=1,9,11,,abc,,",
+        "larger,q,grains=7,9,11,,abc,,",
+        "old,,,,,two,abc,three,no",
+    ]
+    (tmp_path / "predictions.csv").write_text(head + "\n".join(rows) + "\n")
+    found = predictions(tmp_path, of_mean((10.0, 0.1)))
+    assert [p.held for p in found] == ["no", "yes", "not run", "no"] and found[0].expected == "at least 11"
+    (tmp_path / "predictions.csv").write_text(head + "x,none,grains=1,1,,,abc,,\n")
+    with pytest.raises(PaperError, match="no quantity none"):
+        predictions(tmp_path, of_mean((10.0, 0.1)))
+
+
+def test_numbers_as_text():
+    assert number_text(0.04999, 0.00996) == "0.0500 ± 0.0100" or number_text(0.04999, 0.00996) == "0.050 ± 0.010"
+    assert number_text(-0.2749, 0.061) == "-0.275 ± 0.061" and number_text(float("nan")) == "-"
