@@ -131,10 +131,11 @@ def _write_page(file, text):
 
 def _commands(options):
     """How to make it again, without this machine's folders."""
-    runs = " ".join(
-        path if not os.path.isabs(path) else os.path.basename(os.path.normpath(path)) for path in options.runs
+    words = (
+        path if not os.path.isabs(path) else os.path.basename(os.path.normpath(path))
+        for path in (options.name, *options.runs)
     )
-    yield f"python3 -m analysis study {options.name} {runs} --figures FOLDER --page FILE.html"
+    yield f"python3 -m analysis study {' '.join(words)} --figures FOLDER --page FILE.html"
 
 
 def _list():

@@ -194,7 +194,7 @@ def exact(value):
 def combine(f, *estimates):
     """Estimate of f(numbers): f is called once with the values, and once with all draws (arrays in, array out)."""
     with np.errstate(all="ignore"):
-        value, draws = f(*(e.value for e in estimates)), f(*(e.draws for e in estimates))
+        value, draws = f(*(np.float64(e.value) for e in estimates)), f(*(e.draws for e in estimates))
     draws = np.asarray(draws, dtype=float) + np.zeros((1, DRAWS))  # of a function that ignores them, too
     return Estimate(float(value), draws, min(e.pairs for e in estimates))
 

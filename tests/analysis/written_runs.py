@@ -110,3 +110,37 @@ def _pair_state(time, overlap, rate, touching):
         [[0, 1]] if touching else [],
         [normal_force(overlap, PAIR)] if touching else [],
     )
+
+
+def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, **parameters):
+    """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding, and stick (still
+    parting at the end unless it settles) or part at half their speed. Returns the path."""
+    time = np.linspace(0.0, 4e-7, 401)
+    meet, turn = 1e-7, 2e-7
+    away = -0.5 if not sticks else 0.0 if settles else -0.4
+    v = velocity * np.interp(time, [0, meet, turn, 3e-7], [1, 1, 0, away])
+    d = -velocity * meet + np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(time))])
+    history = {name: np.zeros(time.size) for name in CHANNELS}
+    energy = 2 * MASS * (velocity / 2) ** 2
+    history["kinetic"] = energy * (v / velocity) ** 2
+    history["slidingDissipation"] = energy - history["kinetic"]
+    touching = (time > meet) & (sticks | (time < 3e-7))
+    history.update(time=time, d=d, v=v, contacts=2 + touching, contacts_between=touching.astype(int))
+    states = []
+    for k in (0, 200, 400):
+        x = RADIUS - 0.5 * d[k]
+        position = [[-x, 0, 0], [-x, 2 * RADIUS, 0], [x, 0, 0], [x, 2 * RADIUS, 0]]
+        moving = [[v[k] / 2, 0, 0]] * 2 + [[-v[k] / 2, 0, 0]] * 2
+        states.append(
+            state_arrays(time[k], position, moving, [0, 0, 1, 1], [[0, 1], [2, 3]] + [[0, 2]] * int(touching[k]))
+        )
+    values = {
+        "packing": "cpe",
+        "material": "ice",
+        "grains": 2,
+        "velocity": velocity,
+        "seed": seed,
+        "impact": 0.0,
+        **parameters,
+    }
+    return write_run(path, record(RADIUS, values), history, states, ended)

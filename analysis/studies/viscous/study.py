@@ -146,8 +146,7 @@ def _grains(runs):
     """What follows from the grains alone, and the aggregates."""
     stick = runs.table.groupby("viscoelasticTime").sticking_velocity.first().map(exact)
     yield Quantity("v_stick", "sticking velocity of two grains head-on (A22 eq 30)", stick, "m/s")
-    if NO_DRAG in stick:
-        yield Quantity("v_stick_ratio", "over that without drag", stick / stick[NO_DRAG])
+    yield Quantity("v_stick_ratio", "over that without drag", stick / stick.get(NO_DRAG, np.nan))
     radius = runs.estimates(lambda t: t.characteristic_radius / t.grain_radius, ("grains",))
     yield Quantity("radius", "characteristic radius of the aggregates", radius, "r")
 

@@ -1,0 +1,182 @@
+"""Tests of what every study does: the documented study of an own question, from run folders to pages, tables and figures."""
+
+import base64
+import io
+import json
+import re
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from written_runs import two_pairs
+
+from analysis.__main__ import main
+from analysis.report import pdf
+from analysis.runs.folder import open_run
+from analysis.studies import find
+from analysis.studies.analyse import analyse
+from analysis.studies.paper import read_paper
+from analysis.studies.snapshot_figure import SnapshotFigure, read_snapshots
+
+TOP = Path(__file__).resolve().parents[2]
+VOID = {"meta", "img", "br", "hr", "link", "input"}
+
+
+class Structure(HTMLParser):
+    """Tags with attributes; fails on a tag that is not closed where it must be."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found, self.open = [], []
+        self.feed(text)
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append((tag, dict(attributes)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.found.append((tag, dict(attributes)))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def of(self, tag):
+        return [attributes for name, attributes in self.found if name == tag]
+
+
+@pytest.fixture
+def own(tmp_path):
+    """The study of STUDIES.md, for close-packed aggregates in place of BCCA ones, with runs: three of four stick at 3 m/s, one is
+    undecided at 4 m/s, one has not ended."""
+    text = (TOP / "analysis/STUDIES.md").read_text()
+    code = re.search(r"```python\n(.*?)```", text, re.DOTALL)[1]
+    assert len(code.splitlines()) <= 40
+    (tmp_path / "sticking.py").write_text(code.replace('packing="bcca"', 'packing="cpe"'))
+    for seed, sticks in ((1, True), (2, False), (3, True), (4, True)):
+        two_pairs(tmp_path / "runs" / f"s{seed}", 3.0, seed, sticks)
+    two_pairs(tmp_path / "runs" / "open", 4.0, 1, settles=False)
+    two_pairs(tmp_path / "runs" / "late", 3.0, 5, ended=False)
+    return tmp_path
+
+
+def run(own, *options):
+    return main(["study", str(own / "sticking.py"), str(own / "runs"), *map(str, options)])
+
+
+def test_the_documented_study_runs(own, capsys):
+    assert run(own, "--figures", own / "out", "--json") == 0
+    said = capsys.readouterr()
+    answer = json.loads(said.out)
+    sticking = {row["velocity"]: row for row in answer["quantities"]["sticking"]["rows"]}
+    assert (sticking[3.0]["value"], sticking[3.0]["pairs"]) == (0.75, 4) and sticking[4.0]["value"] == 0.0
+    assert sticking[4.0]["high"] > 0.9  # undecided: either way
+    assert answer["provenance"]["runs"] == 5 and "late: has not ended, left out" in said.err
+    names = {"README.md", "details.md", "comparison.json", "runs.csv", "sticking.png", "sticking.pdf"}
+    assert {file.name for file in (own / "out").iterdir()} == names
+    page, details = ((own / "out" / name).read_text() for name in ("README.md", "details.md"))
+    assert "Undecided: 1 of 5 runs" in page and "3 of 4" in details and "(sticking.png)" in details
+
+
+def test_its_table_is_read_again(own, capsys):
+    run(own, "--format", "csv")
+    (own / "runs.csv").write_text(capsys.readouterr().out)
+    assert main(["study", str(own / "sticking.py"), str(own / "runs.csv")]) == 0
+    assert "3 of 4" in capsys.readouterr().out
+    assert main(["study", "elastoplastic", str(own / "runs.csv")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.parametrize("words", [["none", "runs"], ["none.py", "runs"], ["viscous"], ["viscous", "nowhere"]])
+def test_what_cannot_be_analysed_is_one_line(own, words, capsys, monkeypatch):
+    monkeypatch.chdir(own)
+    assert main(["study", *words]) == 2
+    said = capsys.readouterr()
+    assert said.err.startswith("analysis: ") and said.err.count("\n") == 1 and not said.out
+
+
+def test_everything_is_inside_the_page(own, capsys, monkeypatch):
+    monkeypatch.setattr(pdf, "_CONVERTERS", ())
+    assert run(own, "--page", own / "out" / "page.html") == 0
+    said = capsys.readouterr()
+    assert "page.pdf: not written" in said.err and said.out.splitlines()[-1].endswith("out/page.html")
+    assert [file.name for file in (own / "out").iterdir()] == ["page.html"]
+    text = (own / "out" / "page.html").read_text()
+    found = Structure(text)
+    addresses = [a["src"] for a in found.of("img")] + [a["href"] for a in found.of("a")]
+    assert addresses and all(address.startswith("data:") for address in addresses)
+    assert not found.of("script") and not found.of("link")
+    picture = found.of("img")[0]["src"].partition(",")[2]
+    assert Image.open(io.BytesIO(base64.b64decode(picture))).width > 100
+    sent = {a["download"]: base64.b64decode(a["href"].partition(",")[2]) for a in found.of("a") if "download" in a}
+    (own / "sent.csv").write_bytes(sent["runs.csv"])
+    assert main(["study", str(own / "sticking.py"), str(own / "sent.csv")]) == 0
+    assert str(own) not in re.sub(r"data:[^\"]*", "", text)
+
+
+def test_text_of_the_data_is_no_html(own, capsys, monkeypatch):
+    monkeypatch.setattr(pdf, "_CONVERTERS", ())
+    code = (own / "sticking.py").read_text().replace("Fraction of pairs", "<script>alert(1)</script>")
+    (own / "sticking.py").write_text(code)
+    assert run(own, "--page", own / "page.html") == 0
+    text = (own / "page.html").read_text()
+    assert "<script>" not in text and not Structure(text).of("script")
+
+
+def test_a_page_must_be_html_that_can_be_written(own, capsys):
+    with pytest.raises(SystemExit) as stop:
+        run(own, "--page", "page.pdf")
+    assert stop.value.code == 2 and "page.pdf: must end in .html" in capsys.readouterr().err
+    (own / "taken").write_text("")
+    assert run(own, "--page", own / "taken" / "p.html") == 2
+    assert capsys.readouterr().err.splitlines()[-1].startswith("analysis: ")
+
+
+def test_a_converter_that_fails_leaves_no_pdf(tmp_path, monkeypatch):
+    program = tmp_path / "bin" / "weasyprint"
+    program.parent.mkdir()
+    program.write_text(f"#!{sys.executable}\nimport sys\nsys.exit('no font')\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(program.parent))
+    (tmp_path / "p.html").write_text("<p>")
+    with pytest.raises(pdf.NoPdf, match="weasyprint: no font"):
+        pdf.write_pdf(tmp_path / "p.html", tmp_path / "p.pdf")
+    assert not (tmp_path / "p.pdf").exists()
+
+
+def test_snapshots_are_drawn_from_run_folders_and_from_what_is_kept(own, capsys):
+    study = find.find(str(own / "sticking.py"))
+    results = analyse(study, [own / "runs"]).results
+    row = next(results.table.assign(grain_radius=1e-7).itertuples())
+    run_ = open_run(row.folder)
+    figure = SnapshotFigure("shots", "", lambda _: [(row, "one", [0.0, 1.0])])
+    assert figure.draw(results) is not None and list(results.snapshots) == [row.run]
+    from analysis.studies.snapshot_figure import write_snapshots
+
+    write_snapshots(own / "kept.npz", results.snapshots[row.run])
+    kept = read_snapshots(own / "kept.npz")
+    assert [state.time for state in kept] == [run_.states.times[0], run_.states.times[-1]]
+    assert kept[1].position == pytest.approx(run_.last.position, abs=1e-4 * np.abs(run_.last.position).max())
+    assert kept[1].aggregate.tolist() == run_.last.aggregate.tolist() and kept[1].piece.max() == 0
+
+
+@pytest.mark.parametrize("name", find.names())
+def test_every_gallery_is_one_screen_and_follows_from_its_runs(name, capsys):
+    """The page has at most 700 words and eight rows, and the same verdicts and numbers come out of runs.csv."""
+    folder = TOP / "analysis" / "gallery" / name
+    page, claims = read_paper(TOP / "analysis" / "studies" / name)
+    assert len((folder / "README.md").read_text().split()) <= 700
+    inputs = sorted(map(str, folder.glob("runs*.csv")))
+    assert main(["study", name, *inputs, "--json"]) == 0
+    again, kept = json.loads(capsys.readouterr().out), json.loads((folder / "comparison.json").read_text())
+    assert [(c["label"], c["verdict"]) for c in again["claims"]] == [(c["label"], c["verdict"]) for c in kept["claims"]]
+    assert len(again["claims"]) == len(claims) and again["quantities"].keys() == kept["quantities"].keys()
+    for quantity, own in kept["quantities"].items():
+        numbers = [[row["value"] for row in found["rows"]] for found in (own, again["quantities"][quantity])]
+        assert np.array(numbers[1], dtype=float) == pytest.approx(
+            np.array(numbers[0], dtype=float), rel=1e-6, abs=1e-12, nan_ok=True
+        )
