@@ -99,7 +99,7 @@ def rows(found, **where):
     return [
         row
         for row in found
-        if all(row[k] == (v if isinstance(v, str) else pytest.approx(v, abs=0)) for k, v in where.items())
+        if all(row[k] == (v if isinstance(v, str) else pytest.approx(v, rel=1e-6, abs=0)) for k, v in where.items())
     ]
 
 
