@@ -159,7 +159,8 @@ def analyse(study, paths):
 def _rows(quantity):
     """Records of a quantity's estimates."""
     for key, estimate in quantity.values.items():
-        where = dict(zip(quantity.values.index.names, key)) if isinstance(key, tuple) else {}
+        names = [name for name in quantity.values.index.names if name is not None]
+        where = dict(zip(names, key if isinstance(key, tuple) else (key,)))
         low, high = estimate.interval()
         yield {
             **where,
