@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas
 
+from ...runs.write import write_text
 from ...statistics import CONFIDENCE, student
 from . import paper
 from .zone_fit import LENGTHS, Slope, fit_slope, in_grain_radii
@@ -135,7 +136,7 @@ def write(file, rows, runs, means, covariate):
     for filling, ((mean, error), (plain, plain_error)) in means.items():
         head += f"# filling {filling:g}: {mean:.3f} +- {error:.3f}; without the covariate {plain:.3f} +- {plain_error:.3f}\n"
     body = pandas.DataFrame(rows)[list(COLUMNS)].to_csv(index=False, lineterminator="\n", float_format=_DIGITS)
-    Path(file).write_text(head + body, encoding="utf-8")
+    write_text(file, head + body)
 
 
 def read(file):
