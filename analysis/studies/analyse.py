@@ -9,6 +9,7 @@ from ..report.data import json_text
 from ..report.markdown import markdown
 from ..report.section import Report
 from ..runs.table import NoRunFolder, table_text
+from ..runs.write import write_text
 from .definition import Study
 from .find import figures
 from .gather import Gathered, gather
@@ -39,13 +40,14 @@ class Analysis:
         head = {"study": self.study.name, "provenance": self.report.provenance, "notes": list(self.report.notes)}
         return table_text(self.found.table, self.study.columns, head)
 
-    def write(self, folder):
-        """Write table, comparison, JSON and figures into a folder (Path, made if it is missing): Written."""
+    def write(self, folder, table=True):
+        """Write comparison, JSON, figures and, if wanted, the table into a folder (Path, made if it is missing): Written."""
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / TABLE_FILE).write_text(self.csv(), encoding="utf-8")
-        (folder / DATA_FILE).write_text(json_text(self.report), encoding="utf-8")
+        if table:
+            write_text(folder / TABLE_FILE, self.csv())
+        write_text(folder / DATA_FILE, json_text(self.report))
         drawn, undrawn = _draw(self.study, self.results, folder)
-        (folder / PAGE_FILE).write_text(markdown(self.report, drawn), encoding="utf-8")
+        write_text(folder / PAGE_FILE, markdown(self.report, drawn))
         return Written(folder, tuple(drawn), tuple(undrawn))
 
     def page(self, written, commands):
