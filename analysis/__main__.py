@@ -5,8 +5,10 @@ import os
 import signal
 import sys
 
-if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends the process without a traceback; before slow imports
+from .signals import end_quietly
+
+if __name__ == "__main__":
+    end_quietly(signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 from .commands import export, figures, film, status, study, summary  # noqa: E402
 

@@ -6,10 +6,13 @@
 PREFIX/lib/contact_law holds the packages contact_law, analysis and yade_scripts with their tables, and the plugin in
 an overlay that YADE_PREFIX may name. PREFIX/bin holds the commands. A line in a .pth file makes every Python 3 of the
 system find the packages whose folders of modules lie in PREFIX: ~/.local, /usr/local, or PYTHONUSERBASE.
+PREFIX/lib/contact_law/installed.json lists every file with its SHA-256: these go again, where they still are what was
+installed, and no others. Links are not followed.
 Exit status: 0, or 2 with one line on stderr.
 """
 
 import glob
+import hashlib
 import json
 import os
 import re
@@ -17,13 +20,25 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TOP))
+from analysis.runs.write import write_text
+from analysis.version import commit, version_text
+
 FOLDER, LIST, PATH_FILE = "lib/contact_law", "installed.json", "contact_law.pth"
 COPIED = {
     "contact_law": ("*.py", "VERSION"),
-    "analysis": ("**/*.py", "**/*.html", "gallery/*/*.csv", "gallery/*/*.json", "gallery/*/README.md"),
+    "analysis": (
+        "**/*.py",
+        "studies/*.html",
+        "studies/*/*.toml",
+        "studies/*/*.csv",
+        "gallery/*/*.json",
+        "gallery/*/snapshots/*",
+    ),
     "yade_scripts": ("**/*.py", "**/*.table"),
 }
 
@@ -44,29 +59,31 @@ class CannotInstall(Exception):
 
 def install(prefix):
     """Copy everything, replacing an earlier installation; returns the lines that say what one has now."""
-    folder, new = prefix / FOLDER, prefix / (FOLDER + ".new")
+    folder, paths = prefix / FOLDER, module_folders(prefix)
     if not list((TOP / "build").glob("lib/*/yade-double/libcontact_law.so")):
         raise CannotInstall(f"{TOP / 'build'}: holds no plugin; must be built before (make)")
-    _require_free(prefix)
-    shutil.rmtree(new, ignore_errors=True)
-    for package, patterns in COPIED.items():
-        for file in {f for pattern in patterns for f in (TOP / package).glob(pattern)}:
-            _copy(file, new / file.relative_to(TOP))
-    for file in ("yade_version.list", "commit.list"):
-        _copy(TOP / "build" / file, new / "build" / file)
-    for part in ("lib", "bin"):  # links to YADE's own files, and the plugin
-        shutil.copytree(TOP / "build" / part, new / "build" / part, symlinks=True)
-    sys.path.insert(0, str(TOP))
-    from analysis.version import commit, version_text
-
-    (new / "contact_law/COMMIT").write_text(commit() + "\n")
-    about = f"contact_law {version_text()}"
-    uninstall(prefix, missing_ok=True)
-    new.rename(folder)
-    paths = module_folders(prefix)
-    made = [*_write_commands(prefix / "bin", folder), *_write_path_files(paths, folder)]
-    (folder / LIST).write_text(json.dumps([str(path) for path in made], indent=1))
-    lines = [f"{about} is installed in {folder}", f"commands in {prefix / 'bin'}: {' '.join(COMMANDS)}"]
+    beside = {**_commands(prefix / "bin", folder), **{path / PATH_FILE: f"{folder}\n" for path in paths}}
+    _require_free(prefix, beside)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder.parent, prefix=".contact_law.") as temporary:
+        new = Path(temporary) / folder.name
+        _copy_all(new)
+        made = {folder / path.relative_to(new): _digest(path) for path in _files(new)}
+        made |= {path: _sha256(text.encode()) for path, text in beside.items()}
+        listed = sorted([str(path.relative_to(prefix)), digest] for path, digest in made.items())
+        write_text(new / LIST, json.dumps(listed, indent=0) + "\n")
+        if folder.exists():
+            uninstall(prefix)
+        folder.parent.mkdir(exist_ok=True)
+        new.rename(folder)
+    for path, text in beside.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_text(path, text, within=prefix)
+        path.chmod(0o755 if path.name in COMMANDS else 0o644)
+    lines = [
+        f"contact_law {version_text()} is installed in {folder}",
+        f"commands in {prefix / 'bin'}: {' '.join(COMMANDS)}",
+    ]
     if str(prefix / "bin") not in os.environ.get("PATH", "").split(os.pathsep):
         lines.append(f"to call them by name: PATH={prefix / 'bin'}:$PATH")
     if not paths:
@@ -74,30 +91,85 @@ def install(prefix):
     return lines
 
 
-def _require_free(prefix):
-    """CannotInstall where something is in the way that is not part of an earlier installation."""
-    folder = prefix / FOLDER
-    if folder.exists() and not (folder / LIST).is_file():
-        raise CannotInstall(f"{folder}: exists and is not an installation of contact_law; must be moved away")
-    own = set(json.loads((folder / LIST).read_text())) if folder.exists() else ()
-    for file in (prefix / "bin" / name for name in COMMANDS):
-        if os.path.lexists(file) and str(file) not in own:
-            raise CannotInstall(f"{file}: exists and is not part of an installation of contact_law; must be moved away")
+def uninstall(prefix):
+    """Remove what install() made there; returns the lines that say so, and what was left."""
+    folder, left = prefix / FOLDER, []
+    listed = _listed(prefix)
+    for path, digest in listed.items():
+        if _is_as_installed(prefix, path, digest):
+            path.unlink()
+        elif os.path.lexists(path):
+            left.append(f"{path}: is not what was installed in {prefix}; is left there")
+    for path in {cache for path in listed if _is_within(prefix, path) for cache in _caches(path)}:
+        path.unlink()
+    (folder / LIST).unlink()
+    ours = {path.parent for path in listed} | {path.parent / "__pycache__" for path in listed} | {folder}
+    for path in sorted(ours, key=lambda path: len(path.parts), reverse=True):
+        _remove_empty(path, prefix)
+    return [f"contact_law is removed from {prefix}", *left]
 
 
-def uninstall(prefix, missing_ok=False):
-    """Remove what install() made there; returns the lines that say so."""
+def _require_free(prefix, beside):
+    """CannotInstall where something is in the way that is not part of an earlier installation. beside: paths that are written
+    outside of its folder."""
     folder = prefix / FOLDER
-    if not (folder / LIST).is_file():
-        if missing_ok:
-            return []
-        raise CannotInstall(f"{folder}: no installation there")
-    for path in map(Path, json.loads((folder / LIST).read_text())):
-        path.unlink(missing_ok=True)
-        _remove_empty(path.parent, prefix)
-    shutil.rmtree(folder)
-    _remove_empty(folder.parent, prefix)
-    return [f"contact_law is removed from {prefix}"]
+    listed = _listed(prefix) if os.path.lexists(folder) else {}
+    own = {path for path, digest in listed.items() if _is_as_installed(prefix, path, digest)}
+    own |= {cache for path in own for cache in _caches(path)} | {folder / LIST}
+    for path in (*_files(folder), *filter(os.path.lexists, beside)):
+        if path not in own:
+            raise CannotInstall(f"{path}: exists and is not part of an installation of contact_law; must be moved away")
+
+
+def _listed(prefix):
+    """{path: digest} of what was installed in the prefix. CannotInstall where there is no list, or another one."""
+    file = prefix / FOLDER / LIST
+    if not _is_within(prefix, file) or not os.path.lexists(file.parent):
+        raise CannotInstall(f"{file.parent}: no installation there")
+    try:
+        listed = {prefix / path: digest for path, digest in json.loads(file.read_text())}
+        if not listed:
+            raise ValueError
+    except (OSError, ValueError, TypeError):
+        raise CannotInstall(
+            f"{file}: is no list of files with their SHA-256; {file.parent} must be moved away (and what an earlier version has put "
+            f"into {prefix / 'bin'})"
+        ) from None
+    return listed
+
+
+def _is_as_installed(prefix, path, digest):
+    return _is_within(prefix, path) and _digest(path) == digest
+
+
+def _is_within(prefix, path):
+    """Whether a path leads to the prefix, not through a link out of it."""
+    return Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(prefix)) and path.name not in ("", "..")
+
+
+def _digest(path):
+    """SHA-256 of a file, where a link leads; None for anything else."""
+    if path.is_symlink():
+        return f"link to {os.readlink(path)}"
+    return _sha256(path.read_bytes()) if path.is_file() else None
+
+
+def _sha256(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+def _files(folder):
+    """Paths of everything below a folder but folders; links are not followed."""
+    for at, folders, files in os.walk(folder):
+        yield from (Path(at) / name for name in files)
+        yield from (path for name in folders if (path := Path(at) / name).is_symlink())
+
+
+def _caches(path):
+    """Files that Python has made of a module."""
+    folder = path.parent / "__pycache__"
+    found = folder.glob(f"{path.stem}.*") if path.suffix == ".py" and not folder.is_symlink() else ()
+    return [file for file in found if file.is_file() and not file.is_symlink()]
 
 
 def module_folders(prefix):
@@ -120,21 +192,23 @@ def _pythons():
     return sorted(file for file in files if os.access(file, os.X_OK))
 
 
-def _write_commands(folder, target):
-    for name, line in COMMANDS.items():
-        file = folder / name
-        folder.mkdir(parents=True, exist_ok=True)
-        file.write_text(f'#!/bin/sh\n{line.format(folder=shlex.quote(str(target)))} "$@"\n')
-        file.chmod(0o755)
-        yield file
+def _commands(folder, target):
+    """{path: text} of the commands in a folder, of an installation in `target`."""
+    return {
+        folder / name: f'#!/bin/sh\n{line.format(folder=shlex.quote(str(target)))} "$@"\n'
+        for name, line in COMMANDS.items()
+    }
 
 
-def _write_path_files(folders, target):
-    for folder in folders:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = folder / PATH_FILE
-        file.write_text(f"{target}\n")
-        yield file
+def _copy_all(new):
+    for package, patterns in COPIED.items():
+        for file in {f for pattern in patterns for f in (TOP / package).glob(pattern)}:
+            _copy(file, new / file.relative_to(TOP))
+    for file in ("yade_version.list", "commit.list"):
+        _copy(TOP / "build" / file, new / "build" / file)
+    for part in ("lib", "bin"):  # links to YADE's own files, and the plugin
+        shutil.copytree(TOP / "build" / part, new / "build" / part, symlinks=True)
+    write_text(new / "contact_law/COMMIT", commit() + "\n")
 
 
 def _copy(file, target):
@@ -144,7 +218,7 @@ def _copy(file, target):
 
 def _remove_empty(folder, prefix):
     """The folder and those above it, up to the prefix, as far as they are empty."""
-    while folder != prefix and prefix in folder.parents and not any(folder.iterdir()):
+    while prefix in folder.parents and _is_within(prefix, folder) and folder.is_dir() and not any(folder.iterdir()):
         folder.rmdir()
         folder = folder.parent
 

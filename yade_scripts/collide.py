@@ -15,12 +15,13 @@ that can be read, with a checkpoint; a killed run leaves its last one. resume=1 
 """
 
 import os
+import signal
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
-from yade_scripts.run.stop_signals import end_quietly
+from analysis.signals import end_quietly
 
-end_quietly()
+end_quietly(signal.SIGINT)
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.run import script
 

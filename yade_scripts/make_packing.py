@@ -9,13 +9,15 @@ doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
 """
 
 import os
+import signal
 import sys
 from dataclasses import dataclass
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from yade_scripts.run.stop_signals import end_quietly
+from analysis.signals import end_quietly
 
-end_quietly()
+end_quietly(signal.SIGINT)
+from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
@@ -65,9 +67,10 @@ def main(arguments):
     if len(set(map(os.path.realpath, files))) < len(files):
         raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
     texts = from_arguments(argument for argument in arguments if "=" in argument)
+    for file in files:
+        require_file(file, inputs=[texts["from"]] if "from" in texts else ())
     if "from" in texts:
-        state = read_periodic_state(texts.pop("from"))
-        parameters = CutParameters.parse(texts)
+        state, parameters = read_periodic_state(texts.pop("from")), CutParameters.parse(texts)
         for index, file in enumerate(files):
             _save(file, cut(state, parameters, index))
         return 0
@@ -83,5 +86,7 @@ def main(arguments):
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
-    except (ParameterError, packings.PackingError, OSError) as error:
+    except (ParameterError, packings.PackingError) as error:
         sys.exit(f"make_packing.py: {error}")
+    except OSError as error:
+        sys.exit(f"make_packing.py: {error.filename}: {error.strerror}")

@@ -8,13 +8,14 @@ on stderr for each row that did not. study.py does more: it skips what has ended
 
 import os
 import re
+import signal
 import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from yade_scripts.run.stop_signals import end_quietly
+from analysis.signals import end_quietly
 
-end_quietly()
+end_quietly(signal.SIGINT)
 from yade_scripts.run.table import TableError, read
 from yade_scripts.runner.batch_command import LOGS, batch_command, failure
 

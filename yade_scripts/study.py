@@ -28,14 +28,15 @@ import time
 from dataclasses import replace
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from yade_scripts.run.stop_signals import end_quietly
+from analysis.signals import end_quietly
 
-end_quietly()
+end_quietly(signal.SIGINT)
+from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import rows, slurm, view
-from yade_scripts.runner.batch import Batch, StudyBusy, StudyFolder
+from yade_scripts.runner.batch import LEFT, Batch, StudyBusy, StudyFolder
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
 
@@ -87,6 +88,7 @@ class Study:
         self.name = os.path.splitext(os.path.basename(table))[0]
         self.rows, self.jobs = rows.read(table), jobs
         self.folder = StudyFolder(self.name)
+        require_file(self.folder.file(LEFT), inputs=[table])
         self.since = 0.0
         self._final = {}  # states that can't change any more
 
@@ -226,8 +228,11 @@ def main(arguments):
         if options.slurm:
             study.since = time.time()
             return submit(study, options.jobs, options.sbatch, options.dry_run)
-    except (TableError, StudyBusy, slurm.SlurmError, OSError) as error:
+    except (TableError, StudyBusy, slurm.SlurmError) as error:
         print(f"study.py: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"study.py: {error.filename}: {error.strerror}", file=sys.stderr)
         return 2
     study.since = time.time()
     stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup

@@ -42,6 +42,6 @@ def run(options):
         complain(error)
         return FAILED
     except OSError as error:
-        complain(f"{options.out or options.run}: {error.strerror}")
+        complain(f"{error.filename}: {error.strerror}")
         return FAILED
     return 0

@@ -73,16 +73,17 @@ def run(options):
         complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
         return FAILED
     try:
+        table = _writes_table(options)
         analysis = analyse(find(options.name), options.runs)
         _complain_of(analysis.found)
-        written = _write(analysis, options) if options.figures or options.page else None
+        written = _write(analysis, options, table) if options.figures or options.page else None
     except NothingToAnalyse as nothing:
         _complain_of(nothing.found)
         if not nothing.found.problems:
             complain(nothing)
         return FAILED
     except OSError as error:
-        complain(f"{error.filename or options.page or options.figures}: {error.strerror}")
+        complain(f"{error.filename}: {error.strerror}")
         return FAILED
     except (NoSuchStudy, PaperError, RunFolderError) as error:
         complain(error)
@@ -93,10 +94,28 @@ def run(options):
     return FAILED if analysis.found.problems else 0
 
 
-def _write(analysis, options):
+def _writes_table(options):
+    """Whether a table is written: not over the one that is read when it is all that is read, since both hold the same runs.
+    OSError where a file cannot be written, or is one of several that are read."""
+    from ..runs.write import require_file
+    from ..studies.analyse import TABLE_FILE
+
+    if options.page:
+        require_file(options.page)
+    if not options.figures:
+        return True
+    file = os.path.join(options.figures, TABLE_FILE)
+    if [os.path.realpath(path) for path in options.runs] == [os.path.realpath(file)]:
+        complain(f"{file}: is what is read; stays as it is")
+        return False
+    require_file(file, inputs=options.runs)
+    return True
+
+
+def _write(analysis, options, table):
     """Figures and page, as far as they are wanted; what to open first."""
     with _folder(options.figures) as folder:
-        written = analysis.write(folder, tuple(_commands(options)))
+        written = analysis.write(folder, table, tuple(_commands(options)))
         for name in written.undrawn:
             complain(f"{name}: not drawn: it needs the run folders, a table has only their numbers")
         if options.page:
@@ -115,18 +134,17 @@ def _folder(wanted):
 
 
 def _write_page(file, text):
-    """The page, whole or not there, and its PDF; a PDF of an earlier page goes where there can be none of this one."""
+    """The page and its PDF."""
     from ..report.pdf import NoPdf, write_pdf
+    from ..runs.write import write_text
 
     file.parent.mkdir(parents=True, exist_ok=True)
-    part, pdf = file.with_name(f".{file.name}.part"), file.with_suffix(".pdf")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, file)
+    pdf = file.with_suffix(".pdf")
+    write_text(file, text)
     try:
         write_pdf(file, pdf)
     except NoPdf as error:
-        pdf.unlink(missing_ok=True)
-        complain(f"{pdf}: {error}")
+        complain(f"{pdf}: {error}" + ("; what is there is of an earlier page" if pdf.exists() else ""))
 
 
 def _commands(options):

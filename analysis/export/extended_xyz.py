@@ -5,6 +5,7 @@ Source: https://github.com/libAtoms/extxyz (the format's specification). Numbers
 import numpy as np
 
 from ..progress import progress
+from ..runs.write import replacing
 from .fields import exported_states, grain_fields
 
 FILE = "run.xyz"
@@ -19,7 +20,7 @@ def write_xyz(run, folder):
     velo); a frame's line has Time [s] and, of a periodic run, the cell."""
     file = folder / FILE
     folder.mkdir(parents=True, exist_ok=True)
-    with open(file, "w", encoding="ascii") as out:
+    with replacing(file) as out:
         for exported in progress(exported_states(run), "writing states", len(run.states)):
             _write_frame(out, exported)
     return file
@@ -35,7 +36,7 @@ def _write_frame(out, exported):
     else:
         edges = " ".join(f"{number:.17g}" for number in np.diag(state.cell_size).ravel())
         words += [f'Lattice="{edges}"', 'pbc="T T T"']
-    out.write(f"{len(state.radius)}\n{' '.join(words)}\n")
+    out.write(f"{len(state.radius)}\n{' '.join(words)}\n".encode("ascii"))
     table = np.hstack([np.asarray(array, dtype=float).reshape(len(state.radius), -1) for array in columns.values()])
     np.savetxt(out, table, fmt=f"{SPECIES} " + " ".join(_formats(columns)))
 

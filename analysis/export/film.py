@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 from ..figures.sphere_raster import paint_spheres
 from ..figures.style import AGGREGATE_COLOURS, NANO
 from ..progress import progress
+from ..runs.write import replacing, require_file
 
 FRAMES_PER_SECOND = 10
 WIDTH = 960  # pixels
@@ -27,21 +28,12 @@ def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH):
     wide. The file appears when it is complete. Grains of a periodic cell are drawn within it.
 
     NoFilm when ffmpeg is missing or fails, RunFolderError when a state is damaged or there is none."""
+    require_file(file)  # before the frames are drawn
     view = _view(run)
     pixel = max((view[1] - view[0]) / width, (view[3] - view[2]) / _TALLEST)
-    part = tempfile.NamedTemporaryFile(dir=file.parent, prefix=".film-", suffix=file.suffix, delete=False)
-    part.close()
-    try:
-        _encode(
-            (_frame(state, view, pixel) for state in progress(run.states, "drawing frames")),
-            part.name,
-            frames_per_second,
-        )
-        os.chmod(part.name, 0o644)
-        os.replace(part.name, file)
-    finally:
-        if os.path.exists(part.name):
-            os.unlink(part.name)
+    frames = (_frame(state, view, pixel) for state in progress(run.states, "drawing frames"))
+    with replacing(file, ending=file.suffix) as part:
+        _encode(frames, os.path.abspath(part.name), frames_per_second)
     return file
 
 

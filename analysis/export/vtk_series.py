@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..progress import progress
+from ..runs.write import write_text
 from . import vtk_xml
 from .fields import contact_fields, exported_states, grain_fields
 
@@ -21,12 +22,12 @@ def write_vtk(run, folder):
         names.append(f"state_{number:06d}")
         times.append(exported.state.time)
         (folder / names[-1]).mkdir(parents=True, exist_ok=True)
-        (folder / names[-1] / "grains.vtp").write_text(_grains(exported))
-        (folder / names[-1] / "contacts.vtp").write_text(_contacts(exported))
         blocks = {part: f"{names[-1]}/{part}.vtp" for part in ("grains", "contacts")}
-        (folder / f"{names[-1]}.vtm").write_text(vtk_xml.multi_block(blocks))
+        write_text(folder / blocks["grains"], _grains(exported), within=folder)
+        write_text(folder / blocks["contacts"], _contacts(exported), within=folder)
+        write_text(folder / f"{names[-1]}.vtm", vtk_xml.multi_block(blocks))
     series = folder / SERIES
-    series.write_text(vtk_xml.collection([f"{name}.vtm" for name in names], times))
+    write_text(series, vtk_xml.collection([f"{name}.vtm" for name in names], times))
     return series
 
 

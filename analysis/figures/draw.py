@@ -5,6 +5,7 @@ from importlib import import_module
 from pathlib import Path
 
 from ..progress import progress
+from ..runs.write import replacing
 from . import of_run
 
 
@@ -30,5 +31,6 @@ def draw_all(run, folder):
     for name, make in progress(figures_of(run).items(), "drawing"):
         figure = make(run)
         file = folder / f"{name}.png"
-        figure.savefig(file)
+        with replacing(file) as out:
+            figure.savefig(out, format="png")
         yield file

@@ -6,6 +6,8 @@ import numpy as np
 from matplotlib.colors import to_rgba_array
 from PIL import Image  # what matplotlib itself writes PNGs with
 
+from ..runs.write import replacing
+
 DOTS_PER_INCH = 80  # a gallery of all of a study's figures stays below 1.5 MB
 COLOURS = 256
 KEPT = 192  # of them: colours that stay as they are
@@ -16,7 +18,9 @@ def save_small(figure, file):
     stay what they are; only shades between them (edges of lines and letters) are merged."""
     image = io.BytesIO()
     figure.savefig(image, dpi=DOTS_PER_INCH)
-    _with_palette(Image.open(image).convert("RGB"), _drawn_with(figure)).save(file, optimize=True)
+    small = _with_palette(Image.open(image).convert("RGB"), _drawn_with(figure))
+    with replacing(file) as out:
+        small.save(out, format="png", optimize=True)
 
 
 def _drawn_with(figure):
@@ -47,4 +51,5 @@ def _with_palette(picture, wanted):
 
 def save_vector(figure, file):
     """Save a matplotlib Figure as a PDF, the same bytes each time."""
-    figure.savefig(file, format="pdf", metadata={"CreationDate": None})
+    with replacing(file) as out:
+        figure.savefig(out, format="pdf", metadata={"CreationDate": None})

@@ -3,8 +3,9 @@
 import os
 import shutil
 import subprocess
-import tempfile
 from pathlib import Path
+
+from ..runs.write import replacing
 
 LONGEST = 300  # s
 
@@ -21,17 +22,15 @@ def write_pdf(page, file):
         raise NoPdf(
             "not written: needs weasyprint or chromium (apt-get install weasyprint), or print the page in a browser"
         )
-    with tempfile.TemporaryDirectory(dir=file.parent, prefix=".pdf-") as folder:
-        made = Path(folder) / "page.pdf"
-        words = command(str(page.resolve()), str(made))
+    with replacing(file, ending=".pdf") as part:
+        words = command(str(page.resolve()), os.path.abspath(part.name))
         try:
             run = subprocess.run(words, capture_output=True, text=True, timeout=LONGEST, errors="replace")
         except subprocess.TimeoutExpired:
             raise NoPdf(f"not written: {words[0]} took more than {LONGEST} s") from None
-        if not made.exists() or not made.stat().st_size:
+        if not os.path.exists(part.name) or not os.path.getsize(part.name):
             said = (run.stderr.strip().splitlines() or [f"exit status {run.returncode}"])[-1]
             raise NoPdf(f"not written: {words[0]}: {said}")
-        os.replace(made, file)
     return file
 
 

@@ -1,7 +1,8 @@
-"""Arrays of a run folder's .npz files, read and checked against the lists of runs.format.
+"""Arrays of .npz files: written, and of a run folder's read and checked against the lists of runs.format.
 
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
+import io
 import os
 import tokenize
 import zipfile
@@ -33,6 +34,13 @@ UNREADABLE = (
 
 class RunFolderError(Exception):
     """A run folder that cannot be analysed; the message is one line: which file, and what is wrong."""
+
+
+def npz(**arrays):
+    """Content (a buffer) of an .npz file with these arrays."""
+    content = io.BytesIO()
+    np.savez(content, **arrays)
+    return content.getbuffer()
 
 
 def array_names(file):

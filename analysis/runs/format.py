@@ -2,14 +2,15 @@
 
 Scripts write what stands here and the analysis reads it. All quantities are in SI units. A folder holds
 
-    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached
+    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached;
+                        files: names of what the run writes into the folder, by which scripts know it as a run's
     history.npz         time series, arrays (T,)
     states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts
     ended               empty: the run came to its planned end
     checkpoint/         while the run is under way, or was stopped: not part of the format
     heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
 
-Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
+`files` came with version 0.4.0, which alone replaces or resumes runs that have it. Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
 and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well.
 """
 

@@ -12,7 +12,6 @@ import re
 import shutil
 import socket
 import subprocess
-import tempfile
 import time
 from contextlib import suppress
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from pathlib import Path
 from .arrays import RunFolderError
 from .folder import read_json
 from .format import HEARTBEAT_FILE
+from .write import unfinished
 
 MISSED = 3  # intervals after which a heartbeat that hasn't changed is one of a run that was killed
 INTERVAL = 30.0  # s
@@ -144,15 +144,10 @@ def age(file):
     for the server's, CLOCKS_AGREE behind. Raises FileNotFoundError.
     """
     try:
-        handle, clock = tempfile.mkstemp(prefix=".clock.", suffix=".unfinished", dir=os.path.dirname(file))
+        with unfinished(os.path.join(os.path.dirname(file), "clock")) as clock:
+            now = os.fstat(clock.fileno()).st_mtime
     except OSError:
-        return time.time() - CLOCKS_AGREE - os.stat(file).st_mtime
-    try:
-        now = os.fstat(handle).st_mtime
-    finally:
-        os.close(handle)
-        with suppress(OSError):
-            os.unlink(clock)
+        now = time.time() - CLOCKS_AGREE
     return now - os.stat(file).st_mtime
 
 

@@ -9,6 +9,7 @@ import pandas
 
 from ..progress import progress
 from ..runs.table import NoRunFolder, table_text
+from ..runs.write import replacing, write_text
 from .definition import GALLERY, SNAPSHOTS, Results, Study
 from .find import figures
 from .gather import Gathered, gather
@@ -109,17 +110,18 @@ class Analysis:
         except (OSError, ValueError, KeyError, TypeError):
             return False
 
-    def write(self, folder, commands=()):
-        """Write pages, table, JSON and figures into a folder (Path, made if it is missing): Written. commands: lines that say how to make
-        all of it again."""
+    def write(self, folder, table=True, commands=()):
+        """Write pages, JSON, figures and, if wanted, the table into a folder (Path, made if it is missing): Written. commands: lines that
+        say how to make all of it again."""
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / TABLE_FILE).write_text(self.csv(), encoding="utf-8")
-        (folder / DATA_FILE).write_text(self.json(), encoding="utf-8")
+        if table:
+            write_text(folder / TABLE_FILE, self.csv())
+        write_text(folder / DATA_FILE, self.json())
         drawn, undrawn = _draw(self.study, self.results, folder)
         prose = folder.resolve() == GALLERY / self.study.name or self.is_gallerys()
         texts = {PAGE_FILE: screen(self, drawn, prose), DETAILS_FILE: details(self, drawn, commands)}
         for name, text in texts.items():
-            (folder / name).write_text(text, encoding="utf-8")
+            write_text(folder / name, text)
         return Written(folder, texts, drawn, tuple(undrawn))
 
     def page(self, written):
@@ -228,4 +230,5 @@ def _keep(snapshots, folder):
 
     for run, states in snapshots.items():
         folder.mkdir(exist_ok=True)
-        write_snapshots(folder / f"{run}.npz", states)
+        with replacing(folder / f"{run}.npz") as file:
+            write_snapshots(file, states)

@@ -104,6 +104,10 @@ def test_command_line(run):
             ["from=run/states/000020.npz", "radius=5", "filling=0.4"],
             "filling: unknown parameter; must be one of radius, seed",
         ),
+        (
+            ["run/states/000020.npz", "from=run/states/000020.npz", "radius=5"],
+            "make_packing.py: run/states/000020.npz: is what is read; must be another file",
+        ),
     ],
 )
 def test_wrong_input_gives_one_line(run, arguments, message):

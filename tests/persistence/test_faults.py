@@ -9,7 +9,7 @@ import pytest
 from faults import scenarios
 from faults.scenarios import RECORDER, RUN, SCENARIOS, enumerated, enumerated_stops, power_loss
 
-from yade_scripts.run.atomic_write import is_unfinished
+from analysis.runs.write import is_unfinished
 
 BEGINNING = 24  # calls, in which a folder is begun or emptied
 

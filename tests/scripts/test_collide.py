@@ -35,6 +35,7 @@ def test_run_folder_is_complete(run):
     about = read_json(run, "run.json")
     assert set(about) == {
         "format",
+        "files",
         "kind",
         "parameters",
         "derived",

@@ -197,7 +197,7 @@ def test_a_start_that_was_killed_at_once_is_taken_over_too(tmp_path, monkeypatch
 def test_a_starter_that_was_paused_for_all_of_another_run_is_refused(tmp_path, monkeypatch):
     """It has seen start 4 killed; a run then came to its end, and another one has begun, counting from 1."""
     left_by(tmp_path / "run", Heartbeat("node7", "another boot", start=4), STALE)
-    make = heartbeat._made_anew
+    make = heartbeat.make_new
 
     def paused(path, content):
         for name in os.listdir(tmp_path / "run"):
@@ -205,7 +205,7 @@ def test_a_starter_that_was_paused_for_all_of_another_run_is_refused(tmp_path, m
         left_by(tmp_path / "run", ELSEWHERE)
         return make(path, content)
 
-    monkeypatch.setattr(heartbeat, "_made_anew", paused)
+    monkeypatch.setattr(heartbeat, "make_new", paused)
     with pytest.raises(RunsElsewhere):
         Beating(str(tmp_path / "run"))
     assert sorted(os.listdir(tmp_path / "run")) == [".heartbeat-1", HEARTBEAT_FILE]
@@ -220,7 +220,7 @@ def test_a_file_system_without_hard_links_will_do(tmp_path, monkeypatch):
     as_machine(monkeypatch, "node8")
     with pytest.raises(RunsElsewhere):
         Beating(str(tmp_path))
-    assert not heartbeat._made_anew(beating._own(), b"")
+    assert not heartbeat.make_new(beating._own(), b"")
     beating.stop()
     assert os.listdir(tmp_path) == []
 

@@ -13,6 +13,7 @@ import pytest
 
 from analysis.measures.compression import compression_and_velocity
 from analysis.runs.running import being_written, locked_inodes
+from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.folder import RunFolder, RunFolderError
 from yade_scripts.run.progress import progress_bar
 from yade_scripts.run.schedule import MOST_SAMPLES, Schedule
@@ -32,8 +33,9 @@ def test_files_are_whole_and_no_others_stay(tmp_path):
     ended_run(tmp_path / "a" / "b")
     found = {os.path.relpath(os.path.join(at, name), tmp_path) for at, _, names in os.walk(tmp_path) for name in names}
     assert found == {"a/b/run.json", "a/b/history.npz", "a/b/ended", "a/b/states/000000.npz"}
-    with open(tmp_path / "a" / "b" / "run.json") as file:
-        assert json.load(file) == {"format": 3, "outcome": "completed"}
+    run = json.loads((tmp_path / "a" / "b" / "run.json").read_text())
+    assert {name: run[name] for name in ("format", "outcome")} == {"format": 3, "outcome": "completed"}
+    assert {f"a/b/{name}" for name in run["files"]} > found - {"a/b/run.json"}
 
 
 def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):
@@ -50,10 +52,8 @@ def test_an_ended_run_is_replaced_only_when_asked(tmp_path):
     path = ended_run(tmp_path / "run")
     with pytest.raises(RunFolderError, match="holds a run that has ended; must be another folder"):
         RunFolder(str(path))
-    (path / "notes.txt").write_text("mine")
     RunFolder(str(path), overwrite=True)
-    assert sorted(os.listdir(path)) == ["notes.txt", "run.json", "states"]
-    assert os.listdir(path / "states") == []
+    assert sorted(os.listdir(path)) == ["run.json", "states"] and os.listdir(path / "states") == []
 
 
 @pytest.mark.parametrize("overwrite", [False, True])
@@ -98,15 +98,6 @@ def test_a_folder_that_a_killed_run_began_is_used(tmp_path, left):
     assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"] and not os.listdir(
         tmp_path / "run" / "states"
     )
-
-
-def test_states_without_their_run_are_left_alone(tmp_path):
-    """Someone may have put them aside."""
-    (tmp_path / "run" / "states").mkdir(parents=True)
-    (tmp_path / "run" / "states" / "000000.npz").write_bytes(b"mine")
-    with pytest.raises(RunFolderError, match="exists and is no run folder"):
-        RunFolder(str(tmp_path / "run"), overwrite=True)
-    assert (tmp_path / "run" / "states" / "000000.npz").read_bytes() == b"mine"
 
 
 def test_a_name_that_is_too_long_is_one_line(tmp_path):
@@ -168,17 +159,82 @@ def test_being_written_while_another_process_waits_for_the_lock(tmp_path):
     assert not being_written(path)
 
 
+def contents(folder):
+    """{name: text, or where a link leads} of everything in a folder."""
+    return {
+        os.path.relpath(path, folder): os.readlink(path) if path.is_symlink() else path.read_text(errors="replace")
+        for path in sorted(folder.rglob("*"))
+        if path.is_symlink() or not path.is_dir()
+    }
+
+
+FOREIGN = "run.json has no list of the files that a run wrote"
+MINE = ("history.npz", "states/000000.npz", "states/mine.npz", "checkpoint/recorder.npz", "checkpoint/mine", "mine")
+
+
 @pytest.mark.parametrize(
-    "make, message",
+    "files, message",
     [
-        (lambda path: path.write_text("x"), "is a file; must be a folder"),
-        (lambda path: (path.mkdir(), (path / "thesis.tex").write_text("x")), "exists and is no run folder"),
+        ({"thesis.tex": "x"}, "exists and is no run folder"),
+        ({"states/000000.npz": "x"}, "exists and is no run folder"),  # someone may have put them aside
+        ({"heartbeat.json": '{"pulse": 60}'}, "exists and is no run folder"),
+        ({"run.json": "no json"}, FOREIGN),
+        ({"run.json": "[]"}, FOREIGN),
+        ({"run.json": '{"format": 3, "parameters": {}, "derived": {}}', "ended": ""}, FOREIGN),  # of version 0.3
+        ({"run.json": '{"format": 3, "files": ["../mine", "history.npz"]}'}, FOREIGN),
+        ({"run.json": '{"format": 3, "files": []}'}, "no run has written it; must be moved away|not a checkpoint"),
+    ],
+    ids=[
+        "no run",
+        "states alone",
+        "a heartbeat",
+        "no JSON",
+        "a list",
+        "an earlier version",
+        "a list that leads out",
+        "others' files",
     ],
 )
-def test_what_is_no_run_folder_is_left_alone(tmp_path, make, message):
-    make(tmp_path / "run")
-    with pytest.raises(RunFolderError, match=message):
+@pytest.mark.parametrize("options", [{}, {"overwrite": True}, {"resume": True, "overwrite": True}], ids=str)
+def test_a_folder_of_other_files_is_left_as_it_is(tmp_path, files, message, options):
+    path = tmp_path / "run"
+    for name, text in {**({name: "mine" for name in MINE} if "run.json" in files else {}), **files}.items():
+        (path / name).parent.mkdir(parents=True, exist_ok=True)
+        (path / name).write_text(text)
+    before = contents(path)
+    with pytest.raises(InputError, match=message) as refused:
+        RunFolder(str(path), **options)
+    assert contents(path) == before and "\n" not in str(refused.value)
+
+
+def test_a_file_is_left_as_it_is(tmp_path):
+    (tmp_path / "run").write_text("mine")
+    with pytest.raises(RunFolderError, match="is a file; must be a folder"):
         RunFolder(str(tmp_path / "run"), overwrite=True)
+
+
+@pytest.mark.parametrize("name", ["run.json", "history.npz", "ended", "states", "states/000000.npz", "checkpoint"])
+def test_links_out_of_an_ended_run_are_not_followed(tmp_path, name):
+    """A disk was full, and someone has moved a part of the run elsewhere."""
+    path, elsewhere = ended_run(tmp_path / "run"), tmp_path / "elsewhere"
+    (path / "checkpoint").mkdir()
+    (path / "checkpoint" / "scene-3.yade").touch()
+    (path / name).rename(elsewhere)
+    (path / name).symlink_to(elsewhere)
+    before = contents(tmp_path)
+    with pytest.raises(RunFolderError, match=f"{name}.*: is a link"):
+        RunFolder(str(path), overwrite=True)
+    assert contents(tmp_path) == before
+
+
+def test_what_others_put_into_a_run_folder_stays(tmp_path):
+    path = ended_run(tmp_path / "run")
+    others = {"notes.txt", "states/mine.npz", "states/999999.npz", "checkpoint/mine"}
+    (path / "checkpoint").mkdir()
+    for name in (*others, "checkpoint/scene-3.yade"):
+        (path / name).write_text("mine")
+    RunFolder(str(path), overwrite=True)
+    assert set(contents(path)) == others | {"run.json"}
 
 
 def test_an_unwritable_folder():

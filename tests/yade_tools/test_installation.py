@@ -1,7 +1,8 @@
 """make install into a folder of its own: everything works from any folder, without the checkout; make uninstall."""
 
+import hashlib
+import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -94,14 +95,15 @@ def test_a_study_by_the_name_of_its_table(installed):
 
 def test_files_that_the_analysis_reads_are_installed(installed):
     prefix, call = installed
-    ask = "from analysis.studies.elastoplastic.prediction import GALLERY; print(GALLERY)"
+    ask = "from analysis.studies.definition import GALLERY; print(GALLERY)"
     gallery = Path(call("/usr/bin/python3", "-c", ask).stdout.strip())
     assert gallery.is_relative_to(prefix)
     for pattern in (
-        "gallery/elastoplastic/*.csv",
-        "gallery/elastoplastic/README.md",
-        "gallery/elastoplastic/*.json",
-        "report/page/*.html",
+        "gallery/*/*.json",
+        "gallery/*/snapshots/*",
+        "studies/*.html",
+        "studies/*/*.toml",
+        "studies/*/*.csv",
     ):
         files = list((TOP / "analysis").glob(pattern))
         assert files
@@ -121,14 +123,52 @@ def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
 
 
-def test_what_is_in_the_way_is_kept(tmp_path):
-    (tmp_path / "bin").mkdir()
-    (tmp_path / "bin/dust-study").write_text("another program")
+def test_only_what_was_installed_is_removed(tmp_path):
+    """Others' files in the installation and outside of it, changed ones, and what leads out by a name or a link."""
+    prefix, outside = tmp_path / "prefix", tmp_path / "outside"
+    (outside / "__pycache__").mkdir(parents=True)
+    assert installation("install", prefix).returncode == 0
+    folder = prefix / "lib/contact_law"
+    changed, mine = folder / "yade_scripts/studies/demo.table", folder / "yade_scripts/studies/mine.table"
+    for file in (changed, mine, outside / "named", outside / "analysis.py", outside / "__pycache__/analysis.1"):
+        file.write_text("mine")
+    (folder / "analysis/theory").rename(outside / "theory")
+    (folder / "analysis/theory").symlink_to(outside / "theory")
+    listed = json.loads((folder / "installed.json").read_text())
+    digest = hashlib.sha256(b"mine").hexdigest()
+    listed += [[str(outside / "named"), digest], ["../outside/analysis.py", digest]]
+    (folder / "installed.json").write_text(json.dumps(listed))
+    kept = {file: file.read_bytes() for file in [changed, mine, *outside.rglob("*.*"), outside / "named"]}
+    refused = installation("install", prefix)
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "must be moved away" in refused.stderr
+    done = installation("uninstall", prefix)
+    assert done.returncode == 0 and f"{changed}: is not what was installed" in done.stdout
+    assert {file: file.read_bytes() for file in kept} == kept
+    assert {path for path in prefix.rglob("*") if path.is_file()} == {changed, mine}
+
+
+@pytest.mark.parametrize("listed", ['["{mine}"]', "no list", "{{}}"], ids=["of version 0.3", "no JSON", "no list"])
+@pytest.mark.parametrize("action", ["install", "uninstall"])
+def test_an_installation_without_its_list_is_left_as_it_is(tmp_path, listed, action):
+    prefix, mine = tmp_path / "prefix", tmp_path / "mine"
+    (prefix / "lib/contact_law").mkdir(parents=True)
+    for file in (mine, prefix / "lib/contact_law/mine"):
+        file.write_text("mine")
+    (prefix / "lib/contact_law/installed.json").write_text(listed.format(mine=mine))
+    done = installation(action, prefix)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "must be moved away" in done.stderr
+    assert mine.exists() and sorted(os.listdir(prefix / "lib/contact_law")) == ["installed.json", "mine"]
+
+
+@pytest.mark.parametrize("name", ["bin/dust-study", "lib/python3/site-packages/contact_law.pth"])
+def test_what_is_in_the_way_is_kept(tmp_path, name):
+    name = name.replace("python3", f"python3.{sys.version_info.minor}")
+    (tmp_path / name).parent.mkdir(parents=True)
+    (tmp_path / name).write_text("another program")
     done = installation("install", tmp_path)
-    assert done.returncode == 2 and "dust-study: exists and is not part of an installation" in done.stderr
-    assert (tmp_path / "bin/dust-study").read_text() == "another program"
-    shutil.rmtree(tmp_path / "bin")
-    assert installation("install", tmp_path).returncode == 0
+    assert done.returncode == 2 and f"{name}: exists and is not part of an installation" in done.stderr
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == [tmp_path / name]
+    assert (tmp_path / name).read_text() == "another program"
 
 
 def test_a_folder_that_no_python_searches_is_named(tmp_path):

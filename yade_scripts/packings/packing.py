@@ -8,9 +8,9 @@ from math import sqrt
 import numpy as np
 from scipy.spatial import cKDTree
 
-from analysis.runs.arrays import UNREADABLE
+from analysis.runs.arrays import UNREADABLE, npz
+from analysis.runs.write import write_bytes
 from yade_scripts.parameters.errors import InputError
-from yade_scripts.run.atomic_write import write_atomically
 
 
 class PackingError(InputError, ValueError):
@@ -87,18 +87,15 @@ def moved(packing, shift):
 def save(path, packing):
     """Write a packing as .npz: position (N,3), radius (N,) in m, seed, parameters (a JSON text); gyration_radius and
     characteristic_radius [m] beside them, for whoever reads the file."""
-    write_atomically(
-        path,
-        lambda file: np.savez(
-            file,
-            position=packing.position,
-            radius=packing.radius,
-            seed=packing.seed,
-            parameters=json.dumps(packing.parameters),
-            gyration_radius=gyration_radius(packing),
-            characteristic_radius=characteristic_radius(packing),
-        ),
+    content = npz(
+        position=packing.position,
+        radius=packing.radius,
+        seed=packing.seed,
+        parameters=json.dumps(packing.parameters),
+        gyration_radius=gyration_radius(packing),
+        characteristic_radius=characteristic_radius(packing),
     )
+    write_bytes(path, content)
 
 
 def load(path):

@@ -11,7 +11,6 @@ rounding.
 import hashlib
 import json
 import os
-import shutil
 
 import numpy as np
 
@@ -31,13 +30,6 @@ class CheckpointError(InputError):
 def exists(run_folder):
     """Whether a run folder (its path) holds a checkpoint."""
     return os.path.exists(os.path.join(run_folder, CHECKPOINT_FOLDER, RECORDER))
-
-
-def remove(run_folder):
-    """Remove a run folder's checkpoint: recorder.npz first, without which the rest is none."""
-    if exists(run_folder):
-        os.unlink(os.path.join(run_folder, CHECKPOINT_FOLDER, RECORDER))
-    shutil.rmtree(os.path.join(run_folder, CHECKPOINT_FOLDER), ignore_errors=True)
 
 
 class Checkpoint:

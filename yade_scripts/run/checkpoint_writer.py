@@ -5,12 +5,13 @@ import mmap
 import os
 import time
 
-import numpy as np
 from yade.wrapper import Omega
 
+from analysis.runs.arrays import npz
 from analysis.runs.format import CHECKPOINT_FOLDER
-from yade_scripts.run.atomic_write import sync, write_atomically, write_bytes_atomically
-from yade_scripts.run.checkpoint import RECORDER, sums
+from analysis.runs.write import sync
+from yade_scripts.run.checkpoint import sums
+from yade_scripts.run.written import RECORDER
 
 
 class CheckpointWriter:
@@ -21,7 +22,7 @@ class CheckpointWriter:
     """
 
     def __init__(self, folder, run, recorder, wall_time, interval):
-        self.run_folder, self.folder = folder, os.path.join(folder.path, CHECKPOINT_FOLDER)
+        self.folder = folder
         self.run, self.recorder, self.wall_time, self.interval = run, recorder, wall_time, interval
         self._next = time.monotonic() + interval
         self._saved = None  # iteration of the last one
@@ -35,11 +36,10 @@ class CheckpointWriter:
         omega = Omega()
         if self._saved == omega.iter:
             return
-        self.run_folder.sync()
-        scene = f"scene-{omega.iter}.yade"
-        os.makedirs(self.folder, exist_ok=True)
-        content, rows = _saved_scene(omega), self.recorder.rows()
-        write_bytes_atomically(os.path.join(self.folder, scene), content, lasting=True)
+        self.folder.sync()
+        os.makedirs(os.path.join(self.folder.path, CHECKPOINT_FOLDER), exist_ok=True)
+        scene, content, rows = f"scene-{omega.iter}.yade", _saved_scene(omega), self.recorder.rows()
+        self.folder.write(f"{CHECKPOINT_FOLDER}/{scene}", content, lasting=True)
         about = {
             "run": self.run,
             "wallTime": self.wall_time(),
@@ -49,15 +49,9 @@ class CheckpointWriter:
             "sums": {"scene": sums(content), "rows": sums(rows.tobytes())},
             "columns": list(self.recorder.columns),
         }
-        write_atomically(
-            os.path.join(self.folder, RECORDER),
-            lambda file: np.savez(file, rows=rows, about=json.dumps(about)),
-            lasting=True,
-        )
-        sync(self.run_folder.path)
-        for name in os.listdir(self.folder):
-            if name not in (scene, RECORDER):
-                os.unlink(os.path.join(self.folder, name))
+        self.folder.write(RECORDER, npz(rows=rows, about=json.dumps(about)), lasting=True)
+        sync(self.folder.path)
+        self.folder.remove_checkpoint(but=(f"{CHECKPOINT_FOLDER}/{scene}", RECORDER))
         self._saved = omega.iter
         self._next = time.monotonic() + self.interval
 

@@ -5,13 +5,13 @@ import json
 import os
 from contextlib import suppress
 
-import numpy as np
-
-from analysis.runs.format import ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
+from analysis.runs.arrays import npz
+from analysis.runs.format import CHECKPOINT_FOLDER, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER
+from analysis.runs.write import is_unfinished, remove_unfinished, require_file, sync, write_bytes, write_text
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
-from yade_scripts.run.atomic_write import is_unfinished, remove_unfinished, sync, write_atomically
-from yade_scripts.run.heartbeat import Beating, RunsElsewhere, is_heartbeat
+from yade_scripts.run.heartbeat import Beating, RunsElsewhere, is_heartbeat, require_stopped
+from yade_scripts.run.written import Written, state_name
 
 
 class RunFolderError(InputError):
@@ -19,16 +19,18 @@ class RunFolderError(InputError):
 
 
 class RunFolder:
-    """Writer of one run. Makes the folder, or empties that of an earlier run if it may.
+    """Writer of one run. Makes the folder, or empties that of an earlier run if it may: of the files that runs have written
+    into it (run.written), and no others.
 
     Raises RunFolderError when the folder can't be written, holds something else, is being written by another
     run, or holds a run that has ended and overwrite is false. With resume, a folder with a checkpoint is left as
     it is, and .checkpoint is that checkpoint, otherwise None; raises CheckpointError when it can't be read.
     heartbeat: whether it has one from now on, or, when it is left as it is, from begin_heartbeat() on, until close().
+    states: how many will be written; each of more than that is put on the list when it comes.
     What write_...() raises is OSError, also when a run of another machine has taken over the folder.
     """
 
-    def __init__(self, path, overwrite=False, resume=False, heartbeat=False):
+    def __init__(self, path, overwrite=False, resume=False, heartbeat=False, states=0):
         self.path = path
         self.checkpoint = self._heartbeat = None
         self.states = os.path.join(path, STATES_FOLDER)
@@ -37,13 +39,15 @@ class RunFolder:
             self._lock = _made_and_locked(path)
             try:
                 # Only now: until the lock was taken, another run may have come to its end there.
-                _require_usable(path, overwrite)
+                if heartbeat:
+                    self._not_elsewhere(require_stopped)
+                self._run, self._written = _usable(path, overwrite)
                 if resume and not self._has_ended() and checkpoint.exists(path):
                     self.checkpoint = checkpoint.Checkpoint(path)
                 else:
                     if heartbeat:
                         self.begin_heartbeat()
-                    self._begin()
+                    self._begin(states)
             except BaseException:
                 self.close()
                 os.close(self._lock)
@@ -54,11 +58,7 @@ class RunFolder:
     def begin_heartbeat(self):
         """Take the folder before other machines, too. Raises RunFolderError."""
         try:
-            self._heartbeat = Beating(self.path)
-        except RunsElsewhere as where:
-            raise RunFolderError(
-                f"out = {self.path}: another run is writing there, {where}; must be another folder"
-            ) from None
+            self._heartbeat = self._not_elsewhere(Beating)
         except OSError as error:
             raise _unwritable(self.path, error) from None
 
@@ -70,23 +70,35 @@ class RunFolder:
 
     def write_run(self, run):
         """run.json from a dictionary that JSON can hold."""
-        self._write(RUN_FILE, json_text({"format": FORMAT, **run}))
+        self._run = run
+        self._write_run()
 
     def write_history(self, series):
         """history.npz from {name: (T,) array}, every name of the kind's history."""
-        self._write(HISTORY_FILE, lambda file: np.savez(file, **series))
+        self.write(HISTORY_FILE, npz(**series))
 
     def write_state(self, number, state):
         """states/NNNNNN.npz from {name: array}."""
-        self._write(os.path.join(STATES_FOLDER, state_file(number)), lambda file: np.savez(file, **state))
+        self.write(state_name(number), npz(**state))
+
+    def write(self, name, content, lasting=False):
+        """Write a file of bytes, which comes on the folder's list before. name: seen from the folder; lasting: it outlives a power
+        loss from then on."""
+        if self._written.claim([name]):
+            self._write_run(lasting=True)
+        self._write(name, content, lasting)
 
     def keep_states(self, number):
         """Remove all states but the first `number`, and what a killed writer has left."""
-        for folder in (self.path, self.states):
+        for folder in (self.path, self.states, os.path.join(self.path, CHECKPOINT_FOLDER)):
             remove_unfinished(folder)
-        for name in os.listdir(self.states):
-            if name.endswith(".npz") and name >= state_file(number):
-                os.unlink(os.path.join(self.states, name))
+        self._written.remove(lambda name: os.path.dirname(name) == STATES_FOLDER and name >= state_name(number))
+
+    def remove_checkpoint(self, but=()):
+        """Remove the files of checkpoints, but those of these names (seen from the folder)."""
+        self._written.remove(lambda name: os.path.dirname(name) == CHECKPOINT_FOLDER and name not in but)
+        with suppress(OSError):  # there is none, or it holds what no run has written
+            os.rmdir(self._file(CHECKPOINT_FOLDER))
 
     def sync(self):
         """Have all that was written so far on the disk, so that it outlives a power loss."""
@@ -102,7 +114,7 @@ class RunFolder:
         """The mark that the run came to its planned end: written last, when all the rest is on the disk."""
         try:
             self.sync()
-            write_atomically(self._file(ENDED_FILE), lambda file: None, lasting=True)
+            self.write(ENDED_FILE, b"", lasting=True)
         except OSError:
             with suppress(OSError):
                 os.unlink(self._file(ENDED_FILE))
@@ -115,56 +127,90 @@ class RunFolder:
         if self._heartbeat:
             self._heartbeat.require_kept()
 
-    def _write(self, name, write):
+    def _write(self, name, content, lasting):
         self._require_kept()
-        write_atomically(self._file(name), write)
-        self._unsynced.add(self._file(name))
+        write_bytes(self._file(name), content, within=self.path, lasting=lasting)
+        if not lasting:
+            self._unsynced.add(self._file(name))
+
+    def _write_run(self, lasting=False):
+        run = {"format": FORMAT, **self._run, "files": sorted(self._written.names)}
+        self._write(RUN_FILE, json_text(run).encode(), lasting)
 
     def _has_ended(self):
         return os.path.exists(self._file(ENDED_FILE))
 
-    def _begin(self):
-        """Remove an earlier run's files, and nothing else: the mark of its end first; run.json stays in all moments."""
-        if self._has_ended():
-            os.unlink(self._file(ENDED_FILE))
-            sync(self.path)  # before what it vouches for is gone
-        checkpoint.remove(self.path)
-        self._write(RUN_FILE, json_text({}))
-        if os.path.exists(self._file(HISTORY_FILE)):
-            os.unlink(self._file(HISTORY_FILE))
+    def _begin(self, states):
+        """Remove an earlier run's files, and nothing else: the mark of its end first; run.json, with all on its list, stays in all
+        moments."""
+        own = Written.of_run(self.path, states)
+        self._written.claim(own.names)
+        self._written.remove(lambda name: name == ENDED_FILE)
+        sync(self.path)  # before what it vouches for is gone
+        self._run = {}
+        self._write_run(lasting=True)
+        self.remove_checkpoint()
+        self._written.remove()
+        self._written = own
         os.makedirs(self.states, exist_ok=True)
         self.keep_states(0)
+
+    def _not_elsewhere(self, take):
+        """take(path of the folder), where no run of another machine writes there; RunFolderError where one does."""
+        try:
+            return take(self.path)
+        except RunsElsewhere as where:
+            raise RunFolderError(
+                f"out = {self.path}: another run is writing there, {where}; must be another folder"
+            ) from None
 
 
 def write_json(path, content):
     """A dictionary as a JSON file, whole or not there."""
-    write_atomically(path, json_text(content))
+    write_text(path, json_text(content))
 
 
 def json_text(content):
-    """write(file) of a dictionary as JSON; raises ValueError for what JSON can't hold."""
-    text = json.dumps(content, indent=2, allow_nan=False) + "\n"
-    return lambda file: file.write(text.encode())
+    """A dictionary as JSON; ValueError for what JSON can't hold."""
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
 def _unwritable(path, error):
-    return RunFolderError(f"out = {path}: {error.strerror}; must be a folder that can be written")
+    inside = error.filename and os.path.abspath(error.filename) != os.path.abspath(path)
+    where = f"{os.path.relpath(error.filename, path)}: " if inside else ""
+    wanted = "" if "; must be " in error.strerror else "; must be a folder that can be written"
+    return RunFolderError(f"out = {path}: {where}{error.strerror}{wanted}")
 
 
-def _require_usable(path, overwrite):
-    if not os.path.exists(os.path.join(path, RUN_FILE)) and not _is_empty(path):
+def _usable(path, overwrite):
+    """(run.json, Written) of the run in a folder, {} and an empty one for a new folder; RunFolderError where it holds something
+    else, or a run that has ended and may not be replaced."""
+    if _is_empty(path):
+        return {}, Written(path)
+    if not os.path.lexists(os.path.join(path, RUN_FILE)):
         raise RunFolderError(
             f"out = {path}: exists and is no run folder; must be a new folder, or one of an earlier run"
         )
+    require_file(os.path.join(path, RUN_FILE))
+    run, written = Written.read(path)
+    if written is None:
+        raise RunFolderError(
+            f"out = {path}: its {RUN_FILE} has no list of the files that a run wrote (as of another program, or before version "
+            "0.4.0); must be another folder, or that one moved away"
+        )
     if os.path.exists(os.path.join(path, ENDED_FILE)) and not overwrite:
         raise RunFolderError(f"out = {path}: holds a run that has ended; must be another folder, or overwrite=1")
+    written.require_files()
+    return run, written
 
 
 def _is_empty(path):
     """Whether a folder holds nothing but what a run that was killed at its beginning may leave."""
-    names = [name for name in os.listdir(path) if not is_unfinished(name) and not is_heartbeat(name)]
+    names = [name for name in os.listdir(path) if not is_unfinished(name) and not is_heartbeat(path, name)]
     states = os.path.join(path, STATES_FOLDER)
-    return not names or (names == [STATES_FOLDER] and os.path.isdir(states) and _is_empty(states))
+    return not names or (
+        names == [STATES_FOLDER] and os.path.isdir(states) and not os.path.islink(states) and _is_empty(states)
+    )
 
 
 def _made_and_locked(path):

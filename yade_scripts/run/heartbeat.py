@@ -10,19 +10,19 @@ import errno
 import json
 import os
 import re
-import tempfile
 import threading
 import time
 from contextlib import suppress
 from dataclasses import asdict, replace
 
 from analysis.runs import running
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.folder import read_json
 from analysis.runs.format import HEARTBEAT_FILE
 from analysis.runs.running import INTERVAL, Heartbeat, Place
-from yade_scripts.run.atomic_write import UNFINISHED, write_bytes_atomically
+from analysis.runs.write import make_new, write_bytes
 
 _START = re.compile(r"\.heartbeat-(\d+)")
-_NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK)
 
 
 class RunsElsewhere(Exception):
@@ -76,11 +76,12 @@ class Beating:
             )
 
     def _take(self):
-        starts = _starts(self.folder)
-        _require_stopped(self.folder, starts)
+        starts = require_stopped(self.folder)
+        if os.path.lexists(self._file(HEARTBEAT_FILE)) and not is_heartbeat(self.folder, HEARTBEAT_FILE):
+            raise OSError(errno.EEXIST, "no run has written it; must be moved away", self._file(HEARTBEAT_FILE))
         last = running.read_heartbeat(self.folder)
         self.now = replace(self.now, start=max([*starts, last.start if last else 0]) + 1)
-        if not _made_anew(self._own(), _text(self.now)):
+        if not make_new(self._own(), _text(self.now)):
             raise RunsElsewhere("which has just begun")
         try:
             if _starts(self.folder) - starts != {self.now.start}:  # another one, while this process was paused
@@ -94,7 +95,7 @@ class Beating:
 
     def _write(self, **changed):
         now = replace(self.now, **changed)
-        write_bytes_atomically(self._file(HEARTBEAT_FILE), _text(now), lasting=True)
+        write_bytes(self._file(HEARTBEAT_FILE), _text(now))
         self.now = now
 
     def _own(self):
@@ -104,20 +105,30 @@ class Beating:
         return os.path.join(self.folder, name)
 
 
-def is_heartbeat(name):
-    """Whether a file of this name, in a run folder, is one of those kept here."""
-    return name == HEARTBEAT_FILE or bool(_START.fullmatch(name))
+def is_heartbeat(folder, name):
+    """Whether a file of this name in a folder (path) is one of those kept here: by its name and what it says."""
+    if not (name == HEARTBEAT_FILE or _START.fullmatch(name)):
+        return False
+    file = os.path.join(folder, name)
+    if os.path.islink(file) or not os.path.isfile(file):
+        return False
+    try:
+        return not os.path.getsize(file) or set(read_json(file)) == set(asdict(Heartbeat()))
+    except (RunFolderError, TypeError):
+        return False
 
 
-def _require_stopped(folder, starts):
-    """Raise RunsElsewhere unless the last of these starts has stopped. One that was killed as it began has left nothing but
-    its own file."""
+def require_stopped(folder):
+    """{N} of the starts in a folder; RunsElsewhere unless the last of them has stopped. One that was killed as it began has left
+    nothing but its own file."""
+    starts = _starts(folder)
     heartbeat, name = running.read_heartbeat(folder), HEARTBEAT_FILE
     if starts and (heartbeat is None or heartbeat.start < max(starts)):
         name = _name(max(starts))
         heartbeat = running.read_heartbeat(folder, name)
     if heartbeat and running.beats(os.path.join(folder, name), heartbeat):
         raise RunsElsewhere(str(Place(heartbeat.host, heartbeat.job, False)))
+    return starts
 
 
 def _starts(folder):
@@ -137,38 +148,6 @@ def _of_this_process(interval):
 
 def _text(heartbeat):
     return (json.dumps(asdict(heartbeat), indent=2) + "\n").encode()
-
-
-def _made_anew(path, content):
-    """Make a file with its content at once; whether there was none. Two that do so at the same time: one of them has made
-    it."""
-    folder, name = os.path.split(path)
-    handle, temporary = tempfile.mkstemp(prefix=f".{name}.", suffix=UNFINISHED, dir=folder)
-    try:
-        with open(handle, "wb", closefd=False) as file:
-            file.write(content)
-        os.link(temporary, path)
-    except FileExistsError:
-        return os.fstat(handle).st_nlink == 2  # the answer to a request that NFS had sent twice
-    except OSError as error:
-        if error.errno not in _NO_LINKS:
-            raise
-        return _made_without_link(path, content)
-    finally:
-        os.close(handle)
-        _unlink(temporary)
-    return True
-
-
-def _made_without_link(path, content):
-    """The same where the file system has no hard links: between two calls the file is empty."""
-    try:
-        handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
-    except FileExistsError:
-        return False
-    with open(handle, "wb") as file:
-        file.write(content)
-    return True
 
 
 def _unlink(path):

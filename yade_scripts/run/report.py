@@ -9,7 +9,6 @@ from contextlib import suppress
 import numpy as np
 
 from yade_scripts.parameters.errors import tell
-from yade_scripts.run import checkpoint
 from yade_scripts.run.closing_line import closing_line
 from yade_scripts.run.loop import one_line
 
@@ -65,7 +64,7 @@ class Report:
                     self._write(outcome)
         if outcome == "completed":
             with suppress(OSError):
-                checkpoint.remove(self.folder.path)
+                self.folder.remove_checkpoint()
         self._tell(outcome)
         return status
 

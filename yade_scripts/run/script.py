@@ -56,7 +56,8 @@ def _open(kind, scene, schedule):
     from yade_scripts.run import report
     from yade_scripts.run.folder import RunFolder
 
-    folder = RunFolder(scene.parameters.out, scene.parameters.overwrite, scene.parameters.resume, heartbeat=True)
+    given, states = scene.parameters, len(schedule.states) + 1  # one where it is stopped, or fails
+    folder = RunFolder(given.out, given.overwrite, given.resume, heartbeat=True, states=states)
     if folder.checkpoint:
         folder.checkpoint.require_agreement(kind, scene.parameters, report.made_with())
         folder.checkpoint.require_whole(kind.format, schedule, scene.parameters.engine == "fused")

@@ -1,16 +1,6 @@
 """Ctrl-C and SIGTERM as a wish to stop, to be granted at a good moment."""
 
 import signal
-import sys
-
-
-def end_quietly():
-    """From now on Ctrl-C ends the process with status 130, without a traceback; to be called before slow imports.
-
-    Where it is ignored (nohup, a job in the background), it stays so.
-    """
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, lambda number, frame: sys.exit(128 + number))
 
 
 class StopSignals:

@@ -3,8 +3,8 @@
 import re
 from dataclasses import dataclass
 
+from analysis.runs.write import write_text
 from yade_scripts.parameters.errors import InputError
-from yade_scripts.run.atomic_write import write_atomically
 
 
 class TableError(InputError, ValueError):
@@ -72,4 +72,4 @@ def write(path, rows, comment=""):
     widths = [max(map(len, column)) for column in zip(*cells)]
     text = "".join(f"# {line}\n" for line in comment.splitlines())
     text += "".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() + "\n" for line in cells)
-    write_atomically(path, lambda file: file.write(text.encode()))
+    write_text(path, text)

@@ -17,6 +17,7 @@ from yade_scripts.runner.rows import DONE, write
 MEASURING = 300  # s, at most
 MEASURE_SPEED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "measure_speed.py")
 NICE = "10"  # as yade-batch runs its jobs
+LEFT = "left.table"  # the rows that are run
 
 
 class StudyBusy(RuntimeError):
@@ -103,7 +104,7 @@ class Batch:
 
     def __init__(self, folder, rows, jobs):
         self.rows = rows
-        left = folder.file("left.table")
+        left = folder.file(LEFT)
         write(left, rows)
         folder.remove_logs(rows)
         self._output = open(folder.file("yade-batch.out"), "w")

@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 from analysis.runs.running import states_of_job
+from analysis.runs.write import write_text
 from yade_scripts.run.file_name import file_name
 from yade_scripts.run.table import TableError, read
 from yade_scripts.runner.rows import threads, write
@@ -112,8 +113,7 @@ def _submit(study_folder, rows, at_once, options):
     folder = study_folder.file(f"slurm-{_next_number(study_folder)}")
     os.makedirs(folder)
     write(os.path.join(folder, ROWS), rows)
-    with open(os.path.join(folder, SCRIPT), "w") as file:
-        file.write(job_script(study_folder, folder, rows, at_once))
+    write_text(os.path.join(folder, SCRIPT), job_script(study_folder, folder, rows, at_once))
     try:
         done = subprocess.run(_command(folder, options), capture_output=True, text=True, stdin=subprocess.DEVNULL)
     except FileNotFoundError:
@@ -121,8 +121,7 @@ def _submit(study_folder, rows, at_once, options):
     job = done.stdout.strip().partition(";")[0]  # a cluster's name may follow
     if done.returncode or not job.isdecimal():
         raise SlurmError(f'sbatch: {" ".join(done.stderr.split()) or f"exit status {done.returncode}"}')
-    with open(os.path.join(folder, JOB), "w") as file:
-        file.write(f"{job}\n")
+    write_text(os.path.join(folder, JOB), f"{job}\n")
     return job
 
 

@@ -22,6 +22,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspa
 from analysis.measures.compression import compression_length
 from analysis.measures.contact_zone import zone_filling
 from analysis.runs.table import read_table, table_text
+from analysis.runs.write import require_file, write_text
 from analysis.studies.elastoplastic import paper, prediction
 from analysis.studies.elastoplastic.measure import COLUMNS
 from analysis.studies.elastoplastic.start import COLUMNS as START
@@ -67,14 +68,14 @@ def fill(file):
             sys.exit(f"{file}: seed {int(key[4])}: its packings are not those of {rows.run.iloc[0]}")
         table.loc[rows.index, names] = [values[name] for name in names]
     if lacking.any():
-        with open(file, "w", encoding="utf-8") as out:
-            out.write(table_text(table, COLUMNS, head))
+        write_text(file, table_text(table, COLUMNS, head))
     return int(lacking.sum())
 
 
 def predict(runs, file):
     """Write predictions of the pairs of a set, that of the file's name, from a table of runs; theirs, once they are there, are
     never among them."""
+    require_file(file, inputs=[runs])
     (chosen,) = (each for each in prediction.SETS if each.file == os.path.basename(file))
     table, _ = read_table(runs, COLUMNS)
     table = prediction.before(table, chosen)

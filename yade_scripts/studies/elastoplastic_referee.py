@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
+from analysis.runs.write import write_text
 from analysis.studies.elastoplastic import prediction
 from yade_scripts.studies import table_script
 
@@ -209,8 +210,7 @@ TABLES = {
 def write_tables(folder):
     """Write both tables into a folder."""
     for name, (blocks, title) in TABLES.items():
-        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
-            file.write(text(blocks, title))
+        write_text(os.path.join(folder, name), text(blocks, title))
 
 
 if __name__ == "__main__":

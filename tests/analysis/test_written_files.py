@@ -1,0 +1,149 @@
+"""What the analysis writes: whole or not there, in the place of files only, never over what it reads."""
+
+import os
+import shutil
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from test_study_engine import own as tiny  # noqa: F401  (a fixture)
+
+from analysis.__main__ import main
+from analysis.runs.write import remove_unfinished, replacing, write_text
+
+TOP = Path(__file__).resolve().parents[2]
+
+# Command line, and the outputs in whose place a link to a user's file or folder is.
+OUTPUTS = [
+    ("figures runs/s1 --out out", "motion.png"),
+    *(("export runs/s1 --format all --out out", f"{name}") for name in ("run.pvd", "run.xyz", "state_000000.vtm")),
+    *(("export runs/s1 --out out", f"state_000000{name}") for name in ("", "/grains.vtp", "/contacts.vtp")),
+    ("film runs/s1 --out out/film.mp4", "film.mp4"),
+    ("study sticking.py runs --page out/page.html", "page.html"),
+    *(
+        ("study sticking.py runs --figures out", name)
+        for name in ("runs.csv", "README.md", "details.md", "comparison.json", "sticking.png", "sticking.pdf")
+    ),
+]
+
+
+@pytest.mark.parametrize("command, output", OUTPUTS)
+def test_no_output_goes_through_a_link(tiny, monkeypatch, capsys, command, output):  # noqa: F811
+    monkeypatch.chdir(tiny)
+    link, mine = tiny / "out" / output, tiny / "mine"
+    link.parent.mkdir(parents=True)
+    if output == "state_000000":
+        mine.mkdir()
+    else:
+        mine.write_text("mine")
+    link.symlink_to(mine)
+    assert main(command.split()) == 2
+    said = [line for line in capsys.readouterr().err.splitlines() if "left out" not in line]
+    assert len(said) == 1 and "leads to another folder; must be a file" in said[0]
+    assert link.is_symlink() and (list(mine.iterdir()) == [] if mine.is_dir() else mine.read_text() == "mine")
+
+
+def _device(path):
+    try:
+        os.mknod(path, stat.S_IFCHR | 0o600, os.makedev(1, 7))  # /dev/full
+    except PermissionError:
+        pytest.skip("making a device takes root")
+
+
+IN_THE_WAY = {
+    "a folder": Path.mkdir,
+    "a FIFO": os.mkfifo,
+    "a socket": lambda path: socket.socket(socket.AF_UNIX).bind(str(path)),
+    "a device": _device,
+    "a link to a device": lambda path: path.symlink_to("/dev/full"),
+    "a link to nothing elsewhere": lambda path: path.symlink_to("../nothing"),
+    "a link to a FIFO": lambda path: (os.mkfifo(path.with_name("fifo")), path.symlink_to("fifo")),
+}
+
+
+@pytest.mark.parametrize("kind", IN_THE_WAY)
+def test_what_is_no_file_is_refused_and_stays(tmp_path, monkeypatch, kind):
+    monkeypatch.chdir(tmp_path)  # a socket's path is short
+    IN_THE_WAY[kind](Path("page.html"))
+    before = os.lstat("page.html")
+    with pytest.raises(OSError, match="; must be a file") as refused:
+        write_text("page.html", "text")
+    assert refused.value.filename == "page.html" and os.path.samestat(os.lstat("page.html"), before)
+
+
+def test_a_link_within_the_folder_is_replaced_and_rights_stay(tmp_path):
+    (tmp_path / "old.html").write_text("old")
+    (tmp_path / "old.html").chmod(0o600)
+    (tmp_path / "page.html").symlink_to("old.html")
+    for name in ("page.html", "old.html"):
+        write_text(tmp_path / name, f"new {name}")
+        assert not (tmp_path / name).is_symlink() and (tmp_path / name).read_text() == f"new {name}"
+        assert stat.S_IMODE((tmp_path / name).stat().st_mode) == 0o600
+
+
+def test_what_killed_writers_left_goes_and_what_others_write_stays(tmp_path):
+    ready, begun = os.pipe()
+    for _ in range(2):
+        writer = os.fork()
+        if writer == 0:
+            with replacing(tmp_path / "page.html"):
+                os.write(begun, b".")
+                time.sleep(60)
+            os._exit(1)
+        os.read(ready, 1)
+        (own,) = tmp_path.iterdir()  # the second one has removed that of the first
+        remove_unfinished(tmp_path)
+        assert list(tmp_path.iterdir()) == [own]
+        os.kill(writer, signal.SIGKILL)
+        os.waitpid(writer, 0)
+    write_text(tmp_path / "page.html", "whole")
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+@pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
+def test_a_film_that_is_stopped_leaves_nothing(tiny):  # noqa: F811
+    command = [sys.executable, "-m", "analysis", "film", str(tiny / "runs" / "s1"), "--out", str(tiny / "film.mp4")]
+    before = set(tiny.iterdir())
+    process = subprocess.Popen(command, cwd=TOP, stderr=subprocess.PIPE, text=True)
+    while set(tiny.iterdir()) == before:
+        assert process.poll() is None
+        time.sleep(0.001)
+    process.terminate()
+    assert process.communicate(timeout=60)[1] == "" and process.returncode == 128 + signal.SIGTERM
+    assert set(tiny.iterdir()) == before
+
+
+# ---- nothing is written over what is read ----
+
+
+def test_a_table_is_not_written_over_itself(tiny, capsys):  # noqa: F811
+    main(
+        [
+            "study",
+            str(tiny / "sticking.py"),
+            str(tiny / "runs" / "s1"),
+            str(tiny / "runs" / "s2"),
+            "--figures",
+            str(tiny / "out"),
+        ]
+    )
+    table = tiny / "out" / "runs.csv"
+    before, text = table.stat(), table.read_text()
+    (tiny / "out" / "comparison.json").unlink()
+    capsys.readouterr()
+    assert main(["study", str(tiny / "sticking.py"), str(table), "--figures", str(tiny / "out")]) == 0
+    assert f"{table}: is what is read; stays as it is" in capsys.readouterr().err
+    assert os.path.samestat(table.stat(), before) and (tiny / "out" / "comparison.json").exists()
+    assert (
+        main(
+            ["study", str(tiny / "sticking.py"), str(table), str(tiny / "runs" / "s3"), "--figures", str(tiny / "out")]
+        )
+        == 2
+    )
+    assert capsys.readouterr().err == f"analysis: {table}: is what is read; must be another file\n"
+    assert os.path.samestat(table.stat(), before) and table.read_text() == text
