@@ -49,6 +49,8 @@ _LEVELS = {
     "growth_velocity": Level("V_g", "$V_g$", "m/s"),
     "criticalRolling": Level("ξ_crit", r"$\xi_{crit}$", "Å", 1e-10),
     "strainRate": Level("C_v", "$C_v$"),
+    "linearDamping": Level("k_n", "$k_n$"),
+    "stepFraction": Level("step", "step", "$t_0$"),
 }
 
 

@@ -132,6 +132,15 @@ def ratios(first, second):
     return first / second
 
 
+def relative(series, level, value):
+    """Series over its own part at one value of a level, all other levels the same; without that part itself."""
+    base = select(series, **{level: value})
+    others = series[~alike(series.index.get_level_values(level), value)]
+    partners = others.index.droplevel(level)
+    known = partners.isin(base.index)
+    return others[known] / base.reindex(partners[known]).to_numpy()
+
+
 def together(of, level):
     """One Series of {label: Series of the same levels}, with the label as one more level."""
     frames = {label: own for label, own in of.items() if len(own)}
