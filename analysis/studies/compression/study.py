@@ -9,7 +9,7 @@ from ...theory.aggregates import bcca_coordination
 from ...theory.compression import compressive_strength_dense, strength_scale, tensile_strength
 from ..definition import Quantity, Study
 from ..grains import OF_GRAINS
-from ..runs import Runs, along, ratios, relative, select, together
+from ..runs import Runs, along, ratios, select, together
 from .measure import COLUMNS, DIMENSIONS, ENERGIES, ENERGY_FILLINGS, NUMBERS, TWISTING, measure
 from .strength import SET, VALID_TO, by_filling, exponent, from_start, furthest, level, named
 
@@ -30,7 +30,7 @@ WAYS = {
     "normal damping": ("drag",),
     "making and breaking contacts": ("connection", "disconnection"),
 }
-SPANS = [(0.0, f) for f in ENERGY_FILLINGS] + list(zip(ENERGY_FILLINGS, ENERGY_FILLINGS[1:]))
+SPANS = [(0.0, f) for f in ENERGY_FILLINGS[1:]] + list(zip(ENERGY_FILLINGS[1:], ENERGY_FILLINGS[2:]))
 
 
 def quantities(table):
@@ -55,11 +55,11 @@ def _power_law(runs):
     over = runs.estimates("over", (*SET, "filling"))
     fillings = over.index.get_level_values("filling")
     for name, fit, meaning in (("exponent", exponent, "n of P ~ phi^n"), ("level", level, "P0 r0^3/E_roll of P = P0 phi^3")):
-        fits = {start: along(over[fillings >= start], "filling", from_start(fit, start)) for start in fillings.unique()}
+        fits = {start: along(over[fillings >= start], "filling", from_start(fit, start)) for start in sorted(set(fillings))}
         values = together(fits, "start")
         values = values[[np.isfinite(estimate.value) for estimate in values]]
         yield Quantity(name, f"{meaning}, fitted from the filling factor `start` to {VALID_TO:g}", values)
-    changes = {name: along(relative(over, *base), "filling", level) for name, base in FIDUCIAL.items()}
+    changes = {name: along(runs.relative("over", (*SET, "filling"), *base), "filling", level) for name, base in FIDUCIAL.items()}
     yield Quantity("change", "P r0^3/E_roll over that of K13's value of what is changed, same clusters and filling factors", together(changes, "changed"))
     pooled = runs.where(**ICE).over("strainRate", RATES).estimates("over", ("grains", "filling"))
     rates = ", ".join(f"{rate:g}" for rate in RATES)
