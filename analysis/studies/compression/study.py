@@ -126,4 +126,5 @@ STUDY = Study(
     measure=measure,
     quantities=quantities,
     remarks=remarks,
+    independent="clusters",
 )
