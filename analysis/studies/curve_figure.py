@@ -83,9 +83,18 @@ def _draw(figure, results):
     _share_y(flat[: len(shown)], figure)
     for row in axes:
         row[0].set_ylabel(figure.y_label or f"{figure.y} [{quantity.unit}]".replace(" []", ""))
-    legend(max(flat, key=lambda place: len(place.get_legend_handles_labels()[0])), fontsize=8)
+    _legends(flat)
     letter(flat[: len(shown)], "")
     return drawn
+
+
+def _legends(flat):
+    """A legend in the panel that names most, and in those that name something else."""
+    named = lambda place: {text.partition(",")[0] for text in place.get_legend_handles_labels()[1]}
+    most = max(flat, key=lambda place: len(named(place)))
+    for place in flat:
+        if place is most or not named(place) <= named(most):
+            legend(place, fontsize=8)
 
 
 def _chosen(series, where):
@@ -119,7 +128,9 @@ def _curves(axes, figure, quantity, series, results):
     for k, value in enumerate(sorted(set(known))):
         colour = next(own for key, own in palette.items() if alike([key], value)[0])
         own = select(series, **{figure.colour: value})
-        label = level(figure.colour).label(value) + ("" if same and figure.panel else f", {pairs_text(own, results.independent)}")
+        label = level(figure.colour).label(value) + (
+            "" if same and figure.panel else f", {pairs_text(own, results.independent)}"
+        )
         _curve(axes, figure, quantity, own, colour, label, MARKERS[k % len(MARKERS)])
 
 
@@ -133,12 +144,12 @@ def _dress(axes, figure, value, series, independent):
     """Axes, thin line, what the paper has, and the title with the number of pairs."""
     if figure.level_line is not None:
         axes.axhline(figure.level_line, color="0.6", lw=0.8, zorder=0)
-    for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
-        if name in figure.logarithmic:
-            getattr(axes, f"set_{name}scale")("log")
-            _plain_ticks(axis)
+    for name in figure.logarithmic:
+        getattr(axes, f"set_{name}scale")("log")
     if figure.paper:
         figure.paper(axes, {} if value is None else {figure.panel: value})
+    for name in figure.logarithmic:
+        plain_ticks(getattr(axes, f"{name}axis"))
     title = [] if value is None else [level(figure.panel).label(value)]
     if len(_pairs(series)) == 1 and (figure.panel or not figure.colour):
         title.append(pairs_text(series, independent))
@@ -146,7 +157,7 @@ def _dress(axes, figure, value, series, independent):
     axes.set_xlabel(level(figure.x).axis())
 
 
-def _plain_ticks(axis):
+def plain_ticks(axis):
     """Ticks of a logarithmic axis at 1, 2 and 5 where it spans less than two decades, with plain numbers."""
     low, high = axis.get_view_interval()
     steps = (1, 2, 5) if high < 50 * low else (1,)

@@ -5,22 +5,20 @@ import numpy as np
 from ...measures.ledger import work_closure
 from ...measures.of_run import derived_constants
 from ...measures.percolation import spanned_axes
+from ...measures.periodic_compression import (
+    AVERAGED,
+    at_filling,
+    compressing,
+    filling_at_pressure,
+    filling_at_share,
+    tension,
+)
 from ...measures.structure import fractal_dimension, grains_within
 from ...runs.format import LOST_CHANNELS
 from ...runs.table import Column
 from .. import grains
 from ..definition import NotMeasured
-from .curve import (
-    AVERAGED,
-    FILLINGS,
-    at_filling,
-    compressing,
-    coordination_at,
-    filling_at_pressure,
-    filling_at_share,
-    pressure_at,
-    tension,
-)
+from .curve import FILLINGS, coordination_at, pressure_at
 
 OF_CELL = ("grains", "strainRate", "linearDamping", "stepFraction")
 NUMBERS = (*OF_CELL, "finalFilling", "seed")
@@ -37,8 +35,8 @@ ORIGINS = 2000
 PRESSURES = {f"P_{filling:.4f}": filling for filling in FILLINGS}
 COORDINATIONS = {f"Z_{filling:.4f}": filling for filling in FILLINGS}
 ENERGIES = {(name, filling): f"{name}_{filling:g}" for filling in ENERGY_FILLINGS for name in LOST_CHANNELS}
-TWISTING = {f"twisting_{share:g}": share for share in TWISTING_SHARES}
-DIMENSIONS = {f"D_{filling:g}": filling for filling in STRUCTURE_FILLINGS}
+TWISTING = {share: f"twisting_{share:g}" for share in TWISTING_SHARES}
+DIMENSIONS = {filling: f"D_{filling:g}" for filling in STRUCTURE_FILLINGS}
 
 COLUMNS = (
     Column("material", "", "material of the grains", kind="O"),
@@ -55,7 +53,7 @@ COLUMNS = (
     Column("initial_filling", "", "filling factor of the first cell"),
     Column("largest_filling", "", "largest filling factor that was reached"),
     Column("last_filling", "", "filling factor at the end, after the stretching"),
-    Column("spanned_from", "", "filling factor from which on contacts connect the cell with its images on all axes", gaps=True),
+    Column("spanned_from", "", "filling factor from which on contacts span the cell along all axes", gaps=True),
     Column("closure", "", "largest error of the energy ledger over the largest work of the boundaries"),
     Column("filling_at_300", "", "filling factor at 300 Pa", gaps=True),
     Column("tensile_strength", "Pa", "largest tension while the cell is stretched", gaps=True),
@@ -64,8 +62,8 @@ COLUMNS = (
     *(Column(name, "Pa", f"pressure at the filling {f:.4f}, by the work", gaps=True) for name, f in PRESSURES.items()),
     *(Column(name, "", f"coordination number at the filling {f:.4f}", gaps=True) for name, f in COORDINATIONS.items()),
     *(Column(name, "J", f"{c} until the filling {f:g}", gaps=True) for (c, f), name in ENERGIES.items()),
-    *(Column(name, "", f"filling factor from which on twisting has lost {s:g} of what rolling has", gaps=True) for name, s in TWISTING.items()),
-    *(Column(name, "", f"fractal dimension at 3 to 10 r0, filling {f:g}", gaps=True) for name, f in DIMENSIONS.items()),
+    *(Column(name, "", f"filling where twisting passes {s:g} of rolling", gaps=True) for s, name in TWISTING.items()),
+    *(Column(name, "", f"fractal dimension at 3 to 10 r0, filling {f:g}", gaps=True) for f, name in DIMENSIONS.items()),
 )
 
 
@@ -90,8 +88,8 @@ def measure(run):
         **dict(zip(PRESSURES, map(float, pressure))),
         **dict(zip(COORDINATIONS, map(float, coordination_at(history)))),
         **{name: at_filling(history, channel, filling) for (channel, filling), name in ENERGIES.items()},
-        **{name: filling_at_share(*channels, share) for name, share in TWISTING.items()},
-        **{name: _dimension(run, filling) for name, filling in DIMENSIONS.items()},
+        **{name: filling_at_share(*channels, share) for share, name in TWISTING.items()},
+        **{name: _dimension(run, filling) for filling, name in DIMENSIONS.items()},
     }
 
 

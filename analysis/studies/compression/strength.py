@@ -72,14 +72,14 @@ def level(filling, over):
     return np.exp(_log(over).mean(axis=-1))
 
 
-def from_start(fit, start):
-    """A fit (of filling, over) as one that is NaN unless it begins at the filling factor `start` and has FEWEST_BINS."""
+def with_bins(fit, start=np.inf):
+    """A fit (of filling, over) as one that is NaN with fewer than FEWEST_BINS, and where these begin beyond the filling factor `start`."""
 
-    def begun(filling, over):
+    def fitted(filling, over):
         known = len(filling) >= FEWEST_BINS and filling[0] <= start * ROUNDING
         return fit(filling, over) if known else np.full(np.shape(over)[:-1], np.nan)
 
-    return begun
+    return fitted
 
 
 def _log(over):

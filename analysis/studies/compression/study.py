@@ -11,7 +11,7 @@ from ..definition import Quantity, Study
 from ..grains import OF_GRAINS
 from ..runs import Runs, along, ratios, select, together
 from .measure import COLUMNS, DIMENSIONS, ENERGIES, ENERGY_FILLINGS, NUMBERS, TWISTING, measure
-from .strength import SET, VALID_TO, by_filling, exponent, from_start, furthest, level, named
+from .strength import SET, VALID_TO, by_filling, exponent, furthest, level, named, with_bins
 
 # K13's ice (section 3.1), of which one number is changed at a time.
 FIDUCIAL = {
@@ -30,7 +30,8 @@ WAYS = {
     "normal damping": ("drag",),
     "making and breaking contacts": ("connection", "disconnection"),
 }
-SPANS = [(0.0, f) for f in ENERGY_FILLINGS[1:]] + list(zip(ENERGY_FILLINGS[1:], ENERGY_FILLINGS[2:]))
+UNTIL = ENERGY_FILLINGS[1:]  # before, clusters of 1,024 grains are isolated
+SPANS = [(0.0, filling) for filling in UNTIL] + list(zip(UNTIL, UNTIL[1:]))
 
 
 def quantities(table):
@@ -38,13 +39,14 @@ def quantities(table):
     table = named(table)
     clusters = furthest(table)
     runs = Runs(clusters, "seed", ("grains",))
-    rows = by_filling(clusters)
-    settled = runs.of(rows[rows.settled])
-    yield Quantity("strength", "pressure over K13 eq 25, (E_roll/r0^3) phi^3", runs.of(rows).estimates("over", (*SET, "filling")))
+    rows = runs.of(by_filling(clusters))
+    settled = rows.of(rows.table[rows.table.settled])
+    over = rows.estimates("over", (*SET, "filling"))
+    yield Quantity("strength", "pressure over K13 eq 25, (E_roll/r0^3) phi^3", over)
     yield from _power_law(settled.of(settled.table[settled.table.filling <= VALID_TO]))
     yield from _any_filling(settled.where(**ICE))
     yield from _channels(runs)
-    dimension = runs.of(_long(clusters, DIMENSIONS, "filling")).estimates("value", (*SET, "filling"))
+    dimension = runs.parts(DIMENSIONS, SET, "filling")
     yield Quantity("dimension", "fractal dimension: slope of N(< r) between 3 and 10 grain radii", dimension)
     yield Quantity("filling_at_300", "filling factor at 300 Pa", runs.estimates("filling_at_300", SET))
     yield from _tension(runs.of(table[table.stretched_axes > 0]))
@@ -52,18 +54,21 @@ def quantities(table):
 
 def _power_law(runs):
     """What follows from pressures at settled filling factors that K13 eq 25 is for."""
-    over = runs.estimates("over", (*SET, "filling"))
+    by, of_ice = (*SET, "filling"), runs.where(**ICE)
+    over = runs.estimates("over", by)
     fillings = over.index.get_level_values("filling")
-    for name, fit, meaning in (("exponent", exponent, "n of P ~ phi^n"), ("level", level, "P0 r0^3/E_roll of P = P0 phi^3")):
-        fits = {start: along(over[fillings >= start], "filling", from_start(fit, start)) for start in sorted(set(fillings))}
-        values = together(fits, "start")
-        values = values[[np.isfinite(estimate.value) for estimate in values]]
-        yield Quantity(name, f"{meaning}, fitted from the filling factor `start` to {VALID_TO:g}", values)
-    changes = {name: along(runs.relative("over", (*SET, "filling"), *base), "filling", level) for name, base in FIDUCIAL.items()}
-    yield Quantity("change", "P r0^3/E_roll over that of K13's value of what is changed, same clusters and filling factors", together(changes, "changed"))
-    pooled = runs.where(**ICE).over("strainRate", RATES).estimates("over", ("grains", "filling"))
     rates = ", ".join(f"{rate:g}" for rate in RATES)
-    yield Quantity("pooled", f"`level`, clusters averaged over C_v = {rates}", along(pooled, "filling", level))
+    for name, fit, meaning in (("exponent", exponent, "n of P ~ phi^n"), ("level", level, "P0 r0^3/E_roll, n = 3")):
+        yield Quantity(name, f"{meaning}, fitted up to {VALID_TO:g}", along(over, "filling", with_bins(fit)))
+        begun = lambda start: along(over[fillings >= start], "filling", with_bins(fit, start))
+        values = together({start: begun(start) for start in sorted(set(fillings))}, "start")
+        values = values[[np.isfinite(estimate.value) for estimate in values]]
+        yield Quantity(f"{name}_from", "the same, fitted from this filling factor on", values)
+    changes = {name: along(runs.relative("over", by, *base), "filling", level) for name, base in FIDUCIAL.items()}
+    meaning = "P r0^3/E_roll over that with K13's value of what is changed, same clusters and filling factors to 0.1"
+    yield Quantity("change", meaning, together(changes, "changed"))
+    pooled = of_ice.over("strainRate", RATES).estimates("over", ("grains", "filling"))
+    yield Quantity("pooled", f"level of clusters averaged over C_v = {rates}", along(pooled, "filling", level))
 
 
 def _any_filling(runs):
@@ -78,32 +83,27 @@ def _any_filling(runs):
 def _channels(runs):
     """Where the work goes."""
     table, by = runs.table, (*SET, "since", "until")
-    spent = lambda since, until, names: sum(table[ENERGIES[n, until]] - (table[ENERGIES[n, since]] if since else 0.0) for n in names)
-    spans = [table.assign(since=a, until=b, **{way: spent(a, b, names) for way, names in WAYS.items()}) for a, b in SPANS]
+    lost = lambda names, filling: sum(table[ENERGIES[name, filling]] for name in names) if filling else 0.0
+    lost_between = lambda a, b: {way: lost(names, b) - lost(names, a) for way, names in WAYS.items()}
+    spans = [table.assign(since=a, until=b, **lost_between(a, b)) for a, b in SPANS]
     rows = runs.of(pandas.concat(spans, ignore_index=True))
-    total = rows.estimates(lambda t: t[list(WAYS)].sum(axis=1, skipna=False), by)
+    total = rows.estimates(lambda t: sum(t[way] for way in WAYS), by)
     shares = together({way: ratios(rows.estimates(way, by), total) for way in WAYS}, "channel")
     yield Quantity("shares", "part of all that is dissipated between two filling factors", shares, "%", 0.01)
     twisting, rolling = (select(shares, channel=way, since=0.0, until=VALID_TO) for way in ("twisting", "rolling"))
-    yield Quantity("twisting_over_rolling", f"dissipation by twisting over that by rolling, until {VALID_TO:g}", ratios(twisting, rolling))
-    begins = runs.of(_long(runs.table, TWISTING, "share")).estimates("value", (*SET, "share"))
-    yield Quantity("twisting_from", "filling factor from which on twisting has dissipated that share of what rolling has", begins)
+    over = ratios(twisting, rolling)
+    yield Quantity("twisting_over_rolling", f"dissipation by twisting over rolling, until {VALID_TO:g}", over)
+    meaning = "filling factor from which on twisting has dissipated such a share of what rolling has"
+    yield Quantity("twisting_from", meaning, runs.parts(TWISTING, SET, "share"))
 
 
 def _tension(runs):
     """Cells that are stretched after the compression."""
-    by = (*SET, "stretched_axes", "finalFilling")
-    yield Quantity("tensile", "largest tension while a cell is stretched", runs.estimates("tensile_strength", by), "kPa", 1e3)
-    theirs = lambda t: tensile_strength(t.largest_filling, t.surfaceEnergy, t.grainRadius)
-    over = runs.where(stretched_axes=1).estimates(lambda t: t.tensile_strength / theirs(t), by)
-    yield Quantity("tensile_over", "the same along one axis over 0.6 MPa phi^1.8 (Tatsuuma et al. 2019)", over)
-    where = runs.estimates(lambda t: t.tensile_filling / t.largest_filling, by)
-    yield Quantity("tensile_at", "filling factor at the largest tension over that before", where)
-
-
-def _long(table, columns, name):
-    """A row for each of some columns {column: its value of `name`}, with what it holds as `value`."""
-    return pandas.concat([table.assign(**{name: x, "value": table[column]}) for column, x in columns.items()], ignore_index=True)
+    by, theirs = (*SET, "stretched_axes", "finalFilling"), lambda t: (t.largest_filling, t.surfaceEnergy, t.grainRadius)
+    tensile = runs.estimates("tensile_strength", by)
+    yield Quantity("tensile", "largest tension while a cell is stretched", tensile, "kPa", 1e3)
+    one = runs.where(stretched_axes=1).estimates(lambda t: t.tensile_strength / tensile_strength(*theirs(t)), by)
+    yield Quantity("tensile_over", "the same along one axis over 0.6 MPa phi^1.8 (Tatsuuma et al. 2019)", one)
 
 
 def remarks(results):
