@@ -16,8 +16,9 @@ AGREEMENT = (
     1 / 1.13**3,
     1.13**3,
 )  # of P: 13 % in the filling factor at one pressure, which K13 calls good agreement (section 3.7)
-SLOW = {**ICE, "strainRate": 3e-7}
-THOUSAND = {**ICE, "grains": 1024, "strainRate": 1e-6}
+STEP = {"stepFraction": 0.3}
+SLOW = {**ICE, **STEP, "strainRate": 3e-7}
+THOUSAND = {**ICE, **STEP, "grains": 1024, "strainRate": 1e-6}
 NOTE = "; below 0.03 to 0.06 not every cell is spanned by contacts. Shaded: agreement with eq 25 to 13 % in filling factor."
 
 
@@ -36,7 +37,7 @@ def _tatsuuma(axes, panel):
 @styled
 def _every_cluster(results):
     """Each cluster thin, and means with errors where all are settled; a panel a number of grains."""
-    means, settled = results.series("strength", **SLOW), results.series("dense", strainRate=SLOW["strainRate"])
+    means, settled = results.series("strength", **SLOW), results.series("dense", **STEP, strainRate=SLOW["strainRate"])
     rows = Runs(by_filling(furthest(named(results.table)))).where(**SLOW).table
     palette = colours(results.table.grains)
     sizes = sorted(settled.index.unique("grains"))
@@ -121,8 +122,9 @@ FIGURES = (
         "filling",
         "strainRate",
         "grains",
-        logarithmic="x",
-        y_label=r"$P$ over $(E_{roll}/r_0^3)(1/\phi - 1/0.74)^{-3}$",
+        STEP,
+        "x",
+        r"$P$ over $(E_{roll}/r_0^3)(1/\phi - 1/0.74)^{-3}$",
         limits=(0.0, None),
         level_line=1.0,
     ),

@@ -20,8 +20,8 @@ FIDUCIAL = {
     "critical displacement": ("criticalRolling", 0.8e-9),
     "time step": ("stepFraction", 0.3),
 }
-ICE = {"material": "ice", "linearDamping": 0.01, "criticalRolling": 0.8e-9, "stepFraction": 0.3}
-OF_ICE = ("grains", "strainRate", "filling")
+ICE = {"material": "ice", "linearDamping": 0.01, "criticalRolling": 0.8e-9}
+OF_ICE = ("stepFraction", "grains", "strainRate", "filling")
 RATES = (3e-7, 1e-6, 3e-6, 1e-5)  # C_v over which clusters are averaged
 WAYS = {
     "rolling": ("rollingDissipation",),
@@ -67,7 +67,7 @@ def _power_law(runs):
     changes = {name: along(runs.relative("over", by, *base), "filling", level) for name, base in FIDUCIAL.items()}
     meaning = "P r0^3/E_roll over that with K13's value of what is changed, same clusters and filling factors to 0.1"
     yield Quantity("change", meaning, together(changes, "changed"))
-    pooled = of_ice.over("strainRate", RATES).estimates("over", ("grains", "filling"))
+    pooled = of_ice.over("strainRate", RATES).estimates("over", ("stepFraction", "grains", "filling"))
     yield Quantity("pooled", f"level of clusters averaged over C_v = {rates}", along(pooled, "filling", level))
 
 
