@@ -6,7 +6,8 @@ from types import MappingProxyType
 import numpy as np
 
 from ..measures.compression import first_compression
-from ..measures.ledger import fractions_at, initial_kinetic_energy
+from ..measures.coordination import mean_coordination
+from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
 from ..measures.of_run import met, outcome_of_run
 from ..measures.outcome import BOUNCING, FRAGMENTATION, STICKING, UNDECIDED, still_parting
 from ..measures.return_phase import largest_return_speed
@@ -75,6 +76,28 @@ RETURN_COLUMNS = (
     Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
     Column("return_time", "s", "its time", gaps=True, absent=np.nan),
 )
+
+# What studies of compact aggregates have in common.
+COLLISION_COLUMNS = (
+    Column("coordination", "", "mean number of contacts of a grain at the start"),
+    Column("closure", "", "largest error of the energy ledger over K(0)"),
+    *OUTCOME_COLUMNS,
+    *RETURN_COLUMNS,
+    *PARTITION_COLUMNS,
+)
+
+
+def collision_values(run, velocity, time):
+    """{column: value} of COLLISION_COLUMNS of a RunFolder, at the collision velocity [m/s], with the largest compression at time [s].
+    RunFolderError where the states don't make an outcome."""
+    history, returned = run.history, return_values(run.history, time)
+    return {
+        "coordination": mean_coordination(len(run.start.radius), run.start.contact_pairs),
+        "closure": closure(history),
+        **outcome_values(run, velocity),
+        **returned,
+        **energy_partition(history, time, returned["return_time"]),
+    }
 
 
 def largest_compression(run):

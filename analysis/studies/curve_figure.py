@@ -76,16 +76,25 @@ def _draw(figure, results):
     flat = axes.ravel()
     for value, place in zip(shown, flat):
         part = series if value is None else select(series, **{figure.panel: value})
-        _curves(place, figure, quantity, part, results.table)
-        _dress(place, figure, value, part)
+        _curves(place, figure, quantity, part, results)
+        _dress(place, figure, value, part, results.independent)
     for place in flat[len(shown) :]:
         place.set_axis_off()
     _share_y(flat[: len(shown)], figure)
     for row in axes:
         row[0].set_ylabel(figure.y_label or f"{figure.y} [{quantity.unit}]".replace(" []", ""))
-    legend(max(flat, key=lambda place: len(place.get_legend_handles_labels()[0])), fontsize=8)
+    _legends(flat)
     letter(flat[: len(shown)], "")
     return drawn
+
+
+def _legends(flat):
+    """A legend in the panel that names most, and in those that name something else."""
+    named = lambda place: {text.partition(",")[0] for text in place.get_legend_handles_labels()[1]}
+    most = max(flat, key=lambda place: len(named(place)))
+    for place in flat:
+        if place is most or not named(place) <= named(most):
+            legend(place, fontsize=8)
 
 
 def _chosen(series, where):
@@ -108,8 +117,9 @@ def _share_y(places, figure):
         place.set_ylim(low, high)
 
 
-def _curves(axes, figure, quantity, series, table):
+def _curves(axes, figure, quantity, series, results):
     """The curves of one panel."""
+    table = results.table
     same = len(_pairs(series)) == 1
     if not figure.colour:
         return _curve(axes, figure, quantity, series, _COLOURS[-1], None, MARKERS[0])
@@ -118,7 +128,9 @@ def _curves(axes, figure, quantity, series, table):
     for k, value in enumerate(sorted(set(known))):
         colour = next(own for key, own in palette.items() if alike([key], value)[0])
         own = select(series, **{figure.colour: value})
-        label = level(figure.colour).label(value) + ("" if same and figure.panel else f", {pairs_text(own)}")
+        label = level(figure.colour).label(value) + (
+            "" if same and figure.panel else f", {pairs_text(own, results.independent)}"
+        )
         _curve(axes, figure, quantity, own, colour, label, MARKERS[k % len(MARKERS)])
 
 
@@ -128,24 +140,24 @@ def _curve(axes, figure, quantity, series, colour, label, marker):
     points(axes, x, series.to_list(), colour, label, marker, figure.line, quantity.scale)
 
 
-def _dress(axes, figure, value, series):
+def _dress(axes, figure, value, series, independent):
     """Axes, thin line, what the paper has, and the title with the number of pairs."""
     if figure.level_line is not None:
         axes.axhline(figure.level_line, color="0.6", lw=0.8, zorder=0)
-    for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
-        if name in figure.logarithmic:
-            getattr(axes, f"set_{name}scale")("log")
-            _plain_ticks(axis)
+    for name in figure.logarithmic:
+        getattr(axes, f"set_{name}scale")("log")
     if figure.paper:
         figure.paper(axes, {} if value is None else {figure.panel: value})
+    for name in figure.logarithmic:
+        plain_ticks(getattr(axes, f"{name}axis"))
     title = [] if value is None else [level(figure.panel).label(value)]
     if len(_pairs(series)) == 1 and (figure.panel or not figure.colour):
-        title.append(pairs_text(series))
+        title.append(pairs_text(series, independent))
     axes.set_title(", ".join(title), fontsize=10)
     axes.set_xlabel(level(figure.x).axis())
 
 
-def _plain_ticks(axis):
+def plain_ticks(axis):
     """Ticks of a logarithmic axis at 1, 2 and 5 where it spans less than two decades, with plain numbers."""
     low, high = axis.get_view_interval()
     steps = (1, 2, 5) if high < 50 * low else (1,)
@@ -166,9 +178,9 @@ def _pairs(estimates):
     return sorted({estimate.pairs for estimate in estimates})
 
 
-def pairs_text(estimates):
-    """'4 pairs' or '2 to 4 pairs' behind estimates."""
+def pairs_text(estimates, independent="pairs"):
+    """'4 pairs' or '2 to 4 pairs' behind estimates, or of what else is independent."""
     numbers = _pairs(estimates)
     if numbers == [1]:
-        return "1 pair"
-    return f"{numbers[0]:g} pairs" if len(numbers) == 1 else f"{numbers[0]:g} to {numbers[-1]:g} pairs"
+        return f"1 {independent[:-1]}"
+    return (f"{numbers[0]:g} to " if len(numbers) > 1 else "") + f"{numbers[-1]:g} {independent}"

@@ -44,12 +44,13 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Results:
-    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError. kept: folder (Path; None: there is none)
+    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError. independent: as Study has it. kept: folder (Path; None: there is none)
     of the states that the gallery keeps of the study's runs; snapshots {run: [snapshot_figure.Snapshot]}: those that were read from
     run folders."""
 
     table: pandas.DataFrame
     quantities: dict
+    independent: str = "pairs"
     kept: object = None
     snapshots: dict = field(default_factory=dict)
 
@@ -71,6 +72,7 @@ class Study:
     measure     RunFolder -> {column: value}, one row of the table; NotMeasured or RunFolderError where it can't
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
     remarks     Results -> lines (str) that say what could not be done, and why
+    independent what counts as one in errors, in the plural: pairs (of aggregates), clusters
     folder (Path; find() fills it in): where paper.toml is, if there is one. name: the folder's."""
 
     title: str
@@ -80,13 +82,14 @@ class Study:
     measure: Callable
     quantities: Callable
     remarks: Callable = lambda results: ()
+    independent: str = "pairs"
     name: str = ""
     folder: object = field(default=None, compare=False)
 
     def results(self, table):
         """Results of a table of runs."""
         found = {quantity.name: quantity for quantity in self.quantities(table)}
-        return Results(table, found, GALLERY / self.name / SNAPSHOTS)
+        return Results(table, found, self.independent, GALLERY / self.name / SNAPSHOTS)
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ class Level:
 _LEVELS = {
     "velocity": Level("v", "$v$", "m/s"),
     "viscoelasticTime": Level("T_vis", "$T_{vis}$", "ps", 1e-12),
-    "grains": Level("grains", "grains of an aggregate", phrase="{} grains each"),
+    "grains": Level("grains", "grains of an aggregate", phrase="{} grains"),
     "square": Level("12 B_off^2", "$12 B_{off}^2$", scale=1 / 12),
     "filling": Level("φ", r"$\phi$"),
     "radius": Level("R", "$R$", "r"),
@@ -49,6 +49,13 @@ _LEVELS = {
     "growth_velocity": Level("V_g", "$V_g$", "m/s"),
     "criticalRolling": Level("ξ_crit", r"$\xi_{crit}$", "Å", 1e-10),
     "strainRate": Level("C_v", "$C_v$"),
+    "linearDamping": Level("k_n", "$k_n$"),
+    "stepFraction": Level("step", "step", "t0"),
+    "start": Level("from φ", r"fitted from $\phi$"),
+    "since": Level("from φ", r"from $\phi$"),
+    "until": Level("to φ", r"to $\phi$"),
+    "finalFilling": Level("φ before", r"$\phi$ before the stretching"),
+    "stretched_axes": Level("axes", "axes"),
 }
 
 

@@ -7,7 +7,7 @@ from .tables import claims_table, estimate_text, markdown_table, quantity_table,
 from .verdict import NO, UNTESTED, YES
 
 TEXT_ALONE = "The paper enters by its text and printed numbers alone; its figures were not measured."
-OURS = "Ours: mean ± standard error (independent pairs of aggregates). *Yes* and *no* by the tests declared in paper.toml; *untested*: not decided."
+OURS = "Ours: mean ± standard error (independent {}). *Yes* and *no* by the tests declared in paper.toml; *untested*: not decided."
 WORDS = (("How our set-up differs", "differs"), ("New", "new"), ("Missing, and what it would cost", "missing"))
 DETAILS_FILE, PAGE_FILE = "details.md", "README.md"
 
@@ -24,7 +24,7 @@ def screen(analysis, pictures, prose):
         name, caption = pictures[words.figure]
         parts.append(f"![{caption}]({name})\n\n{caption}")
     if judged:
-        parts += [markdown_table(claims_table(judged)), OURS]
+        parts += [markdown_table(claims_table(judged)), OURS.format(analysis.study.independent)]
     parts += [undecided(analysis.results.table)]
     for head, name in WORDS:
         text = getattr(words, name)

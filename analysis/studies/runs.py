@@ -48,6 +48,16 @@ class Runs:
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
         return together({label: self.estimates(values, by) for label, values in of.items()}, level)
 
+    def relative(self, values, by, column, value):
+        """Series of Estimate of the mean of values over that of the same pairs' runs with this value in a column, all else in `by` the same:
+        of a column or function as in estimates()."""
+        keys = list(dict.fromkeys(name for name in (*by, *self.population, self.pair) if name != column))
+        rounded = {name: self.table[name].map(_key) for name in keys}
+        table = self.table.assign(value=np.asarray(self._values(values), dtype=float), **rounded)
+        base = alike(table[column], value)
+        both = self.of(table[~base].merge(table.loc[base, [*keys, "value"]], on=keys, suffixes=("", "_of_base")))
+        return ratios(both.estimates("value", by), both.estimates("value_of_base", by))
+
     def fractions(self, values, by, undecided=None):
         """Series of Fraction: of runs for which a column, or a function table -> (runs,), is true; undecided: the same for runs that are
         counted apart. A pair counts once: where it has several runs in a group, ValueError."""

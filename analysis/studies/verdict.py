@@ -68,7 +68,7 @@ def judge(claims, results):
     chances = [_chance(claim, ours) if claim.test and ours is not None else None for claim, _, ours in found]
     corrected = holm(chances)
     return [
-        Judgement(claim, unit, ours, p, own, *_verdict(claim, ours, own))
+        Judgement(claim, unit, ours, p, own, *_verdict(claim, ours, own, results.independent))
         for (claim, unit, ours), p, own in zip(found, chances, corrected)
     ]
 
@@ -111,8 +111,8 @@ def _chance(claim, ours):
     return 1.0 if nearest == ours.value else 0.5 * p
 
 
-def _verdict(claim, ours, corrected):
-    """(verdict, why)."""
+def _verdict(claim, ours, corrected, independent):
+    """(verdict, why); independent: definition.Study's."""
     if ours is None:
         return UNTESTED, "no runs of ours there"
     if not claim.test:
@@ -124,11 +124,11 @@ def _verdict(claim, ours, corrected):
         return NO, f"p = {corrected:.2g} after Holm's correction"
     least, most = _interval(claim, ours)
     if least is None:
-        return UNTESTED, "no error of ours: one pair, or no scatter" if ours.pairs < 2 else "no error of ours"
+        return UNTESTED, f"no error of ours: 1 {independent[:-1]}" if ours.pairs < 2 else "no error of ours"
     within = f"95 % interval {_range(least, most)}, agreement {_range(low, high)}"
     if low <= least and most <= high:
         return YES, within
-    return UNTESTED, f"{within}; {_needed(claim, ours)}"
+    return UNTESTED, f"{within}; {_needed(claim, ours, independent)}"
 
 
 def _range(low, high):
@@ -148,7 +148,7 @@ def _interval(claim, ours):
     return ours.value - reach, ours.value + reach
 
 
-def _needed(claim, ours):
+def _needed(claim, ours, independent):
     """How many pairs would decide, with POWER, if the paper is right (within the margin) or ours is (beyond it)."""
     if isinstance(ours, Fraction):
         return f"{ours.pairs} runs don't decide"
@@ -158,5 +158,5 @@ def _needed(claim, ours):
     reach = (norm.ppf(1 - 0.5 * LEVEL) + norm.ppf(POWER)) * scatter
     inverse = (away / reach) ** 2 - (1 / claim.runs if claim.value is not None else 0.0)
     if inverse <= 0:
-        return f"no number of pairs decides: the paper's {claim.runs} scatter by {number_text(scatter)}"
-    return f"some {max(ours.pairs, math.ceil(1 / inverse))} pairs would decide"
+        return f"no number of {independent} decides: the paper's {claim.runs} scatter by {number_text(scatter)}"
+    return f"some {max(ours.pairs, math.ceil(1 / inverse))} {independent} would decide"

@@ -90,4 +90,4 @@ def sound_speed(filling, energy, grain_mass):
 def static_from(strain_rate, grains, grain_radius, time_unit, energy, grain_mass):
     """The filling factor above which boundaries move slower than sound, v_d < c_s,eff: K13 section 3.2."""
     at_one = boundary_speed(1.0, strain_rate, grains, grain_radius, time_unit)
-    return float((at_one / sound_speed(1.0, energy, grain_mass)) ** 0.75)
+    return (at_one / sound_speed(1.0, energy, grain_mass)) ** 0.75

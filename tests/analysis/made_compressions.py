@@ -60,9 +60,9 @@ def compression_history(pressure, low=0.002, high=0.5, rate=3e-7, samples=3000, 
     return history
 
 
-def made_compression(path, seed, pressure, states=True, stretched=False, high=0.5, **others):
+def made_compression(path, seed, pressure, states=True, stretched=False, low=0.002, high=0.5, **others):
     """Write a run folder; its states are a simple cubic lattice in the cell."""
-    history = compression_history(pressure, high=high, stretched=stretched)
+    history = compression_history(pressure, low, high, stretched=stretched)
     return write_run(path, compression_record(seed, **others), history, _states(history) if states else [])
 
 

@@ -91,6 +91,20 @@ def of_offsets(cells):
     return Runs(pandas.DataFrame(rows, columns=["seed", "square", "value"]))
 
 
+def test_the_same_pairs_with_one_thing_changed():
+    """Pair 3 has run without the change alone, and doesn't count; populations keep pair 1 of a and that of b apart."""
+    runs = Runs(
+        table(
+            size=[*"aaaaa", "b", "b"], seed=[1, 1, 2, 2, 3, 1, 1], drag=[0, 6, 0, 6, 0, 0, 6], y=[1, 2, 3, 6, 9, 4, 2.0]
+        ),
+        population=("size",),
+    )
+    found = runs.relative("y", ("size", "drag"), "drag", 0)
+    assert [(e.value, e.pairs) for e in found] == [(2.0, 2), (0.5, 1)] and found.iloc[0].error == 0.0
+    assert list(found.index) == [("a", 6), ("b", 6)]
+    assert len(runs.relative("y", ("size", "drag"), "drag", 7)) == 0
+
+
 def test_a_mean_over_points_counts_pairs_that_have_all_of_them():
     whole = {seed: {x: seed * x for x in OFFSETS} for seed in (1, 2, 3)}
     runs = of_offsets({**whole, 4: {x: 100.0 for x in OFFSETS[::2]}})

@@ -19,8 +19,8 @@ sys.path.insert(0, str(TOP))
 
 from analysis import open_run  # noqa: E402
 from analysis.measures.ledger import total_energy  # noqa: E402
+from analysis.measures.periodic_compression import pressures  # noqa: E402
 from analysis.statistics import mean_and_error  # noqa: E402
-from analysis.studies.compression.curve import pressures  # noqa: E402
 
 STEPS = (0.05, 0.1, 0.2, 0.3, 0.36)  # t0; the first is the reference
 DAMPING, SEEDS = (0.01, 0.0), (1, 2, 3, 4, 5, 6)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...measures.periodic_compression import AVERAGED, pressure_over
 from ...runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, COMPRESSION, LABELS, WORK
 from ...theory.aggregates import bcca_coordination
 from ...theory.compression import compressive_strength, compressive_strength_dense, strength_scale
@@ -9,19 +10,18 @@ from ..panels import OURS, PAPER, legend, letter, panels
 from ..style import run_title, styled
 
 KINDS = (COMPRESSION.name,)
-AVERAGED = 25  # samples
 
 
 @styled
 def compression_figure(run):
-    """Figure of pressure (means of AVERAGED samples) beside K13 eq 25 and T23, coordination beside A24 eq 45, and every
+    """Figure of pressure (averaged over 1000 t0) beside K13 eq 25 and T23, coordination beside A24 eq 45, and every
     channel's change over the work of the boundaries so far, all while the cell shrinks."""
     history = run.history
     part = slice(0, int(np.argmax(history["filling"])) + 1)
     filling = history["filling"][part]
     figure, axes = panels(1, 3, 4.8, 4.2)
     strength, contacts, energy = axes[0]
-    _draw_pressure(strength, filling, history["pressure"][part], run.derived)
+    _draw_pressure(strength, history, run.derived)
     contacts.plot(filling, history["coordination"][part], color=OURS)
     contacts.plot(filling, bcca_coordination(filling), "--", color=PAPER, label="A24 eq 45")
     contacts.set_ylabel("coordination number $Z$")
@@ -34,11 +34,9 @@ def compression_figure(run):
     return figure
 
 
-def _draw_pressure(axes, filling, pressure, derived):
-    groups = np.array_split(np.arange(len(filling)), max(1, len(filling) // AVERAGED))
-    mean = np.array([pressure[group].mean() for group in groups])
-    where = np.array([filling[group].mean() for group in groups])
-    axes.plot(where[mean > 0], mean[mean > 0], color=OURS)
+def _draw_pressure(axes, history, derived):
+    filling, pressure = pressure_over(history, AVERAGED * derived["timeUnit"])
+    axes.plot(filling[pressure > 0], pressure[pressure > 0], color=OURS)
     if "rollingEnergy" in derived:
         scale = strength_scale(derived["rollingEnergy"], derived["grainRadius"])
         axes.plot(filling, compressive_strength(filling, scale), "--", color=PAPER, label="K13 eq 25")

@@ -1,69 +1,20 @@
-"""The power law of made pressures comes back, and its errors are as large as its deviations are."""
+"""Pressure, tension and what else a compression's history tells, of made histories."""
 
 import numpy as np
 import pytest
 
-from analysis.studies.compression.curve import (
-    FILLINGS,
-    coordination_at,
+from analysis.measures.periodic_compression import (
     filling_at_pressure,
     filling_at_share,
-    pressure_at,
     pressure_over,
     tension,
     windows,
 )
-from analysis.studies.compression.strength_fit import fit_strength
+from analysis.studies.compression.curve import FILLINGS, coordination_at, pressure_at
 from analysis.theory.aggregates import bcca_coordination
 from analysis.theory.compression import compressive_strength_dense
 
-SCALE, EXPONENT = 4.74e5, 3.2
-
-
-def made(random, seeds, scatter=0.3, together=0.9):
-    """Pressures (S, K) that scatter about the power law; the logarithms of neighbouring bins are correlated."""
-    noise = np.empty((seeds, len(FILLINGS)))
-    noise[:, 0] = random.normal(size=seeds)
-    for k in range(1, len(FILLINGS)):
-        noise[:, k] = together * noise[:, k - 1] + np.sqrt(1 - together**2) * random.normal(size=seeds)
-    return SCALE * FILLINGS**EXPONENT * np.exp(scatter * noise - 0.5 * scatter**2)
-
-
-def test_exact_power_law():
-    fit = fit_strength(FILLINGS, np.tile(SCALE * FILLINGS**3, (3, 1)), 0.005, 0.1)
-    assert (fit.scale, fit.exponent, fit.at_three) == pytest.approx((SCALE, 3.0, SCALE), rel=1e-9)
-    assert max(fit.errors) < 1e-9 and fit.at_three_error < 1e-9
-    assert fit.bins == 11 and fit.runs == 3
-
-
-def test_errors_of_correlated_bins():
-    """Pulls of 300 made sets of ten seeds: their spread is 1 where errors are right. Errors from the scatter about the line,
-    as if bins were independent, would be a third of it."""
-    random = np.random.default_rng(8)
-    fits = [fit_strength(FILLINGS, made(random, 10), 0.004, 0.1) for _ in range(300)]
-    exponent = np.array([(fit.exponent - EXPONENT) / fit.errors[1] for fit in fits])
-    offset = np.array([(np.log(fit.scale) - np.log(SCALE)) / fit.errors[0] for fit in fits])
-    for pulls in (exponent, offset):
-        assert abs(pulls.mean()) < 0.35 and 0.8 < pulls.std() < 1.35, (pulls.mean(), pulls.std())
-    assert np.median([fit.correlation for fit in fits]) > 0.8
-
-
-def test_one_seed_has_no_errors_and_too_few_bins_a_reason():
-    one = fit_strength(FILLINGS, SCALE * FILLINGS[None] ** 3, 0.005, 0.1)
-    assert one.errors == (None, None) and one.at_three_error is None and one.scale == pytest.approx(SCALE)
-    few = fit_strength(FILLINGS, SCALE * FILLINGS[None] ** 3, 0.09, 0.1)
-    assert few.scale is None and "a power law needs 3" in few.reason
-    gaps = np.tile(SCALE * FILLINGS**3, (2, 1))
-    gaps[1, FILLINGS < 0.02] = np.nan
-    assert fit_strength(FILLINGS, gaps, 0.005, 0.1).bins == 6
-
-
-def test_bins_in_which_one_seed_alone_is_pressed_are_not_fitted():
-    """Two of three clusters pull at first: without the third the mean has no logarithm."""
-    pressures = np.tile(SCALE * FILLINGS**3, (3, 1))
-    pressures[:2, FILLINGS < 0.02] *= -0.4
-    fit = fit_strength(FILLINGS, pressures, 0.005, 0.1)
-    assert fit.bins == 6 and fit.scale == pytest.approx(SCALE) and np.isfinite(fit.errors).all()
+SCALE = 4.74e5
 
 
 def compression(power=3.0, low=0.004, high=0.5, samples=20_001):

@@ -1,0 +1,93 @@
+"""A compression in a periodic cell (K13) from its history: pressure and tension, and when a filling factor is reached. SI units.
+
+The pressure is the work of the grains on the boundaries over the change of volume. Between two samples that is the mean of the virial's
+pressure (K13 eq 21, damping forces included) over all steps between them, as K13 averages; the virial's own series is of the moment of
+each sample, which misses oscillations faster than samples."""
+
+import numpy as np
+
+AVERAGED = 1000.0  # t0 over which K13 averages the pressure (section 2.4)
+
+
+def compressing(history):
+    """(T,) bool: the samples up to the largest filling factor; those after it are of the stretching."""
+    return np.arange(len(history["filling"])) <= int(np.argmax(history["filling"]))
+
+
+def volume(history):
+    """Volume of the cell (T,) [m^3]."""
+    return np.prod([history[f"edge_{axis}"] for axis in "xyz"], axis=0)
+
+
+def windows(time, width):
+    """(first, last + 1) of the samples, time (T,), in each window of that width, one after the other; the last, incomplete window is left
+    out, unless it is the only one."""
+    number = np.floor((time - time[0]) / width).astype(int)
+    starts = np.flatnonzero(np.diff(number, prepend=-1))
+    ends = np.append(starts[1:], len(time))
+    whole = max(1, len(starts) - 1)
+    return list(zip(starts[:whole], ends[:whole]))
+
+
+def pressures(history):
+    """(filling factors (K,), pressures (K,) [Pa]) between the samples while the cell shrinks, the fillings half-way."""
+    part = compressing(history)
+    filling, size = history["filling"][part], volume(history)[part]
+    return np.sqrt(filling[1:] * filling[:-1]), np.diff(history["boundaryWork"][part]) / np.diff(size)
+
+
+def pressure_over(history, width):
+    """(filling factors (K,), pressures (K,) [Pa]) over successive windows of `width` [s] while the cell shrinks (K13 section 2.4)."""
+    return _work_over_volume(history, compressing(history), width)
+
+
+def tension(history, width):
+    """(filling factors (K,), tensions (K,) [Pa]) over successive windows of `width` [s] while the cell is stretched. Along one axis it is the
+    stress on that axis, the tangential forces included. Empty without stretching."""
+    after = ~compressing(history)
+    after[np.argmax(history["filling"])] = True
+    if after.sum() < 3:
+        return np.array([]), np.array([])
+    fillings, pressures = _work_over_volume(history, after, width)
+    return fillings, -pressures
+
+
+def _work_over_volume(history, part, width):
+    time, work, filling = (history[name][part] for name in ("time", "boundaryWork", "filling"))
+    size = volume(history)[part]
+    # From the first sample of a window to that of the next.
+    edges = [(a, min(b, len(time) - 1)) for a, b in windows(time, width) if a < len(time) - 1]
+    pressures = [(work[b] - work[a]) / (size[b] - size[a]) for a, b in edges]
+    return np.array([filling[a : b + 1].mean() for a, b in edges]), np.array(pressures)
+
+
+def at_filling(history, name, filling):
+    """Value of a series when the filling factor is reached, linear between samples; NaN outside of the run."""
+    part = compressing(history)
+    return float(np.interp(filling, history["filling"][part], history[name][part], left=np.nan, right=np.nan))
+
+
+def filling_at_pressure(history, pressure, width):
+    """The filling factor from which on the pressure, averaged over `width` [s], stays above `pressure` [Pa]; NaN where it never does, or
+    always did."""
+    fillings, pressures = pressure_over(history, width)
+    k = _last_below(pressures < pressure)
+    if k is None:
+        return float("nan")
+    logarithms = np.log(np.maximum(pressures[k : k + 2], 1e-3 * pressure))
+    return float(np.exp(np.interp(np.log(pressure), logarithms, np.log(fillings[k : k + 2]))))
+
+
+def filling_at_share(history, one, other, share):
+    """The filling factor from which on, to the end of the compression, the series `one` is at least `share` of the series `other`, both
+    counted from the start; NaN where it never is, or always was."""
+    part = compressing(history)
+    grown, reference = (history[name][part] - history[name][0] for name in (one, other))
+    k = _last_below(grown < share * reference)
+    return float("nan") if k is None else float(history["filling"][part][k + 1])
+
+
+def _last_below(below):
+    """Place of the last True of below (T,); None where there is none, or where it is the last of all."""
+    places = np.flatnonzero(below)
+    return int(places[-1]) if len(places) and places[-1] + 1 < len(below) else None
