@@ -127,8 +127,8 @@ def differences(first, second):
 
 
 def ratios(first, second):
-    """Series of first over second, where both have an estimate."""
-    first, second = first.align(second, join="inner")
+    """Series of first over second, where both have an estimate, and second is not 0."""
+    first, second = first.align(second[[estimate.value != 0 for estimate in second]], join="inner")
     return first / second
 
 
