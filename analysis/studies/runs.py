@@ -127,8 +127,9 @@ def differences(first, second):
 
 
 def ratios(first, second):
-    """Series of first over second, where both have an estimate, and second is not 0."""
-    first, second = first.align(second[[estimate.value != 0 for estimate in second]], join="inner")
+    """Series of first over second, where both have an estimate, and second is told from 0 by two of its standard errors."""
+    known = [abs(estimate.value) > 2 * (estimate.error or 0.0) for estimate in second]
+    first, second = first.align(second[known], join="inner")
     return first / second
 
 
