@@ -8,7 +8,7 @@ verdict, differs, new, missing                 # Markdown; {{ say("quantity", co
 [[claim]]
 quantity = "v_fra"                             # of the study
 label = "threshold velocity of fragmentation"  # how a table names it
-where = { grains = 50000, viscoelasticTime = 0 }   # SI
+where = { grains = 50000, viscoelasticTime = 0 }   # SI; of lists each combination is a claim of its own, and {name} in the label its value
 value = 50.0        # as printed, in the quantity's unit; or low and/or high: limits that the paper's words set
 printed = "50 to 60 m/s"                       # how the paper prints it
 source = "section 3.2"
@@ -19,6 +19,7 @@ test = true         # in the page's family of tests; false: shown, not tested
 row = true          # on the page's first screen"""
 
 from dataclasses import dataclass, field, fields
+from itertools import product
 
 try:
     import tomllib
@@ -83,12 +84,24 @@ def read_paper(folder):
     except (OSError, ValueError) as error:
         raise PaperError(f"{file}: {error}") from None
     page = _made(Page, content.pop("page", {}), f"{file}: [page]")
-    claims = tuple(_claim(own, f"{file}: claim {k}") for k, own in enumerate(content.pop("claim", ()), 1))
+    blocks = enumerate(content.pop("claim", ()), 1)
+    claims = tuple(_claim(own, f"{file}: claim {k}") for k, block in blocks for own in _each(block))
     if content:
         raise PaperError(f"{file}: has {', '.join(content)}: must have page and claim alone")
     if sum(claim.row for claim in claims) > MOST_ROWS:
         raise PaperError(f"{file}: {sum(c.row for c in claims)} claims with row = true: must be {MOST_ROWS} at most")
     return page, claims
+
+
+def _each(block):
+    """The claims of a block: one for each combination of the values that its `where` lists; the first has the sentence."""
+    levels = block.get("where", {})
+    listed = [name for name, value in levels.items() if isinstance(value, list)]
+    if not listed or "label" not in block:
+        return [block]
+    chosen = [dict(zip(listed, values)) for values in product(*(levels[name] for name in listed))]
+    own = [{**block, "where": {**levels, **of}, "label": block["label"].format(**of)} for of in chosen]
+    return [own[0], *({**each, "sentence": ""} for each in own[1:])]
 
 
 def _claim(values, where):
