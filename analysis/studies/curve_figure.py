@@ -12,7 +12,7 @@ from ..figures.style import styled
 from .levels import level
 from .runs import alike, select
 
-_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#7b3fa0", "#8c5a2b", "#111111")
+_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#4d9221", "#8c5a2b", "#111111")
 MARKERS = "osD^vP"
 WIDEST = 3  # panels beside each other
 
@@ -114,7 +114,9 @@ def _curves(axes, figure, quantity, series, table):
     if not figure.colour:
         return _curve(axes, figure, quantity, series, _COLOURS[-1], None, MARKERS[0])
     known = series.index.get_level_values(figure.colour)
-    palette = colours(table[figure.colour] if figure.colour in table else known)
+    palette = colours(
+        table[figure.colour] if figure.colour in table else quantity.values.index.get_level_values(figure.colour)
+    )
     for k, value in enumerate(sorted(set(known))):
         colour = next(own for key, own in palette.items() if alike([key], value)[0])
         own = select(series, **{figure.colour: value})
