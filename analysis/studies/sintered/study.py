@@ -18,6 +18,7 @@ POINT = ("setup", "growth_velocity", "neck", "velocity")
 PLAIN = "cut"  # S17's: springs of ordinary contacts are cut at their limits, in the plane, xi_crit = 2 Angstrom, no drag
 GRAINS = 2048  # of both BCCA aggregates (section 4)
 HALF = 0.5  # of the total mass: what the largest piece must keep for growth (section 5.1)
+CURVE = 4  # velocities or more: with fewer, where it falls to a half lies anywhere between two of them
 STRONG = 0.65  # beta above which necks are those of S17's fit, 0.7
 LOST = ("rolling_friction", "sliding_friction", "stretching", "necks", "drag")
 MODES = {name: name.removeprefix("brokenBy").lower() for name in BROKEN_BONDS}
@@ -61,11 +62,11 @@ def _setup(row):
 
 
 def _may_part(table):
-    """Runs that ended in one piece while their halves moved against each other with more energy than their contacts can hold."""
+    """Runs that were ended early in one piece, while their halves moved against each other with more energy than their contacts can hold."""
     hold = [interaction_energies(pair_constants(ICE, radius))["break"] for radius in table.grain_radius]
     mass = 4 / 3 * np.pi * ICE.density * table.grain_radius**3
     halves = table.bulk * table.grains * mass * table.velocity**2 / 8
-    return (table.outcome == STICKING) & (halves > table.touching * hold)
+    return (table.outcome == STICKING) & table.ended_by & (halves > table.touching * hold)
 
 
 def _sizes(runs):
@@ -81,12 +82,16 @@ def _sizes(runs):
     less = differences(select(bcca, neck=0.7), select(bcca, neck=0.0))
     yield Quantity("gyration_change", "the same, beta = 0.7 less unsintered, BCCA", less)
     largest = runs.estimates("largest", POINT)
+    at_own = largest[alike(*(largest.index.get_level_values(name) for name in ("velocity", "growth_velocity")))]
+    meaning = "fraction of the mass in the largest piece, collided at the velocity that compacted the aggregates"
+    yield Quantity("largest_own", meaning, at_own.droplevel("velocity"))
     beside = _beside_plain(largest, differences)
     yield Quantity("largest_change", f"fraction of the mass in the largest piece, less that with {PLAIN}", beside)
     bcca = select(largest, growth_velocity=0.0)
     fall = differences(select(bcca, neck=0.4), select(bcca, neck=0.5))
     yield Quantity("largest_fall", "the same, beta = 0.4 less 0.5, BCCA", fall)
-    critical = along(bcca - HALF, "velocity", threshold_velocity)
+    curves = bcca.groupby(level=["setup", "neck"]).filter(lambda curve: len(curve) >= CURVE)
+    critical = along(curves - HALF, "velocity", threshold_velocity)
     critical = critical[[np.isfinite(estimate.value) for estimate in critical]]
     yield Quantity("growth_limit", "velocity at which the mean largest piece of BCCA falls below a half", critical, "m/s")
 
@@ -102,9 +107,10 @@ def _necks(runs):
     touching = _beside_plain(runs.estimates("necks_per_touching", POINT), ratios)
     yield Quantity("touching_change", "N_cut over the largest number of contacts between the two, the same way", touching)
     cut = runs.of(runs.table[runs.table.broken > 0])
-    total = cut.estimates("broken", POINT)
-    modes = together({mode: ratios(cut.estimates(name, POINT), total) for name, mode in MODES.items()}, "mode")
-    yield Quantity("modes", "necks broken by each mode, of all that broke", modes, "%", 0.01)
+    by = ("setup", "growth_velocity", "neck")
+    total = cut.estimates("broken", by)
+    modes = together({mode: ratios(cut.estimates(name, by), total) for name, mode in MODES.items()}, "mode")
+    yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%", 0.01)
     selections = {"β = 0.7": runs.table.neck > STRONG, "β ≥ 0.3": runs.table.neck > 0.25}
     fits = {
         name: runs.of(runs.table[own]).fit(fit_necks, ("amplitude", "exponent"), ("setup",))
