@@ -6,7 +6,9 @@ import numpy as np
 
 from ...measures.fragments import fragment_labels, fragment_sizes
 from ...measures.ledger import closure, initial_kinetic_energy
+from ...measures.loops import loops
 from ...measures.of_run import derived_constants, met
+from ...measures.structure import gyration_radius
 from ...runs.format import BROKEN_BONDS
 from ...runs.table import Column
 from ...theory.chains import breaking_energy, stretching_period
@@ -14,27 +16,18 @@ from ...theory.pair_constants import ICE, pair_constants
 from ..collisions import OUTCOME_COLUMNS, outcome_values
 from ..definition import NotMeasured
 from ..grains import require_papers_grains
-from .loops import loops
 
-# The parts of Fig. 14: {column: (channels)}. What is left moves or is stored in contacts (elastic).
+# The parts of Fig. 14: {column: (what it is, channels)}.
 PARTS = {
-    "kinetic": ("kinetic",),
-    "elastic": ("normal", "sliding", "rolling", "twisting"),
-    "rolling_friction": ("rollingDissipation",),
-    "sliding_friction": ("slidingDissipation", "twistingDissipation"),
-    "stretching": ("connection", "disconnection"),
-    "necks": ("bondBreaking",),
-    "drag": ("drag",),
+    "kinetic": ("kinetic", ("kinetic",)),
+    "elastic": ("stored in contacts and necks", ("normal", "sliding", "rolling", "twisting")),
+    "rolling_friction": ("rolling friction", ("rollingDissipation",)),
+    "sliding_friction": ("sliding friction", ("slidingDissipation", "twistingDissipation")),
+    "stretching": ("contacts formed and broken", ("connection", "disconnection")),
+    "necks": ("necks broken", ("bondBreaking",)),
+    "drag": ("drag", ("drag",)),
 }
-LABELS = {
-    "kinetic": "kinetic",
-    "elastic": "stored in contacts and necks",
-    "rolling_friction": "rolling friction",
-    "sliding_friction": "sliding friction",
-    "stretching": "contacts formed and broken",
-    "necks": "necks broken",
-    "drag": "drag",
-}
+LABELS = {name: label for name, (label, _) in PARTS.items()}
 # Times at which energies are measured beside the end, in periods of the stretching vibration: the paper doesn't print that of Fig. 14.
 TIMES = (1250, 2500, 5000, 10_000, 20_000)
 REACHED = 0.99  # a run has got to a time if it has this part of it
@@ -118,9 +111,7 @@ def measure(run):
         "grains": grains,
         "grain_radius": radius,
         "contacts": 2.0 * len(start.contact_pairs) / grains,
-        "initial_radius": float(
-            np.mean([gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)]) / radius
-        ),
+        "initial_radius": float(np.mean([gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)])) / radius,
         "met": met(run),
         "touching": int(history["contacts_between"].max()),
         **outcome_values(run, velocity),
@@ -136,16 +127,6 @@ def measure(run):
         "closure": closure(history),
         "time": float(history["time"][-1]),
     }
-
-
-def gyration_radius(position):
-    """R_g of points (N,3) of equal mass, in their unit: S17 eq 13.
-
-    >>> gyration_radius([[0.0, 0, 0], [2, 0, 0]])
-    1.0
-    """
-    position = np.asarray(position, dtype=float)
-    return float(np.sqrt(((position - position.mean(axis=0)) ** 2).sum(axis=1).mean()))
 
 
 def pieces(position, pairs, radius):
@@ -178,7 +159,7 @@ def partition(history, row=-1):
     """{part_NAME: value} of PARTS at a row of the history, changes over K(0); they add up to 1 for an exact ledger."""
     unit = initial_kinetic_energy(history)
     found = {}
-    for name, channels in PARTS.items():
+    for name, (_, channels) in PARTS.items():
         change = sum(history[c][row] - history[c][0] for c in channels) / unit
         found[f"part_{name}"] = float(change + (name == "kinetic"))
     return found

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...measures.network import contact_network, spanning_forest
+from .network import contact_network, spanning_forest
 
 
 def loops(grains, pairs):
