@@ -1,4 +1,4 @@
-"""Fractal structure: how many grains lie within a distance of a grain (K13 Fig. 11)."""
+"""Structure: how many grains lie within a distance of a grain (K13 Fig. 11), gyration radius."""
 
 from itertools import product
 from math import ceil

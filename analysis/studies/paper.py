@@ -3,6 +3,7 @@
 [page]
 paper = "Arakawa, Tanaka & Kokubo (2022)"     # written out: it heads the page
 figure = "fig03_mean_growth"                   # the one figure on it
+runs = 5                                       # of every claim that doesn't say otherwise
 verdict, differs, new, missing                 # Markdown; {{ say("quantity", column = value) }} stands for "54.0 ± 1.0 m/s"
 
 [[claim]]
@@ -15,7 +16,7 @@ source = "section 3.2"
 sentence = "..."                               # the sentence it is from
 runs = 1                                       # independent pairs of aggregates behind the paper's number
 margin = 5.0        # agreement: our interval of the difference (or our interval) within this of the value (or of the limits)
-test = true         # in the page's family of tests; false: shown, not tested
+note = "a phrase"   # why it is shown, and not in the page's family of tests (test = false says the same without a reason)
 row = true          # on the page's first screen"""
 
 from dataclasses import dataclass, field, fields
@@ -64,10 +65,11 @@ class Claim:
 @dataclass(frozen=True)
 class Page:
     """Words of a page: paper (its name, written out), figure (name of the figure on the first screen), verdict, differs, new, missing
-    (Markdown with numbers by say())."""
+    (Markdown with numbers by say()); runs: Claim.runs of claims that don't say it."""
 
     paper: str = ""
     figure: str = ""
+    runs: int = 1
     verdict: str = ""
     differs: str = ""
     new: str = ""
@@ -85,7 +87,7 @@ def read_paper(folder):
         raise PaperError(f"{file}: {error}") from None
     page = _made(Page, content.pop("page", {}), f"{file}: [page]")
     blocks = enumerate(content.pop("claim", ()), 1)
-    claims = tuple(_claim(own, f"{file}: claim {k}") for k, block in blocks for own in _each(block))
+    claims = tuple(_claim(own, page.runs, f"{file}: claim {k}") for k, block in blocks for own in _each(block))
     if content:
         raise PaperError(f"{file}: has {', '.join(content)}: must have page and claim alone")
     if sum(claim.row for claim in claims) > MOST_ROWS:
@@ -104,7 +106,8 @@ def _each(block):
     return [own[0], *({**each, "sentence": ""} for each in own[1:])]
 
 
-def _claim(values, where):
+def _claim(values, runs, where):
+    values = {"runs": runs, "test": "note" not in values, **values}
     claim = _made(Claim, values, f"{where} ({values.get('label', 'without label')})")
     if claim.test and claim.value is None and claim.low is None and claim.high is None:
         raise PaperError(f"{where} ({claim.label}): is tested, and has no number: must have value, low or high")

@@ -34,6 +34,7 @@ REACHED = 0.99  # a run has got to a time if it has this part of it
 EARLY = 5000  # the one at which every part is measured
 FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
 PACKINGS = ("bcca", "file")
+LATER = {"gaps": True, "absent": nan}  # of columns that the first runs don't have
 
 COLUMNS = (
     Column("planar", "", "1: grains in a plane", kind="i"),
@@ -50,7 +51,7 @@ COLUMNS = (
     Column("contacts", "", "contacts a grain at the start"),
     Column("initial_radius", "", "gyration radius of an aggregate at the start, mean of both, in R"),
     Column("met", "", "whether the aggregates touched", kind="b"),
-    Column("touching", "", "largest number of contacts between the aggregates", gaps=True, absent=nan),
+    Column("touching", "", "largest number of contacts between the aggregates", **LATER),
     *OUTCOME_COLUMNS,
     Column("largest", "", "sticking efficiency: fraction of the mass in the largest piece"),
     Column("second", "", "fraction of the mass in the second one"),
@@ -59,24 +60,13 @@ COLUMNS = (
     Column("energy_ratio", "", "E_k/E_sint, E_k = m V_c^2/4 (S17 section 5.3)", gaps=True),
     Column("necks_at_start", "", "sintered bonds at the start", kind="i"),
     *(Column(name, "", "necks broken so", kind="i") for name in BROKEN_BONDS),
-    *(
-        Column(f"part_{name}", "K(0)", f"{LABELS[name]}: change from the start (kinetic: what is left)")
-        for name in PARTS
-    ),
-    *(
-        Column(f"left_{n}", "K(0)", f"kinetic and elastic energy after {n} periods", gaps=True, absent=nan)
-        for n in TIMES
-    ),
-    *(
-        Column(f"part_{name}_{EARLY}", "K(0)", f"{LABELS[name]} after {EARLY} periods", gaps=True, absent=nan)
-        for name in PARTS
-    ),
-    Column(
-        "loops_at_start", "", "independent loops of contacts in both aggregates at the start", gaps=True, absent=nan
-    ),
-    Column("loops", "", "the same at the end", gaps=True, absent=nan),
-    Column("loop_grains_at_start", "", "grains in loops at the start", gaps=True, absent=nan),
-    Column("loop_grains", "", "the same at the end", gaps=True, absent=nan),
+    *(Column(f"part_{n}", "K(0)", f"{LABELS[n]}: at the end, or until then") for n in PARTS),
+    *(Column(f"left_{n}", "K(0)", f"kinetic and stored energy after {n} periods", **LATER) for n in TIMES),
+    *(Column(f"part_{n}_{EARLY}", "K(0)", f"{LABELS[n]} after {EARLY} periods", **LATER) for n in PARTS),
+    Column("loops_at_start", "", "independent loops of contacts in both aggregates at the start", **LATER),
+    Column("loops", "", "the same at the end", **LATER),
+    Column("loop_grains_at_start", "", "grains in loops at the start", **LATER),
+    Column("loop_grains", "", "the same at the end", **LATER),
     Column("ended_by", "", "whether the run ended before its duration, because nothing could meet or break", kind="b"),
     Column("closure", "", "largest error of the energy ledger over K(0)"),
     Column("time", "s", "time at the end"),
@@ -111,7 +101,8 @@ def measure(run):
         "grains": grains,
         "grain_radius": radius,
         "contacts": 2.0 * len(start.contact_pairs) / grains,
-        "initial_radius": float(np.mean([gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)])) / radius,
+        "initial_radius": float(np.mean([gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)]))
+        / radius,
         "met": met(run),
         "touching": int(history["contacts_between"].max()),
         **outcome_values(run, velocity),

@@ -37,10 +37,11 @@ def fit_necks(rows, weights):
 
 
 def chain_ratio(contacts, neck, velocity, radius):
-    """F_c/F_max of S17 eq 19, below 1 for bouncing, of compacted aggregates with so many contacts a grain (eq 16; array); contacts None:
-    BCCA ones with loops of LOOP_GRAINS. velocity [m/s], radius of a grain [m]. 0 where chains have STIFFEST grains or fewer."""
-    number = np.asarray(LOOP_GRAINS if contacts is None else chain_of_contacts(contacts), dtype=float)
+    """F_c/F_max (n,) of S17 eq 19, below 1 for bouncing, of compacted aggregates with so many contacts a grain (n,) (eq 16), NaN: of BCCA
+    ones, with loops of LOOP_GRAINS. neck, velocity [m/s], radius of a grain [m] (n,). 0 for chains of STIFFEST grains or fewer."""
+    contacts, neck, velocity, radius = (np.asarray(own, dtype=float) for own in (contacts, neck, velocity, radius))
+    number = np.where(np.isnan(contacts), LOOP_GRAINS, chain_of_contacts(contacts))
     mass = 4.0 / 3.0 * np.pi * ICE.density * radius**3
     soft = np.where(number > STIFFEST, number, STIFFEST + 1.0)
     ratio = sticking_ratio(velocity, soft, neck, radius, ICE.young, mass, ICE.surface_energy)
-    return np.where(number > STIFFEST, ratio, 0.0)[()]
+    return np.where(number > STIFFEST, ratio, 0.0)

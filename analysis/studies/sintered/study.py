@@ -2,20 +2,20 @@
 
 import numpy as np
 
-from ...measures.outcome import STICKING, UNDECIDED
+from ...measures.outcome import BOUNCING, STICKING, UNDECIDED
 from ...runs.collect import Scene
 from ...runs.format import BROKEN_BONDS
 from ...theory import ICE, interaction_energies, pair_constants
 from ..collisions import outcome_quantities
 from ..definition import Quantity, Study
-from ..estimate import combine, exact
 from ..runs import Runs, alike, along, differences, ratios, select, together
 from ..threshold import threshold_velocity
 from .measure import COLUMNS, LABELS, TIMES, measure
 from .models import chain_ratio, fit_necks, papers_necks
 
 POINT = ("setup", "growth_velocity", "neck", "velocity")
-PLAIN = "cut"  # S17's: springs of ordinary contacts are cut at their limits, in the plane, xi_crit = 2 Angstrom, no drag
+# S17's: springs of ordinary contacts are cut at their limits, in the plane, xi_crit = 2 Angstrom, no drag.
+PLAIN = "cut"
 GRAINS = 2048  # of both BCCA aggregates (section 4)
 HALF = 0.5  # of the total mass: what the largest piece must keep for growth (section 5.1)
 CURVE = 4  # velocities or more: with fewer, where it falls to a half lies anywhere between two of them
@@ -26,25 +26,24 @@ MODES = {name: name.removeprefix("brokenBy").lower() for name in BROKEN_BONDS}
 
 def quantities(table):
     """Quantities of a table of runs (measure.COLUMNS)."""
-    broken, new_loops = table[list(BROKEN_BONDS)].sum(axis=1), table.loops - table.loops_at_start
+    broken = table[list(BROKEN_BONDS)].sum(axis=1)
     table = table.assign(
         setup=[_setup(row) for row in table.itertuples()],
         broken=broken,
         necks=broken / table.grains,
-        necks_per_touching=broken / table.touching.where(table.touching > 0),
+        over_line=broken / table.grains / papers_necks(table.energy_ratio),
         outcome=table.outcome.mask(_may_part(table), UNDECIDED),
         largest_fraction=table.largest,
         lost=sum(table[f"part_{name}"] for name in LOST),
         left=table.part_kinetic + table.part_elastic,
-        loop_size=table.loop_grains / table.loops.where(table.loops > 0),
-        new_loop_size=(table.loop_grains - table.loop_grains_at_start) / new_loops.where(new_loops > 0),
     )
     # A compacted aggregate grows from the first half of the BCCA aggregate of its seed: one pair.
     runs = Runs(table, "packing_seed", ("planar",))
+    sintered = runs.of(table[table.neck > 0])
     yield from outcome_quantities(runs, POINT)
     yield from _sizes(runs)
-    yield from _necks(runs.of(table[table.neck > 0]))
-    yield from _bouncing(runs)
+    yield from _necks(sintered)
+    yield from _models(sintered)
     yield from _energies(runs.where(growth_velocity=0.0, velocity=10.0))
 
 
@@ -75,64 +74,58 @@ def _sizes(runs):
     yield Quantity("contacts", "contacts a grain of the aggregates at the start", contacts)
     fragments = runs.estimates("fragments", POINT)
     yield Quantity("fragments", "fraction of the mass in pieces of less than a quarter of it", fragments)
-    yield Quantity("fragments_compacted", "the same, less that of BCCA aggregates", _over_bcca(fragments, differences))
+    less = _beside(fragments, "growth_velocity", 0.0, differences)
+    yield Quantity("fragments_compacted", "the same, less that of BCCA aggregates", less)
     radius = runs.estimates("gyration_radius", POINT)
     yield Quantity("gyration_radius", "gyration radius of the largest piece in grain radii", radius)
     bcca = select(radius, growth_velocity=0.0)
     less = differences(select(bcca, neck=0.7), select(bcca, neck=0.0))
     yield Quantity("gyration_change", "the same, beta = 0.7 less unsintered, BCCA", less)
     largest = runs.estimates("largest", POINT)
-    at_own = largest[alike(*(largest.index.get_level_values(name) for name in ("velocity", "growth_velocity")))]
-    meaning = "fraction of the mass in the largest piece, collided at the velocity that compacted the aggregates"
-    yield Quantity("largest_own", meaning, at_own.droplevel("velocity"))
-    beside = _beside_plain(largest, differences)
+    beside = _beside(largest, "setup", PLAIN, differences)
     yield Quantity("largest_change", f"fraction of the mass in the largest piece, less that with {PLAIN}", beside)
     bcca = select(largest, growth_velocity=0.0)
-    fall = differences(select(bcca, neck=0.4), select(bcca, neck=0.5))
-    yield Quantity("largest_fall", "the same, beta = 0.4 less 0.5, BCCA", fall)
     curves = bcca.groupby(level=["setup", "neck"]).filter(lambda curve: len(curve) >= CURVE)
     critical = along(curves - HALF, "velocity", threshold_velocity)
     critical = critical[[np.isfinite(estimate.value) for estimate in critical]]
-    yield Quantity("growth_limit", "velocity at which the mean largest piece of BCCA falls below a half", critical, "m/s")
+    yield Quantity("growth_limit", "velocity at which the mean largest piece of BCCA falls to a half", critical, "m/s")
 
 
 def _necks(runs):
     """Broken necks: how many, by which mode, beside S17's line and between kinds of aggregates and rules."""
     necks = runs.estimates("necks", POINT)
     yield Quantity("necks", "broken necks over all grains, N_cut/N_t", necks)
-    line = runs.estimates(lambda t: t.necks / papers_necks(t.energy_ratio), POINT)
-    yield Quantity("necks_over_line", "the same over S17's 0.037 (E_k/E_sint)^0.97", line)
-    yield Quantity("necks_compacted", "N_cut/N_t over that of BCCA aggregates", _over_bcca(necks, ratios))
-    yield Quantity("necks_change", f"N_cut/N_t over that with {PLAIN}", _beside_plain(necks, ratios))
-    touching = _beside_plain(runs.estimates("necks_per_touching", POINT), ratios)
-    yield Quantity("touching_change", "N_cut over the largest number of contacts between the two, the same way", touching)
+    over = runs.estimates("over_line", POINT)
+    yield Quantity("necks_over_line", "the same over S17's 0.037 (E_k/E_sint)^0.97", over)
+    over = _beside(necks, "growth_velocity", 0.0, ratios)
+    yield Quantity("necks_compacted", "N_cut/N_t over that of BCCA aggregates", over)
+    yield Quantity("necks_change", f"N_cut/N_t over that with {PLAIN}", _beside(necks, "setup", PLAIN, ratios))
     cut = runs.of(runs.table[runs.table.broken > 0])
     by = ("setup", "growth_velocity", "neck")
     total = cut.estimates("broken", by)
     modes = together({mode: ratios(cut.estimates(name, by), total) for name, mode in MODES.items()}, "mode")
     yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%", 0.01)
-    selections = {"β = 0.7": runs.table.neck > STRONG, "β ≥ 0.3": runs.table.neck > 0.25}
-    fits = {
-        name: runs.of(runs.table[own]).fit(fit_necks, ("amplitude", "exponent"), ("setup",))
-        for name, own in selections.items()
-    }
-    meaning = "N_cut/N_t = amplitude (E_k/E_sint)^exponent, all aggregates of these beta: maximum likelihood of counts"
-    yield Quantity("necks_law", meaning, together(fits, "necks"))
 
 
-def _bouncing(runs):
-    """S17's chain model, and loops of grains."""
-    sintered = runs.of(runs.table[runs.table.neck > 0])
-    contacts = sintered.estimates("contacts", POINT)
-    radius = runs.table.grain_radius.iloc[0]
-    for (setup, growth, neck, velocity), own in contacts.items():
-        model = lambda n, neck=neck, velocity=velocity: chain_ratio(n, neck, velocity, radius)
-        contacts[setup, growth, neck, velocity] = combine(model, own) if growth else exact(model(None))
-    meaning = "F_c/F_max of the chain model (S17 eq 19), below 1 for bouncing; BCCA: chains of 22 grains"
-    yield Quantity("chain_ratio", meaning, contacts)
-    of = {"at the start": "loops_at_start", "grains in one": "loop_size", "in a new one": "new_loop_size"}
-    loops = runs.where(growth_velocity=0.0, neck=0.7, velocity=10.0).parts(of, ("setup",), "loops")
-    yield Quantity("loops", "loops of grains, beta = 0.7, 10 m/s: how many at the start; grains in loops over loops at the end", loops)
+def _models(runs):
+    """S17's two models of sintered aggregates: broken necks against energy, bouncing against force; and loops of grains."""
+    law = runs.of(runs.table[runs.table.neck > STRONG]).fit(fit_necks, ("amplitude", "exponent"), ("setup",))
+    meaning = "N_cut/N_t = amplitude (E_k/E_sint)^exponent of aggregates with beta = 0.7: maximum likelihood of counts"
+    yield Quantity("necks_law", meaning, law)
+    contacts = runs.table.groupby(list(POINT)).contacts.transform("mean").where(runs.table.growth_velocity > 0)
+    ratio = chain_ratio(contacts, runs.table.neck, runs.table.velocity, runs.table.grain_radius)
+    of_model, by = runs.of(runs.table.assign(force_ratio=ratio)[ratio > 0]), ("setup", "growth_velocity", "neck")
+    line = runs.estimates("over_line", (*by, "energy_ratio"))
+    yield Quantity("necks_at_energy", "broken necks over S17's line against E_k/E_sint", line, listed=False)
+    bounced, undecided = (lambda t, kind=kind: t.outcome == kind for kind in (BOUNCING, UNDECIDED))
+    bounced = of_model.fractions(bounced, (*by, "force_ratio"), undecided)
+    meaning = "runs that bounce against F_c/F_max of the chain model (S17 eq 19), which says that they do below 1"
+    yield Quantity("bouncing_at_force", meaning, bounced)
+    loops = runs.where(growth_velocity=0.0, neck=0.7, velocity=10.0)
+    size = loops.estimates(lambda t: t.loop_grains / t.loops.where(t.loops > 0), ("setup",))
+    yield Quantity("loop_size", "grains in loops over loops of grains at the end, BCCA, beta = 0.7, 10 m/s", size)
+    starts = loops.estimates("loops_at_start", ("setup",))
+    yield Quantity("loops_at_start", "loops of grains of the two aggregates at the start", starts)
 
 
 def _energies(runs):
@@ -147,17 +140,8 @@ def _energies(runs):
     yield Quantity("left", "kinetic and stored energy after periods of stretching, beta = 0.5, 10 m/s, of K(0)", left)
 
 
-def _beside_plain(series, of):
-    """Series of `of` (differences, ratios) each other setup and PLAIN."""
-    return _beside(series, "setup", PLAIN, of)
-
-
-def _over_bcca(series, of):
-    """The same of compacted aggregates and BCCA ones."""
-    return _beside(series, "growth_velocity", 0.0, of)
-
-
 def _beside(series, level, reference, of):
+    """Series of `of` (differences, ratios) each other value of a level and the reference."""
     values = [value for value in series.index.unique(level) if value != reference]
     plain = select(series, **{level: reference})
     return together({v: of(select(series, **{level: v}), plain) for v in values} or {reference: plain[:0]}, level)
