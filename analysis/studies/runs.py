@@ -48,6 +48,15 @@ class Runs:
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
         return together({label: self.estimates(values, by) for label, values in of.items()}, level)
 
+    def beside(self, level, reference, values, by, of):
+        """Series of of(estimates, estimates) (differences, ratios), by the columns `by` and `level`: of `values` at every other value of a
+        column, and at its reference; of the pairs that both have in a group, of all where they share none."""
+        plain, found = self.where(**{level: reference}), {}
+        for value in sorted(set(self.table[level]) - {reference}) or [reference]:
+            first, second = _shared(self.where(**{level: value}), plain, by)
+            found[value] = of(first.estimates(values, by), second.estimates(values, by))
+        return together(found, level)
+
     def fractions(self, values, by, undecided=None):
         """Series of Fraction: of runs for which a column, or a function table -> (runs,), is true; undecided: the same for runs that are
         counted apart. A pair counts once: where it has several runs in a group, ValueError."""
@@ -107,6 +116,15 @@ class Runs:
 
     def _values(self, values):
         return values(self.table) if callable(values) else self.table[values]
+
+
+def _shared(first, second, by):
+    """Two Runs without those of pairs that only one has, in groups by columns where they share some."""
+    keys = [list(zip(*(own.table[name].map(_key) for name in by), own._names(own.table))) for own in (first, second)]
+    both = set(keys[0]) & set(keys[1])
+    groups = {key[:-1] for key in both}
+    kept = ([key in both or key[:-1] not in groups for key in own] for own in keys)
+    return tuple(own.of(own.table[keep]) for own, keep in zip((first, second), kept))
 
 
 def along(series, level, f):

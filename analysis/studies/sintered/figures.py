@@ -55,8 +55,7 @@ GROWN = {"neck": 0.7, "setup": (*RULES, "space"), "growth_velocity": (0, 1, 3, 1
 FIGURES = (
     CurveFigure(
         "held",
-        "BCCA aggregates in the plane (β = 0: unsintered), with springs of contacts without necks cut at their limits, as S17's text has it, and "
-        "held there. Bars: standard errors; broad bars and cross: limits that S17's words set, and its critical velocity for growth.",
+        "Springs cut at their limits and held there, beside S17's words (purple; β = 0: unsintered). Bars: standard errors.",
         x="velocity",
         colour="setup",
         panel="neck",

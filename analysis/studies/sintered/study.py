@@ -14,6 +14,7 @@ from .measure import COLUMNS, LABELS, TIMES, measure
 from .models import chain_ratio, fit_necks, papers_necks
 
 POINT = ("setup", "growth_velocity", "neck", "velocity")
+KIND = ("setup", "neck", "velocity")
 # S17's: springs of ordinary contacts are cut at their limits, in the plane, xi_crit = 2 Angstrom, no drag.
 PLAIN = "cut"
 GRAINS = 2048  # of both BCCA aggregates (section 4)
@@ -74,7 +75,7 @@ def _sizes(runs):
     yield Quantity("contacts", "contacts a grain of the aggregates at the start", contacts)
     fragments = runs.estimates("fragments", POINT)
     yield Quantity("fragments", "fraction of the mass in pieces of less than a quarter of it", fragments)
-    less = _beside(fragments, "growth_velocity", 0.0, differences)
+    less = runs.beside("growth_velocity", 0.0, "fragments", KIND, differences)
     yield Quantity("fragments_compacted", "the same, less that of BCCA aggregates", less)
     radius = runs.estimates("gyration_radius", POINT)
     yield Quantity("gyration_radius", "gyration radius of the largest piece in grain radii", radius)
@@ -82,8 +83,8 @@ def _sizes(runs):
     less = differences(select(bcca, neck=0.7), select(bcca, neck=0.0))
     yield Quantity("gyration_change", "the same, beta = 0.7 less unsintered, BCCA", less)
     largest = runs.estimates("largest", POINT)
-    beside = _beside(largest, "setup", PLAIN, differences)
-    yield Quantity("largest_change", f"fraction of the mass in the largest piece, less that with {PLAIN}", beside)
+    less = runs.beside("setup", PLAIN, "largest", POINT[1:], differences)
+    yield Quantity("largest_change", f"fraction of the mass in the largest piece, less that with {PLAIN}", less)
     bcca = select(largest, growth_velocity=0.0)
     curves = bcca.groupby(level=["setup", "neck"]).filter(lambda curve: len(curve) >= CURVE)
     critical = along(curves - HALF, "velocity", threshold_velocity)
@@ -97,9 +98,10 @@ def _necks(runs):
     yield Quantity("necks", "broken necks over all grains, N_cut/N_t", necks)
     over = runs.estimates("over_line", POINT)
     yield Quantity("necks_over_line", "the same over S17's 0.037 (E_k/E_sint)^0.97", over)
-    over = _beside(necks, "growth_velocity", 0.0, ratios)
+    over = runs.beside("growth_velocity", 0.0, "necks", KIND, ratios)
     yield Quantity("necks_compacted", "N_cut/N_t over that of BCCA aggregates", over)
-    yield Quantity("necks_change", f"N_cut/N_t over that with {PLAIN}", _beside(necks, "setup", PLAIN, ratios))
+    over = runs.beside("setup", PLAIN, "necks", POINT[1:], ratios)
+    yield Quantity("necks_change", f"N_cut/N_t over that with {PLAIN}", over)
     cut = runs.of(runs.table[runs.table.broken > 0])
     by = ("setup", "growth_velocity", "neck")
     total = cut.estimates("broken", by)
@@ -138,13 +140,6 @@ def _energies(runs):
     yield Quantity("energy", "energy at the end, or lost until then, of K(0)", runs.parts(parts, by, "part"))
     left = runs.where(neck=0.5).parts({n: f"left_{n}" for n in TIMES}, ("setup",), "periods")
     yield Quantity("left", "kinetic and stored energy after periods of stretching, beta = 0.5, 10 m/s, of K(0)", left)
-
-
-def _beside(series, level, reference, of):
-    """Series of `of` (differences, ratios) each other value of a level and the reference."""
-    values = [value for value in series.index.unique(level) if value != reference]
-    plain = select(series, **{level: reference})
-    return together({v: of(select(series, **{level: v}), plain) for v in values} or {reference: plain[:0]}, level)
 
 
 STUDY = Study(
