@@ -1,4 +1,4 @@
-"""Fractal structure: how many grains lie within a distance of a grain (K13 Fig. 11)."""
+"""Structure: how many grains lie within a distance of a grain (K13 Fig. 11), gyration radius."""
 
 from itertools import product
 from math import ceil
@@ -36,3 +36,13 @@ def grains_within(position, distance, cell_size=None, origins=None):
 def fractal_dimension(distance, counts):
     """D (K-1,) of N ~ r^D between neighbouring distances (K,), from counts (K,)."""
     return np.diff(np.log(counts)) / np.diff(np.log(distance))
+
+
+def gyration_radius(position):
+    """R_g of points (N,3) of equal mass, in their unit: S17 eq 13.
+
+    >>> gyration_radius([[0.0, 0, 0], [2, 0, 0]])
+    1.0
+    """
+    position = np.asarray(position, dtype=float)
+    return float(np.sqrt(((position - position.mean(axis=0)) ** 2).sum(axis=1).mean()))

@@ -12,7 +12,7 @@ from ..figures.style import styled
 from .levels import level
 from .runs import alike, select
 
-_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#7b3fa0", "#8c5a2b", "#111111")
+_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#4d9221", "#8c5a2b", "#111111")
 MARKERS = "osD^vP"
 WIDEST = 3  # panels beside each other
 
@@ -22,7 +22,7 @@ def colours(values):
     values = sorted(set(values))
     if len(values) <= len(_COLOURS):
         return dict(zip(values, _COLOURS))
-    return dict(zip(values, colormaps["turbo"](np.linspace(0.05, 0.95, len(values)))))
+    return dict(zip(values, colormaps["plasma"](np.linspace(0.0, 0.85, len(values)))))
 
 
 def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1.0):
@@ -31,7 +31,7 @@ def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1
     errors = [_bar(estimate) for estimate in estimates]
     known = np.array([error is not None for error in errors], dtype=bool)
     bars = np.array([error or (0.0, 0.0) for error in errors]).T / scale
-    axes.plot(x, value, line, color=colour, lw=1.2)
+    axes.plot(x, value, linestyle=line or "none", color=colour, lw=1.2)
     axes.errorbar(x, value, bars, fmt=marker, color=colour, capsize=3, markersize=5, mfc="white", label=label)
     axes.plot(np.asarray(x)[known], value[known], marker, color=colour, markersize=5, zorder=3)
 
@@ -124,7 +124,9 @@ def _curves(axes, figure, quantity, series, results):
     if not figure.colour:
         return _curve(axes, figure, quantity, series, _COLOURS[-1], None, MARKERS[0])
     known = series.index.get_level_values(figure.colour)
-    palette = colours(table[figure.colour] if figure.colour in table else known)
+    palette = colours(
+        table[figure.colour] if figure.colour in table else quantity.values.index.get_level_values(figure.colour)
+    )
     for k, value in enumerate(sorted(set(known))):
         colour = next(own for key, own in palette.items() if alike([key], value)[0])
         own = select(series, **{figure.colour: value})
@@ -136,6 +138,8 @@ def _curves(axes, figure, quantity, series, results):
 
 def _curve(axes, figure, quantity, series, colour, label, marker):
     series = series.sort_index()
+    if "y" in figure.logarithmic:
+        series = series[[estimate.value > 0 for estimate in series]]
     x = series.index.get_level_values(figure.x).to_numpy(dtype=float) / level(figure.x).scale
     points(axes, x, series.to_list(), colour, label, marker, figure.line, quantity.scale)
 

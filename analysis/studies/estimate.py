@@ -112,6 +112,8 @@ class Estimate:
         return self * -1.0
 
     def __repr__(self):
+        if self.error is None and self.pairs > 1 and math.isfinite(self.value):
+            return f"about {self.value:.2g}"
         return number_text(self.value, self.error)
 
 

@@ -48,6 +48,8 @@ _LEVELS = {
     "neck": Level("β", r"$\beta$"),
     "growth_velocity": Level("V_g", "$V_g$", "m/s"),
     "criticalRolling": Level("ξ_crit", r"$\xi_{crit}$", "Å", 1e-10),
+    "energy_ratio": Level("E_k/E_sint", "$E_k/E_{sint}$"),
+    "force_ratio": Level("F_c/F_max", "$F_c/F_{max}$"),
     "strainRate": Level("C_v", "$C_v$"),
     "linearDamping": Level("k_n", "$k_n$"),
     "stepFraction": Level("step", "step", "t0"),

@@ -3,22 +3,24 @@
 [page]
 paper = "Arakawa, Tanaka & Kokubo (2022)"     # written out: it heads the page
 figure = "fig03_mean_growth"                   # the one figure on it
+runs = 5                                       # of every claim that doesn't say otherwise
 verdict, differs, new, missing                 # Markdown; {{ say("quantity", column = value) }} stands for "54.0 ± 1.0 m/s"
 
 [[claim]]
 quantity = "v_fra"                             # of the study
 label = "threshold velocity of fragmentation"  # how a table names it
-where = { grains = 50000, viscoelasticTime = 0 }   # SI
+where = { grains = 50000, viscoelasticTime = 0 }   # SI; of lists each combination is a claim of its own, and {name} in the label its value
 value = 50.0        # as printed, in the quantity's unit; or low and/or high: limits that the paper's words set
 printed = "50 to 60 m/s"                       # how the paper prints it
 source = "section 3.2"
 sentence = "..."                               # the sentence it is from
 runs = 1                                       # independent pairs of aggregates behind the paper's number
 margin = 5.0        # agreement: our interval of the difference (or our interval) within this of the value (or of the limits)
-test = true         # in the page's family of tests; false: shown, not tested
+note = "a phrase"   # why it is shown, and not in the page's family of tests (test = false says the same without a reason)
 row = true          # on the page's first screen"""
 
 from dataclasses import dataclass, field, fields
+from itertools import product
 
 try:
     import tomllib
@@ -63,10 +65,11 @@ class Claim:
 @dataclass(frozen=True)
 class Page:
     """Words of a page: paper (its name, written out), figure (name of the figure on the first screen), verdict, differs, new, missing
-    (Markdown with numbers by say())."""
+    (Markdown with numbers by say()); runs: Claim.runs of claims that don't say it."""
 
     paper: str = ""
     figure: str = ""
+    runs: int = 1
     verdict: str = ""
     differs: str = ""
     new: str = ""
@@ -83,7 +86,8 @@ def read_paper(folder):
     except (OSError, ValueError) as error:
         raise PaperError(f"{file}: {error}") from None
     page = _made(Page, content.pop("page", {}), f"{file}: [page]")
-    claims = tuple(_claim(own, f"{file}: claim {k}") for k, own in enumerate(content.pop("claim", ()), 1))
+    blocks = enumerate(content.pop("claim", ()), 1)
+    claims = tuple(_claim(own, page.runs, f"{file}: claim {k}") for k, block in blocks for own in _each(block))
     if content:
         raise PaperError(f"{file}: has {', '.join(content)}: must have page and claim alone")
     if sum(claim.row for claim in claims) > MOST_ROWS:
@@ -91,7 +95,19 @@ def read_paper(folder):
     return page, claims
 
 
-def _claim(values, where):
+def _each(block):
+    """The claims of a block: one for each combination of the values that its `where` lists; the first has the sentence."""
+    levels = block.get("where", {})
+    listed = [name for name, value in levels.items() if isinstance(value, list)]
+    if not listed or "label" not in block:
+        return [block]
+    chosen = [dict(zip(listed, values)) for values in product(*(levels[name] for name in listed))]
+    own = [{**block, "where": {**levels, **of}, "label": block["label"].format(**of)} for of in chosen]
+    return [own[0], *({**each, "sentence": ""} for each in own[1:])]
+
+
+def _claim(values, runs, where):
+    values = {"runs": runs, "test": "note" not in values, **values}
     claim = _made(Claim, values, f"{where} ({values.get('label', 'without label')})")
     if claim.test and claim.value is None and claim.low is None and claim.high is None:
         raise PaperError(f"{where} ({claim.label}): is tested, and has no number: must have value, low or high")

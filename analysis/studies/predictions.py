@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import pandas
 
+from .estimate import EXACT
 from .paper import Claim, PaperError
 from .verdict import NO, UNTESTED, YES, judge
 
@@ -52,7 +53,7 @@ def _claim(row):
     where = {
         name.strip(): _value(value) for name, _, value in (part.partition("=") for part in row["where"].split(";"))
     }
-    return Claim(row["quantity"], row["what"], "", "", where, **limits)
+    return Claim(row["quantity"], row["what"], "", "", where, runs=EXACT, **limits)
 
 
 def _value(text):

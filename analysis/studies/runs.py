@@ -48,15 +48,15 @@ class Runs:
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
         return together({label: self.estimates(values, by) for label, values in of.items()}, level)
 
-    def relative(self, values, by, column, value):
-        """Series of Estimate of the mean of values over that of the same pairs' runs with this value in a column, all else in `by` the same:
-        of a column or function as in estimates()."""
-        keys = list(dict.fromkeys(name for name in (*by, *self.population, self.pair) if name != column))
-        rounded = {name: self.table[name].map(_key) for name in keys}
-        table = self.table.assign(value=np.asarray(self._values(values), dtype=float), **rounded)
-        base = alike(table[column], value)
-        both = self.of(table[~base].merge(table.loc[base, [*keys, "value"]], on=keys, suffixes=("", "_of_base")))
-        return ratios(both.estimates("value", by), both.estimates("value_of_base", by))
+    def beside(self, level, reference, values, by, of, same_pairs=False):
+        """Series of of(estimates, estimates) (differences, ratios), by the columns `by` and `level`: of `values` at every other value of a
+        column, and at its reference. Of the pairs that both have in a group; where they share none, of all, unless it must be the
+        same_pairs."""
+        plain, found = self.where(**{level: reference}), {}
+        for value in sorted(set(self.table[level][~alike(self.table[level], reference)])) or [reference]:
+            first, second = _shared(self.where(**{level: value}), plain, by, same_pairs)
+            found[value] = of(first.estimates(values, by), second.estimates(values, by))
+        return together(found, level)
 
     def fractions(self, values, by, undecided=None):
         """Series of Fraction: of runs for which a column, or a function table -> (runs,), is true; undecided: the same for runs that are
@@ -119,6 +119,15 @@ class Runs:
         return values(self.table) if callable(values) else self.table[values]
 
 
+def _shared(first, second, by, only):
+    """Two Runs without those of pairs that only one has, in groups by columns where they share some; only: in all groups."""
+    keys = [list(zip(*(own.table[name].map(_key) for name in by), own._names(own.table))) for own in (first, second)]
+    both = set(keys[0]) & set(keys[1])
+    groups = {key[:-1] for key in both}
+    kept = ([key in both or not (only or key[:-1] in groups) for key in own] for own in keys)
+    return tuple(own.of(own.table[np.array(keep, dtype=bool)]) for own, keep in zip((first, second), kept))
+
+
 def along(series, level, f):
     """Series of Estimate of f(x (K,), y (..., K)) along one level of a Series of Estimate, x rising, for every value of the others."""
     others = [name for name in series.index.names if name != level]
@@ -137,8 +146,9 @@ def differences(first, second):
 
 
 def ratios(first, second):
-    """Series of first over second, where both have an estimate."""
-    first, second = first.align(second, join="inner")
+    """Series of first over second, where both have an estimate, and second is told from 0 by two of its standard errors."""
+    known = [abs(estimate.value) > 2 * (estimate.error or 0.0) for estimate in second]
+    first, second = first.align(second[known], join="inner")
     return first / second
 
 

@@ -55,7 +55,7 @@ def test_what_the_same_pairs_gave_keeps_its_correlation():
 def test_an_estimate_with_lost_draws_has_no_error():
     low = mean(pairs([0.1, 2.0, 3.0]))
     root = combine(lambda x: np.where(x > 1.0, np.sqrt(np.abs(x)), np.nan), low)
-    assert root.value == pytest.approx(1.7**0.5) and root.error is None
+    assert root.value == pytest.approx(1.7**0.5) and root.error is None and repr(root) == "about 1.3"
 
 
 def made(values):
@@ -82,6 +82,28 @@ def test_groups_and_populations():
         at(series, grains=500)
 
 
+def test_the_same_pairs_stand_beside_each_other():
+    """At 1 m/s pairs 1 and 2 ran with both sizes, at 2 m/s no pair did: there all count, and no ratio over what may be 0."""
+    runs = Runs(
+        made(
+            {
+                (500, 1.0): {1: 2.0, 2: 4.0, 3: 100.0},
+                (2000, 1.0): {1: 3.0, 2: 5.0},
+                (500, 2.0): {1: 1.0, 2: -1.0},
+                (2000, 2.0): {3: 5.0, 4: 7.0},
+            }
+        )
+    )
+    more = runs.beside("grains", 500, "value", ("velocity",), differences)
+    assert (at(more, grains=2000, velocity=1.0).value, at(more, grains=2000, velocity=1.0).error) == (1.0, 0.0)
+    assert at(more, grains=2000, velocity=2.0).value == 6.0 and at(more, grains=2000, velocity=2.0).error > 0
+    over = runs.beside("grains", 500, "value", ("velocity",), ratios)
+    assert (
+        at(over, grains=2000, velocity=1.0).value == pytest.approx(4 / 3)
+        and at(over, grains=2000, velocity=2.0) is None
+    )
+
+
 OFFSETS = tuple(k / 12 for k in range(13))
 
 
@@ -99,10 +121,10 @@ def test_the_same_pairs_with_one_thing_changed():
         ),
         population=("size",),
     )
-    found = runs.relative("y", ("size", "drag"), "drag", 0)
+    found = runs.beside("drag", 0, "y", ("size",), ratios, same_pairs=True)
     assert [(e.value, e.pairs) for e in found] == [(2.0, 2), (0.5, 1)] and found.iloc[0].error == 0.0
     assert list(found.index) == [("a", 6), ("b", 6)]
-    assert len(runs.relative("y", ("size", "drag"), "drag", 7)) == 0
+    assert len(runs.beside("drag", 7, "y", ("size",), ratios, same_pairs=True)) == 0
 
 
 def test_a_mean_over_points_counts_pairs_that_have_all_of_them():
@@ -240,6 +262,20 @@ def test_a_paper_that_cannot_be_used_is_one_line(tmp_path, text, said):
     with pytest.raises(PaperError) as error:
         read_paper(tmp_path)
     assert said in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_claim_of_several_set_ups(tmp_path):
+    """Lists in `where` make a claim for each combination; runs of the page are those of every claim that doesn't say; a note is no test."""
+    claim = "[[claim]]\nquantity = 'q'\nlabel = 'at {v}, {s}'\nprinted = ''\nsource = ''\nsentence = 'x'\n"
+    texts = (
+        "where = { v = [1, 2], s = ['a', 'b'], w = 3 }\nlow = 1\n",
+        "where = { v = 7, s = 'a' }\nnote = 'vague'\nruns = 2\n",
+    )
+    (tmp_path / "paper.toml").write_text("[page]\nruns = 5\n" + "".join(claim + text for text in texts))
+    *four, vague = read_paper(tmp_path)[1]
+    assert [c.label for c in four] == ["at 1, a", "at 1, b", "at 2, a", "at 2, b"]
+    assert [c.where for c in four][2] == {"v": 2, "s": "a", "w": 3} and [c.sentence for c in four] == ["x", "", "", ""]
+    assert {c.runs for c in four} == {5} and vague.runs == 2 and all(c.test for c in four) and not vague.test
 
 
 def test_predictions_are_held_against_the_runs(tmp_path):

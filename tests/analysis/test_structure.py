@@ -1,8 +1,9 @@
-"""N(< r) of lattices and fractals that are known."""
+"""N(< r) of lattices and fractals that are known, and loops of contacts."""
 
 import numpy as np
 import pytest
 
+from analysis.measures.loops import loops
 from analysis.measures.structure import fractal_dimension, grains_within
 
 # Sites within sqrt(0), sqrt(1), sqrt(2), ... of a simple cubic lattice.
@@ -38,3 +39,10 @@ def test_dimensions_of_plane_and_space():
     assert fractal_dimension(distance, grains_within(plane, distance, [60, 60, 1e3]))[0] == pytest.approx(2, abs=0.05)
     space = grains_within(lattice(30), distance, 3 * [30.0], origins=5)
     assert fractal_dimension(distance, space)[0] == pytest.approx(3, abs=0.05)
+
+
+def test_loops_of_a_lattice_and_what_hangs_on_it():
+    """Two triangles with a common side, a square apart from them, and chains between and beside."""
+    pairs = [[0, 1], [1, 2], [2, 0], [1, 3], [2, 3], [3, 4], [4, 5], [5, 6], [6, 7], [7, 8], [8, 5], [8, 9], [10, 11]]
+    assert loops(12, pairs) == (3, 8)
+    assert loops(12, pairs[5:6]) == (0, 0) and loops(3, []) == (0, 0)

@@ -12,7 +12,7 @@ from yade_scripts.packings import load
 from yade_scripts.run import table
 from yade_scripts.runner import rows
 from yade_scripts.studies import sintered, sintered_growth
-from yade_scripts.studies.sintered_growth import Grown
+from yade_scripts.studies.sintered import Grown
 
 STUDIES = os.path.join(TOP, "yade_scripts", "studies")
 
@@ -98,7 +98,7 @@ def test_aggregates_grow_in_space_too(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sintered_growth, "GRAINS", 32)
     monkeypatch.setattr(sintered_growth, "START", 16)
-    os.makedirs(sintered_growth.FOLDER)
+    os.makedirs(sintered.GROWN)
     grown = Grown(3.0, 7, planar=0)
     sintered_growth.grow(grown)
     packing = load(grown.file(0))
@@ -110,7 +110,7 @@ def test_a_small_table_from_growth_to_report(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sintered_growth, "GRAINS", 32)
     monkeypatch.setattr(sintered_growth, "START", 16)
-    os.makedirs(sintered_growth.FOLDER)
+    os.makedirs(sintered.GROWN)
     grown = Grown(3.0, 7)
     assert "contacts a grain" in sintered_growth.grow(grown)
     held = Grown(3.0, 7, limit="held")
@@ -134,7 +134,7 @@ def test_a_small_table_from_growth_to_report(tmp_path, monkeypatch):
         timeout=120,
     )
     assert done.returncode == 0, done.stderr
-    points = [s["rows"] for s in json.loads(done.stdout)["sections"] if s["heading"] == "all points"][0]
-    assert [(p["growth_velocity"], p["neck"], p["runs"]) for p in points] == [(0.0, 0.0, 1), (3.0, 0.7, 1)]
+    points = json.loads(done.stdout)["quantities"]["largest"]["rows"]
+    assert [(p["growth_velocity"], p["neck"], p["pairs"]) for p in points] == [(0.0, 0.0, 1), (3.0, 0.7, 1)]
     with open("runs/b0.7-v30-vg3-s7/run.json") as file:
         assert json.load(file)["derived"]["projectilePacking"]["seed"] == 7

@@ -16,10 +16,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from yade_scripts.run import table
 from yade_scripts.studies import table_script
-from yade_scripts.studies.sintered_growth import SLIDING, Grown
 
 GRAINS = 1024
 SEEDS = range(1, 11)
+SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
+GROWN = "runs/sintered-grown"  # where sintered_growth.py leaves compacted aggregates
 # 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
 DURATION = "24.4e-6"  # s
 # Above 10 m/s half of it: in 21 runs that went on (W07's sliding spring, two seeds) no largest piece changed after 9.2 us, and no part
@@ -30,6 +31,27 @@ STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates,
 STEP_COMPACTED = {0.2: 0.09}
 STATES = 9  # Fig. 7 shows 0, 2,500, 5,000, 10,000 and 20,000 periods, Fig. 9 also 625 and 1,250
 ROOT = "10**0.5"  # m/s, the paper's 3.2
+
+
+@dataclass(frozen=True)
+class Grown:
+    """A compacted aggregate: V_g [m/s], seed, xi_crit [Angstrom], planar, limit (of collide.py)."""
+
+    velocity: float
+    seed: int
+    rolling: float = 2.0
+    planar: int = 1
+    limit: str = "cut"
+
+    @property
+    def name(self):
+        """Of its file, without ending."""
+        held = "" if self.limit == "cut" else f"-{self.limit}"
+        return f"vg{self.velocity:g}-x{self.rolling:g}-{'plane' if self.planar else 'space'}{held}-s{self.seed}"
+
+    def file(self, index):
+        """Path of the packing of target (0) or projectile (1)."""
+        return os.path.join(GROWN, self.name + ("", "-b")[index] + ".npz")
 
 
 @dataclass(frozen=True)

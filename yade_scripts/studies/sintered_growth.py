@@ -24,7 +24,6 @@ import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, TOP)
@@ -33,35 +32,14 @@ from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings.bcca import bcca
 from yade_scripts.packings.collided import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.studies.sintered import DURATION, GRAINS, GROWN, SLIDING, TABLES
+from yade_scripts.studies.sintered import grown as grown_of
 
-FOLDER = "runs/sintered-grown"
-GRAINS, START = 1024, 512
+START = 512
 STUCK, ATTEMPTS = 0.9, 5
 RADIUS = 1e-7  # m
-SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
-CROSSINGS = 3.0  # a collision lasts as long as the two take to move so many times their diameters at V_g,
-LONGEST = 24.4e-6  # s, and no longer than this: 20,000 periods (sintered.py)
-
-
-@dataclass(frozen=True)
-class Grown:
-    """An aggregate: V_g [m/s], seed, xi_crit [Angstrom], planar, limit (of collide.py)."""
-
-    velocity: float
-    seed: int
-    rolling: float = 2.0
-    planar: int = 1
-    limit: str = "cut"
-
-    @property
-    def name(self):
-        """Of its file, without ending."""
-        held = "" if self.limit == "cut" else f"-{self.limit}"
-        return f"vg{self.velocity:g}-x{self.rolling:g}-{'plane' if self.planar else 'space'}{held}-s{self.seed}"
-
-    def file(self, index):
-        """Path of the packing of target (0) or projectile (1)."""
-        return os.path.join(FOLDER, self.name + ("", "-b")[index] + ".npz")
+# A collision lasts as long as the two take to move so many times their diameters at V_g, and no longer than DURATION.
+CROSSINGS = 3.0
 
 
 def grow(grown):
@@ -106,7 +84,7 @@ def _next(aggregate, grown, generation, folder):
 
 
 def _collide(aggregate, grown, files, run):
-    duration = min(LONGEST, CROSSINGS * 2 * packings.extent(aggregate) / grown.velocity)
+    duration = min(float(DURATION), CROSSINGS * 2 * packings.extent(aggregate) / grown.velocity)
     arguments = dict(
         packing="file",
         file=files[0],
@@ -136,14 +114,12 @@ def _collide(aggregate, grown, files, run):
 
 
 def main(arguments):
-    from yade_scripts.studies import sintered
-
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("size", choices=sorted(sintered.TABLES))
+    parser.add_argument("size", choices=sorted(TABLES))
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
     options = parser.parse_args(arguments)
-    missing = [grown for grown in sintered.grown(options.size) if not os.path.exists(grown.file(0))]
-    os.makedirs(FOLDER, exist_ok=True)
+    missing = [grown for grown in grown_of(options.size) if not os.path.exists(grown.file(0))]
+    os.makedirs(GROWN, exist_ok=True)
     failed = 0
     with ThreadPoolExecutor(max(1, options.jobs)) as pool:
         for found in [pool.submit(grow, grown) for grown in missing]:

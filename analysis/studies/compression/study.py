@@ -64,7 +64,10 @@ def _power_law(runs):
         values = together({start: begun(start) for start in sorted(set(fillings))}, "start")
         values = values[[np.isfinite(estimate.value) for estimate in values]]
         yield Quantity(f"{name}_from", "the same, fitted from this filling factor on", values)
-    changes = {name: along(runs.relative("over", by, *base), "filling", level) for name, base in FIDUCIAL.items()}
+    changes = {}
+    for name, (column, value) in FIDUCIAL.items():
+        others = tuple(own for own in by if own != column)
+        changes[name] = along(runs.beside(column, value, "over", others, ratios, same_pairs=True), "filling", level)
     meaning = "P r0^3/E_roll over that with K13's value of what is changed, same clusters and filling factors to 0.1"
     yield Quantity("change", meaning, together(changes, "changed"))
     pooled = of_ice.over("strainRate", RATES).estimates("over", ("stepFraction", "grains", "filling"))

@@ -1,4 +1,4 @@
-"""Means over the impact parameter, the threshold of fragmentation, and fits to the sizes of fragments (A22 sections 2.4, 3.2 and 4)."""
+"""Means over the impact parameter, and fits to the sizes of fragments (A22 sections 2.4 and 4)."""
 
 import numpy as np
 
@@ -18,25 +18,6 @@ def offset_weights(squares):
     """
     steps = np.diff(squares)
     return 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))
-
-
-def threshold_velocity(velocities, growth):
-    """v_fra [m/s] where growth (..., V), over rising velocities (V,), first falls from above 0 to 0 or below, linear in the logarithm
-    of the velocity between two of them; NaN where it doesn't within them (A22 section 3.2).
-
-    >>> float(threshold_velocity([10.0, 1000.0], [1.0, -1.0]).round(6))
-    100.0
-    """
-    growth, log = np.asarray(growth, dtype=float), np.log(np.asarray(velocities, dtype=float))
-    if len(log) < 2:
-        return np.full(growth.shape[:-1], np.nan)[()]
-    falls = (growth[..., :-1] > 0) & (growth[..., 1:] <= 0)
-    k = np.argmax(falls, axis=-1)[..., None]
-    above, below = (np.take_along_axis(growth, k + i, axis=-1)[..., 0] for i in (0, 1))
-    k = k[..., 0]
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        crossing = np.exp(log[k] + (log[k + 1] - log[k]) * above / (above - below))
-    return np.where(falls.any(axis=-1), crossing, np.nan)[()]
 
 
 def fragment_exponent(numbers, grains):

@@ -8,6 +8,7 @@ from ...runs.collect import Scene
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
 from ..runs import Runs, alike, along, differences, ratios, select, together
+from ..threshold import threshold_velocity
 from .growth import (
     LARGE_FITTED,
     MERGED,
@@ -16,7 +17,6 @@ from .growth import (
     SQUARES,
     fragment_exponent,
     offset_weights,
-    threshold_velocity,
 )
 from .measure import COLUMNS, DISSIPATION, FAST, measure, sizes_from_text
 
