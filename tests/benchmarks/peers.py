@@ -1,7 +1,8 @@
 """LAMMPS and LIGGGHTS on the same grains: is it installed, and how fast does it go?
 
 Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that mean SI or reduced units.
-Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What differs is in PHYSICS. One material and one size only.
+Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What differs is in Peer.physics. One material and one size only;
+contacts start without springs, there is no drag, and a periodic cell keeps its size.
 """
 
 import os
@@ -11,21 +12,18 @@ import shutil
 import subprocess
 import tempfile
 import time
+from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 
 import numpy as np
 
-from analysis.theory import pair_constants
+from analysis.theory import Material, pair_constants
 
 TIME = 1e-9  # s
 WIDEST = 1500  # edge of a box [grain radii] that LAMMPS can divide into bins of its own size
 BINS = 400  # along the edge of a wider one
-SKIN = 0.3  # grain radii; 0.1 to 0.6 measured the same
-PHYSICS = {
-    "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
-    "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential history, rolling epsd2; no twisting, no energy ledger.",
-}
+FEWEST_STEPS, UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
 
 RUN_AND_COUNT = """timestep {step}
 fix move all nve/sphere
@@ -75,7 +73,31 @@ pair_coeff * *
 """
     + RUN_AND_COUNT
 )
-PROGRAMS = {"lammps": ("lmp", LAMMPS_INPUT), "liggghts": ("liggghts", LIGGGHTS_INPUT)}
+
+
+@dataclass(frozen=True)
+class Peer:
+    """program, as it is called; input of a run, with places for numbers; physics, in words."""
+
+    program: str
+    input: str
+    physics: str
+
+
+PROGRAMS = {
+    "lammps": Peer(
+        "lmp",
+        LAMMPS_INPUT,
+        "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; "
+        "contacts form and break at whole steps; no energy ledger.",
+    ),
+    "liggghts": Peer(
+        "liggghts",
+        LIGGGHTS_INPUT,
+        "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential history, rolling epsd2; "
+        "no twisting, no energy ledger.",
+    ),
+}
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 
 
@@ -83,13 +105,17 @@ class PeerFailed(RuntimeError):
     """A peer that is installed did not come to its end, or lost grains."""
 
 
-def missing(code):
-    """Why this code cannot be measured here, in a line; None when it can."""
-    program, _ = PROGRAMS[code]
+def missing(code, scene=None):
+    """Why this code cannot be measured here, or on this SceneFile, in a line; None when it can."""
+    program = PROGRAMS[code].program
     if not shutil.which(program):
         return f"{program} is not installed (make bench-peers installs it)"
     if code == "lammps" and "granular" not in help_text(program):
         return f"this {program} was built without pair_style granular"
+    if scene is not None and scene.head["neck"]:
+        return "it has no sintered bonds"
+    if scene is not None and (len(scene.materials) > 1 or np.ptp(scene.grains["radius"])):
+        return "it is measured on like grains only"
     return None
 
 
@@ -104,21 +130,29 @@ def core_counts():
 
 
 def version(code):
-    program, _ = PROGRAMS[code]
-    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", help_text(program))
+    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", help_text(PROGRAMS[code].program))
     return next(group for group in found.groups() if group) if found else "unknown"
 
 
-def box_edges(scene):
-    """(lowest, highest) coordinate of the cell, or of a box in which all grains stay; in grain radii."""
-    reach = 2 * abs(scene.position).max()
-    return (0, scene.edge / scene.radius[0]) if scene.edge else (-reach / scene.radius[0], reach / scene.radius[0])
+def steps_for(scene, most):
+    """Steps of a measurement on a SceneFile: at most so many."""
+    return min(most, max(FEWEST_STEPS, int(UPDATES / len(scene.grains))))
+
+
+def box_of(scene):
+    """Lowest and highest coordinate (3,) of the cell, or of a box in which all grains stay; in grain radii."""
+    r = scene.grains["radius"][0]
+    if scene.periodic:
+        return np.zeros(3), scene.head["cellSize"] / r
+    reach = 2 * np.abs(scene.grains["position"]).max(axis=0) / r
+    return -reach - 2, reach + 2
 
 
 def bin_edge(scene):
     """Of LAMMPS's bins, in grain radii; 0: its own, of which there are too many where fragments are far apart."""
-    low, high = box_edges(scene)
-    return (high - low) / BINS if high - low > WIDEST else 0
+    low, high = box_of(scene)
+    edge = (high - low).max()
+    return edge / BINS if edge > WIDEST else 0
 
 
 def last_words(done):
@@ -128,25 +162,19 @@ def last_words(done):
     return errors[-1] if errors else printed[-1500:]
 
 
-def measure(code, scene, steps, cores=1, skin=SKIN):
-    """{contacts, grains, steps, seconds, rate, fraction} of a run of `steps` steps; rate: contact updates a second of the time loop.
+def measure(code, scene, steps, cores=1, skin=0.3):
+    """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin} of a run of a SceneFile by so many steps.
 
-    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
+    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii; contacts is the mean of the touching pairs
+    that the code itself counts at start and end. Raises PeerFailed with the program's last words.
     """
-    program, text = PROGRAMS[code]
+    peer, grains = PROGRAMS[code], len(scene.grains)
     with tempfile.TemporaryDirectory() as folder:
         write_grains(Path(folder) / "grains.data", scene)
-        (Path(folder) / "input").write_text(
-            text.format(
-                steps=steps,
-                skin=skin,
-                boundary="p p p" if scene.edge else "f f f",
-                processors=f"processors {cores} 1 1",
-                bin_edge=bin_edge(scene),
-                **scaled_constants(scene),
-            )
-        )
-        command = [program, "-in", "input", "-log", "none"]
+        numbers = {"steps": steps, "skin": skin, "bin_edge": bin_edge(scene), **scaled_constants(scene)}
+        boundary, processors = "p p p" if scene.periodic else "f f f", f"processors {cores} 1 1"
+        (Path(folder) / "input").write_text(peer.input.format(boundary=boundary, processors=processors, **numbers))
+        command = [peer.program, "-in", "input", "-log", "none"]
         if cores > 1:
             command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores)] + command
         start, processor = time.perf_counter(), processor_seconds()
@@ -155,19 +183,18 @@ def measure(code, scene, steps, cores=1, skin=SKIN):
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
     if done.returncode or not loop:
         raise PeerFailed(f"{' '.join(command)} failed: {last_words(done)}")
-    counted = re.findall(
-        r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M
-    )  # grains and contacts (twice, once from each grain)
-    if len(counted) < 2 or int(counted[-1][0]) != scene.grains:
-        raise PeerFailed(f"{program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
-    contacts, seconds = sum(float(count) for _, count in counted) / 2 / len(counted), float(loop.group(1))
+    # grains and contacts (twice, once from each grain)
+    counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)
+    if len(counted) < 2 or int(counted[-1][0]) != grains:
+        raise PeerFailed(f"{peer.program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
     return {
-        "contacts": contacts,
-        "grains": scene.grains,
+        "grains": grains,
+        "contacts": sum(float(count) for _, count in counted) / 2 / len(counted),
         "steps": steps,
-        "seconds": seconds,
-        "rate": contacts * steps / seconds,
+        "seconds": float(loop.group(1)),
         "fraction": fraction,
+        "version": version(code),
+        "skin": skin,
     }
 
 
@@ -179,7 +206,8 @@ def processor_seconds():
 
 def scaled_constants(scene):
     """The numbers that the inputs ask for, in the units of the module's head."""
-    material, r = scene.materials[0], scene.radius[0]
+    (record,), r = scene.materials, scene.grains["radius"][0]
+    material = Material(*(float(record[name]) for name in record.dtype.names if name != "viscoelasticTime"))
     pair = pair_constants(material, r)
     spring = material.density * r**3 / TIME**2  # unit of N/m
     pressure = spring / r
@@ -194,21 +222,21 @@ def scaled_constants(scene):
         "rolling_stiffness": pair.rolling_stiffness / spring,
         "rolling_friction": pair.rolling_stiffness * pair.critical_rolling / at_no_load,
         "cohesion": cohesion / pressure,
-        "step": scene.step / TIME,
+        "step": scene.head["step"] / TIME,
     }
 
 
 def write_grains(path, scene):
     """A data file that both read: id, type, diameter, density, position; id, velocity, spin."""
-    r = scene.radius[0]
-    assert len(scene.materials) == 1 and (scene.radius == r).all(), "peers are measured on like grains"
-    low, high = box_edges(scene)
-    position = scene.position % scene.edge if scene.edge else scene.position
-    spin = np.zeros_like(scene.velocity) if scene.spin is None else scene.spin
-    moving = np.hstack([scene.velocity * TIME / r, spin * TIME])
+    grains, r = scene.grains, scene.grains["radius"][0]
+    position = grains["position"] % scene.head["cellSize"] if scene.periodic else grains["position"]
+    moving = np.hstack([grains["velocity"] * TIME / r, grains["angularVelocity"] * TIME])
     with open(path, "w") as file:
-        file.write(f"grains\n\n{scene.grains} atoms\n1 atom types\n\n")
-        file.writelines(f"{low} {high} {axis}lo {axis}hi\n" for axis in "xyz")
+        file.write(f"grains\n\n{len(grains)} atoms\n1 atom types\n\n")
+        file.writelines(
+            f"{low!r} {high!r} {axis}lo {axis}hi\n"
+            for low, high, axis in zip(*map(np.ndarray.tolist, box_of(scene)), "xyz")
+        )
         file.write("\nAtoms\n\n")
         file.writelines(f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((position / r).tolist(), 1))
         file.write("\nVelocities\n\n")

@@ -1,153 +1,173 @@
-"""Contact updates a second of every code, in rounds: each round measures all of them once, so that ratios are taken between neighbours in time."""
+"""Contact updates a second of every code at the moments of the scenes, in rounds: each measures all of them once, so that ratios are taken between neighbours in time."""
 
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from contextlib import ExitStack
 
-import measured_scenes
+import codes
+import engine_parts
+import moments
 import peers
-from quiet import fraction_of_others
-from yade_process import YadeProcess
+import scene_file
+from measured_on import fraction_of_others, machine
 
-SLOWER_SETS = ("avx2", "portable")
-UNLIKE = ("materials", "radii")
-
-
-@dataclass(frozen=True)
-class Task:
-    """One measurement: labels of its result; which YADE to ask (law, kind, radius, its -j), None for a peer; the request; seconds it takes about."""
-
-    labels: dict
-    process: tuple
-    request: dict
-    seconds: float
+SUMMED = ("searches", "looks", "events", "formed", "broken", "contactUpdates", "energyChange", "boundaryWork")
 
 
-def engine(settings, radius, threads, kind="uniform", instructions=""):
-    labels = {
-        "code": "engine",
-        "kind": kind,
-        "radius": radius,
-        "threads": threads,
-        "instructions": instructions or "best",
-    }
-    request = {"do": "fused", "seconds": settings.seconds, "threads": threads, "instructions": instructions}
-    return Task(labels, ("jkr-wada", kind, radius, 1), request, 4 / 3 * settings.seconds + 0.3 + 8e-6 * 0.8 * radius**3)
+def batches(scenes):
+    """What is measured together, as lists of (name, Scene, moment): the bench's scenes of one moment, so that sizes and kinds of grains are compared within a round;
+    every other moment by itself, for its memory and so that it can be resumed."""
+    single = [
+        (name, scene, moment) for name, scene in scenes.items() for moment in scene.moments if len(scene.moments) == 1
+    ]
+    alone = [
+        [(name, scene, moment)]
+        for name, scene in scenes.items()
+        if len(scene.moments) > 1 and not scene.through
+        for moment in scene.moments
+    ]
+    return [single] * bool(single) + alone
 
 
-def loop(settings, law, radius, threads):
-    """YADE's own loop with this repository's law (functors) or with the stock one."""
-    labels = {
-        "code": {"jkr-wada": "functors", "stock": "stock"}[law],
-        "kind": "uniform",
-        "radius": radius,
-        "threads": threads,
-        "instructions": "",
-    }
-    return Task(
-        labels,
-        (law, "uniform", radius, threads),
-        {"do": "loop", "seconds": settings.loop_seconds},
-        4 / 3 * settings.loop_seconds + 0.5,
-    )
+class Place:
+    """A moment of a scene, its file, and the codes that are open on it: {(code, threads): what measures it}."""
 
+    def __init__(self, name, scene, moment, start, settings, folder):
+        self.name, self.scene, self.moment, self.start, self.settings = name, scene, moment, start, settings
+        self.path = moments.path_of(name, moment, scene, folder)
+        grains = scene_file.load(self.path)
+        self.missing = {code: reason for code in scene.codes if (reason := codes.missing(code, grains))}
+        self.open, self.answers = {}, {}
 
-def peer(settings, code, cores):
-    labels = {"code": code, "kind": "uniform", "radius": settings.reference, "threads": cores, "instructions": ""}
-    return Task(
-        labels,
-        None,
-        {"steps": settings.peer_steps, "cores": cores},
-        1 + settings.peer_steps * 0.8 * settings.reference**3 * 3 / 7e6,
-    )
+    def tasks(self):
+        """[(code, threads)], in the order of a round."""
+        return [(code, n) for code in self.scene.codes if code not in self.missing for n in codes.threads_of(code)]
 
+    def open_codes(self, stack):
+        """Start what measures, all at once; YADE's own loops have a YADE for each number of threads."""
+        shared = {}
+        for code, threads in self.tasks():
+            own = threads if code in ("functors", "stock") else 1
+            if (code, own) not in shared:
+                shared[code, own] = codes.open_code(code, self.path, self.start.together, own, self.settings)
+                stack.callback(shared[code, own].close)
+            self.open[code, threads] = shared[code, own]
 
-def tasks_of_a_round(settings):
-    """The tasks, in the order in which a round measures them: what is compared stands together."""
-    others = [radius for radius in settings.radii if radius != settings.reference]
-    loops = [(law, threads) for law in ("jkr-wada", "stock") for threads in (1, 2)]
-    codes = [
-        [loop(settings, "stock", settings.reference, cores)]
-        + [
-            peer(settings, code, cores)
-            for code in peers.PROGRAMS
-            if not peers.missing(code) and cores in peers.core_counts()
+    def most(self):
+        """Small steps of one measurement: all of them together leave a flight in the air, and are a small part of another run."""
+        flight = self.scene.apart / self.start.step / 1.2 if self.moment == next(iter(self.scene.moments)) else 0
+        return int((flight or self.settings.stretch * self.start.steps) / self.settings.rounds / 2)
+
+    def measure(self, code, threads):
+        """Keep the answer to a measurement; a peer that fails is noted, and not tried again."""
+        if code in self.missing:
+            return
+        try:
+            answer = self.open[code, threads].measure(threads, self.settings.seconds, self.most())
+        except peers.PeerFailed as error:
+            self.missing[code] = f"failed: {' '.join(str(error).split())[:200]}"
+            return
+        self.answers.setdefault((code, threads), []).append(answer)
+
+    def rows(self):
+        """Rows of speed.csv."""
+        place = {"scene": self.name, "moment": self.moment}
+        measured = [
+            {
+                **place,
+                **answer,
+                "code": code,
+                "threads": threads,
+                "round": turn,
+                "rate": answer["contacts"] * answer["steps"] / answer["seconds"],
+            }
+            for (code, threads), answers in self.answers.items()
+            for turn, answer in enumerate(answers)
         ]
-        for cores in (1, 2)
-    ]
-    tasks = [engine(settings, radius, threads) for radius in others for threads in (1, 2)]
-    tasks += [
-        engine(settings, radius, 1, instructions=name) for radius in settings.instruction_radii for name in SLOWER_SETS
-    ]
-    tasks += [
-        loop(settings, law, radius, threads)
-        for radius in settings.loop_radii
-        if radius != settings.reference
-        for law, threads in loops
-    ]
-    tasks += [loop(settings, "jkr-wada", settings.reference, threads) for threads in (1, 2)]
-    tasks += codes[1]
-    tasks += [
-        engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("uniform",) for threads in (2, 1)
-    ]
-    return tasks + codes[0]
+        return measured + [{**place, "code": code, "note": reason} for code, reason in self.missing.items()]
+
+    def about(self, others):
+        """Row of moments.csv; others: fraction of the machine that other programs took."""
+        turns = [answer for n in (1, 2) for answer in self.answers["engine", n]]
+        steps = sum(turn["steps"] for turn in turns)
+        parts = engine_parts.fractions(self.path, self.start.together, self._steps_to_sample(turns))
+        about = self.open["engine", 1].wait()
+        return {
+            **of_run(self.name, self.moment, self.start, self.settings),
+            **{"grains": turns[0]["grains"], "contacts": sum(turn["contacts"] for turn in turns) / len(turns)},
+            **{"measuredSteps": steps, "kinetic": self.answers["engine", 1][0]["kinetic"]},
+            **{name: sum(turn[name] for turn in turns) for name in SUMMED},
+            **{{"events": "eventHandling"}.get(part, part): value for part, value in parts.items()},
+            **{"bytes": about["bytes"], "commit": about["commit"], "others": others},
+        }
+
+    def _steps_to_sample(self, turns):
+        fastest = min(turn["seconds"] / turn["steps"] for turn in turns)
+        return max(self.start.together, min(int(self.settings.sampled / fastest), self.most()))
 
 
-def estimate(settings):
-    """Seconds that measure() takes about."""
-    starting = 10 + 6e-5 * sum(0.8 * radius**3 for radius in settings.radii)
-    return starting + settings.rounds * (1 + sum(task.seconds for task in tasks_of_a_round(settings)))
+def of_run(name, moment, start, settings):
+    """What a row of moments.csv says of the run and of how it was measured."""
+    about = machine()
+    return {
+        **{"scene": name, "moment": moment, "progress": start.progress[moment]},
+        **{"runSteps": start.steps, "step": round(start.step / start.time_unit, 6)},
+        **{"cpu": about["cpu"], "cores": about["cores"], "settings": settings.text()},
+    }
 
 
-@contextmanager
-def yades(tasks):
-    """The YADEs that the tasks ask, started together: {process of the task: YadeProcess}."""
-    with ExitStack() as stack:
-        started = {}
-        for key in sorted({task.process for task in tasks if task.process}):
-            law, kind, radius, threads = key
-            started[key] = YadeProcess(law, kind, radius, measured_scenes.SPEED, threads)
-            stack.callback(started[key].close)
-        yield started
+def measure(batch, begun, settings, done, folder=moments.FOLDER):
+    """{"speed": rows, "moments": rows} (results.py) of a batch whose files are there.
 
-
-def measure(settings, done):
-    """{"results": [labels, round and what was measured], "memory": {radius: ...}, "others": largest fraction of the machine that other programs took,
-    "failed": {peer: last words of one that ended with an error, and was not tried again}}.
-
-    done(seconds) is called after each measurement with its estimated length.
+    begun: {name of the scene: its starts.Start}; done() is called after each of count_of(batch, settings) measurements.
     """
-    tasks, results, others, failed = tasks_of_a_round(settings), [], 0.0, {}
-    peers_scene = measured_scenes.make("uniform", settings.reference)
-    with yades(tasks) as started:
-        for process in started.values():
-            process.wait()
-        done(estimate(settings) - settings.rounds * (1 + sum(task.seconds for task in tasks)))
+    places = [Place(name, scene, moment, begun[name], settings, folder) for name, scene, moment in batch]
+    others = 0.0
+    with ExitStack() as stack:
+        for place in places:
+            place.open_codes(stack)
+        for code in {code for place in places for code in place.open.values()}:
+            code.wait()
         for turn in range(settings.rounds):
             others = max(others, fraction_of_others())
-            done(1)
-            for task in tasks:
-                answer = take(task, started, peers_scene, failed)
-                if answer:
-                    results.append(
-                        {**answer, **task.labels, "round": turn, "instructions_used": answer.get("instructions", "")}
-                    )
-                done(task.seconds)
-        memory = {
-            radius: started["jkr-wada", "uniform", radius, 1].ask("memory")
-            for radius in settings.radii
-            if radius >= settings.reference
+            for place in places:
+                for code, threads in place.tasks():
+                    if codes.CODES[code].law or turn < settings.peer_rounds:
+                        place.measure(code, threads)
+                    done()
+        return {
+            "speed": [row for place in places for row in place.rows()],
+            "moments": [place.about(others) for place in places],
         }
-    return {"results": results, "memory": memory, "others": others, "failed": failed}
 
 
-def take(task, started, peers_scene, failed):
-    """What a task measured; None of a peer that fails, now or in an earlier round: noted in failed, {name: last words}."""
-    if task.process:
-        return started[task.process].ask(**task.request)
-    name = f"{task.labels['code']} on {task.labels['threads']}"
-    if name in failed:
-        return None
+def count_of(batch, settings):
+    """Measurements of a batch; peers that are missing counted."""
+    return settings.rounds * sum(len(codes.threads_of(code)) for _, scene, _ in batch for code in scene.codes)
+
+
+def measure_through(name, scene, start, settings, folder=moments.FOLDER):
+    """The same tables of a collision that is measured on its way: its flight, and its parts."""
+    path = moments.path_of(name, next(iter(scene.moments)), scene, folder)
+    together = start.together
+    each = max(2, round(start.duration / start.step / together / settings.parts))
+    flight = max(2, round(scene.apart / start.step / together))
+    code = codes.open_code("engine", path, together, 1, settings)
     try:
-        return peers.measure(task.labels["code"], peers_scene, **task.request)
-    except peers.PeerFailed as error:
-        failed[name] = str(error)
+        answers = code.through(flight, [each] * settings.parts)
+        commit = code.wait()["commit"]
+    finally:
+        code.close()
+    speed, about = [], []
+    for moment, answer in zip(scene.moments, answers):
+        place = {"scene": name, "moment": moment}
+        for threads, rate in answer["rates"].items():
+            measured = {
+                "code": "engine",
+                "threads": int(threads),
+                "round": 0,
+                "contacts": answer["contacts"],
+                "rate": rate,
+            }
+            speed.append({**place, **measured})
+        counted = {key: answer[key] for key in ("until", "contacts", "pieces", "events")}
+        about.append({**of_run(name, moment, start, settings), **counted, "commit": commit})
+    return {"speed": speed, "moments": about}

@@ -6,31 +6,32 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import codes
+import moments
 import numpy as np
-import paper_scenes
 import pytest
 import scene_file
 from measured_on import TOP
-from paper_scenes import PaperScene
+from measured_scenes import Scene
 
 HERE = Path(__file__).resolve().parent
 STEPS = 300
 
 # Small ones of the papers' kinds: drag; a periodic cell with damping; sintered bonds in a plane, some of which break.
 SMALL = {
-    "drag": PaperScene(
+    "drag": Scene(
         "",
         "collision",
         {"packing": "bpca", "grains": 300, "velocity": 60, "viscoelasticTime": "6e-12", "stepFraction": 0.2},
         {"flying": 0.0, "compressing": 30e-9},
     ),
-    "cell": PaperScene(
+    "cell": Scene(
         "",
         "compression",
         {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1},
         {"start": None, "denser": 0.03},
     ),
-    "bonds": PaperScene(
+    "bonds": Scene(
         "",
         "collision",
         {"packing": "bcca", "grains": 64, "planar": 1, "neck": 0.3, "velocity": 60, "stepFraction": 0.1},
@@ -49,23 +50,23 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("scenes")
 
 
-def moments(name, folder):
+def files(name, folder):
     """[(moment, its file)] of one of SMALL, made when missing."""
     scene = SMALL[name]
-    paper_scenes.make(name, scene, folder, say=lambda *_, **__: None)
-    return [(moment, paper_scenes.path_of(name, moment, scene, folder)) for moment in scene.moments]
+    moments.make(name, scene, folder, say=lambda *_, **__: None)
+    return [(moment, moments.path_of(name, moment, scene, folder)) for moment in scene.moments]
 
 
 def harness(*arguments):
-    return subprocess.run([str(paper_scenes.HARNESS), *map(str, arguments)], capture_output=True, text=True)
+    return subprocess.run([str(codes.HARNESS), *map(str, arguments)], capture_output=True, text=True)
 
 
 def run_harness(*arguments):
     """(measurements, the last line) of a run that must succeed."""
     done = harness(*arguments)
     assert done.returncode == 0, done.stderr
-    lines = [json.loads(line) for line in done.stdout.splitlines()]
-    return lines[:-1], lines[-1]
+    *lines, end = [json.loads(line) for line in done.stdout.splitlines()]
+    return lines, end
 
 
 YADE = f"""
@@ -85,7 +86,7 @@ result["cell"] = list(O.cell.size) if O.periodic else [0, 0, 0]
 @pytest.mark.parametrize("name", list(SMALL))
 def test_the_same_as_in_yade(name, folder, yade):
     """From a start without contacts, and from a moment whose contacts have springs: positions to 1e-12 of a radius, the same contacts."""
-    for moment, path in moments(name, folder):
+    for moment, path in files(name, folder):
         end = folder / "end.scene"
         run_harness(path, f"steps={STEPS}", f"out={end}")
         ours, theirs = scene_file.load(end), yade(YADE, {"scene": str(path), "steps": STEPS})
@@ -102,14 +103,14 @@ def test_the_same_as_in_yade(name, folder, yade):
 
 def test_the_scenes_have_what_they_are_for(folder):
     """Drag forces, stretched contacts, a cell that has shrunk, broken bonds: otherwise the comparison would show nothing of them."""
-    drag, cell, bonds = (scene_file.load(moments(name, folder)[1][1]) for name in ("drag", "cell", "bonds"))
+    drag, cell, bonds = (scene_file.load(files(name, folder)[1][1]) for name in ("drag", "cell", "bonds"))
     assert np.abs(drag.contacts["drag"]).max() > 0 and drag.contacts["overlap"].min() < 0
-    assert paper_scenes.filling_of(cell) == pytest.approx(0.03, rel=0.02) and len(cell.contacts) > 127
+    assert moments.filling_of(cell) == pytest.approx(0.03, rel=0.02) and len(cell.contacts) > 127
     assert 0 < bonds.contacts["bonded"].sum() < 126 and bonds.contacts["rest"].max() > 0
 
 
 def test_as_many_threads_as_wanted_give_the_same_bits(folder):
-    path = moments("drag", folder)[1][1]
+    path = files("drag", folder)[1][1]
     hashes = {run_harness(path, "steps=200", "domains=8", f"threads={n}")[1]["hash"] for n in (1, 2, 3, 8)}
     assert len(hashes) == 1
     assert run_harness(path, "steps=250", "domains=8")[1]["hash"] not in hashes
@@ -117,7 +118,7 @@ def test_as_many_threads_as_wanted_give_the_same_bits(folder):
 
 def test_what_it_prints(folder):
     measured, end = run_harness(
-        moments("drag", folder)[1][1], "steps=100", "threads=1,2", "rounds=2", "domains=4", "instructions=portable"
+        files("drag", folder)[1][1], "steps=100", "threads=1,2", "rounds=2", "domains=4", "instructions=portable"
     )
     assert [m["threads"] for m in measured] == [1, 2, 1, 2]
     assert all(m["msPerStep"] > 0 and m["steps"] == 100 and m["contacts"] > 500 for m in measured)
@@ -127,10 +128,16 @@ def test_what_it_prints(folder):
     )
 
 
-def test_files_come_back_as_they_were(folder):
-    scene = scene_file.load(moments("cell", folder)[1][1])
-    scene_file.save(folder / "copy.scene", scene)
-    assert (folder / "copy.scene").read_bytes() == moments("cell", folder)[1][1].read_bytes()
+def test_files_come_back_as_they_were_and_are_made_once(folder):
+    path = files("cell", folder)[1][1]
+    scene_file.save(folder / "copy.scene", scene_file.load(path))
+    assert (folder / "copy.scene").read_bytes() == path.read_bytes()
+    made = path.stat().st_mtime_ns
+    assert files("cell", folder)[1][1].stat().st_mtime_ns == made
+    assert not [one for one in folder.iterdir() if one.suffix in (".fast", ".own", ".new", ".begin")]
+    (folder / "head").write_bytes(b"JKRscene")
+    with pytest.raises(ValueError, match="must be a scene of format 1"):
+        scene_file.load(folder / "head")
 
 
 @pytest.mark.parametrize(
@@ -146,7 +153,7 @@ def test_files_come_back_as_they_were(folder):
     ],
 )
 def test_bad_input_is_refused_in_one_line(arguments, words, folder):
-    path, short = moments("drag", folder)[1][1], folder / "short.scene"
+    path, short = files("drag", folder)[1][1], folder / "short.scene"
     short.write_bytes(path.read_bytes()[:-8])
     done = harness(*(argument.format(path=path, short=short) for argument in arguments))
     assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
@@ -154,7 +161,7 @@ def test_bad_input_is_refused_in_one_line(arguments, words, folder):
 
 
 def test_a_run_that_breaks_down_says_so(folder):
-    path = moments("drag", folder)[0][1]
+    path = files("drag", folder)[0][1]
     scene = scene_file.load(path)
     grains = scene.grains.copy()
     grains["velocity"][0] = (1e5, 0, 0)
@@ -164,7 +171,7 @@ def test_a_run_that_breaks_down_says_so(folder):
 
 
 def test_another_strain_rate_brings_its_mean_flow(folder):
-    scene = scene_file.load(moments("cell", folder)[1][1])
+    scene = scene_file.load(files("cell", folder)[1][1])
     faster = scene.with_strain_rate(2 * scene.strain_rate)
     assert faster.grains["velocity"] - scene.grains["velocity"] == pytest.approx(
         scene.strain_rate * scene.grains["position"]

@@ -22,7 +22,7 @@ from yade_scripts.run.agreement import difference
 STUDY = os.path.join(TOP, "yade_scripts", "study.py")
 BENCHMARKS = os.path.join(TOP, "tests", "benchmarks")
 sys.path.insert(0, BENCHMARKS)
-from step_choice_results import COLLISIONS, COMPRESSIONS, FILLINGS, met  # noqa: E402
+from step_choice_data import COLLISIONS, COMPRESSIONS, FILLINGS, met  # noqa: E402
 
 AUTO = {"stepFraction": "auto"}
 parse = KIND.parse
@@ -174,7 +174,7 @@ def test_the_constants_are_those_of_the_data():
     of 2 %.
     """
     found = {}
-    for scene in met(COLLISIONS.read()):
+    for _, scene in met(COLLISIONS.read()).iterrows():
         plain = scene["packing"] == "cpe" and not (scene["planar"] or scene["neck"]) and scene["limit"] == "held"
         kind = "plain" if plain else "sintered" if scene["neck"] else scene["limit"]
         found.setdefault((kind, scene["set"]), []).append(below(COLLISIONS, scene))
@@ -190,8 +190,10 @@ def test_the_constants_are_those_of_the_data():
 def test_so_are_those_of_compressions():
     """Of each compression at five fillings, grid and random."""
     for name in ("grid", "random"):
-        scenes = [s for s in COMPRESSIONS.read() if s["set"] == name and s["stretch"] == "no"]
-        measured = [s for s in scenes if s["limit"] == "held" and s["material"] == "ice"]  # others are refused
+        scenes = COMPRESSIONS.read().query("set == @name and stretch == 'no'")
+        measured = [
+            s for _, s in scenes.query("limit == 'held' and material == 'ice'").iterrows()
+        ]  # others are refused
         kept = [below(COMPRESSIONS, s, filling) for s in measured for filling in FILLINGS]
         assert len(measured) >= 20 and sum(kept) >= binom.ppf(0.02, len(kept), 0.95), name
 
@@ -244,7 +246,7 @@ def errors_over_tolerance(folder, scenes):
     given, answers = folder / "scenes.json", folder / "answers.jsonl"
     given.write_text(json.dumps([{**AUTO, **scene} for scene in scenes]))
     subprocess.run(
-        ["yade", "-n", "-x", "-j1", os.path.join(BENCHMARKS, "yade_step_choice.py"), given, answers],
+        ["yade", "-n", "-x", "-j1", os.path.join(BENCHMARKS, "yade_errors.py"), given, answers],
         check=True,
         capture_output=True,
         timeout=200,

@@ -1,10 +1,9 @@
-"""Ledger errors of many small runs, for step_choice.py: yade -n -x yade_step_choice.py SCENES.json ANSWERS.jsonl
+"""Ledger errors of many small runs: yade -n -x yade_errors.py SCENES.json ANSWERS.jsonl
 
-SCENES.json: a list of {parameter: value}, as for collide.py, or with strainRate as for compress.py. Appends a line of
-JSON to ANSWERS.jsonl for each: the scene's parameters, error and seconds. error of a collision: the largest
-|E(t) - E(0)|/K(0) of the samples that collide.py would take; the aggregates move for collide.py's duration. Of a
-compression: the largest |E(t) - E(0)| over the work of the boundaries up to the end; byFilling has the same as if the
-run had ended at these fillings, with the work over the number of grains and F_c delta_c: {filling: [error, work]}.
+SCENES.json: a list of {parameter: value}, as for collide.py, or with strainRate as for compress.py. Appends a line of JSON to ANSWERS.jsonl for each: the
+scene's parameters, error and seconds (of the run, once it is prepared). error of a collision: the largest |E(t) - E(0)|/K(0) of the samples that collide.py
+would take; the aggregates move for collide.py's duration; d_max [m]. Of a compression: the largest |E(t) - E(0)| over the work of the boundaries up to the end;
+byFilling has the same as if the run had ended at these fillings, with the work over the number of grains and F_c delta_c: {filling: [error, work]}.
 """
 
 import json
@@ -13,20 +12,20 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-import numpy as np  # noqa: E402
+import numpy as np
 
-import contact_law  # noqa: E402
-from yade_scripts.experiments import collision, compression  # noqa: E402
-from yade_scripts.packings import PackingError  # noqa: E402
-from yade_scripts.parameters import ParameterError  # noqa: E402
-from yade_scripts.run.schedule import Schedule  # noqa: E402
+import contact_law
+from analysis.measures.compression import maximum_compression
+from yade_scripts.experiments import collision, compression
+from yade_scripts.packings import PackingError
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run.schedule import Schedule
 
 FILLINGS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 
 def run(given):
     """The answer's entries of one scene."""
-    start = time.perf_counter()
     kind, measure = (compression, compress) if "strainRate" in given else (collision, collide)
     scene = kind.KIND.prepare(kind.KIND.parse(given), 1)
     parameters, constants = scene.parameters, scene.constants
@@ -38,18 +37,22 @@ def run(given):
     fused = JKRWadaEngine(subSteps=schedule.interval, threads=1, limit=parameters.limit, **scene.law)
     O.engines = [fused]
     fused.prepare()
+    start = time.perf_counter()
     answer = measure(scene, schedule, constants["pullOffForce"] * constants["pullOffOverlap"])
-    return {"step": parameters.stepFraction, **answer, "seconds": round(time.perf_counter() - start, 2)}
+    return {"step": parameters.stepFraction, **answer, "seconds": round(time.perf_counter() - start, 4)}
 
 
 def collide(scene, schedule, contact):
-    """Largest error of the ledger [K(0)], and K(0) over the grains and a contact's energy."""
+    """Largest error of the ledger [K(0)], K(0) over the grains and a contact's energy, and d_max [m], None where no grains are beside a plane."""
     energy, kinetic, grains = total(), O.energy["kinetic"], len(O.bodies)
-    error = 0.0
+    error, history = 0.0, History()
     for _ in range(schedule.samples):
         O.step()
         error = max(error, abs(total() - energy) / kinetic)
-    return {"error": error, "kineticOfGrain": kinetic / (grains * contact)}
+        state = {**contact_law.snapshot(), "aggregate": scene.aggregate}
+        history.take(state["time"], scene.series(state))
+    largest = maximum_compression(*(history.recent(name, np.inf) for name in ("time", "d", "v")))
+    return {"error": error, "kineticOfGrain": kinetic / (grains * contact), "d_max": largest and largest.length}
 
 
 def compress(scene, schedule, contact):
