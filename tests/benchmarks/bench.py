@@ -1,12 +1,13 @@
 """Speed and error of this law's codes and of others', on the scenes of the bench and of the papers, in one report.
 
-    /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report] [--again] [--out FOLDER]
+    /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report] [--again]
 
---scene: names, or groups of them: bench (sizes, unlike grains, collisions on their way, error against the step: collision and pair), papers (moments of the papers'
-runs), compressions (error against the step of a compression).
-Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of 100,000 grains), measure, report. Each can be
-stopped at any time and called again: files that are there, and what was measured with the same plugin (its commit), machine and settings, are not done again
-(--again measures anew). Results: speed.csv, moments.csv, error.csv (results.py, errors.py), bench.md (tables, and whether each target is reached) and figures.
+--scene: names, or groups of them: bench (sizes, unlike grains, moments of collisions, and the error against the step:
+collision and pair), papers (moments of the papers' runs), compressions (error against the step of a compression).
+Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
+100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
+measured with the same plugin (its commit), machine and settings, are not done again (--again measures anew). Results:
+speed.csv, moments.csv, error.csv (results.py), bench.md (tables, and whether each target is reached) and figures.
 --quick measures less, and writes to build/bench; --tiny only shows that it works.
 """
 
@@ -18,17 +19,17 @@ from pathlib import Path
 from measured_on import RESULTS, TOP, built_commit, machine
 
 sys.path.insert(0, str(TOP))
-import codes  # noqa: E402
-import errors  # noqa: E402
-import figures  # noqa: E402
-import measured_scenes  # noqa: E402
-import moments  # noqa: E402
-import report  # noqa: E402
-import settings  # noqa: E402
-import speed  # noqa: E402
-from results import Results  # noqa: E402
+import codes
+import errors
+import figures
+import measured_scenes
+import moments
+import report
+import settings
+import speed
+from results import Results
 
-from yade_scripts.run.progress import progress_bar  # noqa: E402
+from yade_scripts.run.progress import progress_bar
 
 PARTS = ("make", "measure", "report")
 
@@ -47,7 +48,8 @@ def arguments(words=None):
     known = groups(given.settings)
     given.scene = [name for word in given.scene.split(",") for name in known.get(word, [word])]
     given.only = given.only.split(",")
-    for option, names, allowed in (("scene", given.scene, [*known, *known["all"]]), ("only", given.only, PARTS)):
+    every = [name for names in known.values() for name in names]
+    for option, names, allowed in (("scene", given.scene, [*known, *every]), ("only", given.only, PARTS)):
         if unknown := [name for name in names if name not in allowed]:
             parser.error(f"--{option} {unknown[0]}: must be of {', '.join(allowed)}")
     given.out = given.out or (TOP / "build/bench" if given.size else RESULTS)
@@ -55,11 +57,10 @@ def arguments(words=None):
 
 
 def groups(how):
-    """{name of a group: names of its scenes, and of the errors' scenes}"""
-    bench, papers, of_errors = measured_scenes.bench(how), measured_scenes.PAPERS, errors.scenes(how)
-    own = [*bench, "collision", "pair"]
-    others = [name for name in of_errors if name not in own]
-    return {"bench": own, "papers": [*papers], "compressions": others, "all": [*own, *papers, *others]}
+    """{name of a group: names of scenes, and of the errors' scenes}"""
+    collision, pair, *compressions = errors.scenes(how)
+    own = [*measured_scenes.bench(how), collision, pair]
+    return {"bench": own, "papers": [*measured_scenes.PAPERS], "compressions": compressions}
 
 
 def measure_speed(scenes, how, results, again):
@@ -67,20 +68,12 @@ def measure_speed(scenes, how, results, again):
     wanted = {"commit": built_commit(), "cpu": machine()["cpu"], "settings": how.text()}
     again = again or wanted["commit"].endswith("-changed")
     start = cache(lambda name: moments.make(name, scenes[name], say=say))
-
-    def is_new(name, moment):
-        return again or not results.is_done(name, moment, **wanted)
-
     for batch in speed.batches(scenes):
-        if any(is_new(name, moment) for name, _, moment in batch):
+        if again or not all(results.is_done(name, moment, **wanted) for name, _, moment in batch):
             starts = {name: start(name) for name, _, _ in batch}
             with progress_bar(speed.count_of(batch, how), unit="measurement") as progress:
                 results.put(**speed.measure(batch, starts, how, progress.update))
             say(f"{', '.join(f'{name} {moment}' for name, _, moment in batch)}: measured")
-    for name, scene in scenes.items():
-        if scene.through and any(is_new(name, moment) for moment in scene.moments):
-            results.put(**speed.measure_through(name, scene, start(name), how))
-            say(f"{name}: measured")
 
 
 def measure_errors(names, how, results, again):
@@ -99,14 +92,13 @@ def say(words, **how):
 def main():
     given = arguments()
     how, known = given.settings, measured_scenes.all_scenes(given.settings)
-    scenes = {name: known[name] for name in given.scene if name in known}
-    results = Results(given.out)
+    scenes, results = {name: known[name] for name in given.scene if name in known}, Results(given.out)
     if "make" in given.only:
         for name, scene in scenes.items():
             moments.make(name, scene, say=say)
     if "measure" in given.only:
         say("keep the machine quiet meanwhile")
-        for code in {code for scene in scenes.values() for code in scene.codes}:
+        for code in sorted({code for scene in scenes.values() for code in scene.codes}):
             if reason := codes.missing(code):
                 say(f"without {code}: {reason}")
         measure_speed(scenes, how, results, given.again)

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import codes
 
-# The first that a function's name matches counts; a function that the compiler put into another one counts with that.
+# The first that a function's name matches counts; what the compiler put into another function counts with that.
 PARTS = {
     "lists": r"PairLists|closeGrains|keepLists|sort|reorder|orderGrains|[Nn]eighbour|merge|introselect",
     "forces": r"forces|[Ff]orcePass|bondForces|addOtherForces|drag|slip",
-    "events": r"event|addFirstForces|contactStep|form|place",
+    "eventHandling": r"event|addFirstForces|contactStep|form|place",
     "integration": r"integrate|drift|kick",
 }
 OTHER = "other"
@@ -28,7 +28,7 @@ def fractions(path, together, steps):
         os.mkfifo(fifo)
         sampler = ["perf", "record", "-q", "-F", "1999", "--delay=-1", "--control", f"fifo:{fifo}", "-o", data]
         try:
-            codes.harness(path, sampler, steps=steps, together=together, warm=together, control=fifo)
+            codes.harness(path, sampler, 600, steps=steps, together=together, warm=together, control=fifo)
         except (codes.CodeFailed, subprocess.TimeoutExpired):  # a perf that ended at once leaves the harness waiting
             return {}
         report = ["perf", "report", "-i", data, "--stdio", "--no-children", "--sort", "dso,symbol", "-q"]

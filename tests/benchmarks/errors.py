@@ -1,10 +1,11 @@
 """Error and cost against the time step, of collisions, compressions and a bounce of two grains: error.csv, a row a run.
 
-ledger: largest error of the sum of all channels, over K(0) (collision) or over the boundaries' work until then (compression; ledgerThin: up to a filling of 0.1).
-d_max: of a collision, in grain radii; workThin, work: of a compression's boundaries from a filling of 0.05 to 0.1, and from there to 0.5, over N F_c delta_c: the
-pressures. All of these are of one seed (sample) and compared with those of the finest step of the same seed. rebound: relative error of the rebound speed of two
-grains against the closed form v^2 - v_stick^2, for initial gaps (samples) that spread the moment of contact over a step. seconds: of the run, one thread.
-A step that is refused or blows up is recorded as that, in its own words.
+ledger: largest error of the sum of all channels, over K(0) (collision) or over the boundaries' work until then (compression;
+ledgerThin: up to a filling of 0.1). d_max: of a collision, in grain radii. workThin, work: of a compression's boundaries [J]
+from a filling of 0.05 to 0.1, and from there to the end: the pressure. These three are compared with those of the finest
+step and the same seed (sample). rebound: relative error of the rebound speed of two grains against the closed
+form v^2 - v_stick^2, for initial gaps (samples) that spread the moment of contact over a step. seconds: of the run, one
+thread. A step that is refused or blows up is recorded as that, in its own words.
 """
 
 import json
@@ -17,42 +18,42 @@ import codes
 import numpy as np
 import scene_file
 import starts
-from measured_on import HERE
+from measured_on import HERE, TOP
 
+from analysis import open_run
+from analysis.measures import ledger
+from analysis.measures.compression import maximum_compression
 from analysis.theory import ICE, pair_constants, sticking_velocity_without_drag
 from yade_scripts.experiments.collision import CollisionParameters
 
 PAIR_SPEED, GRAIN_RADIUS = 9.0, 1e-7  # m/s, m
 BOUNCE = 100  # t0, after which two grains are apart
 COMPRESSION_STEPS = (0.05, 0.1, 0.2, 0.3, 0.36)
-THIN = (0.05, 0.1)  # fillings
+FILLINGS, THIN = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5), 0.1
 FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
 
 
 @dataclass(frozen=True)
 class ErrorScene:
-    """title; parameters as collide.py or compress.py has them (None: two grains); steps [t0]; samples: seeds, or numbers of gaps."""
+    """title; parameters as collide.py or compress.py has them (None: two grains); steps [t0]; number of samples: seeds from
+    1 on, or gaps from 0 on."""
 
     title: str
     parameters: dict
     steps: tuple
-    samples: tuple
+    samples: int
 
 
 def scenes(settings):
     """{name: ErrorScene}"""
     collision = {"radius": settings.error_radius, "duration": settings.error_duration}
-    compression = {"grains": settings.compression_grains, "strainRate": settings.compression_rate, "finalFilling": 0.5}
-    seeds = settings.compression_seeds
+    cell = {"grains": settings.cell[0], "strainRate": settings.cell[1], "finalFilling": 0.5}
+    of_cell = COMPRESSION_STEPS, 2 * settings.seeds
     return {
-        "collision": ErrorScene("collision", collision, settings.error_steps, settings.error_seeds),
-        "pair": ErrorScene("pair", None, settings.error_steps, tuple(range(settings.gaps))),
-        "compression": ErrorScene(
-            "compression, k_n 0.01", {**compression, "linearDamping": 0.01}, COMPRESSION_STEPS, seeds
-        ),
-        "compression-undamped": ErrorScene(
-            "compression, k_n 0", {**compression, "linearDamping": 0.0}, COMPRESSION_STEPS, seeds
-        ),
+        "collision": ErrorScene("collision", collision, settings.error_steps, settings.seeds),
+        "pair": ErrorScene("pair", None, settings.error_steps, settings.gaps),
+        "compression": ErrorScene("compression, k_n 0.01", {**cell, "linearDamping": 0.01}, *of_cell),
+        "compression-undamped": ErrorScene("compression, k_n 0", {**cell, "linearDamping": 0.0}, *of_cell),
     }
 
 
@@ -65,64 +66,70 @@ def measure(name, settings):
 
 def runs(scene):
     """A row for each step and seed."""
-    asked = [{**scene.parameters, "stepFraction": step, "seed": seed} for step in scene.steps for seed in scene.samples]
-    return [
-        {
-            "step": one["stepFraction"],
-            "sample": one["seed"],
-            **(_of_compression(answer) if "byFilling" in answer else _of_collision(answer)),
-        }
-        for one, answer in zip(asked, in_yade(asked), strict=True)
-    ]
+    seeds = range(1, scene.samples + 1)
+    asked = [{**scene.parameters, "stepFraction": step, "seed": seed} for step in scene.steps for seed in seeds]
+    for one, found in zip(asked, of_scripts(asked), strict=True):
+        found["refused"] = found.pop("failed", None)
+        work = [work for _, work in found.pop("byFilling", {}).values()]
+        if work:
+            found |= {"workThin": work[1] - work[0], "work": work[-1] - work[1]}
+        yield {"step": one["stepFraction"], "sample": one["seed"], **found}
 
 
-def _of_collision(answer):
-    if "failed" in answer:
-        return {"refused": answer["failed"]}
-    return {"ledger": answer["error"], "d_max": answer["d_max"] / GRAIN_RADIUS, "seconds": answer["seconds"]}
+def of_scripts(asked):
+    """What runs of collide.py, or with strainRate of compress.py, gave: a list of dictionaries for one of parameters.
 
-
-def _of_compression(answer):
-    error, work = answer["error"], {float(filling): found for filling, found in answer["byFilling"].items()}
-    first, thin, last = (work[filling] for filling in (*THIN, max(work)))
-    return {
-        "ledger": error,
-        "ledgerThin": thin[0],
-        "workThin": thin[1] - first[1],
-        "work": last[1] - thin[1],
-        "seconds": answer["seconds"],
-    }
-
-
-def in_yade(asked):
-    """The answers of yade_errors.py to a list of parameters."""
+    ledger, seconds; d_max; byFilling of a compression: {filling: [ledger, work [J]] as if the run had ended there}. Of a run
+    that did not come to its end only {"failed": its last words}.
+    """
     with tempfile.TemporaryDirectory() as folder:
-        given, answers = Path(folder) / "scenes.json", Path(folder) / "answers.jsonl"
-        given.write_text(json.dumps(asked))
-        command = ["yade", "-n", "-x", "-j1", str(HERE / "yade_errors.py"), str(given), str(answers)]
-        done = subprocess.run(command, capture_output=True, text=True)
+        folder, commands = Path(folder), []
+        for k, given in enumerate(asked):
+            script = TOP / "yade_scripts" / ("compress.py" if "strainRate" in given else "collide.py")
+            given = {"threads": 1, **given, "out": folder / str(k)}
+            commands.append([str(script), *(f"{name}={value}" for name, value in given.items())])
+        (folder / "runs.json").write_text(json.dumps(commands))
+        command = ["yade", "-n", "-x", "-j1", str(HERE / "yade_errors.py"), "runs.json"]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode:
             raise codes.CodeFailed(f"yade_errors.py failed:\n{done.stderr[-2000:]}")
-        return [json.loads(line) for line in answers.read_text().splitlines()]
+        return [_of_run(folder / str(k)) for k in range(len(asked))]
+
+
+def _of_run(path):
+    if not (path / "ended").exists():
+        return {"failed": path.with_suffix(".txt").read_text().strip().splitlines()[-1]}
+    history, seconds = open_run(path).history, json.loads((path / "run.json").read_text())["wallTime"]
+    if "filling" not in history:
+        largest = maximum_compression(history["time"], history["d"], history["v"])
+        d_max = largest.length / GRAIN_RADIUS if largest else None
+        return {"ledger": ledger.closure(history), "d_max": d_max, "seconds": seconds}
+    total, work, by_filling = ledger.total_energy(history), -history["boundaryWork"], {}
+    error = np.maximum.accumulate(np.abs(total - total[0]))
+    for filling in FILLINGS:
+        if (history["filling"] >= filling).any():
+            end = np.argmax(history["filling"] >= filling)
+            by_filling[filling] = [error[end] / work[end], work[end]]
+    thin = by_filling.get(THIN, [None])[0]
+    return {"ledger": error[-1] / work[-1], "ledgerThin": thin, "byFilling": by_filling, "seconds": seconds}
 
 
 def bounces(scene):
-    """A row for each step and gap; all pairs of a step in one run."""
-    constants = pair_constants(ICE, GRAIN_RADIUS)
+    """A row for each step and gap; all pairs of a step in one run of the engine without YADE."""
+    constants, gaps = pair_constants(ICE, GRAIN_RADIUS), 2e-9 + 1e-10 * np.arange(scene.samples) / 1.7
     exact = np.sqrt(PAIR_SPEED**2 - sticking_velocity_without_drag(constants) ** 2)
-    gaps = 2e-9 + 1e-10 * np.array(scene.samples) / 1.7
     for step in scene.steps:
         made = starts.pairs(gaps, PAIR_SPEED, CollisionParameters.parse({}), step * constants.time_unit)
         try:
             rebound, refused = _rebound(made, int(BOUNCE / step)) / exact - 1, None
         except codes.CodeFailed as error:
             rebound, refused = np.full(len(gaps), np.nan), str(error)
-        for sample, one in zip(scene.samples, rebound):
+        for sample, one in enumerate(rebound):
             yield {"step": step, "sample": sample, "rebound": one, "refused": refused}
 
 
 def _rebound(scene, steps):
-    """Speed of separation (n,) [m/s] of each of the pairs of a SceneFile after so many steps, by the engine without YADE. Raises codes.CodeFailed."""
+    """Speed of separation (n,) [m/s] of each of the pairs of a SceneFile after so many steps. Raises codes.CodeFailed."""
     with tempfile.TemporaryDirectory() as folder:
         begin, end = Path(folder) / "begin.scene", Path(folder) / "end.scene"
         scene_file.save(begin, scene)
@@ -133,11 +140,8 @@ def _rebound(scene, steps):
     return np.diff(after.grains["velocity"][:, 0].reshape(-1, 2), axis=1)[:, 0]
 
 
-# ---- curves ----
-
-
 def curve(rows, quantity):
-    """(steps (n,), root mean square error (n,)) of a scene's rows; d_max and work against the finest step of the same sample, work as a logarithm."""
+    """(steps (n,), root mean square error (n,)) of a scene's rows; see the module's head."""
     values = rows.pivot(index="step", columns="sample", values=quantity).dropna()
     if quantity.startswith("work"):
         values = np.log(values)
@@ -147,7 +151,8 @@ def curve(rows, quantity):
 
 
 def order(steps, error, fitted=FITTED):
-    """(slope, standard error) of log error against log step between two steps; (nan, nan) where fewer than three lie there."""
+    """(slope, standard error) of log error against log step between two steps; (nan, nan) where fewer than three lie
+    there."""
     within = (steps >= fitted[0]) & (steps <= fitted[1]) & (error > 0)
     if np.count_nonzero(within) < 3:
         return np.nan, np.nan

@@ -1,21 +1,21 @@
 """The scenes that are measured, as data: the papers' runs, and the bench's own. Needs no YADE.
 
-A scene is what a run of collide.py or compress.py starts from, and the moments of that run at which codes are measured (moments.py makes their files).
+A scene is what a run of collide.py or compress.py starts from, and the moments of that run at which codes are measured
+(moments.py makes their files).
 """
 
 from dataclasses import dataclass, field
 
 ENGINE, BESIDE_LAMMPS = ("engine",), ("engine", "lammps")
-SLOWER_SETS, LOOPS = ("engine-avx2", "engine-portable"), ("functors", "stock")
-PEERS = ("lammps", "liggghts")
+SLOW, PEERS = ("engine-avx2", "engine-portable", "functors", "stock"), ("lammps", "liggghts")
 FLYING = {"flying": 0.0}
 
 
 @dataclass(frozen=True)
 class Scene:
-    """title, in words; kind: a name of starts.STARTS; parameters of the run, as tables have them; moments: {name: time [s] or filling factor}, in their order
-    (None: the start); apart: time [s] by which the first moment of a collision is moved back along straight lines, for a flight long enough to measure; codes: names
-    in codes.CODES that it is measured with; through: whether its moments are the ends of the parts of one run, measured on the way."""
+    """title, in words; kind: collision, compression, materials or radii (starts.py); parameters of the run, as tables have them; moments: {name: time [s]
+    or filling factor}, in their order (None: the start); apart: time [s] by which the first moment of a collision is moved
+    back along straight lines, for a flight long enough to measure; codes: names of codes.CODES to measure."""
 
     title: str
     kind: str
@@ -23,7 +23,6 @@ class Scene:
     moments: dict = field(default_factory=lambda: FLYING)
     apart: float = 0.0
     codes: tuple = BESIDE_LAMMPS
-    through: bool = False
 
 
 # ---- the papers' ----
@@ -34,44 +33,23 @@ OF_A22 = {"flying": 0.0, "compressing": 0.35e-6, "fragments": 0.7e-6, "later": 2
 K13 = {"grains": 16_384, "strainRate": "3e-7", "stepFraction": 0.3, "finalFilling": 0.3}
 DENSE = {"phi 0.03": 0.03, "phi 0.3": 0.3}
 S17 = {"packing": "bcca", "grains": 1024, "planar": 1, "neck": 0.7, "velocity": 20, "stepFraction": 0.1}
+OF_S17 = {"flying": 0.0, "touching": 0.5e-6, "later": 1.5e-6}
 CPE = {"packing": "cpe", "filling": 0.4, "stepFraction": 0.1, "velocity": "10**0.5"}
-CPE_FAST = {**CPE, "radius": 20, "velocity": 60, "duration": "120e-9"}
-
+OF_A24 = {"flying": 0.0, "compressed": 0.4e-6, "apart": 0.8e-6}
+FAST = {**CPE, "radius": 20, "velocity": 60, "duration": "120e-9"}
+OF_FAST = {"flying": 0.0, "compressing": 30e-9, "fragments": 110e-9}
+WITH_DRAG, SLOWLY = {**A22, "viscoelasticTime": "6e-12"}, {**A22, "velocity": 0.5}
 PAPERS = {
     "a22": Scene("A22: two BPCA of 50,000 at 50.1 m/s, B_off 0.5", "collision", A22, OF_A22, 0.5e-6),
-    "a22-drag": Scene("A22: the same, T_vis 6 ps", "collision", {**A22, "viscoelasticTime": "6e-12"}, OF_A22, 0.5e-6),
-    "a22-slow": Scene(
-        "A22: the same grains at 0.5 m/s, T_vis 0", "collision", {**A22, "velocity": 0.5}, FLYING, 0.5e-6
-    ),
+    "a22-drag": Scene("A22: the same, T_vis 6 ps", "collision", WITH_DRAG, OF_A22, 0.5e-6),
+    "a22-slow": Scene("A22: the same grains at 0.5 m/s, T_vis 0", "collision", SLOWLY, FLYING, 0.5e-6),
     "k13": Scene("K13: BCCA of 16,384, C_v 3e-7", "compression", K13, {"phi 0.001": 0.001, **DENSE}),
     "k13-1024": Scene("K13: BCCA of 1,024, C_v 3e-7", "compression", {**K13, "grains": 1024}, {"start": None, **DENSE}),
-    "s17": Scene(
-        "S17: 2 x 1,024 planar BCCA, beta 0.7, 20 m/s",
-        "collision",
-        S17,
-        {"flying": 0.0, "touching": 0.5e-6, "later": 1.5e-6},
-        0.3e-6,
-    ),
-    "a24": Scene(
-        "A24: two CPE, R 80, 3.16 m/s",
-        "collision",
-        {**CPE, "radius": 80},
-        {"flying": 0.0, "compressed": 0.4e-6, "apart": 0.8e-6},
-        0.1e-6,
-    ),
-    "cpe-fast": Scene(
-        "two CPE, R 20, 60 m/s",
-        "collision",
-        CPE_FAST,
-        {"flying": 0.0, "compressing": 30e-9, "fragments": 110e-9},
-        0.2e-6,
-    ),
+    "s17": Scene("S17: 2 x 1,024 planar BCCA, beta 0.7, 20 m/s", "collision", S17, OF_S17, 0.3e-6),
+    "a24": Scene("A24: two CPE, R 80, 3.16 m/s", "collision", {**CPE, "radius": 80}, OF_A24, 0.1e-6),
+    "cpe-fast": Scene("two CPE, R 20, 60 m/s", "collision", FAST, OF_FAST, 0.2e-6),
     "cpe": Scene(
-        "two CPE, R 40, 3.16 m/s",
-        "collision",
-        {**CPE, "radius": 40},
-        {"flying": 0.0, "compressed": 0.2e-6},
-        0.1e-6,
+        "two CPE, R 40, 3.16 m/s", "collision", {**CPE, "radius": 40}, {"flying": 0.0, "compressed": 0.2e-6}, 0.1e-6
     ),
 }
 
@@ -80,23 +58,18 @@ PAPERS = {
 
 
 def bench(settings):
-    """{name: Scene}: two CPE of each size, unlike grains, and collisions measured on the way."""
-    found = {}
+    """{name: Scene}: two CPE of each size, unlike grains, and moments through a collision."""
+    found, reference = {}, settings.reference
     for radius in settings.radii:
-        codes = ENGINE + (SLOWER_SETS + LOOPS if radius in settings.loop_radii else ())
-        codes += PEERS if radius == settings.reference else ()
+        codes = ENGINE + SLOW * (radius in (settings.radii[0], reference)) + PEERS * (radius == reference)
         found[sized(radius)] = _two_cpe(f"two CPE, R {radius:g}", "collision", radius, codes)
-    for kind, title in (("materials", "two materials"), ("radii", "two sizes of grain, 1 : 0.41")):
-        found[kind] = _two_cpe(f"{title}, R {settings.reference:g}", kind, settings.reference, ENGINE)
+    found["materials"] = _two_cpe(f"two materials, R {reference:g}", "materials", reference, ENGINE)
+    found["radii"] = _two_cpe(f"two sizes of grain, 1 : 0.41, R {reference:g}", "radii", reference, ENGINE)
     for radius, speed, duration in settings.through:
         given = {**CPE, "radius": radius, "velocity": speed, "duration": duration}
-        ends = {
-            f"{1e9 * duration * k / settings.parts:.3g} ns": duration * k / settings.parts
-            for k in range(1, settings.parts + 1)
-        }
+        times = {f"{1e9 * duration * k / 5:.3g} ns": duration * k / 5 for k in range(1, 6)}
         title = f"two CPE, R {radius:g}, through {speed:g} m/s"
-        apart = 3 * duration / settings.parts
-        found[f"through-{speed:g}"] = Scene(title, "collision", given, {**FLYING, **ends}, apart, ENGINE, through=True)
+        found[f"through-{speed:g}"] = Scene(title, "collision", given, {**FLYING, **times}, 0.2e-6, ENGINE)
     return found
 
 
@@ -106,12 +79,9 @@ def sized(radius):
 
 
 def _two_cpe(title, kind, radius, codes):
-    return Scene(title, kind, {**CPE, "radius": radius}, apart=flight(radius), codes=codes)
-
-
-def flight(radius):
-    """Time [s] of flight before aggregates of this size meet: enough to measure, and not so far apart that a peer's bins are mostly empty."""
-    return max(0.1e-6, 1e-6 * min(1.0, (20 / radius) ** 3))
+    # a flight that is enough to measure, and so short that a peer's bins are not mostly empty
+    flight = max(0.1e-6, 1e-6 * min(1.0, (20 / radius) ** 3))
+    return Scene(title, kind, {**CPE, "radius": radius}, apart=flight, codes=codes)
 
 
 def all_scenes(settings):

@@ -1,6 +1,7 @@
 """The files of the moments of the scenes' runs: grains with the springs of all contacts, reached by the engine itself.
 
-They lie in build/bench/scenes: made once, they serve every version of the engine. A file is made again when the scene's definition changes.
+They lie in build/bench/scenes: made once, they serve every version of the engine. A file is made again when the scene's
+definition changes.
 """
 
 import hashlib
@@ -17,7 +18,9 @@ from analysis.measures.virial import filling_factor
 
 FOLDER = TOP / "build/bench/scenes"
 FAST_STRAIN = 1e-5  # 1/t0: at which the denser cells are made
-RELAXED = 3000.0  # t0 at the paper's own rate before a denser cell is measured, in which vibrations and slips that the fast making left die down
+RELAXED = (
+    3000.0  # t0 at the paper's own rate before a denser cell is measured: what the fast making stirred up dies down
+)
 LARGE = 1e6  # bytes of a scene's file from which on two threads pay
 
 
@@ -29,15 +32,10 @@ def path_of(name, moment, scene, folder=FOLDER):
     return folder / f"{name}-{moment.replace(' ', '')}-{key}.scene"
 
 
-def needed(scene):
-    """The moments that need a file: all, or the first of a collision that is measured on its way."""
-    return list(scene.moments)[: 1 if scene.through else None]
-
-
 def make(name, scene, folder=FOLDER, say=print):
     """Start of a Scene, whose moments all have their files afterwards; what is there is not made again."""
     start = starts.of(scene)
-    paths = {moment: path_of(name, moment, scene, folder) for moment in needed(scene)}
+    paths = {moment: path_of(name, moment, scene, folder) for moment in scene.moments}
     if not all(path.exists() for path in paths.values()):
         folder.mkdir(parents=True, exist_ok=True)
         (_make_cells if scene.kind == "compression" else _make_collision)(scene, start, paths, say)
@@ -47,14 +45,15 @@ def make(name, scene, folder=FOLDER, say=print):
 def _make_collision(scene, start, paths, say):
     first, *later = paths.items()
     _save(first[1], starts.moved_back(start, scene.apart))
-    here, time = first[1].with_suffix(".begin"), 0.0
-    _save(here, start.scene)
+    begin, time = first[1].with_suffix(".begin"), 0.0
+    _save(begin, start.scene)
+    here = begin
     for moment, path in later:
         if not path.exists():
             say(f"making {path.name}", flush=True)
             advance(here, path, (scene.moments[moment] - time) / start.step, start.together)
         here, time = path, scene.moments[moment]
-    first[1].with_suffix(".begin").unlink()
+    begin.unlink()
 
 
 def _make_cells(scene, start, paths, say):
@@ -90,7 +89,8 @@ def _save(path, scene):
 
 
 def advance(begin, end, steps, together):
-    """Have the harness take the scene of one file to another, so many small steps on, by whole O.steps. Raises RuntimeError with its words."""
+    """Take the scene of one file to another by the engine, so many small steps on, in whole O.steps."""
     new, threads = end.with_suffix(".new"), 2 if begin.stat().st_size > LARGE else 1  # the same bits
-    codes.harness(begin, steps=max(1, round(steps / together)) * together, together=together, threads=threads, out=new)
+    steps = max(1, round(steps / together)) * together
+    codes.harness(begin, steps=steps, together=together, threads=threads, out=new)
     new.replace(end)

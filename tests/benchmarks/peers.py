@@ -1,8 +1,9 @@
 """LAMMPS and LIGGGHTS on the same grains: is it installed, and how fast does it go?
 
-Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that mean SI or reduced units.
-Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What differs is in Peer.physics. One material and one size only;
-contacts start without springs, there is no drag, and a periodic cell keeps its size.
+Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that
+mean SI or reduced units; their inputs are in.lammps and in.liggghts. Materials' constants are the scene's; friction limits
+are those of JKR-Wada at zero load. What differs is in Peer.physics. One material and one size only; contacts start without
+springs, there is no drag, and a periodic cell keeps its size.
 """
 
 import os
@@ -13,10 +14,13 @@ import subprocess
 import tempfile
 import time
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 from pathlib import Path
 
 import numpy as np
+import scene_file
+from measured_on import HERE
 
 from analysis.theory import Material, pair_constants
 
@@ -24,81 +28,29 @@ TIME = 1e-9  # s
 WIDEST = 1500  # edge of a box [grain radii] that LAMMPS can divide into bins of its own size
 BINS = 400  # along the edge of a wider one
 FEWEST_STEPS, UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
-
-RUN_AND_COUNT = """timestep {step}
-fix move all nve/sphere
-compute touching all contact/atom
-compute touch all reduce sum c_touching
-thermo_style custom step atoms c_touch
-thermo_modify norm no
-thermo {steps}
-run {steps}
-"""
-LAMMPS_INPUT = (
-    """units lj
-atom_style sphere
-atom_modify sort 1000 {bin_edge}
-boundary {boundary}
-newton off
-{processors}
-comm_modify vel yes
-read_data grains.data
-pair_style granular
-pair_coeff * * jkr {young} 0 {poisson} {surface_energy} tangential mindlin NULL 0 {friction} rolling sds {rolling_stiffness} 0 {rolling_friction} twisting marshall damping velocity
-neighbor {skin} bin
-neigh_modify delay 0 every 1 check yes binsize {bin_edge}
-"""
-    + RUN_AND_COUNT
-)
-LIGGGHTS_INPUT = (
-    """units si
-atom_style granular
-boundary {boundary}
-newton off
-{processors}
-communicate single vel yes
-read_data grains.data
-soft_particles yes
-neighbor {skin} bin
-neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype {young}
-fix m2 all property/global poissonsRatio peratomtype {poisson}
-fix m3 all property/global coefficientRestitution peratomtypepair 1 1.0
-fix m4 all property/global coefficientFriction peratomtypepair 1 {friction}
-fix m5 all property/global cohesionEnergyDensity peratomtypepair 1 {cohesion}
-fix m6 all property/global coefficientRollingFriction peratomtypepair 1 {rolling_friction}
-fix m7 all property/global coefficientRollingViscousDamping peratomtypepair 1 0.0
-pair_style gran model hertz tangential history cohesion sjkr2 rolling_friction epsd2
-pair_coeff * *
-"""
-    + RUN_AND_COUNT
-)
+ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 
 
 @dataclass(frozen=True)
 class Peer:
-    """program, as it is called; input of a run, with places for numbers; physics, in words."""
+    """program, as it is called; physics, in words. Its input is in.NAME."""
 
     program: str
-    input: str
     physics: str
 
 
 PROGRAMS = {
     "lammps": Peer(
         "lmp",
-        LAMMPS_INPUT,
-        "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; "
-        "contacts form and break at whole steps; no energy ledger.",
+        "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the "
+        "largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
     ),
     "liggghts": Peer(
         "liggghts",
-        LIGGGHTS_INPUT,
-        "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential history, rolling epsd2; "
-        "no twisting, no energy ledger.",
+        "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential "
+        "history, rolling epsd2; no twisting, no energy ledger.",
     ),
 }
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 
 
 class PeerFailed(RuntimeError):
@@ -110,7 +62,7 @@ def missing(code, scene=None):
     program = PROGRAMS[code].program
     if not shutil.which(program):
         return f"{program} is not installed (make bench-peers installs it)"
-    if code == "lammps" and "granular" not in help_text(program):
+    if code == "lammps" and "granular" not in help_text(shutil.which(program)):
         return f"this {program} was built without pair_style granular"
     if scene is not None and scene.head["neck"]:
         return "it has no sintered bonds"
@@ -119,9 +71,16 @@ def missing(code, scene=None):
     return None
 
 
+@lru_cache
 def help_text(program):
     with tempfile.TemporaryDirectory() as folder:  # LIGGGHTS leaves a log file where it is called
         return subprocess.run([program, "-h"], cwd=folder, capture_output=True, text=True).stdout
+
+
+def version(code):
+    text = help_text(shutil.which(PROGRAMS[code].program))
+    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", text)
+    return next(group for group in found.groups() if group) if found else "unknown"
 
 
 def core_counts():
@@ -129,14 +88,67 @@ def core_counts():
     return (1, 2) if shutil.which("mpirun") else (1,)
 
 
-def version(code):
-    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", help_text(PROGRAMS[code].program))
-    return next(group for group in found.groups() if group) if found else "unknown"
+class PeerCode:
+    """A peer on the scene of a file, by the interface of codes.py: started anew for each measurement; the first with so many
+    processes finds the skin that is best for it."""
+
+    def __init__(self, code, path, settings):
+        self.code, self.scene, self.settings, self.best = code, scene_file.load(path), settings, {}
+
+    def measure(self, threads, seconds, most):
+        """By its own number of steps, not by seconds or `most`."""
+        steps = min(self.settings.peer_steps, max(FEWEST_STEPS, int(UPDATES / len(self.scene.grains))))
+        skins = (self.best[threads],) if threads in self.best else self.settings.skins
+        runs = [measure(self.code, self.scene, steps, threads, skin) for skin in skins]
+        best = min(runs, key=lambda run: run["seconds"])
+        self.best[threads] = best["skin"]
+        return best
+
+    def close(self):
+        pass
 
 
-def steps_for(scene, most):
-    """Steps of a measurement on a SceneFile: at most so many."""
-    return min(most, max(FEWEST_STEPS, int(UPDATES / len(scene.grains))))
+def measure(code, scene, steps, cores=1, skin=0.3):
+    """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin} of a run of a SceneFile.
+
+    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii;
+    contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the
+    program's last words.
+    """
+    numbers = {"steps": steps, "skin": skin, "processes": cores, "boundary": "p" if scene.periodic else "f"}
+    numbers |= {"bins": bin_edge(scene), **scaled_constants(scene)}
+    variables = [word for name, value in numbers.items() for word in ("-var", name, str(value))]
+    command = [PROGRAMS[code].program, "-in", str(HERE / f"in.{code}"), "-log", "none", *variables]
+    if cores > 1:
+        command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores), *command]
+    with tempfile.TemporaryDirectory() as folder:
+        write_grains(Path(folder) / "grains.data", scene)
+        start, processor = time.perf_counter(), processor_seconds()
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
+        fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
+    loop = re.search(r"Loop time of (\S+) on", done.stdout)
+    # grains and contacts (twice, once from each grain)
+    counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)
+    if done.returncode or not loop:
+        raise PeerFailed(f"{PROGRAMS[code].program} failed: {last_words(done)}")
+    if len(counted) < 2 or int(counted[-1][0]) != len(scene.grains):
+        raise PeerFailed(f"{PROGRAMS[code].program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
+    contacts = sum(float(count) for _, count in counted) / 2 / len(counted)
+    found = {"grains": len(scene.grains), "contacts": contacts, "steps": steps, "seconds": float(loop.group(1))}
+    return {**found, "fraction": fraction, "version": version(code), "skin": skin}
+
+
+def last_words(done):
+    """Of a program: its error, or else the end of what it printed."""
+    printed = f"{done.stdout}\n{done.stderr}"
+    errors = re.findall(r"^ERROR.*$", printed, re.M)
+    return errors[-1] if errors else printed[-1500:]
+
+
+def processor_seconds():
+    """Of all programs that were started here and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def box_of(scene):
@@ -155,55 +167,6 @@ def bin_edge(scene):
     return edge / BINS if edge > WIDEST else 0
 
 
-def last_words(done):
-    """Of a program: its error, or else the end of what it printed."""
-    printed = f"{done.stdout}\n{done.stderr}"
-    errors = re.findall(r"^ERROR.*$", printed, re.M)
-    return errors[-1] if errors else printed[-1500:]
-
-
-def measure(code, scene, steps, cores=1, skin=0.3):
-    """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin} of a run of a SceneFile by so many steps.
-
-    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii; contacts is the mean of the touching pairs
-    that the code itself counts at start and end. Raises PeerFailed with the program's last words.
-    """
-    peer, grains = PROGRAMS[code], len(scene.grains)
-    with tempfile.TemporaryDirectory() as folder:
-        write_grains(Path(folder) / "grains.data", scene)
-        numbers = {"steps": steps, "skin": skin, "bin_edge": bin_edge(scene), **scaled_constants(scene)}
-        boundary, processors = "p p p" if scene.periodic else "f f f", f"processors {cores} 1 1"
-        (Path(folder) / "input").write_text(peer.input.format(boundary=boundary, processors=processors, **numbers))
-        command = [peer.program, "-in", "input", "-log", "none"]
-        if cores > 1:
-            command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores)] + command
-        start, processor = time.perf_counter(), processor_seconds()
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
-        fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
-    loop = re.search(r"Loop time of (\S+) on", done.stdout)
-    if done.returncode or not loop:
-        raise PeerFailed(f"{' '.join(command)} failed: {last_words(done)}")
-    # grains and contacts (twice, once from each grain)
-    counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)
-    if len(counted) < 2 or int(counted[-1][0]) != grains:
-        raise PeerFailed(f"{peer.program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
-    return {
-        "grains": grains,
-        "contacts": sum(float(count) for _, count in counted) / 2 / len(counted),
-        "steps": steps,
-        "seconds": float(loop.group(1)),
-        "fraction": fraction,
-        "version": version(code),
-        "skin": skin,
-    }
-
-
-def processor_seconds():
-    """Of all programs that were started here and have ended."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def scaled_constants(scene):
     """The numbers that the inputs ask for, in the units of the module's head."""
     (record,), r = scene.materials, scene.grains["radius"][0]
@@ -217,10 +180,10 @@ def scaled_constants(scene):
     return {
         "young": material.young / pressure,
         "poisson": material.poisson,
-        "surface_energy": material.surface_energy / spring,
+        "surfaceEnergy": material.surface_energy / spring,
         "friction": pair.sliding_stiffness * pair.critical_sliding / at_no_load,
-        "rolling_stiffness": pair.rolling_stiffness / spring,
-        "rolling_friction": pair.rolling_stiffness * pair.critical_rolling / at_no_load,
+        "rollingStiffness": pair.rolling_stiffness / spring,
+        "rollingFriction": pair.rolling_stiffness * pair.critical_rolling / at_no_load,
         "cohesion": cohesion / pressure,
         "step": scene.head["step"] / TIME,
     }
@@ -231,12 +194,10 @@ def write_grains(path, scene):
     grains, r = scene.grains, scene.grains["radius"][0]
     position = grains["position"] % scene.head["cellSize"] if scene.periodic else grains["position"]
     moving = np.hstack([grains["velocity"] * TIME / r, grains["angularVelocity"] * TIME])
+    low, high = (edges.tolist() for edges in box_of(scene))
     with open(path, "w") as file:
         file.write(f"grains\n\n{len(grains)} atoms\n1 atom types\n\n")
-        file.writelines(
-            f"{low!r} {high!r} {axis}lo {axis}hi\n"
-            for low, high, axis in zip(*map(np.ndarray.tolist, box_of(scene)), "xyz")
-        )
+        file.writelines(f"{low[k]!r} {high[k]!r} {axis}lo {axis}hi\n" for k, axis in enumerate("xyz"))
         file.write("\nAtoms\n\n")
         file.writelines(f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((position / r).tolist(), 1))
         file.write("\nVelocities\n\n")

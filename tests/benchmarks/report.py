@@ -11,41 +11,41 @@ from moments import FAST_STRAIN, RELAXED
 from results import weights
 from targets import targets
 
-LEFT = {"scene", "scenes", "set", "moment", "until", "code", "weights", "target", "wanted", "measured", "verdict"}
-TWO = (1, 2)
+LEFT = {"scene", "scenes", "set", "moment", "code", "weights", "target", "wanted", "measured", "verdict"}
+TWO = {"one": 1, "two": 2}  # cores
+HEAD = f"""A contact update is one step of one touching contact; rates are in million a second. Two CPE aggregates are of ice
+(r = 0.1 um, filling 0.4) at 3.16 m/s, with steps of 0.1 t0, unless said. The engine runs in YADE (with what an O.step adds to
+its small steps, but without the scripts' samples). All codes, and one and two threads, are measured in turn, in rounds: rates
+are the median (least - most) of the rounds, ratios are taken within a round first where both were measured in it. ms a step:
+the best round, and by how much the slowest was slower; ns: of the best round.
+
+Later moments are reached by the engine itself and kept in files. Aggregates in flight are moved back on their straight lines,
+for a flight long enough to measure. Denser cells are made at C_v = {FAST_STRAIN:g} and then follow the paper's C_v for
+{RELAXED:g} t0. LAMMPS and LIGGGHTS have the best of the skins that were tried (speed.csv), contacts without springs at the
+start, no drag, and their cells do not shrink.
+"""
+OF_COUNTS = """Parts of the time are of one thread, sampled by perf. Ledger's error: the change of all channels together through
+the measurements, over K of their beginning, or over the boundaries' work in them where that is larger. Memory: what the process
+holds beyond YADE's scene, two threads."""
+OF_SOLUTION = """Time to solution: the run's steps times the mean of the median ms a step over the moments, each with the
+fraction of the run that is nearest to it. K13 itself takes steps of 0.1 t0."""
 
 
 def text(results, settings):
     """The whole page."""
     scenes = all_scenes(settings)
+    verdicts = [target.cells() for target in targets(results, settings)]
     sections = {
-        "Targets": pd.DataFrame(
-            [t.cells() for t in targets(results, settings)], columns="target wanted measured verdict".split()
-        ),
-        "Speed": speed(results, scenes),
-        "The same grains in every code": beside_others(results, scenes),
-        "Cost of drag": cost_of_drag(results),
-        "Lists, events and memory": counts(results, scenes),
-        "Through a collision": through(results, scenes),
-        "Time to solution": solution(results, scenes),
-        "Error against the time step": errors_by_step(results, settings),
-    }
-    notes = {
-        "Speed": "ms a step: the best round, and by how much the slowest was slower; ns: of the best round.",
-        "The same grains in every code": of_codes(results),
-        "Lists, events and memory": "Parts of the time are of one thread, sampled by perf. Ledger's error: the change of all channels together through the measurements, over K of "
-        "their beginning, or over the boundaries' work in them where that is larger. Memory: what the process holds beyond YADE's scene, two threads.",
-        "Through a collision": "One and two cores take turns; before its parts the same grains in flight.",
-        "Time to solution": "The run's steps times the mean of the median ms a step over the moments, each with the fraction of the run that is nearest to it. K13 itself takes "
-        "steps of 0.1 t0.",
-        "Error against the time step": of_errors(results, settings),
+        "Targets": (pd.DataFrame(verdicts, columns="target wanted measured verdict".split()), ""),
+        "Speed": (speed(results, scenes), of_codes(results)),
+        "Lists, events and memory": (counts(results, scenes), OF_COUNTS),
+        "Whole runs": (solution(results, scenes), OF_SOLUTION),
+        "Error against the time step": (errors_by_step(results, settings), of_errors(results, settings)),
     }
     parts = [
-        f"## {title}\n\n{markdown(table)}\n\n{notes.get(title, '')}".rstrip()
-        for title, table in sections.items()
-        if len(table)
+        f"## {title}\n\n{markdown(rows)}\n\n{note}".rstrip() for title, (rows, note) in sections.items() if len(rows)
     ]
-    return "\n\n".join([head(results), *parts]) + "\n"
+    return "\n\n".join([HEAD + measured_on(results), *parts]) + "\n"
 
 
 def markdown(table):
@@ -56,92 +56,71 @@ def markdown(table):
     return "\n".join([f"| {lines[0]} |", f"|{rule}|", *(f"| {line} |" for line in lines[1:])])
 
 
-def head(results):
-    lines = [
-        "A contact update is one step of one touching contact; rates are in million a second. Two CPE aggregates are of ice (r = 0.1 um, filling 0.4) at 3.16 m/s, with steps "
-        "of 0.1 t0, unless said.",
-        "The engine runs in YADE (with what an O.step adds to its small steps, but without the scripts' samples). All codes, and one and two threads, are measured in turn, in "
-        "rounds: rates are the median (least - most) of the rounds, ratios are taken within a round first where both were measured in it.",
-        "Later moments are reached by the engine itself and kept in files. Aggregates in flight are moved back on their straight lines, for a flight long enough to measure. "
-        f"Denser cells are made at C_v = {FAST_STRAIN:g} and then follow the paper's C_v for {RELAXED:g} t0.",
-        "LAMMPS and LIGGGHTS have the best of the skins that were tried (speed.csv), contacts without springs at the start, no drag, and their cells do not shrink.",
-    ]
-    for (cpu, cores, commit), rows in results.moments.groupby(["cpu", "cores", "commit"], sort=False):
-        lines.append(f"Measured on {cpu}, {cores:g} cores, commit {commit[:7]}: {', '.join(rows.scene.unique())}.")
-    for (cpu, commit), rows in results.error.groupby(["cpu", "commit"], sort=False):
-        lines.append(f"Errors measured on {cpu}, commit {commit}: {', '.join(rows.scene.unique())}.")
+def measured_on(results):
+    """Where and of what the tables are, and whether the machine was quiet."""
+    lines = []
+    for table in (results.moments, results.error):
+        for (cpu, commit), rows in table.groupby(["cpu", "commit"], sort=False):
+            lines.append(f"- Measured on {cpu}, commit {commit[:7]}: {', '.join(rows.scene.unique())}.")
     others, fraction = results.moments.others.max(), results.speed[results.speed.threads == 1].fraction.min()
-    if len(results.moments):
-        lines.append(
-            f"Other programs took up to {100 * others:.0f} % of the machine; measurements on one core got at least {100 * fraction:.0f} % of it."
-        )
+    if others == others:
+        got = f"measurements on one core got at least {100 * fraction:.0f} % of it"
+        lines.append(f"- Other programs took up to {100 * others:.0f} % of the machine; {got}.")
     if others > LOUD or fraction < 1 - LOUD:
-        lines.append("**The machine was not quiet: ratios suffer, those with two cores most.**")
-    return "\n".join(lines)
+        lines.append("- **The machine was not quiet: ratios suffer, those with two cores most.**")
+    return "\n" + "\n".join(lines)
 
 
-def each_moment(results, scenes, through=False):
-    """(title, row of moments.csv) in the order of the scenes; a scene's title stands once. through: of those that are measured on their way, or of the others."""
-    names = [*scenes, *(name for name in results.moments.scene.unique() if name not in scenes)]
-    for name in names:
-        rows = results.moments[results.moments.scene == name]
-        if (name in scenes and scenes[name].through) == through:
-            title = scenes[name].title if name in scenes else name
-            for k, row in enumerate(rows.itertuples()):
-                yield title if k == 0 else "", row
-
-
-def million(rate, digits=1):
-    return rate.text(digits, 1e6) if rate else None
-
-
-def ratio(spread, digits=2):
-    return spread.text(digits) if spread else None
+def each_moment(results, scenes):
+    """(title, row of moments.csv) in the order of the scenes; a scene's title stands once."""
+    for name in sorted(results.moments.scene.unique(), key=lambda name: [*scenes, name].index(name)):
+        for k, row in enumerate(results.moments[results.moments.scene == name].itertuples()):
+            yield "" if k else scenes[name].title if name in scenes else name, row
 
 
 def number(value, digits=3):
     return None if value is None or isnan(value) else f"{value:.{digits}g}"
 
 
-def both(words, cells):
-    """{"WORDS, one thread": ..., "two": ...} of cells for one and two threads; columns of a table need different names."""
-    return {f"{words}, {n}": cell for n, cell in zip(("one", "two"), cells)}
+def spread(found, digits, unit=1.0):
+    return found.text(digits, unit) if found else None
+
+
+def both(words, cell):
+    """{"WORDS, one": ..., "two": ...}: cells for one and two cores; columns of a table need different names."""
+    return {f"{words}, {name}": cell(n) for name, n in TWO.items()}
 
 
 def speed(results, scenes):
-    rows = []
-    for title, at in each_moment(results, scenes):
-        ms = [results.milliseconds(at.scene, at.moment, "engine", n) for n in TWO]
-        rates = [results.rate(at.scene, at.moment, "engine", n) for n in TWO]
-        if not all(map(len, ms)):
-            continue
-        row = {"scene": title, "moment": at.moment, "grains": f"{at.grains:.0f}", "contacts": f"{at.contacts:.0f}"}
-        row |= both("ms a step", [f"{x.min():.3g} +{100 * (x.max() / x.min() - 1):.0f} %" for x in ms])
-        row |= both("ns a grain-step", [f"{1e6 * x.min() / at.grains:.1f}" for x in ms])
-        row |= both("ns a contact update", [f"{1e6 * x.min() / at.contacts:.1f}" for x in ms])
-        row |= both("million contact updates/s", [million(rate) for rate in rates])
-        ratios = results.ratio(*((at.scene, at.moment, "engine", n) for n in (2, 1)))
-        rows.append({**row, "two / one": ratio(ratios)})
-    return pd.DataFrame(rows)
-
-
-def beside_others(results, scenes):
-    """Every other code that was measured, where it was."""
+    """Every code that was measured, where it was."""
     rows = []
     for title, at in each_moment(results, scenes):
         for code in CODES:
-            rates = [results.rate(at.scene, at.moment, code, n) for n in TWO]
-            if code == "engine" or not any(rates):
+            places = {n: (at.scene, at.moment, code, n) for n in TWO.values()}
+            if not any(results.rate(*place) for place in places.values()):
                 continue
-            ms = [results.milliseconds(at.scene, at.moment, code, n) for n in TWO]
-            ratios = [results.ratio((at.scene, at.moment, "engine", n), (at.scene, at.moment, code, n)) for n in TWO]
-            row = {"scene": title, "moment": at.moment, "code": CODES[code].name} | both(
-                "ms a step", [number(x.median()) for x in ms]
+            best = {n: results.milliseconds(*place).min() for n, place in places.items()}
+            ours = {n: (at.scene, at.moment, "engine", n) for n in places}
+            row = {
+                "scene": title,
+                "moment": at.moment,
+                "grains": number(at.grains, 6),
+                "contacts": f"{at.contacts:.0f}",
+            }
+            row |= {"code": CODES[code].name} | both(
+                "ms a step", lambda n: with_worst(results.milliseconds(*places[n]))
             )
-            row |= both("million contact updates/s", [million(rate, 2) for rate in rates])
-            rows.append(row | both("engine / code", [ratio(x) for x in ratios]))
+            row |= both("ns a contact update", lambda n: number(1e6 * best[n] / at.contacts))
+            row |= both("million contact updates/s", lambda n: spread(results.rate(*places[n]), 2, 1e6))
+            row |= {"two / one": spread(results.ratio(places[2], places[1]), 2)}
+            rows.append(row | both("engine / code", lambda n: spread(results.ratio(ours[n], places[n]), 2)))
             title = ""
     return pd.DataFrame(rows)
+
+
+def with_worst(ms):
+    best, worst = ms.min(), ms.max()
+    return None if isnan(best) else f"{best:.3g}" + f" +{100 * (worst / best - 1):.0f} %" * (len(ms) > 1)
 
 
 def of_codes(results):
@@ -150,75 +129,41 @@ def of_codes(results):
     for code, about in CODES.items():
         versions = results.speed[results.speed.code == code].version.dropna().unique()
         notes.append(f"- {about.name}{f' ({versions[0]})' if len(versions) else ''}: {about.physics}")
-    without = results.speed[results.speed.note.notna()]
-    for (code, note), rows in without.groupby(["code", "note"]):
+    for (code, note), rows in results.speed[results.speed.note.notna()].groupby(["code", "note"]):
         notes.append(f"- {CODES[code].name} was not measured: {note} ({', '.join(rows.scene.unique())})")
     return "\n".join(notes)
 
 
-def cost_of_drag(results):
-    """The same scene with and without viscous drag, moment by moment."""
+def counts(results, scenes):
+    """What the engine did, where it counted."""
     rows = []
-    for moment in results.moments[results.moments.scene == "a22-drag"].moment:
-        plain, drag = ([results.milliseconds(name, moment, "engine", n) for n in TWO] for name in ("a22", "a22-drag"))
-        if all(map(len, plain)):
-            best = [f"{x.min():.3g} → {y.min():.3g}" for x, y in zip(plain, drag)]
-            cells = both("A22 without → with drag: ms a step", best)
-            rows.append({"moment": moment, **cells, "ratio, one": f"{drag[0].min() / plain[0].min():.2f}"})
+    for title, at in each_moment(results, scenes):
+        row = {"scene": title, "moment": at.moment, "time [ns]": number(1e9 * at.time), "pieces": number(at.pieces)}
+        row |= {"events": number(at.events, 8)}
+        if (steps := at.measuredSteps) > 0:
+            slips, scale = max(0, at.events - at.formed - at.broken), max(at.kinetic, abs(at.boundaryWork))
+            row["neighbours searched every … steps"] = f"{steps / at.searches:.0f}" if at.searches else f"> {steps:.0f}"
+            row["looks at pairs, a contact and step"] = number(at.looks / steps / at.contacts, 2)
+            shares = {part: getattr(at, part) for part in ("lists", "forces", "integration")}
+            row |= {f"% of the time: {part}": number(100 * share, 2) for part, share in shares.items()}
+            row["% of contact updates that slip"] = number(100 * slips / at.contactUpdates, 2)
+            row |= {"formed a step": number(at.formed / steps, 2), "broken a step": number(at.broken / steps, 2)}
+            row["ledger's error"] = f"{abs(at.energyChange) / scale:.1e}" if scale else None
+        rows.append(row | {"bytes a contact": number(at.bytes / at.contacts)})
     return pd.DataFrame(rows)
 
 
-def counts(results, scenes):
-    rows = []
-    for title, at in each_moment(results, scenes):
-        row = {"scene": title, "moment": at.moment}
-        if at.measuredSteps > 0:
-            slips = max(0, at.events - at.formed - at.broken)
-            scale = max(at.kinetic, abs(at.boundaryWork))
-            row |= {
-                "neighbours searched every … steps": f"{at.measuredSteps / at.searches:.0f}"
-                if at.searches
-                else f"> {at.measuredSteps:.0f}",
-                "looks at pairs, a contact and step": f"{at.looks / at.measuredSteps / at.contacts:.2g}",
-                **{
-                    f"% of the time: {part}": None if isnan(share := getattr(at, part)) else f"{100 * share:.0f}"
-                    for part in ("lists", "forces", "integration")
-                },
-                "% of contact updates that slip": f"{100 * slips / at.contactUpdates:.2g}",
-                **{f"{name} a step": f"{getattr(at, name) / at.measuredSteps:.2g}" for name in ("formed", "broken")},
-                "ledger's error": f"{abs(at.energyChange) / scale:.1e}" if scale else None,
-            }
-        rows.append(row | {"bytes a contact": None if isnan(at.bytes) else f"{at.bytes / at.contacts:.0f}"})
-    return pd.DataFrame(rows).dropna(thresh=3) if rows else pd.DataFrame()
-
-
-def through(results, scenes):
-    rows = []
-    for title, at in each_moment(results, scenes, through=True):
-        row = {"scene": title, "until": at.moment if isnan(at.until) or at.until <= 0 else f"{1e9 * at.until:.0f} ns"}
-        row |= {
-            f"{name}": None if isnan(value := getattr(at, name)) else f"{value:.0f}"
-            for name in ("contacts", "pieces", "events")
-        }
-        rates = [results.rate(at.scene, at.moment, "engine", n) for n in TWO]
-        rows.append(row | both("million contact updates/s", [f"{rate.median / 1e6:.1f}" for rate in rates]))
-    return pd.DataFrame(rows).rename(columns={"events": "events so far"})
-
-
 def solution(results, scenes):
+    """Time to solution of the runs whose moments were all measured."""
     rows = []
     for name, moments in results.whole(scenes).items():
-        minutes = {code: [results.minutes(moments, code, n) for n in TWO] for code in ("engine", "lammps")}
-        steps = moments.runSteps.iloc[0]
-        row = {
-            "scene": scenes[name].title,
-            "weights": ", ".join(f"{moment} {weight:.2f}" for moment, weight in zip(moments.moment, weights(moments))),
-            "step [t0]": f"{moments.step.iloc[0]:g}",
-            "steps of the run": f"{steps:.3g}",
-        }
-        row |= both("mean ms a step", [number(60e3 * one / steps) for one in minutes["engine"]])
-        row |= both("minutes", [number(one) for one in minutes["engine"]])
-        rows.append(row | both("LAMMPS", [number(one) for one in minutes["lammps"]]))
+        steps, minutes = moments.runSteps.iloc[0], lambda code: lambda n: results.minutes(moments, code, n)
+        shares = ", ".join(f"{moment} {weight:.2f}" for moment, weight in zip(moments.moment, weights(moments)))
+        row = {"scene": scenes[name].title, "weights": shares, "step [t0]": f"{moments.step.iloc[0]:g}"}
+        row |= {"steps of the run": number(steps)}
+        row |= both("mean ms a step", lambda n: number(60e3 * minutes("engine")(n) / steps))
+        row |= both("minutes", lambda n: number(minutes("engine")(n)))
+        rows.append(row | both("LAMMPS", lambda n: number(minutes("lammps")(n))))
     return pd.DataFrame(rows)
 
 
@@ -236,12 +181,8 @@ QUANTITIES = {
 
 def curves(results):
     """{(scene, quantity): (steps, error)} of what was measured."""
-    found = {}
-    for name, rows in results.error.groupby("scene", sort=False):
-        for quantity in QUANTITIES:
-            if rows[quantity].notna().any():
-                found[name, quantity] = errors.curve(rows, quantity)
-    return found
+    scenes, names = results.error.groupby("scene", sort=False), QUANTITIES
+    return {(s, q): errors.curve(rows, q) for s, rows in scenes for q in names if rows[q].notna().any()}
 
 
 def errors_by_step(results, settings):
@@ -256,16 +197,13 @@ def errors_by_step(results, settings):
 
 
 def of_errors(results, settings):
-    lines = []
-    for (name, quantity), curve in curves(results).items():
-        slope, wrong = errors.order(*curve)
-        if not isnan(slope):
-            lines.append(f"{name}, {QUANTITIES[quantity]} {slope:.2f} ± {wrong:.2f}")
+    orders = {key: errors.order(*curve) for key, curve in curves(results).items()}
+    fits = [f"{s}, {QUANTITIES[q]} {x:.2f} ± {wrong:.2f}" for (s, q), (x, wrong) in orders.items() if not isnan(x)]
     fitted = " to ".join(f"{step:g}" for step in errors.FITTED)
-    notes = [f"Order of convergence, fitted from {fitted} t0: {'; '.join(lines)}."] * bool(lines)
+    notes = [f"Order of convergence, fitted from {fitted} t0: {'; '.join(fits)}."] * bool(fits)
     notes.append(
-        "Root mean squares over the runs of a step (errors.py); d_max and work against the finest step; two aggregates of R = "
-        f"{settings.error_radius:g} at 3.16 m/s; the scripts' limit is 0.4 t0, the engine's own half a time unit.\n"
+        "Root mean squares over the runs of a step (errors.py); d_max and work against the finest step; two aggregates of "
+        f"R = {settings.error_radius:g} at 3.16 m/s; the scripts' limit is 0.4 t0, the engine's own half a time unit.\n"
     )
     refused = results.error[results.error.refused.notna()].groupby(["scene", "step"]).refused.first()
     return "\n".join(notes + [f"- {step:g} t0, {name}: {words}" for (name, step), words in refused.items()])

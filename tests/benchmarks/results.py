@@ -1,9 +1,11 @@
-"""What was measured, as tables in a folder (speed.csv, moments.csv, error.csv), and rates, ratios and times of whole runs out of it.
+"""What was measured, as tables in a folder, and rates, ratios and times of whole runs out of it.
 
-speed.csv    a row a measurement: scene, moment, code, threads, round, contacts, steps, seconds, rate (contact updates a second), fraction (processor seconds a
-             second), skin (of a peer's lists), version (of a peer; instructions of the engine), note (why there is no measurement)
-moments.csv  a row a moment of a scene: when, on what and how it was measured, and what the engine counted in all its measurements there (speed.py)
-error.csv    a row a run: errors.py
+speed.csv    a row a measurement: scene, moment, code, threads, round, contacts, steps, seconds, rate (contact updates a
+             second), fraction (processor seconds a second), skin (of a peer's lists), version (of a peer; instructions of
+             the engine), note (why there is no measurement)
+moments.csv  a row a moment of a scene: time [s] and progress of its run, on what and how it was measured, and what the
+             engine counted in all its measurements there (speed.py)
+error.csv    a row a run (errors.py)
 """
 
 import statistics
@@ -13,12 +15,12 @@ from pathlib import Path
 import pandas as pd
 
 KEYS = {"speed": ["scene", "moment"], "moments": ["scene", "moment"], "error": ["scene", "code"]}
+MOMENTS = """scene moment time progress step runSteps grains contacts pieces measuredSteps searches looks events formed broken
+contactUpdates energyChange kinetic boundaryWork lists forces eventHandling integration other bytes others cpu cores commit
+settings"""
 COLUMNS = {
     "speed": "scene moment code threads round contacts steps seconds rate fraction skin version note".split(),
-    "moments": (
-        "scene moment progress until step runSteps grains contacts pieces measuredSteps searches looks events formed broken contactUpdates energyChange kinetic "
-        "boundaryWork lists forces eventHandling integration other bytes others cpu cores commit settings"
-    ).split(),
+    "moments": MOMENTS.split(),
     "error": "scene code step sample ledger d_max rebound ledgerThin workThin work seconds refused cpu commit".split(),
 }
 
@@ -41,62 +43,62 @@ class Spread:
         return median if self.least == self.most else f"{median} ({least} - {most})"
 
 
-def _read(path):
-    return pd.read_csv(path, float_precision="round_trip")
-
-
 class Results:
     """The tables (pandas.DataFrame by the names of COLUMNS) of a folder, which may hold none yet."""
 
     def __init__(self, folder):
-        self.folder, self._by_code = Path(folder), None
+        self.folder = Path(folder)
         for name in COLUMNS:
-            path = self.folder / f"{name}.csv"
-            setattr(self, name, _read(path) if path.exists() else pd.DataFrame(columns=COLUMNS[name]))
+            self._read(name)
+
+    def _read(self, name):
+        path, self._measured = self.folder / f"{name}.csv", None
+        there = pd.read_csv(path, float_precision="round_trip") if path.exists() else None
+        setattr(self, name, pd.DataFrame(columns=COLUMNS[name]) if there is None else there)
 
     def put(self, **tables):
-        """Write rows (lists of dictionaries) of tables in the place of what they had of the same scenes and moments (or codes)."""
+        """Write rows (lists of dictionaries) of tables in the place of those of the same scenes and moments (or codes)."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        for name, rows in tables.items():
+        for name, rows in ((name, rows) for name, rows in tables.items() if rows):
             new, old, key = pd.DataFrame(rows, columns=COLUMNS[name]), getattr(self, name), KEYS[name]
             replaced = pd.MultiIndex.from_frame(old[key]).isin(pd.MultiIndex.from_frame(new[key]))
             table = pd.concat([part for part in (old[~replaced], new) if len(part)], ignore_index=True)
             path = self.folder / f"{name}.csv"
             table.to_csv(path.with_suffix(".new"), index=False)
             path.with_suffix(".new").replace(path)
-            setattr(self, name, _read(path))
-        self._by_code = None
+            self._read(name)
 
     def is_done(self, scene, moment, **wanted):
         """Whether a moment was measured with these values of moments.csv."""
         found = self.moments[(self.moments.scene == scene) & (self.moments.moment == moment)]
         return len(found) == 1 and all(found[name].iloc[0] == value for name, value in wanted.items())
 
-    def of(self, scene, moment, code, threads=1):
-        """Rows of speed.csv, by their round."""
-        if self._by_code is None:
+    def of(self, *where):
+        """Rows of speed.csv by their round; where: scene, moment, code, threads."""
+        if self._measured is None:
             measured = self.speed[self.speed.rate.notna()].set_index("round")
-            self._by_code = dict(list(measured.groupby(["scene", "moment", "code", "threads"])))
-        return self._by_code.get((scene, moment, code, threads), self.speed[:0])
+            self._measured = dict(list(measured.groupby(["scene", "moment", "code", "threads"])))
+        return self._measured.get(where, self.speed[:0])
 
-    def rates(self, *where, by_processor=False):
-        """Contact updates a second of each round (Series), or those a second of processor time: what a program does when others take part of the machine.
-        where: scene, moment, code, threads."""
-        rows = self.of(*where)
-        return rows.rate / rows.fraction if by_processor else rows.rate
+    def rates(self, *where):
+        """Contact updates a second of each round (Series)."""
+        return self.of(*where).rate
 
     def rate(self, *where):
         """Spread, None where nothing was measured."""
         rates = self.rates(*where)
         return Spread.of(rates) if len(rates) else None
 
-    def ratio(self, first, second, by_processor=False):
-        """Spread of the ratio of two rates, each a tuple of scene, moment, code and threads: within each round, or over the other's median where it was measured in fewer
-        rounds. None where one was not measured."""
-        a, b = (self.rates(*where, by_processor=by_processor) for where in (first, second))
+    def ratio(self, first, second):
+        """Spread of the ratio of two rates, None where one was not measured: within each round of what was measured together
+        (a moment, or the scenes of one moment), else of any round of one and any of the other."""
+        a, b = self.rates(*first), self.rates(*second)
         if not len(a) or not len(b):
             return None
-        return Spread.of(a / b if a.index.equals(b.index) else a / b.median())
+        several = set(self.moments.scene[self.moments.scene.duplicated()])
+        if a.index.equals(b.index) and (first[:2] == second[:2] or not {first[0], second[0]} & several):
+            return Spread.of(a / b)
+        return Spread(a.median() / b.median(), a.min() / b.max(), a.max() / b.min())
 
     def milliseconds(self, *where):
         """ms a small step of each round (Series)."""
@@ -104,16 +106,15 @@ class Results:
         return 1e3 * rows.seconds / rows.steps
 
     def whole(self, scenes):
-        """{name: its rows of moments.csv, in their order in time}, of the scenes (measured_scenes.Scene by name) that have several moments, all of which were measured."""
-        found = {}
-        for name, rows in self.moments.groupby("scene", sort=False):
-            scene = scenes.get(name)
-            if scene and not scene.through and len(rows) > 1 and set(rows.moment) == set(scene.moments):
-                found[name] = rows.sort_values("progress")
-        return found
+        """{name: its rows of moments.csv, in their order in time}, of the scenes (measured_scenes.Scene by name) that have
+        several moments, all of which were measured."""
+        every = {name: rows.sort_values("progress") for name, rows in self.moments.groupby("scene", sort=False)}
+        known = {name: rows for name, rows in every.items() if name in scenes and len(rows) > 1}
+        return {name: rows for name, rows in known.items() if set(rows.moment) == set(scenes[name].moments)}
 
     def minutes(self, moments, code, threads, of=statistics.median):
-        """Of a whole run with the small step that it has; moments: rows of whole(); of: function of the ms a step of a moment's rounds. None where a moment has none."""
+        """Of a whole run with its small step; moments: rows of whole(); of: function of the ms a step of a moment's rounds.
+        None where a moment has none."""
         each = [self.milliseconds(row.scene, row.moment, code, threads) for row in moments.itertuples()]
         if not all(len(one) for one in each):
             return None
@@ -122,8 +123,8 @@ class Results:
 
 
 def weights(moments):
-    """Fraction of the run's steps that each of a scene's moments stands for: those nearer to it than to another (of a compression in the logarithm of the
-    filling, in which its time is even)."""
+    """Fraction of the run's steps that each of a scene's moments stands for: those nearer to it than to another (of a
+    compression in the logarithm of the filling, in which its time is even)."""
     at = list(moments.progress)
     ends = [0.0, *((a + b) / 2 for a, b in zip(at, at[1:])), 1.0]
     return [end - begin for begin, end in zip(ends, ends[1:])]

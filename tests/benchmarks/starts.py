@@ -1,13 +1,13 @@
-"""Where the runs of the scenes begin: grains, cell and step, from the packings and parameters of the scripts. Needs no YADE.
+"""Where the runs of the scenes begin: grains, cell and step, from the packings and parameters of the scripts.
 
 Kinds: collision and compression, as of collide.py and compress.py;
-materials  the grains of a collision, every other (at random) softer: E = 3 GPa, nu = 0.33, gamma = 0.05 J/m^2, so that three kinds of contact occur; their
-           equilibrium overlaps differ by up to 7 %, so the packing starts close to rest
-radii      ice in a rock-salt lattice: grains of 0.1 um on the sites of CPE, grains 0.41 times as large in the gaps between them, every neighbour at
-           its equilibrium overlap, the same fraction of sites removed at random
+materials  the grains of a collision, every other (at random) softer: E = 3 GPa, nu = 0.33, gamma = 0.05 J/m^2, so that three
+           kinds of contact occur; equilibrium overlaps differ by up to 7 %, so the packing starts close to rest
+radii      ice in a rock-salt lattice: grains of 0.1 um on the sites of CPE, grains 0.41 times as large in the gaps between
+           them, every neighbour at its equilibrium overlap, the same fraction of sites removed at random
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from math import ceil, log, sqrt
 
 import numpy as np
@@ -26,70 +26,52 @@ SOFT = {"young": 3e9, "poisson": 0.33, "surfaceEnergy": 0.05, "criticalRolling":
 
 @dataclass(frozen=True)
 class Start:
-    """A run's beginning: scene_file.SceneFile, the run's duration [s], t0 [s], small steps in an O.step, and how far along (0: its beginning, 1: its end) each
-    moment is."""
+    """A run's beginning: scene_file.SceneFile, the run's duration [s], t0 [s], small steps in an O.step, and how far along
+    (0: its beginning, 1: its end) each moment is."""
 
     scene: scene_file.SceneFile
     duration: float
     time_unit: float
     together: int
-    progress: dict = field(default_factory=dict)
-
-    @property
-    def steps(self):
-        """Small steps of the whole run."""
-        return ceil(self.duration / self.step)
+    progress: dict
 
     @property
     def step(self):
         """The small step [s]."""
         return float(self.scene.head["step"])
 
+    @property
+    def steps(self):
+        """Small steps of the whole run."""
+        return ceil(self.duration / self.step)
+
 
 def of(scene):
-    """Start of a scenes.Scene's run."""
-    return STARTS[scene.kind](scene)
+    """Start of a measured_scenes.Scene's run."""
+    return compressed(scene) if scene.kind == "compression" else collided(scene)
 
 
-def _collision(scene):
+def collided(scene):
     parameters = collision.CollisionParameters.parse(scene.parameters)
-    constants = pair_constants(parameters)
-    parameters, pair, velocities = collision.place(parameters, constants["equilibriumOverlap"])
-    return _start_of_collision(scene, parameters, pair, velocities, constants["timeUnit"], [parameters])
-
-
-def _start_of_collision(scene, parameters, pair, velocities, time_unit, materials, kind=0):
-    touch = first_touch(*pair, velocities[1] - velocities[0])
-    parameters = collision.with_duration(parameters, time_unit, touch)
-    made = scene_file.start(
-        np.concatenate([packing.position for packing in pair]),
-        np.repeat(velocities, [packing.grains for packing in pair], axis=0),
-        np.concatenate([packing.radius for packing in pair]),
-        materials,
-        parameters.stepFraction * time_unit,
-        kind,
-        neck=parameters.neck,
-        planar=bool(parameters.planar),
-    )
+    materials, kind = [parameters], 0
+    if scene.kind == "radii":
+        where = collision.placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
+        pair = [packings.moved(rock_salt(parameters, index), centre) for index, (centre, _) in enumerate(where)]
+        velocities = [velocity for _, velocity in where]
+    else:
+        overlap = pair_constants(parameters)["equilibriumOverlap"]
+        parameters, pair, velocities = collision.place(parameters, overlap)
+    numbers, radius = [packing.grains for packing in pair], np.concatenate([packing.radius for packing in pair])
+    if scene.kind == "materials":
+        materials.append(parameters.changed(**SOFT))
+        kind = np.random.default_rng(parameters.seed).integers(2, size=sum(numbers))
+    time_unit = min(pair_constants(one, (r, r))["timeUnit"] for one in materials for r in np.unique(radius))
+    parameters = collision.with_duration(parameters, time_unit, first_touch(*pair, velocities[1] - velocities[0]))
+    position, velocity = np.concatenate([packing.position for packing in pair]), np.repeat(velocities, numbers, axis=0)
+    step, planar = parameters.stepFraction * time_unit, bool(parameters.planar)
+    made = scene_file.start(position, velocity, radius, materials, step, kind, neck=parameters.neck, planar=planar)
     progress = {name: time / parameters.duration for name, time in scene.moments.items()}
     return Start(made, parameters.duration, time_unit, SMALL_STEPS, progress)
-
-
-def _materials(scene):
-    parameters = collision.CollisionParameters.parse(scene.parameters)
-    materials = [parameters, parameters.changed(**SOFT)]
-    parameters, pair, velocities = collision.place(parameters, pair_constants(parameters)["equilibriumOverlap"])
-    kind = np.random.default_rng(parameters.seed).integers(2, size=sum(packing.grains for packing in pair))
-    time_unit = min(pair_constants(material)["timeUnit"] for material in materials)
-    return _start_of_collision(scene, parameters, pair, velocities, time_unit, materials, kind)
-
-
-def _radii(scene):
-    parameters = collision.CollisionParameters.parse(scene.parameters)
-    where = collision.placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
-    pair = [packings.moved(rock_salt(parameters, index), centre) for index, (centre, _) in enumerate(where)]
-    time_unit = min(pair_constants(parameters, (r, r))["timeUnit"] for r in np.unique(pair[0].radius))
-    return _start_of_collision(scene, parameters, pair, [v for _, v in where], time_unit, [parameters])
 
 
 def rock_salt(parameters, index):
@@ -110,29 +92,20 @@ def rock_salt(parameters, index):
     return packings.Packing(position[kept], radius[kept], parameters.seed)
 
 
-def _compression(scene):
+def compressed(scene):
     parameters = compression.CompressionParameters.parse(scene.parameters)
-    constants = pair_constants(parameters)
-    time_unit = constants["timeUnit"]
-    cluster = packings.bcca(parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed)
-    edge = smallest_edge(cluster)
-    first = filling_factor(cluster.radius, np.full(3, edge))
+    constants, damping = pair_constants(parameters), parameters.linearDamping
+    time_unit, overlap = constants["timeUnit"], constants["equilibriumOverlap"]
+    cluster = packings.bcca(parameters.grains, parameters.grainRadius, overlap, parameters.seed)
+    edge, at_rest, step = smallest_edge(cluster), np.zeros((cluster.grains, 3)), parameters.stepFraction * time_unit
     made = scene_file.start(
-        cluster.position,
-        np.zeros_like(cluster.position),
-        cluster.radius,
-        [parameters],
-        parameters.stepFraction * time_unit,
-        linear_damping=parameters.linearDamping,
-        edge=edge,
-    ).with_strain_rate(-2 * parameters.strainRate / time_unit)
+        cluster.position, at_rest, cluster.radius, [parameters], step, linear_damping=damping, edge=edge
+    )
+    first = filling_factor(cluster.radius, np.full(3, edge))
     whole = log(parameters.finalFilling / first)
     progress = {name: log((filling or first) / first) / whole for name, filling in scene.moments.items()}
-    duration = whole * time_unit / (6 * parameters.strainRate)
-    return Start(made, duration, time_unit, compression._interval(parameters), progress)
-
-
-STARTS = {"collision": _collision, "compression": _compression, "materials": _materials, "radii": _radii}
+    duration, rate = whole * time_unit / (6 * parameters.strainRate), -2 * parameters.strainRate / time_unit
+    return Start(made.with_strain_rate(rate), duration, time_unit, compression._interval(parameters), progress)
 
 
 def moved_back(start, apart):

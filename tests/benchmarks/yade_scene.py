@@ -8,15 +8,8 @@ import contact_law  # noqa: F401  (puts the plugin's classes into wrapper)
 from yade_scripts.run.scene import VERLET_DISTANCE, functor_engines
 
 BLOCKED = {1: "x", 2: "y", 4: "z", 8: "X", 16: "Y", 32: "Z"}
-STOCK = {
-    "frictionAngle": 0.5,
-    "isCohesive": True,
-    "normalCohesion": 1e9,
-    "shearCohesion": 1e9,
-    "momentRotationLaw": True,
-    "alphaKr": 1,
-    "alphaKtw": 1,
-}
+STOCK = {"frictionAngle": 0.5, "isCohesive": True, "normalCohesion": 1e9, "shearCohesion": 1e9}
+STOCK.update(momentRotationLaw=True, alphaKr=1, alphaKtw=1)
 
 
 def build(scene, sub_steps, threads=1, domains=0):
@@ -40,16 +33,15 @@ def start_engine(scene, sub_steps, threads=1, domains=0, instructions=""):
     if scene.periodic:
         # by its name: "O.cell.velGrad = " would hold from the next step on, and the first forces be those of a cell at rest
         omega.cell.updateAttrs({"velGrad": Matrix3(*np.diag(head["strainRate"]).flatten().tolist())})
-    engine = wrapper.JKRWadaEngine(
-        subSteps=sub_steps, threads=threads, domains=domains, instructions=instructions, **law
-    )
+    how = {"threads": threads, "domains": domains, "instructions": instructions}
+    engine = wrapper.JKRWadaEngine(subSteps=sub_steps, **how, **law)
     omega.engines = [engine]
     engine.prepare()
     return engine
 
 
 def start_loop(scene, law):
-    """YADE's own loop, with this repository's law (functors) or the stock one, for grains in open space that have no contacts yet."""
+    """YADE's own loop, with this repository's law (functors) or the stock one, for grains that have no contacts yet."""
     omega, radius = wrapper.Omega(), float(scene.grains["radius"].max())
     omega.dt, omega.trackEnergy = float(scene.head["step"]), law == "functors"
     if law == "functors":
@@ -88,7 +80,7 @@ def add_bodies(scene, law="fused"):
 
 
 def add_contacts(contacts, law):
-    """Interactions with the springs of contacts (CONTACT,), for the engine to take over; the functors serve to make them only."""
+    """Interactions with the springs of contacts (CONTACT,), for the engine to take over; functors only make them."""
     wrapper.Omega().engines = [
         wrapper.InteractionLoop(
             [wrapper.Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=2)],
@@ -101,16 +93,6 @@ def add_contacts(contacts, law):
         interaction = utils.createInteraction(first, second)
         if interaction.id1 != first:
             pointer1, pointer2 = pointer2, pointer1
-        interaction.phys.updateAttrs(
-            {
-                "touching": True,
-                "current": True,
-                "bonded": bool(bonded),
-                "pointer1": Vector3(*pointer1),
-                "pointer2": Vector3(*pointer2),
-                "twist": twist,
-                "overlap": overlap,
-                "dragForce": drag,
-                "restDistance": rest,
-            }
-        )
+        history = {"pointer1": Vector3(*pointer1), "pointer2": Vector3(*pointer2), "twist": twist, "overlap": overlap}
+        state = {"touching": True, "current": True, "bonded": bool(bonded), "dragForce": drag, "restDistance": rest}
+        interaction.phys.updateAttrs({**history, **state})
