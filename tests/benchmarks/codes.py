@@ -59,47 +59,38 @@ def missing(code, scene=None):
     return None if CODES[code].law else peers.missing(code, scene)
 
 
-def open_code(code, path, together, threads, settings):
-    """What measures a code on the scene of a file; together: small steps in an O.step; threads: what YADE is started with
-    (its own loops have no other way)."""
-    return YadeCode(code, path, together, threads) if CODES[code].law else peers.PeerCode(code, path, settings)
+def open_code(code, path, together, settings):
+    """What measures a code on the scene of a file; together: small steps in an O.step."""
+    return YadeCode(CODES[code], path, together) if CODES[code].law else peers.PeerCode(code, path, settings)
 
 
 class YadeCode:
-    """A YADE that holds a scene (yade_codes.py). It starts in the background; about() waits for it."""
+    """A code in YADEs that hold a scene (yade_codes.py), each started when it is first asked: one for any number of the
+    engine's threads; of YADE's own loops one for each number, which they cannot change."""
 
-    def __init__(self, code, path, together, threads):
-        law, instructions = CODES[code].law, CODES[code].instructions
-        asked = {"path": str(path), "together": together, "law": law, "instructions": instructions}
-        command = ["yade", "-n", "-x", f"-j{threads}", str(HERE / "yade_codes.py"), json.dumps(asked)]
-        self.name, self.errors, self.started = f"{code} on {path.name}", tempfile.TemporaryFile("w+"), None
-        pipe = subprocess.PIPE
-        self.process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self.errors, text=True)
-
-    def about(self):
-        """{commit, bytes: memory of the engine, None where that cannot be told}"""
-        self.started = self.started or self._answer()
-        return self.started
+    def __init__(self, code, path, together):
+        asked = {"path": str(path), "together": together, "law": code.law, "instructions": code.instructions}
+        self.asked, self.one_for_all, self.yades = json.dumps(asked), code.law == "fused", {}
 
     def measure(self, threads, seconds, most):
         """Of so many seconds, or of a share of `most` small steps; with what the engine counted (yade_codes.py)."""
-        self.about()
-        request = {"threads": threads, "seconds": seconds, "most": most}
-        print(json.dumps(request), file=self.process.stdin, flush=True)
-        return self._answer()
-
-    def _answer(self):
-        for line in self.process.stdout:
+        own = 1 if self.one_for_all else threads
+        if own not in self.yades:
+            command = ["yade", "-n", "-x", f"-j{own}", str(HERE / "yade_codes.py"), self.asked]
+            errors, pipe = tempfile.TemporaryFile("w+"), subprocess.PIPE
+            self.yades[own] = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, text=True), errors
+        yade, errors = self.yades[own]
+        print(json.dumps({"threads": threads, "seconds": seconds, "most": most}), file=yade.stdin, flush=True)
+        for line in yade.stdout:
             if line.startswith("ANSWER "):
                 return json.loads(line[len("ANSWER ") :])
-        self.errors.seek(0)
-        raise CodeFailed(f"{self.name} ended without an answer:\n{self.errors.read()[-2000:]}")
+        errors.seek(0)
+        raise CodeFailed(f"YADE ended without an answer to {self.asked}:\n{errors.read()[-2000:]}")
 
     def close(self):
-        self.process.stdin.close()
-        self.process.wait()
-        self.process.stdout.close()
-        self.errors.close()
+        for yade, errors in self.yades.values():
+            yade.communicate()
+            errors.close()
 
 
 def harness(path, prefix=(), timeout=None, **parameters):

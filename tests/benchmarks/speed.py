@@ -25,25 +25,18 @@ def batches(scenes):
 
 
 class Place:
-    """A moment of a scene, its file, and the codes that are open on it."""
+    """A moment of a scene, its file, and what is measured there; stack (an ExitStack) closes the codes."""
 
-    def __init__(self, name, scene, moment, start, settings, folder):
+    def __init__(self, name, scene, moment, start, settings, folder, stack):
         self.name, self.scene, self.moment, self.start, self.settings = name, scene, moment, start, settings
         self.path = moments.path_of(name, moment, scene, folder)
         self.grains = scene_file.load(self.path)
         self.missing = {code: reason for code in scene.codes if (reason := codes.missing(code, self.grains))}
-        self.answers = {(c, n): [] for c in scene.codes if c not in self.missing for n in codes.threads_of(c)}
-        self.open = {}
-
-    def open_codes(self, stack):
-        """Start what measures, all at once; YADE's own loops have a YADE for each number of threads."""
-        for code, threads in self.answers:
-            own = threads if code in ("functors", "stock") else 1
-            if (code, own) not in self.open:
-                measures = codes.open_code(code, self.path, self.start.together, own, self.settings)
-                stack.callback(measures.close)
-                self.open[code, own] = measures
-            self.open[code, threads] = self.open[code, own]
+        there = [code for code in scene.codes if code not in self.missing]
+        self.answers = {(code, threads): [] for code in there for threads in codes.threads_of(code)}
+        self.open = {code: codes.open_code(code, self.path, start.together, settings) for code in there}
+        for code in self.open.values():
+            stack.callback(code.close)
 
     def most(self):
         """Small steps of one measurement: all of them together leave a flight in the air, and are a small part of another
@@ -55,7 +48,7 @@ class Place:
         """Keep the answer to a measurement; a peer that fails is noted, and not tried again."""
         if code not in self.missing:
             try:
-                answer = self.open[code, threads].measure(threads, self.settings.seconds, self.most())
+                answer = self.open[code].measure(threads, self.settings.seconds, self.most())
                 self.answers[code, threads].append(answer)
             except peers.PeerFailed as error:
                 self.missing[code] = f"failed: {' '.join(str(error).split())[:200]}"
@@ -85,7 +78,7 @@ class Place:
             **{name: sum(turn[name] for turn in turns) for name in SUMMED},
             **engine_parts.fractions(self.path, start.together, to_sample),
             **{"cpu": about["cpu"], "cores": about["cores"], "settings": self.settings.text(), "others": others},
-            **self.open["engine", 1].about(),
+            **{"commit": turns[0]["commit"], "bytes": turns[0]["bytes"]},
         }
 
 
@@ -99,14 +92,9 @@ def measure(batch, begun, settings, done, folder=moments.FOLDER):
 
     begun: {name of the scene: its starts.Start}; done() is called after each of count_of(batch, settings) measurements.
     """
-    places, others = [Place(*one, begun[one[0]], settings, folder) for one in batch], 0.0
+    others = 0.0
     with ExitStack() as stack:
-        for place in places:
-            place.open_codes(stack)
-        for place in places:
-            for code, measures in place.open.items():
-                if codes.CODES[code[0]].law:
-                    measures.about()
+        places = [Place(*one, begun[one[0]], settings, folder, stack) for one in batch]
         for turn in range(settings.rounds):
             others = max(others, fraction_of_others())
             for place in places:

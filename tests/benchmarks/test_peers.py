@@ -2,6 +2,7 @@
 of scenes are what they are said to be."""
 
 import os
+from contextlib import ExitStack
 
 import codes
 import moments
@@ -71,8 +72,7 @@ def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
         )
     assert "pair_style granular" in codes.missing("lammps")
     start = moments.make("one", TINY["cpe-5"], tmp_path)
-    place = speed.Place("one", TINY["cpe-5"], "flying", start, settings.TINY, tmp_path)
-    place.open["liggghts", 1] = peers.PeerCode("liggghts", place.path, settings.TINY)
+    place = speed.Place("one", TINY["cpe-5"], "flying", start, settings.TINY, tmp_path, ExitStack())
     place.measure("liggghts", 1), place.measure("liggghts", 1)
     assert (tmp_path / "liggghts.calls").read_text() == "once\n"
     notes = {row["code"]: row["note"] for row in place.rows()}
@@ -102,7 +102,7 @@ def test_the_scenes_of_the_papers_can_be_started(tmp_path):
         assert progress == sorted(progress) and progress[0] == 0 and progress[-1] <= 1
         first = next(iter(PAPERS[name].moments))
         moments.scene_file.save(moments.path_of(name, first, PAPERS[name], tmp_path), start.scene)
-        most = speed.Place(name, PAPERS[name], first, start, settings.FULL, tmp_path).most()
+        most = speed.Place(name, PAPERS[name], first, start, settings.FULL, tmp_path, ExitStack()).most()
         within = PAPERS[name].apart or 0.06 * start.duration
         assert 0.5 * within < 2 * settings.FULL.rounds * most * start.step < within
     k13, s17 = found["k13-1024"], found["s17"].scene

@@ -3,9 +3,9 @@
     yade -n -x yade_codes.py '{"path": scene, "together", "law", "instructions"}'
 
 law: fused (the engine, `together` small steps in an O.step), functors, or stock (YADE's cohesive law CohFrictPhys with
-moments: sliding, rolling, twisting). Prints a line "ANSWER " + JSON when it is ready, and one for each request, a line of
-JSON ({"threads", "seconds", "most"}), until its input ends. The scene goes on from request to request, so that measurements
-of several codes can alternate.
+moments: sliding, rolling, twisting). Prints a line "ANSWER " + JSON for each request, a line of JSON ({"threads", "seconds",
+"most"}), until its input ends. The scene goes on from request to request, so that measurements of several codes can
+alternate.
 """
 
 import ctypes
@@ -82,11 +82,11 @@ def measure(threads, seconds, most):
     last, version = counted(), O.engines[0].statistics()["instructions"] if fused else ""
     found = {"grains": len(O.bodies), "contacts": (before + contacts()) / 2, "steps": steps * small_steps}
     found |= {"seconds": elapsed, "fraction": processor / elapsed, "version": version, "kinetic": kinetic}
+    found |= {"commit": contact_law.commit, "bytes": taken}
     return {**found, **{name: last[name] - first[name] for name in last}}
 
 
 fused, small_steps, taken = start(**json.loads(sys.argv[1]))
-print("ANSWER " + json.dumps({"commit": contact_law.commit, "bytes": taken}), flush=True)
 for line in sys.stdin:
     print("ANSWER " + json.dumps(measure(**json.loads(line))), flush=True)
 sys.exit(0)
