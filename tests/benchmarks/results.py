@@ -44,7 +44,8 @@ class Spread:
 
 
 class Results:
-    """The tables (pandas.DataFrame by the names of COLUMNS) of a folder, which may hold none yet."""
+    """The tables (pandas.DataFrame by the names of COLUMNS) of a folder, which may hold none yet; moments in the order of
+    their runs' progress."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
@@ -53,8 +54,11 @@ class Results:
 
     def _read(self, name):
         path, self._measured = self.folder / f"{name}.csv", None
-        there = pd.read_csv(path, float_precision="round_trip") if path.exists() else None
-        setattr(self, name, pd.DataFrame(columns=COLUMNS[name]) if there is None else there)
+        there = (
+            pd.read_csv(path, float_precision="round_trip") if path.exists() else pd.DataFrame(columns=COLUMNS[name])
+        )
+        # a moment that was measured again comes last in the file
+        setattr(self, name, there.sort_values("progress", kind="stable") if name == "moments" else there)
 
     def put(self, **tables):
         """Write rows (lists of dictionaries) of tables in the place of those of the same scenes and moments (or codes)."""
@@ -108,8 +112,8 @@ class Results:
     def whole(self, scenes):
         """{name: its rows of moments.csv, in their order in time}, of the scenes (measured_scenes.Scene by name) that have
         several moments, all of which were measured."""
-        every = {name: rows.sort_values("progress") for name, rows in self.moments.groupby("scene", sort=False)}
-        known = {name: rows for name, rows in every.items() if name in scenes and len(rows) > 1}
+        every = self.moments.groupby("scene", sort=False)
+        known = {name: rows for name, rows in every if name in scenes and len(rows) > 1}
         return {name: rows for name, rows in known.items() if set(rows.moment) == set(scenes[name].moments)}
 
     def minutes(self, moments, code, threads, of=statistics.median):

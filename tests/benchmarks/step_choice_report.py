@@ -131,7 +131,8 @@ def text():
             "Largest error of the energy ledger over what `yade_scripts/step_choice.py` has for the 95 % level. "
             f"{len(found)} collisions that met ({len(COLLISIONS.read()) - len(found)} did not), "
             f"{len(COMPRESSIONS.read())} compressions. Data: step_choice.csv, step_choice_compression.csv. "
-            f"Measured on: {origins}; compressions: {'; '.join(COMPRESSIONS.origins().values())}.",
+            f"Measured on: {origins}; compressions: {'; '.join(COMPRESSIONS.origins().values())}. "
+            "Scenes are chosen by the columns of these tables; held: no necks, and springs held at their limits.",
             "## CPE aggregates in space",
             "Fit to all but the random ones at a level (fraction of runs below); those of the "
             f"{FITTED_LEVEL:.0%} level are taken ({of_plain}):",

@@ -139,6 +139,9 @@ def test_what_was_measured_stays(tmp_path):
     results.put(speed=[{**here, "rate": 2 / 3}, {**here, "moment": "later", "rate": 1.0}])
     assert list(Results(tmp_path).speed.rate) == [0.1 + 0.2, 2 / 3, 1.0]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["speed.csv"]
+    results.put(moments=[{**here, "progress": 0.0}, {**here, "moment": "later", "progress": 0.5}])
+    results.put(moments=[{**here, "progress": 0.0}])  # measured again
+    assert list(Results(tmp_path).moments.moment) == ["flying", "later"]
 
 
 @pytest.mark.parametrize("folder", [RESULTS, RESULTS / "epyc-zen5"], ids=lambda folder: folder.name)

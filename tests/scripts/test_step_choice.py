@@ -1,6 +1,5 @@
 """stepFraction=auto: the step that is chosen, what is said of it, and that real runs keep to the tolerance."""
 
-import json
 import os
 import re
 import signal
