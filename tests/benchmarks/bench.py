@@ -1,89 +1,115 @@
-"""make bench: speed of every code on the same grains, speed through a collision, and error against the time step, in one run.
+"""Speed and error of this law's codes and of others', on the scenes of the bench and of the papers, in one report.
 
-    /usr/bin/python3 tests/benchmarks/bench.py [--quick | --tiny] [--only speed,collision,error] [--out FOLDER]
+    /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report] [--again]
 
-Writes bench.json (everything measured), bench.md (tables, and whether each target is reached) and figures, all with the commit and the machine.
---quick measures less, in some three minutes, and writes to build/bench; --tiny only shows that it works.
+--scene: names, or groups of them: bench (sizes, unlike grains, moments of collisions, and the error against the step:
+collision and pair), papers (moments of the papers' runs), compressions (error against the step of a compression).
+Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
+100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
+measured with the same plugin (its commit), machine and settings, are not done again (--again measures anew). Results:
+speed.csv, moments.csv, error.csv (results.py), bench.md (tables, and whether each target is reached) and figures.
+--quick measures less, and writes to build/bench; --tiny only shows that it works.
 """
 
 import argparse
-import dataclasses
-import json
 import sys
+from functools import cache
 from pathlib import Path
 
-from measured_on import RESULTS, TOP, machine
+from measured_on import RESULTS, TOP, built_commit, machine
 
 sys.path.insert(0, str(TOP))
-import errors  # noqa: E402
-import figures  # noqa: E402
-import paper_moments  # noqa: E402
-import paper_report  # noqa: E402
-import peers  # noqa: E402
-import report  # noqa: E402
-import settings  # noqa: E402
-import speed  # noqa: E402
-import whole_collision  # noqa: E402
+import codes
+import errors
+import figures
+import measured_scenes
+import moments
+import report
+import settings
+import speed
+from results import Results
 
-from yade_scripts.run.progress import progress_bar  # noqa: E402
-from yade_scripts.runner.view import duration_text  # noqa: E402
+from yade_scripts.run.progress import progress_bar
 
-PARTS = {"speed": speed, "collision": whole_collision, "error": errors}
+PARTS = ("make", "measure", "report")
 
 
-def arguments():
+def arguments(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     size = parser.add_mutually_exclusive_group()
-    size.add_argument("--quick", action="store_const", dest="size", const="quick", help="a shortened version")
-    size.add_argument(
-        "--tiny", action="store_const", dest="size", const="tiny", help="as little as shows that it works"
-    )
-    parser.add_argument("--only", default=",".join(PARTS), help="parts to measure: " + ",".join(PARTS))
+    for name, what in (("quick", "a shortened version"), ("tiny", "as little as shows that it works")):
+        size.add_argument(f"--{name}", action="store_const", dest="size", const=name, help=what)
+    parser.add_argument("--scene", default="bench", help="scenes, or groups: bench, papers, compressions")
+    parser.add_argument("--only", default=",".join(PARTS), help="parts to do: " + ",".join(PARTS))
+    parser.add_argument("--again", action="store_true", help="measure again what has been measured")
     parser.add_argument("--out", type=Path, help="folder for the results")
-    given = parser.parse_args()
+    given = parser.parse_args(words)
+    given.settings = getattr(settings, (given.size or "full").upper())
+    known = groups(given.settings)
+    given.scene = [name for word in given.scene.split(",") for name in known.get(word, [word])]
     given.only = given.only.split(",")
-    if unknown := [name for name in given.only if name not in PARTS]:
-        parser.error(f"--only: no part {unknown[0]}; must be of {', '.join(PARTS)}")
+    every = [name for names in known.values() for name in names]
+    for option, names, allowed in (("scene", given.scene, [*known, *every]), ("only", given.only, PARTS)):
+        if unknown := [name for name in names if name not in allowed]:
+            parser.error(f"--{option} {unknown[0]}: must be of {', '.join(allowed)}")
     given.out = given.out or (TOP / "build/bench" if given.size else RESULTS)
     return given
 
 
-class Done:
-    """Adds up the estimated seconds of what is done, for the progress bar."""
+def groups(how):
+    """{name of a group: names of scenes, and of the errors' scenes}"""
+    collision, pair, *compressions = errors.scenes(how)
+    own = [*measured_scenes.bench(how), collision, pair]
+    return {"bench": own, "papers": [*measured_scenes.PAPERS], "compressions": compressions}
 
-    def __init__(self, total):
-        self.progress, self.total, self.seconds = progress_bar(total, unit="s"), total, 0.0
 
-    def __call__(self, seconds):
-        new = min(self.total, self.seconds + seconds) - self.seconds
-        self.seconds += new
-        self.progress.update(new)
+def measure_speed(scenes, how, results, again):
+    """Make and measure what is not done, one batch after the other."""
+    wanted = {"commit": built_commit(), "cpu": machine()["cpu"], "settings": how.text()}
+    again = again or wanted["commit"].endswith("-changed")
+    start = cache(lambda name: moments.make(name, scenes[name], say=say))
+    for batch in speed.batches(scenes):
+        if again or not all(results.is_done(name, moment, **wanted) for name, _, moment in batch):
+            starts = {name: start(name) for name, _, _ in batch}
+            with progress_bar(speed.count_of(batch, how), unit="measurement") as progress:
+                results.put(**speed.measure(batch, starts, how, progress.update))
+            say(f"{', '.join(f'{name} {moment}' for name, _, moment in batch)}: measured")
+
+
+def measure_errors(names, how, results, again):
+    of = {"cpu": machine()["cpu"], "commit": built_commit()[:7]}
+    for name in names:
+        there = results.error[results.error.scene == name]
+        if again or not len(there) or any(there[key].iloc[0] != value for key, value in of.items()):
+            say(f"error of {name} against the step")
+            results.put(error=[{**row, **of} for row in errors.measure(name, how)])
+
+
+def say(words, **how):
+    print(f"bench: {words}", **{"flush": True, **how})
 
 
 def main():
     given = arguments()
-    how = getattr(settings, (given.size or "full").upper())
-    total = sum(PARTS[name].estimate(how) for name in given.only)
-    print(f"bench: about {duration_text(total)}; keep the machine quiet meanwhile", flush=True)
-    missing = {code: reason for code in peers.PROGRAMS if (reason := peers.missing(code))}
-    for code, reason in missing.items():
-        print(f"bench: without {code}: {reason}", flush=True)
-    done = Done(total)
-    found = {
-        "machine": machine(),
-        "settings": dataclasses.asdict(how),
-        "missing": missing,
-        "versions": {code: peers.version(code) for code in peers.PROGRAMS if code not in missing},
-    }
-    for name in given.only:
-        found[name] = PARTS[name].measure(how, done)
-    done.progress.close()
-    given.out.mkdir(parents=True, exist_ok=True)
-    (given.out / "bench.json").write_text(json.dumps(found, indent=1))
-    text = paper_report.with_section(report.text(how, found), paper_report.text(paper_moments.read(given.out)))
-    (given.out / "bench.md").write_text(text)
-    figures.draw(how, found, given.out)
-    print(text)
+    how, known = given.settings, measured_scenes.all_scenes(given.settings)
+    scenes, results = {name: known[name] for name in given.scene if name in known}, Results(given.out)
+    if "make" in given.only:
+        for name, scene in scenes.items():
+            moments.make(name, scene, say=say)
+    if "measure" in given.only:
+        say("keep the machine quiet meanwhile")
+        for code in sorted({code for scene in scenes.values() for code in scene.codes}):
+            if reason := codes.missing(code):
+                say(f"without {code}: {reason}")
+        measure_speed(scenes, how, results, given.again)
+        measure_errors([name for name in given.scene if name not in known], how, results, given.again)
+    if "report" in given.only:
+        if not len(results.speed) + len(results.error):
+            sys.exit(f"bench: {given.out} holds no measurement: must be measured first (--only measure)")
+        text = report.text(results, how)
+        (given.out / "bench.md").write_text(text)
+        figures.draw(results, how, given.out)
+        print(text)
 
 
 if __name__ == "__main__":

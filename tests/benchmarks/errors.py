@@ -1,130 +1,160 @@
-"""Error and cost against the time step: A24's scene in small, and a bounce of two grains.
+"""Error and cost against the time step, of collisions, compressions and a bounce of two grains: error.csv, a row a run.
 
-Collision: largest closure error of the energy ledger over K(0), and |d_max - d_max at the finest step| in grain radii, root mean square over the seeds.
-Pair: relative error of the rebound speed, root mean square over initial gaps that spread the moment of contact over a step, against the closed form
-v^2 - v_stick^2. Cost: steps a time unit, and seconds of the collisions' runs. A step that is refused or blows up is recorded as that, in its own words.
+ledger: largest error of the sum of all channels, over K(0) (collision) or over the boundaries' work until then (compression;
+ledgerThin: up to a filling of 0.1). d_max: of a collision, in grain radii. workThin, work: of a compression's boundaries [J]
+from a filling of 0.05 to 0.1, and from there to the end: the pressure. These three are compared with those of the finest
+step and the same seed (sample). rebound: relative error of the rebound speed of two grains against the closed
+form v^2 - v_stick^2, for initial gaps (samples) that spread the moment of contact over a step. seconds: of the run, one
+thread. A step that is refused or blows up is recorded as that, in its own words.
 """
 
 import json
 import subprocess
-import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
+import codes
 import numpy as np
+import scene_file
+import starts
 from measured_on import HERE, TOP
-from measured_scenes import GRAIN_RADIUS
 
+from analysis import open_run
+from analysis.measures import ledger
+from analysis.measures.compression import maximum_compression
 from analysis.theory import ICE, pair_constants, sticking_velocity_without_drag
+from yade_scripts.experiments.collision import CollisionParameters
 
-PAIR_SPEED = 9.0  # m/s
-
-
-def estimate(settings):
-    """Seconds that measure() takes about."""
-    updates = sum(
-        2.4 * settings.error_radius**3 * settings.error_duration / (1.94e-10 * step) for step in settings.error_steps
-    )
-    return len(settings.error_seeds) * (updates / 90e6 + 2 * len(settings.error_steps)) + pair_estimate(settings)
+PAIR_SPEED, GRAIN_RADIUS = 9.0, 1e-7  # m/s, m
+BOUNCE = 100  # t0, after which two grains are apart
+COMPRESSION_STEPS = (0.05, 0.1, 0.2, 0.3, 0.36)
+FILLINGS, THIN = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5), 0.1
+FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
 
 
-def pair_estimate(settings):
-    return 2 + settings.gaps * sum(1e-3 / step for step in settings.error_steps)
+@dataclass(frozen=True)
+class ErrorScene:
+    """title; parameters as collide.py or compress.py has them (None: two grains); steps [t0]; number of samples: seeds from
+    1 on, or gaps from 0 on."""
+
+    title: str
+    parameters: dict
+    steps: tuple
+    samples: int
 
 
-def measure(settings, done):
-    """{"collision": {step: [{closure, d_max, seconds} or {"refused": line} of each seed]}, "pair": {step: [relative errors] or the engine's refusal}}"""
-    collisions = {}
-    for step in settings.error_steps:
-        collisions[step] = [collide(settings, step, seed) for seed in settings.error_seeds]
-        done((estimate(settings) - pair_estimate(settings)) / len(settings.error_steps))
-    pair = bounce(settings)
-    done(pair_estimate(settings))
-    return {"collision": collisions, "pair": pair}
-
-
-def bounce(settings):
-    """{step: [relative errors of the rebound speed] or the engine's refusal}"""
-    with tempfile.TemporaryDirectory() as folder:
-        answer = Path(folder) / "answer.json"
-        asked = json.dumps(
-            {"steps": settings.error_steps, "speed": PAIR_SPEED, "gaps": settings.gaps, "answer": str(answer)}
-        )
-        done = subprocess.run(
-            ["yade", "-n", "-x", "-j1", str(HERE / "yade_pair.py"), asked], capture_output=True, text=True
-        )
-        if done.returncode:
-            raise RuntimeError(f"yade_pair.py failed:\n{done.stderr[-2000:]}")
-        speeds = json.loads(answer.read_text())
-    exact = np.sqrt(PAIR_SPEED**2 - sticking_velocity_without_drag(pair_constants(ICE, GRAIN_RADIUS)) ** 2)
+def scenes(settings):
+    """{name: ErrorScene}"""
+    collision = {"radius": settings.error_radius, "duration": settings.error_duration}
+    cell = {"grains": settings.cell[0], "strainRate": settings.cell[1], "finalFilling": 0.5}
+    of_cell = COMPRESSION_STEPS, 2 * settings.seeds
     return {
-        float(step): found if isinstance(found, str) else (np.array(found) / exact - 1).tolist()
-        for step, found in speeds.items()
+        "collision": ErrorScene("collision", collision, settings.error_steps, settings.seeds),
+        "pair": ErrorScene("pair", None, settings.error_steps, settings.gaps),
+        "compression": ErrorScene("compression, k_n 0.01", {**cell, "linearDamping": 0.01}, *of_cell),
+        "compression-undamped": ErrorScene("compression, k_n 0", {**cell, "linearDamping": 0.0}, *of_cell),
     }
 
 
-def collide(settings, step, seed):
-    """One run of collide.py as a user does it, read by the analysis."""
+def measure(name, settings):
+    """Rows of error.csv of an ErrorScene."""
+    scene = scenes(settings)[name]
+    found = bounces(scene) if scene.parameters is None else runs(scene)
+    return [{"scene": name, "code": "engine", **row} for row in found]
+
+
+def runs(scene):
+    """A row for each step and seed."""
+    seeds = range(1, scene.samples + 1)
+    asked = [{**scene.parameters, "stepFraction": step, "seed": seed} for step in scene.steps for seed in seeds]
+    for one, found in zip(asked, of_scripts(asked), strict=True):
+        found["refused"] = found.pop("failed", None)
+        work = [work for _, work in found.pop("byFilling", {}).values()]
+        if work:
+            found |= {"workThin": work[1] - work[0], "work": work[-1] - work[1]}
+        yield {"step": one["stepFraction"], "sample": one["seed"], **found}
+
+
+def of_scripts(asked):
+    """What runs of collide.py, or with strainRate of compress.py, gave: a list of dictionaries for one of parameters.
+
+    ledger, seconds; d_max; byFilling of a compression: {filling: [ledger, work [J]] as if the run had ended there}. Of a run
+    that did not come to its end only {"failed": its last words}.
+    """
     with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "run"
-        done = subprocess.run(
-            [
-                "yade",
-                "-n",
-                "-x",
-                str(TOP / "yade_scripts/collide.py"),
-                f"radius={settings.error_radius:g}",
-                f"stepFraction={step}",
-                f"seed={seed}",
-                f"duration={settings.error_duration}",
-                f"out={out}",
-            ],
-            capture_output=True,
-            text=True,
-        )
+        folder, commands = Path(folder), []
+        for k, given in enumerate(asked):
+            script = TOP / "yade_scripts" / ("compress.py" if "strainRate" in given else "collide.py")
+            given = {"threads": 1, **given, "out": folder / str(k)}
+            commands.append([str(script), *(f"{name}={value}" for name, value in given.items())])
+        (folder / "runs.json").write_text(json.dumps(commands))
+        command = ["yade", "-n", "-x", "-j1", str(HERE / "yade_errors.py"), "runs.json"]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode:
-            lines = [line for line in done.stderr.splitlines() if line.startswith("collide.py: ")]
-            return {"refused": lines[-1] if lines else done.stderr.strip().splitlines()[-1]}
-        summary = subprocess.run(
-            [sys.executable, "-m", "analysis", "summary", "--json", str(out)],
-            cwd=TOP,
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout
-        found, wall = json.loads(summary), json.loads((out / "run.json").read_text())["wallTime"]
-        return {"closure": found["energy_closure"], "d_max": found["d_max"] / GRAIN_RADIUS, "seconds": wall}
+            raise codes.CodeFailed(f"yade_errors.py failed:\n{done.stderr[-2000:]}")
+        return [_of_run(folder / str(k)) for k in range(len(asked))]
 
 
-def curves(settings, results):
-    """{name: (steps (n,), error (n,), order, its standard error)} of the three errors; the steps that ran, ascending."""
-    ran = sorted(step for step, runs in results["collision"].items() if not any("refused" in run for run in runs))
-    finest = [run["d_max"] for run in results["collision"][ran[0]]]
-    bounced = sorted(step for step, errors in results["pair"].items() if not isinstance(errors, str))
-    found = {
-        "ledger": (ran, [rms([run["closure"] for run in results["collision"][step]]) for step in ran]),
-        "d_max": (
-            ran[1:],
-            [rms([run["d_max"] - d for run, d in zip(results["collision"][step], finest)]) for step in ran[1:]],
-        ),
-        "pair": (bounced, [rms(results["pair"][step]) for step in bounced]),
-    }
-    return {
-        name: (np.array(steps), np.array(error), *order(settings, steps, error))
-        for name, (steps, error) in found.items()
-    }
+def _of_run(path):
+    if not (path / "ended").exists():
+        return {"failed": path.with_suffix(".txt").read_text().strip().splitlines()[-1]}
+    history, seconds = open_run(path).history, json.loads((path / "run.json").read_text())["wallTime"]
+    if "filling" not in history:
+        largest = maximum_compression(history["time"], history["d"], history["v"])
+        d_max = largest.length / GRAIN_RADIUS if largest else None
+        return {"ledger": ledger.closure(history), "d_max": d_max, "seconds": seconds}
+    total, work, by_filling = ledger.total_energy(history), -history["boundaryWork"], {}
+    error = np.maximum.accumulate(np.abs(total - total[0]))
+    for filling in FILLINGS:
+        if (history["filling"] >= filling).any():
+            end = np.argmax(history["filling"] >= filling)
+            by_filling[filling] = [error[end] / work[end], work[end]]
+    thin = by_filling.get(THIN, [None])[0]
+    return {"ledger": error[-1] / work[-1], "ledgerThin": thin, "byFilling": by_filling, "seconds": seconds}
 
 
-def order(settings, steps, error):
-    """(slope, standard error) of log error against log step between settings.fit; (nan, nan) where fewer than three steps lie there."""
-    least, most = settings.fit
-    within = [k for k, step in enumerate(steps) if least <= step <= most and error[k] > 0]
-    x, y = np.log(np.array(steps)[within]), np.log(np.array(error)[within])
-    if len(x) < 3:
+def bounces(scene):
+    """A row for each step and gap; all pairs of a step in one run of the engine without YADE."""
+    constants, gaps = pair_constants(ICE, GRAIN_RADIUS), 2e-9 + 1e-10 * np.arange(scene.samples) / 1.7
+    exact = np.sqrt(PAIR_SPEED**2 - sticking_velocity_without_drag(constants) ** 2)
+    for step in scene.steps:
+        made = starts.pairs(gaps, PAIR_SPEED, CollisionParameters.parse({}), step * constants.time_unit)
+        try:
+            rebound, refused = _rebound(made, int(BOUNCE / step)) / exact - 1, None
+        except codes.CodeFailed as error:
+            rebound, refused = np.full(len(gaps), np.nan), str(error)
+        for sample, one in enumerate(rebound):
+            yield {"step": step, "sample": sample, "rebound": one, "refused": refused}
+
+
+def _rebound(scene, steps):
+    """Speed of separation (n,) [m/s] of each of the pairs of a SceneFile after so many steps. Raises codes.CodeFailed."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin, end = Path(folder) / "begin.scene", Path(folder) / "end.scene"
+        scene_file.save(begin, scene)
+        codes.harness(begin, steps=steps, out=end)
+        after = scene_file.load(end)
+    if len(after.contacts):
+        raise codes.CodeFailed(f"{len(after.contacts)} pairs still touch after {BOUNCE} t0")
+    return np.diff(after.grains["velocity"][:, 0].reshape(-1, 2), axis=1)[:, 0]
+
+
+def curve(rows, quantity):
+    """(steps (n,), root mean square error (n,)) of a scene's rows; see the module's head."""
+    values = rows.pivot(index="step", columns="sample", values=quantity).dropna()
+    if quantity.startswith("work"):
+        values = np.log(values)
+    if quantity == "d_max" or quantity.startswith("work"):
+        values = (values - values.iloc[0]).iloc[1:]
+    return values.index.to_numpy(float), np.sqrt(np.mean(values.to_numpy(float) ** 2, axis=1))
+
+
+def order(steps, error, fitted=FITTED):
+    """(slope, standard error) of log error against log step between two steps; (nan, nan) where fewer than three lie
+    there."""
+    within = (steps >= fitted[0]) & (steps <= fitted[1]) & (error > 0)
+    if np.count_nonzero(within) < 3:
         return np.nan, np.nan
-    (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
+    (slope, _), covariance = np.polyfit(np.log(steps[within]), np.log(error[within]), 1, cov=True)
     return slope, np.sqrt(covariance[0, 0])
-
-
-def rms(values):
-    return float(np.sqrt(np.mean(np.square(values))))

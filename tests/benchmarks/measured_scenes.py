@@ -1,99 +1,88 @@
-"""The scenes whose speed is measured, as arrays: the same grains for every code. Needs no YADE.
+"""The scenes that are measured, as data: the papers' runs, and the bench's own. Needs no YADE.
 
-Two aggregates (A24 section 3) with their centres at -/+(R_agg + r), flying at each other. Kinds:
-
-uniform    ice grains of 0.1 um, CPE, filling 0.4
-materials  the same packing, every other grain (at random) softer: E = 3 GPa, nu = 0.33, gamma = 0.05 J/m^2, so that three kinds of contact occur; their
-           equilibrium overlaps differ by up to 7 %, so the packing starts close to rest
-radii      ice in a rock-salt lattice: grains of 0.1 um on the sites of CPE, grains 0.41 times as large in the gaps between them, every neighbour at
-           its equilibrium overlap, the same fraction of sites removed at random
+A scene is what a run of collide.py or compress.py starts from, and the moments of that run at which codes are measured
+(moments.py makes their files).
 """
 
-from dataclasses import dataclass, replace
-from math import sqrt
+from dataclasses import dataclass, field
 
-import numpy as np
-
-from analysis.theory import ICE, Material, pair_constants
-from yade_scripts import packings
-
-FILLING = 0.4
-SPEED = 10**0.5  # m/s, relative
-STEP = 0.1  # of the shortest time unit t0 of the scene's contacts
-GRAIN_RADIUS = 1e-7  # m
-SOFT = Material(young=3e9, poisson=0.33, density=1000.0, surface_energy=0.05, critical_rolling=1.1e-9)
-SEED = 1
+ENGINE, BESIDE_LAMMPS = ("engine",), ("engine", "lammps")
+SLOW, PEERS = ("engine-avx2", "engine-portable", "functors", "stock"), ("lammps", "liggghts")
+FLYING = {"flying": 0.0}
 
 
 @dataclass(frozen=True)
 class Scene:
-    """position, velocity (N,3) [m, m/s]; radius (N,) [m]; material (N,) index into materials; time step [s]; spin (N,3) [rad/s], None: 0; edge [m] of a
-    periodic cubic cell, 0: open space."""
+    """title, in words; kind: collision, compression, materials or radii (starts.py); parameters of the run, as tables have them; moments: {name: time [s]
+    or filling factor}, in their order (None: the start); apart: time [s] by which the first moment of a collision is moved
+    back along straight lines, for a flight long enough to measure; codes: names of codes.CODES to measure."""
 
-    position: np.ndarray
-    velocity: np.ndarray
-    radius: np.ndarray
-    material: np.ndarray
-    materials: tuple
-    step: float
-    spin: np.ndarray = None
-    edge: float = 0.0
-
-    @property
-    def grains(self):
-        return len(self.radius)
+    title: str
+    kind: str
+    parameters: dict
+    moments: dict = field(default_factory=lambda: FLYING)
+    apart: float = 0.0
+    codes: tuple = BESIDE_LAMMPS
 
 
-def make(kind, aggregate_radius, speed=SPEED):
-    """Scene of a kind (see above); aggregate_radius in GRAIN_RADIUS, speed [m/s] of the aggregates to each other."""
-    pack = rock_salt if kind == "radii" else close_packing
-    aggregates = [pack(aggregate_radius, index) for index in (0, 1)]
-    reach = (aggregate_radius + 1) * GRAIN_RADIUS
-    position = np.concatenate([a.position + (side * reach, 0, 0) for a, side in zip(aggregates, (-1, 1))])
-    velocity = np.concatenate(
-        [np.tile([-side * speed / 2, 0, 0], (a.grains, 1)) for a, side in zip(aggregates, (-1, 1))]
-    )
-    radius = np.concatenate([a.radius for a in aggregates])
-    scene = Scene(position, velocity, radius, np.zeros(len(radius), int), (ICE,), 0)
-    if kind == "materials":
-        scene = replace(
-            scene, material=np.random.default_rng(SEED).integers(2, size=scene.grains), materials=(ICE, SOFT)
-        )
-    return replace(
-        scene, step=STEP * min(pair_constants(m, r).time_unit for m in scene.materials for r in np.unique(radius))
-    )
+# ---- the papers' ----
+
+A22 = {"packing": "bpca", "grains": 50_000, "impact": "(3/12)**0.5", "velocity": "10**1.7", "stepFraction": 0.2}
+A22.update(duration="6.34e-6", viscoelasticTime="0")
+OF_A22 = {"flying": 0.0, "compressing": 0.35e-6, "fragments": 0.7e-6, "later": 2e-6}
+K13 = {"grains": 16_384, "strainRate": "3e-7", "stepFraction": 0.3, "finalFilling": 0.3}
+DENSE = {"phi 0.03": 0.03, "phi 0.3": 0.3}
+S17 = {"packing": "bcca", "grains": 1024, "planar": 1, "neck": 0.7, "velocity": 20, "stepFraction": 0.1}
+OF_S17 = {"flying": 0.0, "touching": 0.5e-6, "later": 1.5e-6}
+CPE = {"packing": "cpe", "filling": 0.4, "stepFraction": 0.1, "velocity": "10**0.5"}
+OF_A24 = {"flying": 0.0, "compressed": 0.4e-6, "apart": 0.8e-6}
+FAST = {**CPE, "radius": 20, "velocity": 60, "duration": "120e-9"}
+OF_FAST = {"flying": 0.0, "compressing": 30e-9, "fragments": 110e-9}
+WITH_DRAG, SLOWLY = {**A22, "viscoelasticTime": "6e-12"}, {**A22, "velocity": 0.5}
+PAPERS = {
+    "a22": Scene("A22: two BPCA of 50,000 at 50.1 m/s, B_off 0.5", "collision", A22, OF_A22, 0.5e-6),
+    "a22-drag": Scene("A22: the same, T_vis 6 ps", "collision", WITH_DRAG, OF_A22, 0.5e-6),
+    "a22-slow": Scene("A22: the same grains at 0.5 m/s, T_vis 0", "collision", SLOWLY, FLYING, 0.5e-6),
+    "k13": Scene("K13: BCCA of 16,384, C_v 3e-7", "compression", K13, {"phi 0.001": 0.001, **DENSE}),
+    "k13-1024": Scene("K13: BCCA of 1,024, C_v 3e-7", "compression", {**K13, "grains": 1024}, {"start": None, **DENSE}),
+    "s17": Scene("S17: 2 x 1,024 planar BCCA, beta 0.7, 20 m/s", "collision", S17, OF_S17, 0.3e-6),
+    "a24": Scene("A24: two CPE, R 80, 3.16 m/s", "collision", {**CPE, "radius": 80}, OF_A24, 0.1e-6),
+    "cpe-fast": Scene("two CPE, R 20, 60 m/s", "collision", FAST, OF_FAST, 0.2e-6),
+    "cpe": Scene(
+        "two CPE, R 40, 3.16 m/s", "collision", {**CPE, "radius": 40}, {"flying": 0.0, "compressed": 0.2e-6}, 0.1e-6
+    ),
+}
 
 
-def close_packing(aggregate_radius, index):
-    overlap = pair_constants(ICE, GRAIN_RADIUS).equilibrium_overlap
-    return packings.cpe(FILLING, aggregate_radius * GRAIN_RADIUS, GRAIN_RADIUS, overlap, SEED, index)
+# ---- the bench's ----
 
 
-def rock_salt(aggregate_radius, index):
-    """Packing of two sizes (see above)."""
-    overlap = pair_constants(ICE, GRAIN_RADIUS).equilibrium_overlap
-    spacing = (2 * GRAIN_RADIUS - overlap) / sqrt(2)  # of large and small
-    small = small_radius(spacing)
-    random = packings.random_stream(SEED, index)
-    outside = aggregate_radius * GRAIN_RADIUS
-    reach = np.arange(-int(outside / spacing) - 2, int(outside / spacing) + 3)
-    site = np.stack(np.meshgrid(reach, reach, reach, indexing="ij"), axis=-1).reshape(-1, 3)
-    position = site * spacing - random.uniform(0, 2 * spacing, 3)
-    kept = (np.linalg.norm(position, axis=1) < outside) & (
-        random.random(len(site)) < FILLING / packings.maximum_filling(GRAIN_RADIUS, overlap)
-    )
-    radius = np.where(site.sum(axis=1) % 2 == 0, GRAIN_RADIUS, small)
-    return packings.Packing(position[kept], radius[kept], SEED)
+def bench(settings):
+    """{name: Scene}: two CPE of each size, unlike grains, and moments through a collision."""
+    found, reference = {}, settings.reference
+    for radius in settings.radii:
+        codes = ENGINE + SLOW * (radius in (settings.radii[0], reference)) + PEERS * (radius == reference)
+        found[sized(radius)] = _two_cpe(f"two CPE, R {radius:g}", "collision", radius, codes)
+    found["materials"] = _two_cpe(f"two materials, R {reference:g}", "materials", reference, ENGINE)
+    found["radii"] = _two_cpe(f"two sizes of grain, 1 : 0.41, R {reference:g}", "radii", reference, ENGINE)
+    for radius, speed, duration in settings.through:
+        given = {**CPE, "radius": radius, "velocity": speed, "duration": duration}
+        times = {f"{1e9 * duration * k / 5:.3g} ns": duration * k / 5 for k in range(1, 6)}
+        title = f"two CPE, R {radius:g}, through {speed:g} m/s"
+        found[f"through-{speed:g}"] = Scene(title, "collision", given, {**FLYING, **times}, 0.2e-6, ENGINE)
+    return found
 
 
-def small_radius(spacing):
-    """Radius [m] of the grain that is at its equilibrium overlap with a grain of GRAIN_RADIUS at this distance [m]."""
-    small = spacing - GRAIN_RADIUS
-    for _ in range(20):  # converges by a factor of some 200 a turn
-        small = spacing - GRAIN_RADIUS + pair_constants(ICE, GRAIN_RADIUS, ICE, small).equilibrium_overlap
-    return small
+def sized(radius):
+    """Name of the scene of two CPE of this radius [grain radii]."""
+    return f"cpe-{radius:g}"
 
 
-def touching(scene):
-    """Number of pairs of grains that overlap."""
-    return len(packings.contacts(packings.Packing(scene.position, scene.radius, SEED)))
+def _two_cpe(title, kind, radius, codes):
+    # a flight that is enough to measure, and so short that a peer's bins are not mostly empty
+    flight = max(0.1e-6, 1e-6 * min(1.0, (20 / radius) ** 3))
+    return Scene(title, kind, {**CPE, "radius": radius}, apart=flight, codes=codes)
+
+
+def all_scenes(settings):
+    return {**bench(settings), **PAPERS}

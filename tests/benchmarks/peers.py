@@ -1,7 +1,9 @@
 """LAMMPS and LIGGGHTS on the same grains: is it installed, and how fast does it go?
 
-Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that mean SI or reduced units.
-Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What differs is in PHYSICS. One material and one size only.
+Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that
+mean SI or reduced units; their inputs are in.lammps and in.liggghts. Materials' constants are the scene's; friction limits
+are those of JKR-Wada at zero load. What differs is in Peer.physics. One material and one size only; contacts start without
+springs, there is no drag, and a periodic cell keeps its size.
 """
 
 import os
@@ -11,91 +13,74 @@ import shutil
 import subprocess
 import tempfile
 import time
+from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 from pathlib import Path
 
 import numpy as np
+import scene_file
+from measured_on import HERE
 
-from analysis.theory import pair_constants
+from analysis.theory import Material, pair_constants
 
 TIME = 1e-9  # s
 WIDEST = 1500  # edge of a box [grain radii] that LAMMPS can divide into bins of its own size
 BINS = 400  # along the edge of a wider one
-SKIN = 0.3  # grain radii; 0.1 to 0.6 measured the same
-PHYSICS = {
-    "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
-    "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential history, rolling epsd2; no twisting, no energy ledger.",
-}
-
-RUN_AND_COUNT = """timestep {step}
-fix move all nve/sphere
-compute touching all contact/atom
-compute touch all reduce sum c_touching
-thermo_style custom step atoms c_touch
-thermo_modify norm no
-thermo {steps}
-run {steps}
-"""
-LAMMPS_INPUT = (
-    """units lj
-atom_style sphere
-atom_modify sort 1000 {bin_edge}
-boundary {boundary}
-newton off
-{processors}
-comm_modify vel yes
-read_data grains.data
-pair_style granular
-pair_coeff * * jkr {young} 0 {poisson} {surface_energy} tangential mindlin NULL 0 {friction} rolling sds {rolling_stiffness} 0 {rolling_friction} twisting marshall damping velocity
-neighbor {skin} bin
-neigh_modify delay 0 every 1 check yes binsize {bin_edge}
-"""
-    + RUN_AND_COUNT
-)
-LIGGGHTS_INPUT = (
-    """units si
-atom_style granular
-boundary {boundary}
-newton off
-{processors}
-communicate single vel yes
-read_data grains.data
-soft_particles yes
-neighbor {skin} bin
-neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype {young}
-fix m2 all property/global poissonsRatio peratomtype {poisson}
-fix m3 all property/global coefficientRestitution peratomtypepair 1 1.0
-fix m4 all property/global coefficientFriction peratomtypepair 1 {friction}
-fix m5 all property/global cohesionEnergyDensity peratomtypepair 1 {cohesion}
-fix m6 all property/global coefficientRollingFriction peratomtypepair 1 {rolling_friction}
-fix m7 all property/global coefficientRollingViscousDamping peratomtypepair 1 0.0
-pair_style gran model hertz tangential history cohesion sjkr2 rolling_friction epsd2
-pair_coeff * *
-"""
-    + RUN_AND_COUNT
-)
-PROGRAMS = {"lammps": ("lmp", LAMMPS_INPUT), "liggghts": ("liggghts", LIGGGHTS_INPUT)}
+FEWEST_STEPS, UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
+
+
+@dataclass(frozen=True)
+class Peer:
+    """program, as it is called; physics, in words. Its input is in.NAME."""
+
+    program: str
+    physics: str
+
+
+PROGRAMS = {
+    "lammps": Peer(
+        "lmp",
+        "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the "
+        "largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
+    ),
+    "liggghts": Peer(
+        "liggghts",
+        "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential "
+        "history, rolling epsd2; no twisting, no energy ledger.",
+    ),
+}
 
 
 class PeerFailed(RuntimeError):
     """A peer that is installed did not come to its end, or lost grains."""
 
 
-def missing(code):
-    """Why this code cannot be measured here, in a line; None when it can."""
-    program, _ = PROGRAMS[code]
+def missing(code, scene=None):
+    """Why this code cannot be measured here, or on this SceneFile, in a line; None when it can."""
+    program = PROGRAMS[code].program
     if not shutil.which(program):
         return f"{program} is not installed (make bench-peers installs it)"
-    if code == "lammps" and "granular" not in help_text(program):
+    if code == "lammps" and "granular" not in help_text(shutil.which(program)):
         return f"this {program} was built without pair_style granular"
+    if scene is not None and scene.head["neck"]:
+        return "it has no sintered bonds"
+    if scene is not None and (len(scene.materials) > 1 or np.ptp(scene.grains["radius"])):
+        return "it is measured on like grains only"
     return None
 
 
+@lru_cache
 def help_text(program):
     with tempfile.TemporaryDirectory() as folder:  # LIGGGHTS leaves a log file where it is called
         return subprocess.run([program, "-h"], cwd=folder, capture_output=True, text=True).stdout
+
+
+def version(code):
+    text = help_text(shutil.which(PROGRAMS[code].program))
+    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", text)
+    return next(group for group in found.groups() if group) if found else "unknown"
 
 
 def core_counts():
@@ -103,22 +88,54 @@ def core_counts():
     return (1, 2) if shutil.which("mpirun") else (1,)
 
 
-def version(code):
-    program, _ = PROGRAMS[code]
-    found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", help_text(program))
-    return next(group for group in found.groups() if group) if found else "unknown"
+class PeerCode:
+    """A peer on the scene of a file, by the interface of codes.py: started anew for each measurement; the first with so many
+    processes finds the skin that is best for it."""
+
+    def __init__(self, code, path, settings):
+        self.code, self.scene, self.settings, self.best = code, scene_file.load(path), settings, {}
+
+    def measure(self, threads, seconds, most):
+        """By its own number of steps, not by seconds or `most`."""
+        steps = min(self.settings.peer_steps, max(FEWEST_STEPS, int(UPDATES / len(self.scene.grains))))
+        skins = (self.best[threads],) if threads in self.best else self.settings.skins
+        runs = [measure(self.code, self.scene, steps, threads, skin) for skin in skins]
+        best = min(runs, key=lambda run: run["seconds"])
+        self.best[threads] = best["skin"]
+        return best
+
+    def close(self):
+        pass
 
 
-def box_edges(scene):
-    """(lowest, highest) coordinate of the cell, or of a box in which all grains stay; in grain radii."""
-    reach = 2 * abs(scene.position).max()
-    return (0, scene.edge / scene.radius[0]) if scene.edge else (-reach / scene.radius[0], reach / scene.radius[0])
+def measure(code, scene, steps, cores=1, skin=0.3):
+    """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin} of a run of a SceneFile.
 
-
-def bin_edge(scene):
-    """Of LAMMPS's bins, in grain radii; 0: its own, of which there are too many where fragments are far apart."""
-    low, high = box_edges(scene)
-    return (high - low) / BINS if high - low > WIDEST else 0
+    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii;
+    contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the
+    program's last words.
+    """
+    numbers = {"steps": steps, "skin": skin, "processes": cores, "boundary": "p" if scene.periodic else "f"}
+    numbers |= {"bins": bin_edge(scene), **scaled_constants(scene)}
+    variables = [word for name, value in numbers.items() for word in ("-var", name, str(value))]
+    command = [PROGRAMS[code].program, "-in", str(HERE / f"in.{code}"), "-log", "none", *variables]
+    if cores > 1:
+        command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores), *command]
+    with tempfile.TemporaryDirectory() as folder:
+        write_grains(Path(folder) / "grains.data", scene)
+        start, processor = time.perf_counter(), processor_seconds()
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
+        fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
+    loop = re.search(r"Loop time of (\S+) on", done.stdout)
+    # grains and contacts (twice, once from each grain)
+    counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)
+    if done.returncode or not loop:
+        raise PeerFailed(f"{PROGRAMS[code].program} failed: {last_words(done)}")
+    if len(counted) < 2 or int(counted[-1][0]) != len(scene.grains):
+        raise PeerFailed(f"{PROGRAMS[code].program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
+    contacts = sum(float(count) for _, count in counted) / 2 / len(counted)
+    found = {"grains": len(scene.grains), "contacts": contacts, "steps": steps, "seconds": float(loop.group(1))}
+    return {**found, "fraction": fraction, "version": version(code), "skin": skin}
 
 
 def last_words(done):
@@ -128,58 +145,32 @@ def last_words(done):
     return errors[-1] if errors else printed[-1500:]
 
 
-def measure(code, scene, steps, cores=1, skin=SKIN):
-    """{contacts, grains, steps, seconds, rate, fraction} of a run of `steps` steps; rate: contact updates a second of the time loop.
-
-    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii; contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the program's last words.
-    """
-    program, text = PROGRAMS[code]
-    with tempfile.TemporaryDirectory() as folder:
-        write_grains(Path(folder) / "grains.data", scene)
-        (Path(folder) / "input").write_text(
-            text.format(
-                steps=steps,
-                skin=skin,
-                boundary="p p p" if scene.edge else "f f f",
-                processors=f"processors {cores} 1 1",
-                bin_edge=bin_edge(scene),
-                **scaled_constants(scene),
-            )
-        )
-        command = [program, "-in", "input", "-log", "none"]
-        if cores > 1:
-            command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores)] + command
-        start, processor = time.perf_counter(), processor_seconds()
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
-        fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
-    loop = re.search(r"Loop time of (\S+) on", done.stdout)
-    if done.returncode or not loop:
-        raise PeerFailed(f"{' '.join(command)} failed: {last_words(done)}")
-    counted = re.findall(
-        r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M
-    )  # grains and contacts (twice, once from each grain)
-    if len(counted) < 2 or int(counted[-1][0]) != scene.grains:
-        raise PeerFailed(f"{program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
-    contacts, seconds = sum(float(count) for _, count in counted) / 2 / len(counted), float(loop.group(1))
-    return {
-        "contacts": contacts,
-        "grains": scene.grains,
-        "steps": steps,
-        "seconds": seconds,
-        "rate": contacts * steps / seconds,
-        "fraction": fraction,
-    }
-
-
 def processor_seconds():
     """Of all programs that were started here and have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
+def box_of(scene):
+    """Lowest and highest coordinate (3,) of the cell, or of a box in which all grains stay; in grain radii."""
+    r = scene.grains["radius"][0]
+    if scene.periodic:
+        return np.zeros(3), scene.head["cellSize"] / r
+    reach = 2 * np.abs(scene.grains["position"]).max(axis=0) / r
+    return -reach - 2, reach + 2
+
+
+def bin_edge(scene):
+    """Of LAMMPS's bins, in grain radii; 0: its own, of which there are too many where fragments are far apart."""
+    low, high = box_of(scene)
+    edge = (high - low).max()
+    return edge / BINS if edge > WIDEST else 0
+
+
 def scaled_constants(scene):
     """The numbers that the inputs ask for, in the units of the module's head."""
-    material, r = scene.materials[0], scene.radius[0]
+    (record,), r = scene.materials, scene.grains["radius"][0]
+    material = Material(*(float(record[name]) for name in record.dtype.names if name != "viscoelasticTime"))
     pair = pair_constants(material, r)
     spring = material.density * r**3 / TIME**2  # unit of N/m
     pressure = spring / r
@@ -189,26 +180,24 @@ def scaled_constants(scene):
     return {
         "young": material.young / pressure,
         "poisson": material.poisson,
-        "surface_energy": material.surface_energy / spring,
+        "surfaceEnergy": material.surface_energy / spring,
         "friction": pair.sliding_stiffness * pair.critical_sliding / at_no_load,
-        "rolling_stiffness": pair.rolling_stiffness / spring,
-        "rolling_friction": pair.rolling_stiffness * pair.critical_rolling / at_no_load,
+        "rollingStiffness": pair.rolling_stiffness / spring,
+        "rollingFriction": pair.rolling_stiffness * pair.critical_rolling / at_no_load,
         "cohesion": cohesion / pressure,
-        "step": scene.step / TIME,
+        "step": scene.head["step"] / TIME,
     }
 
 
 def write_grains(path, scene):
     """A data file that both read: id, type, diameter, density, position; id, velocity, spin."""
-    r = scene.radius[0]
-    assert len(scene.materials) == 1 and (scene.radius == r).all(), "peers are measured on like grains"
-    low, high = box_edges(scene)
-    position = scene.position % scene.edge if scene.edge else scene.position
-    spin = np.zeros_like(scene.velocity) if scene.spin is None else scene.spin
-    moving = np.hstack([scene.velocity * TIME / r, spin * TIME])
+    grains, r = scene.grains, scene.grains["radius"][0]
+    position = grains["position"] % scene.head["cellSize"] if scene.periodic else grains["position"]
+    moving = np.hstack([grains["velocity"] * TIME / r, grains["angularVelocity"] * TIME])
+    low, high = (edges.tolist() for edges in box_of(scene))
     with open(path, "w") as file:
-        file.write(f"grains\n\n{scene.grains} atoms\n1 atom types\n\n")
-        file.writelines(f"{low} {high} {axis}lo {axis}hi\n" for axis in "xyz")
+        file.write(f"grains\n\n{len(grains)} atoms\n1 atom types\n\n")
+        file.writelines(f"{low[k]!r} {high[k]!r} {axis}lo {axis}hi\n" for k, axis in enumerate("xyz"))
         file.write("\nAtoms\n\n")
         file.writelines(f"{k} 1 2.0 1.0 {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate((position / r).tolist(), 1))
         file.write("\nVelocities\n\n")

@@ -1,4 +1,4 @@
-"""Scenes in files, for the harness (harness/scene_file.hpp lists the same fields) and for YADE (yade_scene.py).
+"""Scenes in files, for the harness (harness/scene_file.hpp lists the same fields) and for YADE (yade_scene.py), LAMMPS and LIGGGHTS (peers.py).
 
 A file holds one record of HEAD, then records of MATERIAL, GRAIN and CONTACT, as many as HEAD says; every field has eight bytes. All is SI and of one
 moment. Without contacts it is a start: grains that overlap touch, with unstrained springs (with a neck: bonded). The mean flow of a periodic cell is in the
@@ -59,21 +59,21 @@ class SceneFile:
         return replace(self, head=head, grains=grains)
 
 
-def start(position, velocity, radius, material, step, linear_damping=0.0, neck=0.0, edge=0.0, planar=False):
-    """SceneFile of grains of one material that have no contacts yet.
+def start(position, velocity, radius, materials, step, kind=0, linear_damping=0.0, neck=0.0, edge=0.0, planar=False):
+    """SceneFile of grains that have no contacts yet.
 
-    position, velocity (N,3) [m, m/s]; radius (N,) [m]; material: anything with the names of MATERIAL as attributes; step: small step [s]; edge: of a periodic
-    cubic cell [m], 0: open space; planar: the grains never leave z = 0.
+    position, velocity (N,3) [m, m/s]; radius (N,) [m]; materials: each anything with the names of MATERIAL as attributes; step: small step [s]; kind (N,) or
+    one: index into materials; edge: of a periodic cubic cell [m], 0: open space; planar: the grains never leave z = 0.
     """
+    material = np.array([tuple(getattr(one, name) for name in MATERIAL.names) for one in materials], MATERIAL)
     grains = np.zeros(len(radius), GRAIN)
-    grains["position"], grains["velocity"], grains["radius"] = position, velocity, radius
-    grains["mass"] = 4 / 3 * pi * material.density * radius**3
+    grains["position"], grains["velocity"], grains["radius"], grains["material"] = position, velocity, radius, kind
+    grains["mass"] = 4 / 3 * pi * material["density"][grains["material"]] * radius**3
     grains["inertia"] = 2 / 5 * grains["mass"] * radius**2
     grains["blocked"] = IN_PLANE if planar else 0
     head = np.zeros((), HEAD)
     head["step"], head["linearDamping"], head["neck"], head["cellSize"] = step, linear_damping, neck, edge
-    materials = np.array([tuple(getattr(material, name) for name in MATERIAL.names)], MATERIAL)
-    return SceneFile(head, materials, grains, np.zeros(0, CONTACT))
+    return SceneFile(head, material, grains, np.zeros(0, CONTACT))
 
 
 def save(path, scene):

@@ -1,153 +1,113 @@
-"""Contact updates a second of every code, in rounds: each round measures all of them once, so that ratios are taken between neighbours in time."""
+"""Contact updates a second of every code at the moments of the scenes, in rounds: each measures all of them once, so that
+ratios are taken between neighbours in time."""
 
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from contextlib import ExitStack
 
-import measured_scenes
+import codes
+import engine_parts
+import moments
+import numpy as np
 import peers
-from quiet import fraction_of_others
-from yade_process import YadeProcess
+import scene_file
+from measured_on import fraction_of_others, machine
 
-SLOWER_SETS = ("avx2", "portable")
-UNLIKE = ("materials", "radii")
+from analysis.measures.fragments import fragment_labels
 
-
-@dataclass(frozen=True)
-class Task:
-    """One measurement: labels of its result; which YADE to ask (law, kind, radius, its -j), None for a peer; the request; seconds it takes about."""
-
-    labels: dict
-    process: tuple
-    request: dict
-    seconds: float
+SUMMED = ("searches", "looks", "events", "formed", "broken", "contactUpdates", "energyChange", "boundaryWork")
 
 
-def engine(settings, radius, threads, kind="uniform", instructions=""):
-    labels = {
-        "code": "engine",
-        "kind": kind,
-        "radius": radius,
-        "threads": threads,
-        "instructions": instructions or "best",
-    }
-    request = {"do": "fused", "seconds": settings.seconds, "threads": threads, "instructions": instructions}
-    return Task(labels, ("jkr-wada", kind, radius, 1), request, 4 / 3 * settings.seconds + 0.3 + 8e-6 * 0.8 * radius**3)
+def batches(scenes):
+    """What is measured together, as lists of (name, Scene, moment): the scenes of one moment, so that sizes and kinds of
+    grains are compared within a round; every other moment by itself, for its memory and so that it can be resumed."""
+    every = [(name, scene, moment) for name, scene in scenes.items() for moment in scene.moments]
+    single = [one for one in every if len(one[1].moments) == 1]
+    return [single] * bool(single) + [[one] for one in every if len(one[1].moments) > 1]
 
 
-def loop(settings, law, radius, threads):
-    """YADE's own loop with this repository's law (functors) or with the stock one."""
-    labels = {
-        "code": {"jkr-wada": "functors", "stock": "stock"}[law],
-        "kind": "uniform",
-        "radius": radius,
-        "threads": threads,
-        "instructions": "",
-    }
-    return Task(
-        labels,
-        (law, "uniform", radius, threads),
-        {"do": "loop", "seconds": settings.loop_seconds},
-        4 / 3 * settings.loop_seconds + 0.5,
-    )
+class Place:
+    """A moment of a scene, its file, and what is measured there; stack (an ExitStack) closes the codes."""
 
+    def __init__(self, name, scene, moment, start, settings, folder, stack):
+        self.name, self.scene, self.moment, self.start, self.settings = name, scene, moment, start, settings
+        self.path = moments.path_of(name, moment, scene, folder)
+        self.grains = scene_file.load(self.path)
+        self.missing = {code: reason for code in scene.codes if (reason := codes.missing(code, self.grains))}
+        there = [code for code in scene.codes if code not in self.missing]
+        self.answers = {(code, threads): [] for code in there for threads in codes.threads_of(code)}
+        self.open = {code: codes.open_code(code, self.path, start.together, settings) for code in there}
+        for code in self.open.values():
+            stack.callback(code.close)
 
-def peer(settings, code, cores):
-    labels = {"code": code, "kind": "uniform", "radius": settings.reference, "threads": cores, "instructions": ""}
-    return Task(
-        labels,
-        None,
-        {"steps": settings.peer_steps, "cores": cores},
-        1 + settings.peer_steps * 0.8 * settings.reference**3 * 3 / 7e6,
-    )
+    def most(self):
+        """Small steps of one measurement: all of them together leave a flight in the air, and are a small part of another
+        run."""
+        flight = self.scene.apart / self.start.step / 1.2 if self.moment == next(iter(self.scene.moments)) else 0
+        return int((flight or self.settings.stretch * self.start.steps) / self.settings.rounds / 2)
 
+    def measure(self, code, threads):
+        """Keep the answer to a measurement; a peer that fails is noted, and not tried again."""
+        if code not in self.missing:
+            try:
+                answer = self.open[code].measure(threads, self.settings.seconds, self.most())
+                self.answers[code, threads].append(answer)
+            except peers.PeerFailed as error:
+                self.missing[code] = f"failed: {' '.join(str(error).split())[:200]}"
 
-def tasks_of_a_round(settings):
-    """The tasks, in the order in which a round measures them: what is compared stands together."""
-    others = [radius for radius in settings.radii if radius != settings.reference]
-    loops = [(law, threads) for law in ("jkr-wada", "stock") for threads in (1, 2)]
-    codes = [
-        [loop(settings, "stock", settings.reference, cores)]
-        + [
-            peer(settings, code, cores)
-            for code in peers.PROGRAMS
-            if not peers.missing(code) and cores in peers.core_counts()
+    def rows(self):
+        """Rows of speed.csv."""
+        place = {"scene": self.name, "moment": self.moment}
+        measured = [
+            {**place, **answer, "code": code, "threads": threads, "round": turn, "rate": rate(answer)}
+            for (code, threads), answers in self.answers.items()
+            for turn, answer in enumerate(answers)
         ]
-        for cores in (1, 2)
-    ]
-    tasks = [engine(settings, radius, threads) for radius in others for threads in (1, 2)]
-    tasks += [
-        engine(settings, radius, 1, instructions=name) for radius in settings.instruction_radii for name in SLOWER_SETS
-    ]
-    tasks += [
-        loop(settings, law, radius, threads)
-        for radius in settings.loop_radii
-        if radius != settings.reference
-        for law, threads in loops
-    ]
-    tasks += [loop(settings, "jkr-wada", settings.reference, threads) for threads in (1, 2)]
-    tasks += codes[1]
-    tasks += [
-        engine(settings, settings.reference, threads, kind) for kind in UNLIKE + ("uniform",) for threads in (2, 1)
-    ]
-    return tasks + codes[0]
+        return measured + [{**place, "code": code, "note": reason} for code, reason in self.missing.items()]
+
+    def about(self, others):
+        """Row of moments.csv; others: fraction of the machine that other programs took."""
+        turns, start, about = self.answers["engine", 1] + self.answers["engine", 2], self.start, machine()
+        fastest = min(turn["seconds"] / turn["steps"] for turn in turns)
+        to_sample = max(start.together, min(int(self.settings.sampled / fastest), self.most()))
+        pairs = np.column_stack([self.grains.contacts[name] for name in ("first", "second")])
+        return {
+            **{"scene": self.name, "moment": self.moment, "progress": start.progress[self.moment]},
+            **{"runSteps": start.steps, "step": round(start.step / start.time_unit, 6), "grains": turns[0]["grains"]},
+            **{"contacts": sum(turn["contacts"] for turn in turns) / len(turns), "kinetic": turns[0]["kinetic"]},
+            **{"pieces": int(fragment_labels(turns[0]["grains"], pairs).max()) + 1 if len(pairs) else None},
+            **{"time": float(self.grains.head["time"]), "measuredSteps": sum(turn["steps"] for turn in turns)},
+            **{name: sum(turn[name] for turn in turns) for name in SUMMED},
+            **engine_parts.fractions(self.path, start.together, to_sample),
+            **{"cpu": about["cpu"], "cores": about["cores"], "settings": self.settings.text(), "others": others},
+            **{"commit": turns[0]["commit"], "bytes": turns[0]["bytes"]},
+        }
 
 
-def estimate(settings):
-    """Seconds that measure() takes about."""
-    starting = 10 + 6e-5 * sum(0.8 * radius**3 for radius in settings.radii)
-    return starting + settings.rounds * (1 + sum(task.seconds for task in tasks_of_a_round(settings)))
+def rate(answer):
+    """Contact updates a second of a measurement."""
+    return answer["contacts"] * answer["steps"] / answer["seconds"]
 
 
-@contextmanager
-def yades(tasks):
-    """The YADEs that the tasks ask, started together: {process of the task: YadeProcess}."""
-    with ExitStack() as stack:
-        started = {}
-        for key in sorted({task.process for task in tasks if task.process}):
-            law, kind, radius, threads = key
-            started[key] = YadeProcess(law, kind, radius, measured_scenes.SPEED, threads)
-            stack.callback(started[key].close)
-        yield started
+def measure(batch, begun, settings, done, folder=moments.FOLDER):
+    """{"speed": rows, "moments": rows} (results.py) of a batch whose files are there.
 
-
-def measure(settings, done):
-    """{"results": [labels, round and what was measured], "memory": {radius: ...}, "others": largest fraction of the machine that other programs took,
-    "failed": {peer: last words of one that ended with an error, and was not tried again}}.
-
-    done(seconds) is called after each measurement with its estimated length.
+    begun: {name of the scene: its starts.Start}; done() is called after each of count_of(batch, settings) measurements.
     """
-    tasks, results, others, failed = tasks_of_a_round(settings), [], 0.0, {}
-    peers_scene = measured_scenes.make("uniform", settings.reference)
-    with yades(tasks) as started:
-        for process in started.values():
-            process.wait()
-        done(estimate(settings) - settings.rounds * (1 + sum(task.seconds for task in tasks)))
+    others = 0.0
+    with ExitStack() as stack:
+        places = [Place(*one, begun[one[0]], settings, folder, stack) for one in batch]
         for turn in range(settings.rounds):
             others = max(others, fraction_of_others())
-            done(1)
-            for task in tasks:
-                answer = take(task, started, peers_scene, failed)
-                if answer:
-                    results.append(
-                        {**answer, **task.labels, "round": turn, "instructions_used": answer.get("instructions", "")}
-                    )
-                done(task.seconds)
-        memory = {
-            radius: started["jkr-wada", "uniform", radius, 1].ask("memory")
-            for radius in settings.radii
-            if radius >= settings.reference
+            for place in places:
+                for code, threads in place.answers:
+                    if codes.CODES[code].law or turn < settings.peer_rounds:
+                        place.measure(code, threads)
+                    done()
+        return {
+            "speed": [row for place in places for row in place.rows()],
+            "moments": [place.about(others) for place in places],
         }
-    return {"results": results, "memory": memory, "others": others, "failed": failed}
 
 
-def take(task, started, peers_scene, failed):
-    """What a task measured; None of a peer that fails, now or in an earlier round: noted in failed, {name: last words}."""
-    if task.process:
-        return started[task.process].ask(**task.request)
-    name = f"{task.labels['code']} on {task.labels['threads']}"
-    if name in failed:
-        return None
-    try:
-        return peers.measure(task.labels["code"], peers_scene, **task.request)
-    except peers.PeerFailed as error:
-        failed[name] = str(error)
+def count_of(batch, settings):
+    """Measurements of a batch, those of peers that are missing among them."""
+    return settings.rounds * sum(len(codes.threads_of(code)) for _, scene, _ in batch for code in scene.codes)

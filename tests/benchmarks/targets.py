@@ -1,130 +1,91 @@
-"""What the engine is to reach, and whether it did."""
+"""What the engine is to reach, and whether it did: what is compared with what, and the bound, as data."""
 
+import statistics
 from dataclasses import dataclass
+from fnmatch import fnmatch
 
-from ratios import Speeds, Spread, by_processor_time
-from speed import UNLIKE
+from measured_scenes import all_scenes
+from results import Spread
+
+CORES = {1: "one core", 2: "two cores"}
+REFERENCE = "reference"  # stands for the scene where codes and kinds of grains are compared
+# (what, bound, scene, the code's number of cores, or both; what its rate is divided by: scene, code): "cpe-*" the slowest size
+RATIOS = (
+    ("engine / YADE's own loop with its stock cohesive law", 27, REFERENCE, (1,), REFERENCE, "stock"),
+    ("engine / LAMMPS", 10, REFERENCE, (1,), REFERENCE, "lammps"),
+    ("engine / LIGGGHTS", 5, REFERENCE, (1,), REFERENCE, "liggghts"),
+    ("slowest of all sizes / reference", 0.75, "cpe-*", (1, 2), REFERENCE, "engine"),
+    ("two materials / like grains", 0.5, "materials", (1, 2), REFERENCE, "engine"),
+    ("two sizes of grain / like grains", 0.5, "radii", (1, 2), REFERENCE, "engine"),
+    ("A22, flying at 50.1 m/s / the same grains at 0.5 m/s", 0.9, "a22", (2,), "a22-slow", "engine"),
+)
+# the same of the slowest moment: divided by its own flight, or by another code at the same moment
+SLOWEST = (
+    ("slowest moment / flying", 0.75, "through-*", (1, 2), "engine"),
+    ("slowest moment / LAMMPS", 8, "a22", (2,), "lammps"),
+    ("slowest moment / LAMMPS", 8, "a22-drag", (2,), "lammps"),
+)
+MINUTES = (("a22", 6), ("a22-drag", 6), ("k13", 40))  # of a whole run on two cores
+RATES = ((1, 100), (2, 190))  # million contact updates a second of two CPE, R 40, by cores
 
 
 @dataclass(frozen=True)
 class Target:
-    """what is compared; the bound; Spread that was measured or None; whether more is better; the same by processor time, where that makes sense."""
+    """what is compared; the bound; Spread that was measured or None; whether more is better."""
 
     what: str
     bound: float
     found: Spread
     at_least: bool = True
-    by_processor: Spread = None
 
-    def line(self):
-        bound = f"{'at least' if self.at_least else 'below'} {self.bound:g}"
+    def cells(self):
+        """[what, wanted, measured, verdict]"""
+        wanted = f"{'at least' if self.at_least else 'below'} {self.bound:g}"
         if self.found is None:
-            return f"| {self.what} | {bound} | - | not measured |"
-        reached = self.found.median >= self.bound if self.at_least else self.found.median < self.bound
-        every = (self.found.least >= self.bound) if self.at_least else (self.found.most < self.bound)
-        aside = f"; by processor time {self.by_processor.text(2)}" if self.by_processor else ""
-        verdict = (
-            "**reached**"
-            if reached and every
-            else "reached by the median, not in every round"
-            if reached
-            else "not reached"
-        )
-        return f"| {self.what} | {bound} | {self.found.text(0 if self.bound >= 100 else 2)}{aside} | {verdict} |"
+            return [self.what, wanted, "-", "not measured"]
+        worst = self.found.least if self.at_least else self.found.most
+        reached, every = ((x >= self.bound if self.at_least else x < self.bound) for x in (self.found.median, worst))
+        verdict = "**reached**" if every else "reached by the median, not in every round"
+        return [
+            self.what,
+            wanted,
+            self.found.text(0 if self.bound >= 100 else 2),
+            verdict if reached else "not reached",
+        ]
 
 
-def targets(how, found):
-    """List of Target; those of parts that were not measured are left out."""
-    result = []
-    if "speed" in found:
-        speeds = Speeds(found["speed"]["results"], how.reference)
-        result += against_others(speeds) + over_sizes(how, speeds) + unlike(speeds)
-        result += [memory(found["speed"]["memory"])]
-    if "collision" in found:
-        for collision in found["collision"]:
-            result += through_collision(collision)
-    return result
+def targets(results, settings):
+    """Each Target of what the results have anything to say about."""
+    scenes = all_scenes(settings)
+    at = {name: rows.moment for name, rows in results.moments.groupby("scene", sort=False)}
 
+    def slowest(pairs):
+        ratios = [ratio for ratio in (results.ratio(*pair) for pair in pairs) if ratio]
+        return min(ratios, key=lambda ratio: ratio.median, default=None)
 
-def engine(threads=1, **labels):
-    return {"code": "engine", "threads": threads, **labels}
-
-
-def compared(speeds, what, bound, first, second):
-    """Target of the ratio of two codes, each a dict of labels; by processor time too where both used one core."""
-    alone = first.get("threads", 1) == second.get("threads", 1) == 1
-    return Target(
-        what,
-        bound,
-        speeds.ratio(first, second),
-        by_processor=speeds.ratio(first, second, by_processor_time) if alone else None,
-    )
-
-
-def against_others(speeds):
-    bounds = {
-        "stock": ("YADE's own loop with its stock cohesive law", 27),
-        "lammps": ("LAMMPS", 10),
-        "liggghts": ("LIGGGHTS", 5),
-    }
-    result = [
-        compared(speeds, f"one core / {name}, one core", bound, engine(), {"code": code})
-        for code, (name, bound) in bounds.items()
-    ]
-    return result + [compared(speeds, "two cores / one core", 1.9, engine(2), engine())]
-
-
-def over_sizes(how, speeds):
-    """The slowest size, for one and two cores."""
-    found = []
-    for threads in (1, 2):
-        ratios = {radius: speeds.ratio(engine(threads, radius=radius), engine(threads)) for radius in how.radii}
-        worst = min(ratios, key=lambda radius: ratios[radius].median)
-        grains = round(0.8 * worst**3)
-        what = f"slowest of all sizes (R = {worst:g}, {grains} grains) / R = {how.reference:g}, {cores(threads)}"
-        found.append(compared(speeds, what, 0.75, engine(threads, radius=worst), engine(threads)))
-    return found
-
-
-def through_collision(collision):
-    """The slowest part; one run, so that the spread is that of the parts: slowest to fastest."""
-    found = []
-    for threads in (1, 2):
-        rates = [part[f"rate{threads}"] / collision["before"][threads] for part in collision["parts"]]
-        found.append(
-            Target(
-                f"slowest part of a collision at {collision['speed']:g} m/s, R = {collision['radius']:g} (range: all parts) / the same grains at the usual speed, {cores(threads)}",
-                0.75,
-                Spread(min(rates), min(rates), max(rates)),
-            )
-        )
-    return found
-
-
-def unlike(speeds):
-    names = {"materials": "two materials", "radii": "two sizes of grain"}
-    return [
-        compared(
-            speeds, f"{names[kind]} / like grains, {cores(threads)}", 0.5, engine(threads, kind=kind), engine(threads)
-        )
-        for kind in UNLIKE
-        for threads in (1, 2)
-    ]
-
-
-def memory(measured):
-    """The largest over the sizes."""
-    return Target(
-        "memory, bytes a contact (range: all sizes from the reference up)",
-        1000,
-        most_of([m["bytes"] / m["contacts"] for m in measured.values()]),
-        at_least=False,
-    )
-
-
-def most_of(values):
-    return Spread(max(values), min(values), max(values))
-
-
-def cores(threads):
-    return "one core" if threads == 1 else "two cores"
+    for what, bound, scene, cores, other, code in RATIOS:
+        scene, other = (f"cpe-{settings.reference:g}" if name == REFERENCE else name for name in (scene, other))
+        for n in cores if other in at else ():
+            pairs = [((name, "flying", "engine", n), (other, "flying", code, n)) for name in at if fnmatch(name, scene)]
+            yield Target(f"{what}, {CORES[n]}", bound, slowest(pairs))
+    reference = [(f"cpe-{settings.reference:g}", "flying", "engine", n) for n in (2, 1)]
+    if reference[0][0] in at:
+        yield Target("two cores / one core", 1.9, results.ratio(*reference))
+    for what, bound, scene, cores, code in SLOWEST:
+        for name, n in ((name, n) for name in at if fnmatch(name, scene) for n in cores):
+            own = code == "engine"  # then divided by the flight, which is not compared with itself
+            moments = at[name][1:] if own else at[name]
+            pairs = [((name, m, "engine", n), (name, "flying" if own else m, code, n)) for m in moments]
+            yield Target(f"{what}, {scenes[name].title}, {CORES[n]}", bound, slowest(pairs))
+    sizes = [f"cpe-{radius:g}" for radius in settings.radii if radius >= settings.reference]
+    bytes_each = (results.moments.bytes / results.moments.contacts)[results.moments.scene.isin(sizes)].dropna()
+    if len(bytes_each):
+        largest = Spread(bytes_each.max(), bytes_each.min(), bytes_each.max())
+        yield Target("memory, bytes a contact (range: sizes from the reference up)", 1000, largest, at_least=False)
+    whole = results.whole(scenes)
+    for name, bound in ((name, bound) for name, bound in MINUTES if name in whole):
+        each = [results.minutes(whole[name], "engine", 2, of) for of in (statistics.median, min, max)]
+        yield Target(f"minutes for a run, {scenes[name].title}", bound, Spread(*each), at_least=False)
+    for n, bound in RATES if "cpe" in at else ():
+        rate = Spread.of(results.rates("cpe", "flying", "engine", n) / 1e6)
+        yield Target(f"million contact updates a second, two CPE, R 40, {CORES[n]}", bound, rate)

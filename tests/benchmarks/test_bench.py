@@ -1,164 +1,264 @@
-"""The bench works: everything measured once, as little as possible; what is not installed is said and left out."""
+"""The bench works: everything measured once, as little as possible; what is not installed is said and left out; what was
+measured stays, and is what the pages say."""
 
-import json
 import os
+import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import bench
+import engine_parts
 import errors
 import measured_scenes
+import moments
 import numpy as np
-import peers
+import pandas as pd
 import pytest
+import report
 import speed
-from ratios import Speeds, Spread
+import step_choice_report
+from measured_on import RESULTS, TOP
+from results import COLUMNS, Results, Spread, weights
 from settings import FULL, TINY
+from step_choice import COLLISIONS, COMPRESSIONS
 from targets import Target
 
-HERE = Path(__file__).resolve().parent
+IN_CELL = {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1}
+CELL = measured_scenes.Scene("a small cell", "compression", IN_CELL, {"start": None, "denser": 0.05})
+LITTLE = replace(TINY, stretch=0.5, peer_steps=10)
 
 
-def bench(*arguments, **environment):
-    return subprocess.run(
-        [sys.executable, str(HERE / "bench.py"), *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        env={**os.environ, **environment},
-        timeout=120,
-    )
+@pytest.fixture(scope="module", autouse=True)
+def harness_is_built():
+    subprocess.run(["make", "build/harness"], cwd=TOP, check=True, capture_output=True)
+
+
+def run_bench(*arguments, **environment):
+    command = [sys.executable, str(TOP / "tests/benchmarks/bench.py"), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, env={**os.environ, **environment}, timeout=300)
 
 
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory):
-    """Folder of a run without the peers, which a machine may lack: the PATH has YADE only."""
+    """(what was printed, folder, Results) of a run without the peers, which a machine may lack: the PATH has YADE only."""
     folder = tmp_path_factory.mktemp("bench")
     (folder / "bin").mkdir()
-    (folder / "bin/yade").symlink_to("/usr/bin/yade")
-    (folder / "bin/git").symlink_to("/usr/bin/git")
-    done = bench("--tiny", "--out", folder / "out", PATH=str(folder / "bin"))
+    for program in ("yade", "git"):
+        (folder / "bin" / program).symlink_to(f"/usr/bin/{program}")
+    done = run_bench("--tiny", "--out", folder / "out", PATH=str(folder / "bin"))
     assert done.returncode == 0, done.stderr[-2000:]
-    return done.stdout, folder / "out"
+    return done.stdout, folder / "out", Results(folder / "out")
 
 
 def test_measures_everything_and_says_what_it_goes_without(tiny):
-    printed, folder = tiny
+    printed, folder, results = tiny
     for program in ("lmp", "liggghts"):
         assert f"{program} is not installed (make bench-peers installs it)" in printed
-    found = json.loads((folder / "bench.json").read_text())
-    measured = {(r["code"], r["kind"], r["threads"]) for r in found["speed"]["results"]}
-    assert measured == {(code, "uniform", n) for code in ("engine", "functors", "stock") for n in (1, 2)} | {
-        ("engine", kind, n) for kind in ("materials", "radii") for n in (1, 2)
+    measured = results.speed[results.speed.rate > 0]
+    expected = {(name, "engine") for name in ("cpe-4", "materials", "radii")} | {
+        ("cpe-5", code) for code in ("engine", *measured_scenes.SLOW)
     }
-    assert all(result["rate"] > 0 for result in found["speed"]["results"])
-    assert {r["instructions_used"] for r in found["speed"]["results"] if r["instructions"] == "portable"} == {
-        "portable"
-    }
-    assert [len(collision["parts"]) for collision in found["collision"]] == [TINY.collision_parts]
+    assert set(zip(measured.scene, measured.code)) == {*expected, *(("cpe-4", code) for code in measured_scenes.SLOW)}
+    assert set(measured[measured.code == "engine"].threads) == {1, 2}
+    assert set(measured[measured.code == "engine-portable"].version) == {"portable"}
+    assert set(results.speed[results.speed.note.notna()].code) == {"lammps", "liggghts"}
     assert all((folder / name).stat().st_size > 10000 for name in ("bench-speed.png", "bench-error.png"))
-    table = (folder / "bench.md").read_text()
-    for what in (
+    page = (folder / "bench.md").read_text()
+    assert page in printed
+    for words in (
         "/ LAMMPS, one core | at least 10 | - | not measured |",
         "two materials / like grains",
-        "memory, bytes a contact",
-        "through a collision",
-        "Order of convergence",
+        "memory, bytes",
     ):
-        assert what.lower() in table.lower(), what
-
-
-def test_half_a_time_unit_is_shown_as_refused(tiny):
-    found = json.loads((tiny[1] / "bench.json").read_text())["error"]
-    assert "must be > 0 and <= 0.4" in found["collision"]["0.5"][0]["refused"]
-    assert found["pair"]["0.5"].startswith("JKRWadaEngine: the small step")
-    assert len(found["pair"]["0.4"]) == TINY.gaps
+        assert words in page
 
 
 def test_every_code_counts_the_same_contacts(tiny):
-    found = json.loads((tiny[1] / "bench.json").read_text())["speed"]["results"]
-    expected = measured_scenes.touching(measured_scenes.make("uniform", TINY.reference))
-    for code in ("functors", "stock"):
-        assert {r["contacts"] for r in found if r["code"] == code} == {expected}
+    found, about = tiny[2].speed.query("scene == 'cpe-5' and rate > 0"), tiny[2].moments.set_index("scene")
+    assert set(found.contacts) == {about.contacts["cpe-5"]} and len(found) == 16
 
 
-@pytest.mark.parametrize("code", list(peers.PROGRAMS))
-def test_peers_run_the_scene(code):
-    """Where they are installed: all grains, and the contacts that this repository counts."""
-    if reason := peers.missing(code):
-        pytest.skip(reason)
-    scene = measured_scenes.make("uniform", 5)
-    found = peers.measure(code, scene, 20)
+def test_half_a_time_unit_is_shown_as_refused(tiny):
+    found = tiny[2].error.set_index(["scene", "step"]).sort_index()
+    assert "must be > 0 and <= 0.4" in found.refused["collision", 0.5].iloc[0]
+    assert "must be above 0 and below" in found.refused["pair", 0.5].iloc[0]
+    assert found.rebound["pair", 0.4].notna().sum() == TINY.gaps
+    assert "- 0.5 t0, collision: collide.py: stepFraction = 0.5" in (tiny[1] / "bench.md").read_text()
+
+
+def test_moments_are_measured(tmp_path):
+    start, results, measured = moments.make("cell", CELL, tmp_path, say=lambda *_, **__: None), Results(tmp_path), []
+    batches = speed.batches({"cell": CELL})
+    for batch in batches:
+        results.put(**speed.measure(batch, {"cell": start}, LITTLE, lambda: measured.append(1), tmp_path))
+    assert len(measured) == sum(speed.count_of(batch, LITTLE) for batch in batches)
+    table = results.moments.set_index("moment")
     assert (
-        found["contacts"] == measured_scenes.touching(scene) and found["grains"] == scene.grains and found["rate"] > 1e5
+        list(table.index) == ["start", "denser"]
+        and (table.grains == 128).all()
+        and table.contacts.between(127, 400).all()
     )
+    assert table.contactUpdates.to_numpy() == pytest.approx(table.measuredSteps * table.contacts, rel=0.02)
+    assert abs(table.energyChange["denser"]) < 0.02 * abs(table.boundaryWork["denser"]) != 0
+    parts = table[[*engine_parts.PARTS, engine_parts.OTHER]].sum(axis=1)
+    assert all(total == 0 or total == pytest.approx(1) for total in parts)  # 0: perf cannot sample here
+    for moment in CELL.moments:
+        assert list(results.of("cell", moment, "engine", 2).index) == [0, 1]
+        lammps = results.speed.query("moment == @moment and code == 'lammps'")
+        assert (lammps.skin == 0.6).all() if lammps.note.isna().all() else lammps.note.str.contains("lmp is not").all()
 
 
-def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
-    """A program of that name that only fails, as one does whose libraries are missing."""
-    for name in ("lmp", "liggghts"):
-        (tmp_path / name).write_text("#!/bin/sh\necho no such library >&2; exit 127\n")
-        (tmp_path / name).chmod(0o755)
-    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
-    task, failed = speed.peer(TINY, "liggghts", 1), {}
-    scene = measured_scenes.make("uniform", TINY.reference)
-    assert speed.take(task, {}, scene, failed) is None and "no such library" in failed["liggghts on 1"]
-    (tmp_path / "liggghts").unlink()
-    assert speed.take(task, {}, scene, failed) is None
-    assert "pair_style granular" in peers.missing("lammps")
+def test_compressions_are_measured_against_the_step():
+    rows = pd.DataFrame(errors.measure("compression", TINY), columns=COLUMNS["error"])
+    for quantity in ("ledger", "ledgerThin"):
+        steps, error = errors.curve(rows, quantity)
+        slope, wrong = errors.order(steps, error, (0.05, 0.36))
+        assert list(steps) == list(errors.COMPRESSION_STEPS) and slope == pytest.approx(2, abs=0.3 + 2 * wrong)
+    assert errors.curve(rows, "workThin")[1].max() < 0.05
 
 
-def test_two_sizes_start_at_rest():
-    """Large and small grains of the rock salt, and large ones, overlap by the equilibrium overlap of their pair."""
-    scene = measured_scenes.make("radii", 5)
-    sizes = np.unique(scene.radius)
-    assert len(sizes) == 2
-    distance = np.linalg.norm(scene.position[:, None] - scene.position[None], axis=2)
-    for first, second in ((sizes[1], sizes[1]), (sizes[0], sizes[1])):
-        overlap = first + second - distance[(scene.radius[:, None] == first) & (scene.radius[None] == second)]
-        touching = overlap[(overlap > 0) & (overlap < first)]  # the grain itself left out
-        expected = measured_scenes.pair_constants(
-            measured_scenes.ICE, first, measured_scenes.ICE, second
-        ).equilibrium_overlap
-        assert len(touching) > 50
-        assert np.sort(touching)[len(touching) // 2] == pytest.approx(expected, rel=1e-6)
+def test_what_is_done_is_not_measured_again(tiny, monkeypatch):
+    """Real measurements; only the commit that is built is said to be that of an unchanged tree."""
+    results, commit = Results(tiny[1]), tiny[2].moments.commit[0].removesuffix("-changed")
+    results.put(moments=results.moments.assign(commit=commit).to_dict("records"))
+    monkeypatch.setattr(bench, "built_commit", lambda: commit)
+    bench.measure_speed(measured_scenes.bench(TINY), TINY, results, again=False)
+    assert list(results.speed.seconds.dropna()) == list(tiny[2].speed.seconds.dropna())
+    place, about = {"scene": "cpe-4", "moment": "flying"}, {"commit": commit, "settings": TINY.text()}
+    assert results.is_done(**place, **about)
+    for changed in ({"commit": "d" * 40}, {"settings": FULL.text()}, {"moment": "later"}):
+        assert not results.is_done(**{**place, **about, **changed})
 
 
-def test_ratios_are_taken_within_a_round():
-    results = [
-        {
-            "code": code,
-            "threads": 1,
-            "radius": 40,
-            "kind": "uniform",
-            "instructions": "best" if code == "engine" else "",
-            "rate": rate,
-        }
-        for round in ((20, 2), (30, 2), (40, 5))
-        for code, rate in zip(("engine", "stock"), round)
+def test_what_was_measured_stays(tmp_path):
+    """Rows of the same scene and moment are replaced, others kept, to the last bit."""
+    results, here = Results(tmp_path), {"scene": "b", "moment": "flying"}
+    results.put(speed=[{**here, "scene": "a", "rate": 0.1 + 0.2}, {**here, "rate": 1 / 3}])
+    results.put(speed=[{**here, "rate": 2 / 3}, {**here, "moment": "later", "rate": 1.0}])
+    assert list(Results(tmp_path).speed.rate) == [0.1 + 0.2, 2 / 3, 1.0]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["speed.csv"]
+    results.put(moments=[{**here, "progress": 0.0}, {**here, "moment": "later", "progress": 0.5}])
+    results.put(moments=[{**here, "progress": 0.0}])  # measured again
+    assert list(Results(tmp_path).moments.moment) == ["flying", "later"]
+
+
+@pytest.mark.parametrize("folder", [RESULTS, RESULTS / "epyc-zen5"], ids=lambda folder: folder.name)
+def test_the_page_is_that_of_the_tables(folder):
+    page = report.text(Results(folder), FULL)
+    assert (folder / "bench.md").read_text() == page
+    for table in page.split("\n\n"):
+        assert len({line.count("|") for line in table.splitlines() if line.startswith("|")}) <= 1
+
+
+def test_step_choice_is_that_of_its_tables(tmp_path):
+    assert (RESULTS / "step_choice.md").read_text() == step_choice_report.text()
+    for table in (COLLISIONS, COMPRESSIONS):
+        copy = replace(table, path=tmp_path / "copy.csv")
+        copy.path.write_text(table.path.read_text())
+        copy.write(copy.read())
+        assert copy.path.read_text() == table.path.read_text()
+
+
+def test_a_new_scene_of_step_choice_is_measured(tmp_path):
+    """A line without an error; the others keep theirs, and the comments tell where."""
+    table = replace(COLLISIONS, path=tmp_path / "scenes.csv")
+    head = COLLISIONS.path.read_text().splitlines()[:6]
+    table.path.write_text("\n".join([*head, head[-1].rsplit(",", 1)[0].replace("10.0,", "4.0,", 1) + ","]) + "\n")
+    table.measure()
+    old, new = table.read().error
+    assert old == float(head[-1].rsplit(",", 1)[1]) and 1e-6 < new < 1e-2 and "measured last on" in table.origins()
+
+
+def results_of(folder, rates, moments=()):
+    """Results with these rates: {(moment, code, threads): [rate of each round]} of scene a22, one contact; rows of moments."""
+    rows = [
+        dict(
+            zip(("moment", "code", "threads"), where),
+            scene="a22",
+            round=k,
+            rate=rate,
+            fraction=0.5,
+            steps=rate,
+            seconds=1,
+        )
+        for where, each in rates.items()
+        for k, rate in enumerate(each)
     ]
-    assert Speeds(results, 40).ratio({"code": "engine"}, {"code": "stock"}) == Spread(10, 8, 15)
-    assert Speeds(results, 40).ratio({"code": "engine"}, {"code": "lammps"}) is None
+    results = Results(folder)
+    results.put(speed=rows, moments=[{"scene": "a22", **row} for row in moments])
+    return results
 
 
-@pytest.mark.parametrize(
-    "found, verdict",
-    [
-        (Spread(28, 27, 29), "| **reached** |"),
-        (Spread(28, 26, 29), "| reached by the median, not in every round |"),
-        (Spread(26, 25, 28), "| not reached |"),
-        (None, "| not measured |"),
-    ],
-)
-def test_a_target_says_whether_it_is_reached(found, verdict):
-    assert Target("x", 27, found).line().endswith(verdict)
+def test_ratios_are_taken_within_a_round(tmp_path):
+    rates = {("flying", "engine", 1): [20, 30, 40], ("flying", "stock", 1): [2, 2, 5], ("flying", "lammps", 1): [4]}
+    results, engine = (
+        results_of(tmp_path, {**rates, ("later", "engine", 1): [10, 40, 20]}),
+        ("a22", "flying", "engine", 1),
+    )
+    for code, ratio in (("stock", Spread(10, 8, 15)), ("lammps", Spread(7.5, 5, 10)), ("liggghts", None)):
+        assert results.ratio(engine, ("a22", "flying", code, 1)) == ratio
+    apart = results_of(tmp_path, {}, [{"moment": "flying"}, {"moment": "later"}])  # moments of one scene: other rounds
+    assert apart.ratio(engine, ("a22", "later", "engine", 1)) == Spread(1.5, 0.5, 4)
+
+
+def test_time_to_solution_weighs_the_moments(tmp_path):
+    """Moments at 0, 0.2 and 0.6 of the run stand for 0.1, 0.3 and 0.6 of its steps; a run with a moment missing has none."""
+    scene = replace(measured_scenes.PAPERS["a22"], moments={"flying": 0.0, "compressing": 1.0, "later": 2.0})
+    rows = [{"moment": name, "progress": at, "runSteps": 10_000} for name, at in zip(scene.moments, (0.0, 0.2, 0.6))]
+    rates = {(name, "engine", 1): [1e3 / ms] for name, ms in zip(scene.moments, (1.0, 3.0, 2.0))}
+    results = results_of(tmp_path, rates, rows)
+    whole = results.whole({"a22": scene})["a22"]
+    assert weights(whole) == pytest.approx([0.1, 0.3, 0.6])
+    assert results.minutes(whole, "engine", 1) == pytest.approx(10_000 * 2.2 / 60e3)
+    assert results.minutes(whole, "lammps", 1) is None and results.whole(measured_scenes.PAPERS) == {}
+
+
+REACHED = {
+    (27, Spread(28, 27, 29), True): "**reached**",
+    (27, Spread(28, 26, 29), True): "reached by the median, not in every round",
+    (27, Spread(26, 25, 28), True): "not reached",
+    (6, Spread(5, 4, 5.9), False): "**reached**",
+    (6, Spread(5, 4, 6), False): "reached by the median, not in every round",
+    (27, None, True): "not measured",
+}
+
+
+def test_a_target_says_whether_it_is_reached():
+    assert {given: Target("x", *given).cells()[-1] for given in REACHED} == REACHED
 
 
 def test_the_fitted_order():
     steps = np.array(FULL.error_steps[:-1])
-    slope, wrong = errors.order(FULL, steps, 3e-3 * steps**2 * np.where(steps > FULL.fit[1], 10, 1))
+    slope, wrong = errors.order(steps, 3e-3 * steps**2 * np.where(steps > errors.FITTED[1], 10, 1))
     assert slope == pytest.approx(2) and wrong < 1e-6
 
 
-def test_an_unknown_part_is_refused():
-    done = bench("--only", "sped")
-    assert done.returncode == 2 and "no part sped; must be of speed, collision, error" in done.stderr
+PERF = """
+ 53.52%  harness    [.] contact_law::Passes<contact_law::avx512::Pack>::forces<7u, true, false>     -      -
+ 12.00%  harness    [.] contact_law::PairLists::findDue                                             -      -
+  4.00%  harness    [.] contact_law::ContactList::sort                                              -      -
+  4.48%  harness    [.] contact_law::avx512::integrate                                              -      -
+  6.00%  libc.so.6  [.] __memmove_avx512_unaligned_erms                                             -      -
+"""
+
+
+def test_parts_of_the_time():
+    expected = {"forces": 0.669, "lists": 0.2, "eventHandling": 0, "integration": 0.056, "other": 0.075}
+    assert engine_parts.of_report(PERF) == pytest.approx(expected) and engine_parts.of_report("nothing\n") == {}
+
+
+REFUSED = {
+    "--scene a22,a23": r"--scene a23: must be of bench, papers, compressions, .*a22-drag",
+    "--only bake": "--only bake: must be of make, measure, report",
+    "--only report --out nowhere": "holds no measurement: must be measured first",
+}
+
+
+@pytest.mark.parametrize("arguments", REFUSED)
+def test_what_is_unknown_is_refused(arguments):
+    done = run_bench(*arguments.split())
+    assert done.returncode in (1, 2) and re.search(REFUSED[arguments], done.stderr) and not Path("nowhere").exists()
+    given = bench.arguments(["--scene", "papers,cpe-40,pair", "--quick"])
+    assert given.scene == [*measured_scenes.PAPERS, "cpe-40", "pair"]

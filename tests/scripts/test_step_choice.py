@@ -1,6 +1,5 @@
 """stepFraction=auto: the step that is chosen, what is said of it, and that real runs keep to the tolerance."""
 
-import json
 import os
 import re
 import signal
@@ -22,7 +21,8 @@ from yade_scripts.run.agreement import difference
 STUDY = os.path.join(TOP, "yade_scripts", "study.py")
 BENCHMARKS = os.path.join(TOP, "tests", "benchmarks")
 sys.path.insert(0, BENCHMARKS)
-from step_choice_results import COLLISIONS, COMPRESSIONS, FILLINGS, met  # noqa: E402
+from errors import of_scripts
+from step_choice import COLLISIONS, COMPRESSIONS, FILLINGS, met
 
 AUTO = {"stepFraction": "auto"}
 parse = KIND.parse
@@ -174,7 +174,7 @@ def test_the_constants_are_those_of_the_data():
     of 2 %.
     """
     found = {}
-    for scene in met(COLLISIONS.read()):
+    for _, scene in met(COLLISIONS.read()).iterrows():
         plain = scene["packing"] == "cpe" and not (scene["planar"] or scene["neck"]) and scene["limit"] == "held"
         kind = "plain" if plain else "sintered" if scene["neck"] else scene["limit"]
         found.setdefault((kind, scene["set"]), []).append(below(COLLISIONS, scene))
@@ -190,8 +190,10 @@ def test_the_constants_are_those_of_the_data():
 def test_so_are_those_of_compressions():
     """Of each compression at five fillings, grid and random."""
     for name in ("grid", "random"):
-        scenes = [s for s in COMPRESSIONS.read() if s["set"] == name and s["stretch"] == "no"]
-        measured = [s for s in scenes if s["limit"] == "held" and s["material"] == "ice"]  # others are refused
+        scenes = COMPRESSIONS.read().query("set == @name and stretch == 'no'")
+        measured = [
+            s for _, s in scenes.query("limit == 'held' and material == 'ice'").iterrows()
+        ]  # others are refused
         kept = [below(COMPRESSIONS, s, filling) for s in measured for filling in FILLINGS]
         assert len(measured) >= 20 and sum(kept) >= binom.ppf(0.02, len(kept), 0.95), name
 
@@ -239,35 +241,27 @@ OTHER_KINDS = {
 }  # fmt: skip
 
 
-def errors_over_tolerance(folder, scenes):
+def errors_over_tolerance(scenes):
     """(error over the tolerance) of each scene, run with stepFraction=auto."""
-    given, answers = folder / "scenes.json", folder / "answers.jsonl"
-    given.write_text(json.dumps([{**AUTO, **scene} for scene in scenes]))
-    subprocess.run(
-        ["yade", "-n", "-x", "-j1", os.path.join(BENCHMARKS, "yade_step_choice.py"), given, answers],
-        check=True,
-        capture_output=True,
-        timeout=200,
-    )
-    found = [json.loads(line) for line in answers.read_text().splitlines()]
+    found = of_scripts([{**AUTO, **scene} for scene in scenes])
     assert not [answer["failed"] for answer in found if "failed" in answer]
-    over = np.array([answer["error"] / answer["tolerance"] for answer in found])
+    over = np.array([answer["ledger"] / scene["tolerance"] for answer, scene in zip(found, scenes, strict=True)])
     assert len(over) == len(scenes) and np.all(over > 1e-6)  # all met
     return over
 
 
-def test_runs_that_are_in_no_fit_keep_to_the_tolerance(tmp_path):
+def test_runs_that_are_in_no_fit_keep_to_the_tolerance():
     """18 collisions; with 19 of 20 to keep to it, more than 4 that don't would be a chance of 0.1 %."""
     names = ("radius", "velocity", "filling", "viscoelasticTime", "material", "tolerance")
     scenes = [{"seed": 1000 + number, **dict(zip(names, scene))} for number, scene in enumerate(OTHER_SCENES)]
-    over = errors_over_tolerance(tmp_path, scenes)
+    over = errors_over_tolerance(scenes)
     assert np.count_nonzero(over > 1) <= binom.ppf(0.999, len(over), 0.05)
     assert over.max() < 5 and np.median(over) > 0.05  # nor is the step much shorter than it need be
 
 
-def test_so_do_runs_of_every_other_kind(tmp_path):
+def test_so_do_runs_of_every_other_kind():
     """At most 1 in 20 beyond it would be 3 of 14 at most, by a chance of 0.4 %; none far."""
-    over = errors_over_tolerance(tmp_path, [{"seed": 2000, **scene} for scene in OTHER_KINDS.values()])
+    over = errors_over_tolerance([{"seed": 2000, **scene} for scene in OTHER_KINDS.values()])
     assert np.count_nonzero(over > 1) <= binom.ppf(0.996, len(over), 0.05), dict(zip(OTHER_KINDS, over))
     assert over.max() < 3 and np.median(over) > 0.03, dict(zip(OTHER_KINDS, over))
 

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <sstream>
 #include <stdexcept>
 
 namespace {
@@ -45,14 +47,20 @@ long wholeNumber(const std::string& name, const std::string& text, long least)
 
 std::vector<long> wholeNumbers(const std::string& name, const std::string& text)
 {
-	std::vector<long> numbers;
-	for (std::size_t from = 0; from <= text.size();) {
-		const std::size_t comma = std::min(text.find(',', from), text.size());
-		numbers.push_back(wholeNumber(name, text.substr(from, comma - from), 1));
-		from = comma + 1;
-	}
-	return numbers;
+	std::vector<long> found;
+	std::istringstream parts(text + ',');
+	for (std::string part; std::getline(parts, part, ',');)
+		found.push_back(wholeNumber(name, part, 1));
+	return found;
 }
+
+struct Number {
+	long Settings::*member, least;
+};
+const std::map<std::string, Number> numbers { { "steps", { &Settings::steps, 1 } }, { "rounds", { &Settings::rounds, 1 } },
+	{ "domains", { &Settings::domains, 0 } }, { "together", { &Settings::together, 1 } }, { "warm", { &Settings::warm, 0 } } };
+const std::map<std::string, std::string Settings::*> words { { "instructions", &Settings::instructions }, { "out", &Settings::out },
+	{ "control", &Settings::control } };
 
 void take(Settings& settings, const std::string& argument)
 {
@@ -60,24 +68,12 @@ void take(Settings& settings, const std::string& argument)
 	const std::string name = argument.substr(0, equals), value = equals == std::string::npos ? "" : argument.substr(equals + 1);
 	if (equals == std::string::npos && settings.scene.empty())
 		settings.scene = argument;
-	else if (name == "steps")
-		settings.steps = wholeNumber(name, value, 1);
-	else if (name == "rounds")
-		settings.rounds = wholeNumber(name, value, 1);
-	else if (name == "domains")
-		settings.domains = wholeNumber(name, value, 0);
-	else if (name == "together")
-		settings.together = wholeNumber(name, value, 1);
-	else if (name == "warm")
-		settings.warm = wholeNumber(name, value, 0);
+	else if (numbers.count(name))
+		settings.*numbers.at(name).member = wholeNumber(name, value, numbers.at(name).least);
+	else if (words.count(name))
+		settings.*words.at(name) = value;
 	else if (name == "threads")
 		settings.threads = wholeNumbers(name, value);
-	else if (name == "instructions")
-		settings.instructions = value;
-	else if (name == "out")
-		settings.out = value;
-	else if (name == "control")
-		settings.control = value;
 	else
 		throw std::invalid_argument(argument + ": no such parameter; build/harness --help lists them");
 }

@@ -1,31 +1,173 @@
 // A scene of a file in the engine, as JKRWadaEngine has it in YADE.
 #pragma once
+#include "../../../contact_law/engine/diagnosis.hpp"
+#include "../../../contact_law/engine/stability.hpp"
 #include "scene_file.hpp"
 #include <memory>
 
 namespace harness {
 
+using contact_law::ContactNow;
+using contact_law::Dynamics;
+using contact_law::GrainInput;
+using contact_law::GrainMotion;
+using contact_law::Inherited;
+using contact_law::Vec3;
+
+inline Vec3<double> vector(const double (&x)[3]) { return { x[0], x[1], x[2] }; }
+inline void set(double (&x)[3], const Vec3<double>& v) { x[0] = v.x, x[1] = v.y, x[2] = v.z; }
+
+template <class From, class To> void copyMoving(const From& from, To& to)
+{
+	std::memcpy(to.position, from.position, sizeof to.position);
+	std::memcpy(to.velocity, from.velocity, sizeof to.velocity);
+	std::memcpy(to.angularVelocity, from.angularVelocity, sizeof to.angularVelocity);
+}
+
+inline Dynamics::Materials materialsOf(const Scene& scene)
+{
+	Dynamics::Materials materials;
+	for (const MaterialRecord& m : scene.materials)
+		materials.push_back({ m.young, m.poisson, m.density, m.surfaceEnergy, m.criticalRolling, m.viscoelasticTime });
+	return materials;
+}
+
+inline Dynamics::Grains grainsOf(const Scene& scene)
+{
+	Dynamics::Grains grains;
+	for (const GrainRecord& record : scene.grains) {
+		GrainInput grain {};
+		copyMoving(record, grain);
+		grain.blocked = unsigned(record.blocked);
+		grain.radius = record.radius, grain.mass = record.mass, grain.inertia = record.inertia;
+		grain.kind = int(record.material);
+		grains.push_back(grain);
+	}
+	return grains;
+}
+
+inline Inherited contactsOf(const Scene& scene)
+{
+	Inherited inherited;
+	for (const ContactRecord& c : scene.contacts)
+		inherited.contacts.push_back({ int(c.first), int(c.second), { { vector(c.pointer1), vector(c.pointer2) }, c.twist },
+		        c.overlap, c.drag, c.bonded != 0, c.rest, c.bonded ? scene.head.neck : 0 });
+	return inherited;
+}
+
+inline Dynamics::Options optionsOf(const Scene& scene, int domains, int threads, const std::string& instructions)
+{
+	Dynamics::Options options;
+	options.dt = scene.head.step;
+	options.pairs.linearDamping = scene.head.linearDamping;
+	options.neck = scene.head.neck;
+	options.domains = domains;
+	options.threads = threads;
+	options.instructions = instructions;
+	bool drag = options.pairs.linearDamping > 0;
+	for (const MaterialRecord& material : scene.materials)
+		drag = drag || material.viscoelasticTime > 0;
+	options.mechanisms = contact_law::mechanismsOf(true, true, true, drag);
+	if (scene.periodic()) {
+		const Vec3<double> size = vector(scene.head.cellSize), strain = vector(scene.head.strainRate);
+		options.cell = contact_law::PeriodicCell::box(size, contact_law::Images<double>::times(strain, size));
+	}
+	return options;
+}
+
+inline ContactRecord recordOf(const ContactNow& c)
+{
+	ContactRecord record {};
+	record.first = c.first, record.second = c.second, record.bonded = c.bonded;
+	set(record.pointer1, c.history.pointers.n1);
+	set(record.pointer2, c.history.pointers.n2);
+	record.twist = c.history.twist;
+	record.overlap = c.geometry.overlap, record.drag = c.forces.drag, record.rest = c.rest;
+	return record;
+}
+
 class Run {
 public:
 	// Throws std::invalid_argument or std::runtime_error for a scene that the engine cannot start from.
-	Run(const Scene&, int domains, int threads, const std::string& instructions);
+	Run(const Scene& scene_, int domains, int threads, const std::string& instructions)
+	        : scene(scene_)
+	{
+		const auto options = optionsOf(scene, domains, threads, instructions);
+		const auto grains = grainsOf(scene);
+		const auto materials = materialsOf(scene);
+		engine = scene.contacts.empty() ? std::make_unique<Dynamics>(grains, materials, options)
+		                                : std::make_unique<Dynamics>(grains, materials, options, contactsOf(scene));
+		const double unstable = contact_law::unstableStep(*engine);
+		if (!(scene.head.step > 0 && scene.head.step < unstable))
+			throw std::invalid_argument("the scene's step is " + std::to_string(scene.head.step * 1e9)
+			        + " ns: must be above 0 and below " + std::to_string(unstable * 1e9) + " ns");
+		if (scene.periodic() && !engine->cell().holds(engine->reach()))
+			throw std::invalid_argument("the scene's periodic cell is too small: must be at least twice the reach of a pair");
+	}
 
 	/* Small steps, `together` at a time as in an O.step with so many subSteps: a periodic cell's size goes evenly through each of these.
 	 * Throws std::runtime_error when the run breaks down. */
-	void run(long steps, long together);
+	void run(long steps, long together)
+	{
+		for (long left = steps; left > 0; left -= together) {
+			const long now = std::min(left, together);
+			const double time = double(now) * scene.head.step;
+			Vec3<double> size = engine->cell().size;
+			size = size + time * contact_law::Images<double>::times(vector(scene.head.strainRate), size);
+			if (engine->run(now, scene.periodic() ? &size : nullptr) < now) {
+				const contact_law::Diagnosis what = contact_law::diagnoseGrain(*engine);
+				throw std::runtime_error("the run broke down: grain " + std::to_string(what.grain) + " moves at "
+				        + std::to_string(what.speed) + " m/s");
+			}
+			scene.head.time += time;
+		}
+	}
 
-	Scene sceneNow() const;
-	std::uint64_t hash()
-	        const;          // of all bits of positions, velocities and angular velocities, in the order of the grains given (FNV-1a)
-	double totalEnergy();   // all channels [J]: constant
-	double kineticEnergy(); // [J]
+	Scene sceneNow() const
+	{
+		Scene now = scene;
+		std::vector<GrainMotion> motions;
+		engine->read(motions);
+		for (std::size_t k = 0; k < motions.size(); ++k)
+			copyMoving(motions[k], now.grains[k]);
+		if (scene.periodic()) set(now.head.cellSize, engine->cell().size);
+		now.contacts.clear();
+		const auto keep = [&](const auto& list, int lane, int, int) {
+			now.contacts.push_back(recordOf(contact_law::contactNow(*engine, list, lane)));
+		};
+		contact_law::eachContactLane(*engine, keep);
+		contact_law::eachBondLane(*engine, keep);
+		return now;
+	}
+
+	// Of all bits of positions, velocities and angular velocities, in the order of the grains given (FNV-1a).
+	std::uint64_t hash() const
+	{
+		std::vector<GrainMotion> motions;
+		engine->read(motions);
+		std::uint64_t hash = 14695981039346656037u;
+		for (const GrainMotion& g : motions)
+			for (const auto* numbers : { &g.position, &g.velocity, &g.angularVelocity })
+				for (std::size_t k = 0; k < sizeof *numbers; ++k)
+					hash = (hash ^ reinterpret_cast<const unsigned char*>(numbers)[k]) * 1099511628211u;
+		return hash;
+	}
+
+	// All channels [J]: constant.
+	double totalEnergy()
+	{
+		double sum = 0;
+		for (const double energy : contact_law::byChannel(engine->energies()))
+			sum += energy;
+		return sum;
+	}
+
+	double kineticEnergy() { return engine->energies().kinetic; } // [J]
 	contact_law::Dynamics& dynamics() { return *engine; }
 
 private:
-	void advanceCell(double time, contact_law::Vec3<double>& size) const;
-
 	Scene scene;
-	std::unique_ptr<contact_law::Dynamics> engine;
+	std::unique_ptr<Dynamics> engine;
 };
 
 } // namespace harness

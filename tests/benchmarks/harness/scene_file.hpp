@@ -2,6 +2,9 @@
 #pragma once
 #include "../../../contact_law/engine/exchange.hpp"
 #include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -39,8 +42,70 @@ struct Scene {
 	bool periodic() const { return head.cellSize[0] > 0; }
 };
 
-// Both throw std::runtime_error, with one line.
-Scene readScene(const std::string& path);
-void writeScene(const std::string& path, const Scene&);
+constexpr char magic[9] = "JKRscene";
+constexpr std::int64_t format = 1, most = std::int64_t(1) << 31;
+
+template <class Record> void read(std::ifstream& file, std::vector<Record>& records, std::int64_t count)
+{
+	records.resize(std::size_t(count));
+	file.read(reinterpret_cast<char*>(records.data()), std::streamsize(sizeof(Record) * records.size()));
+}
+template <class Record> void write(std::ofstream& file, const std::vector<Record>& records)
+{
+	file.write(reinterpret_cast<const char*>(records.data()), std::streamsize(sizeof(Record) * records.size()));
+}
+inline bool within(std::int64_t number, std::size_t count) { return number >= 0 && number < std::int64_t(count); }
+
+inline void requireKnownNumbers(const std::string& path, const Scene& scene)
+{
+	for (const GrainRecord& grain : scene.grains)
+		if (!within(grain.material, scene.materials.size()))
+			throw std::runtime_error(path + ": a grain has material " + std::to_string(grain.material) + ": must be below "
+			        + std::to_string(scene.materials.size()));
+	for (const ContactRecord& contact : scene.contacts)
+		if (!within(contact.first, scene.grains.size()) || !within(contact.second, scene.grains.size()))
+			throw std::runtime_error(path + ": a contact is of grains " + std::to_string(contact.first) + " and "
+			        + std::to_string(contact.second) + ": must be below " + std::to_string(scene.grains.size()));
+}
+
+// Throws std::runtime_error, with one line.
+inline Scene readScene(const std::string& path)
+{
+	std::ifstream file(path, std::ios::binary);
+	Scene scene {};
+	Head& head = scene.head;
+	file.read(reinterpret_cast<char*>(&head), sizeof head);
+	if (!file || std::memcmp(head.magic, magic, sizeof head.magic) != 0)
+		throw std::runtime_error(path + ": must be a scene that tests/benchmarks/scene_file.py or the harness wrote");
+	if (head.format != format)
+		throw std::runtime_error(
+		        path + ": a scene of format " + std::to_string(head.format) + ": must be " + std::to_string(format));
+	for (const std::int64_t count : { head.materials, head.grains, head.contacts })
+		if (count < 0 || count >= most) throw std::runtime_error(path + ": has a count of " + std::to_string(count));
+	read(file, scene.materials, head.materials);
+	read(file, scene.grains, head.grains);
+	read(file, scene.contacts, head.contacts);
+	if (!file || file.peek() != std::ifstream::traits_type::eof())
+		throw std::runtime_error(path + ": must be as long as its head says");
+	requireKnownNumbers(path, scene);
+	return scene;
+}
+
+inline void writeScene(const std::string& path, const Scene& scene)
+{
+	Head head = scene.head;
+	std::memcpy(head.magic, magic, sizeof head.magic);
+	head.format = format;
+	head.materials = std::int64_t(scene.materials.size());
+	head.grains = std::int64_t(scene.grains.size());
+	head.contacts = std::int64_t(scene.contacts.size());
+	std::ofstream file(path, std::ios::binary);
+	file.write(reinterpret_cast<const char*>(&head), sizeof head);
+	write(file, scene.materials);
+	write(file, scene.grains);
+	write(file, scene.contacts);
+	file.flush();
+	if (!file) throw std::runtime_error(path + ": could not be written");
+}
 
 } // namespace harness
