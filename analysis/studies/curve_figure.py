@@ -41,7 +41,7 @@ def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1
     errors = [_bar(estimate) for estimate in estimates]
     known = np.array([error is not None for error in errors], dtype=bool)
     bars = np.array([error or (0.0, 0.0) for error in errors]).T / scale
-    axes.plot(x, value, line, color=colour, lw=1.2)
+    axes.plot(x, value, linestyle=line or "none", color=colour, lw=1.2)
     axes.errorbar(x, value, bars, fmt=marker, color=colour, capsize=3, markersize=5, mfc="white", label=label)
     axes.plot(np.asarray(x)[known], value[known], marker, color=colour, markersize=5, zorder=3)
 
