@@ -179,6 +179,7 @@ def channel_quantity(runs, by, at, name, meaning):
     """Quantity of the change of every channel that changes at all, of K(0), by the columns `by` and channel; at: at_maximum, at_return or
     at_end, of PARTITION_COLUMNS."""
     changing = [channel for channel in CHANNELS if channel != "kinetic" and (runs.table[at(channel)] != 0).any()]
+    changing = changing or ["normal"]  # of no runs
     values = together({channel: runs.estimates(at(channel), by) for channel in changing}, "channel")
     return Quantity(name, meaning, values, "%", 0.01)
 

@@ -9,16 +9,26 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from ..figures.panels import legend, letter, panels
 from ..figures.style import styled
+from ..runs.format import COLOURS as CHANNEL_COLOURS
 from .levels import level
 from .runs import alike, select
 
-_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#4d9221", "#8c5a2b", "#111111")
+# None of them the paper's (figures.panels.PAPER).
+_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
 MARKERS = "osD^vP"
 WIDEST = 3  # panels beside each other
 
 
+def palette(results, name):
+    """{value: colour} of all values that a level has in a study's quantities: one colour means one value in all its figures, and an energy
+    channel has its own in all studies."""
+    indices = (quantity.values.index for quantity in results.quantities.values())
+    values = {value for index in indices if name in index.names for value in index.get_level_values(name)}
+    return {value: CHANNEL_COLOURS[value] for value in values} if values <= set(CHANNEL_COLOURS) else colours(values)
+
+
 def colours(values):
-    """{value: colour} of all values of a level in a study: one colour means one value in all its figures."""
+    """{value: colour} of values, apart as far as there are colours."""
     values = sorted(set(values))
     if len(values) <= len(_COLOURS):
         return dict(zip(values, _COLOURS))
@@ -119,21 +129,17 @@ def _share_y(places, figure):
 
 def _curves(axes, figure, quantity, series, results):
     """The curves of one panel."""
-    table = results.table
     same = len(_pairs(series)) == 1
     if not figure.colour:
         return _curve(axes, figure, quantity, series, _COLOURS[-1], None, MARKERS[0])
     known = series.index.get_level_values(figure.colour)
-    palette = colours(
-        table[figure.colour] if figure.colour in table else quantity.values.index.get_level_values(figure.colour)
-    )
+    colour_of = palette(results, figure.colour)
     for k, value in enumerate(sorted(set(known))):
-        colour = next(own for key, own in palette.items() if alike([key], value)[0])
         own = select(series, **{figure.colour: value})
         label = level(figure.colour).label(value) + (
             "" if same and figure.panel else f", {pairs_text(own, results.independent)}"
         )
-        _curve(axes, figure, quantity, own, colour, label, MARKERS[k % len(MARKERS)])
+        _curve(axes, figure, quantity, own, colour_of[value], label, MARKERS[k % len(MARKERS)])
 
 
 def _curve(axes, figure, quantity, series, colour, label, marker):

@@ -29,18 +29,20 @@ class Snapshot:
 @dataclass(frozen=True)
 class SnapshotFigure:
     """name, caption (as definition.StudyFigure); collisions: definition.Results -> [(row of the table (itertuples), title, times (T,) [s])],
-    one row of panels each, a panel a time: the saved state that is nearest. Every panel has its own scale, with a bar."""
+    one row of panels each, a panel a time: the saved state that is nearest. Every panel has its own scale, with a bar, and holds that part
+    of the grains (held)."""
 
     name: str
     caption: str
     collisions: Callable
     vector: bool = False
+    held: float = HELD
 
     def draw(self, results):
         """The Figure of definition.Results; None without such runs; NoRunFolder where neither run folder nor kept states are at hand."""
         rows = list(self.collisions(results))
         return (
-            _draw([(title, states_of(results, row, times), row.grain_radius) for row, title, times in rows])
+            _draw([(title, states_of(results, row, times), row.grain_radius) for row, title, times in rows], self.held)
             if rows
             else None
         )
@@ -92,12 +94,12 @@ def read_snapshots(file):
 
 
 @styled
-def _draw(rows):
+def _draw(rows, held):
     figure, axes = panels(len(rows), max(len(states) for _, states, _ in rows), 2.7, 2.75)
     for places, (title, states, unit) in zip(axes, rows):
         for place, state in zip(places, states):
             centre = state.position.mean(axis=0)
-            half = 1.05 * reach(Snapshot(state.time, state.position - centre, *(None,) * 3), held=HELD) / unit
+            half = 1.05 * reach(Snapshot(state.time, state.position - centre, *(None,) * 3), held) / unit
             draw_view(place, state, unit, half, centre=centre)
             _scale_bar(place, half)
         for place in places[len(states) :]:

@@ -1,0 +1,201 @@
+"""Andrews's elastoplastic spheres in place of aggregates: what they predict of d_max and t_max, and the straight lines and moduli that are
+fitted to collisions (A24 sections 4.2 and 4.3).
+
+    d_max = delta_max(v, R*) - 2 delta_offset,   t_max = tau_max(v, R*) + 2 (r - delta_offset)/v,   R* = (R + delta_offset)/2
+
+Lengths in grain radii. E* enters as its inverse, the compliance: it is finite, 0 for rigid-plastic spheres, where E* has no bound."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...statistics import smoothed_scatter
+from ...theory.andrews import (
+    Spheres,
+    largest_compression,
+    restitution,
+    stress_if_rigid,
+    time_of_largest_compression,
+    young_if_elastic,
+)
+from .levenberg import least_squares
+
+VELOCITY = 10**0.5  # m/s, at which A24 compares sizes; printed as 3.2 m/s
+FEWEST_VELOCITIES = 3  # of a size that A24's way takes the moduli from
+SAME = 1e-3  # relative, of velocities
+
+
+@dataclass(frozen=True)
+class Aggregates:
+    """Andrews's spheres in place of aggregates: stress: sigma_plastic [Pa]; compliance: 1/E* [1/Pa]; offset: delta_offset [grain radii];
+    density of an aggregate [kg/m^3]; grain_radius [m]. Floats, or arrays that broadcast."""
+
+    stress: float
+    compliance: float
+    offset: float
+    density: float
+    grain_radius: float
+
+    def at(self, radius, velocity):
+        """(d_max [grain radii], t_max [s]) at a radius [grain radii] and a velocity [m/s]."""
+        # Everything in the model is proportional to R*.
+        spheres = self._spheres(0.5 * (radius + self.offset))
+        depth, time = largest_compression(velocity, spheres), time_of_largest_compression(velocity, spheres)
+        return depth - 2.0 * self.offset, time * self.grain_radius + self.time_of_contact(velocity)
+
+    def time_of_contact(self, velocity):
+        """t_col [s], when surfaces that start 2 r - 2 delta_offset apart meet (A24 after eq 21)."""
+        return 2.0 * (1.0 - self.offset) * self.grain_radius / velocity
+
+    def restitution(self, velocity):
+        """Coefficient of restitution (A24 section 5.3), the same for every size."""
+        return restitution(velocity, self._spheres(1.0))
+
+    def _spheres(self, reduced_radius):
+        with np.errstate(divide="ignore"):
+            young = 1.0 / np.maximum(self.compliance, 0.0)
+        return Spheres(reduced_radius, self.density, self.stress, young)
+
+
+# What A24 prints, by filling: sigma_plastic, E* [Pa] (eqs 34, 35), delta_offset [grain radii] (18, 20), delta_max/R* (19, 21).
+PRINTED = {0.4: (2.25e6, 15.7e6, 0.271, 0.113), 0.3: (0.428e6, 4.96e6, -0.010, 0.199)}
+
+
+def printed(filling, grain):
+    """Aggregates with the values that A24 prints for a filling factor, of grains with grain_density and grain_radius; KeyError for another
+    filling."""
+    stress, young, offset, _ = PRINTED[filling]
+    return Aggregates(stress, 1.0 / young, offset, filling * grain.grain_density, grain.grain_radius)
+
+
+def printed_line(filling):
+    """(c1, c2) of d_max = c1 R - c2 at VELOCITY: A24 eq 14, from its eqs 18 to 21 backwards, since it prints them for 0.4 alone."""
+    _, _, offset, ratio = PRINTED[filling]
+    return 0.5 * ratio, offset * (2.0 - 0.5 * ratio)
+
+
+def straight_line(x, y, weights):
+    """(slope, intercept) (B,) of y (n,) or (B, n) against x (n,), least squares with weights (B, n)."""
+    mean = lambda values: np.sum(weights * values, axis=1) / weights.sum(axis=1)
+    slope = (mean(x * y) - mean(x) * mean(y)) / (mean(x * x) - mean(x) ** 2)
+    return slope, mean(y) - slope * mean(x)
+
+
+def offset_of_line(c1, c2):
+    """delta_offset [grain radii] that makes delta_max proportional to R*: c2/(2 - c1), from A24 eqs 14 to 17 and 19. Eq 18 prints
+    2 - c1/2, but its number 0.271 is this one."""
+    return c2 / (2.0 - c1)
+
+
+def size_line(rows, weights):
+    """(B, 5): c1, c2 (A24 eq 14), delta_offset (18), delta_max/R* (19), and d_max where the line is known best, at R = 60 r: from d_max
+    [grain radii] against the radius of rows, at one velocity, for weights (B, n) of theirs."""
+    c1, intercept = straight_line(rows.radius.to_numpy(), rows.d.to_numpy(), weights)
+    return np.stack([c1, -intercept, offset_of_line(c1, -intercept), 2.0 * c1, c1 * 60.0 + intercept], axis=1)
+
+
+def at_velocity(rows, velocity=VELOCITY):
+    """Mask of the rows at a velocity [m/s]."""
+    return (rows.velocity / velocity - 1.0).abs() < SAME
+
+
+def papers_way(rows, weights):
+    """(B, 3): sigma_plastic [Pa], 1/E* [1/Pa] and delta_offset [grain radii] as A24 finds them: the offset from d_max against size at one
+    velocity (eq 18), then the moduli from d_max and t_max of the sizes that have several velocities (section 4.3.3)."""
+    at = at_velocity(rows).to_numpy()
+    if rows[at].radius.nunique() < 2:
+        return np.full((len(weights), 3), np.nan)
+    offset = size_line(rows[at], weights[:, at])[:, 2]
+    several = (rows.groupby("radius").velocity.transform("nunique") >= FEWEST_VELOCITIES).to_numpy()
+    return fit_moduli(rows[several], weights[:, several], offset)
+
+
+def papers_offset(rows, weights):
+    """The same with A24's delta_offset at every filling that it has; NaN at others."""
+    offset = PRINTED.get(rows.filling.iloc[0], (np.nan,) * 3)[2]
+    return fit_moduli(rows, weights, np.full(len(weights), offset))
+
+
+def fit_moduli(rows, weights, offset=None):
+    """(B, 3): sigma_plastic [Pa], 1/E* [1/Pa] and delta_offset [grain radii] that fit d_max and t_max of rows (one filling) best, for
+    weights (B, n) of theirs; offset (B,): held there. NaN with too few sizes or velocities, or no point with two pairs.
+
+    A run counts by 1/s^2, s its scatter (_points): our choice, A24 doesn't say. Where rigid-plastic spheres fit as well, the compliance is 0; where spheres that never yield do, the stress is any
+    that none reaches."""
+    if rows.velocity.nunique() < FEWEST_VELOCITIES or (offset is None and rows.radius.nunique() < 2):
+        return np.full((len(weights), 3), np.nan)
+    residuals, stress = _residuals(rows, weights)
+    low, high = (np.tile(ends, (len(weights), 1)) for ends in zip(*_BOUNDS))
+    if offset is not None:
+        low[:, 2] = high[:, 2] = offset
+    x, chi_square = least_squares(residuals, np.tile([np.log(stress), *_START], (len(weights), 1)), low, high)
+    high[:, 1] = 0.0
+    rigid, rigid_chi_square = least_squares(residuals, x, low, high)
+    x = np.where((rigid_chi_square <= chi_square)[:, None], rigid, x)
+    x[~np.isfinite(chi_square)] = np.nan
+    return np.stack([*_moduli(x), x[:, 2]], axis=1)
+
+
+# What is searched: ln sigma_plastic, 100 delta_crit/R* and delta_offset, in which the model is smooth up to the rigid-plastic limit.
+_BOUNDS = ((np.log(1e3), np.log(1e13)), (0.0, 1000.0), (-1.5, 1.5))
+_START = (3.0, 0.1)
+
+
+def _moduli(x):
+    """(sigma_plastic, 1/E*) (B,) at places x (B, 3): delta_crit/R* = (pi sigma/(2 E*))^2, A24 eq 24."""
+    stress = np.exp(x[:, 0])
+    return stress, 2.0 / np.pi * np.sqrt(0.01 * x[:, 1]) / stress
+
+
+def _residuals(rows, weights):
+    """(places (B, 3) -> residuals (B, 2 K) of the means at K sizes and velocities, stress of rigid-plastic spheres without offset [Pa])."""
+    radius, velocity, number, own, (depth, time) = _points(rows, weights, ("d", "t_max"))
+    data, error = (np.concatenate(both, axis=-1) for both in zip(depth, time))
+    grain, root = rows.iloc[0], np.sqrt(np.tile(own, 2))
+    density = grain.filling * grain.grain_density
+
+    def residuals(x):
+        stress, compliance = _moduli(x)
+        model = Aggregates(stress[:, None], compliance[:, None], x[:, 2:], density, grain.grain_radius)
+        both = np.broadcast_arrays(*model.at(radius, velocity))
+        return root * (np.concatenate(both, axis=1) - data) / error
+
+    ratio = np.average(2.0 * depth[0][0] / radius / velocity, weights=number)
+    return residuals, stress_if_rigid(max(ratio, 1e-3), 1.0, density)
+
+
+def _points(rows, weights, columns):
+    """(radius [grain radii], velocity [m/s], number of runs (K,), their weights (B, K), [(means (B, K), scatter of a run (K,)) of each of
+    the columns]) at the K sizes and velocities of rows; the scatter is a power of the velocity that is common to all sizes."""
+    (radius, velocity), place = np.unique(rows[["radius", "velocity"]].to_numpy().T, axis=1, return_inverse=True)
+    members = np.eye(len(radius))[place.ravel()]
+    number, own, found = members.sum(axis=0), weights @ members, []
+    for values in (rows[column].to_numpy() for column in columns):
+        away = values - (values @ members / number)[place.ravel()]
+        scatter = np.sqrt(away**2 @ members / np.maximum(number - 1, 1))
+        found.append(((weights * values) @ members / own, smoothed_scatter(velocity, scatter, number)))
+    return radius, velocity, number, own, found
+
+
+def time_exponent(rows, weights):
+    """(B, 1): exponent of tau_max (rows' tau) as a power of the velocity, of rows of one size: a straight line through the logarithms of
+    the means, with the weights of fit_moduli. Rigid-plastic spheres have 0, elastic ones -1/5 (A24 eqs 32, 33)."""
+    _, velocity, _, own, ((tau, scatter),) = _points(rows, weights, ("tau",))
+    value, _ = straight_line(np.log(velocity), np.log(tau), own * (tau / scatter) ** 2)
+    return value[:, None]
+
+
+def degenerate_curve(ratio, density, velocity=VELOCITY, samples=200):
+    """(sigma_plastic, 1/E*) (samples,) [Pa, 1/Pa] of all elastoplastic spheres with delta_max/R* = ratio at a velocity [m/s]: A24 Fig. 10,
+    from the rigid-plastic limit to the stress from which nothing yields."""
+    least, young = stress_if_rigid(ratio, velocity, density), young_if_elastic(ratio, velocity, density)
+    stress = np.linspace(least, elastic_stress(ratio, young), samples)
+    # Eqs 27 to 29 are quadratic in delta_crit/R*; the smaller root is the one below delta_max.
+    rest = 0.5 * ratio**2 * (1.0 - least / stress)
+    critical = (ratio / 3.0 - np.sqrt(np.maximum(ratio**2 / 9.0 - 0.4 * rest, 0.0))) / 0.2
+    return stress, 2.0 / np.pi * np.sqrt(critical) / stress
+
+
+def elastic_stress(ratio, young):
+    """sigma_plastic [Pa] from which spheres of reduced modulus E* [Pa] with delta_max/R* = ratio don't yield: A24 eq 24."""
+    return 2.0 * young / np.pi * np.sqrt(ratio)

@@ -1,0 +1,248 @@
+"""The study of A24's collisions: which quantities the runs tell. A pair of aggregates has a filling factor and a radius; it may collide at
+several velocities, with one thing changed, or for longer, and counts once in every estimate."""
+
+import numpy as np
+import pandas
+
+from ...measures.outcome import STICKING, UNDECIDED
+from ...runs.collect import Scene
+from ...runs.format import LOST_CHANNELS
+from ...theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, poisson_ratio
+from ...theory.andrews import stress_if_rigid, young_if_elastic
+from ..collisions import HEAD_ON_ICE, at_maximum, channel_quantity, outcome_quantities
+from ..definition import Quantity, Study
+from ..estimate import combine, exact
+from ..runs import Runs, at, each, select, together
+from .andrews_fit import (
+    FEWEST_VELOCITIES,
+    PRINTED,
+    VELOCITY,
+    Aggregates,
+    at_velocity,
+    elastic_stress,
+    fit_moduli,
+    papers_offset,
+    papers_way,
+    printed,
+    size_line,
+    straight_line,
+    time_exponent,
+)
+from .measure import COLUMNS, UNCHANGED, measure
+from .zones import FEWEST_PAIRS, zone_correlation
+
+PAIR = ("filling", "radius")
+POINT = (*PAIR, "velocity")
+MEGA, PER_GIGA, NANO = 1e6, 1e-9, 1e-9
+BY_SIZE, PAPERS, FREE = "A24's way", "A24's δ_offset", "all three free"  # how delta_offset is found
+NUMBERS = ("σ", "1/E*", "δ_offset")
+
+
+def quantities(table):
+    """Quantities of a table of runs (measure.COLUMNS)."""
+    table = in_grain_radii(table)
+    same = np.logical_and.reduce([table[name] == usual for name, usual in UNCHANGED.items()])
+    runs, grain = Runs(once(table[same]), "seed", PAIR), table.iloc[0]  # all of one material
+    at = runs.of(runs.table[at_velocity(runs.table)])
+    yield Quantity("d_max", "largest compression length", runs.estimates("d", POINT), "r")
+    yield Quantity("t_max", "its time", runs.estimates("t_max", POINT), "ns", NANO)
+    yield from _sizes(at, grain)
+    yield from _moduli(runs, grain)
+    yield from _times(runs, grain)
+    yield from _return(runs)
+    yield from _packings(at)
+    yield from _changes(table, same)
+
+
+def in_grain_radii(table):
+    """The table with radius and d (d_max) in grain radii; velocity and duration to the digits that tell them apart."""
+    return table.assign(
+        radius=(table.radius / table.grain_radius).round(3),
+        d=table.d_max / table.grain_radius,
+        velocity=table.velocity.round(6),
+        duration=table.duration.round(8),
+    )
+
+
+def once(table):
+    """Of a pair's runs at one velocity only that which was followed for longest."""
+    return table.sort_values("duration", kind="stable").drop_duplicates([*POINT, "seed"], keep="last").sort_index()
+
+
+def _sizes(at, grain):
+    """The straight line of d_max against size at A24's velocity, and what follows from its delta_max/R*."""
+    several = at.of(at.table[at.table.groupby("filling").radius.transform("nunique") > 1])
+    line = several.fit(size_line, ("c1", "c2", "δ_offset", "δ_max/R*", "d_max at 60 r"), ("filling",), fitted=2)
+    yield Quantity("line", "d_max = c1 R - c2 r at 3.2 m/s (A24 eq 14), δ_offset and δ_max/R* (eqs 18, 19)", line, "r")
+    ends = {
+        "σ, rigid-plastic": lambda x, rho: stress_if_rigid(x, VELOCITY, rho),
+        "E*, elastic": lambda x, rho: young_if_elastic(x, VELOCITY, rho),
+        "σ, from which elastic": lambda x, rho: elastic_stress(x, young_if_elastic(x, VELOCITY, rho)),
+    }
+    ratio = select(line, number="δ_max/R*")
+    values = {
+        name: each(ratio, lambda e, filling, f=f: combine(lambda x: f(x, filling * grain.grain_density), e))
+        for name, f in ends.items()
+    }
+    yield Quantity(
+        "ends", "ends of the curve of (σ, E*) with that δ_max/R* (A24 Fig. 10)", together(values, "end"), "MPa", MEGA
+    )
+
+
+def _moduli(runs, grain):
+    """Yield stress, E* and delta_offset of Andrews's spheres."""
+    ways = {BY_SIZE: papers_way, PAPERS: papers_offset, FREE: fit_moduli}
+    fits = together({way: runs.fit(f, NUMBERS, ("filling",)) for way, f in ways.items()}, "fit")
+    fits = fits[[np.isfinite(estimate.value) for estimate in fits]]
+    stress, compliance, offset = (select(fits, number=number) for number in NUMBERS)
+    yield Quantity("stress", "yield stress σ", stress, "MPa", MEGA)
+    yield Quantity("compliance", "1/E*; 0: rigid-plastic", compliance, "1/GPa", PER_GIGA)
+    yield Quantity("offset", "δ_offset", offset, "r")
+    yield from _constants(runs, grain, stress, compliance)
+    yield from _of_fit(runs, grain, *(select(series, fit=FREE) for series in (stress, compliance, offset)))
+
+
+def _constants(runs, grain, stress, compliance):
+    """What A24's section 5 makes of sigma and E*."""
+    ratio = each(stress, lambda e, filling, fit: e / bcca_strength(filling))
+    yield Quantity("over_quasistatic", "σ over that of quasistatic compression of BCCA aggregates (A24 eq 44)", ratio)
+    counted = runs.estimates("inner_coordination", ("filling",))
+    sites = lambda filling: cpe_coordination(filling, grain.grain_radius, grain.overlap)
+    bulk = lambda filling: bulk_modulus(
+        filling, sites(filling), grain.grain_radius, grain.overlap, grain.pull_off_force
+    )
+    both = {"counted inside": counted, "A24 eq 39": each(counted, lambda _, filling: exact(sites(filling)))}
+    yield Quantity("coordination", "contacts of a grain", together(both, "how"))
+    modulus = each(counted, lambda _, filling: exact(bulk(filling)))
+    yield Quantity("bulk_modulus", "K_agg (A24 eq 41)", modulus, "MPa", MEGA)
+    ratio = lambda e, filling, fit: combine(lambda k: poisson_ratio(1.0 / np.maximum(k, 1e-15), bulk(filling)), e)
+    yield Quantity("poisson", "ν_agg from E* and K_agg (A24 eq 42)", each(compliance, ratio))
+
+
+def _of_fit(runs, grain, *fit):
+    """What the fit of all three (Series of sigma, 1/E* and delta_offset by filling) leaves of the runs, and the coefficient of restitution
+    of such spheres beside that of A24's."""
+    ours = lambda series: series[series.index.get_level_values("filling").isin(fit[0].index)]
+
+    def of_model(f, filling, *more):
+        """Estimate of f(Aggregates as fitted at a filling, numbers of other estimates)."""
+        density = filling * grain.grain_density
+        g = lambda *numbers: f(Aggregates(*numbers[:3], density, grain.grain_radius), *numbers[3:])
+        return combine(g, *(at(series, filling=filling) for series in fit), *more)
+
+    for k, (column, name, unit, scale) in enumerate((("d", "d_max", "r", 1.0), ("t_max", "t_max", "ns", NANO))):
+        less = lambda e, filling, *place: of_model(lambda model, y: y - model.at(*place)[k], filling, e)
+        values = each(ours(runs.estimates(column, POINT)), less)
+        yield Quantity(f"{name}_beyond", f"{name} less that of Andrews's spheres, {FREE}", values, unit, scale)
+    points = runs.estimates("d", ("filling", "velocity"))
+    theirs = points[points.index.get_level_values("filling").isin(PRINTED)]
+    of = {
+        FREE: each(ours(points), lambda _, filling, v: of_model(lambda model: model.restitution(v), filling)),
+        "A24's σ, E*": each(theirs, lambda _, filling, v: exact(printed(filling, grain).restitution(v))),
+    }
+    e = together(of, "fit")
+    yield Quantity("andrews", "restitution of Andrews's spheres, and its square", together({"e": e, "e²": e * e}, "of"))
+
+
+def _times(runs, grain):
+    """t_max beside A24's fitted model, and how tau_max goes with the velocity."""
+    parts = []
+    for filling, own in runs.table[runs.table.filling.isin(PRINTED)].groupby("filling"):
+        model = printed(filling, grain)
+        d, t = model.at(own.radius, own.velocity)
+        parts.append(
+            own.assign(deeper=own.d - d, late=own.t_max - t, tau=own.t_max - model.time_of_contact(own.velocity))
+        )
+    beside = runs.of(pandas.concat(parts) if parts else runs.table[:0].assign(deeper=0.0, late=0.0, tau=0.0))
+    yield Quantity("deeper", "d_max less that of A24's fitted model", beside.estimates("deeper", POINT), "r")
+    yield Quantity("late", "t_max less that of A24's fitted model", beside.estimates("late", POINT), "ns", NANO)
+    line = beside.of(beside.table[at_velocity(beside.table)])
+    line = line.fit(lateness, ("as they are", "with A24's d_max"), ("filling",))
+    yield Quantity("late_mean", "the same at 3.2 m/s, mean over the pairs of all sizes", line, "ns", NANO)
+    several = beside.table.groupby(list(PAIR)).velocity.transform("nunique") >= FEWEST_VELOCITIES
+    trend = select(
+        beside.of(beside.table[several]).fit(time_exponent, ("exponent",), PAIR, fitted=2), number="exponent"
+    )
+    trend = trend[[np.isfinite(estimate.value) for estimate in trend]]
+    yield Quantity(
+        "trend",
+        "exponent of τ_max (with A24's δ_offset) as a power of the velocity; 0: rigid-plastic, -0.2: elastic",
+        trend,
+    )
+
+
+def lateness(rows, weights):
+    """(B, 2): means of late, as it is and where deeper is 0: by a straight line through all pairs."""
+    late = rows.late.to_numpy()
+    return np.stack([weights @ late / weights.sum(axis=1), straight_line(rows.deeper.to_numpy(), late, weights)[1]], 1)
+
+
+def _return(runs):
+    """What comes back after the largest compression, how collisions end, and where the energy has gone until t_max."""
+    share = {"e": lambda t: t.return_speed / t.velocity, "e²": lambda t: (t.return_speed / t.velocity) ** 2}
+    meaning = "largest speed at which the halves part over the collision velocity, and its square, the kinetic energy over K(0)"
+    yield Quantity("rebound", meaning, runs.parts(share, POINT, "of"))
+    yield Quantity("return_time", "its time", runs.estimates("return_time", POINT), "ns", NANO)
+    ended = (*POINT, "duration")
+    wanted = ("sticking", "restitution")
+    yield from (own for own in outcome_quantities(runs, ended) if own.name in wanted)
+    together_at_end = runs.fractions(lambda t: t.outcome.isin((STICKING, UNDECIDED)), ended)
+    yield Quantity("in_one_piece", "runs in one piece when they end (A24: at 1 µs)", together_at_end)
+    lost = runs.estimates(lambda t: t[[at_maximum(c) for c in LOST_CHANNELS]].sum(axis=1), POINT)
+    yield Quantity("dissipated", "dissipated until t_max, of K(0)", lost, "%", 0.01)
+    yield channel_quantity(runs, POINT, at_maximum, "energy", "change of each channel until t_max, of K(0)")
+
+
+def _packings(at):
+    """How far the filling of the zones that meet, which the packings alone give, tells d_max."""
+    names, known = ("correlation", "slope", "explained"), at.table[at.table.zone_filling.notna()]
+    for name, by, sizes in (("zones", ("filling",), known.radius.nunique()), ("zones_by_size", PAIR, 1)):
+        enough = known.groupby(list(by)).seed.transform("size") >= sizes + FEWEST_PAIRS
+        values = at.of(known[enough]).fit(zone_correlation, names, by, fitted=sizes + 1)
+        yield Quantity(
+            name, "d_max against R times the filling of the zones that meet, about the means of the sizes", values
+        )
+
+
+def _changes(table, same):
+    """Runs with one thing changed less the same pairs without."""
+    key = [*POINT, "seed"]
+    usual = once(table[same])[[*key, "d", "t_max"]]
+    changed = table[~same].assign(
+        changed=[change(*own) for own in table.loc[~same, list(UNCHANGED)].itertuples(index=False)]
+    )
+    both = Runs(changed.merge(usual, on=key, suffixes=("", "_usual")), "seed", PAIR)
+    for name, column, unit, scale in (("d_max", "d", "r", 1.0), ("t_max", "t_max", "ns", NANO)):
+        values = both.estimates(lambda t: t[column] - t[f"{column}_usual"], (*POINT, "changed"))
+        yield Quantity(
+            f"{name}_change", f"{name} with one thing changed less that of the same pairs without", values, unit, scale
+        )
+
+
+def change(drag, remove, overlap):
+    """What differs from A24's scene (values of UNCHANGED), in words.
+
+    >>> change(3e-12, 0.0, 1.0), change(0.0, 1.0, 0.5)
+    ('drag, T_vis = 3 ps', 'loose grains left out, neighbours with 0.5 of the overlap')
+    """
+    parts = [f"drag, T_vis = {drag * 1e12:g} ps"] if drag else []
+    parts += ["loose grains left out"] if remove else []
+    parts += [f"neighbours with {overlap:g} of the overlap"] if overlap != 1 else []
+    return ", ".join(parts)
+
+
+STUDY = Study(
+    title="Arakawa et al. (2024): collisions of elastoplastic aggregates",
+    question="Do equal close-packed aggregates that collide head on compress like elastoplastic spheres (Andrews 1930), and with which yield "
+    "stress and elastic modulus?",
+    # Head-on collisions of CPE aggregates without bonds, springs held at their limits.
+    scene=Scene(
+        name="A24's scene",
+        values={"packing": "cpe", **{name: value for name, value in HEAD_ON_ICE.items() if name not in UNCHANGED}},
+        numbers=("filling", "radius", "velocity", "seed"),
+        measured=(*UNCHANGED, "duration"),
+    ),
+    columns=COLUMNS,
+    measure=measure,
+    quantities=quantities,
+)
