@@ -157,15 +157,10 @@ def together(of, level):
     frames = {label: own for label, own in of.items() if len(own)}
     if not frames:
         return _series({}, (*next(iter(of.values())).index.names, level))
+    names = list(next(iter(frames.values())).index.names)
+    frames = {label: own.reorder_levels(names) if len(names) > 1 else own for label, own in frames.items()}
     joined = pandas.concat(frames, names=[level])
     return joined.reorder_levels([*joined.index.names[1:], level])
-
-
-def each(series, f):
-    """Series of f(estimate, *its values of the levels)."""
-    keys = (key if isinstance(key, tuple) else (key,) for key in series.index)
-    found = [f(estimate, *key) for estimate, key in zip(series, keys)]
-    return pandas.Series(found, series.index, dtype=object)
 
 
 def at(series, **where):
