@@ -53,7 +53,7 @@ GROWN = {"neck": 0.7, "setup": (*RULES, "space"), "growth_velocity": (0, 1, 3, 1
 FIGURES = (
     CurveFigure(
         "held",
-        "Springs cut at their limits and held there, beside S17's words (purple; β = 0: unsintered). Bars: standard errors.",
+        "Springs cut at their limits or held there, beside S17's words (purple); β = 0: unsintered. Bars: standard errors.",
         x="velocity",
         colour="setup",
         panel="neck",

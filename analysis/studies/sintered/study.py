@@ -144,7 +144,7 @@ def _energies(runs):
 
 STUDY = Study(
     title="Sirono & Ueno (2017): collisions of sintered aggregates",
-    question="Do sintered icy aggregates still grow when they collide, when do they bounce or break, and does it hold in three dimensions?",
+    question="Do sintered icy aggregates grow, bounce or break when they collide, and is it the same in three dimensions?",
     # Head-on collisions of equal aggregates of equal ice grains: BCCA ones, and those that collisions have compacted.
     scene=Scene(
         name="S17's scene",
