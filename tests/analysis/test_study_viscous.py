@@ -11,8 +11,9 @@ from analysis import theory
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNELS
+from analysis.studies.threshold import threshold_velocity
 from analysis.studies.viscous.growth import SQUARES as TWELFTHS
-from analysis.studies.viscous.growth import fragment_exponent, offset_weights, threshold_velocity
+from analysis.studies.viscous.growth import fragment_exponent, offset_weights
 from analysis.studies.viscous.measure import measure, pair_speeds, sizes_from_text, sizes_text
 
 GRAINS, V_FRA = 30, 55.0
