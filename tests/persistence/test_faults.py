@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 from faults import scenarios
-from faults.scenarios import RECORDER, RUN, SCENARIOS, enumerated, enumerated_stops, power_loss
+from faults.scenarios import RECORDER, RUN, SCENARIOS, enumerated, enumerated_stops, power_loss, wrong_exports
 
 from analysis.runs.write import is_unfinished
 
@@ -72,6 +72,10 @@ def test_what_a_power_loss_takes_is_noticed(bench):
     calls = bench.calls(SCENARIOS[0])
     for path in ("history.npz", "states", "states/000002.npz", "checkpoint"):
         assert power_loss([call for call in calls if (call.name, call.path) != ("fsync", path)]), path
+
+
+def test_no_fault_leaves_half_an_export(forks, tmp_path):
+    assert wrong_exports(forks, tmp_path, every=29) == []
 
 
 @pytest.mark.parametrize("size", [16, 24, 32, 40])

@@ -1,8 +1,8 @@
-"""Runs collide.py many times over from one YADE: a fork for each run, which starts in milliseconds.
+"""Runs collide.py and the analysis many times over from one YADE: a fork for each run, which starts in milliseconds.
 
     LD_PRELOAD=injector.so yade -n -x -j1 fork_server.py REQUESTS ANSWERS     (numbers of two open pipes)
 
-A request is one line of JSON: folder (to run in), arguments, watched (the folder whose changes are counted), call, action,
+A request is one line of JSON: folder (to run in), program (collide or analysis), arguments, watched (the folder whose changes are counted), call, action,
 stop, log, output (file of stdout and stderr), as fault_arm() in injector.c has them. The answer is one line of JSON: the
 exit status, or minus the number of the signal that ended the run. A run is the script's own main(), with what yade itself
 does at its end left out.
@@ -17,6 +17,8 @@ import sys
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
 sys.path.insert(0, TOP)
 import contact_law  # noqa: F401  (loaded once, for all runs)
+from analysis import __main__ as analysis
+from analysis.export import extended_xyz, vtk_series  # noqa: F401
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.run import checkpoint_writer, loop, recorder, report, scene, script  # noqa: F401
 
@@ -36,6 +38,8 @@ def run(request):
         arm.argtypes = (ctypes.c_char_p, ctypes.c_long, ctypes.c_int, ctypes.c_long, ctypes.c_char_p)
         watched = [request[name].encode() for name in ("watched", "log")]
         arm(watched[0], request["call"], request["action"], request["stop"], watched[1])
+        if request["program"] == "analysis":
+            sys.exit(analysis.main(request["arguments"]))
         script.main(KIND, "")
     except SystemExit as end:
         status = end.code or 0

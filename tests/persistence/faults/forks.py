@@ -61,10 +61,18 @@ class Forks:
     def run(self, arguments, watched, call=0, action=COUNT, stop=0):
         """Ended of collide.py with these arguments, in the folder that holds `watched` (the run folder, its changes are
         counted): ended or failing at a call, with SIGTERM before call number `stop` (0: none)."""
+        return self._ended("collide", [*arguments, f"out={Path(watched).name}"], watched, call, action, stop)
+
+    def analyse(self, arguments, watched, call=0, action=COUNT):
+        """The same of `python3 -m analysis` with these arguments, which writes into `watched`."""
+        return self._ended("analysis", list(arguments), watched, call, action, 0)
+
+    def _ended(self, program, arguments, watched, call, action, stop):
         watched, log, output = Path(watched), self.folder / "calls", self.folder / "output"
         request = dict(
             folder=str(watched.parent),
-            arguments=[*arguments, f"out={watched.name}"],
+            program=program,
+            arguments=arguments,
             watched=str(watched),
             call=call,
             action=action,

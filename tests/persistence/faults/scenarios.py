@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 from faults.forks import COUNT, DISK_FULL, END_BEFORE, END_HALFWAY
 
+from analysis.runs.write import is_unfinished
+
 # Six steps of a few grains, a checkpoint after each, four states.
 RUN = ("radius=2", "velocity=30", "duration=1e-10", "states=4", "threads=1", "checkpointInterval=1e-9")
 OTHER = ("seed=2",)  # of a run that was in the folder before
@@ -149,6 +151,44 @@ class Bench:
         if left != ["ended", "history.npz", "run.json", "states"]:
             return [f"{called}: leaves {left}"]
         return [] if arrays(run) == self.straight[RUN] else [f"{called}: other arrays"]
+
+
+def outputs(folder):
+    """{path: bytes} of the files below a folder, but temporary ones."""
+    files = (path for path in Path(folder).rglob("*") if path.is_file() and not is_unfinished(path.name))
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+def wrong_exports(forks, folder, every):
+    """What is wrong after a fault at every so many calls of an export over that of another run, in words (nothing: []). Each file
+    must be that of one of the two exports; calling again must leave that of the run, and no more."""
+    out, whole = folder / "out", {}
+    for name, more in (("other", OTHER), ("run", ())):
+        assert forks.run(RUN + more, folder / name).status == 0
+        done = forks.analyse(_export(name), out)
+        assert done.status == 0, done.lines
+        whole[name] = outputs(out)
+        shutil.copytree(out, folder / f"export of {name}")
+    wrong, cases = [], [(call, fault) for call in done.calls[::every] for fault in ACTIONS]
+    for call, fault in cases:
+        shutil.rmtree(out)
+        shutil.copytree(folder / "export of other", out)
+        done = forks.analyse(_export("run"), out, call.number, ACTIONS[fault])
+        half = [
+            path for path, found in outputs(out).items() if found not in (each.get(path) for each in whole.values())
+        ]
+        if ACTIONS[fault] == DISK_FULL and done.status:
+            half += [] if sum(line.startswith("analysis: ") for line in done.lines) == 1 else done.lines
+        again = forks.analyse(_export("run"), out)
+        left = [path.name for path in out.rglob("*") if is_unfinished(path.name)]
+        if half or again.status or left or outputs(out) != whole["run"]:
+            wrong.append(f"{fault} {call}: {half}, then {again.lines}, leaves {left}")
+    assert len(cases) > 6
+    return wrong
+
+
+def _export(run):
+    return f"export {run} --format all --out out".split()
 
 
 def wrong_on_a_full_disk(done, run):
