@@ -133,7 +133,7 @@ def test_the_gallerys_numbers_are_those_of_the_analysis_before():
         ("largest", {"setup": "held", "growth_velocity": 0, "neck": 0.5, "velocity": 30}, 0.42959, 0.0742),
         ("necks_change", {**bcca, "setup": "space", "velocity": 30}, 0.3409, 0.036),
         ("necks_change", {**bcca, "setup": "30 Å", "velocity": 30}, 1.05063, 0.0229),
-        ("lost", {"setup": "cut", "neck": 0, "part": "rolling friction"}, 0.7495, 0.0041),
+        ("lost", {"setup": "cut", "neck": 0, "way": "rolling friction"}, 0.7495, 0.0041),
         ("left", {"setup": "cut", "periods": 20000}, 0.215, 0.017),
         ("necks_law", {"setup": "cut", "number": "exponent"}, 1.2926, 0.0252),
         ("gyration_change", {"setup": "cut", "velocity": 20}, 27.6, 2.4),

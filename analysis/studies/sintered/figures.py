@@ -121,10 +121,10 @@ FIGURES = (
         "fig14_energy",
         "S17 Fig. 14: what BCCA aggregates lose at 10 m/s until the end of the runs, of all that is lost. The paper has shares of K(0), unsintered 80 % "
         "by rolling and 20 % by breaking contacts; contacts that form release surface energy, so that our losses exceed K(0).",
-        *("lost", "neck", "part", "setup"),
+        *("lost", "neck", "way", "setup"),
         where={
             "setup": RULES,
-            "part": ("rolling friction", "sliding friction", "contacts formed and broken", "necks broken"),
+            "way": ("rolling friction", "sliding friction", "contacts formed and broken", "necks broken"),
         },
         y_label="share of what is lost [%]",
         limits=(0, None),

@@ -133,7 +133,7 @@ def _models(runs):
 def _energies(runs):
     """Where the energy goes at 10 m/s, BCCA."""
     by = ("setup", "neck")
-    lost = runs.parts({LABELS[n]: lambda t, n=n: t[f"part_{n}"] / t.lost for n in LOST}, by, "part")
+    lost = runs.parts({LABELS[n]: lambda t, n=n: t[f"part_{n}"] / t.lost for n in LOST}, by, "way")
     yield Quantity("lost", "lost in each way at 10 m/s, of all that is lost, BCCA", lost, "%", 0.01)
     necks = lambda t: 2 * t.necks / t.energy_ratio  # K(0) is half an E_k = m V_c^2/4 a grain
     parts = {LABELS[name]: f"part_{name}" for name in LABELS} | {"N_cut E_sint": necks}
