@@ -8,7 +8,7 @@ Checked while writing: B15 and B19 are what B13 makes of B14 and B16, and B23 wh
 force is continuous at delta_c and at delta_max; eqs 30-33 are the limits of eqs 27-29. Three things to know:
 
 - eq 18 prints delta_offset = c2 r/(2 - c1/2). Eqs 14, 15, 17 and 19 give c2 r/(2 - c1), and only that gives
-  the printed 0.271 r (the printed form gives 0.267 r). studies.elastoplastic.size_fit uses that.
+  the printed 0.271 r (the printed form gives 0.267 r). studies.elastoplastic uses that.
 - eq 29 takes the mass of spheres of radius R_eff = R + delta_offset; what collides is phi rho_p of radius R.
   K_ini differs by (1 + delta_offset/R)^3, 2 % at R = 40 r. Kept as printed, because the paper's fits use it.
 - After B21 the stress is cut at sigma_inner only inside a_max, so that a collision that stayed elastic

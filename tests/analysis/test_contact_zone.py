@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from small_collision import cluster
 
-from analysis.measures.contact_zone import bond_direction, loose_fraction, rigid_approach, zone_filling, zone_volume
+from analysis.measures.contact_zone import zone_filling, zone_volume
 from analysis.measures.return_phase import largest_return_speed
-from analysis.studies.collision_points import return_values
-from analysis.studies.elastoplastic.start import start_values
+from analysis.studies.collisions import return_values
+from analysis.studies.elastoplastic.measure import zones_that_meet
 
 
 @pytest.mark.parametrize(("depth", "width"), [(0.25, 0.25), (0.02, 0.4), (1.9, 0.5), (2.0, 0.3)])
@@ -38,44 +38,6 @@ def test_filling_of_the_zone_is_one_in_the_mean_and_sees_holes():
     )
 
 
-@pytest.mark.parametrize(("axis", "expected"), [((1, 0, 0), 1 / 6), ((1, 1, 0), 5 / 24), ((1, 1, 1), 2 / 9)])
-def test_direction_of_a_face_centred_lattice(axis, expected):
-    bonds = np.array([(a, b, 0) for a in (1, -1) for b in (1, -1)], dtype=float)
-    bonds = np.concatenate([bonds, bonds[:, [0, 2, 1]], bonds[:, [2, 0, 1]]])
-    along = np.array(axis) / np.linalg.norm(axis)
-    across = np.linalg.svd(along[None])[2][1:]
-    turned = np.concatenate([[[0, 0, 0]], bonds @ np.vstack([along, across]).T])
-    pairs = [[0, k] for k in range(1, 13)]
-    assert bond_direction(turned, pairs) == pytest.approx(expected, rel=1e-12)
-    assert np.isnan(bond_direction(turned, []))
-
-
-@pytest.mark.parametrize("number", [1, 7, 60])
-def test_rigid_approach_is_what_all_pairs_say(number):
-    """Two random clouds, each moved towards the other until so many pairs are close; deep grains count too."""
-    random = np.random.default_rng(number)
-    first, second = random.uniform(-4, 0, (150, 3)), random.uniform(0, 4, (150, 3)) + [3.0, -4.0, -4.0]
-    first[:, 0] *= 5
-    found = rigid_approach(first, second, 1.0, number)
-    for approach, closer in ((found * (1 - 1e-9), number - 1), (found * (1 + 1e-9), number)):
-        # a pair counts once it has come within reach, also when the grains have passed each other
-        aside = np.hypot(*(first[:, None, 1:] - second[None, :, 1:]).transpose(2, 0, 1))
-        gap = second[None, :, 0] - first[:, None, 0] - np.sqrt(np.maximum(1.0 - aside**2, 0.0))
-        assert ((aside <= 1.0) & (gap <= approach)).sum() == closer
-    assert np.isnan(rigid_approach(first, second + [0.0, 50.0, 0.0], 1.0, 1))
-
-
-def test_rigid_approach_of_two_rows():
-    """Three grains in a row behind each other, head on to one."""
-    row = np.array([[0.0, 0, 0], [-2, 0, 0], [-4, 0, 0]])
-    assert rigid_approach(row, [[5.0, 0, 0]], 2.0, 1) == pytest.approx(3.0)
-    assert rigid_approach(row, [[5.0, 1.2, 0]], 2.0, 2) == pytest.approx(7.0 - 1.6)
-
-
-def test_loose_grains():
-    assert loose_fraction(5, [[0, 1], [1, 2]]) == pytest.approx(0.4) and loose_fraction(3, []) == pytest.approx(2 / 3)
-
-
 def test_both_aggregates_count_at_the_pole_where_they_meet():
     """A ball of grains and its copy: removing what is in the zone of the second leaves half; the far pole does not matter."""
     radius, grain = 8.0, 1.0
@@ -87,7 +49,7 @@ def test_both_aggregates_count_at_the_pole_where_they_meet():
     def filling(second):
         position = np.concatenate([ball - centre, second + centre])
         aggregate = np.repeat([0, 1], [len(ball), len(second)])
-        return start_values(position, aggregate, [], radius, grain)["zone_filling"]
+        return zones_that_meet(position, aggregate, radius, grain)
 
     whole, one = filling(ball), zone_filling(ball, np.zeros(3), radius, 1.0)
     assert filling(np.delete(ball, near, axis=0)) == pytest.approx(one / 2)

@@ -18,6 +18,7 @@ from ...theory.andrews import (
     time_of_largest_compression,
     young_if_elastic,
 )
+from ..estimate import ROUNDING
 from .levenberg import least_squares
 
 VELOCITY = 10**0.5  # m/s, at which A24 compares sizes; printed as 3.2 m/s
@@ -111,9 +112,11 @@ def papers_way(rows, weights):
 
 
 def papers_offset(rows, weights):
-    """The same with A24's delta_offset at every filling that it has; NaN at others."""
-    offset = PRINTED.get(rows.filling.iloc[0], (np.nan,) * 3)[2]
-    return fit_moduli(rows, weights, np.full(len(weights), offset))
+    """The same with A24's delta_offset; NaN at a filling for which it has none."""
+    filling = rows.filling.iloc[0]
+    if filling not in PRINTED:
+        return np.full((len(weights), 3), np.nan)
+    return fit_moduli(rows, weights, np.full(len(weights), PRINTED[filling][2]))
 
 
 def fit_moduli(rows, weights, offset=None):
@@ -125,14 +128,16 @@ def fit_moduli(rows, weights, offset=None):
     if rows.velocity.nunique() < FEWEST_VELOCITIES or (offset is None and rows.radius.nunique() < 2):
         return np.full((len(weights), 3), np.nan)
     residuals, stress = _residuals(rows, weights)
+    start = np.tile([np.log(stress), *_START], (len(weights), 1))
+    if not np.isfinite(residuals(start)).all():
+        return np.full(start.shape, np.nan)
     low, high = (np.tile(ends, (len(weights), 1)) for ends in zip(*_BOUNDS))
     if offset is not None:
         low[:, 2] = high[:, 2] = offset
-    x, chi_square = least_squares(residuals, np.tile([np.log(stress), *_START], (len(weights), 1)), low, high)
+    x, chi_square = least_squares(residuals, start, low, high)
     high[:, 1] = 0.0
     rigid, rigid_chi_square = least_squares(residuals, x, low, high)
     x = np.where((rigid_chi_square <= chi_square)[:, None], rigid, x)
-    x[~np.isfinite(chi_square)] = np.nan
     return np.stack([*_moduli(x), x[:, 2]], axis=1)
 
 
@@ -173,6 +178,7 @@ def _points(rows, weights, columns):
     for values in (rows[column].to_numpy() for column in columns):
         away = values - (values @ members / number)[place.ravel()]
         scatter = np.sqrt(away**2 @ members / np.maximum(number - 1, 1))
+        scatter[scatter <= ROUNDING * np.abs(values).max()] = 0.0
         found.append(((weights * values) @ members / own, smoothed_scatter(velocity, scatter, number)))
     return radius, velocity, number, own, found
 

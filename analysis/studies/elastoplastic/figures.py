@@ -204,7 +204,7 @@ FIGURES = (
     ),
     CurveFigure(
         "zones",
-        "Correlation of d_max with the filling of the zones that meet, at 3.16 m/s.",
+        "Correlation of d_max with the filling of the zones that meet, at 3.16 m/s: 20, 8, 16, 5, 10 pairs.",
         "zones_by_size",
         "radius",
         panel="filling",

@@ -43,14 +43,14 @@ def quantities(table):
     table = in_grain_radii(table)
     same = np.logical_and.reduce([table[name] == usual for name, usual in UNCHANGED.items()])
     runs, grain = Runs(once(table[same]), "seed", PAIR), table.iloc[0]  # all of one material
-    at = runs.of(runs.table[at_velocity(runs.table)])
+    one_velocity = runs.of(runs.table[at_velocity(runs.table)])
     yield Quantity("d_max", "largest compression length", runs.estimates("d", POINT), "r")
     yield Quantity("t_max", "its time", runs.estimates("t_max", POINT), "ns", NANO)
-    yield from _sizes(at, grain)
+    yield from _sizes(one_velocity, grain)
     yield from _moduli(runs, grain)
     yield from _times(runs, grain)
     yield from _return(runs)
-    yield from _packings(at)
+    yield from _packings(one_velocity)
     yield from _changes(table, same)
 
 
@@ -69,9 +69,14 @@ def once(table):
     return table.sort_values("duration", kind="stable").drop_duplicates([*POINT, "seed"], keep="last").sort_index()
 
 
-def _sizes(at, grain):
+def finite(series):
+    """The estimates of a Series that have a value: fits have none with too few runs."""
+    return series[[bool(np.isfinite(estimate.value)) for estimate in series]]
+
+
+def _sizes(runs, grain):
     """The straight line of d_max against size at A24's velocity, and what follows from its delta_max/R*."""
-    several = at.of(at.table[at.table.groupby("filling").radius.transform("nunique") > 1])
+    several = runs.of(runs.table[runs.table.groupby("filling").radius.transform("nunique") > 1])
     line = several.fit(size_line, ("c1", "c2", "δ_offset", "δ_max/R*", "d_max at 60 r"), ("filling",), fitted=2)
     yield Quantity("line", "d_max = c1 R - c2 r at 3.2 m/s (A24 eq 14), δ_offset and δ_max/R* (eqs 18, 19)", line, "r")
     ends = {
@@ -93,8 +98,7 @@ def _moduli(runs, grain):
     """Yield stress, E* and delta_offset of Andrews's spheres."""
     ways = {BY_SIZE: papers_way, PAPERS: papers_offset, FREE: fit_moduli}
     fits = together({way: runs.fit(f, NUMBERS, ("filling",)) for way, f in ways.items()}, "fit")
-    fits = fits[[np.isfinite(estimate.value) for estimate in fits]]
-    stress, compliance, offset = (select(fits, number=number) for number in NUMBERS)
+    stress, compliance, offset = (select(finite(fits), number=number) for number in NUMBERS)
     yield Quantity("stress", "yield stress σ", stress, "MPa", MEGA)
     yield Quantity("compliance", "1/E*; 0: rigid-plastic", compliance, "1/GPa", PER_GIGA)
     yield Quantity("offset", "δ_offset", offset, "r")
@@ -163,12 +167,8 @@ def _times(runs, grain):
     trend = select(
         beside.of(beside.table[several]).fit(time_exponent, ("exponent",), PAIR, fitted=2), number="exponent"
     )
-    trend = trend[[np.isfinite(estimate.value) for estimate in trend]]
-    yield Quantity(
-        "trend",
-        "exponent of τ_max (with A24's δ_offset) as a power of the velocity; 0: rigid-plastic, -0.2: elastic",
-        trend,
-    )
+    meaning = "exponent of τ_max (with A24's δ_offset) as a power of the velocity; 0: rigid-plastic, -0.2: elastic"
+    yield Quantity("trend", meaning, finite(trend))
 
 
 def lateness(rows, weights):
@@ -193,15 +193,14 @@ def _return(runs):
     yield channel_quantity(runs, POINT, at_maximum, "energy", "change of each channel until t_max, of K(0)")
 
 
-def _packings(at):
+def _packings(runs):
     """How far the filling of the zones that meet, which the packings alone give, tells d_max."""
-    names, known = ("correlation", "slope", "explained"), at.table[at.table.zone_filling.notna()]
+    names, known = ("correlation", "slope", "explained"), runs.table[runs.table.zone_filling.notna()]
     for name, by, sizes in (("zones", ("filling",), known.radius.nunique()), ("zones_by_size", PAIR, 1)):
         enough = known.groupby(list(by)).seed.transform("size") >= sizes + FEWEST_PAIRS
-        values = at.of(known[enough]).fit(zone_correlation, names, by, fitted=sizes + 1)
-        yield Quantity(
-            name, "d_max against R times the filling of the zones that meet, about the means of the sizes", values
-        )
+        values = runs.of(known[enough]).fit(zone_correlation, names, by, fitted=sizes + 1)
+        meaning = "d_max against R times the filling of the zones that meet, about the means of the sizes"
+        yield Quantity(name, meaning, finite(values))
 
 
 def _changes(table, same):

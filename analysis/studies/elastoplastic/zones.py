@@ -19,5 +19,7 @@ def zone_correlation(rows, weights):
 
     x, y = away((rows.radius * rows.zone_filling).to_numpy()), away(rows.d.to_numpy())
     xx, yy, xy = (np.sum(weights * product, axis=1) for product in (x * x, y * y, x * y))
-    correlation, left = xy / np.sqrt(xx * yy), len(rows) - len(size)
-    return np.stack([correlation, xy / xx, 1.0 - (1.0 - correlation**2) * left / (left - 1)], axis=1)
+    with np.errstate(invalid="ignore"):  # NaN where all zones are alike
+        correlation, slope = xy / np.sqrt(xx * yy), xy / xx
+    left = len(rows) - len(size)
+    return np.stack([correlation, slope, 1.0 - (1.0 - correlation**2) * left / (left - 1)], axis=1)
