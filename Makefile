@@ -12,7 +12,7 @@
 # make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
 # make study-compressed  collisions of compressed aggregates beside CPE ones
 # make study-status STUDY=viscous  how far a study is, from another shell
-# make gallery-viscous  analyses its runs again, into analysis/gallery/viscous
+# make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
@@ -261,9 +261,10 @@ compressed-packings: all
 study-status:
 	@$(PYTHON) yade_scripts/study.py $(call table,$(STUDY)) -j $(JOBS) --status
 
-# the comparison and figures that the repository keeps, of the runs that are there
+# The pages that the repository keeps: of the runs in the gallery's table, and of those that are at hand.
 $(STUDIES:%=gallery-%): gallery-%:
-	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures analysis/gallery/$*
+	@mkdir -p build && cp analysis/gallery/$*/runs.csv build/$*-runs.csv
+	@$(PYTHON) -m analysis study $* build/$*-runs.csv $(wildcard $(call runs,$*)) --figures analysis/gallery/$*
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
 # The papers' scenes: an hour the first time, when they are made. Stopped at any time, it resumes. SCENE=a22,k13: these only.
