@@ -77,8 +77,8 @@ def moduli_figure(results):
         place.errorbar(
             [sigma.value / MEGA],
             [soft.value / PER_GIGA],
-            [soft.error / PER_GIGA],
-            [sigma.error / MEGA],
+            [(soft.error or 0.0) / PER_GIGA],
+            [(sigma.error or 0.0) / MEGA],
             fmt="o",
             color=OURS,
             capsize=3,
