@@ -163,6 +163,13 @@ def together(of, level):
     return joined.reorder_levels([*joined.index.names[1:], level])
 
 
+def each(series, f):
+    """Series of f(estimate, *its values of the levels)."""
+    keys = (key if isinstance(key, tuple) else (key,) for key in series.index)
+    found = [f(estimate, *key) for estimate, key in zip(series, keys)]
+    return pandas.Series(found, series.index, dtype=object)
+
+
 def at(series, **where):
     """The one Estimate or Fraction of a Series at these values of its levels (numbers to SAME); None where there is none. KeyError for a
     level that it lacks, ValueError where several are left."""

@@ -59,7 +59,7 @@ def size_figure(results):
 
 @styled
 def moduli_figure(results):
-    """Pairs of yield stress and 1/E* with A24's delta_max/R*, A24's values and our fits with their draws: A24 Fig. 10."""
+    """Pairs of yield stress and 1/E* with A24's delta_max/R*, A24's values and our fits, with those of resampled pairs: A24 Fig. 10."""
     stress, compliance = (results.series(name, fit=FREE) for name in ("stress", "compliance"))
     if not len(stress):
         return None
@@ -71,14 +71,14 @@ def moduli_figure(results):
             ".",
             color="0.75",
             ms=2,
-            label="its draws",
+            label="of resampled pairs",
             zorder=0,
         )
         place.errorbar(
             [sigma.value / MEGA],
             [soft.value / PER_GIGA],
-            [soft.error / PER_GIGA],
-            [sigma.error / MEGA],
+            [(soft.error or 0.0) / PER_GIGA],
+            [(sigma.error or 0.0) / MEGA],
             fmt="o",
             color=OURS,
             capsize=3,
@@ -164,7 +164,7 @@ FIGURES = (
     ),
     StudyFigure(
         "fig10_moduli",
-        "A24 Fig. 10 with 1/E* in place of E*: yield stress and compliance that give A24's δ_max/R*, A24's fit and ours, with its draws and standard errors.",
+        "A24 Fig. 10 with 1/E* in place of E*: yield stress and compliance that give A24's δ_max/R*, A24's fit and ours, with standard errors and the fits of resampled pairs.",
         moduli_figure,
     ),
     CurveFigure(
