@@ -70,8 +70,8 @@ OUTCOME_COLUMNS = (
     Column("outcome", "", f"as measures.outcome has it, or {UNDECIDED}: in one piece, but still parting", kind="O"),
     Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
     Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
-    Column("largest_fraction", "", "fraction of the mass in the largest piece", gaps=True, absent=np.nan),
 )
+LARGEST_COLUMN = Column("largest_fraction", "", "fraction of the mass in the largest piece")
 RETURN_COLUMNS = (
     Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
     Column("return_time", "s", "its time", gaps=True, absent=np.nan),
@@ -120,7 +120,6 @@ def outcome_values(run, velocity):
         "outcome": UNDECIDED if outcome.kind == STICKING and still_parting(v) else outcome.kind,
         "restitution": outcome.restitution,
         "bulk": float(np.nan_to_num(v[-1] / velocity) ** 2),
-        "largest_fraction": float(outcome.mass_fractions[0]),
     }
 
 
@@ -159,7 +158,8 @@ def outcome_quantities(runs, by):
     yield Quantity(
         "restitution", "coefficient of restitution of runs that bounce", bounced.estimates("restitution", by)
     )
-    yield Quantity("largest", "fraction of the mass in the largest piece", runs.estimates("largest_fraction", by))
+    if LARGEST_COLUMN.name in runs.table:
+        yield Quantity("largest", LARGEST_COLUMN.meaning, runs.estimates(LARGEST_COLUMN.name, by))
 
 
 def return_quantities(runs, by):
@@ -188,11 +188,12 @@ def collision_study(title, question, varied, quantities, **values):
     """definition.Study of a question of one's own about collisions: varied: the parameters that differ from run to run, seed among them;
     quantities: a function of the table of runs, as definition.Study has it; values: parameters that every run has.
 
-    A run's row has the parameters varied, whether the aggregates met, and OUTCOME_COLUMNS."""
-    columns = (*(Column(name, "", "as the table of runs has it") for name in varied), *OUTCOME_COLUMNS)
+    A run's row has the parameters varied, OUTCOME_COLUMNS and LARGEST_COLUMN."""
+    columns = (*(Column(name, "", "as the table of runs has it") for name in varied), *OUTCOME_COLUMNS, LARGEST_COLUMN)
 
     def measure(run):
         numbers = {name: float(run.parameters[name]) for name in varied}
-        return {**numbers, **outcome_values(run, float(run.parameters["velocity"]))}
+        outcome = outcome_values(run, float(run.parameters["velocity"]))
+        return {**numbers, **outcome, LARGEST_COLUMN.name: float(outcome_of_run(run).mass_fractions[0])}
 
     return Study(title, question, Scene(title, values, tuple(varied)), columns, measure, quantities)
