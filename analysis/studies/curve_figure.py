@@ -129,16 +129,15 @@ def _share_y(places, figure):
 
 def _curves(axes, figure, quantity, series, results):
     """The curves of one panel."""
-    same = len(_pairs(series)) == 1
     if not figure.colour:
         return _curve(axes, figure, quantity, series, _COLOURS[-1], None, MARKERS[0])
-    known = series.index.get_level_values(figure.colour)
+    values = sorted(set(series.index.get_level_values(figure.colour)))
+    curves = {value: select(series, **{figure.colour: value}) for value in values}
+    numbers = {value: pairs_text(own, results.independent) for value, own in curves.items()}
+    said = figure.panel and len(set(numbers.values())) == 1  # in the panel's title
     colour_of = palette(results, figure.colour)
-    for k, value in enumerate(sorted(set(known))):
-        own = select(series, **{figure.colour: value})
-        label = level(figure.colour).label(value) + (
-            "" if same and figure.panel else f", {pairs_text(own, results.independent)}"
-        )
+    for k, (value, own) in enumerate(curves.items()):
+        label = level(figure.colour).label(value) + ("" if said else f", {numbers[value]}")
         _curve(axes, figure, quantity, own, colour_of[value], label, MARKERS[k % len(MARKERS)])
 
 
@@ -161,7 +160,7 @@ def _dress(axes, figure, value, series, independent):
     for name in figure.logarithmic:
         plain_ticks(getattr(axes, f"{name}axis"))
     title = [] if value is None else [level(figure.panel).label(value)]
-    if len(_pairs(series)) == 1 and (figure.panel or not figure.colour):
+    if figure.panel or not figure.colour:
         title.append(pairs_text(series, independent))
     axes.set_title(", ".join(title), fontsize=10)
     axes.set_xlabel(level(figure.x).axis())

@@ -1,5 +1,6 @@
 """What estimates depend on: how a table and a figure name it, in one list."""
 
+import re
 from dataclasses import dataclass
 
 
@@ -23,16 +24,17 @@ class Level:
         return self.math + (f"  [{self.unit}]" if self.unit else "")
 
     def text(self, value):
-        """A value in that unit, without it."""
+        """A value in that unit, without it; a name in words."""
         if not isinstance(value, (int, float)):
-            return str(value)
+            name = str(value).isidentifier()
+            return re.sub("(?<=[a-z])([A-Z])", lambda found: " " + found[1].lower(), value) if name else str(value)
         shown = float(f"{value / self.scale:.6g}")
         return f"{shown:.0f}" if shown == round(shown) else f"{shown:.3g}"
 
     def label(self, value, math=True):
         """'$T_{vis}$ = 6 ps', for legends, panels and heads of columns (math=False); a word stands for itself."""
         if isinstance(value, str):
-            return value
+            return self.text(value)
         if self.phrase:
             return self.phrase.format(self.text(value))
         return f"{self.math if math else self.symbol} = {self.text(value)}" + (f" {self.unit}" if self.unit else "")

@@ -52,9 +52,10 @@ class Runs:
         """Series of of(estimates, estimates) (differences, ratios), by the columns `by` and `level`: of `values` at every other value of a
         column, and at its reference. Of the pairs that both have in a group; where they share none, of all, unless it must be the
         same_pairs."""
-        plain, found = self.where(**{level: reference}), {}
-        for value in sorted(set(self.table[level][~alike(self.table[level], reference)])) or [reference]:
-            first, second = _shared(self.where(**{level: value}), plain, by, same_pairs)
+        same, found = alike(self.table[level], reference), {}
+        plain, others = self.of(self.table[same]), self.of(self.table[~same])
+        for value in sorted(set(others.table[level])) or [reference]:
+            first, second = _shared(others.where(**{level: value}), plain, by, same_pairs)
             found[value] = of(first.estimates(values, by), second.estimates(values, by))
         return together(found, level)
 

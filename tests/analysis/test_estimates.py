@@ -125,6 +125,7 @@ def test_the_same_pairs_with_one_thing_changed():
     assert [(e.value, e.pairs) for e in found] == [(2.0, 2), (0.5, 1)] and found.iloc[0].error == 0.0
     assert list(found.index) == [("a", 6), ("b", 6)]
     assert len(runs.beside("drag", 7, "y", ("size",), ratios, same_pairs=True)) == 0
+    assert len(runs.where(drag=0).beside("drag", 0, "y", ("size",), ratios)) == 0  # nothing changed
 
 
 def test_a_mean_over_points_counts_pairs_that_have_all_of_them():

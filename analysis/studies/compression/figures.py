@@ -5,7 +5,7 @@ import numpy as np
 from ...figures.panels import PAPER, legend, panels
 from ...figures.style import styled
 from ...theory.compression import tensile_strength
-from ..curve_figure import CurveFigure, colours, plain_ticks, points
+from ..curve_figure import CurveFigure, palette, plain_ticks, points
 from ..definition import StudyFigure
 from ..levels import level
 from ..runs import Runs
@@ -40,7 +40,7 @@ def _every_cluster(results):
     """Each cluster thin, and means with errors where all are settled; a panel a number of grains."""
     means, settled = results.series("strength", **SLOW), results.series("dense", **STEP, strainRate=SLOW["strainRate"])
     rows = Runs(by_filling(furthest(named(results.table)))).where(**SLOW).table
-    palette = colours(results.table.grains)
+    colours = palette(results, "grains")
     sizes = sorted(settled.index.unique("grains"))
     if not sizes:
         return None
@@ -48,10 +48,10 @@ def _every_cluster(results):
     for place, grains in zip(axes[0], sizes):
         clusters = [own for _, own in rows[rows.grains == grains].groupby("seed")]
         for own in clusters:
-            place.plot(own.filling, own.over.where(own.over > 0), color=palette[grains], lw=0.8, alpha=0.6)
+            place.plot(own.filling, own.over.where(own.over > 0), color=colours[grains], lw=0.8, alpha=0.6)
         where = settled.loc[grains].index
         text = f"mean of {len(clusters)} clusters" if len(clusters) > 1 else "1 cluster"
-        points(place, where, [means.loc[grains, filling] for filling in where], palette[grains], text)
+        points(place, where, [means.loc[grains, filling] for filling in where], colours[grains], text)
         place.set(xscale="log", yscale="log", title=level("grains").label(grains), xlabel=level("filling").axis())
         _eq_25(place, {})
         place.set(xlim=(1e-3, 0.3))
