@@ -3,20 +3,11 @@
 import numpy as np
 
 from ...measures.contact_zone import DEPTH, WIDTH, zone_filling
-from ...measures.coordination import inner_coordination, mean_coordination
-from ...measures.ledger import closure
+from ...measures.coordination import inner_coordination
 from ...measures.of_run import derived_constants
 from ...runs.arrays import RunFolderError
 from ...runs.table import Column
-from ..collisions import (
-    OUTCOME_COLUMNS,
-    PARTITION_COLUMNS,
-    RETURN_COLUMNS,
-    energy_partition,
-    largest_compression,
-    outcome_values,
-    return_values,
-)
+from ..collisions import COLLISION_COLUMNS, collision_values, largest_compression
 from ..grains import require_papers_grains
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.
@@ -43,8 +34,6 @@ COLUMNS = (
     Column("exceeded", "", "whether d grows beyond it later", kind="b"),
     Column("t_max", "s", "time of d_max"),
     Column("t_max_error", "s", "its error"),
-    *OUTCOME_COLUMNS,
-    Column("coordination", "", "mean number of contacts of a grain at the start"),
     Column("inner_coordination", "", f"the same of the grains {SKIN:g} r below the surface", gaps=True),
     Column(
         "zone_filling",
@@ -53,9 +42,7 @@ COLUMNS = (
         "over that of the whole aggregates; mean of the two",
         gaps=True,
     ),
-    *RETURN_COLUMNS,
-    *PARTITION_COLUMNS,
-    Column("closure", "", "largest error of the energy ledger over K(0)"),
+    *COLLISION_COLUMNS,
 )
 
 
@@ -67,7 +54,6 @@ def measure(run):
     maximum, exceeded = largest_compression(run)
     scene = _scene(run)
     start, radius, grain_radius = run.start, scene["radius"], scene["grain_radius"]
-    returned = return_values(history, maximum.time)
     # The spheres stand at -+(R + r) on the collision axis (A24 section 3).
     places = np.array([-1.0, 1.0])[start.aggregate] * (radius + grain_radius)
     centres = np.stack([places, 0.0 * places, 0.0 * places], axis=1)
@@ -79,15 +65,11 @@ def measure(run):
         "exceeded": exceeded,
         "t_max": maximum.time,
         "t_max_error": maximum.time_error,
-        **outcome_values(run, scene["velocity"]),
-        "coordination": mean_coordination(len(start.radius), start.contact_pairs),
         "inner_coordination": inner_coordination(
             start.position, start.contact_pairs, centres, radius - SKIN * grain_radius
         ),
         "zone_filling": zones_that_meet(start.position, start.aggregate, radius, grain_radius),
-        **returned,
-        **energy_partition(history, maximum.time, returned["return_time"]),
-        "closure": closure(history),
+        **collision_values(run, scene["velocity"], maximum.time),
     }
 
 
