@@ -46,7 +46,7 @@ def run(options):
         complain(error)
         return FAILED
     except OSError as error:
-        complain(f"{error.filename}: {error.strerror}")
+        complain(f"{error.filename or options.out}: {error.strerror}")
         return FAILED
     return 0
 

@@ -42,6 +42,6 @@ def run(options):
         complain(error)
         return FAILED
     except OSError as error:
-        complain(f"{error.filename}: {error.strerror}")
+        complain(f"{error.filename or options.run}: {error.strerror}")
         return FAILED
     return 0

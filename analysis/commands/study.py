@@ -83,7 +83,7 @@ def run(options):
             complain(nothing)
         return FAILED
     except OSError as error:
-        complain(f"{error.filename}: {error.strerror}")
+        complain(f"{error.filename or options.page or options.figures}: {error.strerror}")
         return FAILED
     except (NoSuchStudy, PaperError, RunFolderError) as error:
         complain(error)
@@ -95,8 +95,8 @@ def run(options):
 
 
 def _writes_table(options):
-    """Whether a table is written: not over the one that is read when it is all that is read, since both hold the same runs.
-    OSError where a file cannot be written, or is one of several that are read."""
+    """Whether a table is written: not in the place of all that is read, which holds the same runs. OSError where a file cannot be
+    written, or is one of several that are read."""
     from ..runs.write import require_file
     from ..studies.analyse import TABLE_FILE
 
@@ -106,7 +106,6 @@ def _writes_table(options):
         return True
     file = os.path.join(options.figures, TABLE_FILE)
     if [os.path.realpath(path) for path in options.runs] == [os.path.realpath(file)]:
-        complain(f"{file}: is what is read; stays as it is")
         return False
     require_file(file, inputs=options.runs)
     return True

@@ -108,9 +108,10 @@ def unfinished(path, ending=""):
     try:
         yield file
     finally:
-        with suppress(OSError):  # what it has still to write is not wanted any more
-            if os.path.exists(file.name):
+        if os.path.exists(file.name):
+            with suppress(OSError):
                 os.unlink(file.name)
+        with suppress(OSError):  # what it has still to write is not wanted any more
             file.close()
 
 
