@@ -17,6 +17,7 @@
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
+# make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/scripts/results/slurm.md
 # make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
@@ -187,7 +188,7 @@ uninstall:
 
 # ---- running it ----
 
-.PHONY: demo test test-faults test-slurm
+.PHONY: demo test test-mutations test-faults test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary runs/demo
@@ -200,6 +201,10 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+# Results in tests/mutations/results.
+test-mutations: all
+	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
 
 # With it the tests open exports in OVITO too (200 MB from PyPI, in a folder of its own).
 .PHONY: ovito
