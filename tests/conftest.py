@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
@@ -37,6 +38,8 @@ class YadeServer:
         answer = self.answers.readline()
         if not answer:
             raise YadeFailed("the YADE that scripts are forked from has ended")
+        if int(answer) == -signal.SIGALRM:
+            raise YadeFailed(f"no end within {timeout} s")
         return int(answer)
 
     def _start(self):

@@ -12,7 +12,7 @@ ROOMS = ("kernel", "engine", "run_layer", "analysis")
 @dataclass(frozen=True)
 class Mutation:
     """room: the table it stands in; file: where `code`, which stands there once, becomes another; wrong: what a physicist would
-    call broken; tests: those expected to fail; plugin: whether they need it compiled anew."""
+    call broken; tests: those expected to fail (files, or as pytest names one); plugin: whether they need it compiled anew."""
 
     room: str
     file: str

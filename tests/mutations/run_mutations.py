@@ -22,7 +22,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "benchmarks")]
 from measured_on import machine
-from mutation import ROOMS, TOP, read
+from mutation import TOP, read
 
 LONGEST = 3600  # s for the tests of one mutation
 COMPILED = ("objects", "*.gch")  # of build/: only for a copy that compiles
@@ -56,7 +56,10 @@ class Copy:
         self._folder = tempfile.TemporaryDirectory(prefix="mutation-")
         self.top = Path(self._folder.name)
         listed = subprocess.run(
-            ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=TOP, capture_output=True, check=True
+            ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+            cwd=TOP,
+            capture_output=True,
+            check=True,
         )
         for name in filter(None, listed.stdout.decode().split("\0")):
             if (TOP / name).exists():
@@ -87,6 +90,8 @@ class Copy:
             done = subprocess.run(command, cwd=self.top, capture_output=True, text=True, timeout=LONGEST)
         except subprocess.TimeoutExpired:
             return Result(error=f"no end within {LONGEST} s")
+        if re.search(r"^E .*(no end within|TimeoutExpired)", done.stdout, re.MULTILINE):
+            return Result(error="a test ran into its time limit, which says nothing: try again on a quiet machine")
         failed = re.search(r"^FAILED (.+?)(?: - .*)?$", done.stdout, re.MULTILINE)
         if done.returncode == 0 or (done.returncode == 1 and failed):
             return Result(failed and failed.group(1))

@@ -18,4 +18,5 @@ def test_each_stands_once_in_its_file_and_its_tests_exist(tmp_path):
         copy.parent.mkdir(parents=True, exist_ok=True)
         copy.write_text((TOP / mutation.file).read_text())
         mutation.apply(tmp_path)
-        assert [test for test in mutation.tests if not (TOP / test).is_file()] == [], mutation.wrong
+        for file, _, name in (test.partition("::") for test in mutation.tests):
+            assert f"def {name.partition('[')[0]}" in (TOP / file).read_text(), (mutation.wrong, file, name)
