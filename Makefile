@@ -18,11 +18,11 @@
 # make test   builds what is needed and passes the tests
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
-# make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/scripts/results/slurm.md
+# make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
 # make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
-#             tests/yade_tools/results/debian.md. SYSTEMS=sid: unstable
+#             tests/drivers/results/debian.md. SYSTEMS=sid: unstable
 # make yade-tree  compiles against YADE's own source, which it downloads (Debian 13), and loads the result
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
@@ -219,22 +219,22 @@ SYSTEMS ?= bookworm trixie
 .PHONY: test-debian
 test-debian:
 	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git"
-	@$(PYTHON) tests/yade_tools/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
+	@$(PYTHON) tests/drivers/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
 
 # On Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
 .PHONY: yade-tree
 yade-tree: all
 	@$(MAKE) --no-print-directory deps PACKAGES="dpkg-dev git libopenmpi-dev bzip2"
-	@$(PYTHON) tests/yade_tools/yade_tree.py
+	@$(PYTHON) tests/drivers/yade_tree.py
 
 # Results in tests/persistence/results.
 test-faults: all
 	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
 
-# Results in tests/scripts/results.
+# Results in tests/drivers/results.
 test-slurm: all
 	@$(MAKE) --no-print-directory deps PACKAGES="slurm-wlm munge"
-	@$(PYTHON) tests/scripts/try_slurm.py
+	@$(PYTHON) tests/drivers/try_slurm.py
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
