@@ -60,7 +60,10 @@ def test_table_shows_units_and_every_channel(cluster_folder):
 
 
 def test_table_has_the_numbers_of_the_json(cluster_folder):
-    numbers, table = json.loads(analyse("summary", "--json", cluster_folder).stdout), analyse("summary", cluster_folder).stdout
+    numbers, table = (
+        json.loads(analyse("summary", "--json", cluster_folder).stdout),
+        analyse("summary", cluster_folder).stdout,
+    )
     shown = re.search(r"d_max +(\S+) m.*?t_max +(\S+) ns", table, re.S).groups()
     assert [float(text) for text in shown] == pytest.approx([numbers["d_max"], 1e9 * numbers["t_max"]], rel=1e-3, abs=0)
 
