@@ -17,11 +17,12 @@
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
-# make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/scripts/results/slurm.md
+# make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
+# make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
 # make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
-#             tests/yade_tools/results/debian.md. SYSTEMS=sid: unstable
+#             tests/drivers/results/debian.md. SYSTEMS=sid: unstable
 # make yade-tree  compiles against YADE's own source, which it downloads (Debian 13), and loads the result
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
@@ -187,7 +188,7 @@ uninstall:
 
 # ---- running it ----
 
-.PHONY: demo test test-faults test-slurm
+.PHONY: demo test test-mutations test-faults test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary runs/demo
@@ -200,6 +201,10 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+# Results in tests/mutations/results.
+test-mutations: all
+	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
 
 # With it the tests open exports in OVITO too (200 MB from PyPI, in a folder of its own).
 .PHONY: ovito
@@ -214,22 +219,22 @@ SYSTEMS ?= bookworm trixie
 .PHONY: test-debian
 test-debian:
 	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git"
-	@$(PYTHON) tests/yade_tools/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
+	@$(PYTHON) tests/drivers/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
 
 # On Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
 .PHONY: yade-tree
 yade-tree: all
 	@$(MAKE) --no-print-directory deps PACKAGES="dpkg-dev git libopenmpi-dev bzip2"
-	@$(PYTHON) tests/yade_tools/yade_tree.py
+	@$(PYTHON) tests/drivers/yade_tree.py
 
 # Results in tests/persistence/results.
 test-faults: all
 	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
 
-# Results in tests/scripts/results.
+# Results in tests/drivers/results.
 test-slurm: all
 	@$(MAKE) --no-print-directory deps PACKAGES="slurm-wlm munge"
-	@$(PYTHON) tests/scripts/try_slurm.py
+	@$(PYTHON) tests/drivers/try_slurm.py
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk

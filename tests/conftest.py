@@ -2,6 +2,8 @@
 
 import json
 import os
+import pickle
+import signal
 import subprocess
 import sys
 import tempfile
@@ -11,6 +13,10 @@ import pytest
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP))
+
+from approx import without_absolute_tolerance
+
+without_absolute_tolerance()
 
 
 class YadeFailed(AssertionError):
@@ -32,6 +38,8 @@ class YadeServer:
         answer = self.answers.readline()
         if not answer:
             raise YadeFailed("the YADE that scripts are forked from has ended")
+        if int(answer) == -signal.SIGALRM:
+            raise YadeFailed(f"no end within {timeout} s")
         return int(answer)
 
     def _start(self):
@@ -47,33 +55,70 @@ class YadeServer:
 SERVER = YadeServer()
 
 
+SCRIPT = f"import sys\nsys.path[:0] = [{str(TOP)!r}, {str(TOP / 'tests')!r}]\n"
+TO_CALL = SCRIPT + "from yade_call import answer\nanswer()\n"
+
+
+def call_in_yade(path, name, arguments, threads=1, timeout=300):
+    """What the function `name` of a Python file returns inside YADE (headless), called with a dict of arguments; both as pickle
+    can hold them. With one thread it runs in a process forked from a YADE that has started; with more in a YADE of its own.
+    Raises YadeFailed for what it raises, and when YADE ends otherwise."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        (folder / "script.py").write_text(TO_CALL)
+        (folder / "call").write_bytes(pickle.dumps((str(path), name, arguments)))
+        status = _run(folder, threads, timeout)
+        if status or not (folder / "answer").exists():
+            raise YadeFailed("\n".join([f"status {status}", *_said(folder)]))
+        return pickle.loads((folder / "answer").read_bytes())
+
+
 def run_yade(script, parameters=None, threads=1, timeout=300):
-    """Run Python source `script` inside YADE (headless) and return what it stored in the dict `result`.
+    """What a function of a test module returns inside YADE, called with `parameters`; or run Python source `script`
+    there, and return what it stored in the dict `result`.
 
     The script sees `parameters` (a dict), the contact law's classes and YADE's own names. numpy arrays in `result` come
-    back as lists. With one thread it runs in a process forked from a YADE that has started; with more in a YADE of its
-    own. Raises YadeFailed when it ends with a non-zero status.
+    back as lists.
     """
+    if callable(script):
+        return call_in_yade(script.__code__.co_filename, script.__name__, parameters or {}, threads, timeout)
     with tempfile.TemporaryDirectory() as folder:
         path, answer = Path(folder) / "script.py", Path(folder) / "result.json"
         path.write_text(
-            "import sys, json, math\n"
-            f"sys.path[:0] = [{str(TOP)!r}, {str(TOP / 'tests')!r}]\n"
+            SCRIPT + "import json, math\n"
             "import numpy as np\nimport contact_law\nfrom yade.wrapper import *\nfrom yade import utils\nfrom yade.minieigenHP import *\n"
             f"parameters = json.loads({json.dumps(json.dumps(parameters or {}))})\nresult = {{}}\n"
             + script
             + f"\nopen({str(answer)!r}, 'w').write(json.dumps(result, default=lambda x: x.tolist()))\n"
         )
-        if threads == 1:
-            status = SERVER.run(path, folder, timeout)
-        else:
-            command = ["yade", "-n", "-x", f"-j{threads}", str(path)]
-            with open(Path(folder) / "stdout", "w") as out, open(Path(folder) / "stderr", "w") as err:
-                status = subprocess.run(command, stdout=out, stderr=err, timeout=timeout, cwd=folder).returncode
+        status = _run(Path(folder), threads, timeout)
         if status or not answer.exists():
-            said = [(Path(folder) / name).read_text()[-3000:] for name in ("stdout", "stderr")]
-            raise YadeFailed("\n".join([f"status {status}", *said]))
+            raise YadeFailed("\n".join([f"status {status}", *_said(Path(folder))]))
         return json.loads(answer.read_text())
+
+
+def _run(folder, threads, timeout):
+    """Exit status of script.py in a folder."""
+    if threads == 1:
+        return SERVER.run(folder / "script.py", folder, timeout)
+    command = ["yade", "-n", "-x", f"-j{threads}", str(folder / "script.py")]
+    with open(folder / "stdout", "w") as out, open(folder / "stderr", "w") as err:
+        return subprocess.run(command, stdout=out, stderr=err, timeout=timeout, cwd=folder).returncode
+
+
+def _said(folder):
+    return [(folder / name).read_text()[-3000:] for name in ("stdout", "stderr")]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem):
+    """Tests marked in_yade run inside YADE, with the values of their fixtures."""
+    if pyfuncitem.get_closest_marker("in_yade") is None:
+        return None
+    names = pyfuncitem._fixtureinfo.argnames
+    arguments = {name: pyfuncitem.funcargs[name] for name in names}
+    call_in_yade(pyfuncitem.path, pyfuncitem.originalname, arguments)
+    return True
 
 
 @pytest.fixture

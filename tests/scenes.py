@@ -1,13 +1,18 @@
-"""Small scenes for tests, built inside YADE (run_yade of conftest.py puts this folder on sys.path)."""
+"""Small scenes for tests marked in_yade: `from scenes import *` brings YADE's names, the contact law's, and these."""
+
+import sys
 
 import numpy as np
-from yade import utils
-from yade.wrapper import *
 
-import contact_law
+if "yade" in sys.modules:  # pytest itself, which collects the tests, does without
+    from yade import utils
+    from yade.minieigenHP import *
+    from yade.wrapper import *
 
-CHANNELS = [name for name, kind in contact_law.channels if kind != "work"]
-LOST = [name for name, kind in contact_law.channels if kind == "lost"]
+    import contact_law
+
+    CHANNELS = [name for name, kind in contact_law.channels if kind != "work"]
+    LOST = [name for name, kind in contact_law.channels if kind == "lost"]
 
 
 def ice(**other):
@@ -76,10 +81,10 @@ def cluster(count, seed, materials, radii, speed=1.0, spin=1e7):
         grain(x, radius, material, speed * random.normal(size=3), spin * random.normal(size=3))
 
 
-def energies():
-    """The channels now, zero where the scene has none."""
+def energies(*works):
+    """The channels now, and these works; zero where the scene has none."""
     have = dict(O.energy.items())
-    return {name: have.get(name, 0.0) for name in CHANNELS}
+    return {name: have.get(name, 0.0) for name in (*CHANNELS, *works)}
 
 
 def total_energy():
@@ -95,6 +100,13 @@ def momenta():
         p += s.mass * v
         l += s.mass * np.cross(x, v) + np.array(s.inertia) * np.array(s.angVel)
     return p, l
+
+
+def momentum_scales():
+    """(linear, angular): sums of the grains' own, without their directions."""
+    p = [b.state.mass * np.linalg.norm(b.state.vel) for b in O.bodies]
+    l = [b.state.mass * np.linalg.norm(np.cross(b.state.pos, b.state.vel)) for b in O.bodies]
+    return sum(p), sum(l)
 
 
 def converging(count, seed, materials, radii, speed=5.0, spin=2e7):
@@ -153,11 +165,41 @@ def differences_of_instruction_sets(run):
     }
 
 
-def record(n):
-    """Positions (n, bodies, 3) and energies after each of n steps."""
+def record(n, *works):
+    """Positions (n, bodies, 3) and energies(*works) after each of n steps."""
     tracks, sums = [], []
     for _ in range(n):
         O.step()
         tracks.append(positions())
-        sums.append(energies())
+        sums.append(energies(*works))
     return np.array(tracks), sums
+
+
+def compared(functors, engine, channels=None):
+    """Differences of record(n + 1) of the functors, whose energies belong to the positions before the step, and record(n) of the engine:
+    ((n,) of positions [1e-7 m], largest ones of energies by channel, over the kinetic energy at the start)."""
+    (tracks, sums), (others, other_sums) = functors, engine
+    n, scale = len(others), sums[0]["kinetic"]
+    of_energies = {
+        c: max(abs(sums[k + 1][c] - other_sums[k][c]) for k in range(n)) / scale for c in channels or CHANNELS
+    }
+    return np.abs(tracks[:n] - others).max(axis=(1, 2)) / 1e-7, of_energies
+
+
+def broken():
+    """Bonds that have broken so far, by mode."""
+    if isinstance(O.engines[0], JKRWadaEngine):
+        counts = O.engines[0].statistics()
+        return [counts[mode] for mode in MODES]
+    return [getattr(O.engines[2].lawDispatcher.functors[0], mode) for mode in MODES]
+
+
+MODES = ("brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting")
+
+if "yade" in sys.modules:
+    unit = constants(ice(), 1e-7)["timeUnit"]  # t0 of two grains of ice [s]
+    KINDS = {  # materials and radii [m]
+        "like": ([ice()], [1e-7]),
+        "unlike": ([ice(), soft()], [1e-7, 1.6e-7, 1.3e-7]),
+        "drag": ([ice(viscoelasticTime=2e-12)], [1e-7]),
+    }

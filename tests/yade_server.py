@@ -11,6 +11,8 @@ import signal
 import sys
 import traceback
 
+import pytest  # noqa: F401 (what many tests import: once, before they are forked)
+
 
 def serve(requests, answers):
     """Answer requests until their writer closes."""

@@ -94,13 +94,16 @@ def test_force_and_work_are_continuous_and_work_is_the_integral_of_the_force():
         assert andrews.return_force(largest, largest, spheres) == pytest.approx(
             float(andrews.compression_force(largest, spheres)), rel=1e-12
         )
-        work = quad(lambda d: andrews.compression_force(d, spheres), 0, largest, points=[critical], epsrel=1e-11)[0]
+        work = quad(
+            lambda d: andrews.compression_force(d, spheres), 0, largest, points=[critical], epsabs=0, epsrel=1e-11
+        )[0]
         assert andrews.compression_work(largest, spheres) == pytest.approx(work, rel=1e-9)
         assert work == pytest.approx(andrews.initial_kinetic_energy(V, spheres), rel=1e-9)  # eq 28
         back = quad(
             lambda d: andrews.return_force(d, largest, spheres),
             andrews.return_compression(spheres, largest),
             largest,
+            epsabs=0,
             epsrel=1e-11,
         )[0]
         assert andrews.returned_work(largest, largest, spheres) == pytest.approx(back, rel=1e-8)

@@ -59,6 +59,15 @@ def test_table_shows_units_and_every_channel(cluster_folder):
     assert max(map(len, done.stdout.splitlines())) <= 120
 
 
+def test_table_has_the_numbers_of_the_json(cluster_folder):
+    numbers, table = (
+        json.loads(analyse("summary", "--json", cluster_folder).stdout),
+        analyse("summary", cluster_folder).stdout,
+    )
+    shown = re.search(r"d_max +(\S+) m.*?t_max +(\S+) ns", table, re.S).groups()
+    assert [float(text) for text in shown] == pytest.approx([numbers["d_max"], 1e9 * numbers["t_max"]], rel=1e-3, abs=0)
+
+
 def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folder, cluster_folder, tmp_path):
     done = analyse("summary", pair_folder[0], tmp_path / "none", cluster_folder)
     assert done.returncode == 2

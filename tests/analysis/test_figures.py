@@ -51,11 +51,7 @@ def test_energy_areas_are_the_fractions(run):
 
 def test_kinds_of_force():
     kinds = force_kinds(np.array([1.0, 0.21, 0.19, -0.19, -0.21]), 1.0)
-    assert [list(np.flatnonzero(kinds[k])) for k in ("compression", "tension", "other")] == [
-        [0, 1],
-        [4],
-        [2, 3],
-    ]
+    assert [list(np.flatnonzero(kinds[k])) for k in ("compression", "tension", "other")] == [[0, 1], [4], [2, 3]]
 
 
 def test_force_lines_are_the_contacts_of_the_slab(run):

@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.measures.ledger import (
-    closure,
-    closure_history,
-    final_values,
-    fractions,
-    fractions_at,
-    total_energy,
-)
+from analysis.measures.ledger import closure, closure_history, final_values, fractions, fractions_at, total_energy
 from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, LABELS, LOST, STORED, WORK
 

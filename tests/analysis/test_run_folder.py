@@ -136,6 +136,16 @@ def test_grains_of_different_states_make_no_outcome(folder):
         summarise(open_run(folder))
 
 
+def history(**changed):
+    """What changes arrays of a folder's history."""
+    return lambda folder: _change_arrays(folder / "history.npz", **changed)
+
+
+def state(**changed):
+    """What changes arrays of a state's file."""
+    return lambda file: _change_arrays(file, **changed)
+
+
 def _halve(file):
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
 
@@ -157,10 +167,7 @@ DAMAGE = {
     "no record": (lambda f: (f / "run.json").unlink(), "run.json: missing, so this is not a run folder"),
     "half a record": (lambda f: _halve(f / "run.json"), "run.json: not valid JSON"),
     "binary record": (lambda f: (f / "run.json").write_bytes(b"\xff\xfe\x00"), "run.json: not valid JSON"),
-    "foreign record": (
-        lambda f: (f / "run.json").write_text("{}"),
-        "run.json: not the record of a run: no 'format'",
-    ),
+    "foreign record": (lambda f: (f / "run.json").write_text("{}"), "run.json: not the record of a run: no 'format'"),
     "nested record": (
         lambda f: (f / "run.json").write_text("[" * 100_000),
         "run.json: not valid JSON: nested too deeply",
@@ -176,7 +183,7 @@ DAMAGE = {
         "run.json: not valid JSON: Infinity is no number of JSON",
     ),
     "time is no number": (
-        lambda f: _change_arrays(f / "history.npz", time=np.r_[np.nan, np.arange(200.0)]),
+        history(time=np.r_[np.nan, np.arange(200.0)]),
         "'time' holds a value that is not finite, first at index 0",
     ),
     "a list": (lambda f: (f / "run.json").write_text("[1]"), "run.json: not the record of a run"),
@@ -190,57 +197,27 @@ DAMAGE = {
         lambda f: _change_record(f, lambda r: r["derived"].update(grainRadius=0)),
         "'grainRadius' must be a positive number, it is 0",
     ),
-    "no history": (
-        lambda f: (f / "history.npz").unlink(),
-        "history.npz: missing: the run has recorded no history",
-    ),
+    "no history": (lambda f: (f / "history.npz").unlink(), "history.npz: missing: the run has recorded no history"),
     "half a history": (lambda f: _halve(f / "history.npz"), "history.npz: damaged"),
     "a flipped byte": (lambda f: _flip(f / "history.npz"), "history.npz: damaged"),
     "text as history": (
         lambda f: (f / "history.npz").write_text("time d v"),
         "history.npz: damaged, or not an .npz file",
     ),
-    "empty history": (
-        lambda f: (f / "history.npz").write_bytes(b""),
-        "history.npz: damaged, or not an .npz file",
-    ),
+    "empty history": (lambda f: (f / "history.npz").write_bytes(b""), "history.npz: damaged, or not an .npz file"),
     "bare array": (
         lambda f: np.save(open(f / "history.npz", "wb"), np.zeros(3)),
         "history.npz: damaged, or not an .npz",
     ),
-    "no drag": (
-        lambda f: _change_arrays(f / "history.npz", drag=None),
-        "history.npz: lacks the array 'drag'",
-    ),
-    "short drag": (
-        lambda f: _change_arrays(f / "history.npz", drag=np.zeros(3)),
-        "'drag' has the shape (3,), expected",
-    ),
-    "text in drag": (
-        lambda f: _change_arrays(f / "history.npz", drag=np.array(["a"] * 201)),
-        "'drag' must hold numbers",
-    ),
-    "objects": (
-        lambda f: _change_arrays(f / "history.npz", drag=np.array([None] * 201)),
-        "history.npz: damaged",
-    ),
-    "no work on the boundaries": (
-        lambda f: _change_arrays(f / "history.npz", boundaryWork=None),
-        "history.npz: lacks the array 'boundaryWork'",
-    ),
-    "fractional contacts": (
-        lambda f: _change_arrays(f / "history.npz", contacts=np.full(201, 0.5)),
-        "'contacts' must be integers",
-    ),
-    "infinite": (
-        lambda f: _change_arrays(f / "history.npz", drag=np.full(201, np.inf)),
-        "'drag' holds a value that is not",
-    ),
-    "time runs back": (
-        lambda f: _change_arrays(f / "history.npz", time=-np.arange(201.0)),
-        "'time' does not increase",
-    ),
-    "no times": (lambda f: _change_arrays(f / "history.npz", time=np.zeros(0)), "'time' must be a non-empty"),
+    "no drag": (history(drag=None), "history.npz: lacks the array 'drag'"),
+    "short drag": (history(drag=np.zeros(3)), "'drag' has the shape (3,), expected"),
+    "text in drag": (history(drag=np.array(["a"] * 201)), "'drag' must hold numbers"),
+    "objects": (history(drag=np.array([None] * 201)), "history.npz: damaged"),
+    "no work on the boundaries": (history(boundaryWork=None), "history.npz: lacks the array 'boundaryWork'"),
+    "fractional contacts": (history(contacts=np.full(201, 0.5)), "'contacts' must be integers"),
+    "infinite": (history(drag=np.full(201, np.inf)), "'drag' holds a value that is not"),
+    "time runs back": (history(time=-np.arange(201.0)), "'time' does not increase"),
+    "no times": (history(time=np.zeros(0)), "'time' must be a non-empty"),
 }
 
 
@@ -256,42 +233,20 @@ def test_damaged_folders_say_what_and_where(folder, damage):
 STATE_DAMAGE = {
     "half": (_halve, "damaged"),
     "a pipe": (_as_pipe, "is no regular file; must be one"),
-    "no radius": (
-        lambda f: _change_arrays(f, radius=np.array([1e-7, 0.0])),
-        "'radius' is 0 at index 1; must be > 0",
-    ),
-    "negative radius": (
-        lambda f: _change_arrays(f, radius=np.array([-1e-7, 1e-7])),
-        "'radius' is -1e-07 at index 0; must be > 0",
-    ),
-    "a time that is no number": (
-        lambda f: _change_arrays(f, time=np.nan),
-        "'time' holds a value that is not finite",
-    ),
+    "no radius": (state(radius=np.array([1e-7, 0.0])), "'radius' is 0 at index 1; must be > 0"),
+    "negative radius": (state(radius=np.array([-1e-7, 1e-7])), "'radius' is -1e-07 at index 0; must be > 0"),
+    "a time that is no number": (state(time=np.nan), "'time' holds a value that is not finite"),
     "a cell without an edge": (
-        lambda f: _change_arrays(f, cell_size=np.array([1e-6, 0.0, 1e-6])),
+        state(cell_size=np.array([1e-6, 0.0, 1e-6])),
         "'cell_size' is 0 at index 1; must be > 0",
     ),
-    "pair out of range": (
-        lambda f: _change_arrays(f, contact_pairs=np.array([[0, 2]])),
-        "names grain 2, there are grains 0 to 1",
-    ),
-    "negative pair": (lambda f: _change_arrays(f, contact_pairs=np.array([[0, -1]])), "names grain -1"),
-    "fractional pair": (
-        lambda f: _change_arrays(f, contact_pairs=np.array([[0.0, 1.0]])),
-        "must be integers",
-    ),
-    "lost contact": (
-        lambda f: _change_arrays(f, contact_pairs=np.zeros((0, 2), int)),
-        "'contact_pairs' has the shape (0, 2)",
-    ),
-    "third aggregate": (
-        lambda f: _change_arrays(f, aggregate=np.array([0, 2])),
-        "'aggregate' must be 0 or 1",
-    ),
+    "pair out of range": (state(contact_pairs=np.array([[0, 2]])), "names grain 2, there are grains 0 to 1"),
+    "negative pair": (state(contact_pairs=np.array([[0, -1]])), "names grain -1"),
+    "fractional pair": (state(contact_pairs=np.array([[0.0, 1.0]])), "must be integers"),
+    "lost contact": (state(contact_pairs=np.zeros((0, 2), int)), "'contact_pairs' has the shape (0, 2)"),
+    "third aggregate": (state(aggregate=np.array([0, 2])), "'aggregate' must be 0 or 1"),
     "no grain": (
-        lambda f: _change_arrays(
-            f,
+        state(
             **{n: np.zeros((0, 3)) for n in ("position", "velocity", "angular_velocity")},
             radius=np.zeros(0),
             aggregate=np.zeros(0, int),
@@ -301,20 +256,14 @@ STATE_DAMAGE = {
         ),
         "holds no grain",
     ),
-    "lost grain": (
-        lambda f: _change_arrays(f, velocity=np.zeros((1, 3))),
-        "'velocity' has the shape (1, 3), expected (2, 3)",
-    ),
-    "nowhere": (
-        lambda f: _change_arrays(f, position=np.full((2, 3), np.nan)),
-        "'position' holds a value that is not finite",
-    ),
+    "lost grain": (state(velocity=np.zeros((1, 3))), "'velocity' has the shape (1, 3), expected (2, 3)"),
+    "nowhere": (state(position=np.full((2, 3), np.nan)), "'position' holds a value that is not finite"),
     "spinning endlessly": (
-        lambda f: _change_arrays(f, angular_velocity=np.full((2, 3), np.inf)),
+        state(angular_velocity=np.full((2, 3), np.inf)),
         "'angular_velocity' holds a value that is not finite",
     ),
-    "flat cell": (lambda f: _change_arrays(f, cell_size=np.ones(2)), "'cell_size' has the shape (2,), expected (3,)"),
-    "two times": (lambda f: _change_arrays(f, time=np.zeros(2)), "'time' must be one number"),
+    "flat cell": (state(cell_size=np.ones(2)), "'cell_size' has the shape (2,), expected (3,)"),
+    "two times": (state(time=np.zeros(2)), "'time' must be one number"),
 }
 
 

@@ -97,6 +97,8 @@ def test_restitutions_interval_covers_the_mean():
         inside += low < 0.4 < high
     assert inside / 300 > 0.88
     assert student_interval([0.3]) == (None, None)
+    reach = 4.3027 / 3**0.5  # t of two degrees of freedom at 97.5 %
+    assert student_interval([1.0, 2.0, 3.0]) == pytest.approx((2 - reach, 2 + reach), rel=1e-4)
 
 
 def test_numbers_without_scatter_have_no_interval():

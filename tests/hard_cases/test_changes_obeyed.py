@@ -1,297 +1,241 @@
 """What a script may change between two steps of JKRWadaEngine, and what follows."""
 
 import pytest
-from changes import SCENE
+from changes import *
+
+pytestmark = pytest.mark.in_yade
+
+
+def all_states():
+    return [
+        [list(b.state.pos), list(b.state.vel), list(b.state.angVel), b.state.blockedDOFs, list(b.state.ori)]
+        for b in O.bodies
+    ]
+
+
+def flying_together(**options):
+    """27 grains that collide, under the fused engine: five small steps each O.step."""
+    new_scene(0.1 * unit)
+    converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
+    fused_engine(subSteps=5, **options)
+    O.dt *= 5
+
+
+def close_to(energies, unit):
+    return pytest.approx(energies, rel=1e-9, abs=1e-12 * energies[unit])
 
 
 @pytest.mark.parametrize("orientations", [False, True])
-def test_what_a_script_sets_after_loading_holds(yade, orientations):
+def test_what_a_script_sets_after_loading_holds(orientations):
     """Velocities, positions, blocked degrees of freedom and orientations: as if they had been set in the run that was never saved."""
-    found = yade(
-        SCENE
-        + """
-def change():
-    O.bodies[1].state.vel += Vector3(3, -1, 2)
-    O.bodies[2].state.angVel += Vector3(1e7, 2e7, -1e7)
-    O.bodies[3].state.pos += Vector3(1e-10, -1e-10, 3e-10)
-    O.bodies[0].state.blockedDOFs = "xyZ"
-    O.bodies[3].state.ori = Quaternion((0, 1, 0), 0.3)
-def all_states():
-    return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel), b.state.blockedDOFs, list(b.state.ori)] for b in O.bodies]
-chain(subSteps=7, orientations=parameters["orientations"])
-O.dt *= 7
-for _ in range(20): O.step()
-O.save("saved.yade.gz")
-unchanged = all_states()
-change()
-changed = all_states()
-for _ in range(20): O.step()
-straight = all_states(), energies()
-O.load("saved.yade.gz")
-result["loaded"] = all_states() == unchanged != changed
-change()
-for _ in range(20): O.step()
-result["same"] = all_states() == straight[0]
-result["energies"] = [straight[1], energies()]
-""",
-        {"orientations": orientations},
-    )
-    assert found["loaded"] and found["same"]
-    assert found["energies"][1] == pytest.approx(found["energies"][0], rel=1e-12)
+
+    def change():
+        O.bodies[1].state.vel += Vector3(3, -1, 2)
+        O.bodies[2].state.angVel += Vector3(1e7, 2e7, -1e7)
+        O.bodies[3].state.pos += Vector3(1e-10, -1e-10, 3e-10)
+        O.bodies[0].state.blockedDOFs = "xyZ"
+        O.bodies[3].state.ori = Quaternion((0, 1, 0), 0.3)
+
+    chain(subSteps=7, orientations=orientations)
+    O.dt *= 7
+    steps(20)
+    O.save("saved.yade.gz")
+    unchanged = all_states()
+    change()
+    assert all_states() != unchanged
+    steps(20)
+    straight = all_states(), energies()
+    O.load("saved.yade.gz")
+    assert all_states() == unchanged
+    change()
+    steps(20)
+    assert all_states() == straight[0] and energies() == pytest.approx(straight[1], rel=1e-12)
 
 
-def test_a_change_before_saving_is_not_lost(yade):
-    """Set after the last step, then saved, loaded and continued."""
-    found = yade(
-        SCENE
-        + """
-chain(subSteps=5)
-O.dt *= 5
-for _ in range(10): O.step()
-O.bodies[1].state.vel = Vector3(3, -1, 2)
-O.save("saved.xml.bz2")
-for _ in range(10): O.step()
-straight = positions()
-O.load("saved.xml.bz2")
-for _ in range(10): O.step()
-result["same"] = bool((positions() == straight).all())
-"""
-    )
-    assert found["same"]
+@pytest.mark.parametrize("change", [False, True])
+@pytest.mark.parametrize("times, name", [(1, "saved.xml.bz2"), (2, "saved.yade.gz")])
+def test_what_is_saved_before_the_next_step_is_not_lost(change, times, name):
+    """What a script has set since the last step; and a checkpoint that is saved again before its first step."""
+    chain(subSteps=5)
+    O.dt *= 5
+    steps(10)
+    if change:
+        O.bodies[1].state.vel = Vector3(3, -1, 2)
+    O.save("straight.yade")
+    for _ in range(times):
+        saved_and_loaded(name)
+    steps(10)
+    loaded = positions()
+    O.load("straight.yade")
+    steps(10)
+    assert (positions() == loaded).all()
 
 
-def test_a_checkpoint_saved_again_before_the_first_step_is_the_same(yade):
-    found = yade(
-        SCENE
-        + """
-chain(subSteps=5)
-O.dt *= 5
-for _ in range(10): O.step()
-O.save("once.yade.gz")
-for _ in range(10): O.step()
-straight = positions()
-O.load("once.yade.gz")
-O.save("twice.yade.gz")
-O.load("twice.yade.gz")
-for _ in range(10): O.step()
-result["same"] = bool((positions() == straight).all())
-"""
-    )
-    assert found["same"]
+def test_an_engine_that_was_saved_and_handed_over_starts_from_the_functors():
+    def end(save):
+        chain()
+        e = engine()
+        steps(20)
+        if save:
+            O.save("saved.yade")
+        steps(20)
+        e.handOver()
+        for O.engines in (functor_engines(), [e]):
+            steps(20)
+        return positions()
 
-
-def test_an_engine_that_was_saved_and_handed_over_starts_from_the_functors(yade):
-    found = yade(
-        SCENE
-        + """
-def run(save):
-    chain()
-    e = engine()
-    for _ in range(20): O.step()
-    if save: O.save("saved.yade")
-    for _ in range(20): O.step()
-    e.handOver()
-    O.engines = functor_engines()
-    for _ in range(20): O.step()
-    O.engines = [e]
-    for _ in range(20): O.step()
-    return positions()
-result["same"] = bool((run(False) == run(True)).all())
-"""
-    )
-    assert found["same"]
+    assert (end(False) == end(True)).all()
 
 
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 @pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0.02, 0, 0), (-8.0, 1.0, 0), (0, 30.0, 0)])
-def test_a_touching_body_may_be_moved(yade, mover, by):
+def test_a_touching_body_may_be_moved(mover, by):
     """Its contacts break when they are torn apart, with either way of moving, and the grains stay where one can find them."""
-    found = yade(
-        SCENE
-        + """
-chain()
-if parameters["mover"] == "functors": O.engines = functor_engines()
-for _ in range(200): O.step()
-before = energies()
-O.bodies[3].state.pos += Vector3(*parameters["by"]) * 1e-7
-for _ in range(200): O.step()
-shot = contact_law.snapshot()
-pairs = sorted(sorted(p) for p in shot["contact_pairs"].tolist())
-result.update(pairs=pairs, finite=bool(np.isfinite(positions()).all()), lost={n: energies()[n] - before[n] for n in LOST})
-result["speed"] = max(b.state.vel.norm() for b in O.bodies)
-c = constants(ice(), 1e-7)
-result["unit"] = c["pullOffForce"] * c["pullOffOverlap"]
-""",
-        {"mover": mover, "by": by},
-    )
-    assert found["finite"] and found["pairs"] == [[0, 1], [1, 2]], found
-    if by[1] == 0:  # pulled off along the normal
-        assert found["speed"] < 1 and found["lost"]["disconnection"] == pytest.approx(4 / 45 * found["unit"], rel=0.05)
-
-
-def test_a_moved_body_leaves_its_neighbours_as_the_functors_have_it(yade):
-    """Torn away in the middle of a run with drag: the loss that is booked is the functors', to the first order of the one small step by which forces lag."""
-    found = yade(
-        SCENE
-        + """
-def run(mover, step):
     chain()
-    O.dt *= step
-    for b in O.bodies: b.material.viscoelasticTime = 1e-12
-    if mover == "functors": O.engines = functor_engines()
-    for _ in range(int(20 / step)): O.step()
+    if mover == "functors":
+        O.engines = functor_engines()
+    steps(200)
     before = energies()
-    O.bodies[3].state.pos += Vector3(0, 0.3e-7, 0)
-    for _ in range(int(20 / step)): O.step()
-    return positions(), energies()["disconnection"] - before["disconnection"]
-for step in (1.0, 0.25):
-    (x, lost), (y, booked) = run("functors", step), run("fused", step)
-    result.setdefault("moved", []).append(float(np.abs(x - y).max() / 1e-7))
-    result.setdefault("lost", []).append(booked / lost - 1)
-"""
-    )
-    assert found["moved"][1] < 0.5 * found["moved"][0] < 1e-2, found
-    assert abs(found["lost"][1]) < 0.5 * abs(found["lost"][0]) < 1e-3, found
+    O.bodies[3].state.pos += Vector3(*by) * 1e-7
+    steps(200)
+    pairs = contact_law.snapshot()["contact_pairs"].tolist()
+    assert sorted(sorted(pair) for pair in pairs) == [[0, 1], [1, 2]] and np.isfinite(positions()).all()
+    if by[1] == 0:  # pulled off along the normal
+        c = constants(ice(), 1e-7)
+        lost = energies()["disconnection"] - before["disconnection"]
+        assert max(b.state.vel.norm() for b in O.bodies) < 1
+        assert lost == pytest.approx(4 / 45 * c["pullOffForce"] * c["pullOffOverlap"], rel=0.05)
 
 
-def test_a_body_wrapped_into_the_cell_keeps_its_contacts(yade):
+def test_a_moved_body_leaves_its_neighbours_as_the_functors_have_it():
+    """Torn away in the middle of a run with drag: the loss that is booked is the functors', to the first order of the one small step by which forces lag."""
+
+    def torn(mover, step):
+        chain()
+        O.dt *= step
+        for b in O.bodies:
+            b.material.viscoelasticTime = 1e-12
+        if mover == "functors":
+            O.engines = functor_engines()
+        steps(int(20 / step))
+        before = energies()
+        O.bodies[3].state.pos += Vector3(0, 0.3e-7, 0)
+        steps(int(20 / step))
+        return positions(), energies()["disconnection"] - before["disconnection"]
+
+    differences = []
+    for step in (1.0, 0.25):
+        (x, lost), (y, booked) = torn("functors", step), torn("fused", step)
+        differences.append((np.abs(x - y).max() / 1e-7, abs(booked / lost - 1)))
+    (moved, lost), (moved_less, lost_less) = differences
+    assert moved_less < 0.5 * moved < 1e-2 and lost_less < 0.5 * lost < 1e-3
+
+
+def test_a_body_wrapped_into_the_cell_keeps_its_contacts():
     """A script brings a touching grain back into the periodic cell: its contacts are with the nearest images, as before."""
-    found = yade(
-        SCENE
-        + """
-def run(wrapped):
-    chain()
-    O.periodic = True
-    O.cell.setBox(1.5e-6, 1.5e-6, 1.5e-6)
-    for _ in range(100): O.step()
-    if wrapped: O.bodies[2].state.pos += Vector3(1.5e-6, 0, -3e-6)
-    for _ in range(100): O.step()
-    x = positions()
-    if wrapped: x[2] -= np.array([1.5e-6, 0, -3e-6])
-    return x, energies()
-(x, e), (y, f) = run(False), run(True)
-result.update(moved=float(np.abs(x - y).max() / 1e-7), lost=max(abs(e[n] - f[n]) for n in LOST), kinetic=e["kinetic"])
-"""
-    )
-    assert found["moved"] < 1e-9 and found["lost"] < 1e-9 * found["kinetic"], found
+    shift = 1.5e-6 * np.array([1, 0, -2])
+
+    def end(wrapped):
+        chain()
+        O.periodic = True
+        O.cell.setBox(1.5e-6, 1.5e-6, 1.5e-6)
+        steps(100)
+        if wrapped:
+            O.bodies[2].state.pos += Vector3(*shift)
+        steps(100)
+        x = positions()
+        x[2] -= shift if wrapped else 0
+        return x, energies()
+
+    (x, e), (y, f) = end(False), end(True)
+    assert np.abs(x - y).max() < 1e-9 * 1e-7
+    assert max(abs(e[name] - f[name]) for name in LOST) < 1e-9 * e["kinetic"]
 
 
-def test_energies_may_be_asked_for_late_or_with_a_pause(yade):
+def test_energies_may_be_asked_for_late_or_with_a_pause():
     """O.trackEnergy switched on, off and on again, and after loading: what O.energy then has is what it has when it was on all the time."""
-    found = yade(
-        SCENE
-        + """
-def run(on, load=False):
-    new_scene(0.1 * unit)
-    converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-    fused_engine(subSteps=5)
-    O.dt *= 5
-    for k in range(60):
-        O.trackEnergy = on(k)
-        O.step()
-        if load and k == 35:
-            O.save("paused.yade")
-            O.load("paused.yade")
-    return energies()
-result["always"] = run(lambda k: True)
-result["late"] = run(lambda k: k > 40)
-result["paused"] = run(lambda k: k < 30 or k > 40)
-result["loaded late"] = run(lambda k: k > 40, load=True)
-result["loaded in the pause"] = run(lambda k: k < 30 or k > 40, load=True)
-"""
-    )
-    always = found.pop("always")
+
+    def end(tracked, load=False):
+        flying_together()
+        for k in range(60):
+            O.trackEnergy = tracked(k)
+            O.step()
+            if load and k == 35:
+                saved_and_loaded()
+        return energies()
+
+    always = end(lambda k: True)
     assert always["slidingDissipation"] > 0 and always["disconnection"] > 0
-    for name, energies in found.items():
-        assert energies == pytest.approx(always, rel=1e-9, abs=1e-12 * always["connection"]), name
+    for tracked in (lambda k: k > 40, lambda k: k < 30 or k > 40):
+        for load in (False, True):
+            assert end(tracked, load) == close_to(always, "connection")
 
 
-def test_energies_are_those_of_velocities_that_were_set_and_saved(yade):
+def test_energies_are_those_of_velocities_that_were_set_and_saved():
     """A call that takes the change over stands between it and O.save, or none: O.energy after loading has what it has without."""
-    found = yade(
-        SCENE
-        + """
-def run(written, saved):
-    new_scene(0.1 * unit)
-    cluster(4, 1, [ice()], [1e-7], 1.0, 0)
-    fused_engine(subSteps=5)
-    O.dt *= 5
-    O.run(5, True)
-    for b in O.bodies:
-        b.state.vel = 3 * b.state.vel
-    if written: O.engines[0].writeInteractions()
-    if saved:
-        O.save("set.yade")
-        O.load("set.yade")
-    O.step()
-    return energies()
-result["straight"] = run(False, False)
-result["others"] = [run(False, True), run(True, False), run(True, True)]
-"""
-    )
-    for others in found["others"]:
-        assert others == pytest.approx(found["straight"], rel=1e-9, abs=1e-12 * found["straight"]["kinetic"])
+
+    def end(written, saved):
+        new_scene(0.1 * unit)
+        cluster(4, 1, [ice()], [1e-7], 1.0, 0)
+        fused_engine(subSteps=5)
+        O.dt *= 5
+        O.run(5, True)
+        for b in O.bodies:
+            b.state.vel = 3 * b.state.vel
+        if written:
+            engine().writeInteractions()
+        if saved:
+            saved_and_loaded()
+        O.step()
+        return energies()
+
+    straight = end(False, False)
+    for how in ((False, True), (True, False), (True, True)):
+        assert end(*how) == close_to(straight, "kinetic")
 
 
 @pytest.mark.parametrize("tracked", ["functors", "both"])
-def test_energies_after_the_functors_and_a_checkpoint(yade, tracked):
+def test_energies_after_the_functors_and_a_checkpoint(tracked):
     """The functors' losses stay booked, and the engine's come on top, whether the engine was saved in between, or asked for energies at the end only."""
-    found = yade(
-        SCENE
-        + """
-def run(load):
-    new_scene(0.1 * unit)
-    converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-    for _ in range(150): O.step()
-    fused_engine(subSteps=5)
-    O.dt *= 5
-    O.trackEnergy = parameters["tracked"] == "both"
-    for k in range(20):
+
+    def end(load):
+        new_scene(0.1 * unit)
+        converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
+        steps(150)
+        fused_engine(subSteps=5)
+        O.dt *= 5
+        O.trackEnergy = tracked == "both"
+        for k in range(20):
+            O.step()
+            if load and k == 10:
+                saved_and_loaded()
+        O.trackEnergy = True
         O.step()
-        if load and k == 10:
-            O.save("between.yade")
-            O.load("between.yade")
-    O.trackEnergy = True
-    O.step()
-    return energies()
-result["runs"] = [run(False), run(True)]
-""",
-        {"tracked": tracked},
-    )
-    straight, loaded = found["runs"]
+        return energies()
+
+    straight = end(False)
     assert straight["slidingDissipation"] > 0 and straight["connection"] > 0
-    assert loaded == pytest.approx(straight, rel=1e-9, abs=1e-12 * straight["connection"])
+    assert end(True) == close_to(straight, "connection")
 
 
-def test_an_engine_that_is_dead_for_a_while_continues(yade):
-    found = yade(
-        SCENE
-        + """
-def run(pause):
+def test_an_engine_that_is_dead_for_a_while_continues():
     chain()
-    for k in range(60):
-        engine().dead = pause and 20 <= k < 40
-        if not (not pause and k >= 40): O.step()
-    return positions()
-result["same"] = bool((run(True) == run(False)).all())
-"""
-    )
-    assert found["same"]
-
-
-def test_threads_may_change(yade):
-    found = yade(
-        SCENE
-        + """
-def run(threads):
-    new_scene(0.1 * unit)
-    converging(64, 1, [ice()], [1e-7])
-    fused_engine()
-    for k in range(100):
-        engine().threads = threads(k)
+    steps(40)
+    straight = positions()
+    chain()
+    for engine().dead in [False] * 20 + [True] * 20 + [False] * 20:
         O.step()
-    return positions()
-result["same"] = bool((run(lambda k: 1) == run(lambda k: 1 + k // 10 % 2)).all())
-"""
-    )
-    assert found["same"]
+    assert (positions() == straight).all()
+
+
+def test_threads_may_change():
+    def end(threads):
+        new_scene(0.1 * unit)
+        converging(64, 1, [ice()], [1e-7])
+        fused_engine()
+        for k in range(100):
+            engine().threads = threads(k)
+            O.step()
+        return positions()
+
+    assert (end(lambda k: 1) == end(lambda k: 1 + k // 10 % 2)).all()

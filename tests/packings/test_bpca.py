@@ -13,10 +13,7 @@ from yade_scripts.packings.aggregate import AggregateParameters, make
 ICE = MATERIALS["ice"]
 RADIUS = ICE.grainRadius
 OVERLAP = equilibrium_overlap(ICE)
-UNLIKE = {
-    "two": dict(sizes="two", ratio=2.5, fraction=0.3),
-    "lognormal": dict(sizes="lognormal", spread=0.4),
-}
+UNLIKE = {"two": dict(sizes="two", ratio=2.5, fraction=0.3), "lognormal": dict(sizes="lognormal", spread=0.4)}
 
 
 def unlike_radii(name, grains, seed=1):

@@ -1,18 +1,21 @@
 """Spheres cut out of a compression: what is kept, contacts at rest, and what moves when they are set free."""
 
 import os
-import subprocess
 import sys
+from pathlib import Path
 
-import numpy as np
 import pytest
+from scenes import *
+
+sys.path.append(str(Path(__file__).resolve().parent.parent / "scripts"))
+from running import COMPRESS, PYTHON, SCRIPTS, call, completed
 
 from analysis.runs.format import CHANNELS
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
 
-TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+MAKE_PACKING = os.path.join(SCRIPTS, "make_packing.py")
 OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 APART = 2e-7 - OVERLAP
 
@@ -62,24 +65,24 @@ def test_grains_that_lost_their_neighbours_are_dropped():
 
 
 def make_packing(folder, *arguments):
-    command = [sys.executable, os.path.join(TOP, "yade_scripts", "make_packing.py"), *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    return call(folder, PYTHON, MAKE_PACKING, *arguments)
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """A fast compression to a filling of 0.4."""
+    """A fast compression to a filling of 0.4, in the folder run."""
     folder = tmp_path_factory.mktemp("cut")
-    script = os.path.join(TOP, "yade_scripts", "compress.py")
-    given = ("grains=512", "strainRate=1e-4", "stepFraction=0.2", "finalFilling=0.4", "threads=1", "out=run")
-    done = subprocess.run(["yade", "-n", "-x", script, *given], cwd=folder, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
+    given = ("grains=512", "strainRate=1e-4", "stepFraction=0.2", "finalFilling=0.4", "threads=1")
+    completed(folder, *given, script=COMPRESS)
     return folder
 
 
+def last_state(run):
+    return f"from=run/states/{sorted(os.listdir(run / 'run' / 'states'))[-1]}"
+
+
 def test_command_line(run):
-    last = sorted(os.listdir(run / "run" / "states"))[-1]
-    done = make_packing(run, "a.npz", "b.npz", f"from=run/states/{last}", "radius=7", "seed=1")
+    done = make_packing(run, "a.npz", "b.npz", last_state(run), "radius=7", "seed=1")
     assert done.returncode == 0, done.stderr
     for name in ("a.npz", "b.npz"):
         packing = packings.load(run / name)
@@ -93,80 +96,57 @@ def test_command_line(run):
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        (["from=run/states/000020.npz"], "radius: not given; must be that of the sphere to cut [grain radii]"),
+        ("from=run/states/000020.npz", "radius: not given; must be that of the sphere to cut [grain radii]"),
+        ("from=run/states/000020.npz radius=90", "radius = 90: a larger sphere than the cell holds; must be at most"),
+        ("from=run/states/none.npz radius=5", "must be a state of a compression, RUN/states/NNNNNN.npz"),
+        ("from=run/run.json radius=5", "must be a state of a compression, RUN/states/NNNNNN.npz"),
+        ("from=run/states/000020.npz radius=5 filling=0.4", "filling: unknown parameter; must be one of radius, seed"),
         (
-            ["from=run/states/000020.npz", "radius=90"],
-            "radius = 90: a larger sphere than the cell holds; must be at most",
-        ),
-        (["from=run/states/none.npz", "radius=5"], "must be a state of a compression, RUN/states/NNNNNN.npz"),
-        (["from=run/run.json", "radius=5"], "must be a state of a compression, RUN/states/NNNNNN.npz"),
-        (
-            ["from=run/states/000020.npz", "radius=5", "filling=0.4"],
-            "filling: unknown parameter; must be one of radius, seed",
-        ),
-        (
-            ["run/states/000020.npz", "from=run/states/000020.npz", "radius=5"],
+            "run/states/000020.npz from=run/states/000020.npz radius=5",
             "make_packing.py: run/states/000020.npz: is what is read; must be another file",
         ),
     ],
 )
 def test_wrong_input_gives_one_line(run, arguments, message):
-    done = make_packing(run, "x.npz", *arguments)
+    done = make_packing(run, "x.npz", *arguments.split())
     assert done.returncode != 0 and done.stderr.count("\n") == 1 and message in done.stderr
     assert not (run / "x.npz").exists()
 
 
-def test_what_moves_when_a_cut_sphere_is_set_free(yade, run):
+@pytest.mark.in_yade
+def test_what_moves_when_a_cut_sphere_is_set_free(run):
     """Without any damping, over 2000 t0: no contact breaks or forms, and grains move by thousandths of a radius."""
-    last = sorted(os.listdir(run / "run" / "states"))[-1]
-    assert make_packing(run, "c.npz", f"from=run/states/{last}", "radius=7", "seed=2").returncode == 0
-    found = yade(
-        """
-from scenes import *
-from analysis.runs.format import CHANNELS
-from yade_scripts import packings
-packing = packings.load(parameters["file"])
-c = constants(ice(), 1e-7)
-new_scene(0.1 * c["timeUnit"])
-for x, r in zip(packing.position, packing.radius):
-    grain(x, r, ice())
-fused_engine(subSteps=100)
-O.dt *= 100
-O.engines[0].prepare()
-start = contact_law.snapshot()
-O.run(200, True)
-end = contact_law.snapshot()
-have = dict(O.energy.items())
-result["moved"] = float(np.linalg.norm(end["position"] - start["position"], axis=1).max() / 1e-7)
-result["contacts"] = [len(start["contact_pairs"]), len(end["contact_pairs"])]
-result["kinetic"] = have["kinetic"] / (c["pullOffForce"] * c["pullOffOverlap"] * len(packing.radius))
-result["force"] = float(np.abs(start["contact_normal_force"]).max() / c["pullOffForce"])
-""",
-        {"file": str(run / "c.npz")},
-    )
-    print(found)
-    assert found["contacts"][0] == found["contacts"][1] > 100
-    assert found["force"] < 5e-3 and found["moved"] < 5e-3 and found["kinetic"] < 1e-5
+    assert make_packing(run, "c.npz", last_state(run), "radius=7", "seed=2").returncode == 0
+    packing, c = packings.load(run / "c.npz"), constants(ice(), 1e-7)
+    new_scene(0.1 * unit)
+    for x, r in zip(packing.position, packing.radius):
+        grain(x, r, ice())
+    fused_engine(subSteps=100)
+    O.dt *= 100
+    O.engines[0].prepare()
+    before = contact_law.snapshot()
+    O.run(200, True)
+    after = contact_law.snapshot()
+    assert len(before["contact_pairs"]) == len(after["contact_pairs"]) > 100
+    assert np.abs(before["contact_normal_force"]).max() < 5e-3 * c["pullOffForce"]
+    assert np.linalg.norm(after["position"] - before["position"], axis=1).max() < 5e-3 * 1e-7
+    assert energies()["kinetic"] < 1e-5 * c["pullOffForce"] * c["pullOffOverlap"] * packing.grains
 
 
-def test_cut_spheres_collide(run):
+def test_cut_spheres_collide(run, tmp_path):
     """collide.py packing=file takes two of them; until they meet nothing moves in them."""
-    last = sorted(os.listdir(run / "run" / "states"))[-1]
-    assert make_packing(run, "d.npz", "e.npz", f"from=run/states/{last}", "radius=6", "seed=4").returncode == 0
-    script = os.path.join(TOP, "yade_scripts", "collide.py")
+    files = [str(tmp_path / name) for name in ("d.npz", "e.npz")]
+    assert make_packing(run, *files, last_state(run), "radius=6", "seed=4").returncode == 0
     given = (
         "packing=file",
-        "file=d.npz",
-        "projectileFile=e.npz",
+        f"file={files[0]}",
+        f"projectileFile={files[1]}",
         "velocity=3",
         "duration=5e-9",
         "threads=1",
-        "out=met",
     )
-    done = subprocess.run(["yade", "-n", "-x", script, *given], cwd=run, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    with np.load(run / "met" / "history.npz") as history:
-        assert np.ptp(history["contacts"]) == 0 and history["contacts"][0] > 100
-        total = sum(history[name] for name in CHANNELS)
-        assert np.abs(total - total[0]).max() < 1e-9 * history["kinetic"][0]
-        assert np.ptp(history["kinetic"]) < 1e-4 * history["kinetic"][0]
+    _, history = completed(tmp_path, *given)
+    assert np.ptp(history["contacts"]) == 0 and history["contacts"][0] > 100
+    total = sum(history[name] for name in CHANNELS)
+    assert np.abs(total - total[0]).max() < 1e-9 * history["kinetic"][0]
+    assert np.ptp(history["kinetic"]) < 1e-4 * history["kinetic"][0]

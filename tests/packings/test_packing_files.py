@@ -1,16 +1,18 @@
 """Packings are saved and loaded to the bit, and made from the command line."""
 
 import os
-import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+sys.path.append(str(Path(__file__).resolve().parent.parent / "scripts"))
+from running import PYTHON, SCRIPTS, call
+
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 
-TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 
 
@@ -68,12 +70,7 @@ def test_a_pipe_and_nested_parameters_are_no_packing(tmp_path):
 
 
 def make_packing(folder, *arguments):
-    return subprocess.run(
-        [sys.executable, os.path.join(TOP, "yade_scripts", "make_packing.py"), *arguments],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-    )
+    return call(folder, PYTHON, os.path.join(SCRIPTS, "make_packing.py"), *arguments)
 
 
 def test_command_line(tmp_path):
@@ -87,21 +84,18 @@ def test_command_line(tmp_path):
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        (["a.npz", "filling=0.8"], "must be at most 0.7519"),
-        (["a.npz", "radius=-3"], "radius = -3: must be > 0 [grain radii]"),
-        (["a.npz", "velocity=3"], "velocity: unknown parameter; must be one of packing, filling"),
-        (["a.npz", "density=900"], "density: a packing doesn't depend on it; must be left out"),
-        (["a.npz", "surfaceEnergy=1e4"], "grainRadius = 1e-07: contacts at rest have a radius of "),
-        (["nowhere/a.npz"], "nowhere"),
-        (["a.npz", "./a.npz", "radius=3"], "./a.npz: given twice; must be two files, one for each aggregate"),
-        (
-            ["a.npz", "packing=file", "file=b.npz"],
-            "packing = file: must be cpe or bcca or bpca",
-        ),
+        ("a.npz filling=0.8", "must be at most 0.7519"),
+        ("a.npz radius=-3", "radius = -3: must be > 0 [grain radii]"),
+        ("a.npz velocity=3", "velocity: unknown parameter; must be one of packing, filling"),
+        ("a.npz density=900", "density: a packing doesn't depend on it; must be left out"),
+        ("a.npz surfaceEnergy=1e4", "grainRadius = 1e-07: contacts at rest have a radius of "),
+        ("nowhere/a.npz", "nowhere"),
+        ("a.npz ./a.npz radius=3", "./a.npz: given twice; must be two files, one for each aggregate"),
+        ("a.npz packing=file file=b.npz", "packing = file: must be cpe or bcca or bpca"),
     ],
 )
 def test_command_line_errors(tmp_path, arguments, message):
-    failed = make_packing(tmp_path, *arguments)
+    failed = make_packing(tmp_path, *arguments.split())
     assert failed.returncode != 0
     assert message in failed.stderr and failed.stderr.count("\n") == 1
     assert os.listdir(tmp_path) == []

@@ -151,32 +151,6 @@ def test_a_planar_run_takes_planar_packings_only(tmp_path):
         packing_from_file(path, RADIUS, OVERLAP, planar=True)
 
 
-@pytest.mark.parametrize(
-    "cells, message",
-    [
-        (dict(packing="file"), "file: not given with packing = file"),
-        (dict(packing="file", file="a", grains=5), "grains = 5: given with packing = file, on which it has no effect"),
-        (dict(packing="file", file="a", seed=2), "seed = 2: given with packing = file"),
-        (dict(packing="file", file="a", projectileGrains=9), "projectileGrains = 9: given with packing = file"),
-        (dict(file="a"), "file = a: given with packing = cpe; must be left out"),
-        (dict(packing="bpca", projectileFile="a"), "projectileFile = a: given with packing = bpca"),
-        (dict(projectileGrains=9), "projectileGrains = 9: given with packing = cpe"),
-        (dict(packing="bpca", planar=1), "planar = 1: given with packing = bpca, which is made in space; must be 0"),
-        (dict(packing="bpca", grains=3_000_000), "grains = 3000000: too many for packing = bpca; must be 2 to 2000000"),
-        (dict(packing="bcca", projectileGrains=200_000), "projectileGrains = 200000: too many for packing = bcca"),
-        (dict(sizes="two", sizeRatio=2), "sizes = two: given with packing = cpe; must be equal"),
-        (dict(packing="bpca", sizes="two"), "sizeRatio: not given with sizes = two; must be 0.1 to 10"),
-        (dict(packing="bpca", sizes="lognormal"), "sizeSpread: not given with sizes = lognormal; must be > 0"),
-        (dict(packing="bpca", sizeSpread=0.1), "sizeSpread = 0.1: given with sizes = equal; must be left out"),
-        (dict(packing="bcca", sizes="two", sizeRatio=2, neck=0.5), "sizes = two: given with neck = 0.5; must be equal"),
-    ],
-)
-def test_parameters_that_contradict(cells, message):
-    with pytest.raises(ParameterError) as error:
-        CollisionParameters.parse(cells)
-    assert message in str(error.value) and "\n" not in str(error.value)
-
-
 @pytest.mark.parametrize("packing", [dict(radius=4), dict(packing="bpca", grains=20), dict(packing="bcca", grains=20)])
 def test_what_was_made_for_softer_grains_is_refused_and_loose_on_purpose_is_not(tmp_path, packing):
     """Contacts of ice are at a fifth of the overlap that grains ten times as soft have at rest: drawn together, those of a

@@ -2,38 +2,42 @@
 
 from math import pi, sqrt
 
-import numpy as np
 import pytest
+from scenes import *
 from scipy.linalg import eigh
 
+pytestmark = pytest.mark.in_yade
 # Ice of tests/scenes.py.
 YOUNG, SHEAR, DENSITY, RADIUS = 7e9, 2.8e9, 1000.0, 1e-7
 MASS = 4 / 3 * pi * DENSITY * RADIUS**3
 INERTIA = 0.4 * MASS * RADIUS**2
 DISTANCE = 1.99e-7  # of bonded grains' centres [m]
-LEVER = (
-    2 * RADIUS / DISTANCE
-)  # sliding displacement a transverse displacement: zeta0 has the radii, its direction the distance
+LEVER = 2 * RADIUS / DISTANCE  # sliding displacement a transverse one: zeta0 has the radii, its direction the distance
 NECK = 0.5
 MOVERS = ["functors", "engine"]
 
-SCENE = """
-from scenes import *
-def start(mover, step, neck, count, held=0):
-    "A row of bonded grains along x, the first `held` of them without freedom; step in t0."
-    new_scene(step * constants(ice(), 1e-7)["timeUnit"], neck=neck)
-    for k in range(count): grain((parameters["distance"] * k, 0, 0), 1e-7, ice(), blocked="xyzXYZ" if k < held else "")
-    if mover == "engine": fused_engine(neck=neck)
+
+def start(mover, step, count, held=0):
+    """A row of bonded grains along x, the first `held` of them without freedom; step in t0."""
+    new_scene(step * unit, neck=NECK)
+    for k in range(count):
+        grain((DISTANCE * k, 0, 0), 1e-7, ice(), blocked="xyzXYZ" if k < held else "")
+    if mover == "engine":
+        fused_engine(neck=NECK)
+
+
 def steps(number):
-    for _ in range(number): O.step() # O.run() waits long for its thread
+    for _ in range(number):
+        O.step()  # O.run() waits long for its thread
+
+
 def sampled(quantity, stride, number):
-    "A quantity after every stride-th step."
+    """A quantity after every stride-th step."""
     found = []
     for _ in range(number):
         steps(stride)
         found.append(quantity())
     return found
-"""
 
 
 def stiffnesses(neck):
@@ -56,42 +60,36 @@ K_STRETCH, K_SLIDE, K_TILT, K_TWIST = stiffnesses(NECK)
 SPEED, SPIN = 1e-3, 1e4  # m/s, 1/s: far below what bends the geometry
 # Two free grains, 1 and 2: initial relative velocity and spins of the mode (sliding: without angular momentum), what is watched, omega^2.
 PAIR_MODES = {
-    "stretching": ((SPEED, 0, 0), (0, 0, 0), (0, 0, 0), "vel[0]", -1, 2 * K_STRETCH / MASS),
+    "stretching": ((SPEED, 0, 0), (0, 0, 0), (0, 0, 0), "vel", 0, -1, 2 * K_STRETCH / MASS),
     "sliding": (
         (0, -2 * LEVER * INERTIA / (MASS * RADIUS) * SPIN, 0),
         (0, 0, SPIN),
         (0, 0, SPIN),
-        "angVel[2]",
+        "angVel",
+        2,
         1,
         2 * K_SLIDE * (LEVER**2 / MASS + RADIUS**2 / INERTIA),
     ),
-    "rolling": ((0, 0, 0), (0, 0, SPIN), (0, 0, -SPIN), "angVel[2]", -1, 2 * K_TILT / INERTIA),
-    "twisting": ((0, 0, 0), (SPIN, 0, 0), (-SPIN, 0, 0), "angVel[0]", -1, 2 * K_TWIST / INERTIA),
+    "rolling": ((0, 0, 0), (0, 0, SPIN), (0, 0, -SPIN), "angVel", 2, -1, 2 * K_TILT / INERTIA),
+    "twisting": ((0, 0, 0), (SPIN, 0, 0), (-SPIN, 0, 0), "angVel", 0, -1, 2 * K_TWIST / INERTIA),
 }
 
 
 @pytest.mark.parametrize("mover", MOVERS)
-@pytest.mark.parametrize("mode", list(PAIR_MODES))
-def test_a_bonded_pair_vibrates_in_every_mode(yade, mode, mover):
+@pytest.mark.parametrize("mode", PAIR_MODES)
+def test_a_bonded_pair_vibrates_in_every_mode(mode, mover):
     """At two steps: a leapfrog's frequency is (2/dt) asin(omega dt/2), too high by (omega dt)^2/24, of second order."""
-    velocity, spin1, spin2, watched, sign, square = PAIR_MODES[mode]
-    found = yade(
-        SCENE
-        + f"""
-for step in (0.08, 0.02):
-    start(parameters["mover"], step, parameters["neck"], 2)
-    first, second = (b.state for b in O.bodies)
-    second.vel, first.angVel, second.angVel = {velocity}, {spin1}, {spin2}
-    steps(3)
-    result[step] = [O.dt, sampled(lambda: first.{watched} + {sign} * second.{watched}, 1, 400)]
-""",
-        {"mover": mover, "neck": NECK, "distance": DISTANCE},
-    )
+    velocity, spin1, spin2, watched, axis, sign, square = PAIR_MODES[mode]
     exact, errors = sqrt(square), []
-    for dt, signal in found.values():
-        omega, departure = frequency(signal, dt)
-        assert departure < 1e-8, (mode, departure)
-        assert omega == pytest.approx(2 / dt * np.arcsin(exact * dt / 2), rel=1e-7), (mode, dt)
+    for step in (0.08, 0.02):
+        start(mover, step, 2)
+        first, second = (b.state for b in O.bodies)
+        second.vel, first.angVel, second.angVel = velocity, spin1, spin2
+        steps(3)
+        signal = sampled(lambda: getattr(first, watched)[axis] + sign * getattr(second, watched)[axis], 1, 400)
+        omega, departure = frequency(signal, O.dt)
+        assert departure < 1e-8
+        assert omega == pytest.approx(2 / O.dt * np.arcsin(exact * O.dt / 2), rel=1e-7)
         errors.append(omega / exact - 1)
     assert errors[0] / errors[1] == pytest.approx(16, rel=0.05)
 
@@ -104,31 +102,24 @@ def deflection(bonds, force):
 
 
 @pytest.mark.parametrize("mover", MOVERS)
-def test_a_bonded_chain_bends_as_its_springs_in_series(yade, mover):
+def test_a_bonded_chain_bends_as_its_springs_in_series(mover):
     """Eleven grains, the first one held, brought to rest under an end force: grains are stopped whenever they become slower."""
     bonds, force = 10, 1e-11
-    found = yade(
-        SCENE
-        + """
-start(parameters["mover"], 0.1, parameters["neck"], parameters["bonds"] + 1, held=1)
-end = parameters["bonds"]
-O.forces.setPermF(end, (0, parameters["force"], 0))
-before, result["deflection"] = 0.0, []
-for _ in range(2000):
-    steps(10)
-    kinetic = sum(b.state.vel.squaredNorm() + 4e-15 * b.state.angVel.squaredNorm() for b in O.bodies)
-    if kinetic < before:
-        for b in O.bodies: b.state.vel, b.state.angVel = (0, 0, 0), (0, 0, 0)
-        result["deflection"].append(O.bodies[end].state.pos[1])
-        kinetic = 0.0
-    before = kinetic
-""",
-        {"mover": mover, "neck": NECK, "distance": DISTANCE, "bonds": bonds, "force": force},
-    )
-    assert np.mean(found["deflection"][-10:]) == pytest.approx(deflection(bonds, force), rel=1e-5)
-    assert deflection(bonds, force) == pytest.approx(
-        force * (bonds * DISTANCE) ** 3 / (3 * K_TILT * DISTANCE), rel=0.01
-    )
+    start(mover, 0.1, bonds + 1, held=1)
+    O.forces.setPermF(bonds, (0, force, 0))
+    before, found = 0.0, []
+    for _ in range(2000):
+        steps(10)
+        kinetic = sum(b.state.vel.squaredNorm() + 4e-15 * b.state.angVel.squaredNorm() for b in O.bodies)
+        if kinetic < before:
+            for b in O.bodies:
+                b.state.vel, b.state.angVel = (0, 0, 0), (0, 0, 0)
+            found.append(O.bodies[bonds].state.pos[1])
+            kinetic = 0.0
+        before = kinetic
+    assert np.mean(found[-10:]) == pytest.approx(deflection(bonds, force), rel=1e-5)
+    beam = force * (bonds * DISTANCE) ** 3 / (3 * K_TILT * DISTANCE)
+    assert deflection(bonds, force) == pytest.approx(beam, rel=0.01)
 
 
 def bending_mode(bonds):
@@ -148,32 +139,18 @@ def bending_mode(bonds):
 
 
 @pytest.mark.parametrize("mover", MOVERS)
-def test_a_bonded_chain_vibrates_as_a_beam(yade, mover):
+def test_a_bonded_chain_vibrates_as_a_beam(mover):
     """The first bending of eleven grains, the first one held: the eigenvalue of the springs' matrix, and Euler and Bernoulli's beam to
     the half per cent that ten lumps, their spins and their sliding leave."""
     bonds = 10
     omega, shape, angle = bending_mode(bonds)
-    found = yade(
-        SCENE
-        + """
-start(parameters["mover"], 0.1, parameters["neck"], len(parameters["shape"]) + 1, held=1)
-for k, (y, angle) in enumerate(zip(parameters["shape"], parameters["angle"])):
-    O.bodies[k + 1].state.vel, O.bodies[k + 1].state.angVel = (0, 1e-3 * y, 0), (0, 0, 1e-3 * angle)
-steps(3)
-stride = int(2 * math.pi / (24 * parameters["omega"] * O.dt))
-result["interval"] = stride * O.dt
-result["signal"] = sampled(lambda: O.bodies[len(O.bodies) - 1].state.vel[1], stride, 60)
-""",
-        {
-            "mover": mover,
-            "neck": NECK,
-            "distance": DISTANCE,
-            "omega": omega,
-            "shape": shape.tolist(),
-            "angle": angle.tolist(),
-        },
-    )
-    measured, departure = frequency(found["signal"], found["interval"])
+    start(mover, 0.1, bonds + 1, held=1)
+    for k in range(bonds):
+        state = O.bodies[k + 1].state
+        state.vel, state.angVel = (0, 1e-3 * shape[k], 0), (0, 0, 1e-3 * angle[k])
+    steps(3)
+    stride = int(2 * pi / (24 * omega * O.dt))
+    measured, departure = frequency(sampled(lambda: O.bodies[bonds].state.vel[1], stride, 60), stride * O.dt)
     assert departure < 1e-6 and measured == pytest.approx(omega, rel=1e-6)
     length = (bonds + 0.5) * DISTANCE  # each grain stands for half a distance to either side
     beam = 1.8751**2 / length**2 * sqrt(K_TILT * DISTANCE * DISTANCE / MASS)

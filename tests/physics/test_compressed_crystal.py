@@ -1,16 +1,21 @@
 """Pressure of periodic cells by the virial against closed forms: strained crystals, and a contact that crosses the boundary."""
 
-import numpy as np
 import pytest
+from scenes import *
 
+from analysis.measures.virial import contact_pressure
 from analysis.theory import ICE, normal_force, pair_constants
 
+pytestmark = pytest.mark.in_yade
 PAIR = pair_constants(ICE, 1e-7)
 
-CRYSTAL = """
-from scenes import *
-from analysis.measures.virial import contact_pressure
-def pressure_of(sites, edge):
+
+def pressure(shot):
+    return contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"])
+
+
+def crystal(sites, edge):
+    """(pressure [Pa], number of contacts) of grains at sites of a periodic cell."""
     new_scene(1e-11)
     O.periodic = True
     O.cell.setBox(edge, edge, edge)
@@ -19,87 +24,71 @@ def pressure_of(sites, edge):
     fused_engine()
     O.engines[0].prepare()
     shot = contact_law.snapshot()
-    return [contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"]), len(shot["contact_pairs"])]
-"""
+    return pressure(shot), len(shot["contact_pairs"])
 
 
 @pytest.mark.parametrize("strain", [-0.004, 0.0, 0.01])
-def test_strained_crystals(yade, strain):
+def test_strained_crystals(strain):
     """Simple cubic: F/a^2; face-centred cubic: 2 sqrt(2) F/a^2, a the distance of neighbours (12 n a F/6, n = sqrt(2)/a^3)."""
-    apart = (2e-7 - PAIR.equilibrium_overlap) * (1 - strain)
-    force = float(normal_force(2e-7 - apart, PAIR))
-    found = yade(
-        CRYSTAL
-        + """
-a = parameters["apart"]
-cubic = a * np.stack(np.meshgrid(*3 * [np.arange(4)], indexing="ij"), axis=-1).reshape(-1, 3)
-result["cubic"] = pressure_of(cubic, 4 * a)
-corner = np.stack(np.meshgrid(*3 * [np.arange(3)], indexing="ij"), axis=-1).reshape(-1, 1, 3)
-fcc = (corner + np.array([[0, 0, 0], [0, .5, .5], [.5, 0, .5], [.5, .5, 0]])).reshape(-1, 3) * 2**.5 * a
-result["fcc"] = pressure_of(fcc, 3 * 2**.5 * a)
-""",
-        {"apart": apart},
-    )
-    scale = 1e-6 * PAIR.pull_off_force / apart**2
-    for lattice, contacts, expected in (("cubic", 192, force / apart**2), ("fcc", 648, 8**0.5 * force / apart**2)):
-        pressure, number = found[lattice]
+    a = (2e-7 - PAIR.equilibrium_overlap) * (1 - strain)
+    force = float(normal_force(2e-7 - a, PAIR))
+    cubic = a * np.stack(np.meshgrid(*3 * [np.arange(4)], indexing="ij"), axis=-1).reshape(-1, 3)
+    corner = np.stack(np.meshgrid(*3 * [np.arange(3)], indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    basis = np.array([[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
+    fcc = (corner + basis).reshape(-1, 3) * 2**0.5 * a
+    for sites, edge, contacts, expected in (
+        (cubic, 4 * a, 192, force / a**2),
+        (fcc, 3 * 2**0.5 * a, 648, 8**0.5 * force / a**2),
+    ):
+        found, number = crystal(sites, edge)
         # Without strain a contact has no force, and rounding of its overlap is all there is.
-        assert number == (contacts if 2e-7 > apart else 0)
+        assert number == (contacts if 2e-7 > a else 0)
         if number:
-            assert pressure == pytest.approx(expected, rel=1e-6, abs=scale), lattice
+            assert found == pytest.approx(expected, rel=1e-6, abs=1e-6 * PAIR.pull_off_force / a**2)
 
 
-def test_a_contact_that_crosses_the_boundary(yade):
+def test_a_contact_that_crosses_the_boundary():
     """A vibrating pair that flies through the boundary has the pressure of one that stays in the middle, at every step."""
-    found = yade("""
-from scenes import *
-from analysis.measures.virial import contact_pressure
-def series(start):
-    new_scene(1e-11)
-    O.periodic = True
-    O.cell.setBox(8e-7, 8e-7, 8e-7)
-    for side in (-1, 1):
-        grain(np.array(start) + [side * 0.99e-7, 0, 0], 1e-7, ice(), (10, 3, 0))
-    fused_engine(subSteps=10)
-    O.dt *= 10
-    O.engines[0].prepare()
-    rows = []
-    for _ in range(400):
-        O.step()
-        shot = contact_law.snapshot()
-        rows.append([contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"]), shot["position"][0, 0]])
-    return np.array(rows).T.tolist()
-result["middle"] = series((2e-7, 2e-7, 4e-7))
-result["across"] = series((7.5e-7, 7.6e-7, 4e-7))
-""")
-    (middle, _), (across, x) = found["middle"], found["across"]
+
+    def series(start):
+        new_scene(1e-11)
+        O.periodic = True
+        O.cell.setBox(8e-7, 8e-7, 8e-7)
+        for side in (-1, 1):
+            grain(np.array(start) + [side * 0.99e-7, 0, 0], 1e-7, ice(), (10, 3, 0))
+        fused_engine(subSteps=10)
+        O.dt *= 10
+        O.engines[0].prepare()
+        rows = []
+        for _ in range(400):
+            O.step()
+            shot = contact_law.snapshot()
+            rows.append([pressure(shot), shot["position"][0, 0]])
+        return np.array(rows).T
+
+    (middle, _), (across, x) = series((2e-7, 2e-7, 4e-7)), series((7.5e-7, 7.6e-7, 4e-7))
     assert min(x) < 8e-7 < max(x)  # and the other grain 2e-7 ahead
-    assert np.ptp(middle) > 1e3
-    assert across == pytest.approx(middle, abs=1e-6 * np.ptp(middle))
+    assert np.ptp(middle) > 1e3 and across == pytest.approx(middle, abs=1e-6 * np.ptp(middle))
 
 
-def test_normal_forces_are_all_that_presses(yade):
+def test_normal_forces_are_all_that_presses():
     """In a compressed cluster, whose contacts slide, roll and twist, the pressure of normal forces alone is a third of the
     trace of YADE's stress of all forces (which is positive in tension)."""
-    found = yade("""
-from analysis.measures.virial import contact_pressure
-from yade_scripts.experiments.compression import KIND
-scene = KIND.prepare(KIND.parse(dict(grains=64, strainRate=1e-4, stepFraction=0.2, threads=1)), 1)
-scene.build()
-O.dt = 20 * scene.time_step
-O.trackEnergy = True
-O.engines = [JKRWadaEngine(subSteps=20, threads=1, **scene.law)]
-O.engines[0].prepare()
-result["rows"] = []
-while O.cell.hSize[0, 0] ** 3 > 64 * 4.19e-21 / 0.4:
-    O.run(200, True)
-    shot = contact_law.snapshot()
-    O.engines[0].writeInteractions()
-    stress = np.array(utils.getStress())
-    pressure = contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"])
-    result["rows"].append([pressure, -np.trace(stress) / 3, np.abs(stress - stress.T).max(), np.abs(np.diag(stress)).max()])
-result["lost"] = dict(O.energy.items())["rollingDissipation"]
-""")
-    ours, theirs, _, largest = np.array(found["rows"]).T
-    assert found["lost"] > 0 and len(ours) > 3 and largest.max() > 1e4
+    from yade_scripts.experiments.compression import KIND
+
+    scene = KIND.prepare(KIND.parse(dict(grains=64, strainRate=1e-4, stepFraction=0.2, threads=1)), 1)
+    scene.build()
+    O.dt = 20 * scene.time_step
+    O.trackEnergy = True
+    fused_engine(subSteps=20, threads=1, **scene.law)
+    O.engines[0].prepare()
+    rows = []
+    while O.cell.hSize[0, 0] ** 3 > 64 * 4.19e-21 / 0.4:
+        O.run(200, True)
+        ours = pressure(contact_law.snapshot())
+        O.engines[0].writeInteractions()
+        stress = np.array(utils.getStress())
+        rows.append([ours, -np.trace(stress) / 3, np.abs(np.diag(stress)).max()])
+    ours, theirs, largest = np.array(rows).T
+    assert energies()["rollingDissipation"] > 0 and len(ours) > 3 and largest.max() > 1e4
     assert ours == pytest.approx(theirs, abs=1e-8 * largest.max())

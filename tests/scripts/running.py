@@ -2,13 +2,18 @@
 
 import json
 import os
+import signal
 import subprocess
+import time
 
 import numpy as np
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-COLLIDE = os.path.join(TOP, "yade_scripts", "collide.py")
-RUN_TABLE = os.path.join(TOP, "yade_scripts", "run_table.py")
+SCRIPTS = os.path.join(TOP, "yade_scripts")
+STUDIES = os.path.join(SCRIPTS, "studies")
+COLLIDE, COMPRESS, RUN_TABLE, STUDY = (
+    os.path.join(SCRIPTS, name) for name in ("collide.py", "compress.py", "run_table.py", "study.py")
+)
 PYTHON = "/usr/bin/python3"  # the one that YADE runs in
 TINY = ("radius=4", "velocity=30", "duration=15e-9")  # 2 x 26 grains that meet after some 7 ns
 
@@ -18,23 +23,31 @@ def environment(**more):
     return {name: value for name, value in os.environ.items() if name != "YADE_BATCH"} | more
 
 
+def start(folder, *command, **options):
+    """A process in a folder that writes to pipes."""
+    pipes = dict(stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment())
+    return subprocess.Popen(command, cwd=folder, **{**pipes, **options})
+
+
+def call(folder, *command, **more):
+    """The same, finished: what subprocess.run returns. more: of its environment."""
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment(**more), timeout=120)
+
+
 def collide(folder, *arguments, **more):
     """yade -n -x collide.py arguments, in a folder; the finished process."""
-    return subprocess.run(
-        ["yade", "-n", "-x", COLLIDE, *arguments],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        env=environment(**more),
-        timeout=60,
-    )
+    return call(folder, "yade", "-n", "-x", COLLIDE, *arguments, **more)
 
 
-def collided(folder, *arguments):
-    """The same of a run that must come to its end."""
-    done = collide(folder, *arguments)
-    assert done.returncode == 0, done.stderr
-    return done
+def completed(folder, *arguments, script=COLLIDE):
+    """(run.json, history) of a run, in the folder run, that comes to its end and has nothing to say."""
+    done = call(folder, "yade", "-n", "-x", script, *arguments, "out=run")
+    assert done.returncode == 0 and messages(done) == [], done.stderr
+    return read_json(folder, "run", "run.json"), read_arrays(folder, "run", "history.npz")
+
+
+def study(folder, *arguments):
+    return call(folder, PYTHON, STUDY, *arguments)
 
 
 def messages(process):
@@ -42,6 +55,56 @@ def messages(process):
     return [
         line for line in process.stderr.splitlines() if not line.startswith(("TCP python prompt on", "Running script"))
     ]
+
+
+def refusal(process):
+    """The one line with which a process ended for a wrong parameter."""
+    lines = messages(process)
+    assert process.returncode == 2 and len(lines) == 1, (process.returncode, lines)
+    return lines[0]
+
+
+def wait_for(condition, seconds=60):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.002)
+
+
+def process_writing(folder):
+    """The process that holds a run folder's lock."""
+    inode = str(os.stat(folder).st_ino)
+    with open("/proc/locks") as locks:
+        held = (lock.split() for lock in locks if "->" not in lock)
+        return next((int(lock[4]) for lock in held if lock[5].endswith(":" + inode)), None)
+
+
+def stop_midway(folder, arguments, number=signal.SIGKILL, script=COLLIDE, after=0.0):
+    """The process of a run, in the folder run, that was sent a signal `after` seconds after its first checkpoint, before its end."""
+    process = start(folder, "yade", "-n", "-x", script, *arguments, "out=run")
+    checkpoint = folder / "run" / "checkpoint" / "recorder.npz"
+    wait_for(lambda: checkpoint.exists() or process.poll() is not None)
+    time.sleep(after)
+    process.send_signal(number)
+    process.output, process.errors = process.communicate(timeout=60)
+    assert checkpoint.exists() and not (folder / "run" / "ended").exists(), process.errors
+    return process
+
+
+def arrays(folder):
+    """{file: {name: array}} of a run folder."""
+    names = ["history.npz"] + [os.path.join("states", name) for name in sorted(os.listdir(folder / "states"))]
+    return {name: read_arrays(folder, name) for name in names}
+
+
+def same_bits(one, other):
+    """Whether two run folders hold the same files with the same arrays."""
+    one, other = arrays(one), arrays(other)
+    return one.keys() == other.keys() and all(
+        one[name].keys() == other[name].keys()
+        and all(one[name][key].tobytes() == other[name][key].tobytes() for key in one[name])
+        for name in one
+    )
 
 
 def read_json(*path):

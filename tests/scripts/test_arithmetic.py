@@ -21,10 +21,8 @@ from yade_scripts.parameters.arithmetic import NotANumber, evaluate
         ("-2**2", -4),
         ("(1 + 2)*3/4 - 5", -2.75),
         ("2*pi*sqrt(2)/e", 2 * math.pi * math.sqrt(2) / math.e),
-        (
-            "exp(1) + log(2) + log10(3) + sin(4) + cos(5) + tan(6)",
-            math.e + math.log(2) + math.log10(3) + math.sin(4) + math.cos(5) + math.tan(6),
-        ),
+        ("exp(1) + log(2) + log10(3)", math.e + math.log(2) + math.log10(3)),
+        ("sin(4) + cos(5) + tan(6)", math.sin(4) + math.cos(5) + math.tan(6)),
         ("64.6*40*1.936532021439599e-10", 64.6 * 40 * 1.936532021439599e-10),
         ("2**60 + 1", 2**60 + 1),
         ("1_000", 1000),
@@ -35,66 +33,16 @@ def test_what_is_understood(text, value):
     assert found == value and type(found) is type(value)
 
 
-ATTACKS = [
-    '__import__("os").system("id")',
-    "().__class__.__base__.__subclasses__()",
-    "(1).__class__",
-    "pi.__class__",
-    "sqrt.__self__",
-    "open('/etc/passwd').read()",
-    "eval('1')",
-    "exec('x = 1')",
-    "lambda: 1",
-    "[x for x in (1, 2)]",
-    "(x := 3)",
-    "1 if 1 else 2",
-    "'a' * 9",
-    "b'a'",
-    "f'{1}'",
-    "1, 2",
-    "[1]",
-    "{1}",
-    "x",
-    "sqrt",
-    "sqrt(4, 2)",
-    "sqrt(x=4)",
-    "log(8, 2)",
-    "sqrt(*[4])",
-    "factorial(9)",
-    "1 < 2",
-    "1 and 2",
-    "not 1",
-    "~1",
-    "7 // 2",
-    "7 % 2",
-    "1 << 40",
-    "3 | 4",
-    "1 @ 2",
-    "True",
-    "None",
-    "...",
-    "1j",
-    "import os",
-    "x = 1",
-    "1; 2",
-    "",
-    "1 +",
-    "((",
-    "\x00",
-    "1/0",
-    "0**-1",
-    "(-8)**0.5",
-    "sqrt(-1)",
-    "log(0)",
-    "exp(1000)",
-    "1e999",
-    "1e308*10",
-    "nan",
-    "inf",
-]
+REFUSED = [
+    '__import__("os").system("id")', "().__class__.__base__.__subclasses__()", "(1).__class__", "pi.__class__", "sqrt.__self__",
+    "open('/etc/passwd').read()", "eval('1')", "exec('x = 1')", "lambda: 1", "[x for x in (1, 2)]", "(x := 3)", "1 if 1 else 2",
+    "'a' * 9", "b'a'", "f'{1}'", "1, 2", "[1]", "{1}", "x", "sqrt", "sqrt(4, 2)", "sqrt(x=4)", "log(8, 2)", "sqrt(*[4])", "factorial(9)",
+    "1 < 2", "1 and 2", "not 1", "~1", "7 // 2", "7 % 2", "1 << 40", "3 | 4", "1 @ 2", "True", "None", "...", "1j", "import os", "x = 1",
+    "1; 2", "", "1 +", "((", "\x00", "1/0", "0**-1", "(-8)**0.5", "sqrt(-1)", "log(0)", "exp(1000)", "1e999", "1e308*10", "nan", "inf",
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", ATTACKS)
+@pytest.mark.parametrize("text", REFUSED)
 def test_what_is_refused(text):
     with pytest.raises(NotANumber, match="^not a finite number$"):
         evaluate(text)
@@ -113,7 +61,6 @@ def test_what_is_refused(text):
         ("1+" * 99 + "1", "more than 50 operations within each other"),
         ("-" * 120 + "1", "more than 50 operations within each other"),
         ("(" * 99 + "1" + ")" * 99, None),
-        ("9**9**9**9**9**9**9**9", "an exponent above 1000"),
     ],
 )
 def test_limits_are_told_at_once(text, reason):

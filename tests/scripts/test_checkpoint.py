@@ -1,158 +1,136 @@
-"""A run that was killed or stopped resumes from its checkpoint as if nothing had happened."""
+"""A run that was killed or stopped resumes from its checkpoint as if nothing had happened, whatever its kind."""
 
 import os
 import shutil
 import signal
-import subprocess
-import time
 
 import numpy as np
 import pytest
-from running import COLLIDE, collide, collided, environment, messages, read_arrays, read_json
+from running import (
+    COLLIDE,
+    COMPRESS,
+    collide,
+    completed,
+    read_arrays,
+    read_json,
+    refusal,
+    same_bits,
+    stop_midway,
+)  # fmt: skip
+from shrinking_cell import SHRINK
 
 # A second or so of stepping, with a checkpoint after each few steps.
 RUN = ("radius=10", "velocity=10", "duration=400e-9", "threads=1")
-OFTEN = "checkpointInterval=0.1"
-
-
-def arrays(folder):
-    """{file: {name: array}} of a run folder."""
-    names = ["history.npz"] + [os.path.join("states", name) for name in sorted(os.listdir(folder / "states"))]
-    return {name: read_arrays(folder, name) for name in names}
-
-
-def same_bits(one, other):
-    return one.keys() == other.keys() and all(
-        one[name].keys() == other[name].keys()
-        and all(one[name][key].tobytes() == other[name][key].tobytes() for key in one[name])
-        for name in one
-    )
-
-
-def stop_midway(folder, arguments, signal_number):
-    """Start a run, stop it by a signal once a checkpoint of some way into the run is there; the process."""
-    process = subprocess.Popen(
-        ["yade", "-n", "-x", COLLIDE, *arguments],
-        cwd=folder,
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=environment(),
-    )
-    checkpoint = folder / "run" / "checkpoint" / "recorder.npz"
-    deadline = time.monotonic() + 60
-    while not checkpoint.exists() and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.01)
-    process.send_signal(signal_number)
-    process.communicate(timeout=60)
-    assert checkpoint.exists() and not (folder / "run" / "ended").exists()
-    return process
+OFTEN = "checkpointInterval=0.05"
+KINDS = {
+    "necks": (COLLIDE, "packing=bcca grains=512 planar=1 neck=0.3 velocity=60 duration=300e-9 threads=1", 0.0),
+    "shorter steps": (COLLIDE, "radius=8 velocity=30 duration=400e-9 threads=1 stepFraction=0.2 impactStepFraction=0.06", 0.0),
+    # one that is compressed or stretched, with an end that follows from the history
+    "compression": (COMPRESS, "grains=64 strainRate=2e-5 threads=1 finalFilling=0.2 stretch=x", 0.5),
+    "a user's own": (SHRINK, "duration=200e-9 rate=3e-5 threads=1", 0.0),
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory):
-    """The arrays of the run without a stop."""
+    """The folder of the run without a stop."""
     folder = tmp_path_factory.mktemp("straight")
-    collided(folder, *RUN, "out=run")
+    completed(folder, *RUN)
     assert not (folder / "run" / "checkpoint").exists()
-    return arrays(folder / "run")
+    return folder / "run"
 
 
 @pytest.fixture(scope="module")
 def killed(tmp_path_factory):
     """A folder whose run/ was killed by SIGKILL."""
     folder = tmp_path_factory.mktemp("killed")
-    assert stop_midway(folder, [*RUN, OFTEN, "out=run"], signal.SIGKILL).returncode == -signal.SIGKILL
+    assert stop_midway(folder, [*RUN, OFTEN]).returncode == -signal.SIGKILL
     return folder
 
 
 def test_a_killed_run_resumes_to_the_same_bits(straight, killed, tmp_path):
+    """What a writer that was killed has left is removed."""
     run = shutil.copytree(killed / "run", tmp_path / "run")
     saved = read_arrays(run, "checkpoint", "recorder.npz")["rows"]
-    assert 1 < len(saved) < len(straight["history.npz"]["time"])
+    assert 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
     assert read_json(run, "run.json")["outcome"] == "running"
-    collided(tmp_path, *RUN, "out=run", "resume=1")
-    assert same_bits(arrays(run), straight)
+    left = [run / ".history.npz.x.unfinished", run / "states" / ".000003.npz.x.unfinished"]
+    for path in left:
+        path.write_bytes(b"half")
+    completed(tmp_path, *RUN, "resume=1")
+    assert same_bits(run, straight) and not any(path.exists() for path in left)
     assert sorted(os.listdir(run)) == ["ended", "history.npz", "run.json", "states"]
     assert read_json(run, "run.json")["outcome"] == "completed"
 
 
-def test_what_a_killed_writer_left_is_removed(killed, tmp_path):
-    run = shutil.copytree(killed / "run", tmp_path / "run")
-    left = [run / ".history.npz.x.unfinished", run / "states" / ".000003.npz.x.unfinished"]
-    for path in left:
-        path.write_bytes(b"half")
-    collided(tmp_path, *RUN, "out=run", "resume=1")
-    assert not any(path.exists() for path in left)
-
-
 def test_a_stopped_run_resumes_to_the_same_bits(straight, tmp_path):
     """SIGTERM records one state more, where it stopped; that one is removed when the run resumes."""
-    assert stop_midway(tmp_path, [*RUN, OFTEN, "out=run"], signal.SIGTERM).returncode == 143
+    assert stop_midway(tmp_path, [*RUN, OFTEN], signal.SIGTERM).returncode == 143
     before = read_json(tmp_path, "run", "run.json")
     assert before["outcome"] == "interrupted"
-    collided(tmp_path, *RUN, "out=run", "resume=1")
-    assert same_bits(arrays(tmp_path / "run"), straight)
+    completed(tmp_path, *RUN, "resume=1")
+    assert same_bits(tmp_path / "run", straight)
     assert read_json(tmp_path, "run", "run.json")["wallTime"] > before["wallTime"]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
+    script, arguments, after = KINDS[name]
+    arguments = arguments.split()
+    (tmp_path / "straight").mkdir()
+    completed(tmp_path / "straight", *arguments, script=script)
+    number = signal.SIGTERM if name == "shorter steps" else signal.SIGKILL
+    stop_midway(tmp_path, [*arguments, OFTEN], number, script, after)
+    completed(tmp_path, *arguments, "resume=1", script=script)
+    assert same_bits(tmp_path / "run", tmp_path / "straight" / "run")
+
+
+def test_yades_own_loop_resumes_to_rounding(tmp_path):
+    """Forces may be added in another order after loading; early in a run that is all the difference."""
+    arguments = ("radius=5", "velocity=30", "duration=12e-9", "engine=functors")
+    (tmp_path / "straight").mkdir()
+    _, one = completed(tmp_path / "straight", *arguments)
+    stop_midway(tmp_path, [*arguments, OFTEN])
+    _, other = completed(tmp_path, *arguments, "resume=1")
+    assert np.array_equal(one["contacts"], other["contacts"])
+    for name in ("kinetic", "normal", "connection", "d", "v"):
+        assert np.allclose(one[name], other[name], rtol=0, atol=1e-6 * np.abs(one[name]).max()), name
 
 
 def test_a_checkpoint_of_other_parameters_is_refused(killed):
     before = sorted(os.listdir(killed / "run"))
-    refused = collide(killed, *RUN, "out=run", "resume=1", "seed=2")
-    assert refused.returncode == 2
-    assert messages(refused) == [
-        "collide.py: run/checkpoint: of a run with seed = 1, not 2; must be the same, or removed to start the run again"
-    ]
+    line = refusal(collide(killed, *RUN, "out=run", "resume=1", "seed=2"))
+    assert line.startswith("collide.py: run/checkpoint: of a run with seed = 1, not 2; must be the same")
     assert sorted(os.listdir(killed / "run")) == before
 
 
 @pytest.mark.parametrize(
     "damage, message",
     [
-        (lambda about: about.replace('"commit": "', '"commit": "0'), "written by the plugin of commit 0"),
-        (lambda about: about.replace('"yade": "', '"yade": "1'), "written by YADE 1"),
-        (lambda about: about.replace("scene-", "nothing-"), "not a checkpoint ([Errno 2]"),
-        (lambda about: about[:20], "not a checkpoint ("),
-        (lambda about: about.replace('"drag", ', ""), "of a history with other columns"),
-        (
-            lambda about: about.replace('"kind": "collision"', '"kind": "toy"'),
-            "of a run with kind = toy, not collision",
-        ),
+        (('"commit": "', '"commit": "0'), "written by the plugin of commit 0"),
+        (('"yade": "', '"yade": "1'), "written by YADE 1"),
+        (("scene-", "nothing-"), "not a checkpoint ([Errno 2]"),
+        (('"drag", ', ""), "of a history with other columns"),
+        (('"kind": "collision"', '"kind": "toy"'), "of a run with kind = toy, not collision"),
+        (None, "not a checkpoint ("),
     ],
-    ids=["commit", "yade", "no scene", "cut off", "columns", "kind"],
+    ids=["commit", "yade", "no scene", "columns", "kind", "cut off"],
 )
 def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, damage, message):
     shutil.copytree(killed / "run", tmp_path / "run")
     path = tmp_path / "run" / "checkpoint" / "recorder.npz"
     held = read_arrays(path)
-    np.savez(path, rows=held["rows"], about=damage(str(held["about"])))
-    refused = collide(tmp_path, *RUN, "out=run", "resume=1")
-    assert refused.returncode == 2
-    lines = messages(refused)
-    assert len(lines) == 1 and lines[0].startswith(f"collide.py: run/checkpoint: {message}") and "must be " in lines[0]
+    about = str(held["about"])
+    np.savez(path, rows=held["rows"], about=about.replace(*damage) if damage else about[:20])
+    line = refusal(collide(tmp_path, *RUN, "out=run", "resume=1"))
+    assert line.startswith(f"collide.py: run/checkpoint: {message}") and "must be " in line
 
 
-def test_resume_without_a_checkpoint_starts_from_the_beginning(straight, tmp_path):
-    done = collide(tmp_path, *RUN, "out=run", "resume=1")
-    assert done.returncode == 0 and same_bits(arrays(tmp_path / "run"), straight)
-
-
-def test_without_resume_a_checkpoint_is_thrown_away(straight, killed, tmp_path):
-    shutil.copytree(killed / "run", tmp_path / "run")
-    done = collide(tmp_path, *RUN, "out=run")
-    assert done.returncode == 0 and same_bits(arrays(tmp_path / "run"), straight)
-    assert not (tmp_path / "run" / "checkpoint").exists()
-
-
-def test_yades_own_loop_resumes_to_rounding(tmp_path):
-    """Forces may be added in another order after loading; early in a run that is all the difference."""
-    arguments = ("radius=5", "velocity=30", "duration=12e-9", "engine=functors")
-    assert collide(tmp_path, *arguments, "out=straight").returncode == 0
-    stop_midway(tmp_path, [*arguments, "checkpointInterval=0.05", "out=run"], signal.SIGKILL)
-    collided(tmp_path, *arguments, "out=run", "resume=1")
-    one, other = arrays(tmp_path / "straight"), arrays(tmp_path / "run")
-    assert one.keys() == other.keys()
-    assert np.array_equal(one["history.npz"]["contacts"], other["history.npz"]["contacts"])
-    for name in ("kinetic", "normal", "connection", "d", "v"):
-        scale = np.abs(one["history.npz"][name]).max()
-        assert np.allclose(one["history.npz"][name], other["history.npz"][name], rtol=0, atol=1e-6 * scale), name
+@pytest.mark.parametrize(
+    "checkpoint", [False, True], ids=["resume without a checkpoint", "a checkpoint without resume"]
+)
+def test_a_run_starts_from_the_beginning(straight, killed, tmp_path, checkpoint):
+    if checkpoint:
+        shutil.copytree(killed / "run", tmp_path / "run")
+    completed(tmp_path, *RUN, *([] if checkpoint else ["resume=1"]))
+    assert same_bits(tmp_path / "run", straight) and not (tmp_path / "run" / "checkpoint").exists()

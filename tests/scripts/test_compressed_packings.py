@@ -1,10 +1,9 @@
-"""Spheres cut out of compressed cells, at the filling that is asked for; the tables of their study."""
+"""Spheres cut out of compressed cells, at the filling that is asked for."""
 
 import os
 
 import numpy as np
 import pytest
-from running import TOP
 
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
@@ -14,13 +13,6 @@ from yade_scripts.studies import compressed
 
 R = MATERIALS["ice"].grainRadius
 OVERLAP = equilibrium_overlap(MATERIALS["ice"])
-
-
-@pytest.mark.parametrize("name", ["compressed-cells.table", "compressed-desk.table"])
-def test_the_table_is_what_the_script_writes(tmp_path, name):
-    compressed.write_tables(tmp_path)
-    with open(os.path.join(TOP, "yade_scripts", "studies", name)) as kept:
-        assert (tmp_path / name).read_text() == kept.read()
 
 
 def diluted_crystal(filling):

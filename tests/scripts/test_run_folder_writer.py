@@ -11,7 +11,6 @@ import time
 import numpy as np
 import pytest
 
-from analysis.measures.compression import compression_and_velocity
 from analysis.runs.running import being_written, locked_inodes
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.folder import RunFolder, RunFolderError
@@ -56,6 +55,13 @@ def test_an_ended_run_is_replaced_only_when_asked(tmp_path):
     assert sorted(os.listdir(path)) == ["run.json", "states"] and os.listdir(path / "states") == []
 
 
+def test_a_run_that_has_not_ended_is_replaced(tmp_path):
+    path = ended_run(tmp_path / "run")
+    os.unlink(path / "ended")
+    RunFolder(str(path))
+    assert sorted(os.listdir(path)) == ["run.json", "states"]
+
+
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_a_run_that_ends_while_its_folder_is_opened_is_not_erased(tmp_path, monkeypatch, overwrite):
     """The other run comes to its end, and gives up its lock, in the moment before this one takes it."""
@@ -98,18 +104,6 @@ def test_a_folder_that_a_killed_run_began_is_used(tmp_path, left):
     assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"] and not os.listdir(
         tmp_path / "run" / "states"
     )
-
-
-def test_a_name_that_is_too_long_is_one_line(tmp_path):
-    with pytest.raises(RunFolderError, match="File name too long; must be a folder that can be written"):
-        RunFolder(str(tmp_path / ("x" * 256)))
-
-
-def test_a_run_that_has_not_ended_is_replaced(tmp_path):
-    path = ended_run(tmp_path / "run")
-    os.unlink(path / "ended")
-    RunFolder(str(path))
-    assert sorted(os.listdir(path)) == ["run.json", "states"]
 
 
 def test_a_folder_in_use_is_refused_until_the_run_is_gone(tmp_path):
@@ -237,9 +231,10 @@ def test_what_others_put_into_a_run_folder_stays(tmp_path):
     assert set(contents(path)) == others | {"run.json"}
 
 
-def test_an_unwritable_folder():
-    with pytest.raises(RunFolderError, match="out = /proc/run: .*; must be a folder that can be written"):
-        RunFolder("/proc/run")
+@pytest.mark.parametrize("path, words", [("/proc/run", ".*"), ("x" * 256, "File name too long")])
+def test_an_unwritable_folder_is_one_line(path, words):
+    with pytest.raises(RunFolderError, match=f"out = {path}: {words}; must be a folder that can be written"):
+        RunFolder(path)
 
 
 @pytest.mark.parametrize(
@@ -259,13 +254,6 @@ def test_a_run_of_very_many_steps_has_a_history_that_fits_in_memory():
     schedule = Schedule.of(1.0, 1e-9)
     samples = schedule.steps // schedule.interval
     assert 1e9 <= schedule.steps < 1e9 + schedule.interval and 0.9 * MOST_SAMPLES < samples <= MOST_SAMPLES
-
-
-def test_compression_and_velocity():
-    """A24 eqs 10-13 by hand: means at +/-3 and +4/-2."""
-    x, v = np.array([2.0, 4.0, -3.0]), np.array([-1.0, -3.0, 2.0])
-    assert compression_and_velocity(x, v, 5.0) == (10 - 6, 4)
-    assert np.isnan(compression_and_velocity(x[:2], v[:2], 5.0)).all()
 
 
 class Terminal(io.StringIO):

@@ -1,26 +1,33 @@
 """collide.py with necks and in a plane: the columns neck and planar, packing bcca, contact_bonded, the channel bondBreaking."""
 
 import os
-import subprocess
-import time
 
 import numpy as np
 import pytest
-from running import COLLIDE, collide, environment, messages, read_arrays, read_json
+from running import completed, read_arrays, read_json
 
 from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS, CHANNELS
 from yade_scripts import stability
+from yade_scripts.experiments.collision import KIND
+from yade_scripts.materials import pair_constants
 
-PLANAR = ("radius=6", "filling=0.7", "planar=1", "velocity=60", "duration=6e-9", "seed=2", "stepFraction=0.05")
-LONG = ("packing=bcca", "grains=512", "planar=1", "neck=0.3", "velocity=60", "duration=300e-9", "threads=1")
+PLANAR = (
+    "radius=6",
+    "filling=0.7",
+    "planar=1",
+    "velocity=60",
+    "duration=6e-9",
+    "seed=2",
+    "stepFraction=0.05",
+    "neck=0.5",
+)
 
 
 @pytest.fixture(scope="module", params=["fused", "functors"])
 def run(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
-    done = collide(folder, *PLANAR, "neck=0.5", f"engine={request.param}", "out=run")
-    assert done.returncode == 0 and messages(done) == [], done.stderr
+    completed(folder, *PLANAR, f"engine={request.param}")
     return folder / "run"
 
 
@@ -55,8 +62,7 @@ def test_broken_bonds_by_mode_are_in_history_and_states(run):
 
 
 def test_runs_without_bonds_have_no_columns_for_them(tmp_path):
-    done = collide(tmp_path, "radius=3", "velocity=10", "duration=1e-9", "out=run")
-    assert done.returncode == 0, done.stderr
+    completed(tmp_path, "radius=3", "velocity=10", "duration=1e-9")
     read = open_run(tmp_path / "run")
     assert not set(BROKEN_BONDS) & set(read.history) and read.last.contact_neck is None is read.last.bonds_broken
 
@@ -79,84 +85,27 @@ def test_ledger_has_bond_breaking_and_closes(run):
 
 def test_run_json_tells_of_the_bonds(run):
     about = read_json(run, "run.json")
-    derived = about["derived"]
-    assert about["parameters"]["neck"] == 0.5 and about["parameters"]["planar"] == 1
-    assert derived["neckRadius"] == pytest.approx(0.5e-7) and derived["shrunkRadius"] == pytest.approx(
-        0.9806e-7, rel=1e-4
-    )
+    parameters, derived = about["parameters"], about["derived"]
+    assert parameters["neck"] == 0.5 and parameters["planar"] == 1
+    assert derived["neckRadius"] == pytest.approx(0.5e-7)
+    assert derived["shrunkRadius"] == pytest.approx(0.9806e-7, rel=1e-4)
     assert derived["breakingEnergy"] == pytest.approx(np.pi * 0.25e-14 * 0.1)
-    assert derived["aggregateRadius"] == pytest.approx(about["parameters"]["radius"] * 1e-7)
+    assert derived["aggregateRadius"] == pytest.approx(parameters["radius"] * 1e-7)
 
 
 def test_both_engines_tell_the_same_story(tmp_path):
-    """Until rounding has grown: the energies after 10 ns, when the aggregates have met."""
+    """Until rounding has grown: the energies after 7 ns, when the aggregates have met."""
     ends = []
     for engine in ("fused", "functors"):
-        done = collide(
-            tmp_path, "radius=4", "velocity=40", "neck=0.4", "duration=7e-9", f"engine={engine}", f"out={engine}"
-        )
-        assert done.returncode == 0, done.stderr
-        history = read_arrays(tmp_path / engine, "history.npz")
+        (tmp_path / engine).mkdir()
+        scene = ("radius=4", "velocity=40", "neck=0.4", "duration=7e-9", f"engine={engine}")
+        _, history = completed(tmp_path / engine, *scene)
         ends.append([history[channel][-1] / history["kinetic"][0] for channel in CHANNELS])
     assert ends[0] == pytest.approx(ends[1], abs=1e-9) and ends[0][CHANNELS.index("bondBreaking")] > 0
 
 
-def test_a_killed_sintered_run_resumes_to_the_same_bits(tmp_path):
-    done = collide(tmp_path, *LONG, "out=straight")
-    assert done.returncode == 0, done.stderr
-    command = ["yade", "-n", "-x", COLLIDE, *LONG, "checkpointInterval=0.05", "out=killed"]
-    process = subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment()
-    )
-    saved, deadline = tmp_path / "killed" / "checkpoint" / "recorder.npz", time.monotonic() + 60
-    while not saved.exists() and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.005)
-    process.kill()
-    process.wait()
-    assert saved.exists() and not (tmp_path / "killed" / "ended").exists()
-    assert collide(tmp_path, *LONG, "out=killed", "resume=1").returncode == 0
-    straight, again = (read_arrays(tmp_path / name, "history.npz") for name in ("straight", "killed"))
-    assert all(straight[name].tobytes() == again[name].tobytes() for name in straight)
-    assert straight["bondBreaking"][-1] > 0
-
-
-@pytest.mark.parametrize(
-    "wrong, message",
-    [
-        (
-            ("neck=0.123",),
-            "neck = 0.123: no thicker than a contact that is not sintered; must be 0 (not sintered), or above 0.1237 and at most 0.7",
-        ),
-        (("neck=0.8",), "neck = 0.8: must be 0, or above that of a contact that is not sintered"),
-        (
-            ("neck=0.2", "stepFraction=0.2"),
-            "stepFraction = 0.2: unstable at this neck, filling and drag; must be at most 0.119 [t0]",
-        ),
-        (("packing=bcca", "filling=0.3"), "filling = 0.3: given with packing = bcca; must be grains only"),
-        (("planar=1", "filling=0.95"), "filling = 0.95: more than the lattice holds; must be at most 0.91"),
-    ],
-)
-def test_wrong_necks_are_refused_in_one_line(tmp_path, wrong, message):
-    done = collide(tmp_path, *wrong)
-    assert done.returncode == 2 and len(messages(done)) == 1 and message in messages(done)[0]
-    assert not os.path.exists(tmp_path / "runs")
-
-
 def test_bonds_lower_the_stable_step():
     """Below the steps at which bonds broke without cause, see step_limit; and no lower than the default step for any neck."""
-    ice = dict(
-        timeUnit=1.936e-10,
-        dragPerContactRadius=0.0,
-        linearDrag=0.0,
-        reducedMass=2.0944e-18,
-        reducedRadius=5e-8,
-        equilibriumContactRadius=12.3712e-9,
-        equilibriumOverlap=1.02031e-9,
-        pullOffForce=47.1239e-9,
-        slidingStiffness=79.176,
-    )
-    for stiffness, blew_up in ((1803, 0.15), (1374, 0.17), (1197, 0.18)):
-        limit = stability.step_limit(
-            dict(ice, bond=dict(normalStiffness=stiffness, slidingStiffness=0.4 * stiffness)), 0.4
-        )
+    for neck, blew_up in ((0.2, 0.15), (0.5, 0.17), (0.7, 0.18)):
+        limit = stability.step_limit(pair_constants(KIND.parse({"neck": neck}), neck=neck), 0.4)
         assert 0.1 < limit < 0.9 * blew_up

@@ -4,8 +4,7 @@ import os
 import signal
 
 import pytest
-from running import PYTHON, TOP
-from test_study import study
+from running import PYTHON, TOP, study
 
 from analysis.runs import running
 from yade_scripts.experiments.collision import KIND

@@ -2,13 +2,12 @@
 
 import os
 import re
-import signal
-import subprocess
+import shutil
 import sys
 
 import numpy as np
 import pytest
-from running import COLLIDE, PYTHON, TINY, TOP, collide, environment, messages, read_arrays, read_json
+from running import TINY, TOP, call, collide, completed, messages, read_json, same_bits, stop_midway, study
 from scipy.stats import binom
 
 from yade_scripts import stability, step_choice
@@ -18,7 +17,6 @@ from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run.agreement import difference
 
-STUDY = os.path.join(TOP, "yade_scripts", "study.py")
 BENCHMARKS = os.path.join(TOP, "tests", "benchmarks")
 sys.path.insert(0, BENCHMARKS)
 from errors import of_scripts
@@ -28,7 +26,7 @@ AUTO = {"stepFraction": "auto"}
 parse = KIND.parse
 
 
-def completed(**given):
+def chosen(**given):
     """(parameters, constants, limit) of a scene with stepFraction=auto."""
     kind = compression if "strainRate" in given else collision
     parameters = kind.KIND.parse({**AUTO, **given})
@@ -74,7 +72,7 @@ def test_auto_and_its_tolerance():
 def test_the_step_is_the_longest_of_two_digits_that_keeps_to_the_tolerance(scene):
     steps = []
     for tolerance in (1e-5, 1e-4, 1e-3, 1e-2):
-        found, constants, limit = completed(tolerance=tolerance, **scene)
+        found, constants, limit = chosen(tolerance=tolerance, **scene)
         steps.append(found.stepFraction)
         assert 0.01 <= steps[-1] <= limit and expected_error(found, constants) <= tolerance
         if steps[-1] < limit:
@@ -85,13 +83,13 @@ def test_the_step_is_the_longest_of_two_digits_that_keeps_to_the_tolerance(scene
 
 def test_drag_and_dense_packings_limit_it():
     for scene in ({"viscoelasticTime": 6e-12}, {"filling": 0.7}):
-        found, _, limit = completed(tolerance=1e-2, **scene)
+        found, _, limit = chosen(tolerance=1e-2, **scene)
         assert found.stepFraction == limit < 0.4
 
 
 def test_a_tolerance_that_no_step_reaches():
     with pytest.raises(ParameterError) as error:
-        completed(tolerance=1e-7, velocity=0.5)
+        chosen(tolerance=1e-7, velocity=0.5)
     text = str(error.value)
     least = float(
         re.fullmatch(
@@ -100,7 +98,7 @@ def test_a_tolerance_that_no_step_reaches():
             text,
         ).group(1)
     )
-    assert 0.01 <= completed(tolerance=least, velocity=0.5)[0].stepFraction < 0.011
+    assert 0.01 <= chosen(tolerance=least, velocity=0.5)[0].stepFraction < 0.011
 
 
 @pytest.mark.parametrize(
@@ -122,14 +120,15 @@ def test_a_tolerance_that_no_step_reaches():
     ],
 )
 def test_it_says_why(scene, part):
-    found, constants, _ = completed(**scene)
+    found, constants, _ = chosen(**scene)
     text = collision.reason_of_step(found, constants)
     assert text.startswith(f"{found.stepFraction:.3g} t0 for a ledger error of at most ") and part in text
 
 
-def test_constants_for_estimates_are_the_plugins(yade):
-    """What study.py works a row's step out with, without the plugin."""
-    cases = [
+@pytest.mark.in_yade
+@pytest.mark.parametrize(
+    "case",
+    [
         {"material": "ice"},
         {"viscoelasticTime": 4e-12, "poisson": 0.3, "grainRadius": 3e-7},
         {"material": "silicate", "viscoelasticTime": 1e-11, "young": 30e9, "surfaceEnergy": 0.1},
@@ -137,22 +136,19 @@ def test_constants_for_estimates_are_the_plugins(yade):
         {"neck": 0.3},
         {"neck": 0.5, "slidingStiffnessFactor": 2},
         {"neck": 0.65, "material": "silicate"},
-    ]
-    found = yade(
-        """
-from yade_scripts.experiments.collision import KIND
-from yade_scripts.run import scene
-given = [KIND.parse(case) for case in parameters["cases"]]
-result["found"] = [scene.pair_constants(p, p.neck, linearDamping=0.02) for p in given]
-""",
-        {"cases": cases},
-    )
-    for case, plugins in zip(cases, found["found"], strict=True):
-        parameters = parse(case)
-        ours = {"bond": {}, **pair_constants(parameters, neck=parameters.neck, linearDamping=0.02)}
-        bond, bonds_plugin = ours.pop("bond"), plugins["bond"] or {}
-        assert {key: plugins[key] for key in ours} == pytest.approx(ours, rel=1e-12)
-        assert {key: bonds_plugin[key] for key in bond} == pytest.approx(bond, rel=1e-12)
+    ],
+    ids=str,
+)
+def test_constants_for_estimates_are_the_plugins(case):
+    """What study.py works a row's step out with, without the plugin."""
+    from yade_scripts.run import scene
+
+    parameters = parse(case)
+    plugins = scene.pair_constants(parameters, parameters.neck, linearDamping=0.02)
+    ours = {"bond": {}, **pair_constants(parameters, neck=parameters.neck, linearDamping=0.02)}
+    bond = ours.pop("bond")
+    assert {key: plugins[key] for key in ours} == pytest.approx(ours, rel=1e-12)
+    assert {key: plugins["bond"][key] for key in bond} == pytest.approx(bond, rel=1e-12)
 
 
 def below(table, scene, filling=None):
@@ -201,25 +197,13 @@ def test_so_are_those_of_compressions():
 # Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds.
 # (radius, velocity, filling, T_vis, material, tolerance)
 OTHER_SCENES = [
-    (7, 0.8, 0.45, 0, "ice", 1e-3),
-    (9, 1.5, 0.35, 0, "ice", 1e-4),
-    (8, 2.3, 0.5, 2e-12, "ice", 1e-4),
-    (12, 2.3, 0.3, 0, "ice", 1e-4),
-    (8, 4.2, 0.4, 0, "ice", 3e-5),
-    (11, 4.2, 0.55, 4e-12, "ice", 1e-4),
-    (6, 6.5, 0.38, 0, "ice", 3e-4),
-    (9, 6.5, 0.28, 1e-12, "ice", 1e-4),
-    (13, 8.5, 0.42, 0, "ice", 1e-4),
-    (7, 13, 0.6, 0, "ice", 1e-4),
-    (9, 13, 0.33, 5e-12, "ice", 3e-5),
-    (6, 21, 0.5, 0, "ice", 1e-3),
-    (10, 21, 0.4, 0, "ice", 1e-4),
-    (8, 45, 0.35, 0, "ice", 1e-4),
-    (7, 45, 0.45, 3e-12, "ice", 1e-3),
-    (6, 2, 0.4, 0, "silicate", 1e-4),
-    (8, 0.7, 0.5, 0, "silicate", 1e-3),
-    (6, 17, 0.35, 0, "silicate", 1e-3),
-]
+    (7, 0.8, 0.45, 0, "ice", 1e-3), (9, 1.5, 0.35, 0, "ice", 1e-4), (8, 2.3, 0.5, 2e-12, "ice", 1e-4),
+    (12, 2.3, 0.3, 0, "ice", 1e-4), (8, 4.2, 0.4, 0, "ice", 3e-5), (11, 4.2, 0.55, 4e-12, "ice", 1e-4),
+    (6, 6.5, 0.38, 0, "ice", 3e-4), (9, 6.5, 0.28, 1e-12, "ice", 1e-4), (13, 8.5, 0.42, 0, "ice", 1e-4),
+    (7, 13, 0.6, 0, "ice", 1e-4), (9, 13, 0.33, 5e-12, "ice", 3e-5), (6, 21, 0.5, 0, "ice", 1e-3),
+    (10, 21, 0.4, 0, "ice", 1e-4), (8, 45, 0.35, 0, "ice", 1e-4), (7, 45, 0.45, 3e-12, "ice", 1e-3),
+    (6, 2, 0.4, 0, "silicate", 1e-4), (8, 0.7, 0.5, 0, "silicate", 1e-3), (6, 17, 0.35, 0, "silicate", 1e-3),
+]  # fmt: skip
 
 
 # Of every other kind, likewise.
@@ -307,25 +291,18 @@ def test_a_run_says_and_keeps_what_it_chose(run):
     assert derived["stepChoice"].startswith(
         f'{values["stepFraction"]:g} t0 for a ledger error of at most 0.0003 of K(0)'
     )
-    assert values["stepFraction"] == completed(tolerance=3e-4, radius=4, velocity=30)[0].stepFraction
-
-
-def test_an_impossible_tolerance_is_refused_before_anything_is_run(tmp_path):
-    refused = collide(tmp_path, "radius=4", "velocity=1", "stepFraction=auto", "tolerance=1e-7", "out=run")
-    assert refused.returncode == 2 and len(messages(refused)) == 1
-    assert messages(refused)[0].startswith("collide.py: tolerance = 1e-07: would take a step of ")
-    assert os.listdir(tmp_path) == []
+    assert values["stepFraction"] == chosen(tolerance=3e-4, radius=4, velocity=30)[0].stepFraction
 
 
 def test_agreement_with_a_run_that_chose_its_step(run):
     about = read_json(run[0], "run.json")
-    chosen = about["parameters"]["stepFraction"]
+    step = about["parameters"]["stepFraction"]
     tiny = dict(argument.split("=") for argument in TINY)
     row = parse({**tiny, **AUTO, "tolerance": 3e-4})
     assert difference(KIND, row, about) is None
-    assert difference(KIND, parse({**tiny, "stepFraction": chosen}), about) is None
+    assert difference(KIND, parse({**tiny, "stepFraction": step}), about) is None
     assert difference(KIND, parse({**tiny, **AUTO}), about) == "tolerance = 0.0003, not 0.0001"
-    assert difference(KIND, parse(tiny), about) == f"stepFraction = {chosen:g}, not 0.1"
+    assert difference(KIND, parse(tiny), about) == f"stepFraction = {step:g}, not 0.1"
     fixed = {**about, "parameters": {**about["parameters"], "stepFraction": 0.1, "tolerance": None}}
     assert difference(KIND, row, fixed) == "stepFraction = 0.1, not auto"
     del fixed["parameters"]["tolerance"]  # written before there was a choice
@@ -335,47 +312,22 @@ def test_agreement_with_a_run_that_chose_its_step(run):
 
 def test_estimates_count_the_steps_that_will_be_chosen(run):
     tiny = dict(argument.split("=") for argument in TINY)
-    chosen = read_json(run[0], "run.json")["parameters"]["stepFraction"]
-    row, same = parse({**tiny, **AUTO, "tolerance": 3e-4}), parse({**tiny, "stepFraction": chosen})
+    step = read_json(run[0], "run.json")["parameters"]["stepFraction"]
+    row, same = parse({**tiny, **AUTO, "tolerance": 3e-4}), parse({**tiny, "stepFraction": step})
     assert KIND.estimate(row) == KIND.estimate(same) != KIND.estimate(parse(tiny))
 
 
 def test_a_study_resumes_from_checkpoints_of_rows_that_choose(tmp_path):
     """A row is killed, resumes in the next call to the same bits as a straight run, and is done in the one after."""
     scene = ["radius=10", "velocity=10", "duration=300e-9", "stepFraction=auto"]
+    assert "step: 0." in stop_midway(tmp_path, [*scene, "checkpointInterval=0.1"]).output
     (tmp_path / "auto.table").write_text(
-        "description radius velocity duration stepFraction checkpointInterval out\n"
-        "killed 10 10 300e-9 auto 0.1 runs/killed\n"
+        "description radius velocity duration stepFraction checkpointInterval out\nkilled 10 10 300e-9 auto 0.1 killed\n"
     )
-    process = subprocess.Popen(
-        ["yade", "-n", "-x", COLLIDE, *scene, "checkpointInterval=0.1", "out=runs/killed"],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-        env=environment(),
-    )
-    assert any(line.startswith("step: 0.") for line in process.stdout)  # said before the first step
-    while not (tmp_path / "runs" / "killed" / "checkpoint" / "recorder.npz").exists():
-        assert process.poll() is None
-    process.send_signal(signal.SIGKILL)
-    process.communicate()
-
-    def study(*arguments):
-        return subprocess.run(
-            [PYTHON, STUDY, "auto.table", *arguments],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            env=environment(),
-            timeout=120,
-        )
-
-    assert "checkpoint at " in study("--status").stdout
-    resumed = study("-j", "1")
+    shutil.move(tmp_path / "run", tmp_path / "killed")
+    assert "checkpoint at " in study(tmp_path, "auto.table", "--status").stdout
+    resumed = study(tmp_path, "auto.table", "-j", "1")
     assert resumed.returncode == 0 and "1 to run, 1 of them from checkpoints" in resumed.stdout, resumed.stderr
-    straight = collide(tmp_path, *scene, "out=straight")
-    assert straight.returncode == 0
-    one, other = (read_arrays(tmp_path, *folder, "history.npz") for folder in (("runs", "killed"), ("straight",)))
-    assert all(np.array_equal(one[name], other[name], equal_nan=True) for name in other)
-    assert study().stdout == "auto: 1 rows, 1 done, 0 failed\n"
+    completed(tmp_path, *scene)
+    assert same_bits(tmp_path / "killed", tmp_path / "run")
+    assert study(tmp_path, "auto.table").stdout == "auto: 1 rows, 1 done, 0 failed\n"

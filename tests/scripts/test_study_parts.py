@@ -2,10 +2,8 @@
 
 import io
 import os
-import sys
 
 import pytest
-from running import TOP
 
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND
@@ -13,34 +11,13 @@ from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constant
 from yade_scripts.run import agreement, table
 from yade_scripts.runner import cost, rows, view
 from yade_scripts.runner.screen import Screen
-from yade_scripts.studies import elastoplastic, table_script, viscous
 
-STUDIES = os.path.join(TOP, "yade_scripts", "studies")
-TABLES = sorted(name for name in os.listdir(STUDIES) if name.endswith(".table"))
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
 parse = KIND.parse
 
 
 def row(**cells):
     return rows.StudyRow("row", cells, "collide.py", KIND, parse(cells))
-
-
-def test_tables_are_read_as_yade_reads_them(yade, tmp_path):
-    (tmp_path / "marked.table").write_text(
-        "# a comment\n\nradius! velocity material !THREADS # more\n" "4 10 'ice' 2\n\n= = * 1 # same\n5 = 'ice' =\n"
-    )
-    paths = [str(tmp_path / "marked.table")] + [os.path.join(STUDIES, name) for name in TABLES]
-    found = yade(
-        """
-from yade.utils import TableParamReader
-result.update({path: {str(line): row for line, row in TableParamReader(path).paramDict().items()} for path in parameters["paths"]})
-""",
-        {"paths": paths},
-    )
-    for path in paths:
-        ours = {str(row.line): {"description": row.description, **row.cells} for row in table.read(path)}
-        theirs = {line: {name: cell for name, cell in row.items() if cell != "*"} for line, row in found[path].items()}
-        assert ours == theirs, path
 
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
@@ -99,89 +76,6 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
     os.unlink(tmp_path / "run" / "run.json")
     (tmp_path / "run" / "run.json").write_text('{"outcome": "running", "derived": {"steps": 1, "timeStep": 1}}')
     assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
-
-
-@pytest.mark.parametrize(
-    "study, sizes",
-    [(elastoplastic, ("desk", "first", "full")), (viscous, ("desk", "full", "own", "prediction"))],
-    ids=["elastoplastic", "viscous"],
-)
-def test_committed_tables_are_what_the_generator_writes(tmp_path, study, sizes):
-    study.write_tables(tmp_path)
-    own = study.__name__.rpartition(".")[2]
-    assert sorted(os.listdir(tmp_path)) == [f"{own}-{size}.table" for size in sizes]
-    for name in os.listdir(tmp_path):
-        with open(os.path.join(STUDIES, name)) as file:
-            assert file.read() == (tmp_path / name).read_text(), f"{name}: run yade_scripts/studies/{own}.py"
-
-
-def test_scripts_that_write_tables_say_what_they_do_and_refuse_arguments(tmp_path, monkeypatch, capsys):
-    """Asked for help, or given what they don't take, they write nothing."""
-    calls = []
-    for arguments, written in (("--help", 0), ("desk", 0), (None, 1)):
-        monkeypatch.setattr(sys, "argv", ["study.py"] + ([arguments] if arguments else []))
-        if arguments == "desk":
-            with pytest.raises(SystemExit) as ended:
-                table_script.main(calls.append, tmp_path, "Writes tables.")
-            assert ended.value.code == 2 and capsys.readouterr().err == "desk: takes no arguments but --help\n"
-        else:
-            table_script.main(calls.append, tmp_path, "Writes tables.")
-        assert len(calls) == written
-        assert capsys.readouterr().out == ("Writes tables.\n" if arguments == "--help" else "")
-
-
-def test_the_viscous_tables_hold_the_papers_runs():
-    """A22 section 2.4: 13 B_off^2, 8 velocities, 4 T_vis; desk has that grid with several seeds of smaller aggregates."""
-    full, desk = (rows.read(os.path.join(STUDIES, f"viscous-{size}.table")) for size in ("full", "desk"))
-    assert not any(row.error for row in full + desk)
-    full, desk = ([row.parameters for row in table_rows] for table_rows in (full, desk))
-    scenes = {(round(p.impact**2 * 12, 9), p.velocity, p.viscoelasticTime) for p in full}
-    assert len(full) == len(scenes) == 416 == 13 * 8 * 4
-    assert {p.grains for p in full} == {50_000} and {p.stepFraction for p in full} == {0.1}
-    assert {t for *_, t in scenes} == {0.0, 1e-12, 3e-12, 6e-12} and {b for b, *_ in scenes} == set(range(13))
-    assert {v for _, v, _ in scenes} == {10 ** (0.1 * i) for i in range(13, 21)}
-    for p in full + desk:
-        assert p.packing == "bpca" and p.duration == 6.34e-6 and p.endWhenApart == 1
-    of_size = lambda grains: [p for p in desk if p.grains == grains]
-    assert {(p.viscoelasticTime, p.velocity) for p in of_size(50_000)} == {(t, 10 ** (0.1 * 17)) for t in (0.0, 6e-12)}
-    assert {round(p.impact**2 * 12, 9) for p in of_size(50_000)} == {3}
-    small = {(round(p.impact**2 * 12, 9), p.velocity, p.viscoelasticTime, p.seed) for p in of_size(500)}
-    assert small == {(*scene, seed) for scene in scenes for seed in (1, 2, 3, 4)}
-    # What was predicted before it ran is in no other table, and spans B_off at every velocity and T_vis.
-    predicted = [row.parameters for row in rows.read(os.path.join(STUDIES, "viscous-prediction.table"))]
-    assert not {p.out for p in predicted} & {p.out for p in full + desk}
-    of_size = [p for p in predicted if p.grains == 10_000]
-    assert {round(p.impact**2 * 12, 9) for p in of_size} == set(range(13)) and len(of_size) == 2 * 2 * 4 * 13
-    # Every second offset stands before the others, which are the last block.
-    odd = [round(p.impact**2 * 12) % 2 for p in of_size]
-    assert odd == sorted(odd) and sum(odd) == 2 * 2 * 4 * 6 and len(predicted) == len(of_size) + 1
-
-
-def test_the_tables_hold_the_papers_runs():
-    """A24 section 3 and the captions of Figs 5 to 9; desk has some of each size, every velocity, both fillings."""
-    full, desk = (rows.read(os.path.join(STUDIES, f"elastoplastic-{size}.table")) for size in ("full", "desk"))
-    assert not any(row.error for row in full + desk)
-    names = {row.name: row.parameters for row in desk}
-    full, desk = ([row.parameters for row in table_rows] for table_rows in (full, desk))
-    scenes = {(p.filling, p.radius, p.velocity) for p in full}
-    assert len(scenes) == 2 * (5 + 2 * 7) and len(full) == 10 * len(scenes)
-    assert {p.stepFraction for p in full} == {0.1}
-    assert {p.velocity for p in desk} == {10 ** (0.1 * i) for i in range(8)}
-    assert {(p.filling, p.radius) for p in desk} == {
-        (filling, radius) for filling in (0.3, 0.4) for radius in (40, 50, 60, 80)
-    }
-    one = names["f0.4-R40-i5-s1"]
-    assert one.out == "runs/elastoplastic/f0.4-R40-i5-s1"
-    assert one.velocity == 10**0.5 and one.seed == 1
-
-
-def test_the_tables_give_the_papers_duration():
-    """12.5 ns per grain radius from the start, as older run folders of these rows have it; the slowest 1000 ns."""
-    for size in ("full", "desk"):
-        for found in (row.parameters for row in rows.read(os.path.join(STUDIES, f"elastoplastic-{size}.table"))):
-            slow = size == "desk" and found.radius == 40 and found.velocity < 1.6
-            expected = 1e-6 if slow else 64.6 * found.radius * TIME_UNIT
-            assert found.duration == pytest.approx(expected, rel=1e-13)
 
 
 def test_contact_updates_are_those_of_a_packing():
@@ -297,32 +191,3 @@ def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
         screen.close()
     assert terminal.getvalue().count("\033[3A\033[J") == 2 and terminal.getvalue().endswith("\033[J")
     assert file.getvalue() == ""
-
-
-def test_the_step_of_every_row_is_stable(yade):
-    """Rows of the study tables would start: what their runs refuse of grains, necks and steps before packings are made."""
-    found = yade(
-        """
-from yade_scripts.experiments import collision, compression
-from yade_scripts.parameters import ParameterError
-from yade_scripts.run.scene import pair_constants
-from yade_scripts.runner import rows
-refused, seen = [], set()
-for path in parameters["paths"]:
-    for row in rows.read(path):
-        p = row.parameters
-        alike = repr(p.changed(seed=1, out="", **({"file": None, "projectileFile": None} if hasattr(p, "file") else {})))
-        if alike in seen:
-            continue
-        seen.add(alike)
-        experiment = collision if row.kind is collision.KIND else compression
-        own = {"neck": p.neck} if experiment is collision else {"linearDamping": p.linearDamping}
-        try:
-            experiment.complete(p, pair_constants(p, **own), 1)
-        except ParameterError as error:
-            refused.append(f"{row.name}: {error}")
-result.update(refused=refused, seen=len(seen))
-""",
-        {"paths": [os.path.join(STUDIES, name) for name in TABLES]},
-    )
-    assert found["refused"] == [] and found["seen"] > 300

@@ -1,6 +1,6 @@
 """A dozen rows as a job array of Debian's Slurm on this machine, and the same rows by the local runner; writes results/slurm.md.
 
-    python3 tests/scripts/try_slurm.py [--out FILE]      root; some five minutes on two cores
+    python3 tests/drivers/try_slurm.py [--out FILE]      root; some five minutes on two cores
 
 One row fails, one is killed, one is requeued and one meets its time limit while it runs. Exit status: 0 when all was as it must be,
 otherwise 1, with one line on stderr for each that was not.
@@ -17,16 +17,12 @@ import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "benchmarks")]
+sys.path[:0] = [str(HERE), str(HERE.parent / "scripts"), str(HERE.parent / "benchmarks")]
 from measured_on import machine
-from running import PYTHON, TOP, environment, read_arrays, read_json
+from running import PYTHON, STUDY, TOP, environment, process_writing, read_json, same_bits
 from slurm_loopback import Loopback, NoSlurm
-from test_study import process_writing
 
-STUDY = os.path.join(TOP, "yade_scripts", "study.py")
 LONG = ("requeued", "limit", "killed")
 SEEDS = (1, 2, 3, 4, 5, 7, 8, 9)  # 6: the aggregates don't meet
 SHORT = [f"short{seed}" for seed in SEEDS]
@@ -196,7 +192,7 @@ def same_as_local(trial):
     done = trial.study("-j", str(os.cpu_count()), folder=local)
     trial.check("the local runner", done.stdout.splitlines()[-1], "dozen: 12 rows, 11 done, 1 failed")
     runs = [at / "runs" / "dozen" for at in (trial.folder, local)]
-    differing = [name for name in ENDING if not _same_bits(*(at / name for at in runs))]
+    differing = [name for name in ENDING if not _same_end(*(at / name for at in runs))]
     trial.check(
         "runs whose history and states differ from the local ones in a bit", ", ".join(differing) or "none", "none"
     )
@@ -213,15 +209,9 @@ def other_parameters(trial):
     trial.check("rows of other parameters than their ended runs: refused", (len(lines), refused.returncode), (3, 1))
 
 
-def _same_bits(one, other):
-    names = ["history.npz"] + [f"states/{name}" for name in sorted(os.listdir(one / "states"))]
-    if sorted(os.listdir(one / "states")) != sorted(os.listdir(other / "states")):
-        return False
-    return read_json(one, "run.json")["outcome"] == read_json(other, "run.json")["outcome"] and all(
-        np.array_equal(read_arrays(one, name)[key], array, equal_nan=True)
-        for name in names
-        for key, array in read_arrays(other, name).items()
-    )
+def _same_end(one, other):
+    outcomes = [read_json(run, "run.json")["outcome"] for run in (one, other)]
+    return outcomes[0] == outcomes[1] and same_bits(one, other)
 
 
 def _merged_table(runs):

@@ -1,6 +1,6 @@
 """Fresh Debian systems, in each a clean clone, in it the README's commands. Run by `make test-debian`, as root.
 
-    python3 tests/yade_tools/debian_systems.py bookworm trixie      [--folder FOLDER] [--commands 'make demo' ...]
+    python3 tests/drivers/debian_systems.py bookworm trixie      [--folder FOLDER] [--commands 'make demo' ...]
 
 A system is made by debootstrap with the mirror of this system's apt, and removed afterwards; with --folder it is made
 in FOLDER, or found there as an earlier call left it, and kept. Each runs in mount and process namespaces of its own.

@@ -1,0 +1,22 @@
+"""The table of mutations is of the code as it is: forty of them, each in one place, with tests that exist."""
+
+import sys
+from collections import Counter
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from mutation import ROOMS, TOP, read
+
+
+def test_there_are_ten_in_each_room():
+    assert Counter(mutation.room for mutation in read()) == dict.fromkeys(ROOMS, 10)
+
+
+def test_each_stands_once_in_its_file_and_its_tests_exist(tmp_path):
+    for mutation in read():
+        copy = tmp_path / mutation.file
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copy.write_text((TOP / mutation.file).read_text())
+        mutation.apply(tmp_path)
+        for file, _, name in (test.partition("::") for test in mutation.tests):
+            assert f"def {name.partition('[')[0]}" in (TOP / file).read_text(), (mutation.wrong, file, name)
