@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from running import TINY, TOP, call, collide, completed, messages, read_json, same_bits, stop_midway, study
+from running import TINY, TOP, collide, completed, messages, read_json, same_bits, stop_midway, study
 from scipy.stats import binom
 
 from yade_scripts import stability, step_choice
