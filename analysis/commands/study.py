@@ -69,12 +69,13 @@ def run(options):
 
     if not options.name:
         return _list()
-    if not options.runs:
-        complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
-        return FAILED
     try:
+        study = find(options.name)
+        if not options.runs:
+            complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
+            return FAILED
         table = _writes_table(options)
-        analysis = analyse(find(options.name), options.runs)
+        analysis = analyse(study, options.runs)
         _complain_of(analysis.found)
         written = _write(analysis, options, table) if options.figures or options.page else None
     except NothingToAnalyse as nothing:

@@ -118,9 +118,7 @@ def test_a_run_at_rest_has_no_closure_and_no_restitution(pair_folder, tmp_path):
     assert drawn.returncode == 2 and "no kinetic energy at the start" in drawn.stderr
 
 
-@pytest.mark.parametrize(
-    "arguments", [[], ["summary"], ["figures"], ["figures", "a", "b"], ["draw", "a"], ["study", "none"]]
-)
+@pytest.mark.parametrize("arguments", [[], ["summary"], ["figures"], ["figures", "a", "b"], ["draw", "a"]])
 def test_wrong_use_exits_with_2(arguments):
     done = analyse(*arguments)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
