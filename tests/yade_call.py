@@ -14,6 +14,7 @@ def answer():
 
     Whatever it raises is told on stderr, with the variables of the last function, and ends the process with status 1.
     """
+    place = os.path.abspath("answer")  # the function may go to another folder
     with open("call", "rb") as file:
         path, name, arguments = pickle.load(file)
     sys.path.insert(0, os.path.dirname(path))
@@ -29,7 +30,7 @@ def answer():
             frame.locals = short if frame is told.stack[-1] else None
         sys.stderr.write("".join(told.format()))
         sys.exit(1)
-    with open("answer", "wb") as file:
+    with open(place, "wb") as file:
         pickle.dump(returned, file)
 
 

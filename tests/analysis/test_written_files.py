@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from test_study_engine import own as tiny  # noqa: F401  (a fixture)
+from written_runs import two_pairs
 
 from analysis.__main__ import main
 from analysis.runs.write import remove_unfinished, replacing, write_text
@@ -107,7 +108,8 @@ def test_what_killed_writers_left_goes_and_what_others_write_stays(tmp_path):
 
 @pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
 def test_a_film_that_is_stopped_leaves_nothing(tiny):  # noqa: F811
-    command = [sys.executable, "-m", "analysis", "film", str(tiny / "runs" / "s1"), "--out", str(tiny / "film.mp4")]
+    two_pairs(tiny / "runs" / "long", 3.0, 9, states=400)
+    command = [sys.executable, "-m", "analysis", "film", str(tiny / "runs" / "long"), "--out", str(tiny / "film.mp4")]
     before = set(tiny.iterdir())
     process = subprocess.Popen(command, cwd=TOP, stderr=subprocess.PIPE, text=True)
     while set(tiny.iterdir()) == before:

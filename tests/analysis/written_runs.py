@@ -112,7 +112,7 @@ def _pair_state(time, overlap, rate, touching):
     )
 
 
-def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, **parameters):
+def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, **parameters):
     """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding, and stick (still
     parting at the end unless it settles) or part at half their speed. Returns the path."""
     time = np.linspace(0.0, 4e-7, 401)
@@ -126,12 +126,12 @@ def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, **par
     history["slidingDissipation"] = energy - history["kinetic"]
     touching = (time > meet) & (sticks | (time < 3e-7))
     history.update(time=time, d=d, v=v, contacts=2 + touching, contacts_between=touching.astype(int))
-    states = []
-    for k in (0, 200, 400):
+    kept = []
+    for k in np.linspace(0, 400, states).astype(int):
         x = RADIUS - 0.5 * d[k]
         position = [[-x, 0, 0], [-x, 2 * RADIUS, 0], [x, 0, 0], [x, 2 * RADIUS, 0]]
         moving = [[v[k] / 2, 0, 0]] * 2 + [[-v[k] / 2, 0, 0]] * 2
-        states.append(
+        kept.append(
             state_arrays(time[k], position, moving, [0, 0, 1, 1], [[0, 1], [2, 3]] + [[0, 2]] * int(touching[k]))
         )
     values = {
@@ -143,4 +143,4 @@ def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, **par
         "impact": 0.0,
         **parameters,
     }
-    return write_run(path, record(RADIUS, values), history, states, ended)
+    return write_run(path, record(RADIUS, values), history, kept, ended)

@@ -108,7 +108,7 @@ def test_files_that_the_analysis_reads_are_installed(installed):
         files = list((TOP / "analysis").glob(pattern))
         assert files
         for file in files:
-            assert (gallery.parents[1] / file.relative_to(TOP / "analysis")).read_bytes() == file.read_bytes()
+            assert (gallery.parent / file.relative_to(TOP / "analysis")).read_bytes() == file.read_bytes()
 
 
 def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
