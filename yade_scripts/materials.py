@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
-from yade_scripts.parameters import POSITIVE, Check, ParameterError, Parameters, between, one_of, parameter
+from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Parameters, Usual, between, one_of, parameter
 
 
 @dataclass(frozen=True)
@@ -30,19 +30,32 @@ MATERIALS = {
 }
 
 
+GRAINS = Usual(1e-9, 1e-3, "smallest soot monomers to chondrules")
+YOUNG = Usual(1e6, 1.3e12, "rubber to diamond")
+DENSITY = Usual(100, 23_000, "aerogel to osmium")
+SURFACE = Usual(1e-3, 10, "liquid gases to clean metals")
+ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al. 1999")
+DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
+
+
 @dataclass(frozen=True)
 class GrainParameters(Parameters):
     """The grains. Each property is that of `material` unless it is given."""
 
     material: str = parameter("ice", one_of(list(MATERIALS)), "whose properties the grains have")
-    grainRadius: float | None = parameter(None, POSITIVE, "radius of a grain", "m")
-    young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa")
+    grainRadius: float | None = parameter(None, POSITIVE, "radius of a grain", "m", usual=GRAINS)
+    young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa", usual=YOUNG)
     poisson: float | None = parameter(None, between(0, 0.5), "Poisson's ratio", "1")
-    density: float | None = parameter(None, POSITIVE, "density", "kg/m^3")
-    surfaceEnergy: float | None = parameter(None, POSITIVE, "surface energy gamma", "J/m^2")
-    criticalRolling: float | None = parameter(None, POSITIVE, "critical rolling displacement xi_crit", "m")
+    density: float | None = parameter(None, POSITIVE, "density", "kg/m^3", usual=DENSITY)
+    surfaceEnergy: float | None = parameter(None, POSITIVE, "surface energy gamma", "J/m^2", usual=SURFACE)
+    criticalRolling: float | None = parameter(
+        None, POSITIVE, "critical rolling displacement xi_crit", "m", usual=ROLLING
+    )
     viscoelasticTime: float = parameter(
-        0.0, Check(">= 0", lambda x: x >= 0), "T_vis of the viscous drag (A22 eq 7); 0: no drag", "s"
+        0.0, Check(">= 0", lambda x: x >= 0), "T_vis of the viscous drag (A22 eq 7); 0: no drag", "s", usual=DRAG
+    )
+    unusual: int = parameter(
+        0, SWITCH, "1: values outside of their usual ranges are meant so, not slips of the unit", of_consequence=False
     )
 
     def filled_in(self):

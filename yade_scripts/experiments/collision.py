@@ -16,7 +16,7 @@ from yade_scripts.packings.approach import first_touch
 from yade_scripts.packings.grain_sizes import EQUAL
 from yade_scripts.packings.offset_pair import START_GAP, offset_pair
 from yade_scripts.packings.packing import PackingError
-from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, between, parameter
+from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 from yade_scripts.stability import AUTO
@@ -26,6 +26,7 @@ DURATION_PER_RADIUS = 64.6
 LARGEST_NECK = 0.7  # the largest of S17
 BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
 CHECKS = 100  # times in a run that it is looked whether pieces are apart
+VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
@@ -33,7 +34,7 @@ NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 class CollisionParameters(AggregateParameters, RunParameters):
     """The collision."""
 
-    velocity: float = parameter(10**0.5, POSITIVE, "relative velocity of the aggregates", "m/s")
+    velocity: float = parameter(10**0.5, POSITIVE, "relative velocity of the aggregates", "m/s", usual=VELOCITY)
     impact: float = parameter(
         0.0,
         between(0, 1),

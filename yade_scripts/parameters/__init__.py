@@ -29,6 +29,16 @@ NOT_NEGATIVE = Check(">= 0", lambda x: x >= 0)
 SWITCH = Check("0 or 1", lambda x: x in (0, 1))
 
 
+@dataclass(frozen=True)
+class Usual:
+    """Between which values a quantity lies in nature and in laboratories, in SI units, and who says so: what lies outside was
+    probably given in another unit."""
+
+    low: float
+    high: float
+    source: str
+
+
 def between(low, high):
     return Check(f"{low:g} to {high:g}" if isinstance(high, float) else f"{low} to {high}", lambda x: low <= x <= high)
 
@@ -37,13 +47,13 @@ def one_of(names):
     return Check(" or ".join(names), lambda text: text in names)
 
 
-def parameter(default, check, meaning, unit="", word=None, of_consequence=True):
+def parameter(default, check, meaning, unit="", word=None, of_consequence=True, usual=None):
     """A field of Parameters; its annotation is the type (float, int or str, or one of them with None).
 
     default None: it follows from the others. word: a text that a number's column may hold as well.
-    of_consequence: whether results depend on it.
+    of_consequence: whether results depend on it. usual: a Usual range, outside of which `unusual=1` must be given too.
     """
-    about = dict(check=check, meaning=meaning, unit=unit, word=word, of_consequence=of_consequence)
+    about = dict(check=check, meaning=meaning, unit=unit, word=word, of_consequence=of_consequence, usual=usual)
     return field(default=default, metadata=about)
 
 
@@ -59,6 +69,7 @@ class Column:
     unit: str
     word: str | None
     of_consequence: bool
+    usual: Usual | None
 
     def value(self, text):
         """The checked value of a text or number; raises ParameterError."""
@@ -68,6 +79,14 @@ class Column:
         if not self.check.accepts(value):
             raise ParameterError(f"{self.name} = {_shortened(text)}: {self.must}")
         return value
+
+    def require_usual(self, value):
+        """Raise ParameterError where a number other than 0 lies outside of the usual range."""
+        if self.usual and value and not self.usual.low <= value <= self.usual.high:
+            raise ParameterError(
+                f"{self.name} = {value:g} {self.unit}: must be {self.usual.low:g} to {self.usual.high:g} {self.unit} "
+                f"({self.usual.source}), or unusual=1 be given if it is meant"
+            )
 
     @property
     def must(self):
@@ -120,6 +139,9 @@ class Parameters:
             if name not in columns:
                 raise ParameterError(f"{_shortened(name)}: unknown parameter; must be one of {', '.join(columns)}")
             values[name] = columns[name].value(text)
+        if not values.get("unusual"):
+            for name, value in values.items():
+                columns[name].require_usual(value)
         return cls(**values).filled_in()
 
     @classmethod

@@ -11,7 +11,7 @@ from analysis.runs.write import is_unfinished, remove_unfinished, require_file, 
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
 from yade_scripts.run.heartbeat import Beating, RunsElsewhere, is_heartbeat, require_stopped
-from yade_scripts.run.written import Written, state_name
+from yade_scripts.run.written import RECORDER, Written, state_name
 
 
 class RunFolderError(InputError):
@@ -42,7 +42,13 @@ class RunFolder:
                 if heartbeat:
                     self._not_elsewhere(require_stopped)
                 self._run, self._written = _usable(path, overwrite)
-                if resume and not self._has_ended() and checkpoint.exists(path):
+                stopped = not self._has_ended() and checkpoint.exists(path)
+                if stopped and not (resume or overwrite) and RECORDER in self._written.names:
+                    raise RunFolderError(
+                        f"out = {path}: holds a run that was stopped, with a checkpoint; must be another folder, or resume=1 "
+                        "(to continue it) or overwrite=1 (to start again)"
+                    )
+                if stopped and resume:
                     self.checkpoint = checkpoint.Checkpoint(path)
                 else:
                     if heartbeat:
