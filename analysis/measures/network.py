@@ -1,7 +1,7 @@
 """The network of contacts of a packing: grains joined by pairs."""
 
 import numpy as np
-from scipy.sparse import coo_matrix
+from scipy.sparse import bmat, coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 
@@ -19,11 +19,10 @@ def spanning_forest(network):
     >>> order.tolist(), parent.tolist()
     ([0, 1, 2, 3], [-1, -1, 1, 2])
     """
-    parent = np.full(network.shape[0], -1)
-    piece = connected_components(network, directed=False)[1]
-    orders = []
-    for root in np.unique(piece, return_index=True)[1]:
-        order, before = breadth_first_order(network, root, directed=False)
-        parent[order[1:]] = before[order[1:]]
-        orders.append(order)
-    return np.concatenate(orders) if orders else np.empty(0, dtype=int), parent
+    grains = network.shape[0]
+    roots = np.unique(connected_components(network, directed=False)[1], return_index=True)[1]
+    to_roots = coo_matrix((np.ones(len(roots)), (np.zeros(len(roots), dtype=int), roots)), shape=(1, grains))
+    # One search from a node above all roots.
+    order, before = breadth_first_order(bmat([[network, None], [to_roots, np.zeros((1, 1))]]), grains, directed=False)
+    parent = before[:grains]
+    return order[1:], np.where(parent == grains, -1, parent)

@@ -5,6 +5,8 @@ import numpy as np
 from ..runs.arrays import RunFolderError
 from ..runs.format import STATES_FOLDER
 from .compression import maximum_compression
+from .decided import CONSTANTS, why_undecided
+from .fragments import belongs_to_an_aggregate
 from .outcome import collision_outcome
 
 
@@ -19,12 +21,13 @@ def met(run):
 
 
 def outcome_of_run(run):
-    """outcome.Outcome of a RunFolder from its first and last state; RunFolderError where they don't make one."""
+    """outcome.Outcome of a RunFolder from its first and last state, undecided where it may still become another one
+    (decided.why_undecided; not told of runs without the constants that this takes). RunFolderError where the states don't make one."""
     start, end = run.start, run.last
     if start.aggregate.shape != end.aggregate.shape or np.any(start.aggregate != end.aggregate):
         raise RunFolderError(f"{run.path / STATES_FOLDER}: the first and the last state don't hold the same grains")
     try:
-        return collision_outcome(
+        found = collision_outcome(
             start.radius,
             start.aggregate,
             start.velocity,
@@ -35,6 +38,12 @@ def outcome_of_run(run):
         )
     except ValueError as error:
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
+    if not all(name in run.derived for name in CONSTANTS):
+        return found
+    counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
+    touch = run.derived.get("firstTouch", run.history["time"][np.argmax(run.history["contacts_between"] > 0)])
+    since_touch = float(end.time - touch)
+    return found.if_decided(why_undecided(found.kind, counted, vars(end), run.derived, since_touch))
 
 
 def derived_constants(run, names):

@@ -8,13 +8,14 @@ With f1 >= f2 the fractions of their mass in the two heaviest fragments at the e
     bouncing       f1 + f2 >= 0.9 and f2 >= 0.25, and of each of the two pieces at least OWN is mass of one
                    aggregate, of one each
     fragmentation  everything else: also a part torn off one aggregate, and a merged body that broke in two
+    undecided      what is seen at the end is one of these, and may still become another one (decided.py)
 
 The coefficient of restitution is 0 for sticking. For bouncing it is minus the relative velocity of the centres of mass
 of the two heaviest fragments, projected on the direction of the aggregates' relative velocity at the start, over that
 velocity. There is none (None) for fragmentation, for aggregates that never met, where that ratio is negative (the two
 pieces have passed each other), and where the aggregates had no relative velocity."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,22 +28,19 @@ from .fragments import (
 )
 
 NEVER_MET, STICKING, BOUNCING, FRAGMENTATION = "never met", "sticking", "bouncing", "fragmentation"
+UNDECIDED = "undecided"
 
 # Of the mass of a piece that bounced, so much at least is of one aggregate. Aggregates that part where they had touched
 # exchange what stuck to the other side: up to a tenth of a piece, as sticking leaves out up to a tenth.
 OWN = 0.9
 
-# Of a run that ends in one piece while its halves still part, at more than this fraction of the largest speed of
-# their return: a sixteenth of that kinetic energy is left, which may yet part them.
-UNDECIDED, STILL_PARTING = "undecided", 0.25
-
 
 @dataclass(frozen=True)
 class Outcome:
-    """kind (never met, sticking, bouncing, fragmentation), restitution (None where there is none, see the module),
+    """kind (never met, sticking, bouncing, fragmentation, undecided), restitution (None where there is none, see the module),
     mass_fractions (f1, f2), largest_fragment [grains, all counted], growth_efficiency (A22 eq 28, all grains, the
     target being the aggregate with more grains), fragments (their number) and excluded_grains (not counted in the
-    fractions)."""
+    fractions). Of an undecided one why_undecided, in a few words, and seen: the kind that it would be if nothing changed any more."""
 
     kind: str
     restitution: float
@@ -51,6 +49,14 @@ class Outcome:
     growth_efficiency: float
     fragments: int
     excluded_grains: int
+    why_undecided: str = None
+    seen: str = None
+
+    def if_decided(self, why):
+        """The same; undecided where there is a reason for it."""
+        if why is None:
+            return self
+        return replace(self, kind=UNDECIDED, restitution=None, why_undecided=why, seen=self.kind)
 
 
 def classify(f1, f2, parted=True):
@@ -137,15 +143,3 @@ def _restitution(aggregate, mass, counted, first, second, start_velocity, end_ve
     before = [mean_velocity(start_velocity, mass, counted & (aggregate == k)) for k in (0, 1)]
     after = [mean_velocity(end_velocity, mass, piece) for piece in (first, second)]
     return restitution(before[1] - before[0], after[1] - after[0])
-
-
-def still_parting(v):
-    """Whether halves with the mutual velocity v (T,) [m/s], positive while they approach (A24 eq 12), part at the end
-    at more than STILL_PARTING of the largest speed at which they ever did.
-
-    >>> still_parting([2.0, -1.0, -0.5]), still_parting([2.0, -1.0, -0.1])
-    (True, False)
-    """
-    v = np.asarray(v, dtype=float)
-    v = v[np.isfinite(v)]
-    return bool(v.size and v.min() < 0 and v[-1] < STILL_PARTING * v.min())

@@ -9,7 +9,7 @@ from ..measures.compression import first_compression
 from ..measures.coordination import mean_coordination
 from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
 from ..measures.of_run import met, outcome_of_run
-from ..measures.outcome import BOUNCING, FRAGMENTATION, STICKING, UNDECIDED, still_parting
+from ..measures.outcome import BOUNCING, FRAGMENTATION, STICKING, UNDECIDED
 from ..measures.return_phase import largest_return_speed
 from ..runs.arrays import RunFolderError
 from ..runs.collect import Scene
@@ -67,7 +67,7 @@ PARTITION_COLUMNS = (
     ),
 )
 OUTCOME_COLUMNS = (
-    Column("outcome", "", f"as measures.outcome has it, or {UNDECIDED}: in one piece, but still parting", kind="O"),
+    Column("outcome", "", "as measures.outcome has it", kind="O"),
     Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
     Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
 )
@@ -117,7 +117,7 @@ def outcome_values(run, velocity):
     don't make an outcome."""
     outcome, v = outcome_of_run(run), run.history["v"]
     return {
-        "outcome": UNDECIDED if outcome.kind == STICKING and still_parting(v) else outcome.kind,
+        "outcome": outcome.kind,
         "restitution": outcome.restitution,
         "bulk": float(np.nan_to_num(v[-1] / velocity) ** 2),
     }

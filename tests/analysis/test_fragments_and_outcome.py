@@ -11,7 +11,7 @@ from analysis.measures.fragments import (
     fragment_sizes,
     growth_efficiency,
 )
-from analysis.measures.outcome import classify, collision_outcome, restitution, still_parting
+from analysis.measures.outcome import classify, collision_outcome, restitution
 
 
 def _labels_by_flooding(grains, pairs):
@@ -168,12 +168,6 @@ def test_a_grain_that_was_alone_does_not_spoil_sticking():
 def test_aggregates_that_never_met_are_no_bounce():
     outcome = _outcome(_start(), _start(), met=False)
     assert (outcome.kind, outcome.restitution, outcome.mass_fractions) == ("never met", None, (0.5, 0.5))
-
-
-def test_halves_that_part_slowly_have_stuck():
-    assert still_parting([3.0, 0.0, -1.0, -0.3]) and not still_parting([3.0, 0.0, -1.0, -0.2])
-    assert not still_parting([3.0, 1.0, 0.5]) and not still_parting([np.nan, np.nan])
-    assert still_parting([3.0, -1.0, -0.5, np.nan])
 
 
 def test_one_aggregate_alone_is_refused():

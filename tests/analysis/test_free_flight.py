@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from analysis.measures.free_flight import (
-    bulk_kinetic_energy,
-    has_come_to_rest,
     inner_kinetic_energy,
     motion_in_pieces,
     pieces_can_meet,
+    pieces_that_can_meet,
 )
 
 
@@ -31,7 +30,9 @@ def two_grains(separation, velocity, offset=0.0):
     ],
 )
 def test_two_grains(separation, velocity, offset, time, meets):
-    assert pieces_can_meet(*two_grains(separation, velocity, offset), time) is meets
+    grains = two_grains(separation, velocity, offset)
+    assert pieces_can_meet(*grains, time) is meets
+    assert [pieces_that_can_meet(piece, *grains, time).tolist() for piece in (0, 1)] == [[False, meets], [meets, False]]
 
 
 def test_one_pair_of_many_is_found_in_every_chunk(monkeypatch):
@@ -70,32 +71,3 @@ def test_pieces_of_one_and_two_grains_turn_too():
     assert np.abs(motion_in_pieces(position, velocity, mass, labels)).max() < 1e-12
     stretched = velocity + np.array([[0, 0, 0], [-1, 0, 0], [1, 0, 0]])
     assert inner_kinetic_energy(position, stretched, mass, labels) == pytest.approx([1.0, 0.0])
-
-
-def test_halves_that_are_drawn_apart():
-    position, mass, labels = cluster(2)
-    half = (position[:, 0] > 0).astype(int)
-    still = np.zeros_like(position)
-    drawn = still + 0.1 * (2 * half - 1)[:, None] * (1, 0, 0)
-    whole = [mass[half == k].sum() for k in (0, 1)]
-    reduced = whole[0] * whole[1] / sum(whole)
-    energy = bulk_kinetic_energy(position, drawn, mass, labels, half)[0]
-    assert 0.5 < energy / (0.5 * reduced * 0.2**2) <= 1 + 1e-12  # what is not turning
-    assert bulk_kinetic_energy(position, still, mass, labels, half)[0] == 0
-    shaking = np.random.default_rng(3).normal(size=position.shape)
-    assert bulk_kinetic_energy(position, shaking, mass, labels, half)[0] < inner_kinetic_energy(
-        position, shaking, mass, labels
-    )
-
-
-@pytest.mark.parametrize("stretch, apart, ends", [(0.0, 1.0, True), (2.0, 1.0, False), (0.0, -1.0, False)])
-def test_a_collision_has_come_to_rest(stretch, apart, ends):
-    """Two pairs of grains that fly apart (or at each other), one of which is being stretched."""
-    state = {
-        "position": np.array([[0.0, 0, 0], [2, 0, 0], [20, 0, 0], [22, 0, 0]]),
-        "velocity": np.array([[-stretch, 0, 0], [stretch, 0, 0], [apart, 0, 0], [apart, 0, 0]]),
-        "radius": np.ones(4),
-        "aggregate": np.array([0, 0, 1, 1]),
-        "contact_pairs": np.array([[0, 1], [2, 3]]),
-    }
-    assert has_come_to_rest(state, np.ones(4), breaking=1.0, time=1e3) is ends

@@ -6,7 +6,9 @@ from math import sqrt
 import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
-from analysis.measures.free_flight import has_come_to_rest
+from analysis.measures.decided import REBOUND_PER_RADIUS, has_come_to_rest, rebound_time
+from analysis.measures.of_run import outcome_of_run
+from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments import impact_step
@@ -21,10 +23,8 @@ from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 from yade_scripts.stability import AUTO
 
-# A24 follows aggregates of 80 grain radii for 1000 ns: 12.5 ns per grain radius, in units of ice's t0.
-DURATION_PER_RADIUS = 64.6
+WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
 LARGEST_NECK = 0.7  # the largest of S17
-BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
 CHECKS = 100  # times in a run that it is looked whether pieces are apart
 VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
@@ -59,8 +59,8 @@ class CollisionParameters(AggregateParameters, RunParameters):
     duration: float | None = parameter(
         None,
         POSITIVE,
-        f"time that is simulated (until the first touch, and {DURATION_PER_RADIUS} t0 per grain radius of the "
-        "aggregates' radius: 12.5 ns for ice)",
+        f"time that is simulated (until the first touch, and {REBOUND_PER_RADIUS} t0 per grain radius of the aggregates' "
+        f"radius: 12.5 ns for ice; aggregates other than cpe at least until they have moved by {WAY} radii at `velocity`)",
         "s",
     )
     impactStepFraction: float | None = parameter(
@@ -70,11 +70,11 @@ class CollisionParameters(AggregateParameters, RunParameters):
         "time of the first touch and of four radii of the larger one (stepFraction all the time)",
         "t0",
     )
-    endWhenApart: int = parameter(
-        0,
+    endWhenApart: int | None = parameter(
+        None,
         SWITCH,
         "1: the run ends earlier than duration as soon as no pieces can meet until then (straight lines of the spheres "
-        "around them) and no piece is in motion within itself that could break it",
+        "around them) and no piece is in motion within itself that could break it (1 where no duration is given, else 0)",
     )
 
     def filled_in(self):
@@ -85,6 +85,8 @@ class CollisionParameters(AggregateParameters, RunParameters):
             if value is not None and found.packing not in packings_with_it:
                 raise ParameterError(f"{name} = {value}: given with packing = {found.packing}; must be left out")
         impact_step.require_usable(found)
+        if found.endWhenApart is None:
+            found = found.changed(endWhenApart=int(found.duration is None))
         if found.projectileGrains is not None:
             require_growable(found.packing, "projectileGrains", found.projectileGrains)
         if found.neck and found.sizes != EQUAL:
@@ -162,9 +164,13 @@ def reason_of_step(parameters, constants):
     return step_choice.collision_reason(parameters, constants, step_limit(parameters, constants))
 
 
-def default_duration(radius, time_unit, touch):
-    """Duration [s] of a run that gives none: radius in grain radii, t0 [s], time of the first touch [s]."""
-    return touch + DURATION_PER_RADIUS * radius * time_unit
+def default_duration(parameters, radius, time_unit, touch):
+    """Duration [s] of a run that gives none: radius of the larger aggregate in grain radii, t0 [s], time of the first touch [s].
+
+    Close-packed aggregates rebound within rebound_time(); fluffy ones move through each other first.
+    """
+    way = 0.0 if parameters.packing == "cpe" else WAY * radius * parameters.grainRadius / parameters.velocity
+    return touch + max(rebound_time(radius, time_unit), way)
 
 
 def placements(radius, grain_radius, velocity, impact):
@@ -196,7 +202,7 @@ def prepare(parameters, threads):
         controls.append(impact_step.control(parameters, until))
         reason = impact_step.reason(parameters, until)
     if parameters.endWhenApart:
-        controls.append(_end_when_apart(parameters, constants))
+        controls.append(_end_when_apart(parameters, constants, aggregate_radius, touch))
     material = yade_scene.material_of(parameters)
     return Scene(
         parameters=parameters,
@@ -256,17 +262,24 @@ def _sizes(aggregate_radius, pair, from_file):
     return found
 
 
-def _end_when_apart(parameters, constants):
+def _end_when_apart(parameters, constants, aggregate_radius, touch):
     """Scene.control of endWhenApart."""
-    breaking = BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"]
+    known = {**constants, **(constants["bond"] or {}), "aggregateRadius": aggregate_radius}
+    known.update(grainRadius=parameters.grainRadius, density=parameters.density)
 
     def control(recorder, state):
         if not recorder.is_one_of(CHECKS):
             return False
-        mass = 4 / 3 * np.pi * parameters.density * state["radius"] ** 3
-        return has_come_to_rest(state, mass, breaking, parameters.duration - state["time"])
+        time = state["time"]
+        since_touch = np.inf if touch is None else time - touch
+        return has_come_to_rest(state, known, since_touch, parameters.duration - time)
 
     return control
+
+
+def why_undecided(folder):
+    """Why the outcome of the run in a folder is not decided (analysis.measures.decided), or None."""
+    return outcome_of_run(open_run(folder)).why_undecided
 
 
 def with_duration(parameters, time_unit, touch):
@@ -278,7 +291,7 @@ def with_duration(parameters, time_unit, touch):
             f"impact = {parameters.impact:g}: the aggregates of seed {parameters.seed} would never meet; must be "
             "another impact or seed, or duration be given"
         )
-    duration = default_duration(parameters.radius, time_unit, touch)
+    duration = default_duration(parameters, parameters.radius, time_unit, touch)
     stability.require_countable(duration, parameters.stepFraction, time_unit)
     return parameters.changed(duration=duration)
 
@@ -306,7 +319,7 @@ def estimate(parameters):
     duration = parameters.duration
     touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
     if duration is None:
-        duration = default_duration(radius, constants["timeUnit"], touch)
+        duration = default_duration(parameters, radius, constants["timeUnit"], touch)
     steps = duration / constants["timeUnit"] / _step(parameters, constants)
     if parameters.impactStepFraction is not None:
         steps += impact_step.more_steps(parameters.changed(radius=radius), touch, duration, constants["timeUnit"])
@@ -323,7 +336,7 @@ def expected(parameters, run):
     found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
     touch = derived.get("firstTouch") if run.get("format", 1) > 1 else 0.0
     if parameters.duration is None and None not in (touch, held.get("radius"), derived.get("timeUnit")):
-        found["duration"] = default_duration(held["radius"], derived["timeUnit"], touch)
+        found["duration"] = default_duration(parameters, held["radius"], derived["timeUnit"], touch)
     return found
 
 
@@ -384,4 +397,4 @@ def _typical_way(parameters):
     return 2 * (parameters.radius + 1) * (1 - sqrt(1 - parameters.impact**2)) + 1.4
 
 
-KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected)
+KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, why_undecided)

@@ -3,18 +3,18 @@
 from math import isclose
 
 
-def difference(kind, wanted, run):
+def difference(kind, wanted, run, but=()):
     """'name = this, not that' for the first parameter in which a run is not what is wanted, or None.
 
     kind: the Kind wanted; wanted: its parameters, complete or not; run: a dictionary as in run.json, with 'parameters'
-    and 'derived'. A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'.
+    and 'derived'; but: names that are not compared. A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'.
     """
     there = run.get("kind", "collision")  # format 1 had collisions only
     if there != kind.name:
         return f"kind = {there}, not {kind.name}"
     expected = {**wanted.as_dict(), **kind.expected(wanted, run)}
     columns, held = kind.parameters.columns(), run.get("parameters", {})
-    left_out = {"tolerance" if _compares_steps(wanted, held) else "stepFraction"}
+    left_out = {"tolerance" if _compares_steps(wanted, held) else "stepFraction", *but}
     for name, column in columns.items():
         if not column.of_consequence or name in left_out:
             continue

@@ -36,7 +36,7 @@ class Checkpoint:
     """A checkpoint read from a run folder's path.
 
     .rows (T, columns) of the history, .columns their names, .run as in run.json, .wallTime [s] spent so far, .iteration
-    (O.iter), .states (number of states written), .scene the file of the scene. Raises CheckpointError when it can't be
+    (O.iter), .interval (small steps between samples), .states (number of states written), .scene the file of the scene. Raises CheckpointError when it can't be
     read; what it says is not compared with the other files until require_whole().
     """
 
@@ -52,7 +52,8 @@ class Checkpoint:
             self.scene = os.path.join(self.folder, about["scene"])
             os.stat(self.scene)
             # None: of a version that did not write them, which require_agreement() refuses.
-            self.iteration, self.states, self._sums = (about.get(name) for name in ("iteration", "states", "sums"))
+            names = ("iteration", "interval", "states", "sums")
+            self.iteration, self.interval, self.states, self._sums = map(about.get, names)
         except (RunFolderError, *UNREADABLE) as error:
             raise CheckpointError(
                 f'{self.folder}: not a checkpoint ({" ".join(str(error).split())}); '
@@ -70,12 +71,18 @@ class Checkpoint:
                 self._refuse(f"written by {name} {written}, not {present}")
         if self.run["commit"] != made_with["commit"]:
             self._refuse(f'written by the plugin of commit {self.run["commit"]}, not {made_with["commit"]}')
-        differs = difference(kind, parameters, self.run)
+        differs = difference(kind, parameters, self.run, but=("duration",))
         if differs:
             self._refuse(f"of a run with {differs}")
         history = kind.format.history
         if self.columns != [q.name for q in history if not q.optional or q.name in self.columns]:
             self._refuse("of a history with other columns")
+
+    def require_time_left(self, duration):
+        """Raise CheckpointError unless the duration [s] is longer than what the run has come to."""
+        reached = self.rows[-1][self.columns.index("time")] if len(self.rows) else 0.0
+        if duration < reached * (1 + 1e-9):
+            raise CheckpointError(f"duration = {duration:g} s: the run in {self.run_folder} has come to {reached:.6g} s; must be longer")
 
     def require_whole(self, kind_format, schedule, fused):
         """Raise CheckpointError unless scene, rows and the states before it are what was written.

@@ -45,6 +45,7 @@ class CheckpointWriter:
             "wallTime": self.wall_time(),
             "scene": scene,
             "iteration": omega.iter,
+            "interval": self.recorder.schedule.interval,
             "states": self.recorder.states_written,
             "sums": {"scene": sums(content), "rows": sums(rows.tobytes())},
             "columns": list(self.recorder.columns),

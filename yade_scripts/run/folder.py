@@ -41,8 +41,8 @@ class RunFolder:
                 # Only now: until the lock was taken, another run may have come to its end there.
                 if heartbeat:
                     self._not_elsewhere(require_stopped)
-                self._run, self._written = _usable(path, overwrite)
-                stopped = not self._has_ended() and checkpoint.exists(path)
+                self._run, self._written = _usable(path, overwrite, resume)
+                stopped = checkpoint.exists(path) and not (overwrite and self._has_ended())
                 if stopped and not (resume or overwrite) and RECORDER in self._written.names:
                     raise RunFolderError(
                         f"out = {path}: holds a run that was stopped, with a checkpoint; must be another folder, or resume=1 "
@@ -67,6 +67,13 @@ class RunFolder:
             self._heartbeat = self._not_elsewhere(Beating)
         except OSError as error:
             raise _unwritable(self.path, error) from None
+
+    def begin_again(self):
+        """begin_heartbeat() for a run that goes on from its checkpoint; one that had ended has not any more."""
+        self.begin_heartbeat()
+        if self._has_ended():
+            self._written.remove(lambda name: name == ENDED_FILE)
+            sync(self.path)
 
     def close(self):
         """End the heartbeat; the lock stays until the process ends."""
@@ -188,7 +195,7 @@ def _unwritable(path, error):
     return RunFolderError(f"out = {path}: {where}{error.strerror}{wanted}")
 
 
-def _usable(path, overwrite):
+def _usable(path, overwrite, resume):
     """(run.json, Written) of the run in a folder, {} and an empty one for a new folder; RunFolderError where it holds something
     else, or a run that has ended and may not be replaced."""
     if _is_empty(path):
@@ -204,7 +211,7 @@ def _usable(path, overwrite):
             f"out = {path}: its {RUN_FILE} has no list of the files that a run wrote (as of another program, or before version "
             "0.4.0); must be another folder, or that one moved away"
         )
-    if os.path.exists(os.path.join(path, ENDED_FILE)) and not overwrite:
+    if os.path.exists(os.path.join(path, ENDED_FILE)) and not (overwrite or resume and checkpoint.exists(path)):
         raise RunFolderError(f"out = {path}: holds a run that has ended; must be another folder, or overwrite=1")
     written.require_files()
     return run, written

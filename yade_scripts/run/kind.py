@@ -62,7 +62,8 @@ class Kind:
     materials.GrainParameters and run.parameters.RunParameters, with a field `duration` [s] and the method title().
     prepare(parameters, threads of YADE) -> Scene, called within YADE, raises ParameterError and PackingError.
     estimate(parameters) -> Estimate, without YADE. expected(parameters, run) -> {name: value}: what a run.json should
-    hold of parameters that are None and follow from the run itself.
+    hold of parameters that are None and follow from the run itself. why_undecided(run folder) -> why what the run is about is not
+    decided at its end, in a few words, or None.
     """
 
     format: RunKind
@@ -70,6 +71,7 @@ class Kind:
     prepare: Callable[[Any, int], Scene]
     estimate: Callable[[Any], Estimate]
     expected: Callable[[Any, Mapping], Mapping] = lambda parameters, run: {}
+    why_undecided: Callable[[str], str | None] = lambda folder: None
 
     @property
     def name(self):

@@ -9,6 +9,7 @@ from contextlib import suppress
 import numpy as np
 
 from yade_scripts.parameters.errors import tell
+from yade_scripts.run import continuing
 from yade_scripts.run.closing_line import closing_line
 from yade_scripts.run.loop import one_line
 
@@ -40,6 +41,7 @@ class Report:
     def __init__(self, folder, about, start, earlier=0.0):
         self.folder, self.start = folder, start - earlier
         self.run = {**about, **made_with(), "hardware": hardware()}
+        self.undecided = None  # why the run's outcome is
 
     def wall_time(self):
         """Seconds that the run has taken, those before interruptions included."""
@@ -62,7 +64,7 @@ class Report:
                 outcome, status = f"failed: {one_line(error)}", 1
                 with suppress(OSError):
                     self._write(outcome)
-        if outcome == "completed":
+        if outcome == "completed" and not self.undecided:
             with suppress(OSError):
                 self.folder.remove_checkpoint()
         self._tell(outcome)
@@ -76,6 +78,11 @@ class Report:
         if outcome.startswith("failed"):
             tell(outcome)
         try:
+            if self.undecided:
+                twice = continuing.command(self.folder.path, duration=2 * self.run["parameters"]["duration"])
+                print(f"outcome undecided: {self.undecided}; to continue: {twice}")
+            if outcome == "interrupted":
+                print(f"to continue: {continuing.command(self.folder.path)}")
             print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
         except OSError:  # what is left in the buffer would fail again at exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -27,13 +27,13 @@ class Schedule:
         return iteration + 1 if fused else (iteration - 1) // self.interval + 1
 
     @classmethod
-    def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22):
+    def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22, kept=None):
         """At most `interval` steps between samples, and at least `fewest_samples` if the steps suffice.
 
-        Runs of more than MOST_SAMPLES intervals are sampled less often.
+        Runs of more than MOST_SAMPLES intervals are sampled less often. kept: the interval of a run that is continued.
         """
         steps = max(1, ceil(duration / time_step * (1 - 1e-12)))
-        interval = max(1, min(interval, steps // fewest_samples), ceil(steps / MOST_SAMPLES))
+        interval = kept or max(1, min(interval, steps // fewest_samples), ceil(steps / MOST_SAMPLES))
         samples = ceil(steps / interval)
         chosen = np.linspace(0, samples, states).round().astype(int)
         return cls(samples * interval, interval, frozenset(int(number) for number in chosen))

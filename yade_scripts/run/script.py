@@ -6,6 +6,7 @@ import time
 
 from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import one_line_errors
+from yade_scripts.run import continuing
 from yade_scripts.run.arguments import gather
 from yade_scripts.stability import AUTO, require_countable
 
@@ -26,7 +27,8 @@ def main(kind, description):
         print(f"{script} {version_text()}")
         sys.exit(0)
     with one_line_errors(script):
-        parameters = kind.parse(*gather(sys.argv[1:]))
+        texts, row = gather(sys.argv[1:])
+        parameters = continuing.parameters(kind, texts) if continuing.CONTINUE in texts else kind.parse(texts, row)
         from yade.wrapper import Omega
 
         import contact_law  # noqa: F401  (the plugin, before anything asks it)
@@ -34,11 +36,12 @@ def main(kind, description):
 
         scene = kind.prepare(parameters, Omega().numThreads)
         _require_finite(scene.parameters, scene.constants["timeUnit"])
-        parameters = scene.parameters
-        schedule = Schedule.of(parameters.duration, scene.time_step, scene.interval, states=parameters.states)
-        folder, saved = _open(kind, scene, schedule)
+        schedule = lambda kept=None: Schedule.of(
+            scene.parameters.duration, scene.time_step, scene.interval, states=scene.parameters.states, kept=kept
+        )
+        folder, schedule = _open(kind, scene, schedule)
     try:
-        status = _carry_out(kind, scene, schedule, folder, saved, begun)
+        status = _carry_out(kind, scene, schedule, folder, begun)
     finally:
         folder.close()
     sys.exit(status)
@@ -51,21 +54,27 @@ def _require_finite(parameters, time_unit):
     require_countable(parameters.duration, parameters.stepFraction, time_unit)
 
 
-def _open(kind, scene, schedule):
-    """The run folder with its heartbeat, and its checkpoint if the run resumes from one."""
+def _open(kind, scene, scheduled):
+    """The run folder with its heartbeat, and its checkpoint if the run resumes from one; the Schedule.
+
+    scheduled(kept): the Schedule, with the interval between samples that a run which resumes has kept."""
     from yade_scripts.run import report
     from yade_scripts.run.folder import RunFolder
 
-    given, states = scene.parameters, len(schedule.states) + 1  # one where it is stopped, or fails
+    given, schedule = scene.parameters, scheduled()
+    states = len(schedule.states) + 1  # one where it is stopped, or fails
     folder = RunFolder(given.out, given.overwrite, given.resume, heartbeat=True, states=states)
-    if folder.checkpoint:
-        folder.checkpoint.require_agreement(kind, scene.parameters, report.made_with())
-        folder.checkpoint.require_whole(kind.format, schedule, scene.parameters.engine == "fused")
-        folder.begin_heartbeat()
-    return folder, folder.checkpoint
+    saved = folder.checkpoint
+    if saved:
+        saved.require_agreement(kind, given, report.made_with())
+        schedule = scheduled(saved.interval)
+        saved.require_whole(kind.format, schedule, given.engine == "fused")
+        saved.require_time_left(given.duration)
+        folder.begin_again()
+    return folder, schedule
 
 
-def _carry_out(kind, scene, schedule, folder, saved, begun):
+def _carry_out(kind, scene, schedule, folder, begun):
     """Step the scene to its end and write the run folder; the exit status."""
     from yade_scripts.run import loop
     from yade_scripts.run import scene as yade_scene
@@ -73,7 +82,7 @@ def _carry_out(kind, scene, schedule, folder, saved, begun):
     from yade_scripts.run.recorder import Recorder
     from yade_scripts.run.report import Report
 
-    parameters = scene.parameters
+    parameters, saved = scene.parameters, folder.checkpoint
     recorder = Recorder(folder, schedule, kind.format, scene)
     about = {
         "kind": kind.name,
@@ -94,6 +103,10 @@ def _carry_out(kind, scene, schedule, folder, saved, begun):
         checkpoints = CheckpointWriter(folder, report.run, recorder, report.wall_time, parameters.checkpointInterval)
         outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
         recorder.write_history()
+        if outcome == "completed":
+            report.undecided = kind.why_undecided(folder.path)
+        if report.undecided:
+            checkpoints.save()
     except (OSError, RuntimeError) as error:  # a folder that can't be written, a scene that YADE can't load
         outcome, status = f"failed: {loop.one_line(error)}", 1
     return report.end(outcome, status, recorder.time)

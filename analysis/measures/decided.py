@@ -1,0 +1,115 @@
+"""Whether the outcome of a collision is decided: whether neither pieces that may still meet nor contacts that may still break could make it
+another one.
+
+Pieces may meet when the spheres around them do, on straight lines. A piece may break where its two sides move against each other with more
+energy than the contacts between them hold (cuts.loose_cuts), and as long as it has not had the time to rebound as a whole.
+"""
+
+import numpy as np
+
+from .cuts import loose_cuts
+from .fragments import fragment_labels, fragment_masses
+from .free_flight import inner_kinetic_energy, pieces_can_meet, pieces_that_can_meet
+from .outcome import BOUNCING, NEVER_MET, STICKING, classify
+
+BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
+# A24 follows aggregates of 80 grain radii for 1000 ns, in which they are compressed and part: 12.5 ns a grain radius, in
+# units of ice's t0.
+REBOUND_PER_RADIUS = 64.6
+QUIET = 0.02  # of E_break: kinetic energy a grain, of the motion within a piece, that breaks no contact
+EVER = np.inf
+CONSTANTS = ("density", "grainRadius", "aggregateRadius", "timeUnit", "pullOffForce", "pullOffOverlap")  # of run.json
+
+
+def rebound_time(radius, time_unit):
+    """Time [s] from the first touch in which two aggregates of this radius [grain radii] are compressed and part again (A24 section
+    3); time_unit: t0 [s]."""
+    return REBOUND_PER_RADIUS * radius * time_unit
+
+
+def contact_strength(state, constants):
+    """Energy [J] (M,) that breaks each contact from rest: of JKR contacts E_break, which grows as the reduced radius to the power 4/3,
+    of sintered bonds what breaks them by stretching (S17 eq 6). Arguments as why_undecided."""
+    first, second = state["radius"][state["contact_pairs"]].T
+    reduced = 2 * first * second / (first + second) / constants["grainRadius"]
+    found = BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"] * reduced ** (4 / 3)
+    return np.where(state["contact_bonded"], constants.get("breakingEnergy", 0.0), found)
+
+
+def why_undecided(kind, counted, state, constants, since_touch):
+    """Why an outcome may still become another one, in a few words; None where it is decided.
+
+    kind: of outcome.collision_outcome at this state, counted (N,) bool as there. state: a mapping with position, velocity (N,3), radius,
+    aggregate (N,), contact_pairs (M,2), contact_bonded (M,), SI. constants: a mapping with the derived CONSTANTS of run.json.
+    since_touch: time [s] since the aggregates first touched (of those that never met of no meaning).
+    """
+    pieces = _Pieces(state, constants)
+    if kind == NEVER_MET:
+        return "the aggregates may still meet" if pieces_can_meet(*pieces.flight, EVER) else None
+    shares = fragment_masses(pieces.labels, pieces.mass * counted) / pieces.mass[counted].sum()
+    largest, second = (*np.argsort(-shares, kind="stable")[:2], None)[:2]
+    if kind == STICKING:
+        return pieces.why_rebounding(since_touch) or _why_breaking(kind, pieces, shares, largest)
+    return _why_meeting(kind, pieces, shares, largest, second) or (
+        kind == BOUNCING and _why_breaking(kind, pieces, shares, largest, second) or None
+    )
+
+
+def has_come_to_rest(state, constants, since_touch, time):
+    """Whether no fragment can change any more within `time` [s], as far as free flight tells: no two pieces can meet, none is
+    in motion within that breaks contacts (QUIET), no cut is loose, and the aggregates have had the time to rebound. Other arguments
+    as why_undecided."""
+    pieces = _Pieces(state, constants)
+    return not (
+        pieces.why_rebounding(since_touch)
+        or pieces.are_moving_within()
+        or pieces.loose_cuts()[0].size
+        or pieces_can_meet(*pieces.flight, time)
+    )
+
+
+class _Pieces:
+    """Of a state: labels (N,), mass (N,) [kg], and what may become of them."""
+
+    def __init__(self, state, constants):
+        self.state, self.constants = state, constants
+        self.mass = 4 / 3 * np.pi * constants["density"] * state["radius"] ** 3
+        self.labels = fragment_labels(len(self.mass), state["contact_pairs"])
+        self._motion = state["position"], state["velocity"], self.mass
+        self.flight = state["position"], state["velocity"], state["radius"], self.labels  # of free_flight
+
+    def why_rebounding(self, since_touch):
+        needed = rebound_time(self.constants["aggregateRadius"] / self.constants["grainRadius"], self.constants["timeUnit"])
+        if since_touch < needed * (1 - 1e-3):
+            return f"{since_touch:.3g} s after the first touch the aggregates may still rebound, until {needed:.3g} s"
+
+    def are_moving_within(self):
+        breaking = BREAKING * self.constants["pullOffForce"] * self.constants["pullOffOverlap"]
+        inner = inner_kinetic_energy(*self._motion, self.labels)
+        return bool(np.any(inner > QUIET * breaking * np.bincount(self.labels)))
+
+    def loose_cuts(self):
+        pairs, strength = self.state["contact_pairs"], contact_strength(self.state, self.constants)
+        return loose_cuts(*self._motion, pairs, self.labels, self.state["aggregate"], strength)
+
+
+def _why_breaking(kind, pieces, shares, *largest):
+    """For an outcome that the loss of a side of one of the pieces `largest` makes another one."""
+    cut, side = pieces.loose_cuts()
+    for piece in largest:
+        lost = side[cut == piece].max(initial=0.0) / pieces.mass.sum()
+        left = sorted((shares[other] - lost * (other == piece) for other in largest), reverse=True)
+        if classify(*(left + [0.0])[:2]) != kind:
+            return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
+
+
+def _why_meeting(kind, pieces, shares, largest, second):
+    """For an outcome that pieces make another one which may still meet the largest or the second."""
+    near, other = pieces_that_can_meet(largest, *pieces.flight, EVER), 0.0
+    whole = shares[largest] + shares[near].sum()
+    if second is not None and not near[second]:
+        other = shares[second] + shares[pieces_that_can_meet(second, *pieces.flight, EVER) & ~near].sum()
+    seen = (shares[largest], 0.0 if second is None else shares[second])
+    have_parted = classify(*seen) == kind  # otherwise pieces of such masses, but not those of the two aggregates
+    if classify(*sorted((whole, other), reverse=True), have_parted) != kind:
+        return f"pieces of {whole - shares[largest]:.0%} of the mass may still meet the largest"

@@ -1,0 +1,110 @@
+"""When the outcome of a collision is decided: chains of grains in units of a grain's radius, its mass and the energy that breaks a contact."""
+
+import numpy as np
+import pytest
+
+from analysis.measures import decided
+from analysis.measures.cuts import loose_cuts
+from analysis.measures.fragments import fragment_labels
+
+CONSTANTS = {
+    **dict.fromkeys(("grainRadius", "aggregateRadius", "pullOffOverlap", "timeUnit"), 1.0),
+    "density": 3 / (4 * np.pi),
+    "pullOffForce": 1 / decided.BREAKING,
+    "breakingEnergy": 9.0,
+}
+LONG = 2 * decided.REBOUND_PER_RADIUS
+
+
+def chain(velocity, broken=(), places=None, bonded=False):
+    """A state of a straight chain of grains of which the first half is aggregate 0; velocity (N,) along it, broken: contacts left out."""
+    grains = len(velocity)
+    position = np.zeros((grains, 3))
+    position[:, 0] = 2 * np.arange(grains) if places is None else places
+    pairs = [(i, i + 1) for i in range(grains - 1) if i not in broken]
+    return {
+        "position": position,
+        "velocity": np.column_stack([velocity, np.zeros((grains, 2))]),
+        "radius": np.ones(grains),
+        "aggregate": (np.arange(grains) >= grains // 2).astype(int),
+        "contact_pairs": np.array(pairs),
+        "contact_bonded": np.full(len(pairs), bonded),
+    }
+
+
+def parting(grains, energy, first):
+    """Velocities with which the first grains and the others part, with this much kinetic energy."""
+    reduced = first * (grains - first) / grains
+    speed = np.sqrt(2 * energy / reduced)
+    return np.where(np.arange(grains) < first, -speed * (grains - first) / grains, speed * first / grains)
+
+
+STILL = np.zeros(20)
+APART = np.repeat([-1.0, 1.0], 10)
+
+
+@pytest.mark.parametrize(
+    "kind, state, since_touch, reason",
+    [
+        ("sticking", chain(STILL), LONG, None),
+        ("sticking", chain(STILL), LONG / 3, "may still rebound"),
+        ("sticking", chain(parting(20, 0.9, 10)), LONG, None),
+        ("sticking", chain(parting(20, 1.1, 10)), LONG, "parts of 50% of the mass"),
+        ("sticking", chain(parting(20, 1.1, 10), bonded=True), LONG, None),
+        ("sticking", chain(parting(20, 1.1, 4)), LONG, "parts of 20% of the mass"),  # within an aggregate
+        ("sticking", chain(parting(20, 1.1, 2)), LONG, None),  # a tenth less is sticking too
+        ("bouncing", chain(APART, [9]), LONG, None),
+        ("bouncing", chain(-APART, [9]), LONG, "may still meet the largest"),
+        ("bouncing", chain(APART + 3 * np.repeat([0, 1], [15, 5]), [9]), LONG, "parts of 25% of the mass"),
+        ("fragmentation", chain(np.repeat([-1.0, 0, 1], [8, 4, 8]), [7, 11]), LONG, None),
+        ("fragmentation", chain(np.repeat([0, 0.0, -1], [16, 2, 2]), [15, 17]), LONG, "pieces of 10% of the mass"),
+        ("fragmentation", chain(np.repeat([0, 0.1, 1], [16, 2, 2]), [15, 17], 10 * np.arange(20)), LONG, None),
+        ("never met", chain(APART, [9]), 0.0, None),
+        ("never met", chain(-APART, [9]), 0.0, "the aggregates may still meet"),
+    ],
+)
+def test_chains(kind, state, since_touch, reason):
+    if kind == "fragmentation" and reason is None:
+        state["position"] *= 5  # farther apart than the spheres around them
+    why = decided.why_undecided(kind, np.ones(20, dtype=bool), state, CONSTANTS, since_touch)
+    assert (why is None) if reason is None else (reason in why)
+
+
+@pytest.mark.parametrize(
+    "state, since_touch, time, rests",
+    [
+        (chain(STILL), LONG, 1e9, True),
+        (chain(STILL), 0.5 * LONG / 2, 1e9, False),
+        (chain(parting(20, 1.1, 2)), LONG, 1e9, False),  # less than a tenth may still break off
+        (chain(0.3 * (-1.0) ** np.arange(20)), LONG, 1e9, False),  # shakes
+        (chain(APART, [9]), LONG, 1e9, True),
+        (chain(-APART, [9], np.r_[:20:2, 100:120:2]), LONG, 30.0, True),  # they meet later
+        (chain(-APART, [9], np.r_[:20:2, 100:120:2]), LONG, 50.0, False),
+    ],
+)
+def test_a_collision_has_come_to_rest(state, since_touch, time, rests):
+    assert decided.has_come_to_rest(state, CONSTANTS, since_touch, time) is rests
+
+
+def test_strength_grows_with_the_reduced_radius():
+    state = chain(np.zeros(4))
+    state["radius"] = np.array([1.0, 1.0, 3.0, 1e9])
+    assert decided.contact_strength(state, CONSTANTS) == pytest.approx([1, 1.5 ** (4 / 3), 6 ** (4 / 3)], rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_cuts_are_those_contacts_without_which_there_is_a_piece_more(seed):
+    random = np.random.default_rng(seed)
+    grains = random.integers(2, 60)
+    pairs = np.unique(np.sort(random.integers(0, grains, (int(0.65 * grains), 2))), axis=0)
+    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
+    position, velocity, mass = random.normal(size=(grains, 3)), random.normal(size=(grains, 3)), random.uniform(1, 2, grains)
+    labels = fragment_labels(grains, pairs)
+    one = np.zeros(grains, dtype=int)  # all of one aggregate: no cut between two
+    _, sides = loose_cuts(position, velocity, mass, pairs, labels, one, np.full(len(pairs), -1.0))
+    expected = []
+    for contact, ends in enumerate(pairs):
+        without = fragment_labels(grains, np.delete(pairs, contact, axis=0))
+        if without.max() > labels.max():
+            expected.append(min(mass[without == without[end]].sum() for end in ends))
+    assert np.sort(sides) == pytest.approx(np.sort(expected))

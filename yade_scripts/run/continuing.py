@@ -1,0 +1,46 @@
+"""continue=FOLDER: a run that was stopped, or ended before its outcome was decided, goes on with its own parameters. Needs no YADE."""
+
+import os
+import shlex
+import sys
+
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.folder import read_json
+from analysis.runs.format import RUN_FILE
+from yade_scripts.parameters import ParameterError
+
+CONTINUE = "continue"
+MAY_CHANGE = ("duration",)  # beside what is of no consequence
+
+
+def parameters(kind, texts):
+    """The Kind's parameters of the run in the folder texts["continue"], with resume=1 and with what else is given in texts, {name: text}:
+    a duration, and what is of no consequence. Raises ParameterError."""
+    folder, given = texts[CONTINUE], {name: text for name, text in texts.items() if name != CONTINUE}
+    columns = kind.parameters.columns()
+    for name in given:
+        if name in columns and (name == "out" or columns[name].of_consequence and name not in MAY_CHANGE):
+            raise ParameterError(f"{name}: given with {CONTINUE} = {folder}, whose own it is; must be left out")
+    found = kind.parameters.parse(given)  # only for its checks
+    held = {**_held(kind, folder), **{name: getattr(found, name) for name in given}}
+    return kind.parameters(**{**held, "out": folder, "resume": 1, "overwrite": 0})
+
+
+def _held(kind, folder):
+    """The parameters in a folder's run.json, of this kind."""
+    try:
+        run = read_json(os.path.join(folder, RUN_FILE))
+        held = run["parameters"]
+    except (RunFolderError, OSError, KeyError, TypeError) as error:
+        raise ParameterError(f"{CONTINUE} = {folder}: {error}; must be the folder of a run") from None
+    if run.get("kind") != kind.name or set(held) != set(kind.parameters.columns()):
+        raise ParameterError(
+            f"{CONTINUE} = {folder}: a run of another kind or version; must be a {kind.name} of this version"
+        )
+    return held
+
+
+def command(folder, **changed):
+    """The command that continues the run in a folder, as this process was called."""
+    words = ["yade", "-n", "-x", sys.argv[0], f"{CONTINUE}={folder}"]
+    return shlex.join(words + [f"{name}={value:g}" for name, value in changed.items()])
