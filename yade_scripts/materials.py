@@ -3,7 +3,17 @@
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
-from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Parameters, Usual, between, one_of, parameter
+from yade_scripts.parameters import (
+    POSITIVE,
+    SWITCH,
+    Check,
+    ParameterError,
+    Parameters,
+    Usual,
+    between,
+    one_of,
+    parameter,
+)
 
 
 @dataclass(frozen=True)

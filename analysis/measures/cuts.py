@@ -37,7 +37,12 @@ def _between_aggregates(mass, momentum, pairs, labels, aggregate, strength):
     across = aggregate[pairs[:, 0]] != aggregate[pairs[:, 1]]
     held = np.bincount(labels[pairs[across, 0]], weights=strength[across], minlength=number)
     pushed = [np.bincount(labels[first], weights=p, minlength=number) for p in momentum[first].T]
-    return np.arange(number), np.bincount(labels[first], weights=mass[first], minlength=number), np.stack(pushed, 1), held
+    return (
+        np.arange(number),
+        np.bincount(labels[first], weights=mass[first], minlength=number),
+        np.stack(pushed, 1),
+        held,
+    )
 
 
 def _through_one_contact(mass, momentum, pairs, labels, strength):

@@ -79,7 +79,9 @@ class _Pieces:
         self.flight = state["position"], state["velocity"], state["radius"], self.labels  # of free_flight
 
     def why_rebounding(self, since_touch):
-        needed = rebound_time(self.constants["aggregateRadius"] / self.constants["grainRadius"], self.constants["timeUnit"])
+        needed = rebound_time(
+            self.constants["aggregateRadius"] / self.constants["grainRadius"], self.constants["timeUnit"]
+        )
         if since_touch < needed * (1 - 1e-3):
             return f"{since_touch:.3g} s after the first touch the aggregates may still rebound, until {needed:.3g} s"
 

@@ -98,7 +98,11 @@ def test_cuts_are_those_contacts_without_which_there_is_a_piece_more(seed):
     grains = random.integers(2, 60)
     pairs = np.unique(np.sort(random.integers(0, grains, (int(0.65 * grains), 2))), axis=0)
     pairs = pairs[pairs[:, 0] < pairs[:, 1]]
-    position, velocity, mass = random.normal(size=(grains, 3)), random.normal(size=(grains, 3)), random.uniform(1, 2, grains)
+    position, velocity, mass = (
+        random.normal(size=(grains, 3)),
+        random.normal(size=(grains, 3)),
+        random.uniform(1, 2, grains),
+    )
     labels = fragment_labels(grains, pairs)
     one = np.zeros(grains, dtype=int)  # all of one aggregate: no cut between two
     _, sides = loose_cuts(position, velocity, mass, pairs, labels, one, np.full(len(pairs), -1.0))

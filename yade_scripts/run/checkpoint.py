@@ -82,7 +82,9 @@ class Checkpoint:
         """Raise CheckpointError unless the duration [s] is longer than what the run has come to."""
         reached = self.rows[-1][self.columns.index("time")] if len(self.rows) else 0.0
         if duration < reached * (1 + 1e-9):
-            raise CheckpointError(f"duration = {duration:g} s: the run in {self.run_folder} has come to {reached:.6g} s; must be longer")
+            raise CheckpointError(
+                f"duration = {duration:g} s: the run in {self.run_folder} has come to {reached:.6g} s; must be longer"
+            )
 
     def require_whole(self, kind_format, schedule, fused):
         """Raise CheckpointError unless scene, rows and the states before it are what was written.
