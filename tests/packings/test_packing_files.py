@@ -88,7 +88,7 @@ def test_command_line(tmp_path):
         ("a.npz radius=-3", "radius = -3: must be > 0 [grain radii]"),
         ("a.npz velocity=3", "velocity: unknown parameter; must be one of packing, filling"),
         ("a.npz density=900", "density: a packing doesn't depend on it; must be left out"),
-        ("a.npz surfaceEnergy=1e4", "grainRadius = 1e-07: contacts at rest have a radius of "),
+        ("a.npz surfaceEnergy=1e4 unusual=1", "grainRadius = 1e-07: contacts at rest have a radius of "),
         ("nowhere/a.npz", "nowhere"),
         ("a.npz ./a.npz radius=3", "./a.npz: given twice; must be two files, one for each aggregate"),
         ("a.npz packing=file file=b.npz", "packing = file: must be cpe or bcca or bpca"),

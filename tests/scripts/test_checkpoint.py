@@ -1,6 +1,7 @@
 """A run that was killed or stopped resumes from its checkpoint as if nothing had happened, whatever its kind."""
 
 import os
+import shlex
 import shutil
 import signal
 
@@ -9,6 +10,7 @@ import pytest
 from running import (
     COLLIDE,
     COMPRESS,
+    call,
     collide,
     completed,
     read_arrays,
@@ -127,10 +129,40 @@ def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, damag
 
 
 @pytest.mark.parametrize(
-    "checkpoint", [False, True], ids=["resume without a checkpoint", "a checkpoint without resume"]
+    "checkpoint", [False, True], ids=["resume without a checkpoint", "a checkpoint that is replaced"]
 )
 def test_a_run_starts_from_the_beginning(straight, killed, tmp_path, checkpoint):
     if checkpoint:
         shutil.copytree(killed / "run", tmp_path / "run")
-    completed(tmp_path, *RUN, *([] if checkpoint else ["resume=1"]))
+        line = refusal(collide(tmp_path, *RUN, "out=run"))
+        assert "holds a run that was stopped" in line and "resume=1" in line and "overwrite=1" in line
+    completed(tmp_path, *RUN, "overwrite=1" if checkpoint else "resume=1")
     assert same_bits(tmp_path / "run", straight) and not (tmp_path / "run" / "checkpoint").exists()
+
+
+def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
+    """Its line has the command; what the command says of other parameters, or of no more time, is refused."""
+    fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()
+    (tmp_path / "straight").mkdir()
+    _, straight = completed(tmp_path / "straight", *fluffy, "duration=6e-7")
+    done = collide(tmp_path, *fluffy, "duration=3e-7", "out=run")
+    reason, _, command = done.stdout.partition("; to continue: ")
+    assert "outcome undecided: " in reason and "ended" in os.listdir(tmp_path / "run")
+    command = shlex.split(command.splitlines()[0])
+    assert command[-1] == "duration=6e-07"
+    for wrong, message in (
+        ("duration=2e-7", "duration = 2e-07 s: the run in run has come to 3e-07 s; must be longer"),
+        ("velocity=3", "velocity: given with continue = run, whose own it is; must be left out"),
+        ("continue=nowhere", "continue: given twice; must be given once"),
+    ):
+        more = [wrong] if wrong.startswith("duration") else [command[-1], wrong]
+        assert refusal(call(tmp_path, *command[:-1], *more)).endswith(message)
+    assert call(tmp_path, *command).returncode == 0
+    continued = read_arrays(tmp_path, "run", "history.npz")
+    assert all(continued[name].tobytes() == straight[name].tobytes() for name in straight)
+
+
+def test_ctrl_c_prints_what_continues(tmp_path):
+    output = stop_midway(tmp_path, [*RUN, OFTEN], signal.SIGINT).output
+    command = next(line for line in output.splitlines() if line.startswith("to continue: "))
+    assert call(tmp_path, *shlex.split(command)[2:]).returncode == 0 and (tmp_path / "run" / "ended").exists()

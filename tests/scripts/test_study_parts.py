@@ -94,10 +94,11 @@ def test_the_default_duration_is_estimated_without_packings(cells):
 
     durations = []
     for seed in range(10):
-        placed, pair, velocities = place(parse({**cells, "seed": seed}), equilibrium_overlap(MATERIALS["ice"]))
+        parameters = parse({**cells, "seed": seed})
+        placed, pair, velocities = place(parameters, equilibrium_overlap(MATERIALS["ice"]))
         touch = first_touch(*pair, velocities[1] - velocities[0])
         if touch is not None:
-            durations.append(default_duration(placed.radius, TIME_UNIT, touch))
+            durations.append(default_duration(parameters, placed.radius, TIME_UNIT, touch))
     assert len(durations) >= 8
     steps = sum(durations) / len(durations) / TIME_UNIT / 0.1
     assert row(**cells).estimate.steps == pytest.approx(steps, rel=0.2)
@@ -162,8 +163,9 @@ def test_runs_of_format_1_agree_with_rows_that_give_no_duration():
 
 def test_a_bcca_row_agrees_with_its_run_whatever_the_radius_became():
     wanted = parse({"packing": "bcca", "grains": 64})
-    run = {"format": 1, "parameters": wanted.changed(radius=17.3, filling=0.0124, duration=64.6 * 17.3e-10).as_dict()}
-    run["derived"] = {"timeUnit": 1e-10}
+    duration = 1e-9 + 4 * 17.3 * 1e-7 / wanted.velocity
+    run = {"format": 3, "parameters": wanted.changed(radius=17.3, filling=0.0124, duration=duration).as_dict()}
+    run["derived"] = {"timeUnit": 1e-10, "firstTouch": 1e-9}
     assert agreement.difference(KIND, wanted, run) is None
     assert agreement.difference(KIND, wanted.changed(grains=65), run) == "grains = 64, not 65"
 

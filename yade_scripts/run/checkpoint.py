@@ -78,12 +78,12 @@ class Checkpoint:
         if self.columns != [q.name for q in history if not q.optional or q.name in self.columns]:
             self._refuse("of a history with other columns")
 
-    def require_time_left(self, duration):
-        """Raise CheckpointError unless the duration [s] is longer than what the run has come to."""
+    def require_time_left(self, duration, ended):
+        """Raise CheckpointError when the run has come further than the duration [s], or, one that has ended, as far."""
         reached = self.rows[-1][self.columns.index("time")] if len(self.rows) else 0.0
-        if duration < reached * (1 + 1e-9):
+        if reached * (1 + 1e-9 * (1 if ended else -1)) > duration:
             raise CheckpointError(
-                f"duration = {duration:g} s: the run in {self.run_folder} has come to {reached:.6g} s; must be longer"
+                f"duration = {duration:.6g} s: the run in {self.run_folder} has come to {reached:.6g} s; must be longer"
             )
 
     def require_whole(self, kind_format, schedule, fused):

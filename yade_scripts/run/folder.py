@@ -42,7 +42,7 @@ class RunFolder:
                 if heartbeat:
                     self._not_elsewhere(require_stopped)
                 self._run, self._written = _usable(path, overwrite, resume)
-                stopped = checkpoint.exists(path) and not (overwrite and self._has_ended())
+                stopped = checkpoint.exists(path) and not (overwrite and self.has_ended())
                 if stopped and not (resume or overwrite) and RECORDER in self._written.names:
                     raise RunFolderError(
                         f"out = {path}: holds a run that was stopped, with a checkpoint; must be another folder, or resume=1 "
@@ -71,7 +71,7 @@ class RunFolder:
     def begin_again(self):
         """begin_heartbeat() for a run that goes on from its checkpoint; one that had ended has not any more."""
         self.begin_heartbeat()
-        if self._has_ended():
+        if self.has_ended():
             self._written.remove(lambda name: name == ENDED_FILE)
             sync(self.path)
 
@@ -133,6 +133,10 @@ class RunFolder:
                 os.unlink(self._file(ENDED_FILE))
             raise
 
+    def has_ended(self):
+        """Whether the mark is there that the run came to its planned end."""
+        return os.path.exists(self._file(ENDED_FILE))
+
     def _file(self, name):
         return os.path.join(self.path, name)
 
@@ -149,9 +153,6 @@ class RunFolder:
     def _write_run(self, lasting=False):
         run = {"format": FORMAT, **self._run, "files": sorted(self._written.names)}
         self._write(RUN_FILE, json_text(run).encode(), lasting)
-
-    def _has_ended(self):
-        return os.path.exists(self._file(ENDED_FILE))
 
     def _begin(self, states):
         """Remove an earlier run's files, and nothing else: the mark of its end first; run.json, with all on its list, stays in all

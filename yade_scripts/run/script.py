@@ -69,7 +69,7 @@ def _open(kind, scene, scheduled):
         saved.require_agreement(kind, given, report.made_with())
         schedule = scheduled(saved.interval)
         saved.require_whole(kind.format, schedule, given.engine == "fused")
-        saved.require_time_left(given.duration)
+        saved.require_time_left(schedule.steps * scene.time_step, folder.has_ended())
         folder.begin_again()
     return folder, schedule
 

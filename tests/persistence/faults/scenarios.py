@@ -10,8 +10,8 @@ from faults.forks import COUNT, DISK_FULL, END_BEFORE, END_HALFWAY
 
 from analysis.runs.write import is_unfinished
 
-# Six steps of a few grains, a checkpoint after each, four states.
-RUN = ("radius=2", "velocity=30", "duration=1e-10", "states=4", "threads=1", "checkpointInterval=1e-9")
+# Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.
+RUN = ("radius=2", "velocity=30", "impact=1", "duration=1e-10", "states=4", "threads=1", "checkpointInterval=1e-9")
 OTHER = ("seed=2",)  # of a run that was in the folder before
 RESUME, OVERWRITE = "resume=1", "overwrite=1"
 ACTIONS = {"ends before": END_BEFORE, "ends halfway": END_HALFWAY, "disk full from": DISK_FULL}
@@ -41,7 +41,13 @@ SCENARIOS = (
         (RUN + (OVERWRITE,), RUN + (RESUME,), RUN + (RESUME, OVERWRITE)),
         before=RUN + OTHER,
     ),
-    Scenario("a run that replaces a killed one", RUN, (RUN,), before=RUN + OTHER, before_checkpoints=3),
+    Scenario(
+        "a run that replaces a killed one",
+        RUN + (OVERWRITE,),
+        (RUN + (OVERWRITE,),),
+        before=RUN + OTHER,
+        before_checkpoints=3,
+    ),
 )
 
 
