@@ -18,6 +18,7 @@ BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
 REBOUND_PER_RADIUS = 64.6
 QUIET = 0.02  # of E_break: kinetic energy a grain, of the motion within a piece, that breaks no contact
 EVER = np.inf
+RECENT = 1 / 4  # of the time since the first touch
 CONSTANTS = ("density", "grainRadius", "aggregateRadius", "timeUnit", "pullOffForce", "pullOffOverlap")  # of run.json
 
 
@@ -36,35 +37,39 @@ def contact_strength(state, constants):
     return np.where(state["contact_bonded"], constants.get("breakingEnergy", 0.0), found)
 
 
-def why_undecided(kind, counted, state, constants, since_touch):
+def is_recent(time, end, touch):
+    """Whether a time [s] lies so near to the end that the energy of an oscillating piece shows at some such time, not only how it
+    happens to be divided at the end: in the last quarter since the first touch."""
+    return time >= end - RECENT * (end - touch)
+
+
+def why_undecided(kind, counted, states, constants, touch):
     """Why an outcome may still become another one, in a few words; None where it is decided.
 
-    kind: of outcome.collision_outcome at this state, counted (N,) bool as there. state: a mapping with position, velocity (N,3), radius,
-    aggregate (N,), contact_pairs (M,2), contact_bonded (M,), SI. constants: a mapping with the derived CONSTANTS of run.json.
-    since_touch: time [s] since the aggregates first touched (of those that never met of no meaning).
+    kind: of outcome.collision_outcome at the last of states, counted (N,) bool as there. states: mappings with time, position, velocity
+    (N,3), radius, aggregate (N,), contact_pairs (M,2), contact_bonded (M,), SI: those that are recent, the end among them. constants: a
+    mapping with the derived CONSTANTS of run.json. touch: time [s] of the first touch (where the aggregates never met of no meaning).
     """
-    pieces = _Pieces(state, constants)
+    pieces, end = _Pieces(states[-1], constants), states[-1]["time"]
     if kind == NEVER_MET:
         return "the aggregates may still meet" if pieces_can_meet(*pieces.flight, EVER) else None
-    shares = fragment_masses(pieces.labels, pieces.mass * counted) / pieces.mass[counted].sum()
-    largest, second = (*np.argsort(-shares, kind="stable")[:2], None)[:2]
+    breaking = (_why_breaking(kind, _Pieces(state, constants), counted) for state in states)
+    breaking = next(filter(None, breaking), None)
     if kind == STICKING:
-        return pieces.why_rebounding(since_touch) or _why_breaking(kind, pieces, shares, largest)
-    return _why_meeting(kind, pieces, shares, largest, second) or (
-        kind == BOUNCING and _why_breaking(kind, pieces, shares, largest, second) or None
-    )
+        return pieces.why_rebounding(end - touch) or breaking
+    return _why_meeting(kind, pieces, counted) or (breaking if kind == BOUNCING else None)
 
 
-def has_come_to_rest(state, constants, since_touch, time):
-    """Whether no fragment can change any more within `time` [s], as far as free flight tells: no two pieces can meet, none is
-    in motion within that breaks contacts (QUIET), no cut is loose, and the aggregates have had the time to rebound. Other arguments
-    as why_undecided."""
+def has_come_to_rest(state, constants, touch, duration):
+    """Whether no fragment of a state seems to change any more until the time `duration` [s]: no two pieces can meet, none is in
+    motion within that breaks contacts (QUIET), no cut is loose, and the aggregates have had the time to rebound. Other arguments as
+    why_undecided. To be sure of it, it must have been so at all recent times."""
     pieces = _Pieces(state, constants)
     return not (
-        pieces.why_rebounding(since_touch)
+        pieces.why_rebounding(state["time"] - touch)
         or pieces.are_moving_within()
         or pieces.loose_cuts()[0].size
-        or pieces_can_meet(*pieces.flight, time)
+        or pieces_can_meet(*pieces.flight, duration - state["time"])
     )
 
 
@@ -94,19 +99,27 @@ class _Pieces:
         pairs, strength = self.state["contact_pairs"], contact_strength(self.state, self.constants)
         return loose_cuts(*self._motion, pairs, self.labels, self.state["aggregate"], strength)
 
+    def shares(self, counted):
+        """(shares (K,) of the counted mass, numbers of the two largest pieces, None for the second where there is one)."""
+        shares = fragment_masses(self.labels, self.mass * counted) / self.mass[counted].sum()
+        return shares, *(*np.argsort(-shares, kind="stable")[:2], None)[:2]
 
-def _why_breaking(kind, pieces, shares, *largest):
-    """For an outcome that the loss of a side of one of the pieces `largest` makes another one."""
+
+def _why_breaking(kind, pieces, counted):
+    """For an outcome that the loss of a side of one of the largest pieces makes another one."""
+    shares, *largest = pieces.shares(counted)
+    largest = largest[: 2 if kind == BOUNCING else 1]
     cut, side = pieces.loose_cuts()
     for piece in largest:
         lost = side[cut == piece].max(initial=0.0) / pieces.mass.sum()
-        left = sorted((shares[other] - lost * (other == piece) for other in largest), reverse=True)
-        if classify(*(left + [0.0])[:2]) != kind:
+        left = sorted((shares[other] - lost * (other == piece) for other in largest if other is not None), reverse=True)
+        if lost and classify(*(left + [0.0])[:2]) != kind:
             return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
 
 
-def _why_meeting(kind, pieces, shares, largest, second):
+def _why_meeting(kind, pieces, counted):
     """For an outcome that pieces make another one which may still meet the largest or the second."""
+    shares, largest, second = pieces.shares(counted)
     near, other = pieces_that_can_meet(largest, *pieces.flight, EVER), 0.0
     whole = shares[largest] + shares[near].sum()
     if second is not None and not near[second]:

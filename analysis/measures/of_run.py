@@ -5,7 +5,7 @@ import numpy as np
 from ..runs.arrays import RunFolderError
 from ..runs.format import STATES_FOLDER
 from .compression import maximum_compression
-from .decided import CONSTANTS, why_undecided
+from .decided import CONSTANTS, is_recent, why_undecided
 from .fragments import belongs_to_an_aggregate
 from .outcome import collision_outcome
 
@@ -42,8 +42,8 @@ def outcome_of_run(run):
         return found
     counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
     touch = run.derived.get("firstTouch", run.history["time"][np.argmax(run.history["contacts_between"] > 0)])
-    since_touch = float(end.time - touch)
-    return found.if_decided(why_undecided(found.kind, counted, vars(end), run.derived, since_touch))
+    recent = [vars(run.states[i]) for i in np.flatnonzero(is_recent(run.states.times, end.time, touch))]
+    return found.if_decided(why_undecided(found.kind, counted, recent, run.derived, touch))
 
 
 def derived_constants(run, names):

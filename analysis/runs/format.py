@@ -133,6 +133,7 @@ STATE = (
     Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True, positive=True),
 )
 
+RESTING = "resting"
 COLLISION = RunKind(
     "collision",
     (
@@ -141,6 +142,7 @@ COLLISION = RunKind(
         Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates", "i"),
         Quantity("formed", ("T",), "", "contacts formed since the start (A22 N_con)", "i", optional=True),
         Quantity("broken", ("T",), "", "contacts broken since the start (A22 N_cut)", "i", optional=True),
+        Quantity(RESTING, ("T",), "", "1: no piece can change any more, 0: one may, NaN: not looked at; of runs that end early", optional=True, gaps=True),
     ),
     aggregates=2,
 )

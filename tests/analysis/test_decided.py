@@ -66,12 +66,13 @@ APART = np.repeat([-1.0, 1.0], 10)
 def test_chains(kind, state, since_touch, reason):
     if kind == "fragmentation" and reason is None:
         state["position"] *= 5  # farther apart than the spheres around them
-    why = decided.why_undecided(kind, np.ones(20, dtype=bool), state, CONSTANTS, since_touch)
+    state["time"] = since_touch
+    why = decided.why_undecided(kind, np.ones(20, dtype=bool), [state], CONSTANTS, 0.0)
     assert (why is None) if reason is None else (reason in why)
 
 
 @pytest.mark.parametrize(
-    "state, since_touch, time, rests",
+    "state, since_touch, longer, rests",
     [
         (chain(STILL), LONG, 1e9, True),
         (chain(STILL), 0.5 * LONG / 2, 1e9, False),
@@ -82,8 +83,17 @@ def test_chains(kind, state, since_touch, reason):
         (chain(-APART, [9], np.r_[:20:2, 100:120:2]), LONG, 50.0, False),
     ],
 )
-def test_a_collision_has_come_to_rest(state, since_touch, time, rests):
-    assert decided.has_come_to_rest(state, CONSTANTS, since_touch, time) is rests
+def test_a_collision_has_come_to_rest(state, since_touch, longer, rests):
+    state["time"] = since_touch
+    assert decided.has_come_to_rest(state, CONSTANTS, 0.0, since_touch + longer) is rests
+
+
+def test_a_piece_that_oscillates_is_not_judged_by_its_turning_point():
+    """At the end it is at rest for a moment, a little before it was not; long before does not count."""
+    moving, still = ({**chain(velocity), "time": LONG} for velocity in (parting(20, 1.1, 10), STILL))
+    why = lambda *states: decided.why_undecided("sticking", np.ones(20, dtype=bool), states, CONSTANTS, 0.0)
+    assert why(still) is None and "parts of 50%" in why(moving, still)
+    assert decided.is_recent(np.array([0.74, 0.76, 1.0]) * LONG, LONG, 0.0).tolist() == [False, True, True]
 
 
 def test_strength_grows_with_the_reduced_radius():

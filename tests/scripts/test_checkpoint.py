@@ -151,7 +151,7 @@ def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     command = shlex.split(command.splitlines()[0])
     assert command[-1] == "duration=6e-07"
     for wrong, message in (
-        ("duration=2e-7", "duration = 2e-07 s: the run in run has come to 3e-07 s; must be longer"),
+        ("duration=2e-7", "s: the run in run has come to 3.00162e-07 s; must be longer"),
         ("velocity=3", "velocity: given with continue = run, whose own it is; must be left out"),
         ("continue=nowhere", "continue: given twice; must be given once"),
     ):

@@ -6,10 +6,10 @@ from math import sqrt
 import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
-from analysis.measures.decided import REBOUND_PER_RADIUS, has_come_to_rest, rebound_time
+from analysis.measures.decided import REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
 from analysis.measures.of_run import outcome_of_run
 from analysis.runs.folder import open_run
-from analysis.runs.format import COLLISION
+from analysis.runs.format import COLLISION, RESTING
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments import impact_step
 from yade_scripts.materials import pair_constants, require_small_contacts
@@ -213,7 +213,10 @@ def prepare(parameters, threads):
         },
         aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
         build=lambda: yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar)),
-        series=lambda state: series(state, aggregate_radius),
+        series=lambda state: {
+            **series(state, aggregate_radius),
+            **({RESTING: np.nan} if parameters.endWhenApart else {}),
+        },
         law={"neck": parameters.neck},
         step_choice=reason,
         control=lambda recorder, state: any([control(recorder, state) for control in controls]),
@@ -267,12 +270,14 @@ def _end_when_apart(parameters, constants, aggregate_radius, touch):
     known = {**constants, **(constants["bond"] or {}), "aggregateRadius": aggregate_radius}
     known.update(grainRadius=parameters.grainRadius, density=parameters.density)
 
+    begin = -np.inf if touch is None else touch
+
     def control(recorder, state):
         if not recorder.is_one_of(CHECKS):
             return False
-        time = state["time"]
-        since_touch = np.inf if touch is None else time - touch
-        return has_come_to_rest(state, known, since_touch, parameters.duration - time)
+        recorder.note(RESTING, float(has_come_to_rest(state, known, begin, parameters.duration)))
+        recent = recorder.recent(RESTING, RECENT * (state["time"] - (touch or 0.0)))
+        return bool(np.all(recent[np.isfinite(recent)]))
 
     return control
 

@@ -69,6 +69,12 @@ class Recorder:
             values.append(row[column])
         return np.array(values[::-1])
 
+    def note(self, name, value):
+        """Have a value in the last sample's place of a column."""
+        row = list(self._rows[-1])
+        row[self.columns.index(name)] = value
+        self._rows[-1] = tuple(row)
+
     @property
     def states_written(self):
         """Number of states in the folder."""
