@@ -3,9 +3,10 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from yade_scripts.packings.cut import AT_REST, OF_CONTACTS
+from yade_scripts.packings.cut import OF_CONTACTS
 from yade_scripts.packings.grain_sizes import touching_distance
 from yade_scripts.packings.packing import PackingError, centred, load, moved
+from yade_scripts.packings.rest import AT_REST
 
 DEEPEST = 1.1  # equilibrium overlaps: what grains pressed together a little may have, and no more
 
