@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from analysis.runs.arrays import RunFolderError
+from analysis.runs.arrays import RunFolderError, array_names
 from analysis.runs.folder import read_state
 from analysis.runs.format import COMPRESSION, FORMAT, RUN_FILE
 from yade_scripts.packings.largest_piece import largest_cluster
@@ -45,6 +45,14 @@ class PeriodicState:
     cell_size: np.ndarray
     overlap: float
     material: dict = field(default_factory=dict)
+
+
+def is_periodic_state(path):
+    """Whether a file is an .npz with a periodic cell, as the states of a compression are."""
+    try:
+        return "cell_size" in array_names(path)
+    except RunFolderError:
+        return False
 
 
 def read_periodic_state(path):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import zipfile
 from dataclasses import dataclass, field
 from math import sqrt
 
@@ -106,6 +107,11 @@ def load(path):
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise PackingError(f"{path}: is no regular file; must be an .npz")
+    if os.path.exists(path) and not zipfile.is_zipfile(path):
+        raise PackingError(
+            f"{path}: not a packing; must be an .npz that make_packing.py wrote, as from another program's file by "
+            "make_packing.py a.npz from=FILE unit=um"
+        )
     try:
         with np.load(path) as file:
             parameters = json.loads(str(file["parameters"]))
