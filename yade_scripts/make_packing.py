@@ -65,7 +65,7 @@ def _save_from(source, files, texts):
     packing, lines = imported(source, texts)
     print("\n".join(lines))
     _save(files[0], packing)
-    print(f"in a run: packing=file file={files[0]} {' '.join(grains_of(packing, texts.get('material')))}")
+    print("in a run: " + " ".join(["packing=file", f"file={files[0]}", *grains_of(packing, texts.get("material"))]))
 
 
 def main(arguments):

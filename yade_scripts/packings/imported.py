@@ -139,7 +139,7 @@ def _scaled(path, spheres, parameters, grain_radius_given):
     gap = (parameters.tolerance or np.clip(hidden / smallest, SMALLEST_GAP, LARGEST_GAP)) * smallest
     # divided, not multiplied: 0.1 um is then 1e-7 m to the bit
     position, radius = spheres.position / in_unit, radius / in_unit
-    return Scaled(np.asarray(position, dtype=float), np.asarray(radius, dtype=float), gap / in_unit, float(np.median(radius)))
+    return Scaled(np.asarray(position, dtype=float), np.asarray(radius, dtype=float), gap / in_unit, float(np.sort(radius)[len(radius) // 2]))
 
 
 def _require_plausible(path, radius, unit):

@@ -26,23 +26,19 @@ class Spheres:
 
     @property
     def resolution(self):
-        """How far a coordinate may be from what was meant, times two: the last digit that is written, in the file's unit."""
-        return max(_resolution(array) for array in (self.position, self.radius) if array is not None)
+        """The last digit that is written of a coordinate, in the file's unit.
 
-
-def _resolution(array):
-    """The last digit of numbers as programs write them: a fixed number of decimals, or of significant digits of the largest.
-
-    Numbers that were read from text have the same shortest representation as there; so have those of 32 bits."""
-    sample = array.ravel()[np.linspace(0, array.size - 1, min(array.size, SAMPLE)).astype(int)]
-    written = [np.format_float_scientific(number) for number in sample if number]
-    if not written:
-        return 0.0
-    digits = [len(text.partition("e")[0].lstrip("-").replace(".", "").rstrip("0")) for text in written]
-    exponents = [int(text.partition("e")[2]) for text in written]
-    last = max(count - 1 - exponent for count, exponent in zip(digits, exponents))
-    largest = int(np.floor(np.log10(np.abs(array).max())))
-    return 10.0 ** max(-last, largest - (max(digits) - 1))
+        Programs write a fixed number of decimals, or of significant digits. Numbers that were read from text have the same
+        shortest representation as there; so have those of 32 bits."""
+        array = self.position.ravel()
+        sample = array[np.linspace(0, array.size - 1, min(array.size, SAMPLE)).astype(int)]
+        written = [np.format_float_scientific(number).split("e") for number in sample if number]
+        if not written:
+            return 0.0
+        digits = [len(mantissa.strip("-0.").replace(".", "")) for mantissa, _ in written]
+        decimals = max(count - 1 - int(exponent) for count, (_, exponent) in zip(digits, written))
+        largest = int(np.floor(np.log10(np.abs(array).max())))
+        return 10.0 ** max(-decimals, largest - (max(digits) - 1))
 
 
 def roles(names):
