@@ -15,6 +15,7 @@ from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.aggregate import AggregateParameters, make
 from yade_scripts.packings.imported import imported
+from yade_scripts.parameters import ParameterError
 
 RADIUS = MATERIALS["ice"].grainRadius
 OVERLAP = equilibrium_overlap(MATERIALS["ice"])
@@ -67,7 +68,8 @@ FORMATS = {
     "xyz": lambda t: rows(t, "{n}\na line\n", "Si {}"),
     "xyz, two frames": lambda t: "2\nfirst\nC 0 0 0\nC 9 9 9\n" + rows(t, "{n}\nlast\n", "C {}"),
     "extended xyz": lambda t: rows(t, PROPERTIES, "X {1} {2} {3} 0 0 0 {4}"),
-    "LAMMPS data": lambda t: rows(twice(t), DATA, "{i} 1 {4} 1000 {1} {2} {3} 0 0 0") + "\nVelocities\n\n1 0 0 0 0 0 0\n",
+    "LAMMPS data": lambda t: rows(twice(t), DATA, "{i} 1 {4} 1000 {1} {2} {3} 0 0 0")
+    + "\nVelocities\n\n1 0 0 0 0 0 0\n",
     "LAMMPS dump": lambda t: rows(t, DUMP + "ITEM: ATOMS id type xu yu zu radius\n", "{i} 1 {}"),
     "DustCollider, dump": lambda t: rows(t, DUMP + "ITEM: ATOMS id mol type x y z radius\n", "{i} 0 1 {}"),
     "legacy VTK": legacy_vtk,
@@ -138,3 +140,154 @@ def test_nothing_moves_in_a_run(tmp_path, name, material):
     assert len(before["contact_pairs"]) == len(after["contact_pairs"]) == len(packings.contacts(packing))
     assert max(kinetic) < 1e-8 * rolling_energy(of["surfaceEnergy"], packing.radius.min(), of["criticalRolling"])
     assert np.linalg.norm(after["position"] - before["position"], axis=1).max() < 1e-5 * packing.radius.min()
+
+
+LINE = "x,y,z\n0,0,0\n0.2,0,0\n"
+UM = dict(unit="um", radius="0.1")
+WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
+
+
+@pytest.mark.parametrize(
+    "text, given, message",
+    [
+        ("", UM, "empty; must be a file of grains"),
+        ("# nothing\n# else\n", UM, "2 lines of comments; must be followed by grains"),
+        ("x,y,z\n", UM, "no rows of numbers; must have 2 or more"),
+        ("x,y,z\n0,0,0\n", UM, "holds 1 grains; must be 2 to 5000000"),
+        (LINE.replace("0.2", "nan"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2", "inf"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2", "1e999"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2", "wide"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2,0,0", "0.2,0"), UM, "z of grain 1 is no finite number; must be one"),
+        (LINE + "1,2,3,4\n", UM, "must have the same columns in all rows"),
+        ("x,y\n0,0\n0.2,0\n", UM, "no z among its columns x, y; must be there, or names=x,y,z,radius must name"),
+        ("0 0\n0.2 0\n", UM, "no z among its columns x, y; must be there"),
+        ("1 0 0 0 5\n2 0.2 0 0 5\n", UM, "table, columns without names; must be named, as in names=-,x,y,z,-,radius"),
+        (LINE + "0.2,0,0\n", UM, "grains 1 and 2 overlap by 1.99 radii of the smaller one more than at rest"),
+        (
+            LINE,
+            dict(UM, radius="0.12"),
+            "grains 0 and 1 overlap by 0.324 radii of the smaller one more than at rest; must be",
+        ),
+        (
+            LINE,
+            dict(UM, radius="0.09"),
+            "in 2 pieces of 1, 1 grains, up to 0.22 radii of the smallest grain apart; must be 1:",
+        ),
+        (
+            LINE,
+            dict(UM, radius="0.01"),
+            "in 2 pieces of 1, 1 grains, more than 10 radii of the smallest grain apart; must",
+        ),
+        (LINE, dict(UM, pieces="2"), "in 1 piece of 2 grains; must be 2"),
+        (LINE, dict(unit="um"), "radius: not given, and {path} has no radii; must be that of its grains [um]"),
+        (
+            LINE,
+            dict(radius="0.1"),
+            "grains of 0.1 m; must be of 1e-09 to 0.001 m, as with unit=cm or unit=mm or unit=um",
+        ),
+        (LINE, dict(radius="1e-12"), "grains of 1e-12 m; must be of 1e-09 to 0.001 m, as with no unit of length"),
+        (LINE, dict(UM, unit="km"), "unit = km: must be m or cm or mm or um or nm or radius"),
+        (LINE, dict(UM, grainRadius="1e-7"), "grainRadius: follows from the file with unit = um; must be left out"),
+        (LINE, dict(UM, density="1"), "density: a packing doesn't depend on it; must be left out"),
+        (LINE, dict(UM, tolerance="3"), "tolerance = 3: must be > 0 and at most 0.5"),
+        (WITH_RADII.format("0.1"), UM, "radius = 0.1: {path} has radii of its own; must be left out"),
+        (WITH_RADII.format("-1"), dict(unit="um"), "radius of grain 1 is -1; must be > 0"),
+        ("2\nno grains\nC 0 0 0\n", UM, "ends within the 1 rows after line 3; must hold them all"),
+        ("2\nProperties=pos\nC 0 0 0\nC 1 0 0\n", UM, "no x y z among its columns"),
+        (
+            "2\nProperties=pos:R:many\nC 0 0 0\nC 1 0 0\n",
+            UM,
+            "Properties=pos:R:many: not understood; must be name:type:columns",
+        ),
+        ("ITEM: TIMESTEP\n0\n", UM, "no ITEM: ATOMS; must have one"),
+        (
+            DUMP.format(n=9) + "ITEM: ATOMS x y z\n1 2 3\n",
+            UM,
+            "ends within the 9 rows after line 9; must hold them all",
+        ),
+        (DUMP.format(n="all"), UM, "line 4: 'all' grains; must be a whole number > 0"),
+        (DUMP.format(n=1) + "ITEM: ATOMS id xs ys zs\n1 0 0 0\n", UM, "no x y z among its columns id, xs, ys, zs"),
+        ("9 atoms\n\nMasses\n\n1 1\n", UM, "no section Atoms; must have one"),
+        (
+            DATA.format(n=9).replace(" # sphere", "") + "1 0 0 0\n",
+            UM,
+            "atom style not said, columns without names; must be",
+        ),
+        (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9, as it says"),
+        (
+            "aggregate:\n  positions: &a [*a]\n",
+            UM,
+            "not of pyFracAggregate (anchors in it); must have aggregate: positions",
+        ),
+        ("aggregate:\n  positions: [[0, 0]]\n  radii: [1]\n", {}, "positions have the shape (1, 2); must be (N, 3)"),
+        ("aggregate:\n  positions: [\n", UM, "not of pyFracAggregate"),
+        (
+            "# vtk DataFile Version 3.0\nno\nASCII\nDATASET POLY",
+            UM,
+            "no points in it that VTK can read; must be a file of points",
+        ),
+        (
+            "<?xml version='1.0'?><VTKFile type='PolyData'>",
+            UM,
+            "no points in it that VTK can read; must be a file of points",
+        ),
+        ("0 0 0\n1 1 1\n", dict(UM, names="x,y,z,r"), "3 columns; must have those of x, y, z, r"),
+        ("GIF89a\0\0\0", UM, "of an unknown format; must be npz, csv, xyz, LAMMPS data or dump, VTK"),
+    ],
+)
+def test_what_is_wrong_gives_one_line(tmp_path, text, given, message):
+    path = tmp_path / "a"
+    path.write_text(text)
+    with pytest.raises((packings.PackingError, ParameterError)) as error:
+        imported(str(path), given)
+    assert message.replace("{path}", str(path)) in str(error.value) and "\n" not in str(error.value)
+
+
+class Harmful:
+    def __reduce__(self):
+        return print, ("loaded",)
+
+
+@pytest.mark.parametrize(
+    "arrays, message",
+    [
+        (
+            dict(position=np.array([Harmful()] * 2), radius=np.ones(2)),
+            "Object arrays cannot be loaded when allow_pickle=False",
+        ),
+        (dict(position=np.ones((2, 2)), radius=np.ones(2)), "positions have the shape (2, 2); must be (N, 3)"),
+        (dict(position=np.ones((2, 3)), radius=np.ones(3)), "radius has the shape (3,), positions are 2; must be (2,)"),
+        (
+            dict(position=np.ones((2, 3), dtype=complex), radius=np.ones(2)),
+            "'position' must hold numbers, it holds complex",
+        ),
+        (dict(x=np.ones(2), y=np.ones(2), radius=np.ones(2)), "no z among its columns x, y, radius"),
+        (dict(position=np.full((2, 3), np.nan), radius=np.ones(2)), "x of grain 0 is no finite number"),
+    ],
+)
+def test_what_is_wrong_with_arrays(tmp_path, arrays, message, capsys):
+    np.savez(tmp_path / "a.npz", **arrays)
+    with pytest.raises(packings.PackingError) as error:
+        imported(str(tmp_path / "a.npz"), {})
+    assert message in str(error.value) and "\n" not in str(error.value) and capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    "text, given, radius",
+    [
+        (LINE, UM, 1e-7),
+        ("X [nm] , Y [nm], Z [nm]\n0, 0, 0\n200, 0, 0\n", dict(unit="nm", radius="100"), 1e-7),
+        ("-1.0 0.0 0.0\n1.0 0.0 0.0\n", dict(unit="radius", grainRadius="2e-7"), 2e-7),
+        ("0 0 0\n3 0 0\n", dict(unit="radius", radius="1.5"), 1.5e-7),
+        ("2 400 300\n# four\n# lines\n# of\n# text\n0 0 0 0 100 0 1\n200 0 0 0 100 0 1\n", {}, 1e-7),
+        ("0.1 7 0 0 0\n0.1 7 0.2 0 0\n", dict(unit="um", names="radius,-,x,y,z"), 1e-7),
+        ("0 0 0\n0.205 0 0\n", dict(UM, tolerance="0.06"), 1e-7),
+    ],
+)
+def test_units_names_and_tolerance(tmp_path, text, given, radius):
+    (tmp_path / "a").write_text(text)
+    packing, _ = imported(str(tmp_path / "a"), given)
+    assert packing.radius.tolist() == pytest.approx([radius] * 2, rel=1e-12)
+    depth = 2 * radius - np.linalg.norm(np.diff(packing.position, axis=0))
+    assert depth == pytest.approx(OVERLAP * (radius / RADIUS) ** (1 / 3), rel=1e-3)

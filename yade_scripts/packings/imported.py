@@ -12,6 +12,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
+from analysis.measures.fragments import fragment_labels, fragment_sizes
 from yade_scripts import materials
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.aggregate import MOST_GRAINS
@@ -21,7 +22,6 @@ from yade_scripts.packings.from_file import DEEPEST
 from yade_scripts.packings.largest_piece import largest_piece
 from yade_scripts.packings.packing import Packing, PackingError, centred, contacts
 from yade_scripts.packings.rest import at_rest, equilibrium_overlaps, surface_gaps, touching
-from analysis.measures.fragments import fragment_labels, fragment_sizes
 from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, parameter
 
 IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}
@@ -56,7 +56,10 @@ class ImportParameters(GrainParameters):
         "radii of the smallest grain",
     )
     pieces: int = parameter(
-        1, Check(f"a whole number > 0, or {LARGEST}", lambda x: x > 0), "that the aggregate is meant to be in", word=LARGEST
+        1,
+        Check(f"a whole number > 0, or {LARGEST}", lambda x: x > 0),
+        "that the aggregate is meant to be in",
+        word=LARGEST,
     )
 
 
@@ -110,7 +113,9 @@ def grains_of(packing, material=None):
     """Arguments of a run whose grains are those of an imported packing, where they are not those of `material`."""
     usual = materials.MATERIALS[material or ImportParameters().material]
     made_of = {name: packing.parameters[name] for name in ("grainRadius", *OF_CONTACTS)}
-    others = [f"{name}={x:.10g}" for name, x in made_of.items() if not np.isclose(x, getattr(usual, name), rtol=1e-6, atol=0)]
+    others = [
+        f"{name}={x:.10g}" for name, x in made_of.items() if not np.isclose(x, getattr(usual, name), rtol=1e-6, atol=0)
+    ]
     return [f"material={material}", *others] if material else others
 
 
@@ -139,7 +144,12 @@ def _scaled(path, spheres, parameters, grain_radius_given):
     gap = (parameters.tolerance or np.clip(hidden / smallest, SMALLEST_GAP, LARGEST_GAP)) * smallest
     # divided, not multiplied: 0.1 um is then 1e-7 m to the bit
     position, radius = spheres.position / in_unit, radius / in_unit
-    return Scaled(np.asarray(position, dtype=float), np.asarray(radius, dtype=float), gap / in_unit, float(np.sort(radius)[len(radius) // 2]))
+    return Scaled(
+        np.asarray(position, dtype=float),
+        np.asarray(radius, dtype=float),
+        gap / in_unit,
+        float(np.sort(radius)[len(radius) // 2]),
+    )
 
 
 def _require_plausible(path, radius, unit):
@@ -156,8 +166,9 @@ def _require_plausible(path, radius, unit):
 def _meant_contacts(path, scaled, overlap):
     """Pairs (M,2) of grains that are meant to touch, none of them deeper than can be meant."""
     position, radius = scaled.position, scaled.radius
-    distance, nearest = cKDTree(position).query(position, 2)
-    _require_shallow(path, scaled, np.stack([np.arange(len(radius)), nearest[:, 1]], axis=1), overlap)
+    grains, nearest = np.arange(len(radius)), cKDTree(position).query(position, 2)[1]
+    other = np.where(nearest[:, 0] == grains, nearest[:, 1], nearest[:, 0])  # one in the same place may come first
+    _require_shallow(path, scaled, np.stack([grains, other], axis=1), overlap)  # before there are too many pairs
     pairs = touching(position, radius, scaled.tolerance)
     _require_shallow(path, scaled, pairs, overlap)
     if not len(pairs):

@@ -1,11 +1,9 @@
 """Spheres of files that hold whole arrays: npz, VTK, and the YAML of pyFracAggregate."""
 
-import json
-
 import numpy as np
 
 from analysis.runs.arrays import RunFolderError, array_names, read_arrays
-from yade_scripts.packings.foreign.spheres import DIAMETERS, RADII, roles, spheres_of, require_axes
+from yade_scripts.packings.foreign.spheres import require_axes, roles, spheres_of
 from yade_scripts.packings.packing import PackingError
 
 POSITIONS = ("position", "positions", "pos", "xyz", "coordinates", "coords", "points", "centers", "centres")
@@ -65,7 +63,9 @@ def of_yaml(path):
         position, radius = (np.array(found[name], dtype=float) for name in ("positions", "radii"))
     except (yaml.YAMLError, ValueError, KeyError, TypeError, RecursionError) as error:
         reason = " ".join(str(error).split())[:100]
-        raise PackingError(f"{path}: not of pyFracAggregate ({reason}); must have aggregate: positions, radii") from None
+        raise PackingError(
+            f"{path}: not of pyFracAggregate ({reason}); must have aggregate: positions, radii"
+        ) from None
     unit = str(found.get("length_unit", "")).replace("\u03bc", "u").replace("\u00b5", "u")
     return _spheres(path, "YAML", position, {"radius": radius}, unit or None)
 
@@ -79,5 +79,7 @@ def _spheres(path, kind, position, by_role, unit=None):
     grains = len(by_role["x"]) if by_role["x"].ndim else 0
     for role, array in by_role.items():
         if array.shape != (grains,):
-            raise PackingError(f"{path}: {role} has the shape {array.shape}, positions are {grains}; must be ({grains},)")
+            raise PackingError(
+                f"{path}: {role} has the shape {array.shape}, positions are {grains}; must be ({grains},)"
+            )
     return spheres_of(path, kind, by_role, unit)

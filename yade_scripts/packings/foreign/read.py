@@ -1,18 +1,16 @@
 """Spheres of a file of any of the formats."""
 
 import os
-import warnings
 
 import pandas
 
 from yade_scripts.packings.foreign.arrays import of_npz, of_vtk, of_yaml
-from yade_scripts.packings.foreign.spheres import IGNORED, require_axes, roles, spheres_of
+from yade_scripts.packings.foreign.spheres import FORMATS, IGNORED, require_axes, roles, spheres_of
 from yade_scripts.packings.foreign.text import find_table
 from yade_scripts.packings.packing import PackingError
 
 MOST_BYTES = 4 << 30
 BY_START = {b"PK\x03\x04": of_npz, b"# vtk DataFile": of_vtk, b"<?xml": of_vtk, b"<VTKFile": of_vtk}
-FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
 
 
 def read_spheres(path, most, names=None):
@@ -50,34 +48,35 @@ def _of_table(path, most, names):
     require_axes(path, found, names)
     if table.rows is not None and table.rows > most:
         raise PackingError(f"{path}: holds {table.rows} grains; must be 2 to {most}")
-    frame = _read(path, table, sorted(found.values()), most)
+    frame = _read(path, table, most)
+    if max(found.values()) >= frame.shape[1]:
+        raise PackingError(f"{path}: {frame.shape[1]} columns; must have those of {', '.join(names)}")
     if table.rows is not None and len(frame) < table.rows:
         raise PackingError(f"{path}: {len(frame)} rows of numbers; must be {table.rows}, as it says")
     numbers = {role: pandas.to_numeric(frame[column], errors="coerce").to_numpy() for role, column in found.items()}
     return spheres_of(path, table.kind, numbers, table.unit)
 
 
-def _read(path, table, columns, most):
-    """The columns, by their numbers, of a table's rows."""
+def _read(path, table, most):
+    """All columns of a table's rows; extra ones in a row are an error, missing ones become NaN."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", FutureWarning)  # of columns that a row lacks
-            return pandas.read_csv(
-                path,
-                sep=table.separator,
-                header=None,
-                skiprows=table.first,
-                nrows=most + 1 if table.rows is None else table.rows,
-                usecols=columns,
-                comment="#",
-                skipinitialspace=True,
-                float_precision="round_trip",
-                encoding="utf-8-sig",
-                encoding_errors="replace",
-                low_memory=False,
-            )
+        return pandas.read_csv(
+            path,
+            sep=table.separator,
+            header=None,
+            skiprows=table.first,
+            nrows=most + 1 if table.rows is None else table.rows,
+            comment="#",
+            skipinitialspace=True,
+            float_precision="round_trip",
+            encoding="utf-8-sig",
+            encoding_errors="replace",
+            low_memory=False,
+        )
     except pandas.errors.EmptyDataError:
         raise PackingError(f"{path}: no rows of numbers; must have 2 or more") from None
-    except (ValueError, FutureWarning, pandas.errors.ParserError) as error:
+    except ValueError as error:
         reason = " ".join(str(error).split())
-        raise PackingError(f"{path}: not a table of numbers ({reason}); must have the same columns in all rows") from None
+        raise PackingError(
+            f"{path}: not a table of numbers ({reason}); must have the same columns in all rows"
+        ) from None

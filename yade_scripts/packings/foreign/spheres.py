@@ -7,6 +7,7 @@ import numpy as np
 
 from yade_scripts.packings.packing import PackingError
 
+FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
 RADII = ("radius", "radii", "r", "rad", "shape.radius")
 DIAMETERS = ("diameter", "diam")
 IGNORED = "-"
@@ -48,7 +49,9 @@ def roles(names):
     plain = [re.sub(r"[\[(].*[\])]", "", str(name)).strip(" \t\"'_").lower() for name in names]
     wanted = {axis: _of_axis(axis, number) for number, axis in enumerate("xyz")}
     wanted.update(radius=RADII, diameter=DIAMETERS)
-    found = {role: next((plain.index(name) for name in aliases if name in plain), None) for role, aliases in wanted.items()}
+    found = {
+        role: next((plain.index(name) for name in aliases if name in plain), None) for role, aliases in wanted.items()
+    }
     return {role: column for role, column in found.items() if column is not None}
 
 

@@ -9,6 +9,7 @@ import re
 from dataclasses import dataclass, replace
 from itertools import islice
 
+from yade_scripts.packings.foreign.spheres import FORMATS
 from yade_scripts.packings.packing import PackingError
 
 HEAD = 60  # lines in which names, comments and headers stand
@@ -102,7 +103,9 @@ def _properties(path, text):
     words, names = text.split(":"), []
     for name, count in zip(words[::3], words[2::3]):
         if not count.isdecimal() or int(count) > 100:
-            raise PackingError(f"{path}: Properties={text[:60]}: not understood; must be name:type:columns, again and again")
+            raise PackingError(
+                f"{path}: Properties={text[:60]}: not understood; must be name:type:columns, again and again"
+            )
         parts = "xyz" if name.lower() in ("pos", "position", "positions") else range(int(count))
         names += [name] if count == "1" else [f"{name}_{part}" for part in parts]
     return tuple(names)
@@ -155,6 +158,8 @@ def _plain(path, head):
         raise PackingError(f"{path}: {len(head)} lines of comments; must be followed by grains")
     separator = next((mark for mark in ",;" if mark in head[at]), r"\s+")
     words = [word.strip() for word in re.split(separator, head[at])]
+    if len(words) == 1:
+        raise PackingError(f"{path}: of an unknown format; must be {FORMATS}")
     if not any(map(_is_number, words)):
         return Table("table", at + 1, None, tuple(words), separator)
     names = next(filter(None, (_names_in(line, separator) for line in reversed(comments))), None)
@@ -165,7 +170,9 @@ def _plain(path, head):
 
 def _names_in(comment, separator):
     """Names of columns in a comment, x y z ..., or in YADE's format x_y_z_r; None if it has none."""
-    words = comment.partition("format ")[2].split("_") if comment.startswith("format ") else re.split(separator, comment)
+    words = (
+        comment.partition("format ")[2].split("_") if comment.startswith("format ") else re.split(separator, comment)
+    )
     words = tuple(word.strip() for word in words)
     return words if {"x", "y", "z"} <= {word.lower() for word in words} else None
 
