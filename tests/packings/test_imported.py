@@ -142,6 +142,10 @@ def test_nothing_moves_in_a_run(tmp_path, name, material):
     assert np.linalg.norm(after["position"] - before["position"], axis=1).max() < 1e-5 * packing.radius.min()
 
 
+# Five tetrahedra around an edge, with a gap of 7.4 degrees that contacts of all neighbours would have to close.
+BIPYRAMID = "0 0 1\n0 0 -1\n" + "".join(
+    f"{1.701302 * np.cos(a):.6f} {1.701302 * np.sin(a):.6f} 0\n" for a in np.arange(5) * 0.4 * np.pi
+)
 LINE = "x,y,z\n0,0,0\n0.2,0,0\n"
 UM = dict(unit="um", radius="0.1")
 WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
@@ -207,6 +211,11 @@ WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
             "ends within the 9 rows after line 9; must hold them all",
         ),
         (DUMP.format(n="all"), UM, "line 4: 'all' grains; must be a whole number > 0"),
+        (
+            "9" * 5000,
+            UM,
+            "line 1: '9999999999999999999999999999999999999999' grains; must be a whole number > 0, below 1e9",
+        ),
         (DUMP.format(n=1) + "ITEM: ATOMS id xs ys zs\n1 0 0 0\n", UM, "no x y z among its columns id, xs, ys, zs"),
         ("9 atoms\n\nMasses\n\n1 1\n", UM, "no section Atoms; must have one"),
         (
@@ -233,15 +242,21 @@ WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
             "no points in it that VTK can read; must be a file of points",
         ),
         ("0 0 0\n1 1 1\n", dict(UM, names="x,y,z,r"), "3 columns; must have those of x, y, z, r"),
+        (
+            BIPYRAMID,
+            dict(unit="radius"),
+            "the contacts cannot be brought to rest together: grains 0 and 1 keep -1.42 of the",
+        ),
         ("GIF89a\0\0\0", UM, "of an unknown format; must be npz, csv, xyz, LAMMPS data or dump, VTK"),
     ],
 )
-def test_what_is_wrong_gives_one_line(tmp_path, text, given, message):
+def test_what_is_wrong_gives_one_line(tmp_path, capfd, text, given, message):
     path = tmp_path / "a"
     path.write_text(text)
     with pytest.raises((packings.PackingError, ParameterError)) as error:
         imported(str(path), given)
     assert message.replace("{path}", str(path)) in str(error.value) and "\n" not in str(error.value)
+    assert capfd.readouterr() == ("", "")
 
 
 class Harmful:

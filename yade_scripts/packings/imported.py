@@ -102,7 +102,7 @@ def imported(path, texts):
     packing = _in_pieces(path, packing, parameters.pieces)
     lines = [
         f"{path}: {spheres.about}, {len(scaled.radius)} grains; those touch that are at most "
-        f"{scaled.tolerance / scaled.grain_radius:.2g} grain radii apart: {len(pairs)} contacts",
+        f"{scaled.tolerance / scaled.radius.min():.2g} radii of the smallest apart: {len(pairs)} contacts",
         f"brought to rest: grains moved by up to {moved / scaled.grain_radius:.2g} grain radii, contacts are within "
         f"{np.abs(rest.deviation).max(initial=0.0):.1g} of their overlap at rest, {len(rest.pairs) - len(pairs)} more came about",
     ]
@@ -175,9 +175,9 @@ def _meant_contacts(path, scaled, overlap):
         return pairs
     depth = equilibrium_overlaps(radius, pairs, scaled.grain_radius, overlap)
     gaps = surface_gaps(position, radius, pairs)
-    # Where most are at the overlap of these grains, as in files of our own, so far from touching are those that don't.
-    typical = min(0.0, float(np.median(gaps / depth)))
-    return pairs[gaps <= np.maximum(0.0, typical * depth + scaled.tolerance)]
+    # In a file of our own most are at the overlap of these grains, and so far from those that don't touch.
+    at_rest_there = abs(np.median(gaps / depth) + 1.0) < 0.1
+    return pairs[gaps <= np.maximum(0.0, scaled.tolerance - at_rest_there * depth)]
 
 
 def _require_shallow(path, scaled, pairs, overlap):

@@ -28,20 +28,22 @@ def of_npz(path):
 def of_vtk(path):
     """Spheres of a legacy or XML file of VTK: its points, with an array of radii."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
     from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader
     from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
 
     with open(path, "rb") as file:
         legacy = file.read(5) == b"# vtk"
     reader = vtkGenericDataObjectReader() if legacy else vtkXMLGenericDataObjectReader()
-    problems = []
-    reader.AddObserver("ErrorEvent", lambda *about: problems.append(about))
+    problems = vtkStringOutputWindow()
+    vtkOutputWindow.SetInstance(problems)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
     reader.SetFileName(path)
     if legacy:
         reader.ReadAllScalarsOn()
         reader.ReadAllFieldsOn()
     reader.Update()
-    output = reader.GetOutputDataObject(0) if not problems else None
+    output = None if problems.GetOutput() else reader.GetOutputDataObject(0)
     if not hasattr(output, "GetPoints") or output.GetPoints() is None:
         raise PackingError(f"{path}: no points in it that VTK can read; must be a file of points with their radii")
     data = output.GetPointData()

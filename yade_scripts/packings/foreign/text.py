@@ -59,8 +59,10 @@ class _Lines:
     def count(self, text):
         """The number of grains that a line says."""
         word = text.split()[0] if text.split() else ""
-        if not word.isdecimal() or int(word) < 1:
-            raise PackingError(f"{self.path}: line {self.read}: '{word[:40]}' grains; must be a whole number > 0")
+        if not word.isdecimal() or len(word) > 9 or int(word) < 1:
+            raise PackingError(
+                f"{self.path}: line {self.read}: '{word[:40]}' grains; must be a whole number > 0, below 1e9"
+            )
         return int(word)
 
 
