@@ -102,7 +102,7 @@ def main(arguments):
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
-    except (ParameterError, packings.PackingError) as error:
+    except (ParameterError, packings.PackingError, ImportError) as error:
         sys.exit(f"make_packing.py: {error}")
     except OSError as error:
         sys.exit(f"make_packing.py: {error.filename}: {error.strerror}")

@@ -20,8 +20,8 @@ from yade_scripts.packings.cut import OF_CONTACTS
 from yade_scripts.packings.foreign import read_spheres
 from yade_scripts.packings.from_file import DEEPEST
 from yade_scripts.packings.largest_piece import largest_piece
-from yade_scripts.packings.packing import Packing, PackingError, centred, contacts
-from yade_scripts.packings.rest import at_rest, equilibrium_overlaps, surface_gaps, touching
+from yade_scripts.packings.packing import Packing, PackingError, centred, contacts, surface_gaps, touching
+from yade_scripts.packings.rest import at_rest, equilibrium_overlaps
 from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, parameter
 
 IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}

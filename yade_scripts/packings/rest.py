@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr
-from scipy.spatial import cKDTree
 
 from analysis.progress import progress
 from yade_scripts.packings.grain_sizes import touching_distance
+from yade_scripts.packings.packing import surface_gaps, touching
 
 AT_REST = 1e-3  # of the equilibrium overlap: contacts closer to it are at rest
 MOST_MOVES = 20
@@ -35,18 +35,6 @@ class Rest:
     def worst(self):
         """Row of `pairs` that is furthest from rest."""
         return int(np.abs(self.deviation).argmax())
-
-
-def touching(position, radius, gap=0.0):
-    """Pairs (M,2) of grains whose surfaces are at most `gap` [m] apart; position (N,3), radius (N,) in m."""
-    pairs = cKDTree(position).query_pairs(2 * radius.max() + gap, output_type="ndarray")
-    return pairs[surface_gaps(position, radius, pairs) <= gap]
-
-
-def surface_gaps(position, radius, pairs):
-    """Distances (M,) of the surfaces of pairs (M,2), negative where they overlap, in the unit of position and radius."""
-    distance = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
-    return distance - radius[pairs].sum(axis=1)
 
 
 def equilibrium_overlaps(radius, pairs, grain_radius, overlap):
