@@ -27,9 +27,11 @@ from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
 from yade_scripts.packings.cut import CutParameters, cut, is_periodic_state, read_periodic_state
 from yade_scripts.packings.describe import description
-from yade_scripts.packings.imported import WITHOUT_EFFECT, ImportParameters, grains_of, imported
+from yade_scripts.packings.imported import ImportParameters, grains_of, imported
 from yade_scripts.parameters import ParameterError, one_of, parameter
 from yade_scripts.run.arguments import from_arguments
+
+WITHOUT_EFFECT = ("density", "criticalRolling", "viscoelasticTime")
 
 
 @dataclass(frozen=True)
@@ -87,12 +89,12 @@ def main(arguments):
         if not file.endswith(".npz"):
             raise ParameterError(f"{file}: a packing is saved as .npz; must end in .npz")
         require_file(file, inputs=[texts["from"]] if "from" in texts else ())
-    if "from" in texts:
-        _save_from(texts.pop("from"), files, texts)
-        return 0
     for name in WITHOUT_EFFECT:
         if name in texts:
             raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
+    if "from" in texts:
+        _save_from(texts.pop("from"), files, texts)
+        return 0
     parameters = MadeParameters.parse(texts)
     for index, file in enumerate(files):
         make_packing(file, parameters, index)

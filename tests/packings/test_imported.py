@@ -10,6 +10,7 @@ from scenes import *
 
 from analysis.export.vtk_xml import poly_data
 from analysis.measures.fragments import fragment_labels
+from analysis.runs.arrays import npz
 from analysis.theory.compression import rolling_energy
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
@@ -56,7 +57,7 @@ def vtp(t):
 
 
 def yaml_of(t):
-    about = {"n_particles": len(t), "length_unit": "um", "positions": t[:, :3].astype(float).tolist()}
+    about = {"n_particles": len(t), "length_unit": "1", "positions": t[:, :3].astype(float).tolist()}
     return yaml.dump({"aggregate": {**about, "radii": t[:, 3].astype(float).tolist()}}, sort_keys=False)
 
 
@@ -77,6 +78,7 @@ FORMATS = {
     "pyFracAggregate": yaml_of,
     "FracVAL": lambda t: rows(t, row="  {1}  {2}  {3}  {4}    "),
     "PyFracVAL": lambda t: rows(t, "# simulation_parameters:\n#   N: {n}\n#   - -242.92\n"),
+    "npz": lambda t: npz(pos=t[:, :3].astype(float), radii=t[:, 3].astype(float)),
     "YADE": lambda t: rows(t, "#format id_x_y_z_r_matId\n", "{i}\t{1}\t{2}\t{3}\t{4}\t0"),
 }
 
@@ -92,7 +94,8 @@ def pairs_of(packing):
 
 def write(path, packing, decimals, form="csv"):
     table = np.column_stack([packing.position, packing.radius]) * 1e6
-    path.write_text(FORMATS[form](np.vectorize(lambda x: f"{x:.{decimals}f}")(table)))
+    content = FORMATS[form](np.vectorize(lambda x: f"{x:.{decimals}f}")(table))
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
     return str(path)
 
 
@@ -193,7 +196,6 @@ WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
         (LINE, dict(radius="1e-12"), "grains of 1e-12 m; must be of 1e-09 to 0.001 m, as with no unit of length"),
         (LINE, dict(UM, unit="km"), "unit = km: must be m or cm or mm or um or nm or radius"),
         (LINE, dict(UM, grainRadius="1e-7"), "grainRadius: follows from the file with unit = um; must be left out"),
-        (LINE, dict(UM, density="1"), "density: a packing doesn't depend on it; must be left out"),
         (LINE, dict(UM, tolerance="3"), "tolerance = 3: must be > 0 and at most 0.5"),
         (WITH_RADII.format("0.1"), UM, "radius = 0.1: {path} has radii of its own; must be left out"),
         (WITH_RADII.format("-1"), dict(unit="um"), "radius of grain 1 is -1; must be > 0"),
@@ -296,6 +298,7 @@ def test_what_is_wrong_with_arrays(tmp_path, arrays, message, capsys):
         ("-1.0 0.0 0.0\n1.0 0.0 0.0\n", dict(unit="radius", grainRadius="2e-7"), 2e-7),
         ("0 0 0\n3 0 0\n", dict(unit="radius", radius="1.5"), 1.5e-7),
         ("2 400 300\n# four\n# lines\n# of\n# text\n0 0 0 0 100 0 1\n200 0 0 0 100 0 1\n", {}, 1e-7),
+        ("aggregate:\n  length_unit: um\n  positions: [[0, 0, 0], [0.2, 0, 0]]\n  radii: [0.1, 0.1]\n", {}, 1e-7),
         ("0.1 7 0 0 0\n0.1 7 0.2 0 0\n", dict(unit="um", names="radius,-,x,y,z"), 1e-7),
         ("0 0 0\n0.205 0 0\n", dict(UM, tolerance="0.06"), 1e-7),
     ],

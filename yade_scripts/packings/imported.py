@@ -17,20 +17,18 @@ from yade_scripts import materials
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.aggregate import MOST_GRAINS
 from yade_scripts.packings.cut import OF_CONTACTS
-from yade_scripts.packings.foreign import read_spheres
+from yade_scripts.packings.foreign import IN_A_METRE, read_spheres
 from yade_scripts.packings.from_file import DEEPEST
 from yade_scripts.packings.largest_piece import largest_piece
 from yade_scripts.packings.packing import Packing, PackingError, centred, contacts, surface_gaps, touching
 from yade_scripts.packings.rest import at_rest, equilibrium_overlaps
 from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, parameter
 
-IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}
 OF_RADIUS = "radius"
 PLAUSIBLE = (1e-9, 1e-3)  # m: radii of grains
 SMALLEST_GAP, LARGEST_GAP = 1e-4, 0.05  # grain radii: within these a tolerance follows from the digits of the file
 DEEPEST_OVERLAP = 0.05  # grain radii beyond that at rest: deeper ones were not meant to touch
 FARTHEST = 10.0  # grain radii up to which it is told how far pieces are apart
-WITHOUT_EFFECT = ("density", "criticalRolling", "viscoelasticTime")
 LARGEST = "largest"
 
 
@@ -76,9 +74,6 @@ class Scaled:
 def imported(path, texts):
     """(Packing around the origin, lines about how it came about) of a file of another program and {name: text} of
     ImportParameters. Raises ParameterError and PackingError."""
-    for name in WITHOUT_EFFECT:
-        if name in texts:
-            raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
     parameters = ImportParameters.parse(texts)
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
     scaled = _scaled(path, spheres, parameters, "grainRadius" in texts)
@@ -121,8 +116,6 @@ def grains_of(packing, material=None):
 
 def _scaled(path, spheres, parameters, grain_radius_given):
     unit = parameters.unit or spheres.unit or "m"
-    if unit not in (*IN_A_METRE, OF_RADIUS):
-        raise PackingError(f"{path}: its unit is {unit}; must be {' or '.join(IN_A_METRE)}")
     if spheres.unit and unit != spheres.unit:
         raise ParameterError(f"unit = {unit}: {path} is in {spheres.unit}; must be left out")
     if grain_radius_given and unit != OF_RADIUS:

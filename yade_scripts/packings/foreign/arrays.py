@@ -3,7 +3,7 @@
 import numpy as np
 
 from analysis.runs.arrays import RunFolderError, array_names, read_arrays
-from yade_scripts.packings.foreign.spheres import require_axes, roles, spheres_of
+from yade_scripts.packings.foreign.spheres import IN_A_METRE, require_axes, roles, spheres_of
 from yade_scripts.packings.packing import PackingError
 
 POSITIONS = ("position", "positions", "pos", "xyz", "coordinates", "coords", "points", "centers", "centres")
@@ -68,8 +68,8 @@ def of_yaml(path):
         raise PackingError(
             f"{path}: not of pyFracAggregate ({reason}); must have aggregate: positions, radii"
         ) from None
-    unit = str(found.get("length_unit", "")).replace("\u03bc", "u").replace("\u00b5", "u")
-    return _spheres(path, "YAML", position, {"radius": radius}, unit or None)
+    unit = str(found.get("length_unit")).replace("\u03bc", "u").replace("\u00b5", "u")
+    return _spheres(path, "YAML", position, {"radius": radius}, unit if unit in IN_A_METRE else None)
 
 
 def _spheres(path, kind, position, by_role, unit=None):

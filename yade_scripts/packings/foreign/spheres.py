@@ -8,6 +8,7 @@ import numpy as np
 from yade_scripts.packings.packing import PackingError
 
 FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
+IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}
 RADII = ("radius", "radii", "r", "rad", "shape.radius")
 DIAMETERS = ("diameter", "diam")
 IGNORED = "-"

@@ -23,8 +23,6 @@ ATOM_STYLES = {
     "charge": "id type q x y z",
     "full": "id mol type q x y z",
 }
-
-
 _ATOMS = re.compile(r"\s*\d+\s+atoms\b")
 
 
@@ -147,7 +145,7 @@ def _data(lines):
 def _dust_collider(head):
     """aggregate.txt of DustCollider: N and two radii, four lines, then x y z, a column, radius, a column, material; nm."""
     first, rows = head[0].split(), [line.split() for line in head[5:] if line]
-    if len(first) >= 3 and first[0].isdecimal() and rows and all(len(row) == 7 for row in rows):
+    if 3 <= len(first) < 7 and first[0].isdecimal() and rows and all(len(row) == 7 for row in rows):
         return Table("DustCollider", 5, int(first[0]), ("x", "y", "z", "-", "radius", "-", "material"), unit="nm")
     return None
 
@@ -172,10 +170,8 @@ def _plain(path, head):
 
 def _names_in(comment, separator):
     """Names of columns in a comment, x y z ..., or in YADE's format x_y_z_r; None if it has none."""
-    words = (
-        comment.partition("format ")[2].split("_") if comment.startswith("format ") else re.split(separator, comment)
-    )
-    words = tuple(word.strip() for word in words)
+    of_yade = re.match(r"format (x_y_z_\S*|\S+_x_y_z_\S*)$", comment)
+    words = tuple(word.strip() for word in re.split("_" if of_yade else separator, of_yade[1] if of_yade else comment))
     return words if {"x", "y", "z"} <= {word.lower() for word in words} else None
 
 
