@@ -27,7 +27,7 @@ from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, par
 OF_RADIUS = "radius"
 PLAUSIBLE = (1e-9, 1e-3)  # m: radii of grains
 SMALLEST_GAP, LARGEST_GAP = 1e-4, 0.05  # grain radii: within these a tolerance follows from the digits of the file
-DEEPEST_OVERLAP = 0.05  # grain radii beyond that at rest: deeper ones were not meant to touch
+DEEPEST_OVERLAP = 0.1  # grain radii beyond that at rest, as under pressure; deeper ones have another radius or unit
 FARTHEST = 10.0  # grain radii up to which it is told how far pieces are apart
 LARGEST = "largest"
 
