@@ -1,22 +1,30 @@
 """Aggregates of other programs: formats, units, which grains touch, and that all of it is at rest in a run."""
 
+import os
+import sys
 from dataclasses import asdict
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 from scenes import *
 
+sys.path.append(str(Path(__file__).resolve().parent.parent / "scripts"))
+from running import PYTHON, SCRIPTS, call
+
 from analysis.export.vtk_xml import poly_data
 from analysis.measures.fragments import fragment_labels
 from analysis.runs.arrays import npz
 from analysis.theory.compression import rolling_energy
 from yade_scripts import packings
+from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.aggregate import AggregateParameters, make
 from yade_scripts.packings.imported import imported
 from yade_scripts.parameters import ParameterError
+from yade_scripts.run.arguments import from_arguments
 
 RADIUS = MATERIALS["ice"].grainRadius
 OVERLAP = equilibrium_overlap(MATERIALS["ice"])
@@ -309,3 +317,15 @@ def test_units_names_and_tolerance(tmp_path, text, given, radius):
     assert packing.radius.tolist() == pytest.approx([radius] * 2, rel=1e-12)
     depth = 2 * radius - np.linalg.norm(np.diff(packing.position, axis=0))
     assert depth == pytest.approx(OVERLAP * (radius / RADIUS) ** (1 / 3), rel=1e-3)
+
+
+def test_the_command_names_the_run_that_takes_the_packing(tmp_path):
+    written = touching_at_the_sum_of_radii("lognormal")
+    source, file = write(tmp_path / "a.xyz", written, 4, "xyz"), tmp_path / "a.npz"
+    given = (file, f"from={source}", "unit=um", "material=silicate")
+    done = call(tmp_path, PYTHON, os.path.join(SCRIPTS, "make_packing.py"), *map(str, given))
+    assert done.returncode == 0, done.stderr
+    for told in ("xyz, with radii, 100 grains", "grains moved by up to 0.0", "100 grains in 1 piece, 99 contacts"):
+        assert told in done.stdout
+    of_run = CollisionParameters.parse(from_arguments(done.stdout.split("in a run: ")[1].split()))
+    assert place(of_run, equilibrium_overlap(of_run))[1][0].grains == 100
