@@ -2,10 +2,14 @@
 
     python3 yade_scripts/make_packing.py a.npz b.npz filling=0.4 radius=20 seed=3
     python3 yade_scripts/make_packing.py a.npz packing=bpca grains=50000
+    python3 yade_scripts/make_packing.py a.npz from=agg.xyz unit=um radius=0.1         of another program
     python3 yade_scripts/make_packing.py a.npz from=RUN/states/000059.npz radius=8     cut out of a compression
 
 The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py. Parameters that a packing
 doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
+
+Other programs' aggregates may be npz, csv, xyz, extended xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, or text of
+DustCollider, FracVAL, PyFracVAL, aggregate_gen or YADE. Their contacts are brought to rest for the grains of `material`.
 """
 
 import os
@@ -21,7 +25,9 @@ from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
-from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
+from yade_scripts.packings.cut import CutParameters, cut, is_periodic_state, read_periodic_state
+from yade_scripts.packings.describe import description
+from yade_scripts.packings.imported import ImportParameters, grains_of, imported
 from yade_scripts.parameters import ParameterError, one_of, parameter
 from yade_scripts.run.arguments import from_arguments
 
@@ -46,12 +52,22 @@ def make_packing(file, parameters, index):
 
 def _save(file, packing):
     packings.save(file, packing)
-    coordination = 2 * len(packings.contacts(packing)) / packing.grains
-    characteristic = packings.characteristic_radius(packing) / packing.radius.mean()
-    print(
-        f"{file}: {packing.grains} grains, mean coordination number {coordination:.3f}, characteristic radius "
-        f"{characteristic:.4g} grain radii"
-    )
+    print(f"{file}: {description(packing)}")
+
+
+def _save_from(source, files, texts):
+    """Save what is cut out of the state of a compression, or the aggregate of another program."""
+    if is_periodic_state(source):
+        state, parameters = read_periodic_state(source), CutParameters.parse(texts)
+        for index, file in enumerate(files):
+            _save(file, cut(state, parameters, index))
+        return
+    if len(files) > 1:
+        raise ParameterError(f"{files[1]}: from = {source} is one aggregate; must be one file")
+    packing, lines = imported(source, texts)
+    print("\n".join(lines))
+    _save(files[0], packing)
+    print("in a run: " + " ".join(["packing=file", f"file={files[0]}", *grains_of(packing, texts.get("material"))]))
 
 
 def main(arguments):
@@ -61,22 +77,24 @@ def main(arguments):
     files = [argument for argument in arguments if "=" not in argument]
     if "--help" in arguments or not 1 <= len(files) <= 2:
         print(
-            f"{__doc__}\n{MadeParameters.help_text((*WITHOUT_EFFECT, 'file'))}\n\nWith from=:\n{CutParameters.help_text()}"
+            f"{__doc__}\n{MadeParameters.help_text((*WITHOUT_EFFECT, 'file'))}\n\nWith from=FILE of another program:\n"
+            f"{ImportParameters.help_text(WITHOUT_EFFECT)}\n\nWith from=RUN/states/NNNNNN.npz of a compression:\n"
+            f"{CutParameters.help_text()}"
         )
         return 0 if "--help" in arguments else 2
     if len(set(map(os.path.realpath, files))) < len(files):
         raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
     texts = from_arguments(argument for argument in arguments if "=" in argument)
     for file in files:
+        if not file.endswith(".npz"):
+            raise ParameterError(f"{file}: a packing is saved as .npz; must end in .npz")
         require_file(file, inputs=[texts["from"]] if "from" in texts else ())
-    if "from" in texts:
-        state, parameters = read_periodic_state(texts.pop("from")), CutParameters.parse(texts)
-        for index, file in enumerate(files):
-            _save(file, cut(state, parameters, index))
-        return 0
     for name in WITHOUT_EFFECT:
         if name in texts:
             raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
+    if "from" in texts:
+        _save_from(texts.pop("from"), files, texts)
+        return 0
     parameters = MadeParameters.parse(texts)
     for index, file in enumerate(files):
         make_packing(file, parameters, index)
@@ -86,7 +104,7 @@ def main(arguments):
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
-    except (ParameterError, packings.PackingError) as error:
+    except (ParameterError, packings.PackingError, ImportError) as error:
         sys.exit(f"make_packing.py: {error}")
     except OSError as error:
         sys.exit(f"make_packing.py: {error.filename}: {error.strerror}")

@@ -98,8 +98,8 @@ def test_command_line(run):
     [
         ("from=run/states/000020.npz", "radius: not given; must be that of the sphere to cut [grain radii]"),
         ("from=run/states/000020.npz radius=90", "radius = 90: a larger sphere than the cell holds; must be at most"),
-        ("from=run/states/none.npz radius=5", "must be a state of a compression, RUN/states/NNNNNN.npz"),
-        ("from=run/run.json radius=5", "must be a state of a compression, RUN/states/NNNNNN.npz"),
+        ("from=run/states/none.npz radius=5", "run/states/none.npz: No such file or directory"),
+        ("from=run/run.json radius=5", "run/run.json: of an unknown format; must be npz, csv, xyz, LAMMPS"),
         ("from=run/states/000020.npz radius=5 filling=0.4", "filling: unknown parameter; must be one of radius, seed"),
         (
             "run/states/000020.npz from=run/states/000020.npz radius=5",

@@ -90,14 +90,17 @@ def test_command_line(tmp_path):
         ("a.npz density=900", "density: a packing doesn't depend on it; must be left out"),
         ("a.npz surfaceEnergy=1e4 unusual=1", "grainRadius = 1e-07: contacts at rest have a radius of "),
         ("nowhere/a.npz", "nowhere"),
+        ("a.txt", "a.txt: a packing is saved as .npz; must end in .npz"),
+        ("a.npz b.npz from={here}", "b.npz: from = {here} is one aggregate; must be one file"),
+        ("a.npz from={here} unit=km", "unit = km: must be m or cm or mm or um or nm or radius"),
         ("a.npz ./a.npz radius=3", "./a.npz: given twice; must be two files, one for each aggregate"),
         ("a.npz packing=file file=b.npz", "packing = file: must be cpe or bcca or bpca"),
     ],
 )
 def test_command_line_errors(tmp_path, arguments, message):
-    failed = make_packing(tmp_path, *arguments.split())
+    failed = make_packing(tmp_path, *arguments.format(here=__file__).split())
     assert failed.returncode != 0
-    assert message in failed.stderr and failed.stderr.count("\n") == 1
+    assert message.format(here=__file__) in failed.stderr and failed.stderr.count("\n") == 1
     assert os.listdir(tmp_path) == []
 
 

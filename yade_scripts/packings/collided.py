@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import open_run
-from yade_scripts.packings.cut import at_rest
+from yade_scripts.packings.cut import unpressed
 from yade_scripts.packings.largest_piece import largest_cluster
 from yade_scripts.packings.packing import Packing, PackingError, centred, random_stream
 
@@ -27,7 +27,7 @@ def largest_piece_of_run(path):
         raise PackingError(f"after = {path}: periodic, or with sintered bonds; must be a collision without them")
     inside, pairs = largest_cluster(len(state.radius), state.contact_pairs)
     position, radius = state.position[inside], state.radius[inside]
-    moved = at_rest(position, radius, pairs, overlap)
+    moved = unpressed(position, radius, pairs, grain_radius, overlap)
     about = dict(
         packing="collided",
         grainRadius=grain_radius,

@@ -11,21 +11,17 @@ import os
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import lsqr
-from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from analysis.runs.arrays import RunFolderError
+from analysis.runs.arrays import RunFolderError, array_names
 from analysis.runs.folder import read_state
 from analysis.runs.format import COMPRESSION, FORMAT, RUN_FILE
 from yade_scripts.packings.largest_piece import largest_cluster
 from yade_scripts.packings.packing import Packing, PackingError, random_stream
+from yade_scripts.packings.rest import at_rest
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, parameter
 
-AT_REST = 1e-3  # of the equilibrium overlap: contacts closer to it are at rest
 DEEPEST = 1.05  # equilibrium overlaps that a contact may keep where all cannot be at rest together
-MOST_MOVES = 20
 # What contacts at rest depend on, beside the radius: a packing says it, and a run compares it with its own (from_file.py).
 OF_CONTACTS = ("young", "poisson", "surfaceEnergy")
 
@@ -49,6 +45,14 @@ class PeriodicState:
     cell_size: np.ndarray
     overlap: float
     material: dict = field(default_factory=dict)
+
+
+def is_periodic_state(path):
+    """Whether a file is an .npz with a periodic cell, as the states of a compression are."""
+    try:
+        return "cell_size" in array_names(path)
+    except RunFolderError:
+        return False
 
 
 def read_periodic_state(path):
@@ -95,7 +99,7 @@ def cut(state, parameters, index=0):
     if len(kept) < 2:
         raise PackingError(f"radius = {parameters.radius:g}: leaves {len(kept)} grains; must leave 2 or more")
     position, radius = position[inside[kept]], state.radius[inside[kept]]
-    moved = at_rest(position, radius, pairs, state.overlap)
+    moved = unpressed(position, radius, pairs, grain_radius, state.overlap)
     turned = Rotation.random(random_state=stream).apply(moved - moved.mean(axis=0))
     about = dict(
         packing="compressed",
@@ -121,35 +125,13 @@ def _pairs_within(position, pairs, inside):
     return chosen[(chosen >= 0).all(axis=1) & near]
 
 
-def at_rest(position, radius, pairs, overlap):
-    """Positions with every contact at its equilibrium overlap, by the smallest motion (Newton's method on the distances);
-    grains that come to overlap on the way are contacts too."""
-    moved = position.copy()
-    for _ in range(MOST_MOVES):
-        overlapping = cKDTree(moved).query_pairs(2 * radius.max(), output_type="ndarray")
-        deep = np.linalg.norm(moved[overlapping[:, 0]] - moved[overlapping[:, 1]], axis=1)
-        overlapping = overlapping[deep < radius[overlapping].sum(axis=1)]
-        pairs = np.unique(np.sort(np.concatenate([pairs, overlapping]), axis=1), axis=0)
-        separation = moved[pairs[:, 0]] - moved[pairs[:, 1]]
-        distance = np.linalg.norm(separation, axis=1)
-        error = radius[pairs].sum(axis=1) - overlap - distance
-        if np.abs(error).max() < AT_REST * overlap:
-            return moved
-        moved = moved + _smallest_motion(separation / distance[:, None], pairs, error, len(radius))
-    if error.max() > -overlap and -error.min() < (DEEPEST - 1) * overlap and error.max() < overlap:
-        return moved
+def unpressed(position, radius, pairs, grain_radius, overlap):
+    """Positions (N,3) with the contacts, pairs (M,2), of grains under pressure at rest (rest.at_rest); where they cannot all
+    be, none may be deeper than DEEPEST nor apart. overlap: of two grains of grain_radius at rest; all in m."""
+    rest = at_rest(position, radius, pairs, grain_radius, overlap)
+    if rest.deviation.min() > -1.0 and rest.deviation.max() < DEEPEST - 1:
+        return rest.position
     raise PackingError(
-        f"the contacts cannot be brought to rest together: one overlaps by {1 - error.min() / overlap:.3g} of the "
+        f"the contacts cannot be brought to rest together: one overlaps by {1 + rest.deviation[rest.worst]:.3g} of the "
         f"equilibrium; must be at most {DEEPEST:g}: a looser state"
     )
-
-
-def _smallest_motion(normal, pairs, change, grains):
-    """Motion (N,3) of least length that changes the distances of pairs (M,2) by change (M,), to first order."""
-    contacts = np.repeat(np.arange(len(pairs)), 3)
-    axes = np.tile(np.arange(3), len(pairs))
-    columns = [3 * np.repeat(pairs[:, side], 3) + axes for side in (0, 1)]
-    data = np.concatenate([normal.ravel(), -normal.ravel()])
-    rows = np.concatenate([contacts, contacts])
-    matrix = csr_matrix((data, (rows, np.concatenate(columns))), shape=(len(pairs), 3 * grains))
-    return lsqr(matrix, change, atol=1e-9, btol=1e-9, iter_lim=20 * grains)[0].reshape(-1, 3)

@@ -1,11 +1,10 @@
 """Aggregates that were saved as packings, checked before anything runs."""
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from yade_scripts.packings.cut import AT_REST, OF_CONTACTS
-from yade_scripts.packings.grain_sizes import touching_distance
-from yade_scripts.packings.packing import PackingError, centred, load, moved
+from yade_scripts.packings.cut import OF_CONTACTS
+from yade_scripts.packings.packing import PackingError, centred, contacts, load, moved, surface_gaps
+from yade_scripts.packings.rest import AT_REST, equilibrium_overlaps
 
 DEEPEST = 1.1  # equilibrium overlaps: what grains pressed together a little may have, and no more
 
@@ -75,15 +74,14 @@ def _require_number(path, name, value):
 
 
 def _require_contacts(path, packing, grain_radius, overlap):
-    position, radius = packing.position, packing.radius
-    first, second = cKDTree(position).query_pairs(2 * radius.max(), output_type="ndarray").T
-    deep = radius[first] + radius[second] - np.linalg.norm(position[first] - position[second], axis=1)
-    at_rest = radius[first] + radius[second] - touching_distance(radius[first], radius[second], grain_radius, overlap)
-    if not len(deep):
+    pairs = contacts(packing)
+    if not len(pairs):
         return
+    deep = -surface_gaps(packing.position, packing.radius, pairs)
+    at_rest = equilibrium_overlaps(packing.radius, pairs, grain_radius, overlap)
     worst = np.argmax(deep / at_rest)
     if deep[worst] > DEEPEST * at_rest[worst]:
         raise PackingError(
-            f"{path}: grains {first[worst]} and {second[worst]} overlap by {deep[worst]:.3g} m; must be at most "
+            f"{path}: grains {pairs[worst, 0]} and {pairs[worst, 1]} overlap by {deep[worst]:.3g} m; must be at most "
             f"{DEEPEST:g} of the equilibrium overlap of {at_rest[worst]:.3g} m"
         )

@@ -2,6 +2,7 @@
 
 import json
 import os
+import zipfile
 from dataclasses import dataclass, field
 from math import sqrt
 
@@ -53,13 +54,22 @@ def characteristic_radius(packing):
     return sqrt(5.0 / 3.0) * gyration_radius(packing)
 
 
+def touching(position, radius, gap=0.0):
+    """Pairs (M,2) of grains whose surfaces are at most `gap` [m] apart; position (N,3), radius (N,) in m."""
+    pairs = cKDTree(position).query_pairs(2 * radius.max() + gap, output_type="ndarray")
+    return pairs[surface_gaps(position, radius, pairs) <= gap]
+
+
+def surface_gaps(position, radius, pairs):
+    """Distances (M,) of the surfaces of pairs (M,2), negative where they overlap, in the unit of position and radius."""
+    distance = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
+    return distance - radius[pairs].sum(axis=1)
+
+
 def contacts(packing):
     """Pairs (M,2) of touching grains, sorted, first < second: as far apart as the sum of radii, or less."""
-    tree = cKDTree(packing.position)
-    pairs = tree.query_pairs(2 * packing.radius.max(), output_type="ndarray")
-    distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
-    touching = pairs[distance <= packing.radius[pairs].sum(axis=1)]
-    return touching[np.lexsort((touching[:, 1], touching[:, 0]))]
+    pairs = touching(packing.position, packing.radius)
+    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
 def require_apart(first, second):
@@ -106,6 +116,11 @@ def load(path):
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise PackingError(f"{path}: is no regular file; must be an .npz")
+    if os.path.exists(path) and not zipfile.is_zipfile(path):
+        raise PackingError(
+            f"{path}: not a packing; must be an .npz that make_packing.py wrote, as from another program's file by "
+            "make_packing.py a.npz from=FILE unit=um"
+        )
     try:
         with np.load(path) as file:
             parameters = json.loads(str(file["parameters"]))
@@ -137,9 +152,8 @@ def _require_arrays(path, position, radius):
 def _require_apart(path, packing):
     """Raise PackingError when a grain reaches another one's centre; how deep contacts may be depends on the material
     (from_file.py)."""
-    pairs = cKDTree(packing.position).query_pairs(packing.radius.max(), output_type="ndarray")
-    distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
-    overlap = packing.radius[pairs].sum(axis=1) - distance
+    pairs = touching(packing.position, packing.radius, -packing.radius.min())
+    overlap = -surface_gaps(packing.position, packing.radius, pairs)
     deep = np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))
     if len(deep):
         first, second = pairs[deep[0]]

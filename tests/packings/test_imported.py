@@ -1,0 +1,331 @@
+"""Aggregates of other programs: formats, units, which grains touch, and that all of it is at rest in a run."""
+
+import os
+import sys
+from dataclasses import asdict
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from scenes import *
+
+sys.path.append(str(Path(__file__).resolve().parent.parent / "scripts"))
+from running import PYTHON, SCRIPTS, call
+
+from analysis.export.vtk_xml import poly_data
+from analysis.measures.fragments import fragment_labels
+from analysis.runs.arrays import npz
+from analysis.theory.compression import rolling_energy
+from yade_scripts import packings
+from yade_scripts.experiments.collision import CollisionParameters, place
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.packings.imported import imported
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run.arguments import from_arguments
+
+RADIUS = MATERIALS["ice"].grainRadius
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
+OURS = {
+    "cpe": dict(radius=6, filling=0.5),
+    "bpca": dict(packing="bpca", grains=150),
+    "bcca": dict(packing="bcca", grains=150),
+    "planar": dict(packing="bcca", grains=60, planar=1),
+    "two": dict(packing="bpca", grains=100, sizes="two", sizeRatio=0.4),
+    "lognormal": dict(packing="bcca", grains=100, sizes="lognormal", sizeSpread=0.4),
+}
+
+
+@lru_cache
+def ours(name):
+    return make(AggregateParameters.parse(OURS[name]), OVERLAP, 0)
+
+
+def rows(table, head="", row="{}", separator=" "):
+    """Text of a table (N,K) of texts; row: a format that takes the texts and, as i, the grain's number from 1."""
+    filled = (row.format(separator.join(line), *line, i=i) for i, line in enumerate(table, 1))
+    return head.format(n=len(table)) + "\n".join(filled) + "\n"
+
+
+DATA = "made by hand\n\n{n} atoms\n1 atom types\n\n-9 9 xlo xhi\n-9 9 ylo yhi\n-9 9 zlo zhi\n\nAtoms # sphere\n\n"
+DUMP = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS pp pp pp\n-9 9\n-9 9\n-9 9\n"
+VTK = "# vtk DataFile Version 3.0.\nof YADE\nASCII\n\nDATASET POLYDATA\nPOINTS {n} double\n"
+PROPERTIES = "{n}\nProperties=species:S:1:pos:R:3:velo:R:3:radius:R:1 Time=0.5\n"
+
+
+def legacy_vtk(t):
+    radii = "\nPOINT_DATA {n}\nSCALARS radius double 1\nLOOKUP_TABLE default\n"
+    return rows(t[:, :3], VTK) + rows(t[:, 3:], radii.replace("{n}", str(len(t))))
+
+
+def vtp(t):
+    return poly_data(t[:, :3].astype(float), {"mass": np.ones(len(t)), "radius": t[:, 3].astype(float)})
+
+
+def yaml_of(t):
+    about = {"n_particles": len(t), "length_unit": "1", "positions": t[:, :3].astype(float).tolist()}
+    return yaml.dump({"aggregate": {**about, "radii": t[:, 3].astype(float).tolist()}}, sort_keys=False)
+
+
+# What each program writes, from a table (N,4) of texts x y z radius in um.
+FORMATS = {
+    "csv": lambda t: rows(t, "x,y,z,radius\n", separator=","),
+    "csv of ParaView": lambda t: rows(t, '"radius","Points:0","Points:1","Points:2"\n', "{4},{1},{2},{3}"),
+    "csv without names": lambda t: rows(t, separator=", "),
+    "xyz": lambda t: rows(t, "{n}\na line\n", "Si {}"),
+    "xyz, two frames": lambda t: "2\nfirst\nC 0 0 0\nC 9 9 9\n" + rows(t, "{n}\nlast\n", "C {}"),
+    "extended xyz": lambda t: rows(t, PROPERTIES, "X {1} {2} {3} 0 0 0 {4}"),
+    "LAMMPS data": lambda t: rows(twice(t), DATA, "{i} 1 {4} 1000 {1} {2} {3} 0 0 0")
+    + "\nVelocities\n\n1 0 0 0 0 0 0\n",
+    "LAMMPS dump": lambda t: rows(t, DUMP + "ITEM: ATOMS id type xu yu zu radius\n", "{i} 1 {}"),
+    "DustCollider, dump": lambda t: rows(t, DUMP + "ITEM: ATOMS id mol type x y z radius\n", "{i} 0 1 {}"),
+    "legacy VTK": legacy_vtk,
+    "XML of VTK": vtp,
+    "pyFracAggregate": yaml_of,
+    "FracVAL": lambda t: rows(t, row="  {1}  {2}  {3}  {4}    "),
+    "PyFracVAL": lambda t: rows(t, "# simulation_parameters:\n#   N: {n}\n#   - -242.92\n"),
+    "npz": lambda t: npz(pos=t[:, :3].astype(float), radii=t[:, 3].astype(float)),
+    "YADE": lambda t: rows(t, "#format id_x_y_z_r_matId\n", "{i}\t{1}\t{2}\t{3}\t{4}\t0"),
+}
+
+
+def twice(table):
+    """With diameters in the place of radii."""
+    return np.column_stack([table[:, :3], [repr(2 * float(x)) for x in table[:, 3]]])
+
+
+def pairs_of(packing):
+    return set(map(tuple, packings.contacts(packing)))
+
+
+def write(path, packing, decimals, form="csv"):
+    table = np.column_stack([packing.position, packing.radius]) * 1e6
+    content = FORMATS[form](np.vectorize(lambda x: f"{x:.{decimals}f}")(table))
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return str(path)
+
+
+def pieces(packing):
+    return int(fragment_labels(packing.grains, packings.contacts(packing)).max()) + 1
+
+
+@pytest.mark.parametrize("decimals", [4, 7, 17])
+@pytest.mark.parametrize("form", FORMATS)
+def test_a_round_trip_gives_the_same_contacts(tmp_path, form, decimals):
+    """Lengths in um: four decimals are a thousandth of a grain's radius."""
+    for name in OURS:
+        packing = ours(name)
+        back, _ = imported(write(tmp_path / "a", packing, decimals, form), dict(unit="um", pieces=pieces(packing)))
+        assert pairs_of(back) == pairs_of(packing), name
+        assert np.abs(back.position - packings.centred(packing.position, packing.radius)).max() < 0.05 * RADIUS
+
+
+def touching_at_the_sum_of_radii(name):
+    return make(AggregateParameters.parse(OURS[name]), 1e-9 * OVERLAP, 0)
+
+
+@pytest.mark.in_yade
+@pytest.mark.parametrize("name", ["cpe", "bpca", "bcca", "lognormal"])
+@pytest.mark.parametrize("material", ["ice", "silicate"])
+def test_nothing_moves_in_a_run(tmp_path, name, material):
+    """Grains that other programs write 2 r apart, to four decimals: over 2000 t0 without damping no contact breaks or forms."""
+    written = touching_at_the_sum_of_radii(name)
+    packing, _ = imported(
+        write(tmp_path / "a.csv", written, 4), dict(unit="um", pieces=pieces(written), material=material)
+    )
+    of = asdict(MATERIALS[material])
+    del of["grainRadius"]
+    new_scene(0.1 * constants(JKRMat(**of), packing.radius.min())["timeUnit"])
+    for x, r in zip(packing.position, packing.radius):
+        grain(x, r, JKRMat(**of))
+    fused_engine(subSteps=100)
+    O.dt *= 100
+    O.engines[0].prepare()
+    before, kinetic = contact_law.snapshot(), []
+    for _ in range(20):
+        O.run(10, True)
+        kinetic.append(energies()["kinetic"])
+    after = contact_law.snapshot()
+    assert len(before["contact_pairs"]) == len(after["contact_pairs"]) == len(packings.contacts(packing))
+    assert max(kinetic) < 1e-8 * rolling_energy(of["surfaceEnergy"], packing.radius.min(), of["criticalRolling"])
+    assert np.linalg.norm(after["position"] - before["position"], axis=1).max() < 1e-5 * packing.radius.min()
+
+
+# Five tetrahedra around an edge, with a gap of 7.4 degrees that contacts of all neighbours would have to close.
+BIPYRAMID = "0 0 1\n0 0 -1\n" + "".join(
+    f"{1.701302 * np.cos(a):.6f} {1.701302 * np.sin(a):.6f} 0\n" for a in np.arange(5) * 0.4 * np.pi
+)
+LINE = "x,y,z\n0,0,0\n0.2,0,0\n"
+UM = dict(unit="um", radius="0.1")
+WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
+
+
+@pytest.mark.parametrize(
+    "text, given, message",
+    [
+        ("", UM, "empty; must be a file of grains"),
+        ("# nothing\n# else\n", UM, "2 lines of comments; must be followed by grains"),
+        ("x,y,z\n", UM, "no rows of numbers; must have 2 or more"),
+        ("x,y,z\n0,0,0\n", UM, "holds 1 grains; must be 2 to 5000000"),
+        (LINE.replace("0.2", "nan"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2", "inf"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2", "1e999"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2", "wide"), UM, "x of grain 1 is no finite number; must be one"),
+        (LINE.replace("0.2,0,0", "0.2,0"), UM, "z of grain 1 is no finite number; must be one"),
+        (LINE + "1,2,3,4\n", UM, "must have the same columns in all rows"),
+        ("x,y\n0,0\n0.2,0\n", UM, "no z among its columns x, y; must be there, or names=x,y,z,radius must name"),
+        ("0 0\n0.2 0\n", UM, "no z among its columns x, y; must be there"),
+        ("1 0 0 0 5\n2 0.2 0 0 5\n", UM, "table, columns without names; must be named, as in names=-,x,y,z,-,radius"),
+        (LINE + "0.2,0,0\n", UM, "grains 1 and 2 overlap by 1.99 radii of the smaller one more than at rest"),
+        (
+            LINE,
+            dict(UM, radius="0.12"),
+            "grains 0 and 1 overlap by 0.324 radii of the smaller one more than at rest; must be",
+        ),
+        (
+            LINE,
+            dict(UM, radius="0.09"),
+            "in 2 pieces of 1, 1 grains, up to 0.22 radii of the smallest grain apart; must be 1:",
+        ),
+        (
+            LINE,
+            dict(UM, radius="0.01"),
+            "in 2 pieces of 1, 1 grains, more than 10 radii of the smallest grain apart; must",
+        ),
+        (LINE, dict(UM, pieces="2"), "in 1 piece of 2 grains; must be 2"),
+        (LINE, dict(unit="um"), "radius: not given, and {path} has no radii; must be that of its grains [um]"),
+        (
+            LINE,
+            dict(radius="0.1"),
+            "grains of 0.1 m; must be of 1e-09 to 0.001 m, as with unit=cm or unit=mm or unit=um",
+        ),
+        (LINE, dict(radius="1e-12"), "grains of 1e-12 m; must be of 1e-09 to 0.001 m, as with no unit of length"),
+        (LINE, dict(UM, unit="km"), "unit = km: must be m or cm or mm or um or nm or radius"),
+        (LINE, dict(UM, grainRadius="1e-7"), "grainRadius: follows from the file with unit = um; must be left out"),
+        (LINE, dict(UM, tolerance="3"), "tolerance = 3: must be > 0 and at most 0.5"),
+        (WITH_RADII.format("0.1"), UM, "radius = 0.1: {path} has radii of its own; must be left out"),
+        (WITH_RADII.format("-1"), dict(unit="um"), "radius of grain 1 is -1; must be > 0"),
+        ("2\nno grains\nC 0 0 0\n", UM, "ends within the 1 rows after line 3; must hold them all"),
+        ("2\nProperties=pos\nC 0 0 0\nC 1 0 0\n", UM, "no x y z among its columns"),
+        (
+            "2\nProperties=pos:R:many\nC 0 0 0\nC 1 0 0\n",
+            UM,
+            "Properties=pos:R:many: not understood; must be name:type:columns",
+        ),
+        ("ITEM: TIMESTEP\n0\n", UM, "no ITEM: ATOMS; must have one"),
+        (
+            DUMP.format(n=9) + "ITEM: ATOMS x y z\n1 2 3\n",
+            UM,
+            "ends within the 9 rows after line 9; must hold them all",
+        ),
+        (DUMP.format(n="all"), UM, "line 4: 'all' grains; must be a whole number > 0"),
+        (
+            "9" * 5000,
+            UM,
+            "line 1: '9999999999999999999999999999999999999999' grains; must be a whole number > 0, below 1e9",
+        ),
+        (DUMP.format(n=1) + "ITEM: ATOMS id xs ys zs\n1 0 0 0\n", UM, "no x y z among its columns id, xs, ys, zs"),
+        ("9 atoms\n\nMasses\n\n1 1\n", UM, "no section Atoms; must have one"),
+        (
+            DATA.format(n=9).replace(" # sphere", "") + "1 0 0 0\n",
+            UM,
+            "atom style not said, columns without names; must be",
+        ),
+        (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9, as it says"),
+        (
+            "aggregate:\n  positions: &a [*a]\n",
+            UM,
+            "not of pyFracAggregate (anchors in it); must have aggregate: positions",
+        ),
+        ("aggregate:\n  positions: [[0, 0]]\n  radii: [1]\n", {}, "positions have the shape (1, 2); must be (N, 3)"),
+        ("aggregate:\n  positions: [\n", UM, "not of pyFracAggregate"),
+        (
+            "# vtk DataFile Version 3.0\nno\nASCII\nDATASET POLY",
+            UM,
+            "no points in it that VTK can read; must be a file of points",
+        ),
+        (
+            "<?xml version='1.0'?><VTKFile type='PolyData'>",
+            UM,
+            "no points in it that VTK can read; must be a file of points",
+        ),
+        ("0 0 0\n1 1 1\n", dict(UM, names="x,y,z,r"), "3 columns; must have those of x, y, z, r"),
+        (
+            BIPYRAMID,
+            dict(unit="radius"),
+            "the contacts cannot be brought to rest together: grains 0 and 1 keep -1.42 of the",
+        ),
+        ("GIF89a\0\0\0", UM, "of an unknown format; must be npz, csv, xyz, LAMMPS data or dump, VTK"),
+    ],
+)
+def test_what_is_wrong_gives_one_line(tmp_path, capfd, text, given, message):
+    path = tmp_path / "a"
+    path.write_text(text)
+    with pytest.raises((packings.PackingError, ParameterError)) as error:
+        imported(str(path), given)
+    assert message.replace("{path}", str(path)) in str(error.value) and "\n" not in str(error.value)
+    assert capfd.readouterr() == ("", "")
+
+
+class Harmful:
+    def __reduce__(self):
+        return print, ("loaded",)
+
+
+@pytest.mark.parametrize(
+    "arrays, message",
+    [
+        (
+            dict(position=np.array([Harmful()] * 2), radius=np.ones(2)),
+            "Object arrays cannot be loaded when allow_pickle=False",
+        ),
+        (dict(position=np.ones((2, 2)), radius=np.ones(2)), "positions have the shape (2, 2); must be (N, 3)"),
+        (dict(position=np.ones((2, 3)), radius=np.ones(3)), "radius has the shape (3,), positions are 2; must be (2,)"),
+        (
+            dict(position=np.ones((2, 3), dtype=complex), radius=np.ones(2)),
+            "'position' must hold numbers, it holds complex",
+        ),
+        (dict(x=np.ones(2), y=np.ones(2), radius=np.ones(2)), "no z among its columns x, y, radius"),
+        (dict(position=np.full((2, 3), np.nan), radius=np.ones(2)), "x of grain 0 is no finite number"),
+    ],
+)
+def test_what_is_wrong_with_arrays(tmp_path, arrays, message, capsys):
+    np.savez(tmp_path / "a.npz", **arrays)
+    with pytest.raises(packings.PackingError) as error:
+        imported(str(tmp_path / "a.npz"), {})
+    assert message in str(error.value) and "\n" not in str(error.value) and capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    "text, given, radius",
+    [
+        (LINE, UM, 1e-7),
+        ("X [nm] , Y [nm], Z [nm]\n0, 0, 0\n200, 0, 0\n", dict(unit="nm", radius="100"), 1e-7),
+        ("-1.0 0.0 0.0\n1.0 0.0 0.0\n", dict(unit="radius", grainRadius="2e-7"), 2e-7),
+        ("0 0 0\n3 0 0\n", dict(unit="radius", radius="1.5"), 1.5e-7),
+        ("2 400 300\n# four\n# lines\n# of\n# text\n0 0 0 0 100 0 1\n200 0 0 0 100 0 1\n", {}, 1e-7),
+        ("aggregate:\n  length_unit: um\n  positions: [[0, 0, 0], [0.2, 0, 0]]\n  radii: [0.1, 0.1]\n", {}, 1e-7),
+        ("0.1 7 0 0 0\n0.1 7 0.2 0 0\n", dict(unit="um", names="radius,-,x,y,z"), 1e-7),
+        ("0 0 0\n0.205 0 0\n", dict(UM, tolerance="0.06"), 1e-7),
+    ],
+)
+def test_units_names_and_tolerance(tmp_path, text, given, radius):
+    (tmp_path / "a").write_text(text)
+    packing, _ = imported(str(tmp_path / "a"), given)
+    assert packing.radius.tolist() == pytest.approx([radius] * 2, rel=1e-12)
+    depth = 2 * radius - np.linalg.norm(np.diff(packing.position, axis=0))
+    assert depth == pytest.approx(OVERLAP * (radius / RADIUS) ** (1 / 3), rel=1e-3)
+
+
+def test_the_command_names_the_run_that_takes_the_packing(tmp_path):
+    written = touching_at_the_sum_of_radii("lognormal")
+    source, file = write(tmp_path / "a.xyz", written, 4, "xyz"), tmp_path / "a.npz"
+    given = (file, f"from={source}", "unit=um", "material=silicate")
+    done = call(tmp_path, PYTHON, os.path.join(SCRIPTS, "make_packing.py"), *map(str, given))
+    assert done.returncode == 0, done.stderr
+    for told in ("xyz, with radii, 100 grains", "grains moved by up to 0.0", "100 grains in 1 piece, 99 contacts"):
+        assert told in done.stdout
+    of_run = CollisionParameters.parse(from_arguments(done.stdout.split("in a run: ")[1].split()))
+    assert place(of_run, equilibrium_overlap(of_run))[1][0].grains == 100

@@ -1,0 +1,225 @@
+"""Aggregates of other programs: which grains are meant to touch, and their contacts brought to rest.
+
+Programs write grains that touch 2 r apart, or at the overlap of their own contact law, with the digits that they happen to
+write; in a run a gap of 1e-16 m is no contact, and a contact out of rest pulls. Grains are taken to touch where the gap
+between them is within what the digits hide; then rest.py moves all of them as little as it takes.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
+from scipy.spatial import cKDTree
+
+from analysis.measures.fragments import fragment_labels, fragment_sizes
+from yade_scripts import materials
+from yade_scripts.materials import GrainParameters
+from yade_scripts.packings.aggregate import MOST_GRAINS
+from yade_scripts.packings.cut import OF_CONTACTS
+from yade_scripts.packings.foreign import IN_A_METRE, read_spheres
+from yade_scripts.packings.from_file import DEEPEST
+from yade_scripts.packings.largest_piece import largest_piece
+from yade_scripts.packings.packing import Packing, PackingError, centred, contacts, surface_gaps, touching
+from yade_scripts.packings.rest import at_rest, equilibrium_overlaps
+from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, parameter
+
+OF_RADIUS = "radius"
+PLAUSIBLE = (1e-9, 1e-3)  # m: radii of grains
+SMALLEST_GAP, LARGEST_GAP = 1e-4, 0.05  # grain radii: within these a tolerance follows from the digits of the file
+DEEPEST_OVERLAP = 0.1  # grain radii beyond that at rest, as under pressure; deeper ones have another radius or unit
+FARTHEST = 10.0  # grain radii up to which it is told how far pieces are apart
+LARGEST = "largest"
+
+
+@dataclass(frozen=True)
+class ImportParameters(GrainParameters):
+    """The aggregate of another program (from=FILE)."""
+
+    unit: str | None = parameter(
+        None,
+        one_of([*IN_A_METRE, OF_RADIUS]),
+        f"of the lengths in the file (m, unless the file says it); {OF_RADIUS}: they are in units of grainRadius",
+    )
+    radius: float | None = parameter(None, POSITIVE, "of the grains, where the file has no radii", "unit")
+    names: str | None = parameter(
+        None,
+        Check("names of its columns, such as x,y,z,-,radius", lambda text: text != ""),
+        "of the columns of a table, in the place of its own; - for those without use",
+    )
+    tolerance: float | None = parameter(
+        None,
+        Check("> 0 and at most 0.5", lambda x: 0 < x <= 0.5),
+        f"gap up to which grains touch (what the digits of the file hide, {SMALLEST_GAP:g} to {LARGEST_GAP:g})",
+        "radii of the smallest grain",
+    )
+    pieces: int = parameter(
+        1,
+        Check(f"a whole number > 0, or {LARGEST}", lambda x: x > 0),
+        "that the aggregate is meant to be in",
+        word=LARGEST,
+    )
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """Spheres in m: position (N,3), radius (N,), the gap up to which they touch, and the radius by which they are known."""
+
+    position: np.ndarray
+    radius: np.ndarray
+    tolerance: float
+    grain_radius: float
+
+
+def imported(path, texts):
+    """(Packing around the origin, lines about how it came about) of a file of another program and {name: text} of
+    ImportParameters. Raises ParameterError and PackingError."""
+    parameters = ImportParameters.parse(texts)
+    spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
+    scaled = _scaled(path, spheres, parameters, "grainRadius" in texts)
+    parameters = parameters.changed(grainRadius=scaled.grain_radius)
+    constants = materials.pair_constants(parameters)
+    materials.require_small_contacts(constants)
+    overlap = constants["equilibriumOverlap"]
+    pairs = _meant_contacts(path, scaled, overlap)
+    rest = at_rest(scaled.position, scaled.radius, pairs, scaled.grain_radius, overlap)
+    _require_rest(path, rest)
+    moved = float(np.linalg.norm(rest.position - scaled.position, axis=1).max())
+    about = dict(
+        packing="imported",
+        grainRadius=scaled.grain_radius,
+        overlap=overlap,
+        **{name: getattr(parameters, name) for name in OF_CONTACTS},
+        tolerance=scaled.tolerance,
+        largestMotion=moved,
+    )
+    packing = Packing(centred(rest.position, scaled.radius), scaled.radius, 0, about)
+    packing = _in_pieces(path, packing, parameters.pieces)
+    lines = [
+        f"{path}: {spheres.about}, {len(scaled.radius)} grains; those touch that are at most "
+        f"{scaled.tolerance / scaled.radius.min():.2g} radii of the smallest apart: {len(pairs)} contacts",
+        f"brought to rest: grains moved by up to {moved / scaled.grain_radius:.2g} grain radii, contacts are within "
+        f"{np.abs(rest.deviation).max(initial=0.0):.1g} of their overlap at rest, {len(rest.pairs) - len(pairs)} more came about",
+    ]
+    return packing, lines
+
+
+def grains_of(packing, material=None):
+    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material`."""
+    usual = materials.MATERIALS[material or ImportParameters().material]
+    made_of = {name: packing.parameters[name] for name in ("grainRadius", *OF_CONTACTS)}
+    others = [
+        f"{name}={x:.10g}" for name, x in made_of.items() if not np.isclose(x, getattr(usual, name), rtol=1e-6, atol=0)
+    ]
+    return [f"material={material}", *others] if material else others
+
+
+def _scaled(path, spheres, parameters, grain_radius_given):
+    unit = parameters.unit or spheres.unit or "m"
+    if spheres.unit and unit != spheres.unit:
+        raise ParameterError(f"unit = {unit}: {path} is in {spheres.unit}; must be left out")
+    if grain_radius_given and unit != OF_RADIUS:
+        raise ParameterError(f"grainRadius: follows from the file with unit = {unit}; must be left out")
+    radius = spheres.radius
+    if radius is None and parameters.radius is None and unit != OF_RADIUS:
+        raise ParameterError(f"radius: not given, and {path} has no radii; must be that of its grains [{unit}]")
+    if radius is not None and parameters.radius is not None:
+        raise ParameterError(f"radius = {parameters.radius:g}: {path} has radii of its own; must be left out")
+    if radius is None:
+        radius = np.full(len(spheres.position), parameters.radius or 1.0)
+    if unit == OF_RADIUS:
+        in_unit = 1 / parameters.grainRadius
+    else:
+        in_unit = IN_A_METRE[unit]
+        _require_plausible(path, float(np.median(radius)), unit)
+    hidden = (np.sqrt(3.0) + 1.0) * spheres.resolution
+    smallest = radius.min()
+    gap = (parameters.tolerance or np.clip(hidden / smallest, SMALLEST_GAP, LARGEST_GAP)) * smallest
+    # divided, not multiplied: 0.1 um is then 1e-7 m to the bit
+    position, radius = spheres.position / in_unit, radius / in_unit
+    return Scaled(
+        np.asarray(position, dtype=float),
+        np.asarray(radius, dtype=float),
+        gap / in_unit,
+        float(np.sort(radius)[len(radius) // 2]),
+    )
+
+
+def _require_plausible(path, radius, unit):
+    smallest, largest = PLAUSIBLE
+    if smallest <= radius / IN_A_METRE[unit] <= largest:
+        return
+    fits = [f"unit={other}" for other, number in IN_A_METRE.items() if smallest <= radius / number <= largest]
+    raise PackingError(
+        f"{path}: grains of {radius:g} {unit}; must be of {smallest:g} to {largest:g} m, as with "
+        f"{' or '.join(fits) if fits else 'no unit of length'}"
+    )
+
+
+def _meant_contacts(path, scaled, overlap):
+    """Pairs (M,2) of grains that are meant to touch, none of them deeper than can be meant."""
+    position, radius = scaled.position, scaled.radius
+    grains, nearest = np.arange(len(radius)), cKDTree(position).query(position, 2)[1]
+    other = np.where(nearest[:, 0] == grains, nearest[:, 1], nearest[:, 0])  # one in the same place may come first
+    _require_shallow(path, scaled, np.stack([grains, other], axis=1), overlap)  # before there are too many pairs
+    pairs = touching(position, radius, scaled.tolerance)
+    _require_shallow(path, scaled, pairs, overlap)
+    if not len(pairs):
+        return pairs
+    depth = equilibrium_overlaps(radius, pairs, scaled.grain_radius, overlap)
+    gaps = surface_gaps(position, radius, pairs)
+    # In a file of our own most are at the overlap of these grains, and so far from those that don't touch.
+    at_rest_there = abs(np.median(gaps / depth) + 1.0) < 0.1
+    return pairs[gaps <= np.maximum(0.0, scaled.tolerance - at_rest_there * depth)]
+
+
+def _require_shallow(path, scaled, pairs, overlap):
+    smaller = scaled.radius[pairs].min(axis=1)
+    beyond = -surface_gaps(scaled.position, scaled.radius, pairs)
+    beyond -= equilibrium_overlaps(scaled.radius, pairs, scaled.grain_radius, overlap)
+    allowed = np.maximum(scaled.tolerance, DEEPEST_OVERLAP * smaller)
+    if len(pairs) and (beyond > allowed).any():
+        worst = np.argmax(beyond / smaller)
+        first, second = pairs[worst]
+        raise PackingError(
+            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the smaller one more "
+            f"than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or a larger tolerance"
+        )
+
+
+def _require_rest(path, rest):
+    if len(rest.pairs) and abs(rest.deviation[rest.worst]) > DEEPEST - 1:
+        first, second = rest.pairs[rest.worst]
+        raise PackingError(
+            f"{path}: the contacts cannot be brought to rest together: grains {first} and {second} keep "
+            f"{1 + rest.deviation[rest.worst]:.3g} of the overlap at rest; must be {2 - DEEPEST:g} to {DEEPEST:g}"
+        )
+
+
+def _in_pieces(path, packing, wanted):
+    """The packing, when it is in as many pieces as wanted, or the largest of them."""
+    sizes = fragment_sizes(fragment_labels(packing.grains, contacts(packing)))
+    if wanted == LARGEST:
+        return largest_piece(packing)
+    if len(sizes) != wanted:
+        shown = ", ".join(map(str, sizes[:4])) + (", ..." if len(sizes) > 4 else "")
+        one = f", {_apart(packing)}" if len(sizes) > 1 else ""
+        raise PackingError(
+            f"{path}: in {len(sizes)} piece{'s' * (len(sizes) > 1)} of {shown} grains{one}; must be {wanted}: pieces="
+            f"{len(sizes)} or {LARGEST} if that is meant, or another tolerance, radius or unit"
+        )
+    return packing
+
+
+def _apart(packing):
+    """How wide the widest gap is that must be closed to make a packing one piece, in words."""
+    smallest, gap = packing.radius.min(), SMALLEST_GAP
+    while gap <= FARTHEST:
+        pairs = touching(packing.position, packing.radius, gap * smallest)
+        gaps = surface_gaps(packing.position, packing.radius, pairs)
+        edges = coo_matrix((gaps - gaps.min(initial=0.0) + smallest, pairs.T), shape=2 * (packing.grains,))
+        if connected_components(edges, directed=False)[0] == 1:
+            widest = minimum_spanning_tree(edges).data.max() - smallest + gaps.min(initial=0.0)
+            return f"up to {widest / smallest:.2g} radii of the smallest grain apart"
+        gap *= 2
+    return f"more than {FARTHEST:g} radii of the smallest grain apart"
