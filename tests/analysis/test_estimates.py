@@ -256,6 +256,7 @@ def test_how_many_pairs_would_decide():
         ),
         ("[[claim]", "paper.toml"),
         ("[other]\na = 1", "other"),
+        ("[[claim]]\nwhere = { v = [1, 2] }\nvalue = [1, 2, 3]", "value has 3 values: must be 2"),
     ],
 )
 def test_a_paper_that_cannot_be_used_is_one_line(tmp_path, text, said):
@@ -266,16 +267,18 @@ def test_a_paper_that_cannot_be_used_is_one_line(tmp_path, text, said):
 
 
 def test_a_claim_of_several_set_ups(tmp_path):
-    """Lists in `where` make a claim for each combination; runs of the page are those of every claim that doesn't say; a note is no test."""
+    """Lists in `where` make a claim for each combination, with its own of what is a list; runs of the page are those of every claim that doesn't
+    say; a note is no test."""
     claim = "[[claim]]\nquantity = 'q'\nlabel = 'at {v}, {s}'\nprinted = ''\nsource = ''\nsentence = 'x'\n"
     texts = (
-        "where = { v = [1, 2], s = ['a', 'b'], w = 3 }\nlow = 1\n",
+        "where = { v = [1, 2], s = ['a', 'b'], w = 3 }\nlow = 1\nmargin = [1, 2, 3, 4]\n",
         "where = { v = 7, s = 'a' }\nnote = 'vague'\nruns = 2\n",
     )
     (tmp_path / "paper.toml").write_text("[page]\nruns = 5\n" + "".join(claim + text for text in texts))
     *four, vague = read_paper(tmp_path)[1]
     assert [c.label for c in four] == ["at 1, a", "at 1, b", "at 2, a", "at 2, b"]
     assert [c.where for c in four][2] == {"v": 2, "s": "a", "w": 3} and [c.sentence for c in four] == ["x", "", "", ""]
+    assert [c.margin for c in four] == [1, 2, 3, 4]
     assert {c.runs for c in four} == {5} and vague.runs == 2 and all(c.test for c in four) and not vague.test
 
 
