@@ -7,6 +7,7 @@ from typing import Callable
 import pandas
 
 from ..runs.collect import Scene
+from .columns import flat, row_of
 from .runs import at, select
 
 GALLERY, SNAPSHOTS = Path(__file__).resolve().parents[1] / "gallery", "snapshots"
@@ -66,10 +67,9 @@ class Results:
 
 @dataclass(frozen=True)
 class Study:
-    """title; question (what it asks, and of which paper); scene (which runs); columns (runs.table.Column: what `measure` returns; the
-    numbers that tell runs apart are among them);
+    """title; question (what it asks, and of which paper); scene (which runs);
 
-    measure     RunFolder -> {column: value}, one row of the table; NotMeasured or RunFolderError where it can't
+    measured    (columns.Columns, ...): a row of the table, with the numbers that tell runs apart
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
     remarks     Results -> lines (str) that say what could not be done, and why
     independent what counts as one in errors, in the plural: pairs (of aggregates), clusters
@@ -78,13 +78,21 @@ class Study:
     title: str
     question: str
     scene: Scene
-    columns: tuple
-    measure: Callable
+    measured: tuple
     quantities: Callable
     remarks: Callable = lambda results: ()
     independent: str = "pairs"
     name: str = ""
     folder: object = field(default=None, compare=False)
+
+    @property
+    def columns(self):
+        """(runs.table.Column, ...) of the table."""
+        return flat(self.measured)
+
+    def measure(self, run):
+        """{column: value} of a RunFolder; NotMeasured or RunFolderError where a column can't be measured."""
+        return row_of(self.measured, run)
 
     def results(self, table):
         """Results of a table of runs."""

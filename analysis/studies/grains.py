@@ -2,21 +2,20 @@
 
 from math import isclose
 
-from ..measures.of_run import derived_constants
-from ..runs.table import Column
 from ..theory import ICE, SILICATE
+from .columns import constant, flat, parameter, row_of
 from .definition import NotMeasured
 
-COLUMNS = (
-    Column("grainRadius", "m", "radius of a grain"),
-    Column("young", "Pa", "Young's modulus"),
-    Column("poisson", "", "Poisson's ratio"),
-    Column("density", "kg/m^3", "density of a grain"),
-    Column("surfaceEnergy", "J/m^2", "gamma"),
-    Column("criticalRolling", "m", "xi_crit"),
-    Column("slidingStiffnessFactor", "", "k_s over Wada's"),
+GRAINS = (
+    constant("grainRadius", "m", "radius of a grain"),
+    constant("young", "Pa", "Young's modulus"),
+    constant("poisson", "", "Poisson's ratio"),
+    constant("density", "kg/m^3", "density of a grain"),
+    constant("surfaceEnergy", "J/m^2", "gamma"),
+    constant("criticalRolling", "m", "xi_crit"),
+    parameter("slidingStiffnessFactor", "", "k_s over Wada's", usual=1.0),
 )
-OF_GRAINS = tuple(column.name for column in COLUMNS)
+OF_GRAINS = tuple(column.name for column in flat(GRAINS))
 
 # Symbol, unit in which it is shown, and that unit in SI.
 _SHOWN = {
@@ -39,16 +38,6 @@ def _of_paper(material, radius):
 PAPERS = {"ice": _of_paper(ICE, 0.1e-6), "silicate": _of_paper(SILICATE, 0.6e-6)}
 
 
-def grain_constants(run):
-    """{name: value} (SI) of OF_GRAINS of a RunFolder; RunFolderError where one is missing."""
-    *of_material, sliding = OF_GRAINS
-    # Runs of a version without that parameter have Wada's stiffness.
-    return {
-        **derived_constants(run, {name: name for name in of_material}),
-        sliding: float(run.parameters.get(sliding, 1.0)),
-    }
-
-
 def other_grains(parameters):
     """[name] of what differs from the papers' grains of that material, parameters: a mapping with material and OF_GRAINS;
     all names for a material that they do not have."""
@@ -59,7 +48,7 @@ def other_grains(parameters):
 def require_papers_grains(run, but=()):
     """NotMeasured, with what differs, for a RunFolder of other grains than the papers' of its material, but for the names
     `but`: a study without grains in its key would take such runs for seeds or duplicates of others."""
-    parameters = {"material": run.parameters["material"], **grain_constants(run)}
+    parameters = {"material": run.parameters["material"], **row_of(GRAINS, run)}
     others = [name for name in other_grains(parameters) if name not in but]
     if others:
         values = ", ".join(f"{name} = {parameters[name]:g}" for name in others)

@@ -5,7 +5,7 @@ from copy import copy
 import numpy as np
 import pandas
 
-from .estimate import Estimate, Fraction, curve, mean, mean_over_points, stretch, weights_of_pairs
+from .estimate import Estimate, Fraction, curve, mean_over_points, stretch, weights_of_pairs
 
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
 
@@ -18,7 +18,7 @@ class Runs:
 
     def __init__(self, table, pair="seed", population=()):
         self.table, self.pair, self.population = table, pair, tuple(population)
-        self.average, self.points, self.weights = None, None, None
+        self.average, self.points, self.weights = None, (0,), np.ones(1)
 
     def of(self, table):
         """The same for another table."""
@@ -42,7 +42,21 @@ class Runs:
     def estimates(self, values, by):
         """Series of Estimate of the mean over pairs, by the columns `by`: of a column, or of a function table -> (runs,). Runs without
         a value (NaN) don't count."""
-        return self._by(by, values)
+        keys = [self.table[name].map(_key) for name in by]
+        values = pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index)
+        point, number = pandas.Series(0, self.table.index), len(self.points)
+        if self.average:
+            x = self.table[self.average].to_numpy(dtype=float)
+            places = np.abs(x[:, None] - self.points).argmin(axis=1)
+            point = pandas.Series(places, self.table.index).where(alike(x, self.points[places]))
+        pair, point = self._names(self.table).rename("_pair"), point.rename("_point")
+        cells = values.groupby([*keys, pair, point]).mean().unstack("_point").reindex(columns=range(number)).dropna()
+        weights, levels = self.weights / self.weights.sum(), list(range(len(by)))
+        found = {}
+        for key, own in cells.groupby(level=levels if len(by) > 1 else 0) if by else [((), cells)]:
+            own = own.droplevel(levels) if by else own
+            found[key if isinstance(key, tuple) else (key,)] = mean_over_points(own, weights)
+        return _series(found, by)
 
     def parts(self, of, by, level):
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
@@ -86,30 +100,6 @@ class Runs:
             for k, name in enumerate(names):
                 found[(*key, name)] = Estimate(float(value[k]), drawn[None, :, k], n)
         return _series(found, (*by, "number"))
-
-    def _by(self, by, values):
-        """Series of Estimate of the mean over pairs."""
-        keys = [self.table[name].map(_key) for name in by]
-        values = pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index)
-        pair = self._names(self.table).rename("_pair")
-        if self.points is None:
-            of_pairs = values.dropna().groupby([*keys, pair]).mean()
-            return _series(
-                {key: mean(own.droplevel(list(range(len(by)))).to_dict()) for key, own in _parts(of_pairs, by)}, by
-            )
-        x = self.table[self.average].to_numpy(dtype=float)
-        places = np.abs(x[:, None] - self.points).argmin(axis=1)
-        point = pandas.Series(places, self.table.index, name="_point").where(alike(x, self.points[places]))
-        cells = (
-            values.groupby([*keys, pair, point])
-            .mean()
-            .unstack("_point")
-            .reindex(columns=range(len(self.points)))
-            .dropna()
-        )
-        weights = self.weights / self.weights.sum()
-        found = {key: mean_over_points(own.droplevel(list(range(len(by)))), weights) for key, own in _parts(cells, by)}
-        return _series(found, by)
 
     def _names(self, rows):
         """Names of the pairs of a table's rows: with the population, so that they are unique."""
@@ -201,13 +191,6 @@ def alike(values, wanted):
     if values.dtype.kind not in "fiub" or isinstance(wanted, str):
         return values == wanted
     return np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
-
-
-def _parts(of_pairs, by):
-    """((key, ...), part) of what has the columns `by` and the pair in its index."""
-    levels = list(range(len(by)))
-    for key, own in of_pairs.groupby(level=levels if len(by) > 1 else 0) if by else [((), of_pairs)]:
-        yield key if isinstance(key, tuple) else (key,), own
 
 
 def _groups(table, by):

@@ -186,7 +186,7 @@ def test_fractions():
     )
     found = Runs(runs).fractions(lambda t: t.value == "sticks", ("velocity",), lambda t: t.value == "undecided")
     assert found.iloc[0].interval() == pytest.approx((0.7225, 1.0), abs=1e-4)
-    assert found.iloc[1].bounds == (0.25, 0.5) and found.iloc[1].undecided == 1
+    assert found.iloc[1].counts == (1, 2) and found.iloc[1].undecided == 1
     assert found.iloc[1].interval()[1] > Fraction(1, 4).interval()[1]
     assert Fraction(0, 5).chance(1.0, 5) == pytest.approx(2 / 252) and Fraction(5, 10).chance(0.5) == 1.0
     with pytest.raises(ValueError, match="several runs"):

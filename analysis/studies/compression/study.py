@@ -10,7 +10,7 @@ from ...theory.compression import compressive_strength_dense, strength_scale, te
 from ..definition import Quantity, Study
 from ..grains import OF_GRAINS
 from ..runs import Runs, along, ratios, select, together
-from .measure import COLUMNS, DIMENSIONS, ENERGIES, ENERGY_FILLINGS, NUMBERS, TWISTING, measure
+from .measure import DIMENSIONS, ENERGIES, ENERGY_FILLINGS, MEASURED, NUMBERS, TWISTING
 from .strength import SET, VALID_TO, by_filling, exponent, furthest, level, named, with_bins
 
 # K13's ice (section 3.1), of which one number is changed at a time.
@@ -35,7 +35,7 @@ SPANS = [(0.0, filling) for filling in UNTIL] + list(zip(UNTIL, UNTIL[1:]))
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     table = named(table)
     clusters = furthest(table)
     runs = Runs(clusters, "seed", ("grains",))
@@ -125,8 +125,7 @@ STUDY = Study(
         measured=(*OF_GRAINS, "initial_filling", "largest_filling", "last_filling", "stretched_axes"),
         kind=COMPRESSION.name,
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
     remarks=remarks,
     independent="clusters",

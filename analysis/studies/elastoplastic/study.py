@@ -6,10 +6,9 @@ import pandas
 
 from ...measures.outcome import STICKING, UNDECIDED
 from ...runs.collect import Scene
-from ...runs.format import LOST_CHANNELS
 from ...theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, poisson_ratio
 from ...theory.andrews import stress_if_rigid, young_if_elastic
-from ..collisions import HEAD_ON_ICE, at_maximum, channel_quantity, outcome_quantities
+from ..collisions import HEAD_ON_ICE, energy_quantities, outcome_quantities
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
 from ..runs import Runs, at, each, select, together
@@ -28,7 +27,7 @@ from .andrews_fit import (
     straight_line,
     time_exponent,
 )
-from .measure import COLUMNS, UNCHANGED, measure
+from .measure import MEASURED, UNCHANGED
 from .zones import FEWEST_PAIRS, zone_correlation
 
 PAIR = ("filling", "radius")
@@ -39,7 +38,7 @@ NUMBERS = ("σ", "1/E*", "δ_offset")
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     table = in_grain_radii(table)
     same = np.logical_and.reduce([table[name] == usual for name, usual in UNCHANGED.items()])
     runs, grain = Runs(once(table[same]), "seed", PAIR), table.iloc[0]  # all of one material
@@ -188,9 +187,7 @@ def _return(runs):
     yield from (own for own in outcome_quantities(runs, ended) if own.name in wanted)
     together_at_end = runs.fractions(lambda t: t.outcome.isin((STICKING, UNDECIDED)), ended)
     yield Quantity("in_one_piece", "runs in one piece when they end (A24: at 1 µs)", together_at_end)
-    lost = runs.estimates(lambda t: t[[at_maximum(c) for c in LOST_CHANNELS]].sum(axis=1), POINT)
-    yield Quantity("dissipated", "dissipated until t_max, of K(0)", lost, "%", 0.01)
-    yield channel_quantity(runs, POINT, at_maximum, "energy", "change of each channel until t_max, of K(0)")
+    yield from energy_quantities(runs, POINT, "dissipated", "energy")
 
 
 def _packings(runs):
@@ -241,7 +238,6 @@ STUDY = Study(
         numbers=("filling", "radius", "velocity", "seed"),
         measured=(*UNCHANGED, "duration"),
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
 )

@@ -10,7 +10,7 @@ from ..collisions import outcome_quantities
 from ..definition import Quantity, Study
 from ..runs import Runs, alike, along, differences, ratios, select, together
 from ..threshold import threshold_velocity
-from .measure import COLUMNS, LABELS, TIMES, measure
+from .measure import LABELS, MEASURED, TIMES
 from .models import chain_ratio, fit_necks, papers_necks
 
 POINT = ("setup", "growth_velocity", "neck", "velocity")
@@ -26,7 +26,7 @@ MODES = {name: name.removeprefix("brokenBy").lower() for name in BROKEN_BONDS}
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     broken = table[list(BROKEN_BONDS)].sum(axis=1)
     table = table.assign(
         setup=[_setup(row) for row in table.itertuples()],
@@ -152,7 +152,6 @@ STUDY = Study(
         numbers=("velocity", "neck", "planar", "viscoelasticTime"),
         measured=("criticalRolling", "growth_velocity", "cut", "sliding_factor", "grains", "packing_seed"),
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
 )

@@ -18,7 +18,7 @@ from .growth import (
     fragment_exponent,
     offset_weights,
 )
-from .measure import COLUMNS, DISSIPATION, FAST, measure, sizes_from_text
+from .measure import DISSIPATION, FAST, MEASURED, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
 REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # the collision that A22 shows most
@@ -36,7 +36,7 @@ WAYS = {
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     ways = {name: table[list(channels)].sum(axis=1) for name, channels in WAYS.items()}
     lost, unit = table[list(DISSIPATION)].sum(axis=1), 2 * table.grains * table.energy_unit
     table = table.assign(square=(table.impact**2).round(9), lost=lost, unit=unit, **ways)
@@ -203,7 +203,6 @@ STUDY = Study(
         values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal", "limit": "held"},
         numbers=("grains", "impact", "velocity", "viscoelasticTime", "seed"),
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
 )
