@@ -17,6 +17,7 @@ from .html import html_page
 from .page import DETAILS_FILE, PAGE_FILE, details, screen
 from .paper import Page, PaperError, read_paper
 from .predictions import predictions
+from .runs import keyed
 from .tables import quantity_table, tests_table, text_table
 from .verdict import judge
 
@@ -160,18 +161,8 @@ def analyse(study, paths):
 
 def _rows(quantity):
     """Records of a quantity's estimates."""
-    for key, estimate in quantity.values.items():
-        names = [name for name in quantity.values.index.names if name is not None]
-        where = dict(zip(names, key if isinstance(key, tuple) else (key,)))
-        low, high = estimate.interval()
-        yield {
-            **where,
-            "value": estimate.value,
-            "error": estimate.error,
-            "low": low,
-            "high": high,
-            "pairs": estimate.pairs,
-        }
+    names = [name for name in quantity.values.index.names if name is not None]
+    return ({**dict(zip(names, key)), **own.record} for key, own in keyed(quantity.values))
 
 
 def _json_text(value, margin=" "):

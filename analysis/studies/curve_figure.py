@@ -68,34 +68,30 @@ class CurveFigure:
     paper: Callable = None
     vector: bool = True
 
+    @styled
     def draw(self, results):
         """The Figure of definition.Results; None where there is nothing to draw."""
-        return _draw(self, results)
-
-
-@styled
-def _draw(figure, results):
-    quantity = results[figure.y]
-    series = _chosen(quantity.values, figure.where)
-    if not len(series):
-        return None
-    shown = list(dict.fromkeys(series.index.get_level_values(figure.panel))) if figure.panel else [None]
-    shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
-    columns = min(len(shown), WIDEST)
-    drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
-    flat = axes.ravel()
-    for value, place in zip(shown, flat):
-        part = series if value is None else select(series, **{figure.panel: value})
-        _curves(place, figure, quantity, part, results)
-        _dress(place, figure, value, part, results.independent)
-    for place in flat[len(shown) :]:
-        place.set_axis_off()
-    _share_y(flat[: len(shown)], figure)
-    for row in axes:
-        row[0].set_ylabel(figure.y_label or f"{figure.y} [{quantity.unit}]".replace(" []", ""))
-    _legends(flat)
-    letter(flat[: len(shown)], "")
-    return drawn
+        quantity = results[self.y]
+        series = _chosen(quantity.values, self.where)
+        if not len(series):
+            return None
+        shown = list(dict.fromkeys(series.index.get_level_values(self.panel))) if self.panel else [None]
+        shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
+        columns = min(len(shown), WIDEST)
+        drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
+        flat = axes.ravel()
+        for value, place in zip(shown, flat):
+            part = series if value is None else select(series, **{self.panel: value})
+            _curves(place, self, quantity, part, results)
+            _dress(place, self, value, part, results.independent)
+        for place in flat[len(shown) :]:
+            place.set_axis_off()
+        _share_y(flat[: len(shown)], self.limits or (None, None))
+        for row in axes:
+            row[0].set_ylabel(self.y_label or f"{self.y} [{quantity.unit}]".replace(" []", ""))
+        _legends(flat)
+        letter(flat[: len(shown)], "")
+        return drawn
 
 
 def _legends(flat):
@@ -117,14 +113,11 @@ def _chosen(series, where):
     return select(series, **single)
 
 
-def _share_y(places, figure):
+def _share_y(places, limits):
     """One scale for all panels of a quantity."""
-    limits = figure.limits or (None, None)
-    found = [place.get_ylim() for place in places]
-    low = min(own[0] for own in found) if limits[0] is None else limits[0]
-    high = max(own[1] for own in found) if limits[1] is None else limits[1]
+    low, high = zip(*(place.get_ylim() for place in places))
     for place in places:
-        place.set_ylim(low, high)
+        place.set_ylim(min(low) if limits[0] is None else limits[0], max(high) if limits[1] is None else limits[1])
 
 
 def _curves(axes, figure, quantity, series, results):
@@ -183,13 +176,9 @@ def _bar(estimate):
     return None if low is None else (estimate.value - low, high - estimate.value)
 
 
-def _pairs(estimates):
-    return sorted({estimate.pairs for estimate in estimates})
-
-
 def pairs_text(estimates, independent="pairs"):
     """'4 pairs' or '2 to 4 pairs' behind estimates, or of what else is independent."""
-    numbers = _pairs(estimates)
+    numbers = sorted({estimate.pairs for estimate in estimates})
     if numbers == [1]:
         return f"1 {independent[:-1]}"
     return (f"{numbers[0]:g} to " if len(numbers) > 1 else "") + f"{numbers[-1]:g} {independent}"

@@ -50,8 +50,23 @@ def _operator(f):
     return of
 
 
+class Number:
+    """What an Estimate and a Fraction can be written as."""
+
+    @property
+    def text(self):
+        """'54.0 ± 1.0 (4)', with the number of pairs where there is one."""
+        return repr(self)
+
+    @property
+    def record(self):
+        """Value, error, 95 % interval and number of pairs, for JSON (dict)."""
+        low, high = self.interval()
+        return {"value": self.value, "error": self.error, "low": low, "high": high, "pairs": self.pairs}
+
+
 @dataclass(frozen=True, eq=False)
-class Estimate:
+class Estimate(Number):
     """value; draws (1 or 2, DRAWS), NaN where undefined: of pairs, and of single points where it is a mean over such; pairs: the fewest
     independent pairs of aggregates behind it, EXACT for a closed form.
 
@@ -74,6 +89,10 @@ class Estimate:
             return None
         errors = [_scatter(row) for row in self.draws]
         return None if None in errors else max(errors)
+
+    @property
+    def text(self):
+        return repr(self) if self.pairs == EXACT else f"{self!r} ({self.pairs:g})"
 
     def interval(self, confidence=CONFIDENCE):
         """(low, high), Student's with one degree of freedom less than pairs; (None, None) without an error."""
@@ -111,7 +130,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, eq=False)
-class Fraction:
+class Fraction(Number):
     """How many of independent runs ended so: successes of pairs; undecided: runs that may have, and are in neither.
 
     >>> Fraction(3, 5, undecided=1).value, Fraction(3, 5, undecided=1).counts

@@ -3,30 +3,24 @@
 from math import isclose
 
 from ..theory import ICE, SILICATE
-from .columns import constant, flat, parameter, row_of
+from .columns import constant, parameter, row_of
 from .definition import NotMeasured
 
-GRAINS = (
-    constant("grainRadius", "m", "radius of a grain"),
-    constant("young", "Pa", "Young's modulus"),
-    constant("poisson", "", "Poisson's ratio"),
-    constant("density", "kg/m^3", "density of a grain"),
-    constant("surfaceEnergy", "J/m^2", "gamma"),
-    constant("criticalRolling", "m", "xi_crit"),
-    parameter("slidingStiffnessFactor", "", "k_s over Wada's", usual=1.0),
-)
-OF_GRAINS = tuple(column.name for column in flat(GRAINS))
-
-# Symbol, unit in which it is shown, and that unit in SI.
-_SHOWN = {
-    "grainRadius": ("r0", " um", 1e-6),
-    "young": ("E", " GPa", 1e9),
-    "poisson": ("nu", "", 1.0),
-    "density": ("rho", " kg/m^3", 1.0),
-    "surfaceEnergy": ("gamma", " J/m^2", 1.0),
-    "criticalRolling": ("xi_crit", " Å", 1e-10),
-    "slidingStiffnessFactor": ("k_s factor", "", 1.0),
+# Name: unit and meaning of the column; symbol, unit in which it is shown, and that unit in SI.
+_CONSTANTS = {
+    "grainRadius": ("m", "radius of a grain", "r0", " um", 1e-6),
+    "young": ("Pa", "Young's modulus", "E", " GPa", 1e9),
+    "poisson": ("", "Poisson's ratio", "nu", "", 1.0),
+    "density": ("kg/m^3", "density of a grain", "rho", " kg/m^3", 1.0),
+    "surfaceEnergy": ("J/m^2", "gamma", "gamma", " J/m^2", 1.0),
+    "criticalRolling": ("m", "xi_crit", "xi_crit", " Å", 1e-10),
+    "slidingStiffnessFactor": ("", "k_s over Wada's", "k_s factor", "", 1.0),
 }
+*OF_MATERIAL, SLIDING = OF_GRAINS = tuple(_CONSTANTS)
+GRAINS = (
+    *(constant(name, *_CONSTANTS[name][:2]) for name in OF_MATERIAL),
+    parameter(SLIDING, *_CONSTANTS[SLIDING][:2], usual=1.0),
+)
 
 
 def _of_paper(material, radius):
@@ -59,6 +53,6 @@ def grains_text(parameters, but=()):
     """The material, and in brackets what differs from the papers' grains of it, without the names `but`."""
     others = []
     for name in (name for name in other_grains(parameters) if name not in but):
-        symbol, unit, si = _SHOWN[name]
+        *_, symbol, unit, si = _CONSTANTS[name]
         others.append(f"{symbol} = {parameters[name] / si:.4g}{unit}")
     return parameters["material"] + (f" ({', '.join(others)})" if others else "")

@@ -3,7 +3,7 @@
 from ..measures.outcome import UNDECIDED
 from ..runs.provenance import provenance_lines
 from .paper import PaperError
-from .tables import claims_table, estimate_text, markdown_table, quantity_table, tests_table
+from .tables import claims_table, markdown_table, quantity_table, tests_table
 from .verdict import NO, UNTESTED, YES
 
 TEXT_ALONE = "The paper enters by its text and printed numbers alone; its figures were not measured."
@@ -89,7 +89,7 @@ def filled(text, analysis):
     def say(name, **where):
         quantity = analysis.results[name]
         estimate = quantity.at(**where)
-        return "not run" if estimate is None else estimate_text(quantity, estimate, unit=True)
+        return "not run" if estimate is None else f"{quantity.shown(estimate)!r} {quantity.unit}".rstrip()
 
     try:
         return Environment(undefined=StrictUndefined).from_string(text.strip()).render(say=say)

@@ -51,12 +51,8 @@ class Runs:
             point = pandas.Series(places, self.table.index).where(alike(x, self.points[places]))
         pair, point = self._names(self.table).rename("_pair"), point.rename("_point")
         cells = values.groupby([*keys, pair, point]).mean().unstack("_point").reindex(columns=range(number)).dropna()
-        weights, levels = self.weights / self.weights.sum(), list(range(len(by)))
-        found = {}
-        for key, own in cells.groupby(level=levels if len(by) > 1 else 0) if by else [((), cells)]:
-            own = own.droplevel(levels) if by else own
-            found[key if isinstance(key, tuple) else (key,)] = mean_over_points(own, weights)
-        return _series(found, by)
+        weights = self.weights / self.weights.sum()
+        return _series({key: mean_over_points(own, weights) for key, own in _groups(cells, by, levels=True)}, by)
 
     def parts(self, of, by, level):
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
@@ -122,11 +118,8 @@ def _shared(first, second, by, only):
 def along(series, level, f):
     """Series of Estimate of f(x (K,), y (..., K)) along one level of a Series of Estimate, x rising, for every value of the others."""
     others = [name for name in series.index.names if name != level]
-    found = {}
-    for key, own in series.groupby(level=others if len(others) > 1 else others[0]) if others else [((), series)]:
-        own = own.sort_index(level=level)
-        key = key if isinstance(key, tuple) else (key,)
-        found[key] = curve(f, own.index.get_level_values(level), own.to_list())
+    groups = ((key, own.sort_index(level=level)) for key, own in _groups(series, others, levels=True))
+    found = {key: curve(f, own.index.get_level_values(level), own.to_list()) for key, own in groups}
     return _series(found, others)
 
 
@@ -156,9 +149,7 @@ def together(of, level):
 
 def each(series, f):
     """Series of f(estimate, *its values of the levels)."""
-    keys = (key if isinstance(key, tuple) else (key,) for key in series.index)
-    found = [f(estimate, *key) for estimate, key in zip(series, keys)]
-    return pandas.Series(found, series.index, dtype=object)
+    return pandas.Series([f(own, *key) for key, own in keyed(series)], series.index, dtype=object)
 
 
 def at(series, **where):
@@ -193,14 +184,20 @@ def alike(values, wanted):
     return np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
 
 
-def _groups(table, by):
-    """((key, ...), rows) of a table by columns, keys rounded so that rounding of the last digits makes no group of its own."""
+def keyed(series):
+    """((value of each level, ...), value) of a Series."""
+    return ((key if isinstance(key, tuple) else (key,), value) for key, value in series.items())
+
+
+def _groups(own, by, levels=False):
+    """((key, ...), part) of a table by columns, or of what has them as levels of its index."""
     if not by:
-        yield (), table
+        yield (), own
         return
-    keys = [table[name].map(_key) for name in by]
-    for key, rows in table.groupby(keys if len(keys) > 1 else keys[0]):
-        yield key if isinstance(key, tuple) else (key,), rows
+    keys = list(by) if levels else [own[name].map(_key) for name in by]
+    how = {"level" if levels else "by": keys if len(keys) > 1 else keys[0]}
+    for key, part in own.groupby(**how):
+        yield key if isinstance(key, tuple) else (key,), part
 
 
 def _key(value):
