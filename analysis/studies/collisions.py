@@ -111,9 +111,8 @@ def outcome_quantities(runs, by):
         values = runs.fractions(lambda table, kind=kind: table.outcome == kind, by, undecided)
         yield Quantity(name, f"runs that end in {kind}", values)
     bounced = runs.of(runs.table[runs.table.outcome == BOUNCING])
-    yield Quantity(
-        "restitution", "coefficient of restitution of runs that bounce", bounced.estimates("restitution", by)
-    )
+    restitution = bounced.estimates("restitution", by)
+    yield Quantity("restitution", "coefficient of restitution of runs that bounce", restitution)
     (largest,) = LARGEST.columns
     if largest.name in runs.table:
         yield Quantity("largest", largest.meaning, runs.estimates(largest.name, by))
@@ -123,11 +122,11 @@ def energy_quantities(runs, by, lost, changes):
     """Quantities, named lost and changes, of a runs.Runs with the columns of COMPACT, by the columns `by`: what is dissipated until t_max, and
     the change of every channel that changes at all (by `channel` too)."""
     values = runs.estimates(lambda table: table[[AT_MAXIMUM.format(c) for c in LOST_CHANNELS]].sum(axis=1), by)
-    yield Quantity(lost, "dissipated until t_max, of K(0)", values, "%", 0.01)
+    yield Quantity(lost, "dissipated until t_max, of K(0)", values, "%")
     columns = {c: AT_MAXIMUM.format(c) for c in CHANNELS if c != "kinetic"}
     changing = {c: name for c, name in columns.items() if (runs.table[name] != 0).any()} or columns  # all: of no runs
     values = runs.parts(changing, by, "channel")
-    yield Quantity(changes, "change of each channel until t_max, of K(0)", values, "%", 0.01)
+    yield Quantity(changes, "change of each channel until t_max, of K(0)", values, "%")
 
 
 def collision_study(title, question, varied, quantities, **values):

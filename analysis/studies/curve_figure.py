@@ -138,7 +138,7 @@ def _curve(axes, figure, quantity, series, colour, label, marker):
     series = series.sort_index()
     if "y" in figure.logarithmic:
         series = series[[estimate.value > 0 for estimate in series]]
-    x = series.index.get_level_values(figure.x).to_numpy(dtype=float) / level(figure.x).scale
+    x = level(figure.x).of(series.index.get_level_values(figure.x).to_numpy(dtype=float))
     points(axes, x, series.to_list(), colour, label, marker, figure.line, quantity.scale)
 
 

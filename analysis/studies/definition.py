@@ -8,6 +8,7 @@ import pandas
 
 from ..runs.collect import Scene
 from .columns import flat, row_of
+from .levels import SI
 from .runs import at, select
 
 GALLERY, SNAPSHOTS = Path(__file__).resolve().parents[1] / "gallery", "snapshots"
@@ -20,15 +21,19 @@ class NotMeasured(Exception):
 @dataclass(frozen=True)
 class Quantity:
     """What a study tells: name (a word: what paper.toml and figures call it), meaning (the sentence a table is headed with), values
-    (Series of Estimate or Fraction in SI units, indexed by what it depends on), unit in which it is shown (''), scale (that unit in SI).
+    (Series of Estimate or Fraction in SI units, indexed by what it depends on), unit in which it is shown (of levels.SI, or one of SI's).
     listed: whether the details have a table of it; curves of many points are for figures and comparison.json."""
 
     name: str
     meaning: str
     values: pandas.Series
     unit: str = ""
-    scale: float = 1.0
     listed: bool = True
+
+    @property
+    def scale(self):
+        """That unit in SI."""
+        return SI.get(self.unit, 1.0)
 
     def at(self, **where):
         """The Estimate or Fraction, in SI units, there; None where it is not known (runs.at)."""

@@ -52,7 +52,8 @@ class Runs:
         pair, point = self._names(self.table).rename("_pair"), point.rename("_point")
         cells = values.groupby([*keys, pair, point]).mean().unstack("_point").reindex(columns=range(number)).dropna()
         weights = self.weights / self.weights.sum()
-        return _series({key: mean_over_points(own, weights) for key, own in _groups(cells, by, levels=True)}, by)
+        groups = _groups(cells, by, levels=True)
+        return _series({key: mean_over_points(own.droplevel(list(by)), weights) for key, own in groups}, by)
 
     def parts(self, of, by, level):
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""

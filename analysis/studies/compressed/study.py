@@ -64,12 +64,12 @@ def quantities(table):
     yield Quantity("contacts", "contacts of a grain", runs.estimates("coordination", BY))
     yield Quantity("compression", "compression from the first touch to d_max", compression, "r")
     yield Quantity("compression_ratio", "the same, compressed over CPE", over)
-    yield Quantity("t_max", "time of d_max after the first touch", runs.estimates("t_max", BY), "ns", 1e-9)
+    yield Quantity("t_max", "time of d_max after the first touch", runs.estimates("t_max", BY), "ns")
     yield from collisions.energy_quantities(runs, BY, "lost", "channels")
     share = runs.estimates(lambda t: (t.return_speed / t.velocity) ** 2, BY)
     meaning = "kinetic energy in the relative motion of the halves at its largest after t_max, of K(0)"
-    yield Quantity("returned", meaning, share, "%", 0.01)
-    yield Quantity("return_time", "its time", runs.estimates("return_time", BY), "ns", 1e-9)
+    yield Quantity("returned", meaning, share, "%")
+    yield Quantity("return_time", "its time", runs.estimates("return_time", BY), "ns")
     yield from collisions.outcome_quantities(runs, BY)
 
 

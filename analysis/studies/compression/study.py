@@ -92,7 +92,7 @@ def _channels(runs):
     rows = runs.of(pandas.concat(spans, ignore_index=True))
     total = rows.estimates(lambda t: sum(t[way] for way in WAYS), by)
     shares = together({way: ratios(rows.estimates(way, by), total) for way in WAYS}, "channel")
-    yield Quantity("shares", "part of all that is dissipated between two filling factors", shares, "%", 0.01)
+    yield Quantity("shares", "part of all that is dissipated between two filling factors", shares, "%")
     twisting, rolling = (select(shares, channel=way, since=0.0, until=VALID_TO) for way in ("twisting", "rolling"))
     over = ratios(twisting, rolling)
     yield Quantity("twisting_over_rolling", f"dissipation by twisting over rolling, until {VALID_TO:g}", over)
@@ -104,7 +104,7 @@ def _tension(runs):
     """Cells that are stretched after the compression."""
     by, theirs = (*SET, "stretched_axes", "finalFilling"), lambda t: (t.largest_filling, t.surfaceEnergy, t.grainRadius)
     tensile = runs.estimates("tensile_strength", by)
-    yield Quantity("tensile", "largest tension while a cell is stretched", tensile, "kPa", 1e3)
+    yield Quantity("tensile", "largest tension while a cell is stretched", tensile, "kPa")
     one = runs.where(stretched_axes=1).estimates(lambda t: t.tensile_strength / tensile_strength(*theirs(t)), by)
     yield Quantity("tensile_over", "the same along one axis over 0.6 MPa phi^1.8 (Tatsuuma et al. 2019)", one)
 

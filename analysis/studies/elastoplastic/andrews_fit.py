@@ -69,12 +69,6 @@ def printed(filling, grain):
     return Aggregates(stress, 1.0 / young, offset, filling * grain.grain_density, grain.grain_radius)
 
 
-def printed_line(filling):
-    """(c1, c2) of d_max = c1 R - c2 at VELOCITY: A24 eq 14, from its eqs 18 to 21 backwards, since it prints them for 0.4 alone."""
-    _, _, offset, ratio = PRINTED[filling]
-    return 0.5 * ratio, offset * (2.0 - 0.5 * ratio)
-
-
 def straight_line(x, y, weights):
     """(slope, intercept) (B,) of y (n,) or (B, n) against x (n,), least squares with weights (B, n)."""
     mean = lambda values: np.sum(weights * values, axis=1) / weights.sum(axis=1)

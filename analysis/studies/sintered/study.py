@@ -106,7 +106,7 @@ def _necks(runs):
     by = ("setup", "growth_velocity", "neck")
     total = cut.estimates("broken", by)
     modes = together({mode: ratios(cut.estimates(name, by), total) for name, mode in MODES.items()}, "mode")
-    yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%", 0.01)
+    yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%")
 
 
 def _models(runs):
@@ -134,7 +134,7 @@ def _energies(runs):
     """Where the energy goes at 10 m/s, BCCA."""
     by = ("setup", "neck")
     lost = runs.parts({LABELS[n]: lambda t, n=n: t[f"part_{n}"] / t.lost for n in LOST}, by, "way")
-    yield Quantity("lost", "lost in each way at 10 m/s, of all that is lost, BCCA", lost, "%", 0.01)
+    yield Quantity("lost", "lost in each way at 10 m/s, of all that is lost, BCCA", lost, "%")
     necks = lambda t: 2 * t.necks / t.energy_ratio  # K(0) is half an E_k = m V_c^2/4 a grain
     parts = {LABELS[name]: f"part_{name}" for name in LABELS} | {"N_cut E_sint": necks}
     yield Quantity("energy", "energy at the end, or lost until then, of K(0)", runs.parts(parts, by, "part"))
