@@ -5,8 +5,6 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import pandas
-
 from ..progress import progress
 from ..runs.table import NoRunFolder, table_text
 from ..runs.write import replacing, write_text
@@ -35,7 +33,7 @@ class NothingToAnalyse(Exception):
 @dataclass(frozen=True)
 class Analysis:
     """A study's results of a set of runs: found (gather.Gathered), results (definition.Results), words (paper.Page), judgements
-    ([verdict.Judgement] of the paper's claims), predictions ([predictions.Prediction])."""
+    ([verdict.Judgement] of the paper's claims), predictions ([dict], as predictions.py has them)."""
 
     study: Study
     found: Gathered
@@ -65,10 +63,6 @@ class Analysis:
         """Quantities that the details have tables of."""
         return [quantity for quantity in self.results.quantities.values() if quantity.listed]
 
-    def predictions_table(self):
-        """DataFrame of text of the predictions."""
-        return pandas.DataFrame([vars(p) for p in self.predictions]).rename(columns={"held": "held?"})
-
     def csv(self):
         """The table of runs as a file (str)."""
         head = {"study": self.study.name, "provenance": self.found.provenance, "notes": self.notes}
@@ -78,8 +72,7 @@ class Analysis:
         """For a terminal (str): every quantity, then the paper's numbers."""
         parts = []
         for quantity in self.listed:
-            unit = f" [{quantity.unit}]" if quantity.unit else ""
-            parts += [f"{quantity.name}{unit}: {quantity.meaning}", text_table(quantity_table(quantity))]
+            parts += [f"{quantity.name}{quantity.in_unit}: {quantity.meaning}", text_table(quantity_table(quantity))]
         if self.judgements:
             parts += [f"beside {self.words.paper}", text_table(tests_table(self.judgements))]
         return "\n".join((*parts, *self.remarks))
@@ -95,7 +88,7 @@ class Analysis:
             "provenance": self.found.provenance,
             "notes": self.notes,
             "claims": [j.record for j in self.judgements],
-            "predictions": [vars(p) for p in self.predictions],
+            "predictions": self.predictions,
             "quantities": {
                 q.name: {"meaning": q.meaning, "unit": q.unit, "scale": q.scale, "rows": _rows(q)}
                 for q in self.results.quantities.values()
@@ -123,7 +116,7 @@ class Analysis:
         texts = {PAGE_FILE: screen(self, drawn, prose), DETAILS_FILE: details(self, drawn, commands)}
         for name, text in texts.items():
             write_text(folder / name, text)
-        return Written(folder, texts, drawn, tuple(undrawn))
+        return Written(folder, texts, tuple(undrawn))
 
     def page(self, written):
         """The HTML page (str) with what was written in it."""
@@ -133,12 +126,11 @@ class Analysis:
 
 @dataclass(frozen=True)
 class Written:
-    """What Analysis.write() left: folder (Path), texts ({file name: Markdown}), figures ({name: (file name, caption)} of each that is
-    there), undrawn (names of those that could not be drawn because they need run folders)."""
+    """What Analysis.write() left: folder (Path), texts ({file name: Markdown}), undrawn (names of figures that could not be drawn because they
+    need run folders)."""
 
     folder: Path
     texts: dict
-    figures: dict
     undrawn: tuple
 
 

@@ -51,7 +51,7 @@ class CurveFigure:
     """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis; colour, panel: levels that tell curves and
     panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn; logarithmic: of 'x', 'y', 'xy', '';
     y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are joined, '' where not; paper:
-    (axes, {level: value} of the panel) -> None draws what the paper prints. vector as in StudyFigure."""
+    (axes, {level: value} of the panel) -> None draws what the paper prints."""
 
     name: str
     caption: str
@@ -66,7 +66,7 @@ class CurveFigure:
     level_line: float = None
     line: str = "-"
     paper: Callable = None
-    vector: bool = True
+    vector = True  # as in StudyFigure
 
     @styled
     def draw(self, results):
@@ -88,7 +88,7 @@ class CurveFigure:
             place.set_axis_off()
         _share_y(flat[: len(shown)], self.limits or (None, None))
         for row in axes:
-            row[0].set_ylabel(self.y_label or f"{self.y} [{quantity.unit}]".replace(" []", ""))
+            row[0].set_ylabel(self.y_label or f"{self.y}{quantity.in_unit}")
         _legends(flat)
         letter(flat[: len(shown)], "")
         return drawn
@@ -156,7 +156,7 @@ def _dress(axes, figure, value, series, independent):
     if figure.panel or not figure.colour:
         title.append(pairs_text(series, independent))
     axes.set_title(", ".join(title), fontsize=10)
-    axes.set_xlabel(level(figure.x).axis())
+    axes.set_xlabel(level(figure.x).head(math=True))
 
 
 def plain_ticks(axis):

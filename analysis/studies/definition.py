@@ -35,6 +35,11 @@ class Quantity:
         """That unit in SI."""
         return SI.get(self.unit, 1.0)
 
+    @property
+    def in_unit(self):
+        """' [m/s]'; '' without a unit."""
+        return f" [{self.unit}]" if self.unit else ""
+
     def at(self, **where):
         """The Estimate or Fraction, in SI units, there; None where it is not known (runs.at)."""
         try:
@@ -50,9 +55,9 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Results:
-    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError. independent: as Study has it. kept: folder (Path; None: there is none)
-    of the states that the gallery keeps of the study's runs; snapshots {run: [snapshot_figure.Snapshot]}: those that were read from
-    run folders."""
+    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError. independent: as Study has it. kept: folder (Path;
+    None: there is none) of the states that the gallery keeps of the study's runs; snapshots {run: [snapshot_figure.Snapshot]}: those that were
+    read from run folders."""
 
     table: pandas.DataFrame
     quantities: dict
@@ -107,11 +112,10 @@ class Study:
 
 @dataclass(frozen=True)
 class StudyFigure:
-    """A figure: file name without ending, caption, and draw: Results -> matplotlib Figure, or None where the runs don't
-    suffice. A figure that needs run folders takes them by runs.table.run_folder. vector: whether it is also saved as PDF;
-    not where tens of thousands of lines or pixels would make that large."""
+    """A figure: file name without ending, caption, and draw: Results -> matplotlib Figure, or None where the runs don't suffice."""
+
+    vector = True  # also saved as PDF; not where tens of thousands of lines or pixels would make that large
 
     name: str
     caption: str
     draw: Callable
-    vector: bool = True

@@ -21,13 +21,9 @@ class Level:
         """SI values as they are shown."""
         return values / (self.scale * SI.get(self.unit, 1.0))
 
-    def head(self):
-        """'T_vis [ps]'."""
-        return self.symbol + (f" [{self.unit}]" if self.unit else "")
-
-    def axis(self):
-        """The same for the axis of a figure."""
-        return self.math + (f"  [{self.unit}]" if self.unit else "")
+    def head(self, math=False):
+        """'T_vis [ps]'; math: for the axis of a figure."""
+        return (self.math if math else self.symbol) + (f"{' ' * math} [{self.unit}]" if self.unit else "")
 
     def text(self, value):
         """A value in that unit, without it; a name in words."""

@@ -9,8 +9,8 @@ verdict, differs, new, missing                 # Markdown; {{ say("quantity", co
 [[claim]]
 quantity = "v_fra"                             # of the study
 label = "threshold velocity of fragmentation"  # how a table names it
-where = { grains = 50000, viscoelasticTime = 0 }   # SI; {name} in the label stands for a value. Of lists each combination is a claim of its
-                                               # own; any other key may then have a list too, with a value for each
+where = { grains = 50000, viscoelasticTime = 0 }   # SI; {name} in the label stands for a value. Of lists each combination, and of a list of
+                                               # such places each, is a claim of its own; any other key may then list a value for each
 value = 50.0        # as printed, in the quantity's unit; or low and/or high: limits that the paper's words set
 printed = "50 to 60 m/s"                       # how the paper prints it
 source = "section 3.2"
@@ -97,26 +97,32 @@ def read_paper(folder):
 
 
 def _each(block, where):
-    """The claims of a block: one for each combination of the values that its `where` lists. A key that has a list has a value for each; the
-    first has the sentence."""
-    levels = block.get("where", {})
-    listed = [name for name, value in levels.items() if isinstance(value, list)]
-    chosen = [dict(zip(listed, values)) for values in product(*(levels[name] for name in listed))]
+    """The claims of a block: one for each of the places that its `where` lists. A key that has a list has a value for each; the first has the
+    sentence."""
+    places = _places(block.get("where", {}))
     for name, values in block.items():
-        if isinstance(values, list) and len(values) != len(chosen):
-            raise PaperError(f"{where}: {name} has {len(values)} values: must be {len(chosen)}, one for each place")
-    for k, of in enumerate(chosen):
+        if name != "where" and isinstance(values, list) and len(values) != len(places):
+            raise PaperError(f"{where}: {name} has {len(values)} values: must be {len(places)}, one for each place")
+    for k, place in enumerate(places):
         own = {name: value[k] if isinstance(value, list) else value for name, value in block.items()}
+        own["where"] = place
         if k and not isinstance(block.get("sentence"), list):
             own["sentence"] = ""
-        own["where"] = {**levels, **of}
         if "label" in own:
-            own["label"] = own["label"].format(**own["where"])
+            own["label"] = own["label"].format(**place)
         yield own
 
 
+def _places(where):
+    """[{level: value}] of a list of them, or all combinations of the values that one lists."""
+    if isinstance(where, list):
+        return where
+    values = [value if isinstance(value, list) else [value] for value in where.values()]
+    return [dict(zip(where, chosen)) for chosen in product(*values)]
+
+
 def _claim(values, runs, where):
-    values = {"runs": runs, "test": "note" not in values, **values}
+    values = {"runs": runs, "test": not values.get("note"), **values}
     claim = _made(Claim, values, f"{where} ({values.get('label', 'without label')})")
     if claim.test and claim.value is None and claim.low is None and claim.high is None:
         raise PaperError(f"{where} ({claim.label}): is tested, and has no number: must have value, low or high")

@@ -35,7 +35,7 @@ class SnapshotFigure:
     name: str
     caption: str
     collisions: Callable
-    vector: bool = False
+    vector = False
     held: float = HELD
 
     @styled

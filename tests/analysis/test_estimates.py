@@ -292,7 +292,7 @@ def test_predictions_are_held_against_the_runs(tmp_path):
     ]
     (tmp_path / "predictions.csv").write_text(head + "\n".join(rows) + "\n")
     found = predictions(tmp_path, of_mean((10.0, 0.1)))
-    assert [p.held for p in found] == ["no", "yes", "not run", "no"] and found[0].expected == "at least 11"
+    assert [p["held"] for p in found] == ["no", "yes", "not run", "no"] and found[0]["expected"] == "at least 11"
     (tmp_path / "predictions.csv").write_text(head + "x,none,grains=1,1,,,abc,,\n")
     with pytest.raises(PaperError, match="no quantity none"):
         predictions(tmp_path, of_mean((10.0, 0.1)))

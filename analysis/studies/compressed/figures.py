@@ -2,10 +2,6 @@
 
 from ..curve_figure import CurveFigure
 
-SHOWN = ("slidingDissipation", "rollingDissipation", "twistingDissipation")
+LOST = {"channel": ("slidingDissipation", "rollingDissipation", "twistingDissipation")}
 CAPTION = "Dissipated until the largest compression. Bars: standard errors."
-FIGURES = (
-    CurveFigure(
-        "channels", CAPTION, "channels", "velocity", "kind", "channel", {"channel": SHOWN}, y_label="% of $K(0)$"
-    ),
-)
+FIGURES = (CurveFigure("channels", CAPTION, "channels", "velocity", "kind", "channel", LOST, y_label="% of $K(0)$"),)

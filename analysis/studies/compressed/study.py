@@ -10,6 +10,7 @@ from ..definition import NotMeasured, Quantity, Study
 from ..runs import Runs, ratios, select
 
 BY = ("of", "step", "nominal", "velocity", "kind")
+KEY = ("compressed", "nominal", "radius", "pair", "step", *grains.OF_GRAINS)
 
 
 def _packings(run, row):
@@ -66,9 +67,8 @@ def quantities(table):
     yield Quantity("compression_ratio", "the same, compressed over CPE", over)
     yield Quantity("t_max", "time of d_max after the first touch", runs.estimates("t_max", BY), "ns")
     yield from collisions.energy_quantities(runs, BY, "lost", "channels")
-    share = runs.estimates(lambda t: (t.return_speed / t.velocity) ** 2, BY)
     meaning = "kinetic energy in the relative motion of the halves at its largest after t_max, of K(0)"
-    yield Quantity("returned", meaning, share, "%")
+    yield Quantity("returned", meaning, runs.estimates(lambda t: (t.return_speed / t.velocity) ** 2, BY), "%")
     yield Quantity("return_time", "its time", runs.estimates("return_time", BY), "ns")
     yield from collisions.outcome_quantities(runs, BY)
 
@@ -77,10 +77,7 @@ STUDY = Study(
     title="Collisions of close-packed and of compressed aggregates",
     question="Were close-packed and extracted (CPE) aggregates a fair stand-in for compressed ones in Arakawa et al. (2024)?",
     scene=Scene(
-        name="A24's scene, or one of compressed aggregates",
-        values=dict(collisions.HEAD_ON_ICE),
-        numbers=("velocity",),
-        measured=("compressed", "nominal", "radius", "pair", "step", *grains.OF_GRAINS),
+        "A24's scene, or one of compressed aggregates", dict(collisions.HEAD_ON_ICE), ("velocity",), measured=KEY
     ),
     measured=MEASURED,
     quantities=quantities,

@@ -49,7 +49,9 @@ def _every_cluster(results):
         where = settled.loc[grains].index
         text = f"mean of {len(clusters)} clusters" if len(clusters) > 1 else "1 cluster"
         points(place, where, [means.loc[grains, filling] for filling in where], colours[grains], text)
-        place.set(xscale="log", yscale="log", title=level("grains").label(grains), xlabel=level("filling").axis())
+        place.set(
+            xscale="log", yscale="log", title=level("grains").label(grains), xlabel=level("filling").head(math=True)
+        )
         _eq_25(place, {})
         place.set(xlim=(1e-3, 0.3))
         plain_ticks(place.yaxis)

@@ -2,16 +2,9 @@
 
 import numpy as np
 
+from ...measures import periodic_compression as cells
 from ...measures.ledger import work_closure
 from ...measures.percolation import spanned_axes
-from ...measures.periodic_compression import (
-    AVERAGED,
-    at_filling,
-    compressing,
-    filling_at_pressure,
-    filling_at_share,
-    tension,
-)
 from ...measures.structure import fractal_dimension, grains_within
 from ...runs.format import LOST_CHANNELS
 from ...runs.table import Column
@@ -40,9 +33,9 @@ def _at_places(names, unit, meaning):
 
 
 def _reached(run, row):
-    filling, at_300 = run.history["filling"], (SILICATE_PRESSURE, AVERAGED * row["time_unit"])
+    filling, at_300 = run.history["filling"], (SILICATE_PRESSURE, cells.AVERAGED * row["time_unit"])
     ends = (float(value) for value in (filling[0], filling.max(), filling[-1]))
-    return *ends, _spanned_from(run), filling_at_pressure(run.history, *at_300), work_closure(run.history) or 0.0
+    return *ends, _spanned_from(run), cells.filling_at_pressure(run.history, *at_300), work_closure(run.history) or 0.0
 
 
 def _pressures(run, row):
@@ -54,10 +47,10 @@ def _pressures(run, row):
 
 
 def _stretching(run, row):
-    """Largest tension [Pa] and where it is, NaN for a cell that is not stretched; number of axes."""
+    """Largest cells.tension [Pa] and where it is, NaN for a cell that is not stretched; number of axes."""
     history, largest = run.history, int(np.argmax(run.history["filling"]))
     grown = [history[f"edge_{axis}"][-1] > history[f"edge_{axis}"][largest] * (1.0 + 1e-6) for axis in "xyz"]
-    fillings, stress = tension(history, AVERAGED * row["time_unit"])
+    fillings, stress = cells.tension(history, cells.AVERAGED * row["time_unit"])
     strength, filling = (stress.max(), fillings[np.argmax(stress)]) if len(stress) else (np.nan, np.nan)
     return float(strength), float(filling), int(sum(grown))
 
@@ -69,7 +62,10 @@ def _filling_of(run, state):
 def _spanned_from(run):
     """Filling factor of the loosest state from which on every state of the compression spans its cell along all axes (measures.percolation);
     inf where the densest does not, NaN without states."""
-    found, last = float("inf") if len(run.states) else float("nan"), run.history["time"][compressing(run.history)][-1]
+    found, last = (
+        float("inf") if len(run.states) else float("nan"),
+        run.history["time"][cells.compressing(run.history)][-1],
+    )
     for state in (run.states[k] for k in reversed(range(len(run.states)))):
         if state.time > last * (1.0 + 1e-9):
             continue
@@ -82,7 +78,7 @@ def _spanned_from(run):
 def _dimension(run, filling):
     """Fractal dimension between STRUCTURE_SCALE of the state nearest to a filling factor while the cell shrinks; NaN where none is within
     NEAREST."""
-    part = compressing(run.history)
+    part = cells.compressing(run.history)
     time = run.history["time"][part][np.argmin(np.abs(np.log(run.history["filling"][part] / filling)))]
     state = run.states[run.states.nearest(time)] if len(run.states) else None
     if state is None or state.cell_size is None or abs(_filling_of(run, state) / filling - 1.0) > NEAREST:
@@ -116,8 +112,8 @@ MEASURED = (
     ),
     group(
         _stretching,
-        Column("tensile_strength", "Pa", "largest tension while the cell is stretched", gaps=True),
-        Column("tensile_filling", "", "filling factor at which the tension is largest", gaps=True),
+        Column("tensile_strength", "Pa", "largest cells.tension while the cell is stretched", gaps=True),
+        Column("tensile_filling", "", "filling factor at which the cells.tension is largest", gaps=True),
         Column("stretched_axes", "", "number of axes along which the cell is stretched", kind="i"),
     ),
     group(_pressures, *_at_places(PRESSURES, "Pa", "pressure at the filling {:.4f}, by the work")),
@@ -126,11 +122,11 @@ MEASURED = (
         *_at_places(COORDINATIONS, "", "coordination number at the filling {:.4f}"),
     ),
     group(
-        lambda run, row: [at_filling(run.history, *of) for of in ENERGIES],
+        lambda run, row: [cells.at_filling(run.history, *of) for of in ENERGIES],
         *_at_places(ENERGIES, "J", "{0[0]} until the filling {0[1]:g}"),
     ),
     group(
-        lambda run, row: [filling_at_share(run.history, *TWISTING_OVER, share) for share in TWISTING],
+        lambda run, row: [cells.filling_at_share(run.history, *TWISTING_OVER, share) for share in TWISTING],
         *_at_places(TWISTING, "", "filling where twisting passes {:g} of rolling"),
     ),
     group(

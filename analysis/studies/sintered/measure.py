@@ -107,11 +107,9 @@ def energy_ratio(neck, velocity, grainRadius, density, surfaceEnergy):
 
 def partition(history, place=-1):
     """Values of PARTS at a place of the history, changes over K(0); they add up to 1 for an exact ledger."""
-    unit, found = initial_kinetic_energy(history), []
-    for name, (_, channels) in PARTS.items():
-        change = sum(history[c][place] - history[c][0] for c in channels) / unit
-        found.append(float(change + (name == "kinetic")))
-    return found
+    unit = initial_kinetic_energy(history)
+    change = lambda channels: sum(history[c][place] - history[c][0] for c in channels) / unit
+    return [float(change(channels) + (name == "kinetic")) for name, (_, channels) in PARTS.items()]
 
 
 MEASURED = (

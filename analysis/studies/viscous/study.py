@@ -1,5 +1,7 @@
 """The study of A22's collisions: which quantities the runs tell. A pair of aggregates collides at every offset, velocity and T_vis."""
 
+from functools import reduce
+
 import numpy as np
 import pandas
 
@@ -84,7 +86,7 @@ def _energies(runs):
     loss = own.parts(_over("lost"), POINT, "channel")
     yield Quantity("loss", "lost in each way there, of all that is lost", loss, "%")
     rolling, *others = (select(loss, channel=way) for way in WAYS)
-    lead = differences(rolling, _largest(others))
+    lead = differences(rolling, reduce(_largest, others))
     yield Quantity("rolling_lead", "rolling less the largest of the other ways", lead, "%")
     total = own.parts({name: name for name in WAYS if name != "drag"}, POINT, "channel")
     by_drag = ratios(select(total, viscoelasticTime=MOST_DRAG), select(total, viscoelasticTime=NO_DRAG))
@@ -138,13 +140,9 @@ def _over(column):
     return {name: lambda t, name=name: t[name] / t[column] for name in WAYS}
 
 
-def _largest(of):
-    """Series of the largest of several, draw by draw."""
-    largest = of[0]
-    for other in of[1:]:
-        first, second = largest.align(other, join="inner")
-        largest = first.combine(second, lambda a, b: combine(np.maximum, a, b))
-    return largest
+def _largest(first, second):
+    """Series of the larger of two of the same runs, draw by draw."""
+    return first.combine(second, lambda a, b: combine(np.maximum, a, b))
 
 
 def _by_size(table, cumulative):
