@@ -23,7 +23,7 @@ TABLE_FILE, DATA_FILE = "runs.csv", "comparison.json"
 
 
 class NothingToAnalyse(Exception):
-    """No run of the study's scene was found; `found` says what was."""
+    """No run that belongs to the study was found; `found` says what was."""
 
     def __init__(self, study, found):
         super().__init__(f"no run of {study.scene.name} to analyse")
@@ -53,7 +53,7 @@ class Analysis:
         found = self.found
         lines = list(found.earlier)
         if found.notes:
-            lines.append(f"{len(found.notes)} runs left out (not ended, of another scene, or with nothing to measure)")
+            lines.append(f"{len(found.notes)} runs left out (not ended, not of this study, or with nothing to measure)")
         if found.problems:
             lines.append(f"{len(found.problems)} runs not readable")
         return lines
@@ -137,7 +137,7 @@ class Written:
 def analyse(study, paths):
     """Analysis of a definition.Study from run folders, folders that hold them and tables of earlier analyses (paths).
 
-    NothingToAnalyse where no run of its scene is among them, paper.PaperError where its paper.toml or predictions.csv can't be used;
+    NothingToAnalyse where no run that belongs to it is among them, paper.PaperError where its paper.toml or predictions.csv can't be used;
     what is wrong with runs is in .found."""
     words, claims = read_paper(study.folder)
     found = gather(study, paths)

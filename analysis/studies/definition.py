@@ -77,7 +77,7 @@ class Results:
 
 @dataclass(frozen=True)
 class Study:
-    """title; question (what it asks, and of which paper); scene (which runs);
+    """title; question (what it asks, and of which paper); scene (which runs belong to it);
 
     measured    (columns.Columns, ...): a row of the table, with the numbers that tell runs apart
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity

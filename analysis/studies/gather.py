@@ -27,7 +27,7 @@ class Gathered:
 
 
 def gather(study, paths):
-    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers of the scene only the
+    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers in scene.key only the
     first is counted: counted twice it would make errors too small. Where that is a row of a table, figures that need a run's states
     take them from the folder of the other."""
     collection = collect(paths, study.scene)

@@ -77,7 +77,7 @@ STUDY = Study(
     title="Collisions of close-packed and of compressed aggregates",
     question="Were close-packed and extracted (CPE) aggregates a fair stand-in for compressed ones in Arakawa et al. (2024)?",
     scene=Scene(
-        "A24's scene, or one of compressed aggregates", dict(collisions.HEAD_ON_ICE), ("velocity",), measured=KEY
+        "the study of CPE and compressed aggregates", dict(collisions.HEAD_ON_ICE), ("velocity",), measured=KEY
     ),
     measured=MEASURED,
     quantities=quantities,

@@ -119,7 +119,7 @@ STUDY = Study(
     question="Which pressure compresses a fluffy aggregate to a given filling factor, and on which properties of its grains does that depend?",
     # BCCA clusters in cells that shrink uniformly, without viscous drag.
     scene=Scene(
-        name="K13's scene",
+        name="the study of Kataoka et al. (2013)",
         values={"viscoelasticTime": 0.0, "packing": "bcca", "limit": "held"},
         numbers=NUMBERS,
         measured=(*OF_GRAINS, "initial_filling", "largest_filling", "last_filling", "stretched_axes"),

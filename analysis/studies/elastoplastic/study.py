@@ -204,7 +204,7 @@ def _changes(table, same):
 
 
 def change(drag, remove, overlap):
-    """What differs from A24's scene (values of UNCHANGED), in words.
+    """What differs from A24's collisions (values of UNCHANGED), in words.
 
     >>> change(3e-12, 0.0, 1.0), change(0.0, 1.0, 0.5)
     ('drag, T_vis = 3 ps', 'loose grains left out, neighbours with 0.5 of the overlap')
@@ -221,7 +221,7 @@ STUDY = Study(
     "stress and elastic modulus?",
     # Head-on collisions of CPE aggregates without bonds, springs held at their limits.
     scene=Scene(
-        name="A24's scene",
+        name="the study of Arakawa et al. (2024)",
         values={"packing": "cpe", **{name: value for name, value in HEAD_ON_ICE.items() if name not in UNCHANGED}},
         numbers=("filling", "radius", "velocity", "seed"),
         measured=(*UNCHANGED, "duration"),

@@ -147,7 +147,7 @@ STUDY = Study(
     question="Do sintered icy aggregates grow, bounce or break when they collide, and is it the same in three dimensions?",
     # Head-on collisions of equal aggregates of equal ice grains: BCCA ones, and those that collisions have compacted.
     scene=Scene(
-        name="S17's scene",
+        name="the study of Sirono & Ueno (2017)",
         values={"material": "ice", "impact": 0.0, "sizes": "equal"},
         numbers=("velocity", "neck", "planar", "viscoelasticTime"),
         measured=("criticalRolling", "growth_velocity", "cut", "sliding_factor", "grains", "packing_seed"),

@@ -73,7 +73,7 @@ def _require_final(run, row):
 
 
 def is_reference(row):
-    """Whether it is the collision that A22 looks at most: 50.1 m/s, B_off^2 = 3/12; row: mapping, measured."""
+    """Whether it is the collision that A22 shows most: 50.1 m/s, B_off^2 = 3/12; row: mapping, measured."""
     return abs(row["velocity"] / REFERENCE_VELOCITY - 1) < SAME and abs(row["impact"] ** 2 - REFERENCE_SQUARE) < SAME
 
 

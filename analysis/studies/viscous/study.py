@@ -179,7 +179,7 @@ STUDY = Study(
     "fragments distributed?",
     # Collisions of equal BPCA aggregates of equal ice grains, without bonds, springs held at their limits.
     scene=Scene(
-        name="A22's scene",
+        name="the study of Arakawa et al. (2022)",
         values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal", "limit": "held"},
         numbers=("grains", "impact", "velocity", "viscoelasticTime", "seed"),
     ),
