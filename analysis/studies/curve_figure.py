@@ -48,7 +48,7 @@ def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1
 
 @dataclass(frozen=True)
 class CurveFigure:
-    """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis; colour, panel: levels that tell curves and
+    """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis (words as `where` lists them); colour, panel: levels that tell curves and
     panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn; logarithmic: of 'x', 'y', 'xy', '';
     y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are joined, '' where not; paper:
     (axes, {level: value} of the panel) -> None draws what the paper prints."""
@@ -138,7 +138,13 @@ def _curve(axes, figure, quantity, series, colour, label, marker):
     series = series.sort_index()
     if "y" in figure.logarithmic:
         series = series[[estimate.value > 0 for estimate in series]]
-    x = level(figure.x).of(series.index.get_level_values(figure.x).to_numpy(dtype=float))
+    x, words = series.index.get_level_values(figure.x), figure.where.get(figure.x)
+    if isinstance(words, tuple) and isinstance(words[0], str):
+        axes.set_xticks(range(len(words)), [level(figure.x).text(word).replace(" ", "\n") for word in words])
+        axes.set_xlim(-0.5, len(words) - 0.5)
+        x = [words.index(word) for word in x]
+    else:
+        x = level(figure.x).of(x.to_numpy(dtype=float))
     points(axes, x, series.to_list(), colour, label, marker, figure.line, quantity.scale)
 
 

@@ -11,7 +11,12 @@ WIDEST = 8  # columns over which one of the things that a quantity depends on is
 def claims_table(judgements):
     """The rows of a page: quantity, paper, ours, reproduced."""
     rows = [
-        (f"{j.claim.label}{f' [{j.unit}]' if j.unit else ''}", j.claim.printed, j.ours_text, j.verdict)
+        (
+            f"{j.claim.label}{f' [{j.unit}]' if j.unit else ''}",
+            j.claim.printed,
+            "not run" if j.ours is None else j.ours_text,
+            j.verdict,
+        )
         for j in judgements
     ]
     return pandas.DataFrame(rows, columns=("quantity", "paper", "ours", "reproduced"))

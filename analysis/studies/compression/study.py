@@ -115,7 +115,7 @@ def remarks(results):
 
 
 STUDY = Study(
-    title="Static compression of fluffy aggregates",
+    title="Kataoka et al. (2013): static compression of fluffy aggregates",
     question="Which pressure compresses a fluffy aggregate to a given filling factor, and on which properties of its grains does that depend?",
     # BCCA clusters in cells that shrink uniformly, without viscous drag.
     scene=Scene(
