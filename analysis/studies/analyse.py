@@ -8,6 +8,7 @@ from pathlib import Path
 from ..progress import progress
 from ..runs.table import NoRunFolder, table_text
 from ..runs.write import replacing, write_text
+from .columns import CLOSURE
 from .definition import GALLERY, SNAPSHOTS, Results, Study
 from .find import figures
 from .gather import Gathered, gather
@@ -43,9 +44,10 @@ class Analysis:
     predictions: list
 
     @property
-    def remarks(self):
-        """Lines that say what could not be done, and why."""
-        return tuple(self.study.remarks(self.results))
+    def closures(self):
+        """How well the runs' energy ledgers close (lines, str)."""
+        columns = [column for column in self.study.columns if column.name == CLOSURE.columns[0].name]
+        return [f"{column.meaning}: {self.found.table[column.name].max():.2g} at most" for column in columns]
 
     @property
     def notes(self):
@@ -75,7 +77,7 @@ class Analysis:
             parts += [f"{quantity.name}{quantity.in_unit}: {quantity.meaning}", text_table(quantity_table(quantity))]
         if self.judgements:
             parts += [f"beside {self.words.paper}", text_table(tests_table(self.judgements))]
-        return "\n".join((*parts, *self.remarks))
+        return "\n".join((*parts, *self.closures))
 
     def markdown(self):
         """Both pages (str), without figures."""

@@ -1,8 +1,6 @@
 """What studies of collisions have in common: columns of a run's outcome, return and energy, what follows from them, and a study of a
 question of one's own."""
 
-from types import MappingProxyType
-
 import numpy as np
 
 from ..measures.compression import first_compression
@@ -20,18 +18,8 @@ from .definition import NotMeasured, Quantity, Study
 
 AT_MAXIMUM = "{}_at_maximum"  # the column of a channel's change from the start to t_max
 # Parameters of A24's collisions, but for the packing.
-HEAD_ON_ICE = MappingProxyType(
-    {
-        "impact": 0.0,
-        "viscoelasticTime": 0.0,
-        "neck": 0.0,
-        "planar": 0,
-        "limit": "held",
-        "material": "ice",
-        "removeLooseGrains": 0,
-        "initialOverlap": 1.0,
-    }
-)
+HEAD_ON_ICE = {"impact": 0.0, "viscoelasticTime": 0.0, "neck": 0.0, "planar": 0, "limit": "held", "material": "ice"}
+HEAD_ON_ICE |= {"removeLooseGrains": 0, "initialOverlap": 1.0}
 
 
 def largest_compression(run):

@@ -20,19 +20,14 @@ WIDEST = 3  # panels beside each other
 
 
 def palette(results, name):
-    """{value: colour} of all values that a level has in a study's quantities: one colour means one value in all its figures, and an energy
-    channel has its own in all studies."""
+    """{value: colour} of all values that a level has in a study's quantities: one colour means one value in all its figures, an energy channel
+    has its own in all studies, and colours are apart as far as there are any."""
     indices = (quantity.values.index for quantity in results.quantities.values())
     values = {value for index in indices if name in index.names for value in index.get_level_values(name)}
-    return {value: CHANNEL_COLOURS[value] for value in values} if values <= set(CHANNEL_COLOURS) else colours(values)
-
-
-def colours(values):
-    """{value: colour} of values, apart as far as there are colours."""
-    values = sorted(set(values))
-    if len(values) <= len(_COLOURS):
-        return dict(zip(values, _COLOURS))
-    return dict(zip(values, colormaps["plasma"](np.linspace(0.0, 0.85, len(values)))))
+    if values <= set(CHANNEL_COLOURS):
+        return {value: CHANNEL_COLOURS[value] for value in values}
+    many = len(values) > len(_COLOURS)
+    return dict(zip(sorted(values), colormaps["plasma"](np.linspace(0.0, 0.85, len(values))) if many else _COLOURS))
 
 
 def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1.0):

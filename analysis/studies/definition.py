@@ -81,7 +81,6 @@ class Study:
 
     measured    (columns.Columns, ...): a row of the table, with the numbers that tell runs apart
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
-    remarks     Results -> lines (str) that say what could not be done, and why
     independent what counts as one in errors, in the plural: pairs (of aggregates), clusters
     folder (Path; find() fills it in): where paper.toml is, if there is one. name: the folder's."""
 
@@ -90,7 +89,6 @@ class Study:
     scene: Scene
     measured: tuple
     quantities: Callable
-    remarks: Callable = lambda results: ()
     independent: str = "pairs"
     name: str = ""
     folder: object = field(default=None, compare=False)

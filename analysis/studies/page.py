@@ -53,7 +53,7 @@ def details(analysis, pictures, commands=()):
         ]
     if pictures:
         parts += ["## Figures", *(f"![{caption}]({name})\n\n{caption}" for name, caption in pictures.values())]
-    lines = (*provenance_lines(analysis.found.provenance), *analysis.remarks, *analysis.notes)
+    lines = (*provenance_lines(analysis.found.provenance), *analysis.closures, *analysis.notes)
     parts += ["## Runs", "\n".join(f"- {line}" for line in lines), *(f"Made by `{command}`" for command in commands)]
     return _joined(parts)
 

@@ -24,7 +24,10 @@ def claims_table(judgements):
 
 def tests_table(judgements):
     """The same in full: with p, p after Holm's correction, why, and where the paper says it."""
-    rows = [(_p(j.p), _p(j.corrected), j.why, f"{j.claim.source}, {_runs(j.claim.runs)}") for j in judgements]
+    rows = [
+        (_p(j.p), _p(j.corrected), j.why, f"{j.claim.source}, {j.claim.runs} run" + "s" * (j.claim.runs != 1))
+        for j in judgements
+    ]
     return claims_table(judgements).join(
         pandas.DataFrame(rows, columns=("p", "p (Holm)", "why", "where the paper says it"))
     )
@@ -62,7 +65,3 @@ def text_table(table):
 
 def _p(value):
     return "-" if value is None else f"{value:.2g}"
-
-
-def _runs(number):
-    return f"{number} run" + ("s" if number != 1 else "")

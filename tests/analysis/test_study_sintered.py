@@ -77,7 +77,10 @@ def test_other_runs_are_left_out(tmp_path, capsys):
     made_run(tmp_path / "runs" / "extracted", 10.0, 0.7, 1, packing="cpe")
     assert main(["study", "sintered", str(tmp_path / "runs")]) == 2
     said = capsys.readouterr().err
-    assert "impact = 0.5, the study of Sirono & Ueno (2017) has 0.0" in said and "packing = cpe, S17's are bcca and file" in said
+    assert (
+        "impact = 0.5, the study of Sirono & Ueno (2017) has 0.0" in said
+        and "packing = cpe, S17's are bcca and file" in said
+    )
 
 
 def test_set_ups_stand_beside_each_other_by_pairs(tmp_path):

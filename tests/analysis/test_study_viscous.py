@@ -145,7 +145,10 @@ def test_runs_of_other_scenes_are_left_out(tmp_path, capsys):
     made_run(tmp_path / "unlike", VELOCITIES[0], 0.0, 0.0, 1, sizes="two")
     assert main(["study", "viscous", str(tmp_path)]) == 2
     said = capsys.readouterr().err
-    assert "neck = 0.5, the study of Arakawa et al. (2022) has 0.0" in said and "sizes = two, the study of Arakawa et al. (2022) has equal" in said
+    assert (
+        "neck = 0.5, the study of Arakawa et al. (2022) has 0.0" in said
+        and "sizes = two, the study of Arakawa et al. (2022) has equal" in said
+    )
 
 
 def changed(path, name, value):

@@ -76,9 +76,7 @@ def quantities(table):
 STUDY = Study(
     title="Collisions of close-packed and of compressed aggregates",
     question="Were close-packed and extracted (CPE) aggregates a fair stand-in for compressed ones in Arakawa et al. (2024)?",
-    scene=Scene(
-        "the study of CPE and compressed aggregates", dict(collisions.HEAD_ON_ICE), ("velocity",), measured=KEY
-    ),
+    scene=Scene("the study of CPE and compressed aggregates", collisions.HEAD_ON_ICE, ("velocity",), measured=KEY),
     measured=MEASURED,
     quantities=quantities,
 )

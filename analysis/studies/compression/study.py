@@ -109,11 +109,6 @@ def _tension(runs):
     yield Quantity("tensile_over", "the same along one axis over 0.6 MPa phi^1.8 (Tatsuuma et al. 2019)", one)
 
 
-def remarks(results):
-    """How well the runs' energy ledgers close."""
-    yield f"the energy ledger closes to {results.table.closure.max():.2g} of the work of the boundaries or better in all runs"
-
-
 STUDY = Study(
     title="Kataoka et al. (2013): static compression of fluffy aggregates",
     question="Which pressure compresses a fluffy aggregate to a given filling factor, and on which properties of its grains does that depend?",
@@ -127,6 +122,5 @@ STUDY = Study(
     ),
     measured=MEASURED,
     quantities=quantities,
-    remarks=remarks,
     independent="clusters",
 )

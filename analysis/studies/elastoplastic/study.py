@@ -11,7 +11,7 @@ from ...theory.andrews import stress_if_rigid, young_if_elastic
 from ..collisions import HEAD_ON_ICE, energy_quantities, outcome_quantities
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
-from ..runs import Runs, at, each, select, together
+from ..runs import Runs, at, differences, each, select, together
 from . import andrews_fit as fits
 from .measure import MEASURED, UNCHANGED
 from .zones import FEWEST_PAIRS, zone_correlation
@@ -190,17 +190,13 @@ def _packings(runs):
 
 def _changes(table, same):
     """Runs with one thing changed less the same pairs without."""
-    key = [*POINT, "seed"]
-    usual = once(table[same])[[*key, "d", "t_max"]]
-    changed = table[~same].assign(
-        changed=[change(*own) for own in table.loc[~same, list(UNCHANGED)].itertuples(index=False)]
-    )
-    both = Runs(changed.merge(usual, on=key, suffixes=("", "_usual")), "seed", PAIR)
+    words = [change(*own) for own in table[list(UNCHANGED)].itertuples(index=False)]
+    table = table.assign(changed=words)
+    both = Runs(pandas.concat([once(table[same]), table[~same]]), "seed", PAIR)
+    meaning = "with one thing changed less that of the same pairs without"
     for column, name, unit in DEPTH_AND_TIME:
-        values = both.estimates(lambda t: t[column] - t[f"{column}_usual"], (*POINT, "changed"))
-        yield Quantity(
-            f"{name}_change", f"{name} with one thing changed less that of the same pairs without", values, unit
-        )
+        values = both.beside("changed", "", column, POINT, differences, same_pairs=True)
+        yield Quantity(f"{name}_change", f"{name} {meaning}", values, unit)
 
 
 def change(drag, remove, overlap):

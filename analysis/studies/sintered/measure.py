@@ -49,13 +49,9 @@ def _aggregates(run, row):
         raise NotMeasured(f"{run.path}: packing = {parameters['packing']}, S17's are {' and '.join(PACKINGS)}")
     contacts = 2.0 * len(start.contact_pairs) / len(start.radius)
     radii = [gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)]
+    springs = int(parameters.get("limit", "held") == "cut"), float(parameters.get("slidingStiffnessFactor", 1.0))
     named = float(about.get("growthVelocity", 0.0)), int(about.get("seed", parameters["seed"]))
-    return *named, len(start.radius), contacts, float(np.mean(radii)) / row["grain_radius"]
-
-
-def _springs(run, row):
-    cut = run.parameters.get("limit", "held") == "cut"
-    return int(cut), float(run.parameters.get("slidingStiffnessFactor", 1.0))
+    return *springs, *named, len(start.radius), contacts, float(np.mean(radii)) / row["grain_radius"]
 
 
 def _necks(run, row):
@@ -120,12 +116,9 @@ MEASURED = (
     VISCOUS_TIME,
     GRAIN_RADIUS,
     group(
-        _springs,
+        _aggregates,
         Column("cut", "", "1: springs are cut at the limits, 0: held there", kind="i"),
         Column("sliding_factor", "", "k_s over W07's 8 a0 G*; 2: S17 eqs 11 and 12"),
-    ),
-    group(
-        _aggregates,
         Column("growth_velocity", "m/s", "V_g of the compacted aggregates; 0: BCCA"),
         Column("packing_seed", "", "random seed of the aggregates", kind="i"),
         Column("grains", "", "grains of both aggregates", kind="i"),
