@@ -17,7 +17,7 @@ from .columns import CLOSURE, VELOCITY, group, parameter
 from .definition import NotMeasured, Quantity, Study
 
 AT_MAXIMUM = "{}_at_maximum"  # the column of a channel's change from the start to t_max
-# Parameters of A24's collisions, but for the packing.
+# Parameters of the collisions of Arakawa et al. (2024), but for the packing.
 HEAD_ON_ICE = {"impact": 0.0, "viscoelasticTime": 0.0, "neck": 0.0, "planar": 0, "limit": "held", "material": "ice"}
 HEAD_ON_ICE |= {"removeLooseGrains": 0, "initialOverlap": 1.0}
 

@@ -28,7 +28,7 @@ def _of_paper(material, radius):
     return dict(zip(OF_GRAINS, (*values, material.critical_rolling, 1.0)))
 
 
-# K13's, Table 1 and section 2.1; its ice is that of A22 and A24 too.
+# Kataoka et al. (2013), Table 1 and section 2.1; its ice is that of Arakawa et al. (2022, 2024) too.
 PAPERS = {"ice": _of_paper(ICE, 0.1e-6), "silicate": _of_paper(SILICATE, 0.6e-6)}
 
 
