@@ -2,6 +2,7 @@
 
 from ..curve_figure import CurveFigure
 
-LOST = {"channel": ("slidingDissipation", "rollingDissipation", "twistingDissipation"), "velocity": 10**0.5}
-CAPTION = "Dissipated in each way until the largest compression, 3.16 m/s. Bars: standard errors."
-FIGURES = (CurveFigure("channels", CAPTION, "channels", "channel", "kind", where=LOST, line="", y_label="% of $K(0)$"),)
+LOST = {"channel": ("slidingDissipation", "rollingDissipation", "twistingDissipation")}
+CAPTION = "Dissipated in each way until the largest compression. Bars: standard errors."
+AXES = ("channel", "kind", "velocity")
+FIGURES = (CurveFigure("channels", CAPTION, "channels", *AXES, LOST, line="", y_label="% of $K(0)$"),)

@@ -47,7 +47,7 @@ def _pressures(run, row):
 
 
 def _stretching(run, row):
-    """Largest cells.tension [Pa] and where it is, NaN for a cell that is not stretched; number of axes."""
+    """Largest tension [Pa] and where it is, NaN for a cell that is not stretched; number of axes."""
     history, largest = run.history, int(np.argmax(run.history["filling"]))
     grown = [history[f"edge_{axis}"][-1] > history[f"edge_{axis}"][largest] * (1.0 + 1e-6) for axis in "xyz"]
     fillings, stress = cells.tension(history, cells.AVERAGED * row["time_unit"])
@@ -112,8 +112,8 @@ MEASURED = (
     ),
     group(
         _stretching,
-        Column("tensile_strength", "Pa", "largest cells.tension while the cell is stretched", gaps=True),
-        Column("tensile_filling", "", "filling factor at which the cells.tension is largest", gaps=True),
+        Column("tensile_strength", "Pa", "largest tension while the cell is stretched", gaps=True),
+        Column("tensile_filling", "", "filling factor at which the tension is largest", gaps=True),
         Column("stretched_axes", "", "number of axes along which the cell is stretched", kind="i"),
     ),
     group(_pressures, *_at_places(PRESSURES, "Pa", "pressure at the filling {:.4f}, by the work")),

@@ -34,10 +34,8 @@ class Aggregates:
         """(d_max [grain radii], t_max [s]) at a radius [grain radii] and a velocity [m/s]."""
         # Everything in the model is proportional to R*.
         spheres = self._spheres(0.5 * (radius + self.offset))
-        depth, time = (
-            andrews.largest_compression(velocity, spheres),
-            andrews.time_of_largest_compression(velocity, spheres),
-        )
+        depth = andrews.largest_compression(velocity, spheres)
+        time = andrews.time_of_largest_compression(velocity, spheres)
         return depth - 2.0 * self.offset, time * self.grain_radius + self.time_of_contact(velocity)
 
     def time_of_contact(self, velocity):

@@ -114,7 +114,7 @@ def _of_fit(runs, grain, *fit):
     ours = lambda series: series[series.index.get_level_values("filling").isin(fit[0].index)]
 
     def of_model(f, filling, *more):
-        """Estimate of f(fits.Aggregates as fitted at a filling, numbers of other estimates)."""
+        """Estimate of f(Aggregates as fitted at a filling, numbers of other estimates)."""
         density = filling * grain.grain_density
         g = lambda *numbers: f(fits.Aggregates(*numbers[:3], density, grain.grain_radius), *numbers[3:])
         return combine(g, *(at(series, filling=filling) for series in fit), *more)
@@ -195,7 +195,7 @@ def _changes(table, same):
     both = Runs(pandas.concat([once(table[same]), table[~same]]), "seed", PAIR)
     meaning = "with one thing changed less that of the same pairs without"
     for column, name, unit in DEPTH_AND_TIME:
-        values = both.beside("changed", "", column, POINT, differences, same_pairs=True)
+        values = both.beside("changed", "", column, POINT, differences, same_pairs=True).sort_index()
         yield Quantity(f"{name}_change", f"{name} {meaning}", values, unit)
 
 

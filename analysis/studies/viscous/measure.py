@@ -23,7 +23,7 @@ RADII_TRAVELLED = 10**1.3 * 6.34e-6 / 72.27e-7
 ENOUGH = 0.9  # of these: r_c scatters from pair to pair
 REFERENCE_VELOCITY, REFERENCE_SQUARE = 10**1.7, 3 / 12  # m/s, B_off^2: the collision that A22 shows most
 SAME = 1e-6  # relative, of the grid
-COUNTS = {"formed": "N_con: contacts formed", "broken": "N_cut: contacts broken"}
+EVENTS = {"formed": "N_con", "broken": "N_cut"}  # contacts, and A22's names of their numbers
 LATER = {"gaps": True, "absent": np.nan}  # of a column that the first runs don't have
 FAST = 10.0  # m/s: A22 section 5.1 counts the pairs beyond
 
@@ -133,8 +133,8 @@ MEASURED = (
         *(Column(name, "J", "change from the start to the end") for name in DISSIPATION),
     ),
     group(
-        lambda run, row: [float(run.history[name][-1]) if name in run.history else np.nan for name in COUNTS],
-        *(Column(name, "", meaning, gaps=True) for name, meaning in COUNTS.items()),
+        lambda run, row: [float(run.history[name][-1]) if name in run.history else np.nan for name in EVENTS],
+        *(Column(name, "", f"{symbol}: contacts {name}", gaps=True) for name, symbol in EVENTS.items()),
     ),
     group(
         lambda run, row: largest_of_pairs(run) if is_reference(row) else (np.nan, np.nan),

@@ -12,7 +12,7 @@ from ..estimate import combine, exact
 from ..runs import Runs, alike, along, differences, ratios, select, together
 from ..threshold import threshold_velocity
 from .growth import LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fragment_exponent, offset_weights
-from .measure import DISSIPATION, FAST, MEASURED, sizes_from_text
+from .measure import DISSIPATION, EVENTS, FAST, MEASURED, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
 REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # the collision that A22 shows most
@@ -93,8 +93,8 @@ def _energies(runs):
     yield Quantity("drag_ratio", "lost there with 6 ps over without drag", by_drag)
     at_end = at_square.parts(_over("unit"), CURVE, "channel")
     yield Quantity("loss_per_grain", "lost in each way over N_tot F_c delta_c, B_off^2 = 3/12", at_end)
-    events = {"N_con": lambda t: t.formed, "N_cut": lambda t: t.broken, "both": lambda t: t.formed + t.broken}
-    per_grain = {name: lambda t, of=of: of(t) / (2 * t.grains) for name, of in events.items()}
+    per_grain = {symbol: lambda t, name=name: t[name] / (2 * t.grains) for name, symbol in EVENTS.items()}
+    per_grain["both"] = lambda t: sum(t[name] for name in EVENTS) / (2 * t.grains)
     of_events = at_square.parts(per_grain, CURVE, "event")
     yield Quantity("events", "contacts formed and broken over N_tot, B_off^2 = 3/12", of_events)
     meaning = "largest rms of v_rel of neighbours over the states, 50.1 m/s, B_off^2 = 3/12"
