@@ -92,8 +92,8 @@ COMPACT = (_COORDINATION, CLOSURE, OUTCOME, _RETURN, _PARTITION)
 
 
 def outcome_quantities(runs, by):
-    """Quantities of a runs.Runs with the columns of OUTCOME, by the columns `by`: fractions of the runs that stick, bounce and break, with undecided
-    ones apart, and the mean restitution of those that bounce."""
+    """Quantities of a runs.Runs with the columns of OUTCOME, by the columns `by`: fractions of the runs that stick, bounce and break, with
+    undecided ones apart, and the mean restitution of those that bounce."""
     undecided = lambda table: table.outcome == UNDECIDED
     for name, kind in (("sticking", STICKING), ("bouncing", BOUNCING), ("breaking", FRAGMENTATION)):
         values = runs.fractions(lambda table, kind=kind: table.outcome == kind, by, undecided)

@@ -43,10 +43,10 @@ def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1
 
 @dataclass(frozen=True)
 class CurveFigure:
-    """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis (words as `where` lists them); colour, panel: levels that tell curves and
-    panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn; logarithmic: of 'x', 'y', 'xy', '';
-    y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are joined, '' where not; paper:
-    (axes, {level: value} of the panel) -> None draws what the paper prints."""
+    """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis (words as `where` lists them); colour,
+    panel: levels that tell curves and panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn;
+    logarithmic: of 'x', 'y', 'xy', ''; y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are
+    joined, '' where not; paper: (axes, {level: value} of the panel) -> None draws what the paper prints."""
 
     name: str
     caption: str

@@ -62,10 +62,8 @@ def _filling_of(run, state):
 def _spanned_from(run):
     """Filling factor of the loosest state from which on every state of the compression spans its cell along all axes (measures.percolation);
     inf where the densest does not, NaN without states."""
-    found, last = (
-        float("inf") if len(run.states) else float("nan"),
-        run.history["time"][cells.compressing(run.history)][-1],
-    )
+    found = float("inf") if len(run.states) else float("nan")
+    last = run.history["time"][cells.compressing(run.history)][-1]
     for state in (run.states[k] for k in reversed(range(len(run.states)))):
         if state.time > last * (1.0 + 1e-9):
             continue
