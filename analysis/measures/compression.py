@@ -1,5 +1,5 @@
-"""Compression of two colliding aggregates: compression length d, mutual velocity v, and their maximum (A24
-eqs 10-13).
+"""Compression of two colliding aggregates: compression length d, mutual velocity v, and their maximum
+(Arakawa et al. 2024, A24, eqs 10-13).
 
 As defined, v = +dd/dt (positive while the aggregates approach), but only between crossings: d jumps a little
 whenever a grain passes through x = 0, because the averages over x > 0 and x < 0 then change their members.

@@ -1,4 +1,4 @@
-"""Fragments: grains connected by contacts, and what became of two aggregates' mass."""
+"""Fragments: grains connected by contacts, and what became of two aggregates' mass. A22: Arakawa et al. (2022)."""
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components

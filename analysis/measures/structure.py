@@ -1,4 +1,4 @@
-"""Structure: how many grains lie within a distance of a grain (K13 Fig. 11), gyration radius."""
+"""Structure: how many grains lie within a distance of a grain (Kataoka et al. 2013, K13, Fig. 11), gyration radius (Sirono & Ueno 2017, S17)."""
 
 from itertools import product
 from math import ceil

@@ -6,7 +6,7 @@ from small_collision import cluster
 
 from analysis.measures.contact_zone import zone_filling, zone_volume
 from analysis.measures.return_phase import largest_return_speed
-from analysis.studies.collisions import return_values
+from analysis.studies.collisions import returned
 from analysis.studies.elastoplastic.measure import zones_that_meet
 
 
@@ -68,4 +68,4 @@ def test_largest_return_speed():
     gap = np.cos(time)
     gap[313:316] = np.nan
     assert largest_return_speed(time, gap, np.pi / 2)[0] == pytest.approx(1.0, abs=1e-3)
-    assert np.isnan(return_values({"time": time[:9], "v": np.ones(9)}, 0.0)["return_speed"])
+    assert np.isnan(returned({"time": time[:9], "v": np.ones(9)}, 0.0)[0])
