@@ -6,17 +6,7 @@ import signal
 
 import numpy as np
 import pytest
-from running import (
-    COLLIDE,
-    COMPRESS,
-    collide,
-    completed,
-    read_arrays,
-    read_json,
-    refusal,
-    same_bits,
-    stop_midway,
-)  # fmt: skip
+from running import COLLIDE, COMPRESS, TINY, collide, completed, read_arrays, read_json, refusal, same_bits, stop_midway
 from shrinking_cell import SHRINK
 
 # A second or so of stepping, with a checkpoint after each few steps.
@@ -104,33 +94,33 @@ def test_a_checkpoint_of_other_parameters_is_refused(killed):
     assert sorted(os.listdir(killed / "run")) == before
 
 
-@pytest.mark.parametrize(
-    "damage, message",
-    [
-        (('"commit": "', '"commit": "0'), "written by the plugin of commit 0"),
-        (('"yade": "', '"yade": "1'), "written by YADE 1"),
-        (("scene-", "nothing-"), "not a checkpoint ([Errno 2]"),
-        (('"drag", ', ""), "of a history with other columns"),
-        (('"kind": "collision"', '"kind": "toy"'), "of a run with kind = toy, not collision"),
-        (None, "not a checkpoint ("),
-    ],
-    ids=["commit", "yade", "no scene", "columns", "kind", "cut off"],
-)
-def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, damage, message):
+DAMAGED = {
+    "commit": ('"commit": "', '"commit": "0', "written by the plugin of commit 0"),
+    "yade": ('"yade": "', '"yade": "1', "written by YADE 1"),
+    "no scene": ("scene-", "nothing-", "not a checkpoint ([Errno 2]"),
+    "columns": ('"drag", ', "", "of a history with other columns"),
+    "kind": ('"kind": "collision"', '"kind": "toy"', "of a run with kind = toy, not collision"),
+    "cut off": (": ", "", "not a checkpoint ("),
+}
+
+
+@pytest.mark.parametrize("what", DAMAGED)
+def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, what):
+    text, becomes, message = DAMAGED[what]
     shutil.copytree(killed / "run", tmp_path / "run")
     path = tmp_path / "run" / "checkpoint" / "recorder.npz"
     held = read_arrays(path)
-    about = str(held["about"])
-    np.savez(path, rows=held["rows"], about=about.replace(*damage) if damage else about[:20])
+    np.savez(path, rows=held["rows"], about=str(held["about"]).replace(text, becomes))
     line = refusal(collide(tmp_path, *RUN, "out=run", "resume=1"))
     assert line.startswith(f"collide.py: run/checkpoint: {message}") and "must be " in line
 
 
-@pytest.mark.parametrize(
-    "checkpoint", [False, True], ids=["resume without a checkpoint", "a checkpoint without resume"]
-)
-def test_a_run_starts_from_the_beginning(straight, killed, tmp_path, checkpoint):
-    if checkpoint:
-        shutil.copytree(killed / "run", tmp_path / "run")
-    completed(tmp_path, *RUN, *([] if checkpoint else ["resume=1"]))
+def test_a_run_with_a_checkpoint_but_without_resume_starts_from_the_beginning(straight, killed, tmp_path):
+    shutil.copytree(killed / "run", tmp_path / "run")
+    completed(tmp_path, *RUN)
     assert same_bits(tmp_path / "run", straight) and not (tmp_path / "run" / "checkpoint").exists()
+
+
+def test_resume_without_a_checkpoint_starts_from_the_beginning(tmp_path):
+    _, history = completed(tmp_path, *TINY, "resume=1")
+    assert history["time"][0] == 0
