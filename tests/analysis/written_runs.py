@@ -1,6 +1,7 @@
 """Run folders written for tests, in the format that the collision script writes."""
 
 import json
+import re
 from math import pi
 
 import numpy as np
@@ -15,25 +16,12 @@ MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS**3
 
 def record(aggregate_radius, parameters=None):
     """The dict of run.json for ice grains of 0.1 um and an aggregate radius [m]."""
-    derived = {
-        "young": ICE.young,
-        "poisson": ICE.poisson,
-        "surfaceEnergy": ICE.surface_energy,
-        "density": ICE.density,
-        "criticalRolling": ICE.critical_rolling,
-        "viscoelasticTime": 0.0,
-        "grainRadius": RADIUS,
-        "grainMass": MASS,
-        "equilibriumContactRadius": PAIR.equilibrium_contact_radius,
-        "equilibriumOverlap": PAIR.equilibrium_overlap,
-        "pullOffOverlap": PAIR.pull_off_overlap,
-        "pullOffForce": PAIR.pull_off_force,
-        "timeUnit": PAIR.time_unit,
-        "timeStep": 0.1 * PAIR.time_unit,
-        "steps": 0,
-        "aggregateRadius": aggregate_radius,
-        "grainsPerAggregate": 1,
-    }
+    material = {"young": ICE.young, "poisson": ICE.poisson, "surfaceEnergy": ICE.surface_energy, "density": ICE.density}
+    material |= {"criticalRolling": ICE.critical_rolling, "viscoelasticTime": 0.0}
+    pair = "equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce timeUnit".split()
+    pair = {name: getattr(PAIR, re.sub("([A-Z])", r"_\1", name).lower()) for name in pair}
+    derived = {**material, "grainRadius": RADIUS, "grainMass": MASS, **pair, "timeStep": 0.1 * PAIR.time_unit}
+    derived |= {"steps": 0, "aggregateRadius": aggregate_radius, "grainsPerAggregate": 1}
     return {
         "format": FORMAT,
         "kind": "collision",
@@ -102,14 +90,9 @@ def pair_run(path, velocity=8.0, samples=201):
 
 def _pair_state(time, overlap, rate, touching):
     x = RADIUS - 0.5 * overlap
-    return state_arrays(
-        time,
-        [[-x, 0, 0], [x, 0, 0]],
-        [[rate / 2, 0, 0], [-rate / 2, 0, 0]],
-        [0, 1],
-        [[0, 1]] if touching else [],
-        [normal_force(overlap, PAIR)] if touching else [],
-    )
+    position, velocity = [[-x, 0, 0], [x, 0, 0]], [[rate / 2, 0, 0], [-rate / 2, 0, 0]]
+    contact = ([[0, 1]], [normal_force(overlap, PAIR)]) if touching else ([], [])
+    return state_arrays(time, position, velocity, [0, 1], *contact)
 
 
 def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, **parameters):
@@ -131,16 +114,8 @@ def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, state
         x = RADIUS - 0.5 * d[k]
         position = [[-x, 0, 0], [-x, 2 * RADIUS, 0], [x, 0, 0], [x, 2 * RADIUS, 0]]
         moving = [[v[k] / 2, 0, 0]] * 2 + [[-v[k] / 2, 0, 0]] * 2
-        kept.append(
-            state_arrays(time[k], position, moving, [0, 0, 1, 1], [[0, 1], [2, 3]] + [[0, 2]] * int(touching[k]))
-        )
-    values = {
-        "packing": "cpe",
-        "material": "ice",
-        "grains": 2,
-        "velocity": velocity,
-        "seed": seed,
-        "impact": 0.0,
-        **parameters,
-    }
+        pairs = [[0, 1], [2, 3]] + [[0, 2]] * int(touching[k])
+        kept.append(state_arrays(time[k], position, moving, [0, 0, 1, 1], pairs))
+    values = {"packing": "cpe", "material": "ice", "grains": 2, "velocity": velocity, "seed": seed, "impact": 0.0}
+    values |= parameters
     return write_run(path, record(RADIUS, values), history, kept, ended)

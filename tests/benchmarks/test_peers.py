@@ -67,9 +67,8 @@ def test_what_a_peer_cannot_run_is_said(monkeypatch, tmp_path):
 def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
     """A program of that name that only fails, as one does whose libraries are missing."""
     for name in ("lmp", "liggghts"):
-        program(
-            tmp_path, name, f"echo once >> {tmp_path}/{name}.calls; echo no such library >&2; exit 127", monkeypatch
-        )
+        script = f"echo once >> {tmp_path}/{name}.calls; echo no such library >&2; exit 127"
+        program(tmp_path, name, script, monkeypatch)
     assert "pair_style granular" in codes.missing("lammps")
     start = moments.make("one", TINY["cpe-5"], tmp_path)
     place = speed.Place("one", TINY["cpe-5"], "flying", start, settings.TINY, tmp_path, ExitStack())

@@ -53,15 +53,15 @@ class System:
         """Debootstrap, packages that come before the clone, and the clone."""
         self.kept = (self.folder / "usr/bin/apt-get").exists()
         if not self.kept:
-            _run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
+            run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
         # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
         (self.folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
         self.inside(f"apt-get -q update && apt-get -q -y --no-install-recommends install {' '.join(BASE)}", check=True)
         clone = self.folder / CLONE.lstrip("/")
         shutil.rmtree(clone, ignore_errors=True)
-        _run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
-        self.commit = _run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
+        run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
+        self.commit = run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
 
     def inside(self, command, check=False):
         """CompletedProcess of a shell command within the system, with processes, mounts and nothing of this one's
@@ -71,7 +71,7 @@ class System:
         enter += [f'{mounts} && exec chroot "$0" /bin/sh -c "$1"', str(self.folder), command]
         kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
         own = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "TERM": "dumb"}
-        return _run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
+        return run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
 
     def try_commands(self, commands):
         """Run them in the clone, the next even if one fails; yields after each."""
@@ -92,10 +92,12 @@ class System:
         return all(not result.startswith("failed") for _, result, _ in self.results)
 
 
-def _run(command, check=True, env=None):
-    done = subprocess.run(command, capture_output=True, text=True, env=env, stdin=subprocess.DEVNULL)
+def run(command, check=True, **more):
+    """CompletedProcess; CannotBegin with its last line when it fails."""
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, **more)
     if check and done.returncode:
-        raise CannotBegin(f"{command[0]}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
+        lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        raise CannotBegin(f"{' '.join(map(str, command[:4]))}: {lines[-1] if lines else done.returncode}")
     return done
 
 
@@ -109,12 +111,17 @@ def outcome(done):
     return f"failed: {counts[-1].strip() if counts else lines[-1][:150] if lines else done.returncode}"
 
 
+def archives():
+    """[(address, code name, suite)] of Debian's archives that apt uses here."""
+    asked = ["--format", "$(REPO_URI) $(CODENAME) $(SUITE) $(ORIGIN)", "Created-By: Packages"]
+    found = [line.split(" ") for line in run(["apt-get", "indextargets", *asked]).stdout.splitlines()]
+    return sorted({tuple(about) for *about, origin in found if origin == "Debian"})
+
+
 def mirror_of_this_system():
-    """The address of Debian's archive that apt uses here."""
-    targets = _run(["apt-get", "indextargets", "--format", "$(REPO_URI) $(ORIGIN) $(SUITE)", "Created-By: Packages"])
-    for line in targets.stdout.splitlines():
-        address, *about = line.split(" ")
-        if about and about[0] == "Debian" and "-" not in about[-1]:
+    """The address of that which is no update of another."""
+    for address, _, suite in archives():
+        if "-" not in suite:
             return address
     raise CannotBegin("apt has no Debian archive among its sources")
 

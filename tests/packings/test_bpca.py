@@ -113,17 +113,13 @@ def test_characteristic_radius_is_that_of_a22():
 
 def test_filling_falls_slowly_with_size():
     """BPCA has the dimension 3: N (r/r_c)^3 tends to a constant, 0.13 (A22's aggregates: 0.1324)."""
-    filling = {
-        grains: np.mean(
-            [
-                grains * (RADIUS / packings.characteristic_radius(packings.bpca(grains, RADIUS, OVERLAP, seed))) ** 3
-                for seed in range(8)
-            ]
-        )
-        for grains in (500, 4000, 16000)
-    }
-    assert filling[500] > filling[4000] > filling[16000] > 0.12
-    assert filling[16000] == pytest.approx(50000 / 72.27**3, rel=0.04)
+
+    def filling(grains):
+        made = [packings.bpca(grains, RADIUS, OVERLAP, seed) for seed in range(8)]
+        return np.mean([grains * (RADIUS / packings.characteristic_radius(one)) ** 3 for one in made])
+
+    small, middle, large = map(filling, (500, 4000, 16000))
+    assert small > middle > large > 0.12 and large == pytest.approx(50000 / 72.27**3, rel=0.04)
 
 
 def test_radii_of_a_single_pair_by_hand():

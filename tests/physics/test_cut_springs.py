@@ -94,7 +94,3 @@ def test_a_rule_of_another_name_is_refused_in_one_line():
     pair("rolling", 0.1, 0, "held", "", "fused")
     O.engines[0].limit = "Cut"
     assert refusal() == "JKRWadaEngine: limit = 'Cut': must be 'held' or 'cut'"
-    O.engines[0].limit = "held"
-    O.step()
-    O.engines[0].limit = "cut"
-    assert "limit was changed after the start: it must stay 'held', not 'cut'" in refusal()
