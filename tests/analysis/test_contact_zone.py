@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from small_collision import cluster
 
 from analysis.measures.contact_zone import zone_filling, zone_volume
 from analysis.measures.return_phase import largest_return_speed
 from analysis.studies.collisions import return_values
 from analysis.studies.elastoplastic.measure import zones_that_meet
+from yade_scripts import packings
 
 
 @pytest.mark.parametrize(("depth", "width"), [(0.25, 0.25), (0.02, 0.4), (1.9, 0.5), (2.0, 0.3)])
@@ -41,7 +41,7 @@ def test_filling_of_the_zone_is_one_in_the_mean_and_sees_holes():
 def test_both_aggregates_count_at_the_pole_where_they_meet():
     """A ball of grains and its copy: removing what is in the zone of the second leaves half; the far pole does not matter."""
     radius, grain = 8.0, 1.0
-    ball = cluster(radius) / 1e-7
+    ball = packings.cpe(0.6, radius, 1.0, 0.0, seed=1).position
     centre = np.array([radius + grain, 0.0, 0.0])
     near = ((ball[:, 0] < -0.75 * radius) & (np.hypot(ball[:, 1], ball[:, 2]) < 0.25 * radius)).nonzero()[0]
     far = ((ball[:, 0] > 0.75 * radius) & (np.hypot(ball[:, 1], ball[:, 2]) < 0.25 * radius)).nonzero()[0]

@@ -121,28 +121,3 @@ def test_bonds_continue_from_a_checkpoint():
     *again, its_energy = end()
     assert straight == again and its_energy == pytest.approx(energy, rel=1e-12)
     assert any(bonded for _, _, bonded, _ in straight[1])
-
-
-def test_bonds_across_the_boundary_of_a_periodic_cell():
-    """Functors: a row of three bonded grains that closes on itself through the boundary of a resting cell, vibrates and breaks. Root mean square of the
-    ledger's closure over eight rows; second order gives 16."""
-    breaks = {}
-
-    def closure(step, seed):
-        new_scene(step * unit, neck=0.3)
-        O.periodic = True
-        O.cell.setBox(3 * 1.99e-7, 8e-7, 8e-7)
-        random = np.random.default_rng(seed)
-        for k in range(3):
-            velocity, spin = 15 * random.normal(size=3), 1e8 * random.normal(size=3)
-            grain((1.99e-7 * (k + 0.5), 4e-7, 4e-7), 1e-7, ice(), velocity, spin)
-        O.run(1, True)
-        assert O.interactions.countReal() == 3
-        first, kinetic = total_energy(), energies()["kinetic"]
-        _, sums = record(int(20 / step))
-        breaks[step, seed] = sum(broken())
-        return max(abs(sum(one.values()) - first) for one in sums) / kinetic
-
-    coarse, fine = (np.sqrt(np.mean([closure(step, seed) ** 2 for seed in range(8)])) for step in (0.08, 0.02))
-    assert sum(n for (step, _), n in breaks.items() if step == 0.02) > 8
-    assert coarse < 2e-2 and coarse / fine > 9
