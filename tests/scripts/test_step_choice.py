@@ -2,12 +2,11 @@
 
 import os
 import re
-import shutil
 import sys
 
 import numpy as np
 import pytest
-from running import TINY, TOP, collide, completed, messages, read_json, same_bits, stop_midway, study
+from running import TINY, TOP, collide, messages, read_json
 from scipy.stats import binom
 
 from yade_scripts import stability, step_choice
@@ -300,19 +299,3 @@ def test_estimates_count_the_steps_that_will_be_chosen(run):
     step = read_json(run[0], "run.json")["parameters"]["stepFraction"]
     row, same = parse({**tiny, **AUTO, "tolerance": 3e-4}), parse({**tiny, "stepFraction": step})
     assert KIND.estimate(row) == KIND.estimate(same) != KIND.estimate(parse(tiny))
-
-
-def test_a_study_resumes_from_checkpoints_of_rows_that_choose(tmp_path):
-    """A row is killed, resumes in the next call to the same bits as a straight run, and is done in the one after."""
-    scene = ["radius=10", "velocity=10", "duration=300e-9", "stepFraction=auto"]
-    assert "step: 0." in stop_midway(tmp_path, [*scene, "checkpointInterval=0.1"]).output
-    (tmp_path / "auto.table").write_text(
-        "description radius velocity duration stepFraction checkpointInterval out\nkilled 10 10 300e-9 auto 0.1 killed\n"
-    )
-    shutil.move(tmp_path / "run", tmp_path / "killed")
-    assert "checkpoint at " in study(tmp_path, "auto.table", "--status").stdout
-    resumed = study(tmp_path, "auto.table", "-j", "1")
-    assert resumed.returncode == 0 and "1 to run, 1 of them from checkpoints" in resumed.stdout, resumed.stderr
-    completed(tmp_path, *scene)
-    assert same_bits(tmp_path / "killed", tmp_path / "run")
-    assert study(tmp_path, "auto.table").stdout == "auto: 1 rows, 1 done, 0 failed\n"

@@ -75,18 +75,6 @@ def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_ca
     assert (again.returncode, again.stdout) == (0, "tiny: 2 rows, 2 done, 0 failed\n")
 
 
-def test_an_ended_run_with_other_parameters_fails_its_row(first_call, tmp_path):
-    folder, _, _ = first_call
-    os.makedirs(tmp_path / "runs")
-    os.symlink(folder / "runs" / "tiny", tmp_path / "runs" / "tiny")
-    (tmp_path / "tiny.table").write_text(HEADER + ROWS["ends"].replace(" 10e-9", " 20e-9"))
-    refused = study(tmp_path, "tiny.table")
-    assert refused.returncode == 1 and refused.stderr.count("\n") == 1
-    words = "holds an ended run with duration = 1e-08, not 2e-08; must be the same, or removed"
-    assert refused.stderr.startswith(f"study.py: ends: runs/tiny/ends: {words}")
-    assert read_json(folder, "runs", "tiny", "ends", "run.json")["parameters"]["duration"] == 10e-9
-
-
 def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
     write_table(tmp_path, "tiny.table", "killed", "ends")
     old = tmp_path / "runs" / "logs" / "tiny" / "ends.log"  # of an earlier failure
