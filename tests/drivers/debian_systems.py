@@ -1,9 +1,9 @@
 """Fresh Debian systems, in each a clean clone, in it the README's commands. Run by `make test-debian`, as root.
 
-    python3 tests/drivers/debian_systems.py bookworm trixie      [--folder FOLDER] [--commands 'make demo' ...]
+    python3 tests/drivers/debian_systems.py bookworm trixie      [--commands 'make demo' ...]
 
-A system is made by debootstrap with the mirror of this system's apt, and removed afterwards; with --folder it is made
-in FOLDER, or found there as an earlier call left it, and kept. Each runs in mount and process namespaces of its own.
+A system is made by debootstrap with the mirror of this system's apt, and removed afterwards. Each runs in mount and
+process namespaces of its own.
 What is tested is the last commit. Writes results/debian.md: system, versions, result and time of each command.
 Exit status: 0 when every command of every system succeeded, otherwise 1; 2 when it could not begin.
 """
@@ -45,21 +45,18 @@ class System:
     suite: str
     folder: Path
     commit: str = "unknown"
-    kept: bool = False  # made by an earlier call
     versions: dict = field(default_factory=dict)
     results: list = field(default_factory=list)  # (command, what became of it, seconds)
 
     def make(self, mirror):
         """Debootstrap, packages that come before the clone, and the clone."""
-        self.kept = (self.folder / "usr/bin/apt-get").exists()
-        if not self.kept:
-            run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
+        self.folder.mkdir()
+        run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
         # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
         (self.folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
         self.inside(f"apt-get -q update && apt-get -q -y --no-install-recommends install {' '.join(BASE)}", check=True)
         clone = self.folder / CLONE.lstrip("/")
-        shutil.rmtree(clone, ignore_errors=True)
         run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
         self.commit = run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
 
@@ -147,15 +144,13 @@ def table(systems):
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
-            name = system.suite + (", kept from an earlier call with its packages" if system.kept else "")
-            lines.append(f"| {name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
+            lines.append(f"| {system.suite} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
     return "\n".join(lines) + "\n"
 
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("suites", nargs="+", metavar="SUITE")
-    parser.add_argument("--folder", type=Path, help="make the systems there, or find them there, and keep them")
     parser.add_argument("--commands", nargs="+", metavar="COMMAND", help="instead of the README's")
     parser.add_argument("--out", type=Path, default=RESULTS, help="where the table goes (default: %(default)s)")
     return parser.parse_args(arguments)
@@ -169,12 +164,11 @@ def main(arguments):
             raise CannotBegin("must be run as root: debootstrap and chroot need it (sudo make test-debian)")
         if not shutil.which("debootstrap"):
             raise CannotBegin("debootstrap: not installed; must be there (apt-get install debootstrap)")
-        folder = options.folder or Path(scratch := tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
+        scratch = Path(tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
         mirror, commands = mirror_of_this_system(), options.commands or commands_of_the_readme()
         systems = []
         for suite in options.suites:
-            systems.append(System(suite, folder / suite))
-            systems[-1].folder.mkdir(parents=True, exist_ok=True)
+            systems.append(System(suite, scratch / suite))
             systems[-1].make(mirror)
             for _ in systems[-1].try_commands(commands):
                 options.out.write_text(table(systems))
