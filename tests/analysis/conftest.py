@@ -1,16 +1,7 @@
 """Run folders for the tests of the analysis: two grains from theory, and two small clusters."""
 
-import sys
-from pathlib import Path
-
 import pytest
-
-TOP = Path(__file__).resolve().parents[2]
-for folder in (TOP, Path(__file__).resolve().parent):
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
-
-from written_runs import pair_run, two_clusters  # noqa: E402
+from written_runs import pair_run, two_clusters
 
 
 @pytest.fixture(scope="session")

@@ -24,15 +24,10 @@ from results import COLUMNS, Results, Spread, weights
 from settings import FULL, TINY
 from step_choice import COLLISIONS, COMPRESSIONS
 from targets import Target
+from test_harness import SMALL, harness_is_built  # noqa: F401  (a fixture)
 
-IN_CELL = {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1}
-CELL = measured_scenes.Scene("a small cell", "compression", IN_CELL, {"start": None, "denser": 0.05})
+CELL = SMALL["cell"]
 LITTLE = replace(TINY, stretch=0.5, peer_steps=10)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def harness_is_built():
-    subprocess.run(["make", "build/harness"], cwd=TOP, check=True, capture_output=True)
 
 
 def run_bench(*arguments, **environment):

@@ -49,8 +49,9 @@ def moved_by_yade(scene):
 
     import contact_law
 
-    omega = Omega()
-    yade_scene.build(scene_file.load(scene), 50)
+    omega, loaded = Omega(), scene_file.load(scene)
+    yade_scene.add_bodies(loaded)
+    yade_scene.start_engine(loaded, 50)
     for _ in range(STEPS // 50):
         omega.step()
     return {**contact_law.snapshot(), "cell": list(omega.cell.size) if omega.periodic else [0, 0, 0]}

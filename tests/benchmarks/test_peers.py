@@ -12,13 +12,13 @@ import pytest
 import settings
 import speed
 import starts
-from measured_scenes import PAPERS, Scene, bench
+from measured_scenes import PAPERS, bench
+from test_harness import SMALL
 
 from yade_scripts import packings
 
 TINY = bench(settings.TINY)
-IN_CELL = {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1}
-CELL = Scene("a small cell", "compression", IN_CELL, {"start": None})
+CELL = SMALL["cell"]
 
 
 @pytest.mark.parametrize("code, scene", [("lammps", TINY["cpe-5"]), ("liggghts", TINY["cpe-5"]), ("lammps", CELL)])
