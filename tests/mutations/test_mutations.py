@@ -1,9 +1,5 @@
 """The table of mutations is of the code as it is: each in one place, with tests that exist."""
 
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))
 from mutation import TOP, read
 
 
