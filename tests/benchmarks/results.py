@@ -53,10 +53,9 @@ class Results:
             self._read(name)
 
     def _read(self, name):
-        path, self._measured = self.folder / f"{name}.csv", None
-        there = (
-            pd.read_csv(path, float_precision="round_trip") if path.exists() else pd.DataFrame(columns=COLUMNS[name])
-        )
+        path, self._measured, there = self.folder / f"{name}.csv", None, pd.DataFrame(columns=COLUMNS[name])
+        if path.exists():
+            there = pd.read_csv(path, float_precision="round_trip")
         # a moment that was measured again comes last in the file
         setattr(self, name, there.sort_values("progress", kind="stable") if name == "moments" else there)
 
