@@ -47,6 +47,13 @@ def make_table(measured):
     return pandas.DataFrame(rows)
 
 
+def described(table, columns):
+    """The DataFrame with the units and meanings of its columns in .attrs["units"] and .attrs["meanings"], {name: text}."""
+    table.attrs["units"] = {column.name: column.unit for column in columns}
+    table.attrs["meanings"] = {column.name: column.meaning for column in columns}
+    return table
+
+
 def run_folder(row):
     """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where the folder
     is damaged."""

@@ -43,7 +43,7 @@ def test_json_of_several_runs_is_a_list_in_their_order(pair_folder, cluster_fold
 
 
 def test_table_shows_units_and_every_channel(cluster_folder):
-    done = analyse("summary", cluster_folder)
+    done = analyse("summary", "--long", cluster_folder)
     assert done.returncode == 0
     for text in (
         "grain radii",
@@ -62,16 +62,16 @@ def test_table_shows_units_and_every_channel(cluster_folder):
 def test_table_has_the_numbers_of_the_json(cluster_folder):
     numbers, table = (
         json.loads(analyse("summary", "--json", cluster_folder).stdout),
-        analyse("summary", cluster_folder).stdout,
+        analyse("summary", "--long", cluster_folder).stdout,
     )
     shown = re.search(r"d_max +(\S+) m.*?t_max +(\S+) ns", table, re.S).groups()
     assert [float(text) for text in shown] == pytest.approx([numbers["d_max"], 1e9 * numbers["t_max"]], rel=1e-3, abs=0)
 
 
 def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folder, cluster_folder, tmp_path):
-    done = analyse("summary", pair_folder[0], tmp_path / "none", cluster_folder)
+    done = analyse("summary", "--long", pair_folder[0], tmp_path / "none", cluster_folder)
     assert done.returncode == 2
-    assert done.stderr == f"analysis: {tmp_path / 'none'}: no such run folder\n"
+    assert done.stderr == f"analysis: {tmp_path / 'none'}: no such folder\n"
     assert f"run {pair_folder[0]}" in done.stdout and f"run {cluster_folder}" in done.stdout
     listed = analyse("summary", "--json", pair_folder[0], tmp_path / "none")
     assert listed.returncode == 2 and [r["run"] for r in json.loads(listed.stdout)] == [str(pair_folder[0])]
@@ -85,7 +85,7 @@ def test_a_broken_run_alone_prints_nothing_else(tmp_path):
 def test_an_unfinished_run_says_so(pair_folder, tmp_path):
     path = shutil.copytree(pair_folder[0], tmp_path / "run")
     (path / "ended").unlink()
-    done = analyse("summary", path)
+    done = analyse("summary", "--long", path)
     assert done.returncode == 0 and "NOT ENDED" in done.stdout
     assert json.loads(analyse("summary", "--json", path).stdout)["ended"] is False
 
@@ -97,7 +97,7 @@ def test_aggregates_that_never_met_have_that_outcome(pair_folder, tmp_path):
     np.savez(path / "history.npz", **arrays)
     numbers = json.loads(analyse("summary", "--json", path).stdout)
     assert numbers["outcome"] == "never met" and numbers["restitution"] is None
-    table = analyse("summary", path).stdout
+    table = analyse("summary", "--long", path).stdout
     assert re.search(r"outcome +never met", table) and re.search(r"restitution +none: never met", table)
 
 
@@ -111,9 +111,8 @@ def test_a_run_at_rest_has_no_closure_and_no_restitution(pair_folder, tmp_path):
         np.savez(file, **arrays)
     numbers = json.loads(analyse("summary", "--json", path).stdout)
     assert numbers["energy_closure"] is None and numbers["restitution"] is None
-    assert (
-        "undefined" in analyse("summary", path).stdout and "no velocity at the start" in analyse("summary", path).stdout
-    )
+    told = analyse("summary", "--long", path).stdout
+    assert "undefined" in told and "no velocity at the start" in told
     drawn = analyse("figures", path, "--out", tmp_path / "figures")
     assert drawn.returncode == 2 and "no kinetic energy at the start" in drawn.stderr
 
