@@ -67,7 +67,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     for axes in figure.axes:
         if axes.get_xlabel() == x:
             axes.set_xlabel(_with_unit(found, x))
-    figure.suptitle(_about(drawn.table), fontsize=10)
+    figure.suptitle(_about(drawn.table, what), fontsize=10)
     return figure
 
 
@@ -134,9 +134,10 @@ def _with_unit(found, name):
     return name + (f"  [{unit}]" if unit not in ("", "1") else "")
 
 
-def _about(found):
+def _about(found, what):
     """How many runs there are, and what is undecided or not ended of them."""
     undecided, going = int(_undecided(found).sum()), int((~found.ended.astype(bool)).sum())
     text = f"{len(found)} runs"
     text += f", {undecided} of them undecided" if undecided else ""
+    text += " (in the bars, counted either way)" if undecided and what == "sticking" else ""
     return text + (f", {going} of them not ended: as far as they went" if going else "")
