@@ -15,7 +15,7 @@ def progress(items, what, total=None):
 def bar(total, what):
     """A bar on stderr of `total` things, moved by .update(number); .write() prints a line on stdout beside it."""
     form = "{desc}: {percentage:3.0f} %|{bar}| {n:.1f} of {total:g} [{elapsed}, {remaining} left]"
-    return tqdm(desc=what, total=total, disable=_disabled(), leave=False, bar_format=form)
+    return tqdm(desc=what, total=total, disable=_disabled(), leave=False, bar_format=form, mininterval=1.0)
 
 
 def line_beside_bars(text):

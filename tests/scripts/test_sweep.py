@@ -57,10 +57,12 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("given", [{"out": "x"}, {"resume": 1}, {"file": "a b.npz", "packing": "file"}, {"jobs": 0}])
+@pytest.mark.parametrize(
+    "given", [{"out": "x"}, {"resume": 1}, {"file": "a b.npz", "packing": "file"}, {"jobs": 0}, {"folder": "a b"}]
+)
 def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):
     with pytest.raises(ParameterError, match="must be"):
-        from_python(folder=tmp_path / "runs", **given)
+        from_python(**{"folder": tmp_path / "runs", **given})
     assert list(tmp_path.iterdir()) == []
 
 

@@ -71,12 +71,12 @@ def _rows(kind, script, parameters, folder):
     for name in OURS:
         if name in parameters:
             raise ParameterError(f"{name}: is the sweep's own; must be left out (folder says where the runs go)")
-    rows = []
+    rows, folder = [], _text("folder", folder)
     for values in product(*map(_listed, parameters.values())):
         cells = {name: _text(name, value) for name, value in zip(parameters, values) if value is not None}
         out = os.path.basename(kind.parse(cells).out)
         rows.append(
-            {"description": out, **cells, "out": os.path.join(folder, out), "!SCRIPT": os.path.join(TOP, script)}
+            {"description": out, **cells, "out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
         )
     return rows
 
@@ -126,5 +126,6 @@ def _wait(study, said, folders):
             states = {folder: state(folder) for folder in folders if folder not in ended and os.path.isdir(folder)}
             ended |= {folder for folder, found in states.items() if found.kind == DONE}
             reached = len(ended) + sum(found.progress for folder, found in states.items() if folder not in ended)
-            shown.update(max(0.0, reached - shown.n))
+            if reached > shown.n:
+                shown.update(reached - shown.n)
             time.sleep(POLL)
