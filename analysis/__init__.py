@@ -30,7 +30,6 @@ _PUBLIC = {
     ".measures.structure": ("correlation_dimension", "filling_factor", "grains_within", "gyration_radius"),
     ".measures.coordination": ("inner_coordination", "mean_coordination"),
     ".measures.compression": ("compression_length", "maximum_compression", "mutual_velocity"),
-    ".measures.outcome": ("collision_outcome",),
     ".measures.ledger": ("closure", "fractions_at", "total_energy"),
 }
 _PLACES = {name: place for place, names in _PUBLIC.items() for name in names}

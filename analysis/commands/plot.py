@@ -43,33 +43,31 @@ def _condition(text):
 
 def run(options):
     """Exit status: 0, or 2 when a run could not be read or nothing be drawn."""
-    import warnings
     from pathlib import Path
 
     from ..report.plot import CannotPlot, plot
-    from ..report.rows import table
-    from ..runs.arrays import RunFolderError
+    from ..report.rows import frame, measure, row
     from ..runs.named import UnknownName
     from ..runs.write import replacing
 
     file = Path(options.out or f"{options.what}-{options.x}.png")
     logarithmic = "" if options.log == "none" else options.log
+    structure = any("largest_" in name for name in (options.what, options.x, options.by))
+    measured, problems = measure(options.runs, lambda run: row(run, structure))
+    for problem in problems:
+        complain(problem)
+    if not measured:
+        return FAILED
     try:
-        with warnings.catch_warnings(record=True) as left_out:
-            found = table(
-                options.runs, structure=any("largest_" in name for name in (options.what, options.x, options.by))
-            )
-        for warning in left_out:
-            complain(warning.message)
-        figure = plot(options.what, found, options.x, options.by, dict(options.where), logarithmic)
+        figure = plot(options.what, frame(measured), options.x, options.by, dict(options.where), logarithmic)
         file.parent.mkdir(parents=True, exist_ok=True)
         with replacing(file) as out:
             figure.savefig(out, format="png", dpi=150)
-    except (RunFolderError, CannotPlot, UnknownName) as error:
+    except (CannotPlot, UnknownName) as error:
         complain(error)
         return FAILED
     except OSError as error:
         complain(f"{error.filename or file}: {error.strerror}")
         return FAILED
     print(file)
-    return FAILED if left_out else 0
+    return FAILED if problems else 0

@@ -38,7 +38,7 @@ def run(options):
     measured, problems = measure(options.runs, lambda run: _of(run, options))
     if options.json and (measured or len(options.runs) > 1):
         results = [numbers for _, numbers in measured]
-        one = len(options.runs) == 1 and measured[0][0].path == Path(options.runs[0])
+        one = len(options.runs) == 1 and measured[0][0] == Path(options.runs[0])
         print(json.dumps(results[0] if one else results, indent=2, allow_nan=False))
     elif measured:
         print("\n\n".join(text for _, text in measured) if options.long else short_text(frame(measured)))

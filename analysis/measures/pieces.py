@@ -1,9 +1,11 @@
 """The pieces of a state: how large each is, and how fluffy."""
 
+from inspect import cleandoc
+
 import numpy as np
 import pandas
 
-from ..runs.table import Column, described
+from ..runs.table import Column, columns_text, described
 from .fragments import fragment_labels, fragment_masses, fragment_sizes
 from .structure import correlation_dimension, filling_factor, gyration_radius
 
@@ -49,6 +51,9 @@ def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
         "coordination": 2.0 * contacts / sizes,
     }
     return described(pandas.DataFrame(columns), PIECES)
+
+
+fragments.__doc__ = f"{cleandoc(fragments.__doc__)}\n\n{columns_text(PIECES)}"
 
 
 def structure_of(position, radius, pieces, cell_size=None):

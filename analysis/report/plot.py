@@ -44,8 +44,8 @@ class OfDecided:
 def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     """matplotlib Figure of runs (a table(), or what that takes).
 
-    what: "sticking" (fraction of the runs that stick, with Wilson's 95 % intervals; of the decided ones: undecided runs widen the
-    interval, counted either way, and are named above), "largest" (mass fraction of the largest piece), "energy" (change of every
+    what: "sticking" (fraction of the runs that stick, with Wilson's 95 % intervals; of the decided ones: those that are undecided, or
+    have not ended, widen the interval, counted either way, and are named above), "largest" (mass fraction of the largest piece), "energy" (change of every
     channel from the start to the end, over K(0)), or any column. x: a column of numbers; by: a column that tells curves (panels, of
     "energy") apart; where: {column: value} of the runs that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it
     spans a decade). Bars but of "sticking" are standard errors of the mean over pairs of aggregates, which are told by their seed;
@@ -74,8 +74,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
 def _quantity(what, drawn, by):
     """Quantity of what is drawn."""
     if what == "sticking":
-        undecided = _undecided(drawn.table)
-        values = drawn.fractions(lambda table: table.outcome == STICKING, by, lambda table: undecided)
+        collisions = drawn.of(drawn.table[drawn.table.outcome.notna()])
+        values = collisions.fractions(lambda table: table.outcome == STICKING, by, _undecided)
         return Quantity(what, "", each(values, lambda fraction, *_: OfDecided(fraction)))
     if what == "energy":
         changing = {c: at_end(c) for c in CHANNELS if c == "kinetic" or drawn.table[at_end(c)].any()}
@@ -113,7 +113,7 @@ def _require_drawable(found, x, by):
     if not len(found):
         raise CannotPlot("no run is left")
     others = [name for name in varied(found) if name not in (x, by, SEED)]
-    if others and x in found.attrs["parameters"]:
+    if others and x in found.attrs.get("parameters", ()):
         values = ", ".join(
             f"{value:g}" if isinstance(value, float) else str(value) for value in found[others[0]].unique()
         )
@@ -126,7 +126,8 @@ def _require_numbers(found, name):
 
 
 def _undecided(found):
-    return found.outcome.astype(str).str.startswith(UNDECIDED)
+    """Whether runs have no outcome that counts (n,): they say so, or have not ended."""
+    return found.outcome.map(lambda text: str(text).startswith(UNDECIDED)) | ~found.ended.astype(bool)
 
 
 def _with_unit(found, name):
@@ -135,9 +136,7 @@ def _with_unit(found, name):
 
 
 def _about(found, what):
-    """How many runs there are, and what is undecided or not ended of them."""
-    undecided, going = int(_undecided(found).sum()), int((~found.ended.astype(bool)).sum())
-    text = f"{len(found)} runs"
-    text += f", {undecided} of them undecided" if undecided else ""
-    text += " (in the bars, counted either way)" if undecided and what == "sticking" else ""
-    return text + (f", {going} of them not ended: as far as they went" if going else "")
+    """How many runs there are, and how many of them have no outcome that counts."""
+    undecided = int(_undecided(found).sum())
+    text = f"{len(found)} runs" + (f", {undecided} of them undecided or not ended" if undecided else "")
+    return text + (" (in the bars, counted either way)" if undecided and what == "sticking" else "")

@@ -2,6 +2,7 @@
 
 import os
 import warnings
+from inspect import cleandoc
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..runs.arrays import RunFolderError
 from ..runs.collect import run_folders
 from ..runs.folder import RunFolder, open_run
 from ..runs.format import CHANNEL_TABLE, CHANNELS, PARAMETER_UNITS, RUN_KINDS
-from ..runs.table import FOLDER, RUN, Column, described, make_table
+from ..runs.table import FOLDER, RUN, Column, columns_text, described, make_table
 from .summary import COMPRESSION_KEYS, ENERGY_KEYS, OUTCOME_KEYS, summarise
 
 at_end = "{}_at_end".format
@@ -68,7 +69,7 @@ def table(runs, structure=True):
 
     Columns: run (the folder's name), the parameters of run.json by their names (but for those of bookkeeping), MEASURED (outcome,
     largest piece, energies in J and over K(0), last values of the kind's series) and folder (the path). All SI; units and meanings
-    are in .attrs["units"] and .attrs["meanings"], names of the parameters in .attrs["parameters"]. No value is NaN or None.
+    are in .attrs["units"] and .attrs["meanings"], names of the parameters in .attrs["parameters"]. Where there is no value stands NaN or None.
 
     A run that cannot be read is left out with a warning; RunFolderError where none is left.
 
@@ -83,44 +84,47 @@ def table(runs, structure=True):
     return frame(measured)
 
 
+table.__doc__ = f"{cleandoc(table.__doc__)}\n\n{columns_text(MEASURED)}"
+
+
 def frame(measured):
-    """DataFrame as of table() from [(RunFolder, its row())]."""
-    made = make_table((run.path, {**_parameters(run), **values}) for run, values in measured)
-    parameters = dict.fromkeys(name for run, _ in measured for name in _parameters(run))
-    order = [RUN, *parameters, *(c.name for c in MEASURED if c.name in made), FOLDER]
+    """DataFrame as of table() from [(path, row())]."""
+    made, measures = make_table(measured), {column.name for column in MEASURED}
+    parameters = [name for name in made if name not in (RUN, FOLDER, *measures)]
+    order = [RUN, *parameters, *(column.name for column in MEASURED if column.name in made), FOLDER]
     units = [Column(name, PARAMETER_UNITS.get(name, ""), "parameter of the run") for name in parameters]
     found = described(made[order], (*units, *MEASURED))
-    found.attrs["parameters"] = list(parameters)
+    found.attrs["parameters"] = parameters
     return found
 
 
 def short_text(found):
     """A line a run of a table(): its folder, the parameters in which the runs differ, and SHORT as far as there is any."""
+    first = [FOLDER, *(["velocity"] if "velocity" in found else []), *varied(found)]
     shown = [name for name in SHORT if name in found and found[name].notna().any()]
-    names = dict.fromkeys([FOLDER, *(["velocity"] if "velocity" in found else []), *varied(found), *shown])
+    names = dict.fromkeys([*first, *([] if found.ended.all() else ["ended"]), *shown])
     units = {name: found.attrs["units"].get(name, "") for name in names}
     heads = {name: name + (f" [{unit}]" if unit not in ("", "1") else "") for name, unit in units.items()}
-    going = {"outcome": found.outcome.where(found.ended, found.outcome.astype(str) + ", so far")}
-    text = found.assign(**going)[list(names)].rename(columns={**heads, FOLDER: RUN})
+    text = found[list(names)].rename(columns={**heads, FOLDER: RUN})
     return text.to_string(index=False, na_rep="-", float_format="{:.4g}".format)
 
 
 def measure(runs, of):
-    """([(RunFolder, of(RunFolder))], [what is wrong with the others, one line each]) of runs as in table()."""
+    """([(path, of(RunFolder))], [what is wrong with the others, one line each]) of runs as in table()."""
     measured, problems = [], []
     for run, problem in progress(_folders(runs), "reading runs"):
         try:
             if problem:
                 raise RunFolderError(problem)
             run = run if isinstance(run, RunFolder) else open_run(run)
-            measured.append((run, of(run)))
+            measured.append((run.path, of(run)))
         except RunFolderError as error:
             problems.append(str(error))
     return measured, problems
 
 
 def row(run, structure=True):
-    """{column: value} of MEASURED of a RunFolder; RunFolderError when a state is missing or damaged."""
+    """{column: value} of a RunFolder, its parameters and MEASURED; RunFolderError when a state is missing or damaged."""
     numbers = summarise(run)
     del numbers[RUN]
     fractions = numbers.pop("mass_fractions") or (None, None)
@@ -137,7 +141,7 @@ def row(run, structure=True):
     }
     numeric = {column.name for column in MEASURED if column.kind == "f"}
     gaps = {name: np.nan for name, value in values.items() if value is None and name in numeric}
-    return {**values, **gaps}
+    return {**_parameters(run), **values, **gaps}
 
 
 def _parameters(run):
@@ -151,9 +155,8 @@ def varied(found):
     duration, and the size of aggregates that are grown or read, or grains of those that are cut."""
     names = [name for name in found.attrs.get("parameters", ()) if found[name].nunique(dropna=False) > 1]
     packings = set(found.packing) if "packing" in found else set()
-    sizes = (
-        ("grains", "projectileGrains") if packings == {"cpe"} else () if "cpe" in packings else ("filling", "radius")
-    )
+    cut, sizes = ("grains", "projectileGrains"), ("filling", "radius")
+    sizes = cut if packings == {"cpe"} else () if "cpe" in packings else sizes
     for name in (*(_OF_MATERIAL if "material" in names else ()), "duration", *sizes):
         others = ["material"] if name in _OF_MATERIAL else [other for other in names if other != name]
         if name in names and others and found.groupby(others, dropna=False)[name].nunique().max() == 1:

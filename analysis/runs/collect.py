@@ -96,7 +96,7 @@ def run_folders(paths):
     found, seen, empty = [], set(), []
     for path in paths:
         pattern = has_magic(str(path)) and not os.path.exists(path)
-        places = map(Path, glob(str(path), recursive=True)) if pattern else [Path(path)]
+        places = filter(Path.is_dir, map(Path, glob(str(path), recursive=True))) if pattern else [Path(path)]
         folders = [folder for place in sorted(places) for folder in _inside(place)]
         new = [folder for folder in dict.fromkeys(folders) if folder.resolve() not in seen]
         seen.update(folder.resolve() for folder in folders)

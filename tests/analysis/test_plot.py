@@ -46,7 +46,11 @@ def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs)
     assert points == [(1.0, pytest.approx(2 / 3, rel=1e-12)), (3.0, 0.25)]
     assert bars[0] == pytest.approx((wilson(2, 4)[0], wilson(3, 4)[1]), rel=1e-12)
     assert bars[1] == pytest.approx(wilson(1, 4), rel=1e-12)
-    assert "8 runs, 1 of them undecided" in said and "3 to 4 pairs" in said and "[m/s]" in said
+    assert (
+        "8 runs, 1 of them undecided or not ended (in the bars, counted either way)" in said
+        and "3 to 4 pairs" in said
+        and "[m/s]" in said
+    )
 
 
 def test_a_mean_has_the_error_of_its_pairs(runs):
@@ -60,7 +64,8 @@ def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
     runs.loc[0, "impact"] = 0.0
     with pytest.raises(CannotPlot, match=r"^the runs differ in impact too: .* \(impact is 0, 0.5\)$"):
         plot("sticking", runs)
-    assert "7 runs" in drawn(plot("sticking", runs, where={"impact": 0.5}))[2]
+    runs.loc[1, "ended"] = False
+    assert "7 runs, 2 of them undecided or" in drawn(plot("sticking", runs, where={"impact": 0.5}))[2]
     for wrong in ({"x": "outcome"}, {"where": {"impact": 7}}):
         with pytest.raises(CannotPlot):
             plot("largest", runs, **wrong)

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from inspect import cleandoc
 from itertools import product
 
 from analysis.progress import bar
@@ -51,7 +52,7 @@ def compress(folder="runs", jobs=None, **parameters):
 
 
 for _function, _kind in ((collide, collision.KIND), (compress, compression.KIND)):
-    _function.__doc__ += "\n" + _kind.parameters.help_text(without=OURS)
+    _function.__doc__ = cleandoc(_function.__doc__) + "\n" + _kind.parameters.help_text(without=OURS)
 
 
 def _sweep(kind, script, parameters, folder, jobs):
