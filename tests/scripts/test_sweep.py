@@ -58,7 +58,8 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
 
 
 @pytest.mark.parametrize(
-    "given", [{"out": "x"}, {"resume": 1}, {"file": "a b.npz", "packing": "file"}, {"jobs": 0}, {"folder": "a b"}]
+    "given",
+    [{"out": "x"}, {"resume": 1}, {"file": "a b.npz", "packing": "file"}, {"jobs": 0}, {"folder": "a b"}, {"seed": []}],
 )
 def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):
     with pytest.raises(ParameterError, match="must be"):

@@ -14,6 +14,7 @@ from itertools import product
 
 from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
+from analysis.runs.format import ENDED_FILE
 from analysis.runs.status import DONE, state
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import ParameterError
@@ -73,7 +74,7 @@ def _rows(kind, script, parameters, folder):
         if name in parameters:
             raise ParameterError(f"{name}: is the sweep's own; must be left out (folder says where the runs go)")
     rows, folder = [], _text("folder", folder)
-    for values in product(*map(_listed, parameters.values())):
+    for values in product(*map(_listed, parameters, parameters.values())):
         cells = {name: _text(name, value) for name, value in zip(parameters, values) if value is not None}
         out = os.path.basename(kind.parse(cells).out)
         rows.append(
@@ -82,10 +83,13 @@ def _rows(kind, script, parameters, folder):
     return rows
 
 
-def _listed(value):
+def _listed(name, value):
     """The values of a parameter as a list of Python's own."""
     value = value.tolist() if hasattr(value, "tolist") else value
-    return list(value) if isinstance(value, (list, tuple, range, set)) else [value]
+    values = list(value) if isinstance(value, (list, tuple, range, set)) else [value]
+    if not values:
+        raise ParameterError(f"{name}: has no value; must be one or several")
+    return values
 
 
 def _text(name, value):
@@ -117,8 +121,8 @@ def _run(file, folders, jobs):
 
 def _wait(study, said, folders):
     """Show how far the runs are until study.py has ended; its estimate comes first."""
-    ended, told = set(), 0
-    with bar(len(folders), "runs") as shown:
+    ended, told = {folder for folder in folders if os.path.exists(os.path.join(folder, ENDED_FILE))}, 0
+    with bar(len(folders), "runs", len(ended)) as shown:
         while study.poll() is None:
             text = os.pread(said, 10_000, told).decode()
             if told == 0 and "\n" in text:
