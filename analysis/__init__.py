@@ -21,7 +21,7 @@ _PUBLIC = {
     ".report.rows": ("table",),
     ".report.plot": ("plot",),
     ".report.summary": ("summarise",),
-    ".statistics": ("mean_and_error", "student_interval", "wilson"),
+    ".measures.probability": ("wilson",),
     ".measures.pieces": ("fragments",),
     ".measures.fragments": (
         *("fragment_labels", "fragment_sizes", "fragment_masses", "growth_efficiency"),
