@@ -191,7 +191,7 @@ uninstall:
 .PHONY: demo test test-mutations test-faults test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
-	@$(PYTHON) -m analysis summary runs/demo
+	@$(PYTHON) -m analysis summary --long runs/demo
 	@$(PYTHON) -m analysis figures runs/demo
 
 # made again when the plugin or the scripts are newer

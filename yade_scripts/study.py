@@ -1,7 +1,7 @@
 """Run a table to its end, however often it is stopped in between.
 
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, by yade-batch, JOBS threads at once
-    python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell
+    python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell and folder
     python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as job arrays of Slurm, JOBS tasks of
                                                      each at once; OPTIONS of sbatch: -- --time=12:00:00
 
@@ -26,6 +26,7 @@ import signal
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from analysis.signals import end_quietly
@@ -37,6 +38,7 @@ from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import rows, slurm, view
 from yade_scripts.runner.batch import LEFT, Batch, StudyBusy, StudyFolder
+from yade_scripts.runner.batch_command import LOGS
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
 
@@ -79,6 +81,12 @@ def find_table(table):
     """The file named, or else the table of that name among those that come with this: elastoplastic-desk, say."""
     own = os.path.join(STUDIES, os.path.basename(table).removesuffix(".table") + ".table")
     return own if not os.path.exists(table) and os.path.dirname(table) == "" and os.path.isfile(own) else table
+
+
+def place_of(table):
+    """The folder in which a table has been run: the one that one stands in, or else the nearest above the table."""
+    places = [Path.cwd(), *Path(table).absolute().parents]
+    return next((place for place in places if (place / LOGS / Path(table).stem).is_dir()), places[0])
 
 
 class Study:
@@ -218,8 +226,12 @@ def close(study, stop):
 
 def main(arguments):
     options = parse_arguments(arguments)
+    table = find_table(options.table)
+    if options.status and place_of(table) != Path.cwd():
+        place, table = place_of(table), os.path.abspath(table)
+        os.chdir(place)
     try:
-        study = Study(find_table(options.table), options.jobs or os.cpu_count())
+        study = Study(table, options.jobs or os.cpu_count())
         if options.status:
             print(study.text(view.full_table))
             return 0

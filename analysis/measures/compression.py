@@ -67,7 +67,12 @@ def maximum_compression(time, d, v):
     of the difference from the parabola through the three samples, and of the amount by which d and v disagree
     over the two intervals (d jumps when a grain crosses x = 0). time_error: the largest of the difference
     from the parabola's vertex and from the nearest time where v falls through zero. Returns Maximum;
-    ValueError for unequal shapes."""
+    ValueError for unequal shapes.
+
+    >>> top = maximum_compression([0.0, 1.0, 2.0], [0.0, 1.0, 0.0], [2.0, 0.0, -2.0])
+    >>> top.length, top.time, top.inside
+    (1.0, 1.0, True)
+    """
     time, d, v = (np.asarray(a, dtype=float) for a in (time, d, v))
     if not (time.ndim == 1 and time.shape == d.shape == v.shape and time.size):
         raise ValueError(

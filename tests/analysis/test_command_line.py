@@ -42,7 +42,7 @@ def test_json_of_several_runs_is_a_list_in_their_order(pair_folder, cluster_fold
 
 
 def test_the_table_has_units_every_channel_and_the_numbers_of_the_json(cluster_folder):
-    done = analyse("summary", cluster_folder)
+    done = analyse("summary", "--long", cluster_folder)
     words = "grain radii; closure; of K(0); rolling dissipation; bond breaking; sticking; (ended"
     assert done.returncode == 0 and all(text in done.stdout for text in words.split("; "))
     assert max(map(len, done.stdout.splitlines())) <= 120
@@ -52,9 +52,9 @@ def test_the_table_has_units_every_channel_and_the_numbers_of_the_json(cluster_f
 
 
 def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folder, cluster_folder, tmp_path):
-    done = analyse("summary", pair_folder[0], tmp_path / "none", cluster_folder)
+    done = analyse("summary", "--long", pair_folder[0], tmp_path / "none", cluster_folder)
     assert done.returncode == 2
-    assert done.stderr == f"analysis: {tmp_path / 'none'}: no such run folder\n"
+    assert done.stderr == f"analysis: {tmp_path / 'none'}: no such folder\n"
     assert f"run {pair_folder[0]}" in done.stdout and f"run {cluster_folder}" in done.stdout
     listed = analyse("summary", "--json", pair_folder[0], tmp_path / "none")
     assert listed.returncode == 2 and [r["run"] for r in json.loads(listed.stdout)] == [str(pair_folder[0])]
@@ -65,7 +65,7 @@ def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folde
 def test_an_unfinished_run_says_so(pair_folder, tmp_path):
     path = shutil.copytree(pair_folder[0], tmp_path / "run")
     (path / "ended").unlink()
-    done = analyse("summary", path)
+    done = analyse("summary", "--long", path)
     assert done.returncode == 0 and "NOT ENDED" in done.stdout
     assert json.loads(analyse("summary", "--json", path).stdout)["ended"] is False
 
@@ -77,7 +77,7 @@ def test_aggregates_that_never_met_have_that_outcome(pair_folder, tmp_path):
     np.savez(path / "history.npz", **arrays)
     numbers = json.loads(analyse("summary", "--json", path).stdout)
     assert numbers["outcome"] == "never met" and numbers["restitution"] is None
-    table = analyse("summary", path).stdout
+    table = analyse("summary", "--long", path).stdout
     assert re.search(r"outcome +never met", table) and re.search(r"restitution +none: never met", table)
 
 
@@ -91,8 +91,8 @@ def test_a_run_at_rest_has_no_closure_and_no_restitution(pair_folder, tmp_path):
         np.savez(file, **arrays)
     numbers = json.loads(analyse("summary", "--json", path).stdout)
     assert numbers["energy_closure"] is None and numbers["restitution"] is None
-    table = analyse("summary", path).stdout
-    assert "undefined" in table and "no velocity at the start" in table
+    told = analyse("summary", "--long", path).stdout
+    assert "undefined" in told and "no velocity at the start" in told
     drawn = analyse("figures", path, "--out", tmp_path / "figures")
     assert drawn.returncode == 2 and "no kinetic energy at the start" in drawn.stderr
 

@@ -19,7 +19,7 @@ DOCUMENTS = [TOP / name for name in "README.md analysis/STUDIES.md yade_scripts/
 @pytest.mark.in_yade
 def test_the_script_and_the_fused_line():
     """The README's engines and the fused engine in their place, each with two grains that meet."""
-    block = re.search(r"```python\n(.*?)```", README, re.S).group(1)
+    block = re.search(r"```python\n(import contact_law.*?)```", README, re.S).group(1)
     fused = re.search(r"`(O\.engines = \[JKRWadaEngine.*?\])`", README).group(1)
     connection = []
     for engines, together in ((block, 1), (f"{block}\nO.dt *= 50\n{fused}", 50)):

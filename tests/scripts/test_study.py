@@ -60,7 +60,7 @@ def test_status_from_another_process(first_call):
     assert midway.stdout.splitlines()[-1].startswith("tiny: ")
 
 
-def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_call):
+def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_call, tmp_path):
     folder, _, _ = first_call
     ended = os.stat(folder / "runs" / "tiny" / "ends" / "ended").st_mtime_ns
     write_table(folder, "tiny.table", "ends", "killed")
@@ -73,6 +73,8 @@ def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_ca
     assert same_bits(folder / "runs" / "tiny" / "killed", folder / "straight")
     again = study(folder, "tiny.table")  # nothing left: no estimate, nothing run
     assert (again.returncode, again.stdout) == (0, "tiny: 2 rows, 2 done, 0 failed\n")
+    elsewhere = study(tmp_path, folder / "tiny.table", "--status")
+    assert elsewhere.stdout == study(folder, "tiny.table", "--status").stdout and "2 done" in elsewhere.stdout
 
 
 def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
