@@ -46,6 +46,14 @@ namespace rolling {
 		const Vec3<T> e = inverse * xi;
 		return { movedPointer(p.n1, -excess, r1, e), movedPointer(p.n2, -excess, r2, e) };
 	}
+	// On a plane (R = r1) the anchor goes with the grain's pointer.
+	template <class T>
+	inline PlanePointers<T> returned(const PlanePointers<T>& p, const T& r1, const T&, const Vec3<T>& xi, const T& limit)
+	{
+		const T squared = dot(xi, xi), inverse = inverseRoot(squared), excess = squared * inverse - limit;
+		const Vec3<T> e = inverse * xi;
+		return { { movedPointer(p.n1, -excess, r1, e), p.n2 }, movedAnchor(p, -excess, e) };
+	}
 	// The pointers with xi another `by` and the sliding displacement as it is, to first order.
 	inline Pointers<double> displaced(const Pointers<double>& p, double r1, double r2, const Vec3<double>& by)
 	{
@@ -53,6 +61,13 @@ namespace rolling {
 		if (length == 0) return p;
 		const Vec3<double> e = (1 / length) * by;
 		return { movedPointer(p.n1, length, r1, e), movedPointer(p.n2, length, r2, e) };
+	}
+	inline PlanePointers<double> displaced(const PlanePointers<double>& p, double r1, double, const Vec3<double>& by)
+	{
+		const double length = std::sqrt(dot(by, by));
+		if (length == 0) return p;
+		const Vec3<double> e = (1 / length) * by;
+		return { { movedPointer(p.n1, length, r1, e), p.n2 }, movedAnchor(p, length, e) };
 	}
 	// What the return of displacement `trial` to pointers p, which moved them by `moved`, dissipates; `before`: the displacement a step
 	// ago.
