@@ -36,8 +36,7 @@ inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, co
 
 // History: ContactHistory, or of a grain and a plane PlaneHistory.
 template <unsigned mechanisms, class T, class History>
-inline ContactForces<T> contactForces(
-        const PairConstants<T>& c, const ContactGeometry<T>& g, const History& h, const Vec3<T>& velocity)
+inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const History& h, const Vec3<T>& velocity)
 {
 	ContactForces<T> f = ContactForces<T>::none();
 	normalForces<mechanisms>(c, g, velocity, f);

@@ -45,9 +45,9 @@ template <class T> struct PlaneHistory {
 };
 
 template <class T> struct ContactGeometry {
-	Vec3<T> normal; // n_c, from the centre of grain 2 to that of grain 1
+	Vec3<T> normal;    // n_c, from the centre of grain 2 to that of grain 1
 	T inverseDistance; // of the centres; 0: of a grain and a plane
-	T overlap; // delta = r1 + r2 - distance
+	T overlap;         // delta = r1 + r2 - distance
 };
 
 template <class T> inline ContactGeometry<T> geometryOf(const Vec3<T>& separation, const T& sumOfRadii)

@@ -72,8 +72,7 @@ inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule li
 {
 	ContactStepResult r;
 	r.geometry = g;
-	const events::Formation formed
-	        = events::formationOf(events::overlapAStepAgo(m, g, c.radius1 + c.radius2, history), g.overlap);
+	const events::Formation formed = events::formationOf(events::overlapAStepAgo(m, g, c.radius1 + c.radius2, history), g.overlap);
 	events::form(m, formed.fraction * m.dt, history);
 	const double f = formed.fraction;
 	const events::Kicks ofCuts = evaluateNow<mechanisms>(c, limit, m, before, m.velocity, formed.inStep ? f / 2 : 0.5, history, r);

@@ -162,7 +162,8 @@ namespace cut {
 
 	// Sliding and rolling share the pointers: cutting one spring shifts the other in second order, which is booked with the cut.
 	template <class History>
-	inline void slideAndRoll(unsigned mechanisms, const Step& s, const ContactBefore& before, History& h, Dissipation& lost, Result& result)
+	inline void slideAndRoll(
+	        unsigned mechanisms, const Step& s, const ContactBefore& before, History& h, Dissipation& lost, Result& result)
 	{
 		auto& p = h.pointers;
 		InStep<SlidingSpring> slide(s, before.sliding, p);

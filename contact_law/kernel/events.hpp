@@ -59,7 +59,8 @@ namespace events {
 		h.twist = since * dot(m.spin1, n);
 	}
 
-	inline double overlapAStepAgo(const ContactMotion& m, const ContactGeometry<double>&, double sumOfRadii, const ContactHistory<double>&)
+	inline double overlapAStepAgo(
+	        const ContactMotion& m, const ContactGeometry<double>&, double sumOfRadii, const ContactHistory<double>&)
 	{
 		const Vec3<double> aStepAgo = m.separation - m.dt * m.velocity;
 		return sumOfRadii - std::sqrt(dot(aStepAgo, aStepAgo));

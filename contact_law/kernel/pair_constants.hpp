@@ -28,7 +28,7 @@ struct PairOptions {
  * (engine/arrays.hpp). */
 #define CONTACT_LAW_PAIR_CONSTANTS(_)                                                                                                      \
 	_(radius1, true, "Radius of the first grain [m].")                                                                                 \
-	_(radius2, true, "Radius of the second grain [m]; inf: a plane.")                                                                             \
+	_(radius2, true, "Radius of the second grain [m]; inf: a plane.")                                                                  \
 	_(reducedRadius, true, "R = r1 r2/(r1+r2) [m].")                                                                                   \
 	_(reducedMass, false, "m* = m1 m2/(m1+m2) of solid spheres [kg].")                                                                 \
 	_(reducedYoung, false, "E* [Pa]: 1/E* = sum of (1-nu^2)/E.")                                                                       \

@@ -22,8 +22,8 @@ inline ContactMotion motionPast(const Plane& plane, const Vec3<double>& position
 /* As contactStep(), for a motion made by motionPast() and constants with an infinite radius2. `history.pointers` are those of this instant
  * (of a contact that may form: n2 alone). Of the result, the force is the grain's (minus it: the plane's) and torque2 has no meaning. */
 template <unsigned mechanisms>
-inline ContactStepResult planeStep(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before,
-        PlaneHistory<double>& history)
+inline ContactStepResult planeStep(
+        const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before, PlaneHistory<double>& history)
 {
 	const Vec3<double>& n = history.pointers.n2;
 	return contactStepAt<mechanisms>(c, limit, m, { n, 0, c.radius1 - dot(m.separation, n) }, before, history);

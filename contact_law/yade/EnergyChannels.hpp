@@ -19,7 +19,9 @@ public:
 		if (preparedAt != scene.iter) {
 			for (int channel = 0; channel < count; ++channel) {
 				ids[channel] = -1;
-				if (isWork(channel) && !(scene.isPeriodic && channel == boundaryWork) && !(planes && channel == constraintWork)) continue;
+				if (isWork(channel) && !(scene.isPeriodic && channel == boundaryWork)
+				        && !(planes && channel == constraintWork))
+					continue;
 				scene.energy->add(0., nameOf(channel), ids[channel], perStep(channel));
 			}
 			preparedAt = scene.iter;

@@ -123,9 +123,8 @@ void JKRWadaPhys::becomeBond()
 	constantsToCome.reset();
 }
 
-void JKRWadaPhys::set(
-        const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_,
-        bool ofPlane)
+void JKRWadaPhys::set(const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_,
+        const Vector3r& velocity_, bool ofPlane)
 {
 	const Real sign = ofPlane ? 1 : -1; // of the force on YADE's second body
 	touching = true;
@@ -298,15 +297,15 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 	const State& wall = *(*scene->bodies)[interaction.getId1()]->state;
 	const State& grain = *(*scene->bodies)[interaction.getId2()]->state;
 	const contact_law::Plane plane { toKernel(wall.pos), toKernel(geometry.normal), toKernel(wall.vel) };
-	const ContactMotion motion = contact_law::motionPast(plane, toKernel(grain.pos), toKernel(grain.vel), toKernel(grain.angVel), scene->dt,
-	        contact_law::inverseMassAlong(plane.normal, 1 / grain.mass, grain.blockedDOFs),
+	const ContactMotion motion = contact_law::motionPast(plane, toKernel(grain.pos), toKernel(grain.vel), toKernel(grain.angVel),
+	        scene->dt, contact_law::inverseMassAlong(plane.normal, 1 / grain.mass, grain.blockedDOFs),
 	        contact_law::inverseInertiaOf(1 / grain.inertia[0], grain.blockedDOFs));
 	const Vec3d foot = plane.across(toKernel(grain.pos - wall.pos)); // of the grain's centre, from the wall's position
 	contact_law::PlaneHistory<double> history {
 		{ { toKernel(grain.ori * phys.pointer2), plane.normal }, toKernel(phys.pointer1) - foot }, phys.twist
 	};
-	const ContactStepResult r
-	        = contact_law::planeStepWith[mechanismsOf(constants)](constants, limitRule, motion, phys.before(), history);
+	const ContactStepResult r =
+	        contact_law::planeStepWith[mechanismsOf(constants)](constants, limitRule, motion, phys.before(), history);
 
 	const Vector3r force = fromKernel(r.force);
 	scene->forces.addForce(interaction.getId1(), -force);

@@ -14,7 +14,8 @@ namespace {
 	std::string faultOf(const Wall& wall, const State& state, const Scene& scene)
 	{
 		if (wall.sense != 0) return "sense = " + text(wall.sense) + ", must be 0: planes hold grains on both sides";
-		if (state.blockedDOFs != State::DOF_ALL) return "blockedDOFs must be 'xyzXYZ': planes rest or move at the velocity that they are given";
+		if (state.blockedDOFs != State::DOF_ALL)
+			return "blockedDOFs must be 'xyzXYZ': planes rest or move at the velocity that they are given";
 		if (!state.angVel.isZero()) return "angVel must be zero: planes do not turn";
 		if (scene.isPeriodic) return "O.periodic must be False: there are no planes in periodic cells";
 		return "";
