@@ -65,31 +65,28 @@ namespace sliding {
 	{
 		return c.criticalSliding * c.criticalSliding < dot(zeta, zeta);
 	}
-	/* The pointers with zeta returned to the limit and the rolling displacement as it is (to first order):
-	 * both move oppositely by the excess over r1 + r2 (Wada's +-excess/(2 r) for equal radii; MODEL.md on unlike ones). */
-	template <class T> inline Pointers<T> returned(const Pointers<T>& p, const T& r1, const T& r2, const Vec3<T>& zeta, const T& limit)
+	/* The pointers with zeta another `by` along e (a unit vector across the normal) and the rolling displacement as it is, to first order: both
+	 * move oppositely by `by` over r1 + r2 (Wada's +-excess/(2 r) for equal radii; MODEL.md on unlike ones), on a plane the anchor alone. */
+	template <class T> inline Pointers<T> moved(const Pointers<T>& p, const T& by, const T& r1, const T& r2, const Vec3<T>& e)
+	{
+		return { movedPointer(p.n1, by, r1 + r2, e), movedPointer(p.n2, -by, r1 + r2, e) };
+	}
+	template <class T> inline PlanePointers<T> moved(const PlanePointers<T>& p, const T& by, const T&, const T&, const Vec3<T>& e)
+	{
+		return { p, p.anchor - by * e };
+	}
+	// With zeta returned to the limit.
+	template <class SomePointers, class T>
+	inline SomePointers returned(const SomePointers& p, const T& r1, const T& r2, const Vec3<T>& zeta, const T& limit)
 	{
 		const T squared = dot(zeta, zeta), inverse = inverseRoot(squared), excess = squared * inverse - limit;
-		const Vec3<T> e = inverse * zeta;
-		return { movedPointer(p.n1, -excess, r1 + r2, e), movedPointer(p.n2, excess, r1 + r2, e) };
+		return moved(p, -excess, r1, r2, inverse * zeta);
 	}
-	// On a plane the anchor alone moves.
-	template <class T>
-	inline PlanePointers<T> returned(const PlanePointers<T>& p, const T&, const T&, const Vec3<T>& zeta, const T& limit)
-	{
-		return { p, p.anchor + (T(1.) - limit * inverseRoot(dot(zeta, zeta))) * zeta };
-	}
-	// The pointers with zeta another `by` (a vector across the normal) and the rolling displacement as it is, to first order.
-	inline Pointers<double> displaced(const Pointers<double>& p, double r1, double r2, const Vec3<double>& by)
+	// With zeta another `by`, a vector across the normal.
+	template <class SomePointers> inline SomePointers displaced(const SomePointers& p, double r1, double r2, const Vec3<double>& by)
 	{
 		const double length = std::sqrt(dot(by, by));
-		if (length == 0) return p;
-		const Vec3<double> e = (1 / length) * by;
-		return { movedPointer(p.n1, length, r1 + r2, e), movedPointer(p.n2, -length, r1 + r2, e) };
-	}
-	inline PlanePointers<double> displaced(const PlanePointers<double>& p, double, double, const Vec3<double>& by)
-	{
-		return { p, p.anchor - by };
+		return length == 0 ? p : moved(p, length, r1, r2, (1 / length) * by);
 	}
 	// What the return of displacement `trial` to pointers p, which moved them by `moved`, dissipates; `before`: the displacement a step
 	// ago.
