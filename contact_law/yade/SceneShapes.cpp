@@ -65,7 +65,7 @@ void refuseInStep(Scene& scene, const std::string& what)
 	if (!pending.empty()) return;
 	pending = what;
 	scene.stopAtIter = scene.iter + 1;
-	Py_AddPendingCall(raisePending, nullptr);
+	if (Py_AddPendingCall(raisePending, nullptr) != 0) pending.clear(); // no room now: at the next step
 }
 
 bool SceneShapes::fit(Scene& scene)
