@@ -6,6 +6,7 @@
 #include <pkg/common/Sphere.hpp>
 #include <pkg/common/Wall.hpp>
 #include <mutex>
+#include <thread>
 
 namespace yade {
 
@@ -66,6 +67,8 @@ void refuseInStep(Scene& scene, const std::string& what)
 	pending = what;
 	scene.stopAtIter = scene.iter + 1;
 	if (Py_AddPendingCall(raisePending, nullptr) != 0) pending.clear(); // no room now: at the next step
+	// The main thread looks for such calls when another wants Python's lock.
+	std::thread([] { PyGILState_Release(PyGILState_Ensure()); }).detach();
 }
 
 bool SceneShapes::fit(Scene& scene)
