@@ -6,7 +6,6 @@
 #include <core/Cell.hpp>
 #include <core/EnergyTracker.hpp>
 #include <core/State.hpp>
-#include <pkg/common/Wall.hpp>
 #include <sstream>
 
 namespace yade {
