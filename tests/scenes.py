@@ -33,9 +33,9 @@ def constants(material1, radius1, material2=None, radius2=None, damping=0, slidi
 def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
     return [
         ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=verlet),
+        InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=verlet),
         InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom()],
+            [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
             [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)],
             [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)],
         ),

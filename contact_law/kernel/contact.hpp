@@ -20,8 +20,8 @@ inline void normalForces(const PairConstants<T>& c, const ContactGeometry<T>& g,
 }
 
 // Sliding, rolling and twisting, with the radii and stiffnesses of c (PairConstants, or a bond's).
-template <unsigned mechanisms, class Constants, class T>
-inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, ContactForces<T>& f)
+template <unsigned mechanisms, class Constants, class T, class History>
+inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, const History& h, ContactForces<T>& f)
 {
 	if constexpr (bool(mechanisms & (Sliding | Rolling))) {
 		T across = T(0.); // factor of n1 x n2 in the torques, which sliding and rolling share
@@ -34,9 +34,9 @@ inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, co
 	if constexpr (bool(mechanisms & Twisting)) twisting::addTorques(c, g, h.twist, f);
 }
 
-template <unsigned mechanisms, class T>
-inline ContactForces<T> contactForces(
-        const PairConstants<T>& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, const Vec3<T>& velocity)
+// History: ContactHistory, or of a grain and a plane PlaneHistory.
+template <unsigned mechanisms, class T, class History>
+inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const History& h, const Vec3<T>& velocity)
 {
 	ContactForces<T> f = ContactForces<T>::none();
 	normalForces<mechanisms>(c, g, velocity, f);
@@ -96,18 +96,18 @@ inline MaskOf<T> beyondLimits(const PairConstants<T>& c, const ContactForces<T>&
  * `before`: the displacements a step ago, `t`: the way from there. Returning one displacement changes the other a little (second order
  * in the pointers' angles):
  * that too is work, and goes with the slip. */
-template <unsigned mechanisms, class T>
+template <unsigned mechanisms, class T, class History>
 inline MaskOf<T> returnToLimits(const PairConstants<T>& c, const Vec3<T>& normal, const Displacements<T>& before, const Turning<T>& t,
-        ContactHistory<T>& h, const MaskOf<T>& counted, DissipationOf<T>& lost)
+        History& h, const MaskOf<T>& counted, DissipationOf<T>& lost)
 {
 	const T none(0.);
-	Pointers<T>& p = h.pointers;
+	auto& p = h.pointers;
 	if constexpr (bool(mechanisms & Twisting)) {
 		const T trial = h.twist;
 		h.twist = twisting::returned(c, trial);
 		lost.twisting = lost.twisting + choose(counted, twisting::dissipation(c, before.twist, trial, h.twist), none);
 	}
-	const Pointers<T> trial = p;
+	const auto trial = p;
 	const Vec3<T> zeta = sliding::displacement(p, c.radius1, c.radius2, normal), xi = rolling::displacement(p, c.reducedRadius);
 	MaskOf<T> slid = none < none, rolled = none < none;
 	if constexpr (bool(mechanisms & Sliding)) {
@@ -123,7 +123,7 @@ inline MaskOf<T> returnToLimits(const PairConstants<T>& c, const Vec3<T>& normal
 	}
 	const MaskOf<T> pointersMoved = slid | rolled;
 	if (!anyOf(pointersMoved)) return pointersMoved;
-	const Pointers<T> moved { p.n1 - trial.n1, p.n2 - trial.n2 };
+	const auto moved = way(trial, p);
 	T bySliding = none, byRolling = none;
 	if constexpr (bool(mechanisms & Sliding)) bySliding = sliding::dissipation(c, normal, before.sliding, zeta, p, moved, t);
 	if constexpr (bool(mechanisms & Rolling)) byRolling = rolling::dissipation(c, before.rolling, xi, p, moved, t);
