@@ -4,7 +4,7 @@
 // drag sees, the displacements before a slip, the booking of drag and slips.
 // tests/equivalence holds it to the functors and to tests/reference_law.py. Contacts that form or break go through contactStep() itself.
 #pragma once
-#include "../kernel/contact.hpp"
+#include "../kernel/held.hpp"
 #include "../kernel/turning.hpp"
 #include "arrays.hpp"
 #include "several.hpp"
