@@ -60,7 +60,7 @@ constexpr int batchSize = 4;
 struct alignas(64) ContactBlock {
 	double n1[3][lanes], n2[3][lanes]; // contact pointers, laboratory frame
 	double twist[lanes];
-	int i[lanes], j[lanes]; // grains; a dead lane points to the domain's two dummies
+	int i[lanes], j[lanes]; // grains; an unused slot points to the domain's two dummies
 };
 
 constexpr int countKept()
@@ -80,7 +80,7 @@ template <class T> constexpr std::array<T PairConstants<T>::*, keptCount> makeKe
 	return kept;
 }
 /* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces read (pair_constants.hpp), since
- * reading them is what such scenes are slower for; the rest are derived anew where they are wanted. */
+ * reading them is what such scenes are slower for; the rest are derived anew where they are needed. */
 template <class T> constexpr auto keptConstants = makeKeptConstants<T>();
 struct alignas(64) ConstantsBlock {
 	double field[keptCount][lanes];
@@ -104,8 +104,8 @@ struct ForcePass {
 	DragBlock* drags;                     // null in scenes without drag
 	const PeriodicCell* cell;
 	int firstBlock, endBlock;
-	int addFirst, addSecond; // whether the first / second grain of each contact is this domain's
-	int trash;               // grain that takes what is not added
+	bool addFirst, addSecond; // whether the first / second grain of each contact is this domain's
+	int dummy;                // grain that takes what is not added
 	double dt;
 	Dissipation* dissipated; // what drag and slips took in this step is added here
 	long* slips;             // and their number here
@@ -170,8 +170,7 @@ struct InstructionSet {
 	const char* name;
 	void (*forces[mechanismSets][2][2])(const ForcePass&);
 	void (*energies[mechanismSets][2])(const ForcePass&, StoredEnergy<double>&);
-	double (*sumOfProduct)(
-	        double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
+	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests ask whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
 	void (*bondForces[2])(const BondPass&); // by whether the scene is periodic, as in the searches below
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
