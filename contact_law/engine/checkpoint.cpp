@@ -1,5 +1,5 @@
-/* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are found anew.
- * Whoever changes what is transferred, or its order, raises formatNumber. */
+/* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are made again.
+ * A change of what is transferred, or of its order, raises formatNumber. */
 #include "checkpoint_archive.hpp"
 #include "dynamics.hpp"
 #include "material_list.hpp"

@@ -1,4 +1,4 @@
-// What to say of a run that broke down: which grain, which contact.
+// Why a run broke down: which grain, which contact.
 #pragma once
 
 namespace contact_law {

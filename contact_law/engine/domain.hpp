@@ -15,7 +15,7 @@ public:
 	Domain(SharedState& shared, int begin, int end, int dummy);
 
 	/* A step's forces come in two parts. First what reads grains of other domains, contacts that came since the last sorting, and contacts that form now; then, when all
-	 * domains have got so far, the sorted rest, behind which grains can be moved as soon as their last contact is done: they are in the cache then. */
+	 * domains have reached this point, the sorted rest, behind which grains can be moved as soon as their last contact is done: they are in the cache then. */
 	void addFirstForces();
 	void addOtherForces(bool moveBehind);
 	void integrate(); // own grains, all of them

@@ -14,9 +14,9 @@ namespace {
 		return positions;
 	}
 
-	constexpr long stepsBetweenTrials = 2000; // of the grains' order, which takes some twenty-five steps' time to make anew
-	constexpr double reorderThreshold = 1.1;  // groups are put in order again when their edges have grown by this
-	constexpr double mostStepsToCheck = 8;    // from one check of the neighbour lists to the next
+	constexpr long stepsBetweenTrials = 2000;              // of the grains' order; a new one takes the time of some twenty-five steps
+	constexpr double reorderThreshold = 1.1;               // groups are put in order again when their edges have grown by this
+	constexpr double mostStepsToCheck = 8;                 // from one check of the neighbour lists to the next
 	constexpr int grainsInDomain = 6000, mostDomains = 64; // at least, and at most, where the scene decides
 	constexpr double boxMargin = 3; // how much further groups are taken for nearby than they need be, over the largest radius
 }

@@ -80,8 +80,8 @@ public:
 
 	// ---- what changes a run ----
 
-	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (diagnosis.hpp then tells).
-	 * In a periodic cell its size goes evenly from what it was to sizeAtEnd [m]. */
+	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (diagnosis.hpp says why).
+	 * In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);
@@ -143,7 +143,7 @@ private:
 	void setMostCells();
 	void makeLists();
 	void outdateLists(); // grains have been moved otherwise than by a step
-	ListWork listWork(ListAge&, const VelocityRange&, const Vec3<double>& growth) const; // of this step; the age goes on
+	ListWork listWork(ListAge&, const VelocityRange&, const Vec3<double>& growth) const; // of this step; advances the age
 	void keepLists(int domain, const ListWork&);
 	long runEvenly(long steps, const Vec3<double>& sizeAtEnd);
 	long runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, Shares, Barrier&);

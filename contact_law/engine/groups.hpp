@@ -85,7 +85,7 @@ struct alignas(64) Group {
 		widen();
 		return false;
 	}
-	// Bounds that have become far too wide are narrowed, and widened in no direction: other groups go on with those that they know.
+	// Bounds that have become far too wide are narrowed, and widened in no direction: other groups still rely on those that they know.
 	void clearAfterCheck(double leastKick)
 	{
 		sinceTrial.join(sinceCheck);

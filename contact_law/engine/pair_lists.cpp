@@ -193,7 +193,7 @@ void PairLists::fetchAhead(const Group* group) const
 	if (end - group > 2) __builtin_prefetch(group[2].soonestOf.data());
 }
 
-// Stretches of pairs first, whose steps come from memory meanwhile.
+// Stretches of pairs first: the steps of their pairs are fetched from memory in the meantime.
 void PairLists::findScheduled()
 {
 	scheduledStretches.clear();

@@ -21,7 +21,7 @@ struct SharedState {
 	std::vector<Group> groups;                               // of all domains
 	std::vector<GroupCluster> clusters;                      // of them, by rising number
 	std::vector<double> inverseMass, inverseInertia, radius; // radius: of the grain as contacts have it, shrunk where necks are
-	std::vector<double> grainRadius;                         // before
+	std::vector<double> grainRadius;                         // before they shrank
 	std::vector<Material> material;                          // kinds of material
 	std::vector<int> kind;                                   // of each grain
 	std::vector<Orientation> orientation;                    // likewise; none where the scene doesn't ask for them

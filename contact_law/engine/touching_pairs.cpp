@@ -81,7 +81,7 @@ void TouchingPairs::placeBonds(PairLists& lists, const PeriodicCell& cell)
 	markIn(lists);
 }
 
-// Contacts that a script has torn apart since the latest step are none any more.
+// Without contacts that a script has torn apart since the latest step.
 TouchingPairs::AllBonds TouchingPairs::sintered(const PeriodicCell& cell, double neck) const
 {
 	AllBonds all;
