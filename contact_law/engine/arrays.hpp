@@ -95,24 +95,27 @@ struct alignas(64) LaneForces {
 	double force[3][lanes], torque1[3][lanes], torque2[3][lanes];
 };
 
-// What one pass over a domain's contacts needs.
-struct ForcePass {
+// What a pass over some of a domain's pairs needs, contacts or bonds.
+struct PairPass {
 	Grain* grains;
+	const PeriodicCell* cell;
+	int endBlock;
+	bool addFirst, addSecond; // whether the first / second grain of each pair is this domain's
+	int dummy;                // grain that takes what is not added
+	double dt;
+	Vec3<double>* crossing; // in periodic scenes: shift times force of pairs across the boundaries is added here
+	void* owner;
+};
+struct ForcePass : PairPass {
+	int firstBlock;
 	ContactBlock* blocks;
 	const ConstantsBlock* constants;      // null when all pairs are of one kind
 	const PairConstants<double>* uniform; // the constants then
 	DragBlock* drags;                     // null in scenes without drag
-	const PeriodicCell* cell;
-	int firstBlock, endBlock;
-	bool addFirst, addSecond; // whether the first / second grain of each contact is this domain's
-	int dummy;                // grain that takes what is not added
-	double dt;
-	Dissipation* dissipated; // what drag and slips took in this step is added here
-	long* slips;             // and their number here
-	Vec3<double>* crossing;  // in periodic scenes: shift times force of contacts across the boundaries is added here
-	void* owner;
+	Dissipation* dissipated;              // what drag and slips took in this step is added here
+	long* slips;                          // and their number here
 	// contacts of a block (bits of `which`) that break or are pressed beyond the fit: history before the step, forces to be replaced
-	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
+	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& out);
 	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
 	void (*batchDone)(void* owner, int batch);
 	bool cut; // springs beyond their limits are cut, each as an event, not returned to the limit (kernel/limit_rule.hpp)

@@ -21,21 +21,12 @@ struct Bond { // one slot, taken out
 	BondConstants<double> constants;
 };
 
-// What one pass over a domain's bonds needs; as ForcePass.
-struct BondPass {
-	Grain* grains;
+struct BondPass : PairPass {
 	BondBlock* blocks;
 	const BondConstantsBlock* constants;  // null when all pairs are of one kind
 	const BondConstants<double>* uniform; // the constants then
-	int endBlock;
-	bool addFirst, addSecond;
-	int dummy;
-	double dt;
-	const PeriodicCell* cell;
-	Vec3<double>* crossing; // in periodic scenes: shift times force of bonds across the boundaries is added here
-	void* owner;
 	// bonds of a block (bits of `which`) that break: history before the step, forces to be replaced
-	void (*breaking)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
+	void (*breaking)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& out);
 };
 
 class BondList {

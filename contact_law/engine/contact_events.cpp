@@ -71,19 +71,7 @@ void ContactEvents::addAlone(int i, int j, const ContactStepResult& r, const Ima
 	if (ownsSecond(o)) addToGrain(s.grains[j], -r.force, r.torque2);
 }
 
-void ContactEvents::ofContacts(Ownership o, int block, unsigned which, const ContactBlock& before, LaneForces& out)
-{
-	for (int k = 0; k < lanes; ++k)
-		if (which & (1u << k)) ofContact(o, block * lanes + k, before, out);
-}
-
-void ContactEvents::ofBonds(Ownership o, int block, unsigned which, const BondBlock& before, LaneForces& out)
-{
-	for (int k = 0; k < lanes; ++k)
-		if (which & (1u << k)) ofBond(o, block * lanes + k, before, out);
-}
-
-void ContactEvents::ofContact(Ownership o, int slot, const ContactBlock& old, LaneForces& out)
+void ContactEvents::ofSlot(Ownership o, int slot, const ContactBlock& old, LaneForces& out)
 {
 	ContactList& list = touching.contacts[o];
 	const int k = slot % lanes, i = list.first(slot), j = list.second(slot);
@@ -116,7 +104,7 @@ void ContactEvents::ofContact(Ownership o, int slot, const ContactBlock& old, La
 	lists.part(i, j);
 }
 
-void ContactEvents::ofBond(Ownership o, int slot, const BondBlock& old, LaneForces& out)
+void ContactEvents::ofSlot(Ownership o, int slot, const BondBlock& old, LaneForces& out)
 {
 	BondList& list = touching.bonds[o];
 	const int k = slot % lanes, i = list.first(slot), j = list.second(slot);

@@ -11,14 +11,17 @@ class ContactEvents {
 public:
 	ContactEvents(SharedState&, const PeriodicCell&, PairLists&, TouchingPairs&, Ledger&);
 
-	// Of the contacts `which` (bits) of a block; `before`: their history a step ago. Their forces in `out` are replaced.
-	void ofContacts(Ownership, int block, unsigned which, const ContactBlock& before, LaneForces& out);
-	void ofBonds(Ownership, int block, unsigned which, const BondBlock& before, LaneForces& out);
+	// Of the contacts (bonds) `which` (bits) of a block; `before`: their history a step ago. Their forces in `out` are replaced.
+	template <class Block> void of(Ownership o, int block, unsigned which, const Block& before, LaneForces& out)
+	{
+		for (int k = 0; k < lanes; ++k)
+			if (which & (1u << k)) ofSlot(o, block * lanes + k, before, out);
+	}
 	void formContacts(); // of pairs that overlap now
 
 private:
-	void ofContact(Ownership, int slot, const ContactBlock& before, LaneForces& out);
-	void ofBond(Ownership, int slot, const BondBlock& before, LaneForces& out);
+	void ofSlot(Ownership, int slot, const ContactBlock& before, LaneForces& out);
+	void ofSlot(Ownership, int slot, const BondBlock& before, LaneForces& out);
 	bool formContact(const NeighbourPair&);
 	Vec3<double> separationAStepAgo(int i, int j, const ContactMotion&) const;
 	void book(int i, int j, const ContactStepResult&, const ContactMotion&, const Image&, Ownership);

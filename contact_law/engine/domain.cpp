@@ -18,61 +18,47 @@ Domain::Domain(SharedState& shared, int begin_, int end_, int dummy_)
 
 // ---- forces ----
 
-ForcePass Domain::passFor(Ownership o)
+template <class Pass, class List> Pass Domain::passOver(List& list, Ownership o)
 {
-	ContactList& list = touching.contacts[o];
-	const Ledger::PassSums sums = ledger.sumsFor(o);
-	ForcePass pass {};
+	Pass pass {};
 	pass.grains = s.grains.data();
-	pass.blocks = list.data();
-	pass.constants = list.constantsData();
-	pass.uniform = &s.common;
-	pass.drags = list.dragData();
 	pass.cell = &cell;
 	pass.endBlock = list.blockCount();
 	pass.addFirst = ownsFirst(o);
 	pass.addSecond = ownsSecond(o);
 	pass.dummy = dummy;
 	pass.dt = s.dt;
-	pass.dissipated = sums.dissipated;
-	pass.slips = sums.slips;
-	pass.crossing = sums.crossing;
+	pass.crossing = ledger.sumsFor(o).crossing;
 	pass.owner = &callers[o];
-	pass.events = &Domain::contactEvents;
+	pass.blocks = list.data();
+	pass.constants = list.constantsData();
+	return pass;
+}
+
+ForcePass Domain::passFor(Ownership o)
+{
+	ForcePass pass = passOver<ForcePass>(touching.contacts[o], o);
+	pass.uniform = &s.common;
+	pass.drags = touching.contacts[o].dragData();
+	pass.dissipated = ledger.sumsFor(o).dissipated;
+	pass.slips = ledger.sumsFor(o).slips;
+	pass.events = &Domain::eventsOf<ContactBlock>;
 	pass.cut = s.limit == LimitRule::Cut;
 	return pass;
 }
 
 BondPass Domain::bondPassFor(Ownership o)
 {
-	BondList& list = touching.bonds[o];
-	BondPass pass {};
-	pass.grains = s.grains.data();
-	pass.blocks = list.data();
-	pass.constants = list.constantsData();
+	BondPass pass = passOver<BondPass>(touching.bonds[o], o);
 	pass.uniform = &s.commonBond;
-	pass.endBlock = list.blockCount();
-	pass.addFirst = ownsFirst(o);
-	pass.addSecond = ownsSecond(o);
-	pass.dummy = dummy;
-	pass.dt = s.dt;
-	pass.cell = &cell;
-	pass.crossing = ledger.sumsFor(o).crossing;
-	pass.owner = &callers[o];
-	pass.breaking = &Domain::bondEvents;
+	pass.breaking = &Domain::eventsOf<BondBlock>;
 	return pass;
 }
 
-void Domain::contactEvents(void* caller, int block, unsigned which, const ContactBlock& before, LaneForces& out)
+template <class Block> void Domain::eventsOf(void* caller, int block, unsigned which, const Block& before, LaneForces& out)
 {
 	const Caller& c = *static_cast<Caller*>(caller);
-	c.domain->events.ofContacts(c.ownership, block, which, before, out);
-}
-
-void Domain::bondEvents(void* caller, int block, unsigned which, const BondBlock& before, LaneForces& out)
-{
-	const Caller& c = *static_cast<Caller*>(caller);
-	c.domain->events.ofBonds(c.ownership, block, which, before, out);
+	c.domain->events.of(c.ownership, block, which, before, out);
 }
 
 void Domain::moveBehind(void* caller, int batch)

@@ -54,10 +54,10 @@ private:
 		Domain* domain;
 		Ownership ownership;
 	};
-	static void contactEvents(void* caller, int block, unsigned which, const ContactBlock& before, LaneForces& out);
-	static void bondEvents(void* caller, int block, unsigned which, const BondBlock& before, LaneForces& out);
+	template <class Block> static void eventsOf(void* caller, int block, unsigned which, const Block& before, LaneForces& out);
 	static void moveBehind(void* caller, int batch);
 
+	template <class Pass, class List> Pass passOver(List&, Ownership);
 	ForcePass passFor(Ownership);
 	BondPass bondPassFor(Ownership);
 	void addForces(Ownership, int firstBlock, int endBlock, bool moveBehind);
