@@ -6,10 +6,9 @@
 // only: its kick is the integral of its force over that fraction, which keeps the trajectory and the ledger of second order in dt.
 // MODEL.md, "The integrator and the ledger", derives each line.
 #pragma once
-#include "contact.hpp"
 #include "cut.hpp"
 #include "events.hpp"
-#include "limit_rule.hpp"
+#include "held.hpp"
 #include <array>
 #include <utility>
 

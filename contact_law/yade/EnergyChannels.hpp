@@ -40,7 +40,7 @@ public:
 
 	// ---- for an engine that replaces ForceResetter, so that nothing empties channels between steps ----
 
-	// What works are done on in a scene, beside a periodic cell's boundaries.
+	// On what work is done in a scene, apart from a periodic cell's boundaries.
 	struct WorkOn {
 		bool blocked = false, outside = false; // blocked degrees of freedom; outside forces
 	};

@@ -136,7 +136,7 @@ def counts(results, scenes):
         if (steps := at.measuredSteps) > 0:
             slips, scale = max(0, at.events - at.formed - at.broken), max(at.kinetic, abs(at.boundaryWork))
             row["neighbours searched every … steps"] = f"{steps / at.searches:.0f}" if at.searches else f"> {steps:.0f}"
-            row["looks at pairs, a contact and step"] = number(at.looks / steps / at.contacts, 2)
+            row["distance checks, a contact and step"] = number(at.distanceChecks / steps / at.contacts, 2)
             shares = {part: getattr(at, part) for part in ("lists", "forces", "integration")}
             row |= {f"% of the time: {part}": number(100 * share, 2) for part, share in shares.items()}
             row["% of contact updates that slip"] = number(100 * slips / at.contactUpdates, 2)

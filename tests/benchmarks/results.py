@@ -15,7 +15,7 @@ from pathlib import Path
 import pandas as pd
 
 KEYS = {"speed": ["scene", "moment"], "moments": ["scene", "moment"], "error": ["scene", "code"]}
-MOMENTS = """scene moment time progress step runSteps grains contacts pieces measuredSteps searches looks events formed broken
+MOMENTS = """scene moment time progress step runSteps grains contacts pieces measuredSteps searches distanceChecks events formed broken
 contactUpdates energyChange kinetic boundaryWork lists forces eventHandling integration other bytes others cpu cores commit
 settings"""
 COLUMNS = {

@@ -13,7 +13,7 @@ from measured_on import fraction_of_others, machine
 
 from analysis.measures.fragments import fragment_labels
 
-SUMMED = ("searches", "looks", "events", "formed", "broken", "contactUpdates", "energyChange", "boundaryWork")
+SUMMED = ("searches", "distanceChecks", "events", "formed", "broken", "contactUpdates", "energyChange", "boundaryWork")
 
 
 def batches(scenes):
