@@ -2,6 +2,8 @@
 
 from tqdm import tqdm
 
+from .printable import printable
+
 
 def progress(items, what, total=None):
     """The items, with a bar on stderr while they are taken; nothing is drawn when that is no terminal, and nothing stays.
@@ -12,4 +14,4 @@ def progress(items, what, total=None):
 
 def line_beside_bars(text):
     """Print a line on stdout while a bar may be there."""
-    tqdm.write(str(text))
+    tqdm.write(printable(text))

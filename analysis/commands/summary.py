@@ -2,6 +2,7 @@
 
 import json
 
+from ..printable import printable_lines
 from . import FAILED, complain
 
 
@@ -39,7 +40,7 @@ def run(options):
             failed = True
             continue
         if not options.json:
-            print(("\n" if results else "") + text, flush=True)
+            print(("\n" if results else "") + printable_lines(text), flush=True)
         results.append(numbers)
     if options.json and (results or len(options.runs) > 1):
         print(json.dumps(results if len(options.runs) > 1 else results[0], indent=2, allow_nan=False))

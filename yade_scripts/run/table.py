@@ -61,6 +61,8 @@ def read(path):
 
 def _require_once(path, names):
     for name in names:
+        if not name:
+            raise TableError(f"{path}: has a column without a name")
         if names.count(name) > 1:
             raise TableError(f"{path}: has the column {name} {names.count(name)} times; must be once")
 
