@@ -102,7 +102,9 @@ def test_threads_of_yade_batch_are_obeyed_or_refused(tmp_path, header, cells, wo
 def test_a_table_of_ours_is_run_by_yade_batch(tmp_path):
     """As users call it, who choose its names themselves."""
     (tmp_path / "rows.table").write_text("radius! velocity material duration seed!\n4 10 'ice' 5e-10 1\n= = ice = 2\n")
-    done = call(tmp_path, "yade-batch", "--disable-pynotify", "-j", "1", "-l", "2", "rows.table", COLLIDE)
+    done = call(
+        tmp_path, "yade-batch", "--disable-pynotify", "--log", "@.log", "-j", "1", "-l", "2", "rows.table", COLLIDE
+    )
     assert done.returncode == 0 and os.listdir(tmp_path / "runs") == ["radius=4,seed=1"], done.stdout
 
 

@@ -10,6 +10,7 @@ from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
 from yade_scripts.run import agreement, table
 from yade_scripts.runner import cost, rows, view
+from yade_scripts.runner.batch import StudyFolder
 from yade_scripts.runner.screen import Screen
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
@@ -75,7 +76,14 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
     assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
     os.unlink(tmp_path / "run" / "run.json")
     (tmp_path / "run" / "run.json").write_text('{"outcome": "running", "derived": {"steps": 1, "timeStep": 1}}')
+    os.mkfifo(tmp_path / "log")
     assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
+    os.mkfifo(tmp_path / "speed.json")
+    study_folder = StudyFolder("any")
+    study_folder.path = str(tmp_path)
+    assert study_folder.cost([given], [rows.State(rows.WAITING)]).measured is None
+    with pytest.raises(table.TableError, match="log: is no regular file; must be one"):
+        table.read(tmp_path / "log")
 
 
 def test_contact_updates_are_those_of_a_packing():

@@ -6,6 +6,8 @@ import os
 import subprocess
 from contextlib import suppress
 
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.folder import read_json
 from yade_scripts.run.folder import write_json
 from yade_scripts.runner.cost import TELLING, Cost
 from yade_scripts.runner.job import Job
@@ -57,11 +59,10 @@ class StudyFolder:
         """Cost from the rows that have ended, and from what was measured."""
         ended = [(row, s.seconds) for row, s in zip(rows, states) if row.kind and s.kind == DONE and s.seconds]
         try:
-            with open(self.file("speed.json")) as file:
-                speed = json.load(file)
+            speed = read_json(self.file("speed.json"))
             row = next(row for row in rows if row.name == speed["row"] and row.kind and row.parameters)
             measured = row, speed["contactUpdatesPerSecond"], speed["setup"]
-        except (OSError, ValueError, KeyError, StopIteration):
+        except (RunFolderError, TypeError, KeyError, StopIteration):
             measured = None
         return Cost(measured, ended)
 

@@ -1,5 +1,6 @@
 """The log of a row's run: all that it printed, and how it ended, in the words of yade-batch."""
 
+import os
 import re
 import signal
 
@@ -15,6 +16,8 @@ def summary(status):
 
 def failure(log, folder):
     """Why the run of a log and a run folder (paths) failed, in one line; None when it did not, was stopped, or is under way."""
+    if not os.path.isfile(log):  # a pipe would be waited for
+        return None
     try:
         with open(log, errors="replace") as file:
             text, _, end = file.read().partition("JOB SUMMARY")

@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 from analysis.printable import shell_line
+from analysis.runs.arrays import RunFolderError, require_regular
 from analysis.runs.running import states_of_job
 from analysis.runs.write import write_text
 from yade_scripts.run.file_name import file_name
@@ -85,11 +86,12 @@ def queued(study_folder):
     for number in _numbers(study_folder):
         folder = study_folder.file(f"slurm-{number}")
         try:
+            require_regular(os.path.join(folder, JOB))
             with open(os.path.join(folder, JOB)) as file:
                 job = file.read().strip()
             states = states_of_job(job) if job.isdecimal() else None
             names = [row.description for row in read(os.path.join(folder, ROWS))] if states else []
-        except (OSError, TableError):  # being submitted, or refused by sbatch
+        except (OSError, UnicodeDecodeError, RunFolderError, TableError):  # being submitted, or refused by sbatch
             continue
         tasks = {f"{job}_{task}": name for task, name in enumerate(names, 1)}
         found |= {
