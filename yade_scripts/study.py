@@ -11,7 +11,8 @@ resume from their last checkpoint. Before anything runs, the time it will take i
 ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
 a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
 Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be the name of
-a table in yade_scripts/studies: elastoplastic-desk.
+a table in yade_scripts/studies: elastoplastic-desk. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are
+obeyed, others refused.
 
 With --slurm each row that is left is one task, by the same rules, of as many processors as it has threads. A minute
 before its time limit a task writes its checkpoint and is queued again; rows that are in the queue already are not
@@ -93,13 +94,19 @@ class Study:
         self.rows, self.jobs = rows.read(table, run_scripts), jobs
         self.folder = StudyFolder(self.name)
         require_file(self.folder.file(LEFT), inputs=[table])
-        self.since = 0.0
+        self._before = {}
         self._final = {}  # states that can't change any more
+
+    def forget_failures(self):
+        """From now on only those that follow count."""
+        self._before = {
+            file: when for row in self.rows for file, when in rows.traces(row, self.folder.log(row)).items()
+        }
 
     def states(self):
         found = []
         for row in self.rows:
-            state = self._final.get(row.name) or rows.state(row, self.folder.log(row), self.since)
+            state = self._final.get(row.name) or rows.state(row, self.folder.log(row), self._before)
             if state.kind == DONE:
                 self._final[row.name] = state
             found.append(state)
@@ -226,7 +233,7 @@ def main(arguments):
         if not options.dry_run:
             study.folder.lock()
         if options.slurm:
-            study.since = time.time()
+            study.forget_failures()
             return submit(study, options.jobs, options.sbatch, options.dry_run)
     except (TableError, StudyBusy, slurm.SlurmError) as error:
         tell(error, SCRIPT)
@@ -234,7 +241,7 @@ def main(arguments):
     except OSError as error:
         tell(f"{error.filename}: {error.strerror}", SCRIPT)
         return 2
-    study.since = time.time()
+    study.forget_failures()
     stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup
     for row in study.rows:
         if row.error:

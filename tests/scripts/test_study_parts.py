@@ -86,6 +86,22 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
         table.read(tmp_path / "log")
 
 
+def test_failures_count_from_a_moment_on_whatever_the_clock_does(tmp_path):
+    given, log = row(out=str(tmp_path / "run")), tmp_path / "log"
+    (tmp_path / "run").mkdir()
+    for file, text in (
+        (log, "\nJOB SUMMARY\nstatus  : 256\n"),
+        (tmp_path / "run" / "run.json", '{"outcome": "failed: x"}'),
+    ):
+        file.write_text(text)
+        before = rows.traces(given, str(log))
+        assert rows.state(given, str(log)).kind == rows.FAILED
+        assert rows.state(given, str(log), before).kind == rows.WAITING
+        os.utime(file, (0, 0))  # written anew after the clock was set back
+        assert rows.state(given, str(log), before).kind == rows.FAILED
+        file.unlink()
+
+
 def test_contact_updates_are_those_of_a_packing():
     """Contacts counted in a packing of A24's at R = 30, whose surface has fewer."""
     overlap = equilibrium_overlap(MATERIALS["ice"])

@@ -1,12 +1,14 @@
 """The rows of a study, and what has become of each, from its run folder and its log."""
 
 import os
+import types
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from analysis.runs.format import ENDED_FILE, RUN_FILE
 from analysis.runs.running import place
-from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, changed, end_time, run_of  # noqa: F401
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, end_time, run_of  # noqa: F401
 from analysis.runs.status import running as running_state
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import checkpoint, table
@@ -94,8 +96,18 @@ def find_script(name):
     return own if not os.path.isfile(name) and os.path.isfile(own) else name
 
 
-def state(row, log, since=0.0):
-    """What has become of a row. log: the file that its output goes to; failures before `since` don't count."""
+def traces(row, log):
+    """{file: when and where it was written} of what tells of a row's failure, for state(); of no clock but the files' own."""
+    found = {}
+    for file in () if row.error else (log, os.path.join(row.out, RUN_FILE)):
+        with suppress(OSError):
+            about = os.stat(file)
+            found[file] = about.st_mtime_ns, about.st_ino
+    return found
+
+
+def state(row, log, before=types.MappingProxyType({})):
+    """What has become of a row. log: the file that its output goes to; failures of which traces() were there `before` don't count."""
     if row.error:
         return State(FAILED, note=row.error)
     folder = row.out
@@ -107,10 +119,12 @@ def state(row, log, since=0.0):
         return running_state(folder, run, where)
     outcome = run.get("outcome", "")
     note, progress = _stopped(folder, run)
-    problem = failure(log, folder) if changed(log) >= since else None
+    now = traces(row, log)
+    new = {file for file in now if now[file] != before.get(file)}
+    problem = failure(log, folder) if log in new else None
     if problem:
         return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
-    if outcome.startswith("failed") and changed(os.path.join(folder, RUN_FILE)) >= since:
+    if outcome.startswith("failed") and os.path.join(folder, RUN_FILE) in new:
         return State(FAILED, progress, note=f"{folder}: {outcome}")
     return State(WAITING, progress, run.get("wallTime"), note=note)
 

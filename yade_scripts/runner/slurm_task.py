@@ -31,7 +31,7 @@ def main(arguments):
     with one_line_errors("slurm_task.py"):
         row, line = rows.read(path)[number], table.read(path)[number].line
     log = os.path.join(os.path.dirname(os.path.dirname(path)), f"{row.name}.log")
-    before = rows.state(row, log, since=time.time())
+    before = rows.state(row, log, rows.traces(row, log))
     if before.kind == DONE:
         print(f"{row.name}: has ended before", flush=True)
         return 0
