@@ -2,6 +2,7 @@
 
 import io
 import os
+import time
 
 import pytest
 
@@ -9,8 +10,9 @@ from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
 from yade_scripts.run import agreement, table
+from yade_scripts.run.closing_line import closing_line, outcome_told
 from yade_scripts.runner import cost, rows, view
-from yade_scripts.runner.batch import StudyFolder
+from yade_scripts.runner.batch import Batch, StudyFolder
 from yade_scripts.runner.screen import Screen
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
@@ -190,6 +192,32 @@ def test_a_bcca_row_agrees_with_its_run_whatever_the_radius_became():
     run["derived"] = {"timeUnit": 1e-10}
     assert agreement.difference(KIND, wanted, run) is None
     assert agreement.difference(KIND, wanted.changed(grains=65), run) == "grains = 64, not 65"
+
+
+def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path, monkeypatch):
+    """One that takes more than there are runs alone."""
+    (tmp_path / "bin").mkdir()
+    yade = tmp_path / "bin" / "yade"
+    yade.write_text(f"#!/bin/sh\necho begin $2 >> {tmp_path}/told; sleep 0.5; echo end $2 >> {tmp_path}/told\n")
+    yade.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{yade.parent}:{os.environ['PATH']}")
+    (tmp_path / "rows.table").write_text(
+        "threads out\n" + "".join(f"{n} runs/{i}\n" for i, n in enumerate((3, 1, 1, 2)))
+    )
+    folder = StudyFolder("any")
+    folder.path, folder.held = str(tmp_path), os.open(tmp_path, os.O_RDONLY)
+    with Batch(folder, rows.read(tmp_path / "rows.table"), 2) as batch:
+        while batch.running():
+            time.sleep(0.01)
+    os.close(folder.held)
+    told = (tmp_path / "told").read_text().replace("--threads=", "").splitlines()
+    assert told == ["begin 3", "end 3", "begin 1", "begin 1", "end 1", "end 1", "begin 2", "end 2"]
+
+
+@pytest.mark.parametrize("outcome", ["completed", "interrupted", "failed: energy (1 J): (a) b"])
+def test_the_outcome_is_read_back_from_the_closing_line(outcome):
+    assert outcome_told("Welcome\n" + closing_line("runs/a (1)\n", outcome, 12.34) + "\nbye\n") == outcome
+    assert outcome_told("Welcome\n") is None
 
 
 class Terminal(io.StringIO):
