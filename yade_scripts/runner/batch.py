@@ -61,8 +61,8 @@ class StudyFolder:
         try:
             speed = read_json(self.file("speed.json"))
             row = next(row for row in rows if row.name == speed["row"] and row.kind and row.parameters)
-            measured = row, speed["contactUpdatesPerSecond"], speed["setup"]
-        except (RunFolderError, TypeError, KeyError, StopIteration):
+            measured = row, float(speed["contactUpdatesPerSecond"]), float(speed["setup"])
+        except (RunFolderError, ValueError, TypeError, KeyError, StopIteration):
             measured = None
         return Cost(measured, ended)
 
