@@ -11,6 +11,7 @@ if __name__ == "__main__":
     end_quietly(signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 from .commands import export, figures, film, plot, status, study, summary  # noqa: E402
+from .printable import printable  # noqa: E402
 
 
 def main(arguments=None):
@@ -26,7 +27,7 @@ def main(arguments=None):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="python3 -m analysis",
         description="Analyse run folders.",
         epilog="Exit status: 0, or 2 if a run could not be analysed. A run that has not ended is analysed as far as it "
@@ -37,6 +38,11 @@ def _parser():
     for command in (summary, plot, figures, export, film, status, study):
         command.add_parser(commands)
     return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        super().error(printable(message))
 
 
 class _Version(argparse.Action):

@@ -4,6 +4,8 @@ import sys
 
 from tqdm import tqdm
 
+from .printable import printable
+
 
 def progress(items, what, total=None):
     """The items, with a bar on stderr while they are taken; nothing of it stays.
@@ -23,7 +25,7 @@ def bar(total, what, initial=0):
 
 def line_beside_bars(text):
     """Print a line on stdout while a bar may be there."""
-    tqdm.write(str(text))
+    tqdm.write(printable(text))
 
 
 def _disabled():

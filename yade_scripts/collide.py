@@ -3,7 +3,7 @@
     yade -n -x yade_scripts/collide.py                     Arakawa et al. (2024) at 20 grain radii
     yade -n -x yade_scripts/collide.py velocity=10 seed=3  any parameter by its name
     yade -n -x yade_scripts/collide.py table=yade_scripts/studies/seeds.table:4   one row of a table
-    python3 yade_scripts/study.py yade_scripts/studies/seeds.table                all rows (with yade-batch)
+    python3 yade_scripts/study.py yade_scripts/studies/seeds.table                all rows
     yade -n -x yade_scripts/collide.py --help              the parameters
 
 Numbers may be written as arithmetic: velocity=10**0.5. A22 and A24 are Arakawa et al. (2022, 2024), S17 is

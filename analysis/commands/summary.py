@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+from ..printable import printable_lines
 from . import FAILED, complain
 
 
@@ -41,7 +42,8 @@ def run(options):
         one = len(options.runs) == 1 and measured[0][0] == Path(options.runs[0])
         print(json.dumps(results[0] if one else results, indent=2, allow_nan=False))
     elif measured:
-        print("\n\n".join(text for _, text in measured) if options.long else short_text(frame(measured)))
+        told = "\n\n".join(text for _, text in measured) if options.long else short_text(frame(measured))
+        print(printable_lines(told))
     for problem in problems:
         complain(problem)
     return FAILED if problems else 0

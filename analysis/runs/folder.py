@@ -12,7 +12,7 @@ from typing import Mapping
 
 import numpy as np
 
-from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_regular
+from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_regular, require_values
 from .format import (
     COLLISION,
     ENDED_FILE,
@@ -99,8 +99,11 @@ class StateSequence(Sequence):
         return int(np.argmin(np.abs(self.times - time)))
 
     def arrays(self, index, names):
-        """Some arrays of a state by name, without reading the others (unchecked but for being there)."""
-        return read_arrays(self.files[index], names)
+        """Some arrays of a state by name, without reading the others; their values are checked, not their shapes."""
+        arrays = read_arrays(self.files[index], names)
+        for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
+            require_values(self.files[index], quantity, arrays[quantity.name])
+        return arrays
 
 
 @dataclass(frozen=True, eq=False, repr=False)

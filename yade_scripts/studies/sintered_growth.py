@@ -32,6 +32,7 @@ from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings.bcca import bcca
 from yade_scripts.packings.collided import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.parameters.errors import tell
 from yade_scripts.studies.sintered import DURATION, GRAINS, GROWN, SLIDING, TABLES
 from yade_scripts.studies.sintered import grown as grown_of
 
@@ -127,7 +128,7 @@ def main(arguments):
                 print(found.result(), flush=True)
             except (PackingError, OSError) as error:
                 failed = 1
-                print(f"sintered_growth.py: {error}", file=sys.stderr, flush=True)
+                tell(error, "sintered_growth.py")
     return failed
 
 
