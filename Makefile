@@ -67,6 +67,9 @@ FLAGS := -std=c++17 -fPIC -fopenmp -O2 -ffp-contract=off -Wall -Wextra -MMD -MP
 YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT \
                     -DBOOST_BIND_GLOBAL_PLACEHOLDERS -DBOOST_ALLOW_DEPRECATED_HEADERS # Boost.Python's own use of older Boost
 ifdef YADE_INCLUDE
+ifneq ($(words $(YADE_INCLUDE)),1)
+$(error YADE_INCLUDE = $(YADE_INCLUDE): has blanks, which make takes for several folders; must be a path without)
+endif
 PACKAGES += libopenmpi-dev
 YADE_DEFINITIONS += -DCONTACT_LAW_YADES_OWN_HEADERS -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MULTI_HP -DMAX_LOG_LEVEL=5 \
                     -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE= \
@@ -177,21 +180,23 @@ $(HARNESS_OBJECTS): $(OBJECTS_FOLDER)/harness/%.o: tests/benchmarks/harness/%.cp
 	@mkdir -p $(@D)
 	@g++ $(ENGINE_FLAGS) -c $< -o $@
 
-# For scripts of any folder: contact_law/installation.py says what goes where.
-PREFIX ?= $(HOME)/.local
+# For scripts of any folder: contact_law/installation.py says what goes where. PREFIX is a name and nothing else, for make and the shell.
+PREFIX ?= ~/.local
+override PREFIX := $(value PREFIX)
+export PREFIX
 .PHONY: install uninstall
 install: all
-	@$(PYTHON) contact_law/installation.py install "$(PREFIX)"
+	@$(PYTHON) contact_law/installation.py install "$$PREFIX"
 
 uninstall:
-	@$(PYTHON) contact_law/installation.py uninstall "$(PREFIX)"
+	@$(PYTHON) contact_law/installation.py uninstall "$$PREFIX"
 
 # ---- running it ----
 
 .PHONY: demo test test-mutations test-faults test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
-	@$(PYTHON) -m analysis summary runs/demo
+	@$(PYTHON) -m analysis summary --long runs/demo
 	@$(PYTHON) -m analysis figures runs/demo
 
 # made again when the plugin or the scripts are newer
@@ -212,7 +217,7 @@ ovito: build/ovito/installed
 build/ovito/installed: Makefile
 	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv libegl1 libopengl0"
 	@$(PYTHON) -m venv build/ovito
-	@build/ovito/bin/pip -q install --disable-pip-version-check ovito==3.17.2
+	@build/ovito/bin/python -m pip -q install --disable-pip-version-check ovito==3.17.2
 	@touch $@
 
 SYSTEMS ?= bookworm trixie
@@ -293,7 +298,7 @@ FORMATTED := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null | grep -v contact_
 $(LINT)/installed: Makefile
 	@$(MAKE) --no-print-directory deps PACKAGES=python3-venv
 	@$(PYTHON) -m venv build/lint
-	@$(LINT)/pip -q install --disable-pip-version-check ruff==0.6.9 clang-format==14.0.6
+	@$(LINT)/python -m pip -q install --disable-pip-version-check ruff==0.6.9 clang-format==14.0.6
 	@touch $@
 
 lint: $(LINT)/installed

@@ -1,4 +1,4 @@
-"""Command line: python3 -m analysis summary RUN..., figures RUN, export RUN, film RUN, status RUNS..., study [NAME RUNS...]."""
+"""Command line: python3 -m analysis summary RUNS..., plot WHAT RUNS..., figures RUN, export RUN, film RUN, status RUNS..., study [NAME RUNS...]."""
 
 import argparse
 import os
@@ -10,7 +10,8 @@ from .signals import end_quietly
 if __name__ == "__main__":
     end_quietly(signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
-from .commands import export, figures, film, status, study, summary  # noqa: E402
+from .commands import export, figures, film, plot, status, study, summary  # noqa: E402
+from .printable import printable  # noqa: E402
 
 
 def main(arguments=None):
@@ -26,7 +27,7 @@ def main(arguments=None):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="python3 -m analysis",
         description="Analyse run folders.",
         epilog="Exit status: 0, or 2 if a run could not be analysed. A run that has not ended is analysed as far as it "
@@ -34,9 +35,14 @@ def _parser():
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for command in (summary, figures, export, film, status, study):
+    for command in (summary, plot, figures, export, film, status, study):
         command.add_parser(commands)
     return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        super().error(printable(message))
 
 
 class _Version(argparse.Action):

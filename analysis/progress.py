@@ -1,15 +1,33 @@
-"""Progress with the time left, of whatever takes longer than a moment."""
+"""Progress with the time left, of whatever takes longer than a moment: on a terminal and in a notebook, nothing elsewhere."""
+
+import sys
 
 from tqdm import tqdm
 
+from .printable import printable
+
 
 def progress(items, what, total=None):
-    """The items, with a bar on stderr while they are taken; nothing is drawn when that is no terminal, and nothing stays.
+    """The items, with a bar on stderr while they are taken; nothing of it stays.
 
     total: their number, where len(items) can't tell."""
-    return tqdm(items, what, total=total, disable=None, leave=False)
+    return tqdm(items, what, total=total, disable=_disabled(), leave=False)
+
+
+def bar(total, what, initial=0):
+    """A bar on stderr of `total` things, moved by .update(number); .write() prints a line on stdout beside it. initial: what was there
+    before, which says nothing of the pace."""
+    form = "{desc}: {percentage:3.0f} %|{bar}| {n:.1f} of {total:g} [{elapsed}, {remaining} left]"
+    return tqdm(
+        desc=what, total=total, initial=initial, disable=_disabled(), leave=False, bar_format=form, mininterval=1.0
+    )
 
 
 def line_beside_bars(text):
     """Print a line on stdout while a bar may be there."""
-    tqdm.write(str(text))
+    tqdm.write(printable(text))
+
+
+def _disabled():
+    """For tqdm: None where it looks for a terminal itself."""
+    return False if "ipykernel" in sys.modules else None

@@ -16,7 +16,6 @@ import hashlib
 import json
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
@@ -25,6 +24,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP))
+from analysis.printable import printable, printable_lines, shell_line
 from analysis.runs.write import write_text
 from analysis.version import commit, version_text
 
@@ -85,9 +85,9 @@ def install(prefix):
         f"commands in {prefix / 'bin'}: {' '.join(COMMANDS)}",
     ]
     if str(prefix / "bin") not in os.environ.get("PATH", "").split(os.pathsep):
-        lines.append(f"to call them by name: PATH={prefix / 'bin'}:$PATH")
+        lines.append(f"to call them by name: PATH={shell_line([prefix / 'bin'])}:$PATH")
     if not paths:
-        lines.append(f"no Python looks for modules in {prefix}: PYTHONPATH={folder} makes it find them")
+        lines.append(f"no Python looks for modules in {prefix}: PYTHONPATH={shell_line([folder])} makes it find them")
     return lines
 
 
@@ -187,7 +187,7 @@ def module_folders(prefix):
 def _pythons():
     """python3 of PATH and of Debian, and every python3.N beside them."""
     folders = dict.fromkeys([*os.environ.get("PATH", "").split(os.pathsep), "/usr/bin"])
-    files = [file for folder in folders for file in glob.glob(f"{folder}/python3*")]
+    files = [file for folder in folders for file in glob.glob(f"{glob.escape(folder)}/python3*")]
     files = {os.path.realpath(file) for file in files if re.fullmatch(r"python3(\.\d+)?", os.path.basename(file))}
     return sorted(file for file in files if os.access(file, os.X_OK))
 
@@ -195,7 +195,7 @@ def _pythons():
 def _commands(folder, target):
     """{path: text} of the commands in a folder, of an installation in `target`."""
     return {
-        folder / name: f'#!/bin/sh\n{line.format(folder=shlex.quote(str(target)))} "$@"\n'
+        folder / name: f'#!/bin/sh\n{line.format(folder=shell_line([target]))} "$@"\n'
         for name, line in COMMANDS.items()
     }
 
@@ -229,12 +229,14 @@ def main(arguments):
         return 2
     action, prefix = arguments[0], Path(os.path.abspath(os.path.expanduser(arguments[1])))
     try:
-        print("\n".join({"install": install, "uninstall": uninstall}[action](prefix)))
+        if not str(prefix).isprintable() or os.pathsep in str(prefix):
+            raise CannotInstall(f"{prefix}: must be of printable characters, without '{os.pathsep}'")
+        print(printable_lines("\n".join({"install": install, "uninstall": uninstall}[action](prefix))))
     except CannotInstall as error:
-        print(f"make {action}: {error}", file=sys.stderr)
+        print(printable(f"make {action}: {error}"), file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"make {action}: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(printable(f"make {action}: {error.filename}: {error.strerror}"), file=sys.stderr)
         return 2
     return 0
 

@@ -1,7 +1,5 @@
 """Shared by all tests: the repository's top on sys.path, and scripts in YADE, each in a process of its own."""
 
-import json
-import os
 import pickle
 import signal
 import subprocess
@@ -15,6 +13,7 @@ TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP))
 
 from approx import without_absolute_tolerance
+from yade_server import YadeServer
 
 without_absolute_tolerance()
 
@@ -23,40 +22,8 @@ class YadeFailed(AssertionError):
     """A YADE script ended with a non-zero status; the message holds what it printed."""
 
 
-class YadeServer:
-    """The one YADE of this process that tests' scripts are forked from (yade_server.py), started when it is first asked."""
-
-    def __init__(self):
-        self.process = None
-
-    def run(self, script, folder, timeout):
-        """Exit status of a script (path) run in a folder, a signal's number negative; after so many seconds it is ended."""
-        if self.process is None or self.process.poll() is not None:
-            self._start()
-        request = {"script": str(script), "folder": str(folder), "timeout": timeout}
-        print(json.dumps(request), file=self.requests, flush=True)
-        answer = self.answers.readline()
-        if not answer:
-            raise YadeFailed("the YADE that scripts are forked from has ended")
-        if int(answer) == -signal.SIGALRM:
-            raise YadeFailed(f"no end within {timeout} s")
-        return int(answer)
-
-    def _start(self):
-        (theirs, ours), (answers, to_us) = os.pipe(), os.pipe()
-        command = ["yade", "-n", "-x", "-j1", str(TOP / "tests" / "yade_server.py"), str(theirs), str(to_us)]
-        quiet = subprocess.DEVNULL
-        self.process = subprocess.Popen(command, pass_fds=(theirs, to_us), stdin=quiet, stdout=quiet, stderr=quiet)
-        os.close(theirs)
-        os.close(to_us)
-        self.requests, self.answers = os.fdopen(ours, "w"), os.fdopen(answers)
-
-
 SERVER = YadeServer()
-
-
-SCRIPT = f"import sys\nsys.path[:0] = [{str(TOP)!r}, {str(TOP / 'tests')!r}]\n"
-TO_CALL = SCRIPT + "from yade_call import answer\nanswer()\n"
+TO_CALL = f"import sys\nsys.path[:0] = [{str(TOP)!r}, {str(TOP / 'tests')!r}]\nfrom yade_call import answer\nanswer()\n"
 
 
 def call_in_yade(path, name, arguments, threads=1, timeout=300):
@@ -73,34 +40,18 @@ def call_in_yade(path, name, arguments, threads=1, timeout=300):
         return pickle.loads((folder / "answer").read_bytes())
 
 
-def run_yade(script, parameters=None, threads=1, timeout=300):
-    """What a function of a test module returns inside YADE, called with `parameters`; or run Python source `script`
-    there, and return what it stored in the dict `result`.
-
-    The script sees `parameters` (a dict), the contact law's classes and YADE's own names. numpy arrays in `result` come
-    back as lists.
-    """
-    if callable(script):
-        return call_in_yade(script.__code__.co_filename, script.__name__, parameters or {}, threads, timeout)
-    with tempfile.TemporaryDirectory() as folder:
-        path, answer = Path(folder) / "script.py", Path(folder) / "result.json"
-        path.write_text(
-            SCRIPT + "import json, math\n"
-            "import numpy as np\nimport contact_law\nfrom yade.wrapper import *\nfrom yade import utils\nfrom yade.minieigenHP import *\n"
-            f"parameters = json.loads({json.dumps(json.dumps(parameters or {}))})\nresult = {{}}\n"
-            + script
-            + f"\nopen({str(answer)!r}, 'w').write(json.dumps(result, default=lambda x: x.tolist()))\n"
-        )
-        status = _run(Path(folder), threads, timeout)
-        if status or not answer.exists():
-            raise YadeFailed("\n".join([f"status {status}", *_said(Path(folder))]))
-        return json.loads(answer.read_text())
+def run_yade(function, parameters=None, threads=1, timeout=300):
+    """What a function of a test module returns inside YADE, called with `parameters` (a dict)."""
+    return call_in_yade(function.__code__.co_filename, function.__name__, parameters or {}, threads, timeout)
 
 
 def _run(folder, threads, timeout):
     """Exit status of script.py in a folder."""
     if threads == 1:
-        return SERVER.run(folder / "script.py", folder, timeout)
+        status = SERVER.run(folder / "script.py", folder, timeout)
+        if status == -signal.SIGALRM:
+            raise YadeFailed(f"no end within {timeout} s")
+        return status
     command = ["yade", "-n", "-x", f"-j{threads}", str(folder / "script.py")]
     with open(folder / "stdout", "w") as out, open(folder / "stderr", "w") as err:
         return subprocess.run(command, stdout=out, stderr=err, timeout=timeout, cwd=folder).returncode

@@ -33,9 +33,9 @@ def constants(material1, radius1, material2=None, radius2=None, damping=0, slidi
 def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
     return [
         ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=verlet),
+        InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=verlet),
         InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom()],
+            [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
             [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)],
             [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)],
         ),
@@ -52,11 +52,8 @@ def new_scene(dt, **options):
 def grain(position, radius, material, velocity=(0, 0, 0), spin=(0, 0, 0), blocked=""):
     """Append a sphere; returns its id."""
     body = utils.sphere([float(x) for x in position], float(radius), material=material)
-    body.state.vel, body.state.angVel, body.state.blockedDOFs = (
-        [float(x) for x in velocity],
-        [float(x) for x in spin],
-        blocked,
-    )
+    body.state.vel, body.state.angVel = ([float(x) for x in given] for given in (velocity, spin))
+    body.state.blockedDOFs = blocked
     return O.bodies.append(body)
 
 
@@ -113,33 +110,29 @@ def converging(count, seed, materials, radii, speed=5.0, spin=2e7):
     """Grains on a loose lattice (no contacts), all flying towards the middle with some spread, and spinning."""
     random = np.random.default_rng(seed)
     side = int(np.ceil(count ** (1 / 3)))
-    sites = [np.array([a, b, c]) - (side - 1) / 2 for a in range(side) for b in range(side) for c in range(side)][
-        :count
-    ]
-    for k, site in enumerate(sites):
-        radius = radii[k % len(radii)]
+    for k, site in enumerate(list(np.ndindex(side, side, side))[:count]):
+        radius, site = radii[k % len(radii)], np.array(site) - (side - 1) / 2
         x = 2.02 * max(radii) * (site + 0.004 * random.normal(size=3))
-        grain(
-            x,
-            radius,
-            materials[k % len(materials)],
-            -speed * site + 0.2 * speed * random.normal(size=3),
-            spin * random.normal(size=3),
-        )
+        velocity = -speed * site + 0.2 * speed * random.normal(size=3)
+        grain(x, radius, materials[k % len(materials)], velocity, spin * random.normal(size=3))
 
 
 def fused_engine(**options):
     O.engines = [JKRWadaEngine(**options)]
 
 
-def refusal(steps=1):
-    """What one of so many O.steps is refused with, or ''. (O.run now and then loses, on a busy machine, what its thread threw.)"""
+def said(call):
+    """What a call is refused with, or ''."""
     try:
-        for _ in range(steps):
-            O.step()
+        call()
     except (RuntimeError, ValueError) as error:
         return str(error)
     return ""
+
+
+def refusal(steps=1):
+    """What one of so many O.steps is refused with, or ''. (O.run now and then loses, on a busy machine, what its thread threw.)"""
+    return said(lambda: [O.step() for _ in range(steps)])
 
 
 def positions():
@@ -157,12 +150,8 @@ def differences_of_instruction_sets(run):
         return positions()
 
     reference = end("portable")
-    return {
-        name: float(np.abs(x - reference).max() / 1e-7)
-        for name in ("avx2", "avx512")
-        for x in [end(name)]
-        if x is not None
-    }
+    ends = {name: end(name) for name in ("avx2", "avx512")}
+    return {name: float(np.abs(x - reference).max() / 1e-7) for name, x in ends.items() if x is not None}
 
 
 def record(n, *works):

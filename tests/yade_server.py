@@ -1,17 +1,49 @@
-"""One YADE that has started, and runs every test's script in a process forked from it: a start takes longer than most scripts.
+"""One YADE that has started, and runs scripts in processes forked from it: a start takes longer than most scripts.
 
 In YADE: `yade -n -x yade_server.py REQUESTS ANSWERS` reads one request a line from the file descriptor REQUESTS ({"script", "folder",
-"timeout"}: a Python file, where to run it, seconds), runs it as YADE's own main script would be, and writes a line to ANSWERS:
-its status as subprocess has it, a signal's number negative. What the script prints is in FOLDER/stdout and FOLDER/stderr.
+"timeout", "arguments"}: a Python file, where to run it, seconds or 0, what follows the file in sys.argv), runs it as YADE's own main
+script would be, and writes a line to ANSWERS: its status as subprocess has it, a signal's number negative. What the script prints is
+in FOLDER/stdout and FOLDER/stderr.
 """
 
 import json
 import os
 import signal
+import subprocess
 import sys
 import traceback
+from contextlib import suppress
 
-import pytest  # noqa: F401 (what many tests import: once, before they are forked)
+with suppress(ImportError):  # what many tests import: once, before they are forked
+    import pytest  # noqa: F401
+
+
+class YadeServer:
+    """The one YADE of this process, started when it is first asked."""
+
+    def __init__(self):
+        self.process = None
+
+    def run(self, script, folder, timeout=0, arguments=()):
+        """Exit status of a script (path) run in a folder, a signal's number negative: SIGALRM's after so many seconds.
+        RuntimeError when the YADE has ended."""
+        if self.process is None or self.process.poll() is not None:
+            self._start()
+        request = {"script": str(script), "folder": str(folder), "timeout": timeout, "arguments": arguments}
+        print(json.dumps(request), file=self.requests, flush=True)
+        answer = self.answers.readline()
+        if not answer:
+            raise RuntimeError("the YADE that scripts are forked from has ended")
+        return int(answer)
+
+    def _start(self):
+        (theirs, ours), (answers, to_us) = os.pipe(), os.pipe()
+        command = ["yade", "-n", "-x", "-j1", os.path.abspath(__file__), str(theirs), str(to_us)]
+        quiet = subprocess.DEVNULL
+        self.process = subprocess.Popen(command, pass_fds=(theirs, to_us), stdin=quiet, stdout=quiet, stderr=quiet)
+        os.close(theirs)
+        os.close(to_us)
+        self.requests, self.answers = os.fdopen(ours, "w"), os.fdopen(answers)
 
 
 def serve(requests, answers):
@@ -27,10 +59,11 @@ def serve(requests, answers):
         print(os.waitstatus_to_exitcode(status), file=answers, flush=True)
 
 
-def run(script, folder, timeout):
+def run(script, folder, timeout, arguments):
     """Run a script in its folder and return the exit status; the process is the script's own."""
     signal.alarm(timeout)  # ends the process
     os.chdir(folder)
+    sys.argv = [script, *arguments]
     for number, name in ((1, "stdout"), (2, "stderr")):
         os.dup2(os.open(name, os.O_CREAT | os.O_WRONLY), number)
     main = vars(sys.modules["__main__"])

@@ -1,1 +1,11 @@
-"""Collisions of dust aggregates with YADE: scripts to run, and what they are made of."""
+"""Collisions of dust aggregates with YADE: scripts to run, and what they are made of.
+
+from yade_scripts import collide, compress      # runs from Python: runner/sweep.py"""
+
+
+def __getattr__(name):
+    if name in ("collide", "compress"):
+        from yade_scripts.runner import sweep
+
+        return getattr(sweep, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -21,6 +21,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from analysis.signals import end_quietly
 
 end_quietly(signal.SIGINT)
+from analysis.printable import printable, shell_line
 from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts import materials, packings
@@ -52,7 +53,7 @@ def make_packing(file, parameters, index):
 
 def _save(file, packing):
     packings.save(file, packing)
-    print(f"{file}: {description(packing)}")
+    print(printable(f"{file}: {description(packing)}"))
 
 
 def _save_from(source, files, texts):
@@ -65,9 +66,9 @@ def _save_from(source, files, texts):
     if len(files) > 1:
         raise ParameterError(f"{files[1]}: from = {source} is one aggregate; must be one file")
     packing, lines = imported(source, texts)
-    print("\n".join(lines))
+    print("\n".join(map(printable, lines)))
     _save(files[0], packing)
-    print("in a run: " + " ".join(["packing=file", f"file={files[0]}", *grains_of(packing, texts.get("material"))]))
+    print("in a run: " + shell_line(["packing=file", f"file={files[0]}", *grains_of(packing, texts.get("material"))]))
 
 
 def main(arguments):
@@ -105,6 +106,6 @@ if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
     except (ParameterError, packings.PackingError, ImportError) as error:
-        sys.exit(f"make_packing.py: {error}")
+        sys.exit(printable(f"make_packing.py: {error}"))
     except OSError as error:
-        sys.exit(f"make_packing.py: {error.filename}: {error.strerror}")
+        sys.exit(printable(f"make_packing.py: {error.filename}: {error.strerror}"))

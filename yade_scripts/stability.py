@@ -1,6 +1,6 @@
 """The limits of a run's time step, and of the number of steps.
 
-Steps are in units of t0 (K13 eq 2, `timeUnit`). constants: {name: value} of a contact of two grains, as the plugin's
+Steps are in units of t0 (Kataoka et al. 2013, eq 2; `timeUnit`). constants: {name: value} of a contact of two grains, as the plugin's
 pairConstants or materials.pair_constants give them, with the constants of a bond under "bond" where grains are sintered.
 """
 
@@ -11,7 +11,7 @@ from yade_scripts.packings.filling import maximum_filling
 from yade_scripts.parameters import ParameterError
 
 AUTO = "auto"
-# Velocity Verlet is stable at 0.4 t0 and blows up at 0.5 t0 on A24's scene, without drag (measured).
+# Velocity Verlet is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of Arakawa et al. (2024), without drag (measured).
 STABLE_STEP = 0.4
 SAFETY = STABLE_STEP / 0.5
 # An hour for 50 grains, a week for 6,000: longer than any run on a desk machine.
@@ -36,7 +36,7 @@ def step_limit(constants, filling):
     0.7, and from 0.21, 0.23 and 0.24 in BCCA.
     """
     mass, contact_radius = 2 * constants["reducedMass"], constants["equilibriumContactRadius"]
-    normal_stiffness = 1.2 * constants["pullOffForce"] / constants["equilibriumOverlap"]  # A24 eq 38
+    normal_stiffness = 1.2 * constants["pullOffForce"] / constants["equilibriumOverlap"]  # Arakawa et al. (2024), eq 38
     sliding_stiffness = constants["slidingStiffness"]
     lattice = maximum_filling(2 * constants["reducedRadius"], constants["equilibriumOverlap"])
     occupied = min(1.0, filling / lattice)

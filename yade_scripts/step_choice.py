@@ -1,7 +1,7 @@
 """The longest time step for a tolerance (stepFraction=auto), from measured errors of the energy ledger.
 
-Steps are in units of t0 (K13 eq 2). The ledger closes with second order in the step s, in every kind of scene that was
-measured. So an error is a sum of causes, each a number times s^2, and the longest step follows. What each causes, of the
+Steps are in units of t0 (Kataoka et al. 2013, K13, eq 2). The ledger closes with second order in the step s, in every kind of
+run that was measured. So an error is a sum of causes, each a number times s^2, and the longest step follows. What each causes, of the
 largest |E(t) - E(0)|/K(0) of a collision (e = F_c delta_c, the scale of a contact's energy; K(0): of all grains together
 in their centre of mass; N: their number):
 
@@ -13,8 +13,8 @@ in their centre of mass; N: their number):
   k = K(0)/(N e) is the relative velocity squared over 8 e/m. For small k this goes with the square of the overlap
   travelled in a step; for large k a contact lasts as long as Hertz's, ~ v^(-1/5), and the step over that time squared
   goes with k^(1/5).
-- Sintered bonds that break. They are events too, of the energy b = pi a^2 gamma of a bond (S17 eq 6) and of its
-  frequency: BREAKING (s/s_b)^2 (1 + 1/x_b)^(1/2) x_b^-DECAY, x_b = K(0)/b, s_b the step at which bonds become unstable.
+- Sintered bonds that break. They are events too, of the energy b = pi a^2 gamma of a bond (Sirono & Ueno 2017, eq 6) and of
+  its frequency: BREAKING (s/s_b)^2 (1 + 1/x_b)^(1/2) x_b^-DECAY, x_b = K(0)/b, s_b the step at which bonds become unstable.
   Few break where the grains' energy is far below a bond's: times k_b^2/(k_b^2 + FEW^2), k_b = K(0)/(N b).
   In BCCA and BPCA aggregates, of two bonds a grain, BREAKING_FLUFFY takes the place of BREAKING.
 
@@ -28,8 +28,8 @@ Grains that nothing damps vibrate on: UNDAMPED times. The work goes with the rol
 of K13, which is ROLLING_OF_ICE e, errors are larger by the ratio to the power of 2/3. The rate, which was 3e-7 to 1e-4 of 1/t0, and the
 number of grains matter little. Dense silicate and springs that are cut leave much larger errors: refused.
 
-The constants are such that 95 % of runs stay below the sum. They were fitted to the 98 % level of grids of scenes and
-judged by random ones (tests/benchmarks/step_choice.py measures and fits, results/step_choice.md has fit and scatter,
+The constants are such that 95 % of runs stay below the sum. They were fitted to the 98 % level of grids of runs and
+judged by runs drawn at random (tests/benchmarks/step_choice.py measures and fits, results/step_choice.md has fit and scatter,
 step_choice.csv and step_choice_compression.csv the data). The typical error is a quarter of it.
 Drag leaves somewhat smaller errors and is left out, but where it limits the step (stability.step_limit).
 """

@@ -1,7 +1,8 @@
 """Run a table to its end, however often it is stopped in between.
 
-    python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, by yade-batch, JOBS threads at once
-    python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell
+    python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, JOBS threads at once
+    python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell and
+                                                     folder; runs nothing, nor a script that the table names
     python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as job arrays of Slurm, JOBS tasks of
                                                      each at once; OPTIONS of sbatch: -- --time=12:00:00
 
@@ -10,7 +11,8 @@ resume from their last checkpoint. Before anything runs, the time it will take i
 ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
 a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
 Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be the name of
-a table in yade_scripts/studies: elastoplastic-desk.
+a table in yade_scripts/studies: elastoplastic-desk. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are
+obeyed, others refused.
 
 With --slurm each row that is left is one task, by the same rules, of as many processors as it has threads. A minute
 before its time limit a task writes its checkpoint and is queued again; rows that are in the queue already are not
@@ -26,20 +28,24 @@ import signal
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from analysis.signals import end_quietly
 
 end_quietly(signal.SIGINT)
+from analysis.printable import printable
 from analysis.runs.write import require_file
 from analysis.version import version_text
+from yade_scripts.parameters.errors import tell
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import rows, slurm, view
-from yade_scripts.runner.batch import LEFT, Batch, StudyBusy, StudyFolder
+from yade_scripts.runner.batch import LEFT, LOGS, Batch, StudyBusy, StudyFolder
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
 
+SCRIPT = os.path.basename(__file__)
 STUDIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "studies")
 POLL = 1.0  # s
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -81,21 +87,33 @@ def find_table(table):
     return own if not os.path.exists(table) and os.path.dirname(table) == "" and os.path.isfile(own) else table
 
 
+def place_of(table):
+    """The folder in which a table has been run: the one that one stands in, or else the nearest above the table."""
+    places = [Path.cwd(), *Path(table).absolute().parents]
+    return next((place for place in places if (place / LOGS / Path(table).stem).is_dir()), places[0])
+
+
 class Study:
     """The rows of a table, their states, and the estimate of what is left."""
 
-    def __init__(self, table, jobs):
+    def __init__(self, table, jobs, run_scripts):
         self.name = os.path.splitext(os.path.basename(table))[0]
-        self.rows, self.jobs = rows.read(table), jobs
+        self.rows, self.jobs = rows.read(table, run_scripts), jobs
         self.folder = StudyFolder(self.name)
         require_file(self.folder.file(LEFT), inputs=[table])
-        self.since = 0.0
+        self._before = {}
         self._final = {}  # states that can't change any more
+
+    def forget_failures(self):
+        """From now on only those that follow count."""
+        self._before = {
+            file: when for row in self.rows for file, when in rows.traces(row, self.folder.log(row)).items()
+        }
 
     def states(self):
         found = []
         for row in self.rows:
-            state = self._final.get(row.name) or rows.state(row, self.folder.log(row), self.since)
+            state = self._final.get(row.name) or rows.state(row, self.folder.log(row), self._before)
             if state.kind == DONE:
                 self._final[row.name] = state
             found.append(state)
@@ -127,7 +145,7 @@ class Study:
         again = sum(state.progress > 0 for state in states if state.kind not in (DONE, FAILED))
         estimate = "unknown" if seconds is None else view.duration_text(seconds)
         print(
-            f'{self.name}: {len(self.rows)} rows, {len(self.rows) - len(left)} done or failed, {len(left)} to run'
+            f'{printable(self.name)}: {len(self.rows)} rows, {len(self.rows) - len(left)} done or failed, {len(left)} to run'
             f'{f", {again} of them from checkpoints" if again else ""}; estimated time {estimate} with '
             f'{self.jobs} at once ({self.folder.basis(self.rows, states)})',
             flush=True,
@@ -139,18 +157,18 @@ def submit(study, at_once, sbatch, dry_run):
     states, queued = study.states_with_queue()
     failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
     for row, state in failures:
-        print(f"study.py: {row.name}: {state.note}; the other rows are submitted", file=sys.stderr, flush=True)
+        tell(f"{row.name}: {state.note}; the other rows are submitted", SCRIPT)
     left = [row for row, state, there in zip(study.rows, states, queued) if state.kind == WAITING and not there]
-    slurm.require_usable(study.folder, left)
+    slurm.require_usable(study.folder)
     if dry_run:
         print("\n".join(slurm.scripts(study.folder, left, at_once, sbatch)), end="")
         return int(bool(failures))
     for job, group in slurm.submit(study.folder, left, at_once, sbatch):
-        print(f"Slurm job {job}: {len(group)} tasks, {rows.threads(group[0])} threads each", flush=True)
+        print(f"Slurm job {job}: {len(group)} tasks, {group[0].threads} threads each", flush=True)
     others = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, FAILED)]
     waiting = sum(state.kind == WAITING for state in states) - len(left)
     print(
-        f'{study.name}: {len(states)} rows, {", ".join(others)}, {waiting} in the queue before, {len(left)} submitted'
+        f'{printable(study.name)}: {len(states)} rows, {", ".join(others)}, {waiting} in the queue before, {len(left)} submitted'
     )
     return int(bool(failures))
 
@@ -178,18 +196,18 @@ def run(study, stop):
 def _run_batch(study, left, screen, stop):
     with Batch(study.folder, left, study.jobs) as batch:
         while batch.running() and not stop.received:
-            _wait(study, screen, stop)
+            _wait(study, screen, stop, batch.running)
         if stop.received:
             screen.close()
             print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
             batch.stop()
 
 
-def _wait(study, screen, stop):
+def _wait(study, screen, stop, busy=lambda: True):
     if screen.shown:
         screen.draw(study.text(view.live_table))
     until = time.monotonic() + POLL
-    while time.monotonic() < until and not stop.received:
+    while time.monotonic() < until and busy() and not stop.received:
         time.sleep(0.1)
 
 
@@ -198,17 +216,13 @@ def close(study, stop):
     states = study.states()
     failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
     for row, state in failures:
-        print(f"study.py: {row.name}: {state.note}", file=sys.stderr)
-    missing = [row.name for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
-    if missing and not stop.received:
-        print(
-            f'study.py: {missing[0]} and {len(missing) - 1} others did not run: see '
-            f'{study.folder.file("yade-batch.out")}',
-            file=sys.stderr,
-        )
+        tell(f"{row.name}: {state.note}", SCRIPT)
+    stopped = [row for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
+    for row in () if stop.received else stopped:
+        tell(f"{row.name}: was stopped; another call resumes it", SCRIPT)
     done = sum(state.kind == DONE for state in states)
     print(
-        f"{study.name}: {len(states)} rows, {done} done, {len(failures)} failed"
+        f"{printable(study.name)}: {len(states)} rows, {done} done, {len(failures)} failed"
         + (f", {len(states) - done - len(failures)} left" if stop.received else "")
     )
     if stop.received:
@@ -218,32 +232,36 @@ def close(study, stop):
 
 def main(arguments):
     options = parse_arguments(arguments)
+    table = find_table(options.table)
+    if options.status and place_of(table) != Path.cwd():
+        place, table = place_of(table), os.path.abspath(table)
+        os.chdir(place)
     try:
-        study = Study(find_table(options.table), options.jobs or os.cpu_count())
+        study = Study(table, options.jobs or os.cpu_count(), run_scripts=not options.status)
         if options.status:
             print(study.text(view.full_table))
             return 0
         if not options.dry_run:
             study.folder.lock()
         if options.slurm:
-            study.since = time.time()
+            study.forget_failures()
             return submit(study, options.jobs, options.sbatch, options.dry_run)
     except (TableError, StudyBusy, slurm.SlurmError) as error:
-        print(f"study.py: {error}", file=sys.stderr)
+        tell(error, SCRIPT)
         return 2
     except OSError as error:
-        print(f"study.py: {error.filename}: {error.strerror}", file=sys.stderr)
+        tell(f"{error.filename}: {error.strerror}", SCRIPT)
         return 2
-    study.since = time.time()
+    study.forget_failures()
     stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup
     for row in study.rows:
         if row.error:
-            print(f"study.py: {row.name}: {row.error}; the other rows are run", file=sys.stderr, flush=True)
+            tell(f"{row.name}: {row.error}; the other rows are run", SCRIPT)
     try:
         study.announce()
         run(study, stop)
-    except OSError as error:  # yade-batch is missing, the disk is full
-        print(f"study.py: {error.filename or study.folder.path}: {error.strerror}", file=sys.stderr)
+    except OSError as error:  # yade is missing, the disk is full
+        tell(f"{error.filename or study.folder.path}: {error.strerror}", SCRIPT)
         return 1
     stop.restore()
     return close(study, stop)

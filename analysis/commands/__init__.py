@@ -2,9 +2,11 @@
 
 import sys
 
+from ..printable import printable
+
 FAILED = 2
 
 
 def complain(message):
     """One line on stderr."""
-    print(f"analysis: {message}", file=sys.stderr, flush=True)
+    print(printable(f"analysis: {message}"), file=sys.stderr, flush=True)

@@ -2,6 +2,7 @@
 
 import argparse
 
+from ..printable import printable
 from . import FAILED, complain
 
 FORMATS = ("vtk", "xyz")
@@ -41,7 +42,7 @@ def run(options):
         folder = open_run(options.run)
         out = Path(options.out) if options.out else folder.path / "export"
         for name in FORMATS if options.format == "all" else (options.format,):
-            print(writers[name](folder, out), flush=True)
+            print(printable(writers[name](folder, out)), flush=True)
     except RunFolderError as error:
         complain(error)
         return FAILED

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..printable import printable
 from . import FAILED, complain
 
 
@@ -37,7 +38,8 @@ def run(options):
 
     try:
         folder = open_run(options.run)
-        print(write_film(folder, Path(options.out) if options.out else folder.path / "film.mp4", options.rate))
+        file = Path(options.out) if options.out else folder.path / "film.mp4"
+        print(printable(write_film(folder, file, options.rate)))
     except (RunFolderError, NoFilm) as error:
         complain(error)
         return FAILED

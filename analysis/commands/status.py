@@ -3,6 +3,7 @@
 import json
 from dataclasses import asdict
 
+from ..printable import printable
 from . import FAILED as EXIT_FAILED
 from . import complain
 
@@ -42,9 +43,9 @@ def run(options):
     if options.json:
         print(json.dumps([{"run": name, **asdict(s)} for name, s in zip(names, states, strict=True)], indent=1))
     elif states:
-        width = max(map(len, names))
+        width = max(len(printable(name)) for name in names)
         for name, of_run in zip(names, states, strict=True):
-            print(line(name.ljust(width), of_run, of_run.left))
+            print(line(printable(name).ljust(width), of_run, of_run.left))
         print(_total(states))
     for problem in problems:
         complain(problem)

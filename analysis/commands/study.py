@@ -6,6 +6,7 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
+from ..printable import printable, printable_lines, shell_line
 from . import FAILED, complain
 
 FORMATS = {"text": "text", "markdown": "markdown", "json": "json", "csv": "csv"}
@@ -89,9 +90,10 @@ def run(options):
     except (NoSuchStudy, PaperError, RunFolderError) as error:
         complain(error)
         return FAILED
-    print(getattr(analysis, FORMATS[options.format])().rstrip("\n"))
+    text = getattr(analysis, FORMATS[options.format])().rstrip("\n")
+    print(text if options.format == "csv" else printable_lines(text))
     if written and options.format == "text":
-        print(f"written: {written}")
+        print(printable(f"written: {written}"))
     return FAILED if analysis.found.problems else 0
 
 
@@ -153,7 +155,7 @@ def _commands(options):
         path if not os.path.isabs(path) else os.path.basename(os.path.normpath(path))
         for path in (options.name, *options.runs)
     )
-    yield f"python3 -m analysis study {' '.join(words)} --figures FOLDER --page FILE.html"
+    yield f"python3 -m analysis study {shell_line(words)} --figures FOLDER --page FILE.html"
 
 
 def _list():

@@ -1,5 +1,7 @@
 """Common look of the figures: sizes, fonts, one colour for each aggregate (those of the channels: runs.format)."""
 
+import io
+
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -32,9 +34,18 @@ def styled(make):
     return figure_of
 
 
+class _Shown(Figure):
+    """A Figure that a notebook shows without pyplot."""
+
+    def _repr_png_(self):
+        content = io.BytesIO()
+        self.savefig(content, format="png", dpi=100)
+        return content.getvalue()
+
+
 def new_figure(width, height, **options):
     """Figure [inches] that draws through Agg, without pyplot's global state."""
-    figure = Figure(figsize=(width, height), **options)
+    figure = _Shown(figsize=(width, height), **options)
     FigureCanvasAgg(figure)
     return figure
 

@@ -1,5 +1,5 @@
-"""Compression of two colliding aggregates: compression length d, mutual velocity v, and their maximum (A24
-eqs 10-13).
+"""Compression of two colliding aggregates: compression length d, mutual velocity v, and their maximum
+(Arakawa et al. 2024, A24, eqs 10-13).
 
 As defined, v = +dd/dt (positive while the aggregates approach), but only between crossings: d jumps a little
 whenever a grain passes through x = 0, because the averages over x > 0 and x < 0 then change their members.
@@ -67,7 +67,12 @@ def maximum_compression(time, d, v):
     of the difference from the parabola through the three samples, and of the amount by which d and v disagree
     over the two intervals (d jumps when a grain crosses x = 0). time_error: the largest of the difference
     from the parabola's vertex and from the nearest time where v falls through zero. Returns Maximum;
-    ValueError for unequal shapes."""
+    ValueError for unequal shapes.
+
+    >>> top = maximum_compression([0.0, 1.0, 2.0], [0.0, 1.0, 0.0], [2.0, 0.0, -2.0])
+    >>> top.length, top.time, top.inside
+    (1.0, 1.0, True)
+    """
     time, d, v = (np.asarray(a, dtype=float) for a in (time, d, v))
     if not (time.ndim == 1 and time.shape == d.shape == v.shape and time.size):
         raise ValueError(

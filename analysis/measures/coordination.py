@@ -14,7 +14,11 @@ def mean_coordination(grains, contact_pairs):
 
 def inner_coordination(position, contact_pairs, centre, reach):
     """Mean number of contacts of the grains whose centre, position (N,3), lies nearer than `reach` to `centre` (3,), or
-    (N,3) with one for each grain; all in one unit, contact_pairs (M,2). NaN if there is no such grain."""
+    (N,3) with one for each grain; all in one unit, contact_pairs (M,2). NaN if there is no such grain.
+
+    >>> inner_coordination([[0.0, 0, 0], [2, 0, 0], [4, 0, 0]], [[0, 1], [1, 2]], [2.0, 0, 0], 1.0)
+    2.0
+    """
     position = np.asarray(position, dtype=float)
     contacts = np.bincount(np.asarray(contact_pairs, dtype=np.intp).ravel(), minlength=len(position))
     place = position - centre

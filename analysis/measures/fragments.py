@@ -1,4 +1,4 @@
-"""Fragments: grains connected by contacts, and what became of two aggregates' mass."""
+"""Fragments: grains connected by contacts, and what became of two aggregates' mass. A22: Arakawa et al. (2022)."""
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
@@ -21,12 +21,20 @@ def fragment_labels(grains, contact_pairs):
 
 
 def fragment_sizes(labels):
-    """Number of grains (K,) int of each fragment, for labels (N,) as fragment_labels returns them."""
+    """Number of grains (K,) int of each fragment, for labels (N,) as fragment_labels returns them.
+
+    >>> fragment_sizes([1, 0, 0]).tolist()
+    [2, 1]
+    """
     return np.bincount(labels)
 
 
 def fragment_masses(labels, mass):
-    """Mass (K,) of each fragment, for labels (N,) and grain masses (N,) in any unit."""
+    """Mass (K,) of each fragment, for labels (N,) and grain masses (N,) in any unit.
+
+    >>> fragment_masses([1, 0, 0], [8.0, 1.0, 2.0]).tolist()
+    [3.0, 8.0]
+    """
     return np.bincount(labels, weights=mass)
 
 

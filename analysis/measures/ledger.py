@@ -8,7 +8,12 @@ from ..runs.format import CHANNELS
 
 
 def total_energy(history):
-    """Sum of all channels (T,) [J], work on boundaries and constraints included: constant for an exact ledger."""
+    """Sum of all channels (T,) [J], work on boundaries and constraints included: constant for an exact ledger.
+
+    >>> history = {**dict.fromkeys(CHANNELS, np.zeros(2)), "kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])}
+    >>> total_energy(history).tolist()
+    [4.0, 3.0]
+    """
     return np.sum([history[name] for name in CHANNELS], axis=0)
 
 
@@ -25,7 +30,11 @@ def closure_history(history):
 
 
 def closure(history):
-    """max over t of |E(t) - E(0)|/K(0); None where K(0) = 0."""
+    """max over t of |E(t) - E(0)|/K(0); None where K(0) = 0.
+
+    >>> closure({**dict.fromkeys(CHANNELS, np.zeros(2)), "kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])})
+    0.25
+    """
     error = closure_history(history)
     return None if error is None else float(np.abs(error).max())
 
@@ -52,6 +61,11 @@ def fractions(history):
 
 
 def fractions_at(history, time):
-    """fractions(history) at one time [s], linear between samples, by name: floats. None where K(0) = 0."""
+    """fractions(history) at one time [s], linear between samples, by name: floats. None where K(0) = 0.
+
+    >>> times = {"time": np.array([0.0, 1.0]), "kinetic": np.array([4.0, 1.0])}
+    >>> fractions_at({**dict.fromkeys(CHANNELS, np.zeros(2)), **times}, 1.0)["kinetic"]
+    0.25
+    """
     parts = fractions(history)
     return None if parts is None else {c: float(np.interp(time, history["time"], part)) for c, part in parts.items()}

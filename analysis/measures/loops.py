@@ -1,4 +1,4 @@
-"""Loops of a packing: how many there are, and which grains belong to one (S17 section 5.4)."""
+"""Loops of a packing: how many there are, and which grains belong to one (Sirono & Ueno 2017, section 5.4)."""
 
 import numpy as np
 

@@ -46,10 +46,9 @@ def outcome_of_run(run):
     return found.if_decided(why_undecided(found.kind, counted, recent, run.derived, touch))
 
 
-def derived_constants(run, names):
-    """{column: float} of a RunFolder's derived constants, names: {column: name in run.json}; RunFolderError where one is
-    missing or no number."""
+def derived_constants(run, *names):
+    """[float] of a RunFolder's derived constants of these names; RunFolderError where one is missing or no number."""
     try:
-        return {column: float(run.derived[name]) for column, name in names.items()}
+        return [float(run.derived[name]) for name in names]
     except (KeyError, TypeError, ValueError) as error:
         raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None

@@ -1,4 +1,4 @@
-"""Velocities at which neighbouring grains approach each other (A22 section 5.1)."""
+"""Velocities at which neighbouring grains approach each other (Arakawa et al. 2022, A22, section 5.1)."""
 
 import numpy as np
 from scipy.spatial import cKDTree

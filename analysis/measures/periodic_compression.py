@@ -1,4 +1,4 @@
-"""A compression in a periodic cell (K13) from its history: pressure and tension, and when a filling factor is reached. SI units.
+"""A compression in a periodic cell (Kataoka et al. 2013, K13) from its history: pressure and tension, and when a filling factor is reached. SI units.
 
 The pressure is the work of the grains on the boundaries over the change of volume. Between two samples that is the mean of the virial's
 pressure (K13 eq 21, damping forces included) over all steps between them, as K13 averages; the virial's own series is of the moment of

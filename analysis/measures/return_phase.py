@@ -1,5 +1,5 @@
 """The return phase of a collision: from the largest compression on, the halves part, until tension slows them down again
-(A24 section 5.3, where v reaches its minimum at about 344 ns)."""
+(Arakawa et al. 2024, A24, section 5.3, where v reaches its minimum at about 344 ns)."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Pressure and stress of a periodic cell by the virial theorem (K13 eqs 13-21), from plain arrays in SI units.
+"""Pressure and stress of a periodic cell by the virial theorem (Kataoka et al. 2013, K13, eqs 13-21), from plain arrays in SI units.
 
 N grains at position (N,3), anywhere: the cell with edges cell_size (3,) is around the origin, and two grains meet as
 their nearest images. M contacts: pairs (M,2) of rows. Pressures are positive where the grains push outwards."""

@@ -2,6 +2,7 @@
 
 from tqdm import tqdm
 
+from ..printable import printable
 from ..runs.status import DONE, FAILED, KINDS, RUNNING
 
 WIDTH = 20  # of a bar
@@ -23,12 +24,11 @@ def counts(states):
 
 def line(name, state, left=None):
     """One run: its state, name, bar, time left [s] (None: unknown) and note."""
-    text = f"  {state.kind:8s} {name:24s}"
+    text, note = f"  {state.kind:8s} {printable(name):24s}", printable(state.note)
     if state.kind == FAILED:
-        return f"{text} {state.note}"
+        return f"{text} {note}"
     if state.kind == DONE:
         return f"{text} {duration_text(state.seconds or 0):>8s}"
     filled = int(WIDTH * state.progress)
     bar = f' [{"#" * filled}{"." * (WIDTH - filled)}] {100 * state.progress:5.1f} %' if state.kind == RUNNING else ""
-    note = f"  {state.note}" if state.note else ""
-    return text + bar + ("" if left is None else f" {duration_text(left):>8s} left") + note
+    return text + bar + ("" if left is None else f" {duration_text(left):>8s} left") + (f"  {note}" if note else "")

@@ -5,47 +5,45 @@ import textwrap
 from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure
 from ..measures.of_run import maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
-from ..runs.format import CHANNELS, COLLISION, COMPRESSION, LABELS
+from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, LABELS
+from ..runs.shown import WIDTH, settings
+from ..runs.table import Column
 
-_PARAMETERS = (
-    ("packing", ""),
-    ("filling", ""),
-    ("radius", "r"),
-    ("grains", "per aggregate"),
-    ("velocity", "m/s"),
-    ("impact", ""),
-    ("material", ""),
-    ("viscoelasticTime", "s"),
-    ("neck", ""),
-    ("seed", ""),
+# Of a collision, named as measures.compression.Maximum and measures.outcome.Outcome have them.
+COMPRESSION_KEYS = (
+    Column("d_max", "m", "largest compression length (A24 eqs 10, 11)", gaps=True),
+    Column("d_max_error", "m", "its error", gaps=True),
+    Column("t_max", "s", "its time", gaps=True),
+    Column("t_max_error", "s", "its error", gaps=True),
+    Column("maximum_inside", "", "False: d_max is only a bound, at an end of the record", "O", gaps=True),
 )
-
-# {key: attribute of measures.outcome.Outcome}
-OUTCOME = {
-    "restitution": "restitution",
-    "outcome": "kind",
-    "mass_fractions": "mass_fractions",
-    "largest_fragment": "largest_fragment",
-    "fragments": "fragments",
-    "growth_efficiency": "growth_efficiency",
-}
+OUTCOME_KEYS = (
+    Column("restitution", "1", "coefficient of restitution, where there is one (measures.outcome)", gaps=True),
+    Column("outcome", "", "sticking, bouncing, fragmentation, never met, undecided (measures.outcome)", "O", gaps=True),
+    Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O", gaps=True),
+    Column("largest_fragment", "", "number of grains of the largest piece", gaps=True),
+    Column("fragments", "", "number of pieces", gaps=True),
+    Column("growth_efficiency", "1", "(N_largest - N_target)/N_projectile (A22 eq 28)", gaps=True),
+)
+ENERGY_KEYS = (
+    Column(
+        "energy_closure", "1", "max |E(t) - E(0)|/K(0); of a compression over the boundaries' largest work", gaps=True
+    ),
+    Column("initial_kinetic_energy", "J", "K(0)"),
+    *(Column(channel.name, "J", f"{channel.label}, at the end") for channel in CHANNEL_TABLE),
+)
 
 
 def summarise(run):
-    """Numbers of a RunFolder as a dict, SI units, None where a value does not exist:
-
-    run (path), ended, time (of the last sample), d_max, d_max_error, t_max, t_max_error, maximum_inside
-    (False: d_max is only a bound, see compression.Maximum), restitution (None where there is none, see
-    measures.outcome), outcome, mass_fractions, largest_fragment [grains], fragments, growth_efficiency (A22 eq 28),
-    energy_closure (max |E(t) - E(0)|/K(0); of a compression over the largest work of the boundaries), initial_kinetic_energy, and the final value of every channel [J] under
-    its name. What only collisions have is None for other kinds of run. RunFolderError when a state is missing or
-    damaged."""
+    """Numbers of a RunFolder as a dict, SI units, None where a value does not exist: run (path), ended, time (of the last
+    sample), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions) and ENERGY_KEYS. RunFolderError when a
+    state is missing or damaged."""
     history = run.history
     collision = run.kind is COLLISION
     maximum = maximum_of_run(run) if collision else None
     numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
     numbers.update(_compression(maximum))
-    numbers.update(_outcome(run) if collision else dict.fromkeys(OUTCOME))
+    numbers.update(_outcome(run) if collision else dict.fromkeys(_names(OUTCOME_KEYS)))
     numbers["energy_closure"] = (work_closure if run.kind is COMPRESSION else closure)(history)
     numbers["initial_kinetic_energy"] = initial_kinetic_energy(history)
     numbers.update(final_values(history))
@@ -53,24 +51,28 @@ def summarise(run):
 
 
 def _compression(maximum):
-    keys = ("d_max", "d_max_error", "t_max", "t_max_error", "maximum_inside")
     if maximum is None:
-        return dict.fromkeys(keys)
+        return dict.fromkeys(_names(COMPRESSION_KEYS))
     values = [float(x) for x in (maximum.length, maximum.length_error, maximum.time, maximum.time_error)]
     if not maximum.inside:
         values[1] = values[3] = None
-    return dict(zip(keys, values + [maximum.inside]))
+    return dict(zip(_names(COMPRESSION_KEYS), values + [maximum.inside]))
 
 
 def _outcome(run):
     outcome = outcome_of_run(run)
-    numbers = {name: getattr(outcome, attribute) for name, attribute in OUTCOME.items()}
+    numbers = {name: getattr(outcome, "kind" if name == "outcome" else name) for name in _names(OUTCOME_KEYS)}
     return {**numbers, "mass_fractions": list(outcome.mass_fractions)}
+
+
+def _names(columns):
+    return [column.name for column in columns]
 
 
 def table(run, numbers):
     """Readable table (str, several lines) of a RunFolder and its summarise() dict."""
-    rows = [f"run {run.path} ({_progress(run, numbers)})", _settings(run.parameters)]
+    given = textwrap.fill(settings(run.parameters), WIDTH, initial_indent="  ", subsequent_indent="  ")
+    rows = [f"run {run.path} ({_progress(run, numbers)})", given]
     rows += [f"  {name:<20} {value}" for name, value in _measures(run, numbers)]
     return "\n".join(row for row in rows if row) + "\n\n" + _channel_table(run, numbers)
 
@@ -80,18 +82,6 @@ def _progress(run, numbers):
     if run.ended:
         return f"ended, {reached}"
     return f"NOT ENDED: analysed as far as it went, {reached}"
-
-
-def _settings(parameters):
-    given = []
-    for name, unit in _PARAMETERS:
-        if parameters.get(name) not in (None, ""):
-            given.append(f"{name} {_short(parameters[name])} {unit}".rstrip())
-    return textwrap.fill(", ".join(given), 100, initial_indent="  ", subsequent_indent="  ")
-
-
-def _short(value):
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _measures(run, numbers):

@@ -3,11 +3,13 @@
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
 import io
+import math
 import os
 import tokenize
 import zipfile
 import zlib
 from contextlib import contextmanager
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,11 +27,23 @@ UNREADABLE = (
     AttributeError,
     RuntimeError,
     MemoryError,
+    OverflowError,
     SyntaxError,
     tokenize.TokenError,
     zipfile.BadZipFile,
     zlib.error,
 )
+
+
+LARGEST = 1e100  # of a value in SI units: squares and sums of what a run can hold are finite
+MOST_UNPACKED, UNPACKING = 2**26, 20  # bytes that any file may hold, and times its own size: what we write is not even compressed
+
+
+class Header(NamedTuple):
+    """What an array is like, before it is read."""
+
+    shape: tuple
+    dtype: np.dtype
 
 
 class RunFolderError(Exception):
@@ -49,20 +63,43 @@ def array_names(file):
         return list(archive.files)
 
 
-def read_arrays(file, names, optional=()):
+def read_arrays(file, names, optional=(), require=lambda headers: None):
     """The named arrays of an .npz file by name, read-only; those of `optional` where the file has them.
 
-    RunFolderError when the file or an array is missing or damaged, or an array does not hold numbers."""
+    require({name: Header}): called before any array is read. RunFolderError when the file or an array is missing or damaged, or
+    an array does not hold numbers."""
     with _opened(file) as archive:
         absent = [name for name in names if name not in archive.files]
         if absent:
             raise RunFolderError(f"{file}: lacks the array " + ", ".join(f"'{name}'" for name in absent))
-        arrays = {name: archive[name] for name in (*names, *optional) if name in archive.files}
-    for name, array in arrays.items():
-        if array.dtype.kind not in "biuf":
-            raise RunFolderError(f"{file}: '{name}' must hold numbers, it holds {array.dtype}")
+        headers = read_headers(file, archive, [name for name in (*names, *optional) if name in archive.files])
+        for name, header in headers.items():
+            if header.dtype.kind not in "biuf":
+                raise RunFolderError(f"{file}: '{name}' must hold numbers, it holds {header.dtype}")
+        require(headers)
+        arrays = {name: archive[name] for name in headers}
+    for array in arrays.values():
         array.flags.writeable = False
     return arrays
+
+
+def read_headers(file, archive, names):
+    """{name: Header} of arrays in an open .npz file (what np.load gives); nothing of them is unpacked.
+
+    RunFolderError where one is not as long as its header says, or they are far larger than the file; one of UNREADABLE where a header
+    is damaged."""
+    headers, unpacked = {}, 0
+    for name in names:
+        with archive.zip.open(f"{name}.npy") as member:
+            read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+            shape, _, dtype = read[np.lib.format.read_magic(member)](member)
+            length, expected = archive.zip.getinfo(f"{name}.npy").file_size - member.tell(), math.prod(shape) * dtype.itemsize
+        if length != expected:
+            raise RunFolderError(f"{file}: damaged: '{name}' has {length} bytes, by its header {expected:.6g}")
+        headers[name], unpacked = Header(shape, dtype), unpacked + length
+    if unpacked > max(MOST_UNPACKED, UNPACKING * os.path.getsize(file)):
+        raise RunFolderError(f"{file}: {unpacked:.3g} bytes when unpacked; must be at most {UNPACKING} times as large as the file")
+    return headers
 
 
 def require_regular(file):
@@ -91,14 +128,19 @@ def _opened(file):
 def read_quantities(file, quantities, file_format):
     """The arrays of the quantities (runs.format.Quantity) by name, checked: shape, type, finite unless it may have
     gaps. Zeros stand for those that the folder's format did not have yet; optional ones may be left out."""
-    expected = [q for q in quantities if q.since <= file_format]
-    arrays = read_arrays(
-        file, [q.name for q in expected if not q.optional], [q.name for q in expected if q.optional]
-    )
-    sizes = _sizes(expected, arrays)
+    expected, sizes = [q for q in quantities if q.since <= file_format], {}
+
+    def require(headers):
+        sizes.update(_sizes(expected, headers))
+        for quantity in expected:
+            if quantity.name in headers:
+                _check_header(file, quantity, headers[quantity.name], sizes)
+
+    names = [[q.name for q in expected if q.optional == optional] for optional in (False, True)]
+    arrays = read_arrays(file, *names, require)
     for quantity in expected:
         if quantity.name in arrays:
-            _check(file, quantity, arrays[quantity.name], sizes)
+            require_values(file, quantity, arrays[quantity.name])
     for quantity in quantities:
         if quantity.since > file_format and not quantity.optional:
             arrays[quantity.name] = np.zeros([sizes.get(n, n) for n in quantity.shape])
@@ -106,27 +148,35 @@ def read_quantities(file, quantities, file_format):
     return arrays
 
 
-def _sizes(quantities, arrays):
+def _sizes(quantities, headers):
     """{letter: size}, from the first array that has no other axis."""
     sizes = {}
     for quantity in quantities:
-        if quantity.name in arrays and len(quantity.shape) == 1 and isinstance(quantity.shape[0], str):
-            sizes.setdefault(quantity.shape[0], arrays[quantity.name].size)
+        if quantity.name in headers and len(quantity.shape) == 1 and isinstance(quantity.shape[0], str):
+            sizes.setdefault(quantity.shape[0], math.prod(headers[quantity.name].shape))
     return sizes
 
 
-def _check(file, quantity, array, sizes):
+def _check_header(file, quantity, header, sizes):
     name, shape = quantity.name, tuple(sizes.get(n, n) for n in quantity.shape)
-    if not shape and array.size != 1:
-        raise RunFolderError(f"{file}: '{name}' must be one number, its shape is {array.shape}")
-    if shape and array.shape != shape:
-        raise RunFolderError(f"{file}: '{name}' has the shape {array.shape}, expected {shape}")
+    if not shape and math.prod(header.shape) != 1:
+        raise RunFolderError(f"{file}: '{name}' must be one number, its shape is {header.shape}")
+    if shape and header.shape != shape:
+        raise RunFolderError(f"{file}: '{name}' has the shape {header.shape}, expected {shape}")
     kinds, words = _TYPES[quantity.kind]
-    if array.dtype.kind not in kinds:
-        raise RunFolderError(f"{file}: '{name}' must be {words}, it is {array.dtype}")
-    if not quantity.gaps and not np.all(np.isfinite(array)):
-        where = f", first at index {int(np.argmin(np.isfinite(array)))}" if array.ndim == 1 else ""
-        raise RunFolderError(f"{file}: '{name}' holds a value that is not finite{where}")
+    if header.dtype.kind not in kinds:
+        raise RunFolderError(f"{file}: '{name}' must be {words}, it is {header.dtype}")
+
+
+def require_values(file, quantity, array):
+    """Raise RunFolderError unless the values of a quantity's array are what they may be."""
+    name, sound = quantity.name, np.abs(array) < LARGEST
+    if quantity.gaps:
+        sound |= np.isnan(array)
+    if not np.all(sound):
+        where = f", first at index {int(np.argmin(sound))}" if array.ndim == 1 else ""
+        what = f"beyond {LARGEST:g}" if np.isfinite(array[~sound]).all() else "not finite"
+        raise RunFolderError(f"{file}: '{name}' holds a value that is {what}{where}")
     if quantity.positive and not np.all(array > 0):
         at = int(np.argmin(np.asarray(array) > 0))
         raise RunFolderError(f"{file}: '{name}' is {array[at]:g} at index {at}; must be > 0")

@@ -1,6 +1,8 @@
 """From the paths of a command line to run folders, tables of runs, and what is wrong with the others."""
 
+import os
 from dataclasses import dataclass
+from glob import glob, has_magic
 from pathlib import Path
 
 from .arrays import RunFolderError
@@ -88,19 +90,32 @@ def _folders(paths):
 
 
 def run_folders(paths):
-    """(Path of a run folder, None) or (None, what is wrong) for every path: the path itself, or folders at most LEVELS
-    below it."""
-    for path in map(Path, paths):
-        if (path / RUN_FILE).exists():
-            yield path, None
-            continue
-        if not path.is_dir():
-            yield None, f"{path}: " + ("is not a folder" if path.exists() else "no such folder")
-            continue
-        found = []
-        for level in range(1, LEVELS + 1):
-            found += [file.parent for file in path.glob("*/" * level + RUN_FILE)]
-        if not found:
-            yield None, f"{path}: no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below"
-        for folder in sorted(found):
-            yield folder, None
+    """[(Path of a run folder, None) or (None, what is wrong)] of every path: the path itself, or folders at most LEVELS below
+    it; of a pattern ("runs/**") the same of all folders that it matches. Each folder comes once. Of several paths (runs/*) some
+    may hold no runs (runs/logs)."""
+    found, seen, empty = [], set(), []
+    for path in paths:
+        pattern = has_magic(str(path)) and not os.path.exists(path)
+        places = filter(Path.is_dir, map(Path, glob(str(path), recursive=True))) if pattern else [Path(path)]
+        folders = [folder for place in sorted(places) for folder in _inside(place)]
+        new = [folder for folder in dict.fromkeys(folders) if folder.resolve() not in seen]
+        seen.update(folder.resolve() for folder in folders)
+        found += [(folder, None) for folder in new]
+        if not folders and os.path.exists(path):
+            empty.append((None, f"{path}: {_nothing(Path(path))}"))
+        elif not folders:
+            found.append((None, f"{path}: " + ("no run folder matches" if pattern else "no such folder")))
+    return found or empty
+
+
+def _inside(path):
+    """Run folders at a path: itself, or those below it, sorted."""
+    if (path / RUN_FILE).exists():
+        return [path]
+    return sorted(file.parent for level in range(1, LEVELS + 1) for file in path.glob("*/" * level + RUN_FILE))
+
+
+def _nothing(path):
+    if not path.is_dir():
+        return "is not a folder"
+    return f"no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below"

@@ -8,12 +8,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Mapping
 
 import numpy as np
 
-from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_regular
+from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_regular, require_values
 from .format import (
     COLLISION,
     ENDED_FILE,
@@ -27,13 +26,16 @@ from .format import (
     Quantity,
     RunKind,
 )
+from .named import Named, protect, unknown
 
 _STATE_NAME = re.compile(r"\d{6}\.npz")
 
 
 class State:
     """The grains at one time: an attribute for each quantity of runs.format.STATE, and of the kind of run; `time` is a
-    float [s], an optional one that the run does not have is None. The arrays are read-only."""
+    float [s], an optional one that the run does not have is None. The arrays are read-only.
+
+    fragments() has a row for each piece."""
 
     def __init__(self, time, **arrays):
         optional = {quantity.name: None for quantity in STATE if quantity.optional}
@@ -41,6 +43,26 @@ class State:
 
     def __setattr__(self, name, value):
         raise AttributeError(f"a state cannot be changed ({name})")
+
+    def __getattr__(self, name):
+        if name.startswith("_"):  # what copying and notebooks ask every object for
+            raise AttributeError(name)
+        raise unknown("state", name, vars(self))
+
+    def __setstate__(self, values):
+        self.__dict__.update(values)
+        protect(values)
+
+    def __repr__(self):
+        from .shown import state_text
+
+        return state_text(self)
+
+    def fragments(self):
+        """DataFrame with a row for each piece (grains joined by contacts), the largest first: measures.pieces.fragments."""
+        from ..measures.pieces import fragments
+
+        return fragments(self.position, self.radius, self.contact_pairs, self.aggregate, self.cell_size)
 
 
 class StateSequence(Sequence):
@@ -59,6 +81,9 @@ class StateSequence(Sequence):
             return StateSequence(self.files[index], self.kind, self.file_format)
         return read_state(self.files[index], self.kind, self.file_format)
 
+    def __repr__(self):
+        return f"{len(self)} states of a {self.kind.name}"
+
     @property
     def times(self):
         """Time [s] (number of states,) of every state, read without the grains."""
@@ -74,11 +99,14 @@ class StateSequence(Sequence):
         return int(np.argmin(np.abs(self.times - time)))
 
     def arrays(self, index, names):
-        """Some arrays of a state by name, without reading the others (unchecked but for being there)."""
-        return read_arrays(self.files[index], names)
+        """Some arrays of a state by name, without reading the others; their values are checked, not their shapes."""
+        arrays = read_arrays(self.files[index], names)
+        for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
+            require_values(self.files[index], quantity, arrays[quantity.name])
+        return arrays
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RunFolder:
     """One run: path, kind (runs.format.RunKind), parameters (as in the run's table), derived (constants, SI), record
     (all of run.json), history (arrays (T,) by name, as listed in kind.history), states, ended (came to its planned
@@ -92,6 +120,16 @@ class RunFolder:
     history: Mapping
     states: StateSequence
     ended: bool
+
+    def __repr__(self):
+        from .shown import run_text
+
+        return run_text(self)
+
+    def _repr_html_(self):
+        from .shown import run_html
+
+        return run_html(self)
 
     @property
     def start(self):
@@ -127,10 +165,10 @@ def open_run(path):
     return RunFolder(
         path=path,
         kind=kind,
-        parameters=MappingProxyType(record["parameters"]),
-        derived=MappingProxyType(record["derived"]),
-        record=MappingProxyType(record),
-        history=MappingProxyType(_read_history(history, kind, file_format)),
+        parameters=Named(f"parameters of {path}", record["parameters"]),
+        derived=Named(f"derived constants of {path}", record["derived"]),
+        record=Named(f"{path / RUN_FILE}", record),
+        history=Named(f"history of {path}", _read_history(history, kind, file_format)),
         states=StateSequence(_state_files(path / STATES_FOLDER), kind, file_format),
         ended=(path / ENDED_FILE).is_file(),
     )

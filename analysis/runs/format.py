@@ -165,3 +165,36 @@ RUN_KINDS = {kind.name: kind for kind in (COLLISION, COMPRESSION)}
 
 # Derived constants of run.json that every analysis may divide by.
 POSITIVE_CONSTANTS = ("grainRadius", "pullOffForce")
+
+# Units of the parameters in run.json ("1": a ratio) that aren't numbers of things or words; those of scripts of one's own are
+# theirs. A test compares the list with the scripts' own.
+PARAMETER_UNITS = {
+    "velocity": "m/s",
+    "impact": "1",
+    "neck": "1",
+    "duration": "s",
+    "impactStepFraction": "t0",
+    "filling": "1",
+    "radius": "grain radii",
+    "sizeRatio": "1",
+    "sizeFraction": "1",
+    "sizeSpread": "1",
+    "initialOverlap": "of that at rest",
+    "grainRadius": "m",
+    "young": "Pa",
+    "poisson": "1",
+    "density": "kg/m^3",
+    "surfaceEnergy": "J/m^2",
+    "criticalRolling": "m",
+    "viscoelasticTime": "s",
+    "stepFraction": "t0",
+    "tolerance": "1",
+    "slidingStiffnessFactor": "1",
+    "checkpointInterval": "s",
+    "strainRate": "1/t0",
+    "linearDamping": "1",
+    "initialFilling": "1",
+    "finalFilling": "1",
+    "finalPressure": "Pa",
+    "stretchFilling": "1",
+}

@@ -47,6 +47,18 @@ def make_table(measured):
     return pandas.DataFrame(rows)
 
 
+def columns_text(columns):
+    """'name [unit]: meaning', a line a column."""
+    return "\n".join(f"{c.name}{f' [{c.unit}]' if c.unit else ''}: {c.meaning}" for c in columns)
+
+
+def described(table, columns):
+    """The DataFrame with the units and meanings of its columns in .attrs["units"] and .attrs["meanings"], {name: text}."""
+    table.attrs["units"] = {column.name: column.unit for column in columns}
+    table.attrs["meanings"] = {column.name: column.meaning for column in columns}
+    return table
+
+
 def run_folder(row):
     """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where the folder
     is damaged."""
@@ -58,7 +70,7 @@ def run_folder(row):
 def table_text(table, columns, head):
     """The CSV file (str) of a table; head: a dict that JSON can hold."""
     lines = [json.dumps(head, allow_nan=False)]
-    lines += [f"{c.name}{f' [{c.unit}]' if c.unit else ''}: {c.meaning}" for c in columns]
+    lines += columns_text(columns).splitlines()
     out = io.StringIO()
     out.writelines(f"# {line}\n" for line in lines)
     names = [RUN, *(column.name for column in columns)]

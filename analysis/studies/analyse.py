@@ -5,11 +5,10 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import pandas
-
 from ..progress import progress
 from ..runs.table import NoRunFolder, table_text
 from ..runs.write import replacing, write_text
+from .columns import CLOSURE
 from .definition import GALLERY, SNAPSHOTS, Results, Study
 from .find import figures
 from .gather import Gathered, gather
@@ -17,6 +16,7 @@ from .html import html_page
 from .page import DETAILS_FILE, PAGE_FILE, details, screen
 from .paper import Page, PaperError, read_paper
 from .predictions import predictions
+from .runs import keyed
 from .tables import quantity_table, tests_table, text_table
 from .verdict import judge
 
@@ -24,7 +24,7 @@ TABLE_FILE, DATA_FILE = "runs.csv", "comparison.json"
 
 
 class NothingToAnalyse(Exception):
-    """No run of the study's scene was found; `found` says what was."""
+    """No run that belongs to the study was found; `found` says what was."""
 
     def __init__(self, study, found):
         super().__init__(f"no run of {study.scene.name} to analyse")
@@ -34,7 +34,7 @@ class NothingToAnalyse(Exception):
 @dataclass(frozen=True)
 class Analysis:
     """A study's results of a set of runs: found (gather.Gathered), results (definition.Results), words (paper.Page), judgements
-    ([verdict.Judgement] of the paper's claims), predictions ([predictions.Prediction])."""
+    ([verdict.Judgement] of the paper's claims), predictions ([dict], as predictions.py has them)."""
 
     study: Study
     found: Gathered
@@ -44,9 +44,10 @@ class Analysis:
     predictions: list
 
     @property
-    def remarks(self):
-        """Lines that say what could not be done, and why."""
-        return tuple(self.study.remarks(self.results))
+    def closures(self):
+        """How well the runs' energy ledgers close (lines, str)."""
+        columns = [column for column in self.study.columns if column.name == CLOSURE.columns[0].name]
+        return [f"{column.meaning}: {self.found.table[column.name].max():.2g} at most" for column in columns]
 
     @property
     def notes(self):
@@ -54,7 +55,7 @@ class Analysis:
         found = self.found
         lines = list(found.earlier)
         if found.notes:
-            lines.append(f"{len(found.notes)} runs left out (not ended, of another scene, or with nothing to measure)")
+            lines.append(f"{len(found.notes)} runs left out (not ended, not of this study, or with nothing to measure)")
         if found.problems:
             lines.append(f"{len(found.problems)} runs not readable")
         return lines
@@ -63,10 +64,6 @@ class Analysis:
     def listed(self):
         """Quantities that the details have tables of."""
         return [quantity for quantity in self.results.quantities.values() if quantity.listed]
-
-    def predictions_table(self):
-        """DataFrame of text of the predictions."""
-        return pandas.DataFrame([vars(p) for p in self.predictions]).rename(columns={"held": "held?"})
 
     def csv(self):
         """The table of runs as a file (str)."""
@@ -77,11 +74,10 @@ class Analysis:
         """For a terminal (str): every quantity, then the paper's numbers."""
         parts = []
         for quantity in self.listed:
-            unit = f" [{quantity.unit}]" if quantity.unit else ""
-            parts += [f"{quantity.name}{unit}: {quantity.meaning}", text_table(quantity_table(quantity))]
+            parts += [f"{quantity.name}{quantity.in_unit}: {quantity.meaning}", text_table(quantity_table(quantity))]
         if self.judgements:
             parts += [f"beside {self.words.paper}", text_table(tests_table(self.judgements))]
-        return "\n".join((*parts, *self.remarks))
+        return "\n".join((*parts, *self.closures))
 
     def markdown(self):
         """Both pages (str), without figures."""
@@ -94,7 +90,7 @@ class Analysis:
             "provenance": self.found.provenance,
             "notes": self.notes,
             "claims": [j.record for j in self.judgements],
-            "predictions": [vars(p) for p in self.predictions],
+            "predictions": self.predictions,
             "quantities": {
                 q.name: {"meaning": q.meaning, "unit": q.unit, "scale": q.scale, "rows": _rows(q)}
                 for q in self.results.quantities.values()
@@ -122,7 +118,7 @@ class Analysis:
         texts = {PAGE_FILE: screen(self, drawn, prose), DETAILS_FILE: details(self, drawn, commands)}
         for name, text in texts.items():
             write_text(folder / name, text)
-        return Written(folder, texts, drawn, tuple(undrawn))
+        return Written(folder, texts, tuple(undrawn))
 
     def page(self, written):
         """The HTML page (str) with what was written in it."""
@@ -132,19 +128,18 @@ class Analysis:
 
 @dataclass(frozen=True)
 class Written:
-    """What Analysis.write() left: folder (Path), texts ({file name: Markdown}), figures ({name: (file name, caption)} of each that is
-    there), undrawn (names of those that could not be drawn because they need run folders)."""
+    """What Analysis.write() left: folder (Path), texts ({file name: Markdown}), undrawn (names of figures that could not be drawn because they
+    need run folders)."""
 
     folder: Path
     texts: dict
-    figures: dict
     undrawn: tuple
 
 
 def analyse(study, paths):
     """Analysis of a definition.Study from run folders, folders that hold them and tables of earlier analyses (paths).
 
-    NothingToAnalyse where no run of its scene is among them, paper.PaperError where its paper.toml or predictions.csv can't be used;
+    NothingToAnalyse where no run that belongs to it is among them, paper.PaperError where its paper.toml or predictions.csv can't be used;
     what is wrong with runs is in .found."""
     words, claims = read_paper(study.folder)
     found = gather(study, paths)
@@ -160,18 +155,8 @@ def analyse(study, paths):
 
 def _rows(quantity):
     """Records of a quantity's estimates."""
-    for key, estimate in quantity.values.items():
-        names = [name for name in quantity.values.index.names if name is not None]
-        where = dict(zip(names, key if isinstance(key, tuple) else (key,)))
-        low, high = estimate.interval()
-        yield {
-            **where,
-            "value": estimate.value,
-            "error": estimate.error,
-            "low": low,
-            "high": high,
-            "pairs": estimate.pairs,
-        }
+    names = [name for name in quantity.values.index.names if name is not None]
+    return ({**dict(zip(names, key)), **own.record} for key, own in keyed(quantity.values))
 
 
 def _json_text(value, margin=" "):

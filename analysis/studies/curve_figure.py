@@ -20,19 +20,14 @@ WIDEST = 3  # panels beside each other
 
 
 def palette(results, name):
-    """{value: colour} of all values that a level has in a study's quantities: one colour means one value in all its figures, and an energy
-    channel has its own in all studies."""
+    """{value: colour} of all values that a level has in a study's quantities: one colour means one value in all its figures, an energy channel
+    has its own in all studies, and colours are apart as far as there are any."""
     indices = (quantity.values.index for quantity in results.quantities.values())
     values = {value for index in indices if name in index.names for value in index.get_level_values(name)}
-    return {value: CHANNEL_COLOURS[value] for value in values} if values <= set(CHANNEL_COLOURS) else colours(values)
-
-
-def colours(values):
-    """{value: colour} of values, apart as far as there are colours."""
-    values = sorted(set(values))
-    if len(values) <= len(_COLOURS):
-        return dict(zip(values, _COLOURS))
-    return dict(zip(values, colormaps["plasma"](np.linspace(0.0, 0.85, len(values)))))
+    if values <= set(CHANNEL_COLOURS):
+        return {value: CHANNEL_COLOURS[value] for value in values}
+    many = len(values) > len(_COLOURS)
+    return dict(zip(sorted(values), colormaps["plasma"](np.linspace(0.0, 0.85, len(values))) if many else _COLOURS))
 
 
 def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1.0):
@@ -48,10 +43,10 @@ def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1
 
 @dataclass(frozen=True)
 class CurveFigure:
-    """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis; colour, panel: levels that tell curves and
-    panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn; logarithmic: of 'x', 'y', 'xy', '';
-    y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are joined, '' where not; paper:
-    (axes, {level: value} of the panel) -> None draws what the paper prints. vector as in StudyFigure."""
+    """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis (words as `where` lists them); colour,
+    panel: levels that tell curves and panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn;
+    logarithmic: of 'x', 'y', 'xy', ''; y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are
+    joined, '' where not; paper: (axes, {level: value} of the panel) -> None draws what the paper prints."""
 
     name: str
     caption: str
@@ -66,36 +61,32 @@ class CurveFigure:
     level_line: float = None
     line: str = "-"
     paper: Callable = None
-    vector: bool = True
+    vector = True  # as in StudyFigure
 
+    @styled
     def draw(self, results):
         """The Figure of definition.Results; None where there is nothing to draw."""
-        return _draw(self, results)
-
-
-@styled
-def _draw(figure, results):
-    quantity = results[figure.y]
-    series = _chosen(quantity.values, figure.where)
-    if not len(series):
-        return None
-    shown = list(dict.fromkeys(series.index.get_level_values(figure.panel))) if figure.panel else [None]
-    shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
-    columns = min(len(shown), WIDEST)
-    drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
-    flat = axes.ravel()
-    for value, place in zip(shown, flat):
-        part = series if value is None else select(series, **{figure.panel: value})
-        _curves(place, figure, quantity, part, results)
-        _dress(place, figure, value, part, results.independent)
-    for place in flat[len(shown) :]:
-        place.set_axis_off()
-    _share_y(flat[: len(shown)], figure)
-    for row in axes:
-        row[0].set_ylabel(figure.y_label or f"{figure.y} [{quantity.unit}]".replace(" []", ""))
-    _legends(flat)
-    letter(flat[: len(shown)], "")
-    return drawn
+        quantity = results[self.y]
+        series = _chosen(quantity.values, self.where)
+        if not len(series):
+            return None
+        shown = list(dict.fromkeys(series.index.get_level_values(self.panel))) if self.panel else [None]
+        shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
+        columns = min(len(shown), WIDEST)
+        drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
+        flat = axes.ravel()
+        for value, place in zip(shown, flat):
+            part = series if value is None else select(series, **{self.panel: value})
+            _curves(place, self, quantity, part, results)
+            _dress(place, self, value, part, results.independent)
+        for place in flat[len(shown) :]:
+            place.set_axis_off()
+        _share_y(flat[: len(shown)], self.limits or (None, None))
+        for row in axes:
+            row[0].set_ylabel(self.y_label or f"{self.y}{quantity.in_unit}")
+        _legends(flat)
+        letter(flat[: len(shown)], "")
+        return drawn
 
 
 def _legends(flat):
@@ -117,14 +108,11 @@ def _chosen(series, where):
     return select(series, **single)
 
 
-def _share_y(places, figure):
+def _share_y(places, limits):
     """One scale for all panels of a quantity."""
-    limits = figure.limits or (None, None)
-    found = [place.get_ylim() for place in places]
-    low = min(own[0] for own in found) if limits[0] is None else limits[0]
-    high = max(own[1] for own in found) if limits[1] is None else limits[1]
+    low, high = zip(*(place.get_ylim() for place in places))
     for place in places:
-        place.set_ylim(low, high)
+        place.set_ylim(min(low) if limits[0] is None else limits[0], max(high) if limits[1] is None else limits[1])
 
 
 def _curves(axes, figure, quantity, series, results):
@@ -145,7 +133,13 @@ def _curve(axes, figure, quantity, series, colour, label, marker):
     series = series.sort_index()
     if "y" in figure.logarithmic:
         series = series[[estimate.value > 0 for estimate in series]]
-    x = series.index.get_level_values(figure.x).to_numpy(dtype=float) / level(figure.x).scale
+    x, words = series.index.get_level_values(figure.x), figure.where.get(figure.x)
+    if isinstance(words, tuple) and isinstance(words[0], str):
+        axes.set_xticks(range(len(words)), [level(figure.x).text(word).replace(" ", "\n") for word in words])
+        axes.set_xlim(-0.5, len(words) - 0.5)
+        x = [words.index(word) for word in x]
+    else:
+        x = level(figure.x).of(x.to_numpy(dtype=float))
     points(axes, x, series.to_list(), colour, label, marker, figure.line, quantity.scale)
 
 
@@ -163,7 +157,7 @@ def _dress(axes, figure, value, series, independent):
     if figure.panel or not figure.colour:
         title.append(pairs_text(series, independent))
     axes.set_title(", ".join(title), fontsize=10)
-    axes.set_xlabel(level(figure.x).axis())
+    axes.set_xlabel(level(figure.x).head(math=True))
 
 
 def plain_ticks(axis):
@@ -183,13 +177,9 @@ def _bar(estimate):
     return None if low is None else (estimate.value - low, high - estimate.value)
 
 
-def _pairs(estimates):
-    return sorted({estimate.pairs for estimate in estimates})
-
-
 def pairs_text(estimates, independent="pairs"):
     """'4 pairs' or '2 to 4 pairs' behind estimates, or of what else is independent."""
-    numbers = _pairs(estimates)
+    numbers = sorted({estimate.pairs for estimate in estimates})
     if numbers == [1]:
         return f"1 {independent[:-1]}"
     return (f"{numbers[0]:g} to " if len(numbers) > 1 else "") + f"{numbers[-1]:g} {independent}"

@@ -7,6 +7,8 @@ from typing import Callable
 import pandas
 
 from ..runs.collect import Scene
+from .columns import flat, row_of
+from .levels import SI
 from .runs import at, select
 
 GALLERY, SNAPSHOTS = Path(__file__).resolve().parents[1] / "gallery", "snapshots"
@@ -19,15 +21,24 @@ class NotMeasured(Exception):
 @dataclass(frozen=True)
 class Quantity:
     """What a study tells: name (a word: what paper.toml and figures call it), meaning (the sentence a table is headed with), values
-    (Series of Estimate or Fraction in SI units, indexed by what it depends on), unit in which it is shown (''), scale (that unit in SI).
+    (Series of Estimate or Fraction in SI units, indexed by what it depends on), unit in which it is shown (of levels.SI, or one of SI's).
     listed: whether the details have a table of it; curves of many points are for figures and comparison.json."""
 
     name: str
     meaning: str
     values: pandas.Series
     unit: str = ""
-    scale: float = 1.0
     listed: bool = True
+
+    @property
+    def scale(self):
+        """That unit in SI."""
+        return SI.get(self.unit, 1.0)
+
+    @property
+    def in_unit(self):
+        """' [m/s]'; '' without a unit."""
+        return f" [{self.unit}]" if self.unit else ""
 
     def at(self, **where):
         """The Estimate or Fraction, in SI units, there; None where it is not known (runs.at)."""
@@ -44,9 +55,9 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Results:
-    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError. independent: as Study has it. kept: folder (Path; None: there is none)
-    of the states that the gallery keeps of the study's runs; snapshots {run: [snapshot_figure.Snapshot]}: those that were read from
-    run folders."""
+    """table (DataFrame, a row a run); quantities {name: Quantity}; unknown names raise KeyError. independent: as Study has it. kept: folder (Path;
+    None: there is none) of the states that the gallery keeps of the study's runs; snapshots {run: [snapshot_figure.Snapshot]}: those that were
+    read from run folders."""
 
     table: pandas.DataFrame
     quantities: dict
@@ -66,25 +77,30 @@ class Results:
 
 @dataclass(frozen=True)
 class Study:
-    """title; question (what it asks, and of which paper); scene (which runs); columns (runs.table.Column: what `measure` returns; the
-    numbers that tell runs apart are among them);
+    """title; question (what it asks, and of which paper); scene (which runs belong to it);
 
-    measure     RunFolder -> {column: value}, one row of the table; NotMeasured or RunFolderError where it can't
+    measured    (columns.Columns, ...): a row of the table, with the numbers that tell runs apart
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
-    remarks     Results -> lines (str) that say what could not be done, and why
     independent what counts as one in errors, in the plural: pairs (of aggregates), clusters
     folder (Path; find() fills it in): where paper.toml is, if there is one. name: the folder's."""
 
     title: str
     question: str
     scene: Scene
-    columns: tuple
-    measure: Callable
+    measured: tuple
     quantities: Callable
-    remarks: Callable = lambda results: ()
     independent: str = "pairs"
     name: str = ""
     folder: object = field(default=None, compare=False)
+
+    @property
+    def columns(self):
+        """(runs.table.Column, ...) of the table."""
+        return flat(self.measured)
+
+    def measure(self, run):
+        """{column: value} of a RunFolder; NotMeasured or RunFolderError where a column can't be measured."""
+        return row_of(self.measured, run)
 
     def results(self, table):
         """Results of a table of runs."""
@@ -94,11 +110,10 @@ class Study:
 
 @dataclass(frozen=True)
 class StudyFigure:
-    """A figure: file name without ending, caption, and draw: Results -> matplotlib Figure, or None where the runs don't
-    suffice. A figure that needs run folders takes them by runs.table.run_folder. vector: whether it is also saved as PDF;
-    not where tens of thousands of lines or pixels would make that large."""
+    """A figure: file name without ending, caption, and draw: Results -> matplotlib Figure, or None where the runs don't suffice."""
+
+    vector = True  # also saved as PDF; not where tens of thousands of lines or pixels would make that large
 
     name: str
     caption: str
     draw: Callable
-    vector: bool = True

@@ -12,6 +12,7 @@ from functools import lru_cache
 from zlib import crc32
 
 import numpy as np
+import pandas
 from scipy.stats import binomtest, fisher_exact
 from scipy.stats import t as student
 
@@ -40,9 +41,34 @@ def stretch(pairs, fitted=1):
     return math.sqrt((pairs + 1) / (pairs - fitted))
 
 
+def _operator(f):
+    def of(one, other):
+        if isinstance(other, Estimate):
+            return combine(f, one, other)
+        return combine(lambda a: f(a, other), one) if np.isscalar(other) else NotImplemented
+
+    return of
+
+
+class Number:
+    """What an Estimate and a Fraction can be written as."""
+
+    @property
+    def text(self):
+        """'54.0 ± 1.0 (4)', with the number of pairs where there is one."""
+        return repr(self)
+
+    @property
+    def record(self):
+        """Value, error, 95 % interval and number of pairs, for JSON (dict)."""
+        low, high = self.interval()
+        return {"value": self.value, "error": self.error, "low": low, "high": high, "pairs": self.pairs}
+
+
 @dataclass(frozen=True, eq=False)
-class Estimate:
-    """value; draws (1 or 2, DRAWS), NaN where undefined: of pairs, and of single points where it is a mean over such; pairs: the fewest independent pairs of aggregates behind it, EXACT for a closed form.
+class Estimate(Number):
+    """value; draws (1 or 2, DRAWS), NaN where undefined: of pairs, and of single points where it is a mean over such; pairs: the fewest
+    independent pairs of aggregates behind it, EXACT for a closed form.
 
     >>> a, b = mean({"1": 2.0, "2": 4.0, "3": 3.0}), mean({"1": 1.0, "2": 3.0, "3": 2.0})
     >>> (a - b).value, round((a - b).error, 6), (a / 2).value
@@ -64,12 +90,16 @@ class Estimate:
         errors = [_scatter(row) for row in self.draws]
         return None if None in errors else max(errors)
 
+    @property
+    def text(self):
+        return repr(self) if self.pairs == EXACT else f"{self!r} ({self.pairs:g})"
+
     def interval(self, confidence=CONFIDENCE):
         """(low, high), Student's with one degree of freedom less than pairs; (None, None) without an error."""
         error = self.error
         if error is None or (error == 0 and self.pairs != EXACT):
             return None, None
-        reach = error * self._quantile(0.5 + 0.5 * confidence) if error else 0.0
+        reach = error * float(student.ppf(0.5 + 0.5 * confidence, self.pairs - 1)) if error else 0.0
         return self.value - reach, self.value + reach
 
     def error_beside(self, runs):
@@ -85,28 +115,10 @@ class Estimate:
             return None
         return float(2 * student.sf(abs(self.value - value) / both, self.pairs - 1))
 
-    def _quantile(self, p):
-        return float(student.ppf(p, self.pairs - 1))
-
-    def __add__(self, other):
-        return _with(self, other, lambda a, b: a + b)
-
-    def __sub__(self, other):
-        return _with(self, other, lambda a, b: a - b)
-
-    def __mul__(self, other):
-        return _with(self, other, lambda a, b: a * b)
-
-    def __truediv__(self, other):
-        return _with(self, other, lambda a, b: a / b)
-
-    def __rsub__(self, other):
-        return _with(self, other, lambda a, b: b - a)
-
-    def __rtruediv__(self, other):
-        return _with(self, other, lambda a, b: b / a)
-
-    __radd__, __rmul__ = __add__, __mul__
+    __add__ = __radd__ = _operator(lambda a, b: a + b)
+    __sub__, __rsub__ = _operator(lambda a, b: a - b), _operator(lambda a, b: b - a)
+    __mul__ = __rmul__ = _operator(lambda a, b: a * b)
+    __truediv__, __rtruediv__ = _operator(lambda a, b: a / b), _operator(lambda a, b: b / a)
 
     def __neg__(self):
         return self * -1.0
@@ -118,11 +130,11 @@ class Estimate:
 
 
 @dataclass(frozen=True, eq=False)
-class Fraction:
+class Fraction(Number):
     """How many of independent runs ended so: successes of pairs; undecided: runs that may have, and are in neither.
 
-    >>> Fraction(3, 5).value, Fraction(3, 5, undecided=1).bounds
-    (0.6, (0.6, 0.8))
+    >>> Fraction(3, 5, undecided=1).value, Fraction(3, 5, undecided=1).counts
+    (0.6, (3, 4))
     """
 
     successes: int
@@ -136,24 +148,22 @@ class Fraction:
         return self.successes / self.pairs
 
     @property
-    def bounds(self):
-        """(low, high): with every undecided run counted as no, and as yes."""
-        return self.value, (self.successes + self.undecided) / self.pairs
+    def counts(self):
+        """Successes with every undecided run counted as no, and as yes."""
+        return self.successes, self.successes + self.undecided
 
     def interval(self, confidence=CONFIDENCE):
         """(low, high): Wilson's interval, with the undecided runs counted either way."""
-        counts = (self.successes, self.successes + self.undecided)
-        low, high = (binomtest(k, self.pairs).proportion_ci(confidence, method="wilson") for k in counts)
+        low, high = (binomtest(k, self.pairs).proportion_ci(confidence, method="wilson") for k in self.counts)
         return float(low.low), float(high.high)
 
     def chance(self, value, runs=EXACT):
         """p (Fisher; the binomial test where the other has no error) of the fraction `value` of so many runs; the larger of both ways
         to count the undecided."""
-        counts = (self.successes, self.successes + self.undecided)
         if runs == EXACT:
-            return max(binomtest(k, self.pairs, value).pvalue for k in counts)
+            return max(binomtest(k, self.pairs, value).pvalue for k in self.counts)
         theirs = round(value * runs)
-        tables = ([[k, self.pairs - k], [theirs, runs - theirs]] for k in counts)
+        tables = ([[k, self.pairs - k], [theirs, runs - theirs]] for k in self.counts)
         return max(float(fisher_exact(table)[1]) for table in tables)
 
     def __repr__(self):
@@ -162,22 +172,19 @@ class Fraction:
 
 def mean(of_pairs):
     """Estimate of the mean of {pair's name: number}, at least one."""
-    values, n = np.array(list(of_pairs.values()), dtype=float), len(of_pairs)
-    value = float(values.mean())
-    return Estimate(value, value + deviations(values, list(of_pairs))[None], n)
+    return mean_over_points(pandas.Series(of_pairs, dtype=float).to_frame(), np.ones(1))
 
 
 def mean_over_points(table, weights):
     """Estimate of the mean over pairs of sum_k weights[k] y_k, from y as a DataFrame (a row a pair, its name the index; a column a
     point), weights (K,) of sum 1."""
     values = table.to_numpy(dtype=float)
+    draws = [deviations(values @ weights, list(table.index))]
+    if len(weights) > 1:
+        names = ([f"{pair} at {k}" for pair in table.index] for k in range(len(weights)))
+        draws.append(sum(weight * deviations(*own) for weight, *own in zip(weights, values.T, names)))
     value = float((values @ weights).mean())
-    of_pairs = deviations(values @ weights, list(table.index))
-    of_points = sum(
-        weight * deviations(own, [f"{pair} at {k}" for pair in table.index])
-        for k, (weight, own) in enumerate(zip(weights, values.T))
-    )
-    return Estimate(value, value + np.stack([of_pairs, of_points]), len(table))
+    return Estimate(value, value + np.stack(draws), len(table))
 
 
 def deviations(values, names):
@@ -214,12 +221,6 @@ def _scatter(row):
         return None
     spread = float(good.std(ddof=1))
     return spread if spread > ROUNDING * np.abs(good).max() else 0.0
-
-
-def _with(one, other, f):
-    if isinstance(other, Estimate):
-        return combine(f, one, other)
-    return combine(lambda a: f(a, other), one) if np.isscalar(other) else NotImplemented
 
 
 def number_text(value, error=None):

@@ -29,16 +29,11 @@ def find(name):
 
 def figures(study):
     """Figures (definition.StudyFigure, curve_figure.CurveFigure) of a study, those of the paper (figNN_...) first, then by name."""
-    if study.folder.suffix == ".py":
-        modules = [_own(study.folder)]
-    elif not _has(f"{study.name}.figures"):
+    own = study.folder.suffix == ".py"
+    if not own and not _has(f"{study.name}.figures"):
         return []
-    else:
-        package = _module(f"{study.name}.figures")
-        inside = pkgutil.iter_modules(getattr(package, "__path__", ()))
-        modules = [package, *(_module(f"{study.name}.figures.{module.name}") for module in inside)]
-    found = [figure for module in modules for figure in getattr(module, "FIGURES", ())]
-    return sorted(found, key=lambda figure: (not figure.name.startswith("fig"), figure.name))
+    module = _own(study.folder) if own else _module(f"{study.name}.figures")
+    return sorted(getattr(module, "FIGURES", ()), key=lambda figure: (not figure.name.startswith("fig"), figure.name))
 
 
 def _own(file):

@@ -27,27 +27,26 @@ class Gathered:
 
 
 def gather(study, paths):
-    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers of the scene only the
+    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers in scene.key only the
     first is counted: counted twice it would make errors too small. Where that is a row of a table, figures that need a run's states
     take them from the folder of the other."""
     collection = collect(paths, study.scene)
     found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
-    taken, tables, origins = {}, [], []
+    taken, parts, folders = {}, [], {}
     for file in collection.tables:
         try:
             table, origin, earlier = _read(study, file, taken)
         except TableError as error:
             found.problems.append(str(error))
             continue
-        tables.append(table)
-        origins.append(origin)
+        parts.append((table, origin))
         found.earlier += earlier
-    folders = {}
-    measured, runs = _measure(study, collection.runs, taken, found, folders)
+    measured = _measure(study, collection.runs, taken, found, folders)
     if measured:
-        tables.append(make_table(measured))
-        origins.append(provenance(runs))
-    if tables:
+        rows = [(run.path, values) for run, values in measured]
+        parts.append((make_table(rows), provenance([run for run, _ in measured])))
+    if parts:
+        tables, origins = zip(*parts)
         found.table = pandas.concat(tables, ignore_index=True) if len(tables) > 1 else tables[0]
         found.provenance = joined(origins) if len(origins) > 1 else origins[0]
         found.table[FOLDER] = [folders.get(_key(study, row), row[FOLDER]) for row in found.table.to_dict("records")]
@@ -55,8 +54,8 @@ def gather(study, paths):
 
 
 def _measure(study, runs, taken, found, folders):
-    """([(path, {column: value})], their RunFolders); folders takes {key: path} of those that are in a table already."""
-    measured, sources = [], []
+    """[(RunFolder, {column: value})]; folders takes {key: path} of those that are in a table already."""
+    measured = []
     for run in progress(runs, "reading runs"):
         try:
             values = study.measure(run)
@@ -67,17 +66,15 @@ def _measure(study, runs, taken, found, folders):
             found.problems.append(str(error))
             continue
         twin = taken.setdefault(_key(study, values), run.path)
-        if twin is not run.path:
-            line = f"{run.path}: the same {_listed(study.scene.key)} as {twin}"
-            if isinstance(twin, str):  # a row of a table
-                folders.setdefault(_key(study, values), str(run.path))
-                found.shown.append(f"{line}, counted once")
-            else:
-                found.notes.append(f"{line}, left out")
-            continue
-        measured.append((run.path, values))
-        sources.append(run)
-    return measured, sources
+        line = f"{run.path}: the same {_listed(study.scene.key)} as {twin}"
+        if twin is run.path:
+            measured.append((run, values))
+        elif isinstance(twin, str):  # a row of a table
+            folders.setdefault(_key(study, values), str(run.path))
+            found.shown.append(f"{line}, counted once")
+        else:
+            found.notes.append(f"{line}, left out")
+    return measured
 
 
 def _read(study, file, taken):

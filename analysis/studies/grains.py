@@ -2,32 +2,25 @@
 
 from math import isclose
 
-from ..measures.of_run import derived_constants
-from ..runs.table import Column
 from ..theory import ICE, SILICATE
+from .columns import constant, parameter, row_of
 from .definition import NotMeasured
 
-COLUMNS = (
-    Column("grainRadius", "m", "radius of a grain"),
-    Column("young", "Pa", "Young's modulus"),
-    Column("poisson", "", "Poisson's ratio"),
-    Column("density", "kg/m^3", "density of a grain"),
-    Column("surfaceEnergy", "J/m^2", "gamma"),
-    Column("criticalRolling", "m", "xi_crit"),
-    Column("slidingStiffnessFactor", "", "k_s over Wada's"),
-)
-OF_GRAINS = tuple(column.name for column in COLUMNS)
-
-# Symbol, unit in which it is shown, and that unit in SI.
-_SHOWN = {
-    "grainRadius": ("r0", " um", 1e-6),
-    "young": ("E", " GPa", 1e9),
-    "poisson": ("nu", "", 1.0),
-    "density": ("rho", " kg/m^3", 1.0),
-    "surfaceEnergy": ("gamma", " J/m^2", 1.0),
-    "criticalRolling": ("xi_crit", " Å", 1e-10),
-    "slidingStiffnessFactor": ("k_s factor", "", 1.0),
+# Name: unit and meaning of the column; symbol, unit in which it is shown, and that unit in SI.
+_CONSTANTS = {
+    "grainRadius": ("m", "radius of a grain", "r0", " um", 1e-6),
+    "young": ("Pa", "Young's modulus", "E", " GPa", 1e9),
+    "poisson": ("", "Poisson's ratio", "nu", "", 1.0),
+    "density": ("kg/m^3", "density of a grain", "rho", " kg/m^3", 1.0),
+    "surfaceEnergy": ("J/m^2", "gamma", "gamma", " J/m^2", 1.0),
+    "criticalRolling": ("m", "xi_crit", "xi_crit", " Å", 1e-10),
+    "slidingStiffnessFactor": ("", "k_s over Wada's", "k_s factor", "", 1.0),
 }
+*OF_MATERIAL, SLIDING = OF_GRAINS = tuple(_CONSTANTS)
+GRAINS = (
+    *(constant(name, *_CONSTANTS[name][:2]) for name in OF_MATERIAL),
+    parameter(SLIDING, *_CONSTANTS[SLIDING][:2], usual=1.0),
+)
 
 
 def _of_paper(material, radius):
@@ -35,18 +28,8 @@ def _of_paper(material, radius):
     return dict(zip(OF_GRAINS, (*values, material.critical_rolling, 1.0)))
 
 
-# K13's, Table 1 and section 2.1; its ice is that of A22 and A24 too.
+# Kataoka et al. (2013), Table 1 and section 2.1; its ice is that of Arakawa et al. (2022, 2024) too.
 PAPERS = {"ice": _of_paper(ICE, 0.1e-6), "silicate": _of_paper(SILICATE, 0.6e-6)}
-
-
-def grain_constants(run):
-    """{name: value} (SI) of OF_GRAINS of a RunFolder; RunFolderError where one is missing."""
-    *of_material, sliding = OF_GRAINS
-    # Runs of a version without that parameter have Wada's stiffness.
-    return {
-        **derived_constants(run, {name: name for name in of_material}),
-        sliding: float(run.parameters.get(sliding, 1.0)),
-    }
 
 
 def other_grains(parameters):
@@ -59,7 +42,7 @@ def other_grains(parameters):
 def require_papers_grains(run, but=()):
     """NotMeasured, with what differs, for a RunFolder of other grains than the papers' of its material, but for the names
     `but`: a study without grains in its key would take such runs for seeds or duplicates of others."""
-    parameters = {"material": run.parameters["material"], **grain_constants(run)}
+    parameters = {"material": run.parameters["material"], **row_of(GRAINS, run)}
     others = [name for name in other_grains(parameters) if name not in but]
     if others:
         values = ", ".join(f"{name} = {parameters[name]:g}" for name in others)
@@ -70,6 +53,6 @@ def grains_text(parameters, but=()):
     """The material, and in brackets what differs from the papers' grains of it, without the names `but`."""
     others = []
     for name in (name for name in other_grains(parameters) if name not in but):
-        symbol, unit, si = _SHOWN[name]
+        *_, symbol, unit, si = _CONSTANTS[name]
         others.append(f"{symbol} = {parameters[name] / si:.4g}{unit}")
     return parameters["material"] + (f" ({', '.join(others)})" if others else "")

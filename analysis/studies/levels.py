@@ -3,32 +3,34 @@
 import re
 from dataclasses import dataclass
 
+SI = {"%": 0.01, "ns": 1e-9, "ps": 1e-12, "µs": 1e-6, "Å": 1e-10, "kPa": 1e3, "MPa": 1e6, "1/GPa": 1e-9}  # others: 1
+
 
 @dataclass(frozen=True)
 class Level:
-    """symbol (plain text), math (for figures), unit in which it is shown, that unit in SI; phrase: how a panel or legend names a value, where
-    '$v$ = 10 m/s' is not how one says it."""
+    """symbol (plain text), math (for figures), unit in which it is shown; phrase: how a panel or legend names a value, where '$v$ = 10 m/s' is
+    not how one says it; scale: what 1 of what is shown is in SI, where the unit doesn't say it."""
 
     symbol: str
     math: str
     unit: str = ""
-    scale: float = 1.0
     phrase: str = ""
+    scale: float = 1.0
 
-    def head(self):
-        """'T_vis [ps]'."""
-        return self.symbol + (f" [{self.unit}]" if self.unit else "")
+    def of(self, values):
+        """SI values as they are shown."""
+        return values / (self.scale * SI.get(self.unit, 1.0))
 
-    def axis(self):
-        """The same for the axis of a figure."""
-        return self.math + (f"  [{self.unit}]" if self.unit else "")
+    def head(self, math=False):
+        """'T_vis [ps]'; math: for the axis of a figure."""
+        return (self.math if math else self.symbol) + (f"{' ' * math} [{self.unit}]" if self.unit else "")
 
     def text(self, value):
         """A value in that unit, without it; a name in words."""
         if not isinstance(value, (int, float)):
             name = str(value).isidentifier()
             return re.sub("(?<=[a-z])([A-Z])", lambda found: " " + found[1].lower(), value) if name else str(value)
-        shown = float(f"{value / self.scale:.6g}")
+        shown = float(f"{self.of(value):.6g}")
         return f"{shown:.0f}" if shown == round(shown) else f"{shown:.3g}"
 
     def label(self, value, math=True):
@@ -42,15 +44,15 @@ class Level:
 
 _LEVELS = {
     "velocity": Level("v", "$v$", "m/s"),
-    "viscoelasticTime": Level("T_vis", "$T_{vis}$", "ps", 1e-12),
+    "viscoelasticTime": Level("T_vis", "$T_{vis}$", "ps"),
     "grains": Level("grains", "grains of an aggregate", phrase="{} grains"),
     "square": Level("12 B_off^2", "$12 B_{off}^2$", scale=1 / 12),
     "filling": Level("φ", r"$\phi$"),
-    "duration": Level("followed for", "followed for", "µs", 1e-6, phrase="followed for {} µs"),
+    "duration": Level("followed for", "followed for", "µs", phrase="followed for {} µs"),
     "radius": Level("R", "$R$", "r"),
     "neck": Level("β", r"$\beta$"),
     "growth_velocity": Level("V_g", "$V_g$", "m/s"),
-    "criticalRolling": Level("ξ_crit", r"$\xi_{crit}$", "Å", 1e-10),
+    "criticalRolling": Level("ξ_crit", r"$\xi_{crit}$", "Å"),
     "energy_ratio": Level("E_k/E_sint", "$E_k/E_{sint}$"),
     "force_ratio": Level("F_c/F_max", "$F_c/F_{max}$"),
     "strainRate": Level("C_v", "$C_v$"),

@@ -1,9 +1,11 @@
 """The pages of a study in Markdown: one screen that answers, and the details behind it. All studies have the same."""
 
+import pandas
+
 from ..measures.outcome import UNDECIDED
 from ..runs.provenance import provenance_lines
 from .paper import PaperError
-from .tables import claims_table, estimate_text, markdown_table, quantity_table, tests_table
+from .tables import claims_table, markdown_table, quantity_table, tests_table
 from .verdict import NO, UNTESTED, YES
 
 TEXT_ALONE = "The paper enters by its text and printed numbers alone; its figures were not measured."
@@ -37,30 +39,27 @@ def details(analysis, pictures, commands=()):
     """Everything behind the first screen (str): tests, predictions, every quantity, figures, where the runs come from."""
     parts = [f"# {analysis.study.title}: details"]
     if analysis.judgements:
-        parts += [
-            "## Beside the paper",
-            markdown_table(tests_table(analysis.judgements)),
-            *_sentences(analysis.judgements),
-        ]
+        claims = [j.claim for j in analysis.judgements if j.claim.sentence]
+        said = "\n".join(f"- {claim.label}: “{claim.sentence}” ({claim.source})" for claim in claims)
+        parts += ["## Beside the paper", markdown_table(tests_table(analysis.judgements)), said]
     if analysis.predictions:
-        parts += ["## Predictions, made before the runs", markdown_table(analysis.predictions_table())]
+        table = pandas.DataFrame(analysis.predictions).rename(columns={"held": "held?"})
+        parts += ["## Predictions, made before the runs", markdown_table(table)]
     parts.append("## Quantities")
     for quantity in analysis.listed:
-        head = f"**{quantity.name}**{f' [{quantity.unit}]' if quantity.unit else ''}: {quantity.meaning}"
-        parts += [head, markdown_table(quantity_table(quantity)) if len(quantity.values) else "No runs."]
+        parts += [
+            f"**{quantity.name}**{quantity.in_unit}: {quantity.meaning}",
+            markdown_table(quantity_table(quantity)) if len(quantity.values) else "No runs.",
+        ]
     if pictures:
         parts += ["## Figures", *(f"![{caption}]({name})\n\n{caption}" for name, caption in pictures.values())]
-    lines = (*provenance_lines(analysis.found.provenance), *analysis.remarks, *analysis.notes)
+    lines = (*provenance_lines(analysis.found.provenance), *analysis.closures, *analysis.notes)
     parts += ["## Runs", "\n".join(f"- {line}" for line in lines), *(f"Made by `{command}`" for command in commands)]
     return _joined(parts)
 
 
 def counted(judgements):
-    """One sentence on how many of a paper's statements these runs reproduce; '' without any.
-
-    >>> counted([])
-    ''
-    """
+    """One sentence on how many of a paper's statements these runs reproduce; '' without any."""
     numbers = {kind: sum(j.verdict == kind for j in judgements) for kind in (YES, NO, UNTESTED)}
     if not judgements:
         return ""
@@ -89,7 +88,7 @@ def filled(text, analysis):
     def say(name, **where):
         quantity = analysis.results[name]
         estimate = quantity.at(**where)
-        return "not run" if estimate is None else estimate_text(quantity, estimate, unit=True)
+        return "not run" if estimate is None else f"{quantity.shown(estimate)!r} {quantity.unit}".rstrip()
 
     try:
         return Environment(undefined=StrictUndefined).from_string(text.strip()).render(say=say)
@@ -97,11 +96,6 @@ def filled(text, analysis):
         raise PaperError(
             f"{analysis.study.name}: paper.toml: [page]: {error.args[0] if error.args else error}"
         ) from None
-
-
-def _sentences(judgements):
-    said = [f"- {j.claim.label}: “{j.claim.sentence}” ({j.claim.source})" for j in judgements if j.claim.sentence]
-    return ["\n".join(said)] if said else []
 
 
 def _joined(parts):

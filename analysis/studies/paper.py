@@ -9,7 +9,8 @@ verdict, differs, new, missing                 # Markdown; {{ say("quantity", co
 [[claim]]
 quantity = "v_fra"                             # of the study
 label = "threshold velocity of fragmentation"  # how a table names it
-where = { grains = 50000, viscoelasticTime = 0 }   # SI; of lists each combination is a claim of its own, and {name} in the label its value
+where = { grains = 50000, viscoelasticTime = 0 }   # SI; {name} in the label stands for a value. Of lists each combination, and of a list of
+                                               # such places each, is a claim of its own; any other key may then list a value for each
 value = 50.0        # as printed, in the quantity's unit; or low and/or high: limits that the paper's words set
 printed = "50 to 60 m/s"                       # how the paper prints it
 source = "section 3.2"
@@ -86,8 +87,8 @@ def read_paper(folder):
     except (OSError, ValueError) as error:
         raise PaperError(f"{file}: {error}") from None
     page = _made(Page, content.pop("page", {}), f"{file}: [page]")
-    blocks = enumerate(content.pop("claim", ()), 1)
-    claims = tuple(_claim(own, page.runs, f"{file}: claim {k}") for k, block in blocks for own in _each(block))
+    blocks = [(f"{file}: claim {k}", block) for k, block in enumerate(content.pop("claim", ()), 1)]
+    claims = tuple(_claim(own, page.runs, where) for where, block in blocks for own in _each(block, where))
     if content:
         raise PaperError(f"{file}: has {', '.join(content)}: must have page and claim alone")
     if sum(claim.row for claim in claims) > MOST_ROWS:
@@ -95,19 +96,33 @@ def read_paper(folder):
     return page, claims
 
 
-def _each(block):
-    """The claims of a block: one for each combination of the values that its `where` lists; the first has the sentence."""
-    levels = block.get("where", {})
-    listed = [name for name, value in levels.items() if isinstance(value, list)]
-    if not listed or "label" not in block:
-        return [block]
-    chosen = [dict(zip(listed, values)) for values in product(*(levels[name] for name in listed))]
-    own = [{**block, "where": {**levels, **of}, "label": block["label"].format(**of)} for of in chosen]
-    return [own[0], *({**each, "sentence": ""} for each in own[1:])]
+def _each(block, where):
+    """The claims of a block: one for each of the places that its `where` lists. A key that has a list has a value for each; the first has the
+    sentence."""
+    places = _places(block.get("where", {}))
+    for name, values in block.items():
+        if name != "where" and isinstance(values, list) and len(values) != len(places):
+            raise PaperError(f"{where}: {name} has {len(values)} values: must be {len(places)}, one for each place")
+    for k, place in enumerate(places):
+        own = {name: value[k] if isinstance(value, list) else value for name, value in block.items()}
+        own["where"] = place
+        if k and not isinstance(block.get("sentence"), list):
+            own["sentence"] = ""
+        if "label" in own:
+            own["label"] = own["label"].format(**place)
+        yield own
+
+
+def _places(where):
+    """[{level: value}] of a list of them, or all combinations of the values that one lists."""
+    if isinstance(where, list):
+        return where
+    values = [value if isinstance(value, list) else [value] for value in where.values()]
+    return [dict(zip(where, chosen)) for chosen in product(*values)]
 
 
 def _claim(values, runs, where):
-    values = {"runs": runs, "test": "note" not in values, **values}
+    values = {"runs": runs, "test": not values.get("note"), **values}
     claim = _made(Claim, values, f"{where} ({values.get('label', 'without label')})")
     if claim.test and claim.value is None and claim.low is None and claim.high is None:
         raise PaperError(f"{where} ({claim.label}): is tested, and has no number: must have value, low or high")

@@ -5,8 +5,6 @@ quantity, where, low, high   of the study, as in paper.toml (where: "grains=5000
                     what was run, and whether it held, follow from the runs
 expected, run, held    without a quantity, as it was decided at the time: expected and run in words"""
 
-from dataclasses import dataclass
-
 import pandas
 
 from .estimate import EXACT
@@ -18,19 +16,8 @@ COLUMNS = ("what", "quantity", "where", "low", "high", "expected", "commit", "ru
 HELD = {YES: "yes", NO: "no", UNTESTED: "not decided"}
 
 
-@dataclass(frozen=True)
-class Prediction:
-    """what, expected, commit, run, held: words."""
-
-    what: str
-    expected: str
-    commit: str
-    run: str
-    held: str
-
-
 def predictions(folder, results):
-    """[Prediction] of a study's folder (Path; None: a study without one), beside definition.Results. PaperError."""
+    """[{what, expected, commit, run, held: words}] of a study's folder (Path; None: a study without one), beside definition.Results. PaperError."""
     file = folder / FILE if folder else None
     if file is None or not file.is_file():
         return []
@@ -64,10 +51,10 @@ def _value(text):
 
 
 def _prediction(row, judgement):
+    words = {name: row[name] for name in ("what", "expected", "commit", "run", "held")}
     if judgement is None:
-        return Prediction(*(row[name] for name in ("what", "expected", "commit", "run", "held")))
-    low, high = row["low"], row["high"]
+        return words
+    low, high, unit = row["low"], row["high"], f" {judgement.unit}" if judgement.unit else ""
     expected = f"{low} to {high}" if low and high else f"at least {low}" if low else f"at most {high}"
     held = "not run" if judgement.ours is None else HELD[judgement.verdict]
-    unit = f" {judgement.unit}" if judgement.unit else ""
-    return Prediction(row["what"], expected + unit, row["commit"], judgement.ours_text, held)
+    return {**words, "expected": expected + unit, "run": judgement.ours_text, "held": held}

@@ -5,7 +5,7 @@ from copy import copy
 import numpy as np
 import pandas
 
-from .estimate import Estimate, Fraction, curve, mean, mean_over_points, stretch, weights_of_pairs
+from .estimate import Estimate, Fraction, curve, mean_over_points, stretch, weights_of_pairs
 
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
 
@@ -18,7 +18,7 @@ class Runs:
 
     def __init__(self, table, pair="seed", population=()):
         self.table, self.pair, self.population = table, pair, tuple(population)
-        self.average, self.points, self.weights = None, None, None
+        self.average, self.points, self.weights = None, (0,), np.ones(1)
 
     def of(self, table):
         """The same for another table."""
@@ -42,7 +42,18 @@ class Runs:
     def estimates(self, values, by):
         """Series of Estimate of the mean over pairs, by the columns `by`: of a column, or of a function table -> (runs,). Runs without
         a value (NaN) don't count."""
-        return self._by(by, values)
+        keys = [self.table[name].map(_key) for name in by]
+        values = pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index)
+        point, number = pandas.Series(0, self.table.index), len(self.points)
+        if self.average:
+            x = self.table[self.average].to_numpy(dtype=float)
+            places = np.abs(x[:, None] - self.points).argmin(axis=1)
+            point = pandas.Series(places, self.table.index).where(alike(x, self.points[places]))
+        pair, point = self._names(self.table).rename("_pair"), point.rename("_point")
+        cells = values.groupby([*keys, pair, point]).mean().unstack("_point").reindex(columns=range(number)).dropna()
+        weights = self.weights / self.weights.sum()
+        groups = _groups(cells, by, levels=True)
+        return _series({key: mean_over_points(own.droplevel(list(by)), weights) for key, own in groups}, by)
 
     def parts(self, of, by, level):
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
@@ -87,30 +98,6 @@ class Runs:
                 found[(*key, name)] = Estimate(float(value[k]), drawn[None, :, k], n)
         return _series(found, (*by, "number"))
 
-    def _by(self, by, values):
-        """Series of Estimate of the mean over pairs."""
-        keys = [self.table[name].map(_key) for name in by]
-        values = pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index)
-        pair = self._names(self.table).rename("_pair")
-        if self.points is None:
-            of_pairs = values.dropna().groupby([*keys, pair]).mean()
-            return _series(
-                {key: mean(own.droplevel(list(range(len(by)))).to_dict()) for key, own in _parts(of_pairs, by)}, by
-            )
-        x = self.table[self.average].to_numpy(dtype=float)
-        places = np.abs(x[:, None] - self.points).argmin(axis=1)
-        point = pandas.Series(places, self.table.index, name="_point").where(alike(x, self.points[places]))
-        cells = (
-            values.groupby([*keys, pair, point])
-            .mean()
-            .unstack("_point")
-            .reindex(columns=range(len(self.points)))
-            .dropna()
-        )
-        weights = self.weights / self.weights.sum()
-        found = {key: mean_over_points(own.droplevel(list(range(len(by)))), weights) for key, own in _parts(cells, by)}
-        return _series(found, by)
-
     def _names(self, rows):
         """Names of the pairs of a table's rows: with the population, so that they are unique."""
         columns = [rows[name].map(_key).astype(str) for name in (*self.population, self.pair)]
@@ -132,11 +119,8 @@ def _shared(first, second, by, only):
 def along(series, level, f):
     """Series of Estimate of f(x (K,), y (..., K)) along one level of a Series of Estimate, x rising, for every value of the others."""
     others = [name for name in series.index.names if name != level]
-    found = {}
-    for key, own in series.groupby(level=others if len(others) > 1 else others[0]) if others else [((), series)]:
-        own = own.sort_index(level=level)
-        key = key if isinstance(key, tuple) else (key,)
-        found[key] = curve(f, own.index.get_level_values(level), own.to_list())
+    groups = ((key, own.sort_index(level=level)) for key, own in _groups(series, others, levels=True))
+    found = {key: curve(f, own.index.get_level_values(level), own.to_list()) for key, own in groups}
     return _series(found, others)
 
 
@@ -166,9 +150,7 @@ def together(of, level):
 
 def each(series, f):
     """Series of f(estimate, *its values of the levels)."""
-    keys = (key if isinstance(key, tuple) else (key,) for key in series.index)
-    found = [f(estimate, *key) for estimate, key in zip(series, keys)]
-    return pandas.Series(found, series.index, dtype=object)
+    return pandas.Series([f(own, *key) for key, own in keyed(series)], series.index, dtype=object)
 
 
 def at(series, **where):
@@ -203,21 +185,20 @@ def alike(values, wanted):
     return np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
 
 
-def _parts(of_pairs, by):
-    """((key, ...), part) of what has the columns `by` and the pair in its index."""
-    levels = list(range(len(by)))
-    for key, own in of_pairs.groupby(level=levels if len(by) > 1 else 0) if by else [((), of_pairs)]:
-        yield key if isinstance(key, tuple) else (key,), own
+def keyed(series):
+    """((value of each level, ...), value) of a Series."""
+    return ((key if isinstance(key, tuple) else (key,), value) for key, value in series.items())
 
 
-def _groups(table, by):
-    """((key, ...), rows) of a table by columns, keys rounded so that rounding of the last digits makes no group of its own."""
+def _groups(own, by, levels=False):
+    """((key, ...), part) of a table by columns, or of what has them as levels of its index."""
     if not by:
-        yield (), table
+        yield (), own
         return
-    keys = [table[name].map(_key) for name in by]
-    for key, rows in table.groupby(keys if len(keys) > 1 else keys[0]):
-        yield key if isinstance(key, tuple) else (key,), rows
+    keys = list(by) if levels else [own[name].map(_key) for name in by]
+    how = {"level" if levels else "by": keys if len(keys) > 1 else keys[0]}
+    for key, part in own.groupby(**how):
+        yield key if isinstance(key, tuple) else (key,), part
 
 
 def _key(value):

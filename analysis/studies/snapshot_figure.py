@@ -35,17 +35,27 @@ class SnapshotFigure:
     name: str
     caption: str
     collisions: Callable
-    vector: bool = False
+    vector = False
     held: float = HELD
 
+    @styled
     def draw(self, results):
         """The Figure of definition.Results; None without such runs; NoRunFolder where neither run folder nor kept states are at hand."""
-        rows = list(self.collisions(results))
-        return (
-            _draw([(title, states_of(results, row, times), row.grain_radius) for row, title, times in rows], self.held)
-            if rows
-            else None
-        )
+        found = self.collisions(results)
+        rows = [(title, states_of(results, row, times), row.grain_radius) for row, title, times in found]
+        if not rows:
+            return None
+        figure, axes = panels(len(rows), max(len(states) for _, states, _ in rows), 2.7, 2.75)
+        for places, (title, states, unit) in zip(axes, rows):
+            for place, state in zip(places, states):
+                centre = state.position.mean(axis=0)
+                half = 1.05 * reach(Snapshot(state.time, state.position - centre, *(None,) * 3), self.held) / unit
+                draw_view(place, state, unit, half, centre=centre)
+                _scale_bar(place, half)
+            for place in places[len(states) :]:
+                place.set_axis_off()
+            places[0].set_title(title, fontsize=9, loc="left")
+        return figure
 
 
 def states_of(results, row, times):
@@ -91,21 +101,6 @@ def read_snapshots(file):
             Snapshot(float(t), p, kept["radius"].astype(float), kept["aggregate"].astype(int), n.astype(int))
             for t, p, n in parts
         ]
-
-
-@styled
-def _draw(rows, held):
-    figure, axes = panels(len(rows), max(len(states) for _, states, _ in rows), 2.7, 2.75)
-    for places, (title, states, unit) in zip(axes, rows):
-        for place, state in zip(places, states):
-            centre = state.position.mean(axis=0)
-            half = 1.05 * reach(Snapshot(state.time, state.position - centre, *(None,) * 3), held) / unit
-            draw_view(place, state, unit, half, centre=centre)
-            _scale_bar(place, half)
-        for place in places[len(states) :]:
-            place.set_axis_off()
-        places[0].set_title(title, fontsize=9, loc="left")
-    return figure
 
 
 def _scale_bar(axes, half):

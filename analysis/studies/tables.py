@@ -2,8 +2,8 @@
 
 import pandas
 
-from .estimate import EXACT, Fraction
 from .levels import level
+from .runs import keyed
 
 WIDEST = 8  # columns over which one of the things that a quantity depends on is spread
 
@@ -11,7 +11,12 @@ WIDEST = 8  # columns over which one of the things that a quantity depends on is
 def claims_table(judgements):
     """The rows of a page: quantity, paper, ours, reproduced."""
     rows = [
-        (f"{j.claim.label}{f' [{j.unit}]' if j.unit else ''}", j.claim.printed, j.ours_text, j.verdict)
+        (
+            f"{j.claim.label}{f' [{j.unit}]' if j.unit else ''}",
+            j.claim.printed,
+            "not run" if j.ours is None else j.ours_text,
+            j.verdict,
+        )
         for j in judgements
     ]
     return pandas.DataFrame(rows, columns=("quantity", "paper", "ours", "reproduced"))
@@ -19,7 +24,10 @@ def claims_table(judgements):
 
 def tests_table(judgements):
     """The same in full: with p, p after Holm's correction, why, and where the paper says it."""
-    rows = [(_p(j.p), _p(j.corrected), j.why, f"{j.claim.source}, {_runs(j.claim.runs)}") for j in judgements]
+    rows = [
+        (_p(j.p), _p(j.corrected), j.why, f"{j.claim.source}, {j.claim.runs} run" + "s" * (j.claim.runs != 1))
+        for j in judgements
+    ]
     return claims_table(judgements).join(
         pandas.DataFrame(rows, columns=("p", "p (Holm)", "why", "where the paper says it"))
     )
@@ -27,7 +35,7 @@ def tests_table(judgements):
 
 def quantity_table(quantity):
     """A quantity against what it depends on; the last of these that has few values as columns."""
-    series = quantity.values.map(lambda estimate: estimate_text(quantity, estimate))
+    series = quantity.values.map(lambda estimate: quantity.shown(estimate).text)
     names = list(series.index.names)
     if names == [None]:
         return series.to_frame("")
@@ -35,20 +43,10 @@ def quantity_table(quantity):
     table = (series.unstack(few[-1]) if few else series.to_frame("value")).sort_index().fillna("")
     heads = [level(few[-1]).label(value, math=False) for value in table.columns] if few else ["value"]
     rows = [
-        [level(name).text(part) for name, part in zip(table.index.names, key if isinstance(key, tuple) else (key,))]
-        for key in table.index
+        [level(name).text(part) for name, part in zip(table.index.names, key)] for key, _ in keyed(table.iloc[:, 0])
     ]
     left = pandas.DataFrame(rows, columns=[level(name).head() for name in table.index.names])
     return left.join(pandas.DataFrame(table.to_numpy(), columns=heads))
-
-
-def estimate_text(quantity, estimate, unit=False):
-    """'54.0 ± 1.0 (4)', the number of pairs in brackets, in the unit in which the quantity is shown; unit: with it, and without the
-    number of pairs."""
-    text = repr(quantity.shown(estimate) if not isinstance(estimate, Fraction) else estimate)
-    if unit:
-        return f"{text} {quantity.unit}" if quantity.unit else text
-    return text if isinstance(estimate, Fraction) or estimate.pairs == EXACT else f"{text} ({estimate.pairs:g})"
 
 
 def markdown_table(table):
@@ -67,7 +65,3 @@ def text_table(table):
 
 def _p(value):
     return "-" if value is None else f"{value:.2g}"
-
-
-def _runs(number):
-    return f"{number} run" + ("s" if number != 1 else "")

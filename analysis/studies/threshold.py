@@ -5,7 +5,7 @@ import numpy as np
 
 def threshold_velocity(velocities, values):
     """Velocity [m/s] at which values (..., V), over rising velocities (V,), first fall from above 0 to 0 or below, linear in the
-    logarithm of the velocity between two of them; NaN where they don't within them (A22 section 3.2).
+    logarithm of the velocity between two of them; NaN where they don't within them (Arakawa et al. 2022, section 3.2).
 
     >>> float(threshold_velocity([10.0, 1000.0], [1.0, -1.0]).round(6))
     100.0

@@ -34,30 +34,17 @@ class Judgement:
     @property
     def ours_text(self):
         """'54.0 ± 1.0 (4)', with the number of pairs; '-' where it is not known."""
-        if self.ours is None:
-            return "-"
-        return repr(self.ours) + (
-            f" ({self.ours.pairs:g})" if self.ours.pairs != EXACT and not isinstance(self.ours, Fraction) else ""
-        )
+        return "-" if self.ours is None else self.ours.text
 
     @property
     def record(self):
         """All of it for JSON (dict)."""
-        claim, ours = self.claim, self.ours
-        low, high = (None, None) if ours is None else ours.interval()
-        numbers = (
-            {}
-            if ours is None
-            else {"value": ours.value, "error": ours.error, "low": low, "high": high, "pairs": ours.pairs}
-        )
+        said = ("quantity", "label", "where", "printed", "source", "runs", "margin", "test", "row")
         return {
-            **{
-                name: getattr(claim, name)
-                for name in ("quantity", "label", "where", "printed", "source", "runs", "margin", "test", "row")
-            },
-            "limits": list(claim.limits),
+            **{name: getattr(self.claim, name) for name in said},
+            "limits": list(self.claim.limits),
             "unit": self.unit,
-            "ours": numbers,
+            "ours": {} if self.ours is None else self.ours.record,
             **{name: getattr(self, name) for name in ("p", "corrected", "verdict", "why")},
         }
 

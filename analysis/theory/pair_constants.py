@@ -68,7 +68,7 @@ def time_unit(density, radius, reduced_young, surface_energy):
 
 def pair_constants(material1, radius1, material2=None, radius2=None, linear_damping=0.0, sliding_factor=1.0):
     """PairConstants of two grains: materials and radii [m]; the second grain equals the first where it is
-    left out.
+    left out, and is a plane where radius2 is infinite.
 
     linear_damping is K13's k_n, sliding_factor what k_s is over 8 a0 G* (S17's eqs 11 and 12: 2), both
     dimensionless. Sources: the module's head and PairConstants.
@@ -78,7 +78,7 @@ def pair_constants(material1, radius1, material2=None, radius2=None, linear_damp
     both = (material1, material2)
     R = 1.0 / (1.0 / radius1 + 1.0 / radius2)
     masses = [4.0 / 3.0 * pi * m.density * r**3 for m, r in zip(both, (radius1, radius2))]
-    reduced_mass = masses[0] * masses[1] / (masses[0] + masses[1])
+    reduced_mass = 1.0 / sum(1.0 / m for m in masses)
     young = 1.0 / sum((1.0 - m.poisson**2) / m.young for m in both)
     sliding_shear = 1.0 / sum((2.0 - m.poisson) / m.shear for m in both)
     twisting_shear = 1.0 / sum(1.0 / m.shear for m in both)

@@ -60,7 +60,7 @@ constexpr int batchSize = 4;
 struct alignas(64) ContactBlock {
 	double n1[3][lanes], n2[3][lanes]; // contact pointers, laboratory frame
 	double twist[lanes];
-	int i[lanes], j[lanes]; // grains; a dead lane points to the domain's two dummies
+	int i[lanes], j[lanes]; // grains; an unused slot points to the domain's two dummies
 };
 
 constexpr int countKept()
@@ -80,7 +80,7 @@ template <class T> constexpr std::array<T PairConstants<T>::*, keptCount> makeKe
 	return kept;
 }
 /* Constants of eight contacts of a scene with several kinds of pairs: those that a step's forces read (pair_constants.hpp), since
- * reading them is what such scenes are slower for; the rest are derived anew where they are wanted. */
+ * reading them is what such scenes are slower for; the rest are derived anew where they are needed. */
 template <class T> constexpr auto keptConstants = makeKeptConstants<T>();
 struct alignas(64) ConstantsBlock {
 	double field[keptCount][lanes];
@@ -95,24 +95,27 @@ struct alignas(64) LaneForces {
 	double force[3][lanes], torque1[3][lanes], torque2[3][lanes];
 };
 
-// What one pass over a domain's contacts needs.
-struct ForcePass {
+// What a pass over some of a domain's pairs needs, contacts or bonds.
+struct PairPass {
 	Grain* grains;
+	const PeriodicCell* cell;
+	int endBlock;
+	bool addFirst, addSecond; // whether the first / second grain of each pair is this domain's
+	int dummy;                // grain that takes what is not added
+	double dt;
+	Vec3<double>* crossing; // in periodic scenes: shift times force of pairs across the boundaries is added here
+	void* owner;
+};
+struct ForcePass : PairPass {
+	int firstBlock;
 	ContactBlock* blocks;
 	const ConstantsBlock* constants;      // null when all pairs are of one kind
 	const PairConstants<double>* uniform; // the constants then
 	DragBlock* drags;                     // null in scenes without drag
-	const PeriodicCell* cell;
-	int firstBlock, endBlock;
-	int addFirst, addSecond; // whether the first / second grain of each contact is this domain's
-	int trash;               // grain that takes what is not added
-	double dt;
-	Dissipation* dissipated; // what drag and slips took in this step is added here
-	long* slips;             // and their number here
-	Vec3<double>* crossing;  // in periodic scenes: shift times force of contacts across the boundaries is added here
-	void* owner;
+	Dissipation* dissipated;              // what drag and slips took in this step is added here
+	long* slips;                          // and their number here
 	// contacts of a block (bits of `which`) that break or are pressed beyond the fit: history before the step, forces to be replaced
-	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces);
+	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& out);
 	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
 	void (*batchDone)(void* owner, int batch);
 	bool cut; // springs beyond their limits are cut, each as an event, not returned to the limit (kernel/limit_rule.hpp)
@@ -170,8 +173,7 @@ struct InstructionSet {
 	const char* name;
 	void (*forces[mechanismSets][2][2])(const ForcePass&);
 	void (*energies[mechanismSets][2])(const ForcePass&, StoredEnergy<double>&);
-	double (*sumOfProduct)(
-	        double a, double b, double c); // a b + c as this file's flags compile it: tests look whether it is contracted
+	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests ask whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
 	void (*bondForces[2])(const BondPass&); // by whether the scene is periodic, as in the searches below
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);

@@ -1,4 +1,4 @@
-// A domain's sintered bonds of one sort (both grains its own, or one of them), in blocks of eight lanes as ordinary contacts are.
+// A domain's sintered bonds of one ownership, in blocks of eight slots as ordinary contacts are.
 #pragma once
 #include "../kernel/bond_step.hpp"
 #include "contact_list.hpp"
@@ -14,27 +14,19 @@ struct alignas(64) BondConstantsBlock {
 	double field[bondConstantCount][lanes];
 };
 
-struct Bond { // one lane, taken out
+struct Bond { // one slot, taken out
 	int i, j;
 	ContactHistory<double> history;
 	double rest;
 	BondConstants<double> constants;
 };
 
-// What one pass over a domain's bonds needs; as ForcePass.
-struct BondPass {
-	Grain* grains;
+struct BondPass : PairPass {
 	BondBlock* blocks;
 	const BondConstantsBlock* constants;  // null when all pairs are of one kind
 	const BondConstants<double>* uniform; // the constants then
-	int endBlock;
-	int addFirst, addSecond, trash;
-	double dt;
-	const PeriodicCell* cell;
-	Vec3<double>* crossing; // in periodic scenes: shift times force of bonds across the boundaries is added here
-	void* owner;
 	// bonds of a block (bits of `which`) that break: history before the step, forces to be replaced
-	void (*breaking)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& forces);
+	void (*breaking)(void* owner, int block, unsigned which, const BondBlock& before, LaneForces& out);
 };
 
 class BondList {
@@ -44,50 +36,50 @@ public:
 	        , dummy(dummy_)
 	{
 	}
-	int size() const { return used; } // lanes, dead ones among them
+	int size() const { return slots; } // unused ones among them
 	int blockCount() const { return int(blocks.size()); }
 	BondBlock* data() { return blocks.data(); }
 	const BondConstantsBlock* constantsData() const { return uniform ? nullptr : constants.data(); }
-	int first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
-	int second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
-	bool alive(int lane) const { return first(lane) != dummy; }
-	// of lanes that are none: the two dummies and their distance
-	void setDead(const BondConstants<double>& c, double distance)
+	int first(int slot) const { return blocks[slot / lanes].i[slot % lanes]; } // grains
+	int second(int slot) const { return blocks[slot / lanes].j[slot % lanes]; }
+	bool isUsed(int slot) const { return first(slot) != dummy; }
+	// what unused slots hold: the two dummies and their distance
+	void setUnused(const BondConstants<double>& c, double distance)
 	{
-		dead = { dummy, dummy + 1, { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }, distance, c };
+		unused = { dummy, dummy + 1, { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }, distance, c };
 	}
 
 	void append(const Bond& bond)
 	{
-		if (used % lanes == 0) addDeadBlock();
-		set(used++, bond);
+		if (slots % lanes == 0) addUnusedBlock();
+		set(slots++, bond);
 	}
-	void appendDead()
+	void appendUnused()
 	{
-		if (used % lanes == 0) addDeadBlock();
-		++used;
+		if (slots % lanes == 0) addUnusedBlock();
+		++slots;
 	}
-	void kill(int lane) { set(lane, dead); }
-	Bond get(int lane, const BondConstants<double>& common) const
+	void markUnused(int slot) { set(slot, unused); }
+	Bond get(int slot, const BondConstants<double>& common) const
 	{
-		const BondBlock& b = blocks[lane / lanes];
-		const int k = lane % lanes;
-		return { b.i[k], b.j[k], ContactList::history(b, k), b.rest[k], uniform ? common : readConstants(lane) };
+		const BondBlock& b = blocks[slot / lanes];
+		const int k = slot % lanes;
+		return { b.i[k], b.j[k], ContactList::history(b, k), b.rest[k], uniform ? common : readConstants(slot) };
 	}
-	void writeHistory(int lane, const ContactHistory<double>& h) { ContactList::writeHistory(blocks[lane / lanes], lane % lanes, h); }
-	int aliveCount() const
+	void writeHistory(int slot, const ContactHistory<double>& h) { ContactList::writeHistory(blocks[slot / lanes], slot % lanes, h); }
+	int usedCount() const
 	{
 		int count = 0;
-		for (int lane = 0; lane < used; ++lane)
-			count += alive(lane);
+		for (int slot = 0; slot < slots; ++slot)
+			count += isUsed(slot);
 		return count;
 	}
-	// Into the order of pairs, without dead lanes.
+	// Into the order of pairs, without unused slots.
 	void sort()
 	{
 		std::vector<Bond> order;
-		for (int lane = 0; lane < used; ++lane)
-			if (alive(lane)) order.push_back(get(lane, dead.constants));
+		for (int slot = 0; slot < slots; ++slot)
+			if (isUsed(slot)) order.push_back(get(slot, unused.constants));
 		std::sort(order.begin(), order.end(), [](const Bond& a, const Bond& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
 		clear();
 		for (const Bond& bond : order)
@@ -97,41 +89,41 @@ public:
 	{
 		blocks.clear();
 		constants.clear();
-		used = 0;
+		slots = 0;
 	}
 
 private:
-	void addDeadBlock()
+	void addUnusedBlock()
 	{
 		blocks.emplace_back();
 		if (!uniform) constants.emplace_back();
 		for (int k = 0; k < lanes; ++k)
-			kill(int(blocks.size() - 1) * lanes + k);
+			markUnused(int(blocks.size() - 1) * lanes + k);
 	}
-	void set(int lane, const Bond& bond)
+	void set(int slot, const Bond& bond)
 	{
-		BondBlock& b = blocks[lane / lanes];
-		const int k = lane % lanes;
+		BondBlock& b = blocks[slot / lanes];
+		const int k = slot % lanes;
 		b.i[k] = bond.i;
 		b.j[k] = bond.j;
 		b.rest[k] = bond.rest;
-		writeHistory(lane, bond.history);
+		writeHistory(slot, bond.history);
 		if (uniform) return;
 		for (int n = 0; n < bondConstantCount; ++n)
-			constants[lane / lanes].field[n][k] = bond.constants.*bondConstantsOf<double>[n];
+			constants[slot / lanes].field[n][k] = bond.constants.*bondConstantsOf<double>[n];
 	}
-	BondConstants<double> readConstants(int lane) const
+	BondConstants<double> readConstants(int slot) const
 	{
 		BondConstants<double> c;
 		for (int n = 0; n < bondConstantCount; ++n)
-			c.*bondConstantsOf<double>[n] = constants[lane / lanes].field[n][lane % lanes];
+			c.*bondConstantsOf<double>[n] = constants[slot / lanes].field[n][slot % lanes];
 		return c;
 	}
 	Aligned<BondBlock> blocks;
 	Aligned<BondConstantsBlock> constants;
-	Bond dead {};
+	Bond unused {};
 	bool uniform;
-	int dummy, used = 0;
+	int dummy, slots = 0;
 };
 
 } // namespace contact_law

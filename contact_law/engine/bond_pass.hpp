@@ -57,9 +57,9 @@ template <class Pack> struct BondPasses {
 	template <bool periodic> [[gnu::flatten]] static void forces(const BondPass& pass)
 	{
 		Crossing<Pack, periodic> crossing(pass.cell);
-		int trash[lanes];
-		for (int& t : trash)
-			t = pass.trash;
+		int dummies[lanes];
+		for (int& dummy : dummies)
+			dummy = pass.dummy;
 		for (int index = 0; index < pass.endBlock; ++index) {
 			LaneForces out;
 			BondBlock before;
@@ -68,8 +68,8 @@ template <class Pack> struct BondPasses {
 				broken |= sweep(pass, crossing, index, at, before, out);
 			const BondBlock& block = pass.blocks[index];
 			if (__builtin_expect(broken != 0, 0)) pass.breaking(pass.owner, index, broken, before, out);
-			const int* to1 = pass.addFirst ? block.i : trash;
-			const int* to2 = pass.addSecond ? block.j : trash;
+			const int* to1 = pass.addFirst ? block.i : dummies;
+			const int* to2 = pass.addSecond ? block.j : dummies;
 			for (int at = 0; at < lanes; at += width) {
 				const Vec3<Pack> f = P::scatter(pass.grains, to1, to2, out, at);
 				if constexpr (periodic) crossing.add(P::load(crossing.shift[0], at), f);
@@ -91,7 +91,7 @@ template <class Pack> struct BondPasses {
 				const ContactGeometry<Pack> g = geometryOf(pair.separation, Pack::load(block.rest + at));
 				const ContactHistory<Pack> h = historyOf(block, at);
 				const StoredEnergy<Pack> e = bondEnergy(c, g, bondForces(c, g, h), h.twist);
-				P::addLiving(e, block, at, pass.trash, sum);
+				P::addUsed(e, block, at, pass.dummy, sum);
 			}
 		P::sumLanes(sum, sums);
 	}

@@ -1,5 +1,5 @@
-/* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are found anew.
- * Whoever changes what is transferred, or its order, raises formatNumber. */
+/* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are made again.
+ * A change of what is transferred, or of its order, raises formatNumber. */
 #include "checkpoint_archive.hpp"
 #include "dynamics.hpp"
 #include "material_list.hpp"
@@ -10,41 +10,41 @@ namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
 	constexpr int formatNumber = 6; // 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4
 
-	template <class Archive> void transfer(Archive& archive, Contact& c, const Setting& setting)
+	template <class Archive> void transfer(Archive& archive, Contact& c, const SharedState& shared)
 	{
 		transferNumbers(archive, c.i, c.j);
 		transfer(archive, c.history);
 		transferNumbers(archive, c.drag, c.overlap);
 		transfer(archive, c.velocity);
-		if (Archive::restoring) c.constants = setting.constantsOf(c.i, c.j);
+		if (Archive::restoring) c.constants = shared.constantsOf(c.i, c.j);
 	}
-	template <class Archive> void transfer(Archive& archive, Bond& b, const Setting& setting)
+	template <class Archive> void transfer(Archive& archive, Bond& b, const SharedState& shared)
 	{
 		transferNumbers(archive, b.i, b.j);
 		transfer(archive, b.history);
 		double neck = b.constants.neck;
 		transferNumbers(archive, b.rest, neck);
-		if (Archive::restoring) b.constants = setting.bondOf(b.i, b.j, neck);
+		if (Archive::restoring) b.constants = shared.bondOf(b.i, b.j, neck);
 	}
 
-	Contact get(const ContactList& list, int lane, const Setting& setting) { return setting.contactOf(list, lane); }
-	Bond get(const BondList& list, int lane, const Setting& setting) { return list.get(lane, setting.commonBond); }
+	Contact get(const ContactList& list, int slot, const SharedState& shared) { return shared.contactOf(list, slot); }
+	Bond get(const BondList& list, int slot, const SharedState& shared) { return list.get(slot, shared.commonBond); }
 
-	// Lane by lane, dead ones too: sums over lanes are taken in the same order afterwards.
-	template <class Pair, class Archive, class List> void transferLanes(Archive& archive, List& list, const Setting& setting)
+	// Slot by slot, unused ones too: sums over them are taken in the same order afterwards.
+	template <class Pair, class Archive, class List> void transferSlots(Archive& archive, List& list, const SharedState& shared)
 	{
-		int lanesUsed = list.size();
-		archive.number(lanesUsed);
+		int slots = list.size();
+		archive.number(slots);
 		if (Archive::restoring) list.clear();
-		for (int lane = 0; lane < lanesUsed; ++lane) {
-			bool alive = !Archive::restoring && list.alive(lane);
-			archive.number(alive);
-			if (!alive) {
-				if (Archive::restoring) list.appendDead();
+		for (int slot = 0; slot < slots; ++slot) {
+			bool used = !Archive::restoring && list.isUsed(slot);
+			archive.number(used);
+			if (!used) {
+				if (Archive::restoring) list.appendUnused();
 				continue;
 			}
-			Pair pair = Archive::restoring ? Pair {} : get(list, lane, setting);
-			transfer(archive, pair, setting);
+			Pair pair = Archive::restoring ? Pair {} : get(list, slot, shared);
+			transfer(archive, pair, shared);
 			if (Archive::restoring) list.append(pair);
 		}
 	}
@@ -74,25 +74,32 @@ namespace {
 		}
 	}
 
-	template <class Archive> void transfer(Archive& archive, Domain& domain, const Setting& setting)
+	template <class Archive> void transfer(Archive& archive, Domain& domain, const SharedState& shared)
 	{
 		transfer(archive, domain.cell);
-		transfer(archive, domain.sums.dissipated);
-		transferNumbers(archive, domain.sums.eventWork, domain.sums.meanField);
-		transfer(archive, domain.sums.boundary);
-		transferPushes(archive, domain.early);
+		domain.ledger.transfer(archive);
 		transfer(archive, domain.constraints);
 		transferPushes(archive, domain.outside.grains);
 		archive.number(domain.outside.work);
-		transferNumbers(archive, domain.events, domain.formed, domain.broke, domain.sortedBlocks, domain.changed,
-		        domain.stepsSinceSort, domain.lists.searches, domain.lists.looks);
-		for (long& number : domain.broken)
+		Counts& counts = domain.ledger.counts;
+		TouchingPairs::Order& order = domain.touching.order;
+		transferNumbers(archive, counts.events, counts.formed, counts.broken, order.sortedBlocks, order.changed,
+		        order.stepsSinceSort, domain.lists.searches, domain.lists.distanceChecks);
+		for (long& number : counts.brokenBonds)
 			archive.number(number);
-		for (BondList& list : domain.bonds)
-			transferLanes<Bond>(archive, list, setting);
-		for (ContactList& list : domain.contacts)
-			transferLanes<Contact>(archive, list, setting);
+		for (BondList& list : domain.touching.bonds)
+			transferSlots<Bond>(archive, list, shared);
+		for (ContactList& list : domain.touching.contacts)
+			transferSlots<Contact>(archive, list, shared);
 	}
+}
+
+template <class Archive> void Ledger::transfer(Archive& archive)
+{
+	contact_law::transfer(archive, lost);
+	transferNumbers(archive, eventWork, meanField);
+	contact_law::transfer(archive, boundary);
+	transferPushes(archive, early);
 }
 
 // What must be known before the grains can be laid out, and what must be as it was.
@@ -103,23 +110,23 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(count, named("the number of bodies"));
 	archive.same(domainCount(), named("domains"));
 	archive.same(int(options.cell.on), named("O.periodic"));
-	archive.same(setting.material.size(), named("the number of materials"));
-	archive.same(setting.pairs.linearDamping, named("linearDamping"));
-	archive.same(setting.pairs.slidingStiffnessFactor, named("slidingStiffnessFactor"));
-	archive.same(setting.neck, named("neck"));
-	std::size_t necks = setting.necks.size();
+	archive.same(shared.material.size(), named("the number of materials"));
+	archive.same(shared.pairs.linearDamping, named("linearDamping"));
+	archive.same(shared.pairs.slidingStiffnessFactor, named("slidingStiffnessFactor"));
+	archive.same(shared.neck, named("neck"));
+	std::size_t necks = shared.necks.size();
 	archive.number(necks);
-	setting.necks.resize(necks);
-	for (double& neck : setting.necks)
+	shared.necks.resize(necks);
+	for (double& neck : shared.necks)
 		archive.number(neck);
-	archive.same(bool(setting.mechanisms & Sliding), named("sliding"));
-	archive.same(bool(setting.mechanisms & Rolling), named("rolling"));
-	archive.same(bool(setting.mechanisms & Twisting), named("twisting"));
-	archive.same(int(setting.limit), named("limit (0: held, 1: cut)"));
-	archive.same(setting.dt, named("the small step"));
-	for (std::size_t kind = 0; kind < setting.material.size(); ++kind)
+	archive.same(bool(shared.mechanisms & Sliding), named("sliding"));
+	archive.same(bool(shared.mechanisms & Rolling), named("rolling"));
+	archive.same(bool(shared.mechanisms & Twisting), named("twisting"));
+	archive.same(int(shared.limit), named("limit (0: held, 1: cut)"));
+	archive.same(shared.dt, named("the small step"));
+	for (std::size_t kind = 0; kind < shared.material.size(); ++kind)
 		for (const MaterialRow& row : materialList)
-			archive.same(setting.material[kind].*row.member,
+			archive.same(shared.material[kind].*row.member,
 			        [&] { return std::string(row.name) + " of material " + std::to_string(kind); });
 	original.resize(count);
 	for (int k = 0; k < count; ++k) {
@@ -136,21 +143,21 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 		const auto same = [&](double value, const char* name) {
 			archive.same(value, [&] { return std::string(name) + " of body " + std::to_string(original[k]); });
 		};
-		same(setting.grainRadius[k], "the radius"), same(1 / setting.inverseMass[k], "the mass");
-		same(1 / setting.inverseInertia[k], "the moment of inertia");
-		same(setting.kind[k], "the number of the material");
-		archive.number(setting.blocked[k]);
-		transfer(archive, setting.grains[k]);
+		same(shared.grainRadius[k], "the radius"), same(1 / shared.inverseMass[k], "the mass");
+		same(1 / shared.inverseInertia[k], "the moment of inertia");
+		same(shared.kind[k], "the number of the material");
+		archive.number(shared.blocked[k]);
+		transfer(archive, shared.grains[k]);
 	}
-	bool moved = !setting.displaced.empty();
+	bool moved = !shared.displaced.empty();
 	archive.number(moved);
-	if (moved) setting.displaced.resize(setting.grains.size());
-	for (Vec3<double>& by : setting.displaced)
+	if (moved) shared.displaced.resize(shared.grains.size());
+	for (Vec3<double>& by : shared.displaced)
 		transfer(archive, by);
 	transferNumbers(archive, contactUpdates, sizesWhenOrdered, stepsSinceTrial, orders);
-	transfer(archive, setting.convective);
+	transfer(archive, shared.convective);
 	for (auto& domain : domains)
-		transfer(archive, *domain, setting);
+		transfer(archive, *domain, shared);
 }
 
 std::vector<double> Dynamics::save()
@@ -173,7 +180,7 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 	transferState(from);
 	if (!from.atEnd()) throw std::invalid_argument("the checkpoint of the grains is too long: it must be as O.save wrote it");
 	for (auto& domain : domains)
-		domain->findCompleted();
+		domain->touching.findCompleted();
 	std::vector<long> searches;
 	for (auto& domain : domains)
 		searches.push_back(domain->lists.searches);

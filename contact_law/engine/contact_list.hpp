@@ -1,4 +1,4 @@
-// A domain's contacts of one sort (both grains its own, or one of them), in blocks of eight lanes.
+// A domain's contacts of one ownership (shared_state.hpp), in blocks of eight slots: one slot a contact, a lane of a block.
 #pragma once
 #include "arrays.hpp"
 #include "../kernel/contact.hpp"
@@ -6,13 +6,16 @@
 
 namespace contact_law {
 
-struct Contact { // one lane, taken out
+struct Contact { // one slot, taken out
 	int i, j;
 	ContactHistory<double> history;
 	PairConstants<double> constants;
 	double drag = 0, overlap = 0; // a step ago; these three only in scenes with drag
 	Vec3<double> velocity { 0, 0, 0 };
 };
+
+// With the grains in the other order: spin and normal both change sign.
+inline ContactHistory<double> swapped(const ContactHistory<double>& h) { return { { h.pointers.n2, h.pointers.n1 }, h.twist }; }
 
 class ContactList {
 public:
@@ -22,31 +25,30 @@ public:
 	        , dummy(dummy_)
 	{
 	}
-	int size() const { return used; } // lanes, dead ones among them
+	int size() const { return slots; } // unused ones among them
 	int blockCount() const { return int(blocks.size()); }
 	ContactBlock* data() { return blocks.data(); }
 	ConstantsBlock* constantsData() { return uniform ? nullptr : constants.data(); }
-
 	DragBlock* dragData() { return hasDrag ? drags.data() : nullptr; }
 
 	void append(const Contact& contact)
 	{
-		if (used % lanes == 0) addDeadBlock();
-		set(used++, contact);
+		if (slots % lanes == 0) addUnusedBlock();
+		set(slots++, contact);
 	}
-	void kill(int lane)
+	void markUnused(int slot)
 	{
-		blocks[lane / lanes].i[lane % lanes] = dummy;
-		blocks[lane / lanes].j[lane % lanes] = dummy + 1;
-		writeHistory(lane, deadHistory());
-		if (!uniform) writeConstants(lane, deadConstants);
-		writeDrag(lane, 0, deadConstants.equilibriumOverlap, { 0, 0, 0 });
+		blocks[slot / lanes].i[slot % lanes] = dummy;
+		blocks[slot / lanes].j[slot % lanes] = dummy + 1;
+		writeHistory(slot, unusedHistory());
+		if (!uniform) writeConstants(slot, unusedConstants);
+		writeDrag(slot, 0, unusedConstants.equilibriumOverlap, { 0, 0, 0 });
 	}
-	int first(int lane) const { return blocks[lane / lanes].i[lane % lanes]; } // grains
-	int second(int lane) const { return blocks[lane / lanes].j[lane % lanes]; }
-	bool alive(int lane) const { return blocks[lane / lanes].i[lane % lanes] != dummy; }
+	int first(int slot) const { return blocks[slot / lanes].i[slot % lanes]; } // grains
+	int second(int slot) const { return blocks[slot / lanes].j[slot % lanes]; }
+	bool isUsed(int slot) const { return blocks[slot / lanes].i[slot % lanes] != dummy; }
 
-	int aliveCount() const // by blocks: lanes behind the last one are dead
+	int usedCount() const // by blocks: slots behind the last one are unused
 	{
 		int count = 0;
 		for (const ContactBlock& block : blocks)
@@ -55,35 +57,35 @@ public:
 		return count;
 	}
 
-	Contact get(int lane, const PairConstants<double>& pairConstants) const
+	Contact get(int slot, const PairConstants<double>& pairConstants) const
 	{
-		const ContactBlock& b = blocks[lane / lanes];
-		const int k = lane % lanes;
+		const ContactBlock& b = blocks[slot / lanes];
+		const int k = slot % lanes;
 		Contact c { b.i[k], b.j[k], history(b, k), pairConstants };
-		if (hasDrag) c.drag = drag(lane), c.overlap = drags[lane / lanes].overlap[k], c.velocity = velocityBefore(lane);
+		if (hasDrag) c.drag = drag(slot), c.overlap = drags[slot / lanes].overlap[k], c.velocity = velocityBefore(slot);
 		return c;
 	}
-	double drag(int lane) const { return drags[lane / lanes].drag[lane % lanes]; }
-	Vec3<double> velocityBefore(int lane) const
+	double drag(int slot) const { return drags[slot / lanes].drag[slot % lanes]; }
+	Vec3<double> velocityBefore(int slot) const
 	{
-		const auto& v = drags[lane / lanes].velocity;
-		const int k = lane % lanes;
+		const auto& v = drags[slot / lanes].velocity;
+		const int k = slot % lanes;
 		return { v[0][k], v[1][k], v[2][k] };
 	}
-	void writeDrag(int lane, double force, double overlap, const Vec3<double>& velocity)
+	void writeDrag(int slot, double force, double overlap, const Vec3<double>& velocity)
 	{
 		if (!hasDrag) return;
-		drags[lane / lanes].drag[lane % lanes] = force;
-		drags[lane / lanes].overlap[lane % lanes] = overlap;
-		writeVelocity(lane, velocity);
+		drags[slot / lanes].drag[slot % lanes] = force;
+		drags[slot / lanes].overlap[slot % lanes] = overlap;
+		writeVelocity(slot, velocity);
 	}
-	void writeVelocity(int lane, const Vec3<double>& v)
+	void writeVelocity(int slot, const Vec3<double>& v)
 	{
-		auto& to = drags[lane / lanes].velocity;
-		const int k = lane % lanes;
+		auto& to = drags[slot / lanes].velocity;
+		const int k = slot % lanes;
 		to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z;
 	}
-	void writeHistory(int lane, const ContactHistory<double>& h) { writeHistory(blocks[lane / lanes], lane % lanes, h); }
+	void writeHistory(int slot, const ContactHistory<double>& h) { writeHistory(blocks[slot / lanes], slot % lanes, h); }
 	static void writeHistory(ContactBlock& b, int k, const ContactHistory<double>& h)
 	{
 		const Vec3<double>&p = h.pointers.n1, &q = h.pointers.n2;
@@ -95,80 +97,80 @@ public:
 	{
 		return { { { b.n1[0][k], b.n1[1][k], b.n1[2][k] }, { b.n2[0][k], b.n2[1][k], b.n2[2][k] } }, b.twist[k] };
 	}
-	void appendDead()
+	void appendUnused()
 	{
-		if (used % lanes == 0) addDeadBlock();
-		++used;
+		if (slots % lanes == 0) addUnusedBlock();
+		++slots;
 	}
-	// Into the order of pairs, without dead lanes; the next contact starts a block of its own.
+	// Into the order of pairs, without unused slots; the next contact starts a block of its own.
 	void sort()
 	{
 		struct Key {
-			int i, j, lane;
+			int i, j, slot;
 			bool operator<(const Key& other) const { return i != other.i ? i < other.i : j < other.j; }
 		};
 		std::vector<Key> order;
-		for (int lane = 0; lane < used; ++lane)
-			if (alive(lane)) order.push_back({ first(lane), second(lane), lane });
+		for (int slot = 0; slot < slots; ++slot)
+			if (isUsed(slot)) order.push_back({ first(slot), second(slot), slot });
 		const auto added = std::is_sorted_until(order.begin(), order.end()); // those before stand as the last sorting left them
 		std::sort(added, order.end());
 		std::inplace_merge(order.begin(), added, order.end());
 		const ContactList before = *this;
 		clear();
 		for (const Key& key : order) {
-			appendDead();
-			copy(before, key.lane, used - 1);
+			appendUnused();
+			copy(before, key.slot, slots - 1);
 		}
-		used = blockCount() * lanes;
+		slots = blockCount() * lanes;
 	}
 	void clear()
 	{
 		blocks.clear();
 		constants.clear();
 		drags.clear();
-		used = 0;
+		slots = 0;
 	}
-	void setDeadConstants(const PairConstants<double>& c) { deadConstants = c; } // of the two dummies, which touch at equilibrium
+	void setUnusedConstants(const PairConstants<double>& c) { unusedConstants = c; } // of the two dummies, which touch at equilibrium
 
 private:
-	static ContactHistory<double> deadHistory() { return { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }; }
+	static ContactHistory<double> unusedHistory() { return { { { -1, 0, 0 }, { 1, 0, 0 } }, 0 }; }
 
-	void addDeadBlock()
+	void addUnusedBlock()
 	{
 		blocks.emplace_back();
 		if (!uniform) constants.emplace_back();
 		if (hasDrag) drags.emplace_back();
 		for (int k = 0; k < lanes; ++k)
-			kill(int(blocks.size() - 1) * lanes + k);
+			markUnused(int(blocks.size() - 1) * lanes + k);
 	}
-	void copy(const ContactList& from, int lane, int here)
+	void copy(const ContactList& from, int slot, int here)
 	{
-		blocks[here / lanes].i[here % lanes] = from.first(lane);
-		blocks[here / lanes].j[here % lanes] = from.second(lane);
-		writeHistory(here, history(from.blocks[lane / lanes], lane % lanes));
-		if (hasDrag) writeDrag(here, from.drag(lane), from.drags[lane / lanes].overlap[lane % lanes], from.velocityBefore(lane));
+		blocks[here / lanes].i[here % lanes] = from.first(slot);
+		blocks[here / lanes].j[here % lanes] = from.second(slot);
+		writeHistory(here, history(from.blocks[slot / lanes], slot % lanes));
+		if (hasDrag) writeDrag(here, from.drag(slot), from.drags[slot / lanes].overlap[slot % lanes], from.velocityBefore(slot));
 		for (int k = 0; !uniform && k < keptCount; ++k)
-			constants[here / lanes].field[k][here % lanes] = from.constants[lane / lanes].field[k][lane % lanes];
+			constants[here / lanes].field[k][here % lanes] = from.constants[slot / lanes].field[k][slot % lanes];
 	}
-	void set(int lane, const Contact& contact)
+	void set(int slot, const Contact& contact)
 	{
-		blocks[lane / lanes].i[lane % lanes] = contact.i;
-		blocks[lane / lanes].j[lane % lanes] = contact.j;
-		writeHistory(lane, contact.history);
-		if (!uniform) writeConstants(lane, contact.constants);
-		writeDrag(lane, contact.drag, contact.overlap, contact.velocity);
+		blocks[slot / lanes].i[slot % lanes] = contact.i;
+		blocks[slot / lanes].j[slot % lanes] = contact.j;
+		writeHistory(slot, contact.history);
+		if (!uniform) writeConstants(slot, contact.constants);
+		writeDrag(slot, contact.drag, contact.overlap, contact.velocity);
 	}
-	void writeConstants(int lane, const PairConstants<double>& c)
+	void writeConstants(int slot, const PairConstants<double>& c)
 	{
 		for (int k = 0; k < keptCount; ++k)
-			constants[lane / lanes].field[k][lane % lanes] = c.*keptConstants<double>[k];
+			constants[slot / lanes].field[k][slot % lanes] = c.*keptConstants<double>[k];
 	}
 	Aligned<ContactBlock> blocks;
 	Aligned<ConstantsBlock> constants;
 	Aligned<DragBlock> drags;
-	PairConstants<double> deadConstants {};
+	PairConstants<double> unusedConstants {};
 	bool uniform, hasDrag;
-	int dummy, used = 0;
+	int dummy, slots = 0;
 };
 
 } // namespace contact_law

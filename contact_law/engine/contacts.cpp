@@ -2,11 +2,6 @@
 
 namespace contact_law {
 
-ContactHistory<double> swapped(const ContactHistory<double>& h)
-{
-	return { { h.pointers.n2, h.pointers.n1 }, h.twist }; // spin and normal both change sign
-}
-
 ContactNow swapped(const ContactNow& c)
 {
 	ContactNow s = c;
@@ -27,11 +22,11 @@ ContactNow swapped(const ContactNow& c)
 	return s;
 }
 
-ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int lane)
+ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int slot)
 {
-	const Setting& setting = dynamics.state();
-	const Contact c = setting.contactOf(list, lane);
-	const Grain &a = setting.grains[c.i], &b = setting.grains[c.j];
+	const SharedState& shared = dynamics.state();
+	const Contact c = shared.contactOf(list, slot);
+	const Grain &a = shared.grains[c.i], &b = shared.grains[c.j];
 	Vec3<double> separation = separationOf(a, b);
 	const Image image = nearestImage(dynamics.cell(), separation);
 	ContactNow n { dynamics.given(c.i), dynamics.given(c.j), c.constants, c.history,
@@ -39,58 +34,57 @@ ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int lan
 		image.shift };
 	n.forces = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
 	n.forces.drag = c.drag;
-	if (!(setting.mechanisms & Sliding)) n.forces.sliding = { 0, 0, 0 };
+	if (!(shared.mechanisms & Sliding)) n.forces.sliding = { 0, 0, 0 };
 	return n;
 }
 
-ContactNow contactNow(const Dynamics& dynamics, const BondList& list, int lane)
+ContactNow contactNow(const Dynamics& dynamics, const BondList& list, int slot)
 {
-	const Setting& setting = dynamics.state();
-	const Bond b = list.get(lane, setting.commonBond);
-	const Grain &one = setting.grains[b.i], &two = setting.grains[b.j];
+	const SharedState& shared = dynamics.state();
+	const Bond b = list.get(slot, shared.commonBond);
+	const Grain &one = shared.grains[b.i], &two = shared.grains[b.j];
 	Vec3<double> separation = separationOf(one, two);
 	const Image image = nearestImage(dynamics.cell(), separation);
-	ContactNow n { dynamics.given(b.i), dynamics.given(b.j), setting.constantsOf(b.i, b.j), b.history, geometryOf(separation, b.rest),
+	ContactNow n { dynamics.given(b.i), dynamics.given(b.j), shared.constantsOf(b.i, b.j), b.history, geometryOf(separation, b.rest),
 		{}, velocityOf(one) - velocityOf(two) + image.velocity, image.shift, true, b.constants, b.rest };
 	n.forces = bondForces(b.constants, n.geometry, b.history);
 	return n;
 }
 
-double normalForceNow(const Dynamics& dynamics, const ContactList& list, int lane)
+double normalForceNow(const Dynamics& dynamics, const ContactList& list, int slot)
 {
-	const Setting& setting = dynamics.state();
-	const int i = list.first(lane), j = list.second(lane);
-	const PairConstants<double> c = setting.constantsOf(i, j);
-	Vec3<double> separation = separationOf(setting.grains[i], setting.grains[j]);
-	nearestImage(dynamics.cell(), separation);
+	const SharedState& shared = dynamics.state();
+	const int i = list.first(slot), j = list.second(slot);
+	const PairConstants<double> c = shared.constantsOf(i, j);
 	ContactForces<double> f {};
-	normal::addForces(c, geometryOf(separation, c.radius1 + c.radius2), f);
-	return setting.hasDrag() ? f.normalForce + list.drag(lane) : f.normalForce;
+	normal::addForces(c, geometryOf(shared.separationOf(dynamics.cell(), i, j), c.radius1 + c.radius2), f);
+	return shared.hasDrag() ? f.normalForce + list.drag(slot) : f.normalForce;
 }
 
-double normalForceNow(const Dynamics& dynamics, const BondList& list, int lane)
+double normalForceNow(const Dynamics& dynamics, const BondList& list, int slot)
 {
-	const Bond b = list.get(lane, dynamics.state().commonBond);
-	Vec3<double> separation = separationOf(dynamics.state().grains[b.i], dynamics.state().grains[b.j]);
-	nearestImage(dynamics.cell(), separation);
-	const auto g = geometryOf(separation, b.rest);
+	const Bond b = list.get(slot, dynamics.state().commonBond);
+	const auto g = geometryOf(dynamics.state().separationOf(dynamics.cell(), b.i, b.j), b.rest);
 	return bondForces(b.constants, g, b.history).normalForce;
 }
 
 namespace {
-	double neckOf(const ContactList&, int, const Setting&) { return 0; }
-	double neckOf(const BondList& list, int lane, const Setting& setting) { return list.get(lane, setting.commonBond).constants.neck; }
+	double neckOf(const ContactList&, int, const SharedState&) { return 0; }
+	double neckOf(const BondList& list, int slot, const SharedState& shared)
+	{
+		return list.get(slot, shared.commonBond).constants.neck;
+	}
 
-	template <class Lists> NormalForces normalForcesOf(const Dynamics& dynamics, const Domain& domain, Lists Domain::*lists)
+	template <class Lists> NormalForces normalForcesOf(const Dynamics& dynamics, const Domain& domain, Lists TouchingPairs::*lists)
 	{
 		NormalForces found;
-		const std::size_t most = (domain.*lists)[0].size() + (domain.*lists)[1].size();
+		const std::size_t most = (domain.touching.*lists)[Interior].size() + (domain.touching.*lists)[FirstOwned].size();
 		found.grains.reserve(2 * most), found.forces.reserve(most), found.necks.reserve(most);
-		eachLaneOf(dynamics, domain, lists, [&](const auto& list, int lane, int first, int second) {
+		eachSlotOf(dynamics, domain, lists, [&](const auto& list, int slot, int first, int second) {
 			found.grains.push_back(first);
 			found.grains.push_back(second);
-			found.forces.push_back(normalForceNow(dynamics, list, lane));
-			found.necks.push_back(neckOf(list, lane, dynamics.state()));
+			found.forces.push_back(normalForceNow(dynamics, list, slot));
+			found.necks.push_back(neckOf(list, slot, dynamics.state()));
 		});
 		return found;
 	}
@@ -102,8 +96,8 @@ std::vector<NormalForces> normalForces(const Dynamics& dynamics)
 	std::vector<NormalForces> found(2 * domains.size());
 #pragma omp parallel for num_threads(dynamics.threadCount())
 	for (std::size_t d = 0; d < domains.size(); ++d) {
-		found[d] = normalForcesOf(dynamics, *domains[d], &Domain::contacts);
-		found[domains.size() + d] = normalForcesOf(dynamics, *domains[d], &Domain::bonds);
+		found[d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::contacts);
+		found[domains.size() + d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::bonds);
 	}
 	return found;
 }
@@ -113,14 +107,14 @@ int contactCount(const Dynamics& dynamics)
 	int total = 0;
 #pragma omp parallel for num_threads(dynamics.threadCount()) reduction(+ : total)
 	for (std::size_t d = 0; d < dynamics.parts().size(); ++d)
-		total += dynamics.parts()[d]->contactCount();
+		total += dynamics.parts()[d]->touching.count();
 	return total;
 }
 
 int bondCount(const Dynamics& dynamics)
 {
 	int total = 0;
-	eachBondLane(dynamics, [&](const BondList&, int, int, int) { ++total; });
+	eachBond(dynamics, [&](const BondList&, int, int, int) { ++total; });
 	return total;
 }
 
@@ -140,20 +134,11 @@ std::vector<OutsideForce> outsideForces(const Dynamics& dynamics)
 	return all;
 }
 
-std::array<long, bondModes> brokenBonds(const Dynamics& dynamics)
-{
-	std::array<long, bondModes> total {};
-	for (const auto& domain : dynamics.parts())
-		for (int mode = 0; mode < bondModes; ++mode)
-			total[mode] += domain->broken[mode];
-	return total;
-}
-
 Dissipation dissipated(const Dynamics& dynamics)
 {
 	Dissipation total;
 	for (const auto& domain : dynamics.parts())
-		total += domain->sums.dissipated;
+		total += domain->ledger.dissipated();
 	return total;
 }
 
@@ -161,7 +146,7 @@ Counts counts(const Dynamics& dynamics)
 {
 	Counts total;
 	for (const auto& domain : dynamics.parts())
-		total.events += domain->events, total.formed += domain->formed, total.broken += domain->broke;
+		total += domain->ledger.counts;
 	return total;
 }
 

@@ -19,28 +19,28 @@ struct ContactNow {
 };
 // The same with its grains in the other order.
 ContactNow swapped(const ContactNow&);
-ContactHistory<double> swapped(const ContactHistory<double>&);
-ContactNow contactNow(const Dynamics&, const ContactList&, int lane);
-ContactNow contactNow(const Dynamics&, const BondList&, int lane);
-double normalForceNow(const Dynamics&, const ContactList&, int lane); // elastic and viscous, positive when repulsive [N]
-double normalForceNow(const Dynamics&, const BondList&, int lane);    // elastic [N]
+ContactNow contactNow(const Dynamics&, const ContactList&, int slot);
+ContactNow contactNow(const Dynamics&, const BondList&, int slot);
+double normalForceNow(const Dynamics&, const ContactList&, int slot); // elastic and viscous, positive when repulsive [N]
+double normalForceNow(const Dynamics&, const BondList&, int slot);    // elastic [N]
 
-template <class Lists, class Visit> void eachLaneOf(const Dynamics& dynamics, const Domain& domain, Lists Domain::*lists, Visit&& visit)
+template <class Lists, class Visit>
+void eachSlotOf(const Dynamics& dynamics, const Domain& domain, Lists TouchingPairs::*lists, Visit&& visit)
 {
-	for (int sort = 0; sort < 2; ++sort) { // a border contact where its first grain lives
-		const auto& list = (domain.*lists)[sort];
-		for (int lane = 0; lane < list.size(); ++lane)
-			if (list.alive(lane)) visit(list, lane, dynamics.given(list.first(lane)), dynamics.given(list.second(lane)));
+	for (const Ownership o : counted) {
+		const auto& list = (domain.touching.*lists)[o];
+		for (int slot = 0; slot < list.size(); ++slot)
+			if (list.isUsed(slot)) visit(list, slot, dynamics.given(list.first(slot)), dynamics.given(list.second(slot)));
 	}
 }
-template <class Lists, class Visit> void eachLane(const Dynamics& dynamics, Lists Domain::*lists, Visit&& visit)
+template <class Lists, class Visit> void eachOf(const Dynamics& dynamics, Lists TouchingPairs::*lists, Visit&& visit)
 {
 	for (const auto& domain : dynamics.parts())
-		eachLaneOf(dynamics, *domain, lists, visit);
+		eachSlotOf(dynamics, *domain, lists, visit);
 }
-// Of every contact (but bonds) once: visit(list, lane, its first and its second grain).
-template <class Visit> void eachContactLane(const Dynamics& dynamics, Visit&& visit) { eachLane(dynamics, &Domain::contacts, visit); }
-template <class Visit> void eachBondLane(const Dynamics& dynamics, Visit&& visit) { eachLane(dynamics, &Domain::bonds, visit); }
+// Of every contact (but bonds) once: visit(list, slot, its first and its second grain).
+template <class Visit> void eachContact(const Dynamics& dynamics, Visit&& visit) { eachOf(dynamics, &TouchingPairs::contacts, visit); }
+template <class Visit> void eachBond(const Dynamics& dynamics, Visit&& visit) { eachOf(dynamics, &TouchingPairs::bonds, visit); }
 
 // Contacts and bonds of one domain: grains (first and second of each), normal forces [N], necks over the grains' radius (0: no bond).
 struct NormalForces {
@@ -56,12 +56,7 @@ bool constrained(const Dynamics&);                        // whether any grain h
 std::vector<OutsideForce> outsideForces(const Dynamics&); // by rising index of the grain as given
 
 // Since the start:
-std::array<long, bondModes> brokenBonds(const Dynamics&); // by mode
-Dissipation dissipated(const Dynamics&);                  // [J]
-struct Counts {
-	long events = 0;             // contacts that formed, broke, and slips
-	long formed = 0, broken = 0; // contacts, bonds not among them
-};
+Dissipation dissipated(const Dynamics&); // [J]
 Counts counts(const Dynamics&);
 
 } // namespace contact_law

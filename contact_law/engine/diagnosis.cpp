@@ -23,16 +23,11 @@ namespace {
 		return d;
 	}
 
-	Vec3<double> separationNow(const Dynamics& dynamics, int i, int j)
-	{
-		Vec3<double> d = separationOf(dynamics.state().grains[i], dynamics.state().grains[j]);
-		nearestImage(dynamics.cell(), d);
-		return d;
-	}
+	Vec3<double> separationNow(const Dynamics& dynamics, int i, int j) { return dynamics.state().separationOf(dynamics.cell(), i, j); }
 
-	double relativeOverlap(const Setting& setting, int i, int j, const Vec3<double>& d)
+	double relativeOverlap(const SharedState& shared, int i, int j, const Vec3<double>& d)
 	{
-		return (setting.radius[i] + setting.radius[j] - std::sqrt(dot(d, d))) / std::min(setting.radius[i], setting.radius[j]);
+		return (shared.radius[i] + shared.radius[j] - std::sqrt(dot(d, d))) / std::min(shared.radius[i], shared.radius[j]);
 	}
 
 	struct Pair { // here
@@ -47,17 +42,17 @@ namespace {
 
 	Diagnosis deepestOverlap(const Dynamics& dynamics, const Domain& domain)
 	{
-		const Setting& setting = dynamics.state();
+		const SharedState& shared = dynamics.state();
 		Diagnosis found;
-		for (int sort = 0; sort < 2; ++sort) {
-			const ContactList& list = domain.contacts[sort];
-			for (int lane = 0; lane < list.size(); ++lane) {
-				if (!list.alive(lane)) continue;
-				const int i = list.first(lane), j = list.second(lane);
+		for (const Ownership o : counted) {
+			const ContactList& list = domain.touching.contacts[o];
+			for (int slot = 0; slot < list.size(); ++slot) {
+				if (!list.isUsed(slot)) continue;
+				const int i = list.first(slot), j = list.second(slot);
 				const Vec3<double> d = separationNow(dynamics, i, j);
-				const double least = std::max(setting.radius[i], setting.radius[j]);
+				const double least = std::max(shared.radius[i], shared.radius[j]);
 				if (dot(d, d) >= least * least) continue;
-				const double overlap = relativeOverlap(setting, i, j, d);
+				const double overlap = relativeOverlap(shared, i, j, d);
 				if (overlap > found.overlap) found = ofPair(dynamics, { i, j }, overlap, 0);
 			}
 		}
@@ -67,27 +62,27 @@ namespace {
 
 Diagnosis diagnoseGrain(const Dynamics& dynamics, int given)
 {
-	const Setting& setting = dynamics.state();
+	const SharedState& shared = dynamics.state();
 	const int grain = given == FastestGrain ? fastestGrain(dynamics) : dynamics.here(given);
 	Diagnosis found;
 	found.grain = dynamics.given(grain);
-	found.speed = std::sqrt(speedSquared(setting.grains[grain]));
+	found.speed = std::sqrt(speedSquared(shared.grains[grain]));
 	const auto consider = [&](int i, int j, const Vec3<double>& d, double force) {
 		if (found.other >= 0 && std::abs(force) <= std::abs(found.force)) return;
 		found.other = dynamics.given(i == grain ? j : i);
-		found.overlap = relativeOverlap(setting, i, j, d);
+		found.overlap = relativeOverlap(shared, i, j, d);
 		found.force = force;
 	};
-	eachContactLane(dynamics, [&](const ContactList& list, int lane, int, int) {
-		if (list.first(lane) != grain && list.second(lane) != grain) return;
-		const Contact c = setting.contactOf(list, lane);
+	eachContact(dynamics, [&](const ContactList& list, int slot, int, int) {
+		if (list.first(slot) != grain && list.second(slot) != grain) return;
+		const Contact c = shared.contactOf(list, slot);
 		const Vec3<double> d = separationBefore(dynamics, c.i, c.j);
 		const auto g = geometryOf(d, c.constants.radius1 + c.constants.radius2);
 		consider(c.i, c.j, d, contactForces<0>(c.constants, g, c.history, Vec3<double> {}).normalForce);
 	});
-	eachBondLane(dynamics, [&](const BondList& list, int lane, int, int) {
-		if (list.first(lane) != grain && list.second(lane) != grain) return;
-		const Bond b = list.get(lane, setting.commonBond);
+	eachBond(dynamics, [&](const BondList& list, int slot, int, int) {
+		if (list.first(slot) != grain && list.second(slot) != grain) return;
+		const Bond b = list.get(slot, shared.commonBond);
 		const Vec3<double> d = separationBefore(dynamics, b.i, b.j);
 		consider(b.i, b.j, d, b.constants.normalStiffness * (b.rest - std::sqrt(dot(d, d))));
 	});
@@ -101,11 +96,11 @@ Diagnosis largestForce(const Dynamics& dynamics)
 		if (found.grain >= 0 && std::abs(force) <= std::abs(found.force)) return;
 		found = ofPair(dynamics, { i, j }, relativeOverlap(dynamics.state(), i, j, separationNow(dynamics, i, j)), force);
 	};
-	const auto look = [&](const auto& list, int lane, int, int) {
-		consider(list.first(lane), list.second(lane), normalForceNow(dynamics, list, lane));
+	const auto considerSlot = [&](const auto& list, int slot, int, int) {
+		consider(list.first(slot), list.second(slot), normalForceNow(dynamics, list, slot));
 	};
-	eachContactLane(dynamics, look);
-	eachBondLane(dynamics, look);
+	eachContact(dynamics, considerSlot);
+	eachBond(dynamics, considerSlot);
 	return found;
 }
 

@@ -1,4 +1,4 @@
-// What to say of a run that broke down: which grain, which contact.
+// Why a run broke down: which grain, which contact.
 #pragma once
 
 namespace contact_law {
@@ -16,7 +16,7 @@ enum { FastestGrain = -1 };
 Diagnosis diagnoseGrain(const Dynamics&, int grain = FastestGrain);
 // The contact with the largest force of all.
 Diagnosis largestForce(const Dynamics&);
-// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are not looked up. Grain -1: none does.
+// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are left out. Grain -1: none does.
 Diagnosis deepestOverlap(const Dynamics&);
 
 } // namespace contact_law

@@ -1,89 +1,110 @@
 #include "domain.hpp"
 #include <algorithm>
-#include <tuple>
 
 namespace contact_law {
 
-namespace {
-	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
-}
-
-Domain::Domain(Setting& setting, int begin_, int end_, int dummy_)
+Domain::Domain(SharedState& shared, int begin_, int end_, int dummy_)
         : begin(begin_)
         , end(end_)
-        , lists(setting, begin_, end_)
-        , contacts { { setting.uniform, setting.hasDrag(), dummy_ }, { setting.uniform, setting.hasDrag(), dummy_ },
-	        { setting.uniform, setting.hasDrag(), dummy_ } }
-        , bonds { { setting.uniformBonds(), dummy_ }, { setting.uniformBonds(), dummy_ }, { setting.uniformBonds(), dummy_ } }
-        , s(setting)
+        , lists(shared, begin_, end_)
+        , touching(shared, begin_, end_, dummy_)
+        , ledger(cell)
+        , s(shared)
         , dummy(dummy_)
+        , events(shared, cell, lists, touching, ledger)
+        , callers { { this, Interior }, { this, FirstOwned }, { this, SecondOwned } }
 {
-	for (int sort = 0; sort < 3; ++sort)
-		eventCalls[sort] = { this, sort };
-	placeDummies();
-	for (ContactList& list : contacts)
-		list.setDeadConstants(s.common);
-	for (BondList& list : bonds)
-		list.setDead(s.commonBond, s.grains[dummy].x);
 }
 
-void Domain::placeDummies()
+// ---- forces ----
+
+template <class Pass, class List> Pass Domain::passOver(List& list, Ownership o)
 {
-	s.grains[dummy] = Grain {};
-	s.grains[dummy + 1] = Grain {};
-	s.grains[dummy].x = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
+	Pass pass {};
+	pass.grains = s.grains.data();
+	pass.cell = &cell;
+	pass.endBlock = list.blockCount();
+	pass.addFirst = ownsFirst(o);
+	pass.addSecond = ownsSecond(o);
+	pass.dummy = dummy;
+	pass.dt = s.dt;
+	pass.crossing = ledger.sumsFor(o).crossing;
+	pass.owner = &callers[o];
+	pass.blocks = list.data();
+	pass.constants = list.constantsData();
+	return pass;
 }
 
-ForcePass Domain::passFor(int sort)
+ForcePass Domain::passFor(Ownership o)
 {
-	ContactList& list = contacts[sort];
-	const bool books = sort != Second; // both domains of a border contact compute it; the first grain's books it
-	return { s.grains.data(), list.data(), list.constantsData(), &s.common, list.dragData(), &cell, 0, list.blockCount(),
-		sort != Second, sort != First, dummy, s.dt, books ? &sums.dissipated : &ignoredDissipation,
-		books ? &events : &ignoredEvents, books ? &sums.boundary.kicks : &ignoredCrossing, &eventCalls[sort], &Domain::eventsOf,
-		nullptr, s.limit == LimitRule::Cut };
+	ForcePass pass = passOver<ForcePass>(touching.contacts[o], o);
+	pass.uniform = &s.common;
+	pass.drags = touching.contacts[o].dragData();
+	pass.dissipated = ledger.sumsFor(o).dissipated;
+	pass.slips = ledger.sumsFor(o).slips;
+	pass.events = &Domain::eventsOf<ContactBlock>;
+	pass.cut = s.limit == LimitRule::Cut;
+	return pass;
 }
 
-void Domain::addForces(int sort, int firstBlock, int endBlock, bool behind)
+BondPass Domain::bondPassFor(Ownership o)
 {
-	ForcePass pass = passFor(sort);
+	BondPass pass = passOver<BondPass>(touching.bonds[o], o);
+	pass.uniform = &s.commonBond;
+	pass.breaking = &Domain::eventsOf<BondBlock>;
+	return pass;
+}
+
+template <class Block> void Domain::eventsOf(void* caller, int block, unsigned which, const Block& before, LaneForces& out)
+{
+	const Caller& c = *static_cast<Caller*>(caller);
+	c.domain->events.of(c.ownership, block, which, before, out);
+}
+
+void Domain::moveBehind(void* caller, int batch)
+{
+	Domain& domain = *static_cast<Caller*>(caller)->domain;
+	domain.completeAndIntegrateUpTo(domain.touching.completedBy(batch));
+}
+
+void Domain::addForces(Ownership o, int firstBlock, int endBlock, bool behind)
+{
+	ForcePass pass = passFor(o);
 	pass.firstBlock = firstBlock;
 	pass.endBlock = endBlock;
 	if (behind) pass.batchDone = &Domain::moveBehind;
 	s.passes->forces[s.mechanisms][s.uniform][cell.on](pass);
 }
 
+void Domain::addBondForces()
+{
+	for (const Ownership o : ownerships)
+		if (touching.bonds[o].blockCount()) s.passes->bondForces[cell.on](bondPassFor(o));
+}
+
 void Domain::addFirstForces()
 {
-	sums.eventWork = 0;
 	lists.beginStep();
-	sortIfWorthwhile();
-	early.clear();
-	if (cell.on) sums.boundary.arrive(cell, s.dt);
+	touching.sortIfWorthwhile();
+	ledger.beginStep(s.dt);
 	outside.begin();
 	constraints.begin();
-	addForces(First, 0, contacts[First].blockCount(), false);
-	addForces(Second, 0, contacts[Second].blockCount(), false);
-	addForces(Both, sortedBlocks, contacts[Both].blockCount(), false);
+	addForces(FirstOwned, 0, touching.contacts[FirstOwned].blockCount(), false);
+	addForces(SecondOwned, 0, touching.contacts[SecondOwned].blockCount(), false);
+	addForces(Interior, touching.order.sortedBlocks, touching.contacts[Interior].blockCount(), false);
 	addBondForces();
-	formContacts();
+	events.formContacts();
 }
 
 void Domain::addOtherForces(bool behind)
 {
 	if (behind) beginMoving();
-	addForces(Both, 0, sortedBlocks, behind);
-	if (cell.on) sums.boundary.complete(cell, s.dt);
+	addForces(Interior, 0, touching.order.sortedBlocks, behind);
+	ledger.completeStep(s.dt);
 	if (behind)
 		completeAndIntegrateUpTo(end);
 	else
 		completeForces(end);
-}
-
-void Domain::moveBehind(void* owner, int batch)
-{
-	Domain& domain = *static_cast<EventCall*>(owner)->domain;
-	domain.completeAndIntegrateUpTo(domain.completed[batch]);
 }
 
 void Domain::completeForces(int grain)
@@ -101,6 +122,8 @@ void Domain::completeAndIntegrateUpTo(int grain)
 		integrateUpTo(to);
 	}
 }
+
+// ---- kick and drift ----
 
 void Domain::beginMoving()
 {
@@ -145,7 +168,7 @@ void Domain::convect(int first, int last)
 		Grain& g = s.grains[k];
 		const Vec3<double> before = velocityOf(g), gain = s.dt * Images<double>::times(s.convective, before);
 		const Vec3<double> after = before + gain + (s.dt * s.inverseMass[k]) * Vec3<double> { g.fx, g.fy, g.fz };
-		sums.meanField -= 0.5 / s.inverseMass[k] * dot(gain, before + after);
+		ledger.addMeanFieldWork(-(0.5 / s.inverseMass[k] * dot(gain, before + after)));
 		g.vx += gain.x, g.vy += gain.y, g.vz += gain.z;
 		kicked.x = std::max(kicked.x, std::abs(gain.x)), kicked.y = std::max(kicked.y, std::abs(gain.y)),
 		kicked.z = std::max(kicked.z, std::abs(gain.z));
@@ -153,143 +176,68 @@ void Domain::convect(int first, int last)
 	movedLatest.kick[0] += kicked.x, movedLatest.kick[1] += kicked.y, movedLatest.kick[2] += kicked.z;
 }
 
-ContactMotion Domain::motionOf(int i, int j, Image& image) const
-{
-	const Grain &a = s.grains[i], &b = s.grains[j];
-	Vec3<double> separation = positionOf(a) - positionOf(b);
-	image = nearestImage(cell, separation);
-	const double inverseMass =
-	        inverseMassAlong(separation, s.inverseMass[i], s.blocked[i]) + inverseMassAlong(separation, s.inverseMass[j], s.blocked[j]);
-	return { separation, velocityOf(a) - velocityOf(b) + image.velocity, spinOf(a), spinOf(b), s.dt, inverseMass, image.velocity,
-		inverseInertiaOf(s.inverseInertia[i], s.blocked[i]), inverseInertiaOf(s.inverseInertia[j], s.blocked[j]) };
-}
+// ---- in another order ----
 
-// Positions move by velocity * dt, and by where a script has put the grains since.
-Vec3<double> Domain::separationAStepAgo(int i, int j, const ContactMotion& m) const
-{
-	Vec3<double> then = m.separation - m.dt * m.velocity;
-	if (s.displaced.empty()) return then;
-	then = then - (s.displaced[i] - s.displaced[j]);
-	nearestImage(cell, then);
-	return then;
-}
-
-void Domain::book(const ContactStepResult& r, const ContactMotion& m, const Image& image, int sort)
-{
-	if (sort == Second) return;
-	sums.dissipated += r.dissipated;
-	sums.eventWork += r.workBefore - 0.5 * contact_law::events::work(m, r.force, r.torque1, r.torque2);
-	if (cell.on) sums.boundary.addEarly(image.shift, r.force, r.forceBefore);
-	++events;
-}
-
-void Domain::keepEarly(int i, int j, const ContactStepResult& r)
-{
-	const Vec3<double> force = r.forceBefore - 0.5 * r.force;
-	if (owns(i)) early.push_back({ i, force, r.torqueBefore1 - 0.5 * r.torque1 });
-	if (owns(j)) early.push_back({ j, -force, r.torqueBefore2 - 0.5 * r.torque2 });
-}
-
-void Domain::addAlone(int sort, int i, int j, const ContactStepResult& r, const Image& image)
-{
-	if (sort != Second) {
-		addToGrain(s.grains[i], r.force, r.torque1);
-		if (cell.on) sums.boundary.add(image.shift, r.force);
+namespace {
+	template <class OfGrain> void sortByGrain(std::vector<OfGrain>& all)
+	{
+		std::sort(all.begin(), all.end(), [](const OfGrain& a, const OfGrain& b) { return a.grain < b.grain; });
 	}
-	if (sort != First) addToGrain(s.grains[j], -r.force, r.torque2);
-}
-
-void Domain::eventsOf(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& forces)
-{
-	const EventCall& call = *static_cast<EventCall*>(owner);
-	for (int k = 0; k < lanes; ++k)
-		if (which & (1u << k)) call.domain->eventOf(call.sort, block * lanes + k, before, forces);
-}
-
-void Domain::eventOf(int sort, int lane, const ContactBlock& old, LaneForces& forces)
-{
-	ContactList& list = contacts[sort];
-	const int k = lane % lanes;
-	const int i = list.first(lane), j = list.second(lane);
-	Image image;
-	const ContactMotion m = motionOf(i, j, image);
-	const PairConstants<double> constants = s.constantsOf(i, j);
-	ContactHistory<double> h = ContactList::history(old, k);
-
-	ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, separationAStepAgo(i, j, m), h);
-	if (s.hasDrag()) {
-		before.velocity = list.velocityBefore(lane);
-		before.drag = list.drag(lane);
+	template <class OfGrain> std::vector<OfGrain> renumbered(std::vector<OfGrain> all, const std::vector<int>& to)
+	{
+		for (OfGrain& one : all)
+			one.grain = to[one.grain];
+		return all;
 	}
-
-	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
-	const ContactStepResult r = contactStepWith[s.mechanisms](constants, s.limit, m, before, h);
-	book(r, m, image, sort);
-	keepEarly(i, j, r);
-	write(r.force, forces.force, k);
-	write(r.torque1, forces.torque1, k);
-	write(r.torque2, forces.torque2, k);
-	if (r.touching) {
-		list.writeHistory(lane, h);
-		list.writeDrag(lane, r.now.drag, r.geometry.overlap, m.velocity);
-		return;
-	}
-	// this lane's kicks still go to its grains (scattered by index): add them here, and leave nothing for the dead lane's dummies
-	addAlone(sort, i, j, r, image);
-	write({ 0, 0, 0 }, forces.force, k);
-	write({ 0, 0, 0 }, forces.torque1, k);
-	write({ 0, 0, 0 }, forces.torque2, k);
-	list.kill(lane);
-	if (sort != Second) ++broke;
-	++changed;
-	lists.part(i, j);
 }
 
-void Domain::formContacts()
+Domain::Contents Domain::takeOut()
 {
-	std::vector<NeighbourPair> forming = lists.overlapping(cell);
-	const auto key = [this](const NeighbourPair& p) { return std::make_tuple(sortOf(p.first(), p.second()), p.first(), p.second()); };
-	std::sort(forming.begin(), forming.end(), [&](const NeighbourPair& a, const NeighbourPair& b) { return key(a) < key(b); });
-	for (const NeighbourPair& pair : forming)
-		if (formContact(pair)) lists.touch(pair.first(), pair.second());
+	Contents all;
+	all.touching = touching.takeOut();
+	all.constrained.swap(constraints.grains);
+	all.outside.swap(outside.grains);
+	return all;
 }
 
-// Returns whether it did.
-bool Domain::formContact(const NeighbourPair& pair)
+void Domain::place(const Contents& all, const std::vector<int>& to)
 {
-	const int i = pair.first(), j = pair.second(), sort = sortOf(i, j);
-	Image image;
-	const ContactMotion m = motionOf(i, j, image);
-	Contact c { i, j, {}, s.constantsOf(i, j) };
-	const auto r = contactStepWith[s.mechanisms](c.constants, s.limit, m, ContactBefore {}, c.history);
-	if (!r.touching) return false;
-	c.drag = r.now.drag;
-	c.overlap = r.geometry.overlap;
-	c.velocity = m.velocity;
-	if (sort != Second) ++formed;
-	++changed;
-	book(r, m, image, sort);
-	keepEarly(i, j, r);
-	addAlone(sort, i, j, r, image);
-	contacts[sort].append(c);
-	return true;
+	touching.place(all.touching, to);
+	for (const Constrained& c : renumbered(all.constrained, to))
+		if (touching.owns(c.grain)) constraints.grains.push_back(c);
+	sortByGrain(constraints.grains);
+	place(renumbered(all.outside, to));
 }
+
+void Domain::place(const std::vector<OutsideForce>& all)
+{
+	for (const OutsideForce& f : all)
+		if (touching.owns(f.grain)) outside.grains.push_back(f);
+	sortByGrain(outside.grains);
+}
+
+// ---- energies ----
 
 StoredEnergy<double> Domain::energies()
 {
 	StoredEnergy<double> total { 0, 0, 0, 0 };
-	for (int sort = Both; sort <= First; ++sort) {
+	for (const Ownership o : counted) {
 		StoredEnergy<double> part { 0, 0, 0, 0 };
-		s.passes->energies[s.mechanisms][s.uniform](passFor(sort), part);
+		s.passes->energies[s.mechanisms][s.uniform](passFor(o), part);
 		total += part;
 	}
-	addBondEnergies(total);
+	for (const Ownership o : counted) {
+		if (!touching.bonds[o].blockCount()) continue;
+		StoredEnergy<double> part { 0, 0, 0, 0 };
+		s.passes->bondEnergies(bondPassFor(o), part);
+		total += part;
+	}
 	return total;
 }
 
 double Domain::kineticEnergy() const
 {
-	double sum = sums.eventWork;
+	double sum = ledger.workOfEvents();
 	for (int k = begin; k < end; ++k)
 		sum += kineticEnergyOf(k);
 	return sum;
@@ -311,14 +259,6 @@ double Domain::convectiveWork() const
 		sum += 0.5 * s.dt / s.inverseMass[k] * dot(v, Images<double>::times(s.convective, v));
 	}
 	return sum;
-}
-
-int Domain::contactCount() const
-{
-	int count = bonds[Both].aliveCount() + bonds[First].aliveCount();
-	for (int sort = Both; sort <= First; ++sort)
-		count += contacts[sort].aliveCount();
-	return count;
 }
 
 } // namespace contact_law

@@ -14,11 +14,9 @@ namespace {
 		return positions;
 	}
 
-	constexpr long stepsBetweenTrials = 2000; // of the grains' order, which takes some twenty-five steps' time to make anew
-	constexpr double worn = 1.1;              // groups are put in order again when their edges have grown by this
-	constexpr double mostStepsToCheck = 8;    // from one check of the neighbour lists to the next
+	constexpr long stepsBetweenTrials = 2000;              // of the grains' order; a new one takes the time of some twenty-five steps
+	constexpr double reorderThreshold = 1.1;               // groups are put in order again when their edges have grown by this
 	constexpr int grainsInDomain = 6000, mostDomains = 64; // at least, and at most, where the scene decides
-	constexpr double boxMargin = 3; // how much further groups are taken for nearby than they need be, over the largest radius
 }
 
 Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_)
@@ -31,7 +29,8 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 	makeLists();
 	sizesWhenOrdered = groupSizes();
 	for (auto& domain : domains)
-		setting.neck > 0 ? domain->placeBonds() : domain->placeOverlapping();
+		shared.neck > 0 ? domain->touching.placeBonds(domain->lists, cell())
+		                : domain->touching.placeOverlapping(domain->lists, cell());
 	firstForces();
 }
 
@@ -39,7 +38,7 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
         : options(options_)
 {
 	prepare(grains, materials);
-	setting.necks = inherited.necks();
+	shared.necks = inherited.necks();
 	orderGrains(positionsOf(grains));
 	loadGrains(grains);
 	makeDomains();
@@ -52,30 +51,30 @@ void Dynamics::prepare(const Grains& grains, const Materials& materials)
 	if (grains.empty()) throw std::invalid_argument("no grains: at least one sphere is needed");
 	count = int(grains.size());
 	indexHere.resize(count);
-	setting.passes = &instructionSet(options.instructions);
-	setting.material = materials;
-	setting.pairs = options.pairs;
-	setting.neck = options.neck;
-	if (setting.neck > 0) setting.necks = { setting.neck };
-	setting.mechanisms = options.mechanisms;
-	setting.limit = options.limit;
-	setting.dt = options.dt;
-	setting.convective = options.convective;
+	shared.passes = &instructionSet(options.instructions);
+	shared.material = materials;
+	shared.pairs = options.pairs;
+	shared.neck = options.neck;
+	if (shared.neck > 0) shared.necks = { shared.neck };
+	shared.mechanisms = options.mechanisms;
+	shared.limit = options.limit;
+	shared.dt = options.dt;
+	shared.convective = options.convective;
 }
 
 void Dynamics::loadGrains(const Grains& grains)
 {
 	for (int k = 0; k < count; ++k) {
 		const GrainInput& g = grains[original[k]];
-		setting.grains.push_back(Grain {});
-		copyMotion(g, setting.grains.back());
-		setting.grainRadius.push_back(g.radius);
-		setting.kind.push_back(g.kind);
-		setting.blocked.push_back(g.blocked);
-		if (options.orientations) setting.orientation.push_back(g.orientation);
-		setting.inverseMass.push_back(1 / g.mass);
-		setting.inverseInertia.push_back(1 / g.inertia);
-		setting.uniform = setting.uniform && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
+		shared.grains.push_back(Grain {});
+		copyMotion(g, shared.grains.back());
+		shared.grainRadius.push_back(g.radius);
+		shared.kind.push_back(g.kind);
+		shared.blocked.push_back(g.blocked);
+		if (options.orientations) shared.orientation.push_back(g.orientation);
+		shared.inverseMass.push_back(1 / g.mass);
+		shared.inverseInertia.push_back(1 / g.inertia);
+		shared.uniform = shared.uniform && g.radius == grains[original[0]].radius && g.kind == grains[original[0]].kind;
 	}
 	shrinkGrains();
 }
@@ -97,16 +96,16 @@ void copyMotion(const Grain& grain, GrainMotion& g)
 void Dynamics::set(int index, const GrainMotion& now)
 {
 	const int k = indexHere[index];
-	Grain& p = setting.grains[k];
-	if (now.blocked != setting.blocked[k]) {
-		domainOf(k).constraints.block(setting.grains.data(), k, now.blocked);
-		setting.blocked[k] = now.blocked;
+	Grain& p = shared.grains[k];
+	if (now.blocked != shared.blocked[k]) {
+		domainOf(k).constraints.block(shared.grains.data(), k, now.blocked);
+		shared.blocked[k] = now.blocked;
 	}
-	if (options.orientations) setting.orientation[k] = now.orientation;
+	if (options.orientations) shared.orientation[k] = now.orientation;
 	const Vec3<double> from = positionOf(p);
 	copyMotion(now, p);
-	setting.displace(k, positionOf(p) - from);
-	kick(setting, p, k, -0.5 * setting.dt);
+	shared.displace(k, positionOf(p) - from);
+	kick(shared, p, k, -0.5 * shared.dt);
 	velocitiesSet = true;
 	outdateLists();
 }
@@ -130,19 +129,19 @@ void Dynamics::setOutsideForces(const std::vector<OutsideForce>& given_, Onset o
 // What the kinetic energy of this moment, which a leapfrog counts with half a kick, changes by is work of the force.
 void Dynamics::changeForce(Domain& domain, int k, Vec3<double> force, Vec3<double> torque, Onset onset)
 {
-	Grain& p = setting.grains[k];
+	Grain& p = shared.grains[k];
 	const double before = domain.kineticEnergyOf(k);
-	if (onset == Onset::Now) kick(setting, p, k, 0.5 * setting.dt);
+	if (onset == Onset::Now) kick(shared, p, k, 0.5 * shared.dt);
 	domain.constraints.push(k, force, torque);
 	addToGrain(p, force, torque);
-	if (onset == Onset::Now) kick(setting, p, k, -0.5 * setting.dt);
+	if (onset == Onset::Now) kick(shared, p, k, -0.5 * shared.dt);
 	domain.outside.work += before - domain.kineticEnergyOf(k);
 }
 
-void kick(const Setting& setting, Grain& p, int k, double time)
+void kick(const SharedState& shared, Grain& p, int k, double time)
 {
-	const double m = time * setting.inverseMass[k], i = time * setting.inverseInertia[k];
-	const Vec3<double>& c = setting.convective; // grows with the velocity before the kick
+	const double m = time * shared.inverseMass[k], i = time * shared.inverseInertia[k];
+	const Vec3<double>& c = shared.convective; // grows with the velocity before the kick
 	if (time > 0) p.vx *= 1 + time * c.x, p.vy *= 1 + time * c.y, p.vz *= 1 + time * c.z;
 	p.vx += m * p.fx, p.vy += m * p.fy, p.vz += m * p.fz;
 	p.wx += i * p.tx, p.wy += i * p.ty, p.wz += i * p.tz;
@@ -152,7 +151,7 @@ void kick(const Setting& setting, Grain& p, int k, double time)
 void Dynamics::kickAll(double time)
 {
 	for (int k = 0; k < count; ++k)
-		kick(setting, setting.grains[k], k, time);
+		kick(shared, shared.grains[k], k, time);
 }
 
 int Dynamics::domainCount() const
@@ -166,13 +165,13 @@ int Dynamics::domainCount() const
 
 void Dynamics::makeDomains()
 {
-	setting.grains.resize(count + 2 * domainCount());
+	shared.grains.resize(count + 2 * domainCount());
 	for (int d = 0; d < domainCount(); ++d)
-		domains.push_back(std::make_unique<Domain>(setting, beginOf(d), beginOf(d + 1), count + 2 * d));
+		domains.push_back(std::make_unique<Domain>(shared, beginOf(d), beginOf(d + 1), count + 2 * d));
 	for (auto& domain : domains)
 		domain->cell = options.cell;
 	for (int k = 0; k < count; ++k)
-		if (setting.blocked[k]) domainOf(k).constraints.block(setting.grains.data(), k, setting.blocked[k]);
+		if (shared.blocked[k]) domainOf(k).constraints.block(shared.grains.data(), k, shared.blocked[k]);
 }
 
 Domain& Dynamics::domainOf(int index)
@@ -183,70 +182,14 @@ Domain& Dynamics::domainOf(int index)
 	return *domains[d];
 }
 
-void Dynamics::makeLists()
-{
-	for (auto& domain : domains)
-		domain->lists.measureBoxes();
-	setMostCells();
-#pragma omp parallel for num_threads(threadCount())
-	for (auto& domain : domains) {
-		domain->lists.findNearby(cell(), reach() + boxMargin * setting.largestRadius);
-		domain->lists.searchAnew(cell());
-		domain->markTouching();
-	}
-	listAge = {};
-}
-
-void Dynamics::outdateLists()
-{
-	if (listAge.outdated) return; // a script may set every grain
-	for (Group& group : setting.groups)
-		group.approach = 2 * setting.farGap;
-	listAge.outdated = true;
-}
-
-/* After a step's drift, before its forces. Groups' ranges since the latest check tell how far each group's grains may have come closer to others; for the steps to come
- * their kicks are bounded, and a kick beyond its bound brings the next check at once. */
-ListWork Dynamics::listWork(ListAge& age, const VelocityRange& range, const Vec3<double>& growth) const
-{
-	const Vec3<double> moved = Images<double>::times(mostCells, growth);
-	ListWork work;
-	work.across = std::sqrt(dot(moved, moved));
-	const double approach = setting.dt * range.diagonal() + work.across; // an image moves with its cell
-	age.sinceBoxes += approach;
-	++age.sinceCheck;
-	const bool early = std::any_of(domains.begin(), domains.end(), [](const auto& domain) { return domain->mustCheck(); });
-	if (!(age.outdated || early || age.sinceCheck >= age.checkAfter)) return work;
-	work.check = true;
-	work.all = age.outdated;
-	work.steps = age.sinceCheck;
-	work.stepsToNext = int(std::max(1., std::min(mostStepsToCheck, 0.2 * setting.farGap / approach)));
-	work.boxes = age.outdated || age.sinceBoxes > 0.5 * boxMargin * setting.largestRadius;
-	if (work.boxes) age.sinceBoxes = 0;
-	age.sinceCheck = 0;
-	age.checkAfter = work.stepsToNext;
-	age.outdated = false;
-	return work;
-}
-
-void Dynamics::keepLists(int d, const ListWork& work)
-{
-	Domain& domain = *domains[d];
-	if (work.boxes) {
-		if (d == 0) setMostCells();
-		domain.lists.findNearby(domain.cell, reach() + boxMargin * setting.largestRadius);
-	}
-	if (work.check) domain.lists.check(domain.cell, work.steps, work.stepsToNext, work.across, work.all);
-}
-
 Dynamics::Counters Dynamics::counters() const
 {
 	Counters c;
 	c.contactUpdates = contactUpdates;
 	c.orders = orders;
 	for (const auto& domain : domains) {
-		c.searches += double(domain->lists.searches) / double(setting.groups.size());
-		c.looks += domain->lists.looks;
+		c.searches += double(domain->lists.searches) / double(shared.groups.size());
+		c.distanceChecks += domain->lists.distanceChecks;
 	}
 	return c;
 }
@@ -256,12 +199,12 @@ Dynamics::Counters Dynamics::counters() const
 void Dynamics::firstForces()
 {
 	for (auto& domain : domains)
-		domain->sortContacts();
+		domain->touching.sort();
 	takeVelocities();
-	const double dt = setting.dt;
-	setting.dt = 0;
+	const double dt = shared.dt;
+	shared.dt = 0;
 	addForces();
-	setting.dt = dt;
+	shared.dt = dt;
 	kickAll(-0.5 * dt);
 	takeVelocities();
 }
@@ -269,7 +212,7 @@ void Dynamics::firstForces()
 void Dynamics::takeVelocities()
 {
 	for (auto& domain : domains)
-		domain->takeVelocities();
+		domain->touching.takeVelocities(cell());
 	velocitiesSet = false;
 }
 
@@ -284,9 +227,9 @@ void Dynamics::addForces()
 // A run as one of its threads makes it; all threads take the same decisions from the same numbers. Returns the steps made.
 long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, Shares shares, Barrier& barrier)
 {
-	const Vec3<double> rate = (1 / setting.dt) * growth;
+	const Vec3<double> rate = (1 / shared.dt) * growth;
 	ListAge age = listAge;
-	if (std::sqrt(dot(mostCells, mostCells)) * std::sqrt(dot(rate - cell().rate, rate - cell().rate)) > setting.leastKick)
+	if (std::sqrt(dot(mostCells, mostCells)) * std::sqrt(dot(rate - cell().rate, rate - cell().rate)) > shared.leastKick)
 		age.outdated = true;
 	const double fastest = fastestThatHolds();
 	shares.each([&](int d) { domains[d]->integrate(); });
@@ -318,7 +261,7 @@ VelocityRange Dynamics::velocities() const
 {
 	VelocityRange all;
 	for (const auto& domain : domains)
-		all.join(domain->velocities);
+		all.join(domain->latestVelocities());
 	return all;
 }
 
@@ -328,15 +271,14 @@ long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 	for (long made = 0; made < steps;) {
 		if (stepsSinceTrial >= stepsBetweenTrials) {
 			stepsSinceTrial = 0;
-			if (groupSizes() > worn * sizesWhenOrdered) reorder();
+			if (groupSizes() > reorderThreshold * sizesWhenOrdered) reorder();
 		}
 		// what a script has moved is moved for the first step only
-		const long most = setting.displaced.empty() ? stepsBetweenTrials - stepsSinceTrial : 1,
-		           wanted = std::min(most, steps - made);
-		const long here = runEvenly(wanted, from + (double(made + wanted) / double(steps)) * (to - from));
-		setting.displaced.clear();
+		const long most = shared.displaced.empty() ? stepsBetweenTrials - stepsSinceTrial : 1, asked = std::min(most, steps - made);
+		const long here = runEvenly(asked, from + (double(made + asked) / double(steps)) * (to - from));
+		shared.displaced.clear();
 		stepsSinceTrial += here, made += here;
-		if (here < wanted) return made;
+		if (here < asked) return made;
 	}
 	return steps;
 }
@@ -359,7 +301,7 @@ long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 }
 
 // In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
-double Dynamics::fastestThatHolds() const { return 0.5 * setting.smallestRadius / setting.dt; }
+double Dynamics::fastestThatHolds() const { return 0.5 * shared.smallestRadius / shared.dt; }
 
 void Dynamics::read(std::vector<GrainMotion>& grains) const
 {
@@ -370,12 +312,12 @@ void Dynamics::read(std::vector<GrainMotion>& grains) const
 		const char* coming = reinterpret_cast<const char*>(&grains[original[std::min(k + 16, count - 1)]]);
 		__builtin_prefetch(coming, 1);
 		__builtin_prefetch(coming + 64, 1);
-		Grain p = setting.grains[k];
+		Grain p = shared.grains[k];
 		GrainMotion& g = grains[original[k]];
-		kick(setting, p, k, 0.5 * setting.dt);
+		kick(shared, p, k, 0.5 * shared.dt);
 		copyMotion(p, g);
-		g.blocked = setting.blocked[k];
-		if (options.orientations) g.orientation = setting.orientation[k];
+		g.blocked = shared.blocked[k];
+		if (options.orientations) g.orientation = shared.orientation[k];
 	}
 }
 
@@ -395,7 +337,7 @@ Energies Dynamics::energies()
 	for (std::size_t d = 0; d < domains.size(); ++d) {
 		e.stored += stored[d];
 		e.kinetic += kinetic[d] + convective[d];
-		e.boundaryWork += domains[d]->sums.boundary.done + domains[d]->sums.meanField - convective[d];
+		e.boundaryWork += domains[d]->ledger.boundaryWork() - convective[d];
 		e.constraintWork += domains[d]->constraints.work;
 		e.externalWork += domains[d]->outside.work;
 	}

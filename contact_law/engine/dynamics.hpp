@@ -27,9 +27,9 @@ struct Inherited; // exchange.hpp
 void copyMotion(const GrainMotion&, Grain&); // all but orientation and blocked degrees of freedom, which grains don't carry
 void copyMotion(const Grain&, GrainMotion&);
 // A grain's velocities through the given time [s] with the forces as they are; back in time, it undoes what it does.
-void kick(const Setting&, Grain&, int index, double time);
+void kick(const SharedState&, Grain&, int index, double time);
 
-// How long ago the neighbour lists were looked after.
+// How long ago the neighbour lists were checked.
 struct ListAge {
 	double sinceBoxes = 0; // bound on how far any two grains have come closer since the groups' boxes were measured [m]
 	int sinceCheck = 0;    // steps
@@ -39,9 +39,10 @@ struct ListAge {
 
 // What a step does for them, the same in all domains.
 struct ListWork {
-	bool boxes = false, check = false, all = false; // measure boxes and find groups nearby; check the lists; look at all pairs
-	int steps = 0, stepsToNext = 0;                 // since the latest check; to the next
-	double across = 0;                              // by how much boundaries move images in a step [m]
+	bool boxes = false, check = false,
+	     all = false;               // measure boxes and find groups nearby; check the lists; check the distances of all pairs
+	int steps = 0, stepsToNext = 0; // since the latest check; to the next
+	double across = 0;              // by how much boundaries move images in a step [m]
 };
 
 class Dynamics {
@@ -60,9 +61,9 @@ public:
 	};
 	struct Counters {
 		long contactUpdates = 0;
-		double searches = 0; // for neighbours, of all grains or as many grains a part at a time
-		long looks = 0;      // at pairs that do not touch
-		long orders = 0;     // times that grains were put into a new order
+		double searches = 0;     // for neighbours, of all grains or as many grains a part at a time
+		long distanceChecks = 0; // of pairs that do not touch
+		long orders = 0;         // times that grains were put into a new order
 	};
 	using Grains = std::vector<GrainInput>;
 	using Materials = std::vector<Material>;
@@ -79,8 +80,8 @@ public:
 
 	// ---- what changes a run ----
 
-	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (diagnosis.hpp then tells).
-	 * In a periodic cell its size goes evenly from what it was to sizeAtEnd [m]. */
+	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (diagnosis.hpp says why).
+	 * In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);
@@ -107,7 +108,7 @@ public:
 
 	// ---- for the free functions beside this class ----
 
-	const Setting& state() const { return setting; }
+	const SharedState& state() const { return shared; }
 	const std::vector<std::unique_ptr<Domain>>& parts() const { return domains; }
 	int given(int here) const { return original[here]; } // a grain's index as given, by its index in state()
 	int here(int given) const { return indexHere[given]; }
@@ -116,7 +117,7 @@ public:
 	int threadCount() const { return std::max(1, std::min(options.threads, domainCount())); }
 	const PeriodicCell& cell() const { return domains[0]->cell; }
 	// What a periodic cell must hold twice along each axis: the largest distance of neighbours in the lists.
-	double reach() const { return 2 * setting.largestRadius + setting.farGap; }
+	double reach() const { return 2 * shared.largestRadius + shared.skin; }
 	Counters counters() const;
 
 private:
@@ -142,7 +143,7 @@ private:
 	void setMostCells();
 	void makeLists();
 	void outdateLists(); // grains have been moved otherwise than by a step
-	ListWork listWork(ListAge&, const VelocityRange&, const Vec3<double>& growth) const; // of this step; the age goes on
+	ListWork listWork(ListAge&, const VelocityRange&, const Vec3<double>& growth) const; // of this step; advances the age
 	void keepLists(int domain, const ListWork&);
 	long runEvenly(long steps, const Vec3<double>& sizeAtEnd);
 	long runThread(long steps, const Vec3<double>& growth, const Vec3<double>& sizeAtEnd, Shares, Barrier&);
@@ -152,7 +153,7 @@ private:
 	VelocityRange velocities() const;                                                     // of all grains through the latest drift
 
 	Options options;
-	Setting setting;
+	SharedState shared;
 	long contactUpdates = 0;
 	int count = 0;
 	std::vector<int> original, indexHere; // index given, by index here; and the other way round

@@ -14,8 +14,8 @@ std::vector<double> Inherited::necks() const
 void Dynamics::inherit(const Inherited& inherited)
 {
 	const auto velocityBefore = [&](int i, int j) -> Vec3<double> {
-		if (!inherited.stepBehind || !setting.hasDrag()) return { 0, 0, 0 }; // firstForces() sets it
-		Vec3<double> separation = separationOf(setting.grains[i], setting.grains[j]);
+		if (!inherited.stepBehind || !shared.hasDrag()) return { 0, 0, 0 }; // firstForces() sets it
+		Vec3<double> separation = separationOf(shared.grains[i], shared.grains[j]);
 		const Image image = nearestImage(cell(), separation);
 		return inherited.previous[original[i]] - inherited.previous[original[j]] + image.velocityBefore;
 	};
@@ -23,19 +23,19 @@ void Dynamics::inherit(const Inherited& inherited)
 		const int a = indexHere[one.first], b = indexHere[one.second], i = std::min(a, b), j = std::max(a, b);
 		const ContactHistory<double> history = a < b ? one.history : swapped(one.history);
 		for (auto& domain : domains)
-			one.bonded ? domain->place(Bond { i, j, history, one.rest, setting.bondOf(i, j, one.neck) })
-			           : domain->place(Contact {
-			                   i, j, history, setting.constantsOf(i, j), one.drag, one.overlap, velocityBefore(i, j) });
+			one.bonded ? domain->touching.place(Bond { i, j, history, one.rest, shared.bondOf(i, j, one.neck) })
+			           : domain->touching.place(Contact {
+			                   i, j, history, shared.constantsOf(i, j), one.drag, one.overlap, velocityBefore(i, j) });
 	}
 	for (auto& domain : domains)
-		domain->sortContacts();
+		domain->touching.sort();
 	makeLists();
 	if (inherited.stepBehind) {
 		completeInheritedStep();
 		return;
 	}
 	for (auto& domain : domains)
-		domain->placeOverlapping();
+		domain->touching.placeOverlapping(domain->lists, cell());
 	firstForces();
 }
 
@@ -47,7 +47,7 @@ void Dynamics::completeInheritedStep()
 {
 	addForces();
 	for (auto& domain : domains) {
-		domain->sums.boundary.done *= 2;
+		domain->ledger.doubleBoundaryWork();
 		domain->constraints.work = 0;
 	}
 }
@@ -55,11 +55,11 @@ void Dynamics::completeInheritedStep()
 void readAhead(const Dynamics& dynamics, std::vector<GrainMotion>& grains)
 {
 	dynamics.read(grains);
-	const Setting& setting = dynamics.state();
-	const double dt = setting.dt;
+	const SharedState& shared = dynamics.state();
+	const double dt = shared.dt;
 	for (int k = 0; k < dynamics.grainCount(); ++k) {
-		Grain p = setting.grains[k];
-		kick(setting, p, k, dt);
+		Grain p = shared.grains[k];
+		kick(shared, p, k, dt);
 		p.x += dt * p.vx, p.y += dt * p.vy, p.z += dt * p.vz;
 		GrainMotion& g = grains[dynamics.given(k)];
 		copyMotion(p, g);

@@ -1,4 +1,4 @@
-// Contacts and grains as other owners of a scene (YADE's functors, another engine) hand them in and want them handed out in the middle of a run.
+// Contacts and grains exchanged with other owners of a scene (YADE's functors, another engine), in the middle of a run too.
 #pragma once
 #include "contacts.hpp"
 

@@ -4,7 +4,7 @@
 // drag sees, the displacements before a slip, the booking of drag and slips.
 // tests/equivalence holds it to the functors and to tests/reference_law.py. Contacts that form or break go through contactStep() itself.
 #pragma once
-#include "../kernel/contact.hpp"
+#include "../kernel/held.hpp"
 #include "../kernel/turning.hpp"
 #include "arrays.hpp"
 #include "several.hpp"
@@ -242,7 +242,7 @@ template <class Pack> struct Passes {
 		const Vec3<Pack> velocity = load(buffer.velocity, at),
 		                 then = g.normal - (Pack(pass.dt) * g.inverseDistance) * velocity; // over the distance now
 		const Pointers<Pack> old { load(before.n1, at), load(before.n2, at) };
-		// the functors save these; here they follow from the pointers before they turned, as in aStepAgo() of domain.hpp
+		// the functors save these; here they follow from the pointers before they turned, as in aStepAgo() of contact_events.cpp
 		const Displacements<Pack> aStepAgo { sliding::displacement(old, c.radius1, c.radius2, inverseRoot(dot(then, then)) * then),
 			rolling::displacement(old, c.reducedRadius), Pack::load(before.twist + at) };
 		ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
@@ -322,9 +322,9 @@ template <class Pack> struct Passes {
 		const PairConstants<Pack> same = spread(*pass.uniform);
 		DissipationOf<Pack> lost;
 		Crossing<Pack, periodic> crossing(pass.cell);
-		int trash[lanes];
-		for (int& t : trash)
-			t = pass.trash;
+		int dummies[lanes];
+		for (int& dummy : dummies)
+			dummy = pass.dummy;
 
 		for (int first = pass.firstBlock, batch = 0; first < pass.endBlock; first += batchSize, ++batch) {
 			const int count = pass.endBlock - first < batchSize ? pass.endBlock - first : batchSize;
@@ -353,8 +353,8 @@ template <class Pack> struct Passes {
 					pass.events(pass.owner, first + b, buffers[b].events, before[b], buffers[b].out);
 			}
 			for (int b = 0; b < count; ++b) {
-				const int* to1 = pass.addFirst ? blocks[b].i : trash;
-				const int* to2 = pass.addSecond ? blocks[b].j : trash;
+				const int* to1 = pass.addFirst ? blocks[b].i : dummies;
+				const int* to2 = pass.addSecond ? blocks[b].j : dummies;
 				for (int at = 0; at < lanes; at += width) {
 					const Vec3<Pack> f = scatter(pass.grains, to1, to2, buffers[b].out, at);
 					if constexpr (periodic) crossing.add(load(crossing.shift[b], at), f);
@@ -385,18 +385,18 @@ template <class Pack> struct Passes {
 				const ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 				const StoredEnergy<Pack> e =
 				        storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
-				addLiving(e, block, at, pass.trash, sum);
+				addUsed(e, block, at, pass.dummy, sum);
 			}
 		}
 		sumLanes(sum, sums);
 	}
 
-	// The energies of lanes that are contacts: not those of dead lanes' dummies.
-	static void addLiving(const StoredEnergy<Pack>& e, const ContactBlock& block, int at, int trash, StoredEnergy<Pack>& sum)
+	// The energies of used slots: not those of the dummies.
+	static void addUsed(const StoredEnergy<Pack>& e, const ContactBlock& block, int at, int dummy, StoredEnergy<Pack>& sum)
 	{
 		alignas(64) double counts[lanes];
 		for (int lane = 0; lane < width; ++lane)
-			counts[lane] = block.i[at + lane] != trash;
+			counts[lane] = block.i[at + lane] != dummy;
 		const Pack mine = Pack::load(counts);
 		for (const auto& row : storedChannelsOf<Pack>)
 			sum.*row.member = sum.*row.member + mine * (e.*row.member);

@@ -81,7 +81,7 @@ double Dynamics::groupSizes()
 	double sum = 0;
 	for (auto& domain : domains)
 		domain->lists.measureBoxes();
-	for (const Group& group : setting.groups)
+	for (const Group& group : shared.groups)
 		for (int k = 0; k < 3; ++k)
 			sum += group.box.edge(k);
 	return sum;
@@ -103,7 +103,7 @@ void Dynamics::reorder()
 {
 	std::vector<Vec3<double>> positions(count);
 	for (int k = 0; k < count; ++k)
-		positions[original[k]] = positionOf(setting.grains[k]);
+		positions[original[k]] = positionOf(shared.grains[k]);
 	const std::vector<int> hereBefore = indexHere;
 	orderGrains(positions);
 	std::vector<int> from(count), to(count);
@@ -112,21 +112,20 @@ void Dynamics::reorder()
 	std::vector<Domain::Contents> contents;
 	for (auto& domain : domains)
 		contents.push_back(domain->takeOut());
-	arrange(setting.grains, from);
-	for (auto* values : { &setting.inverseMass, &setting.inverseInertia, &setting.radius, &setting.grainRadius })
+	arrange(shared.grains, from);
+	for (auto* values : { &shared.inverseMass, &shared.inverseInertia, &shared.radius, &shared.grainRadius })
 		arrange(*values, from);
-	arrange(setting.kind, from);
-	arrange(setting.orientation, from);
-	arrange(setting.blocked, from);
-	arrange(setting.displaced, from);
+	arrange(shared.kind, from);
+	arrange(shared.orientation, from);
+	arrange(shared.blocked, from);
+	arrange(shared.displaced, from);
 	for (auto& domain : domains)
-		for (EarlyKick& early : domain->early)
-			early.grain = to[early.grain];
+		domain->ledger.renumber(to);
 #pragma omp parallel for num_threads(threadCount())
 	for (auto& domain : domains) {
 		for (const Domain::Contents& its : contents)
 			domain->place(its, to);
-		domain->sortContacts();
+		domain->touching.sort();
 	}
 	makeLists();
 	sizesWhenOrdered = groupSizes();

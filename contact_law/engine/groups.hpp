@@ -29,7 +29,7 @@ struct Box { // around grains' centres [m]
 	Vec3<double> centre() const { return { 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]) }; }
 };
 
-// Some groups of a domain that follow each other, with a box around theirs: one look tells that all of them are far away.
+// Some groups of a domain that follow each other, with a box around theirs: one comparison tells that all of them are far away.
 struct alignas(64) GroupCluster {
 	static constexpr int most = 8;
 	int first, last; // groups, the last one not among them
@@ -50,8 +50,8 @@ struct alignas(64) Group {
 	double kickNearby = 0;            // largest of their bounds on kicks at the latest check
 	double speedNearby = 0;           // bound on the relative velocity of its grains and theirs, likewise [m/s]
 	double approach = 0;              // bound on how far its grains and theirs have come closer since its pairs were found [m]
-	std::vector<NeighbourPair> pairs; // with a gap below Setting::farGap when they were found, in order
-	std::vector<int> next;            // by pair: the step in which to look at it again; never: it touches
+	std::vector<NeighbourPair> pairs; // with a gap below SharedState::skin when they were found, in order
+	std::vector<int> next;            // by pair: the step of its next distance check; never: it touches
 	std::vector<int> soonestOf;       // of these, by stretch of pairs
 	int soonest = 0;                  // of all
 
@@ -59,14 +59,14 @@ struct alignas(64) Group {
 
 	int endOfStretch(int part) const { return std::min((part + 1) * stretch, int(next.size())); } // the pair behind its last one
 
-	// A pair is to be looked at in a step, at the latest.
-	void lookAt(int pair, int step)
+	// A pair's distance is to be checked in a step, at the latest.
+	void schedule(int pair, int step)
 	{
 		next[pair] = step;
 		soonestOf[pair / stretch] = std::min(soonestOf[pair / stretch], step);
 		soonest = std::min(soonest, step);
 	}
-	void lookAtAll()
+	void scheduleAll()
 	{
 		for (int& step : next)
 			if (step != never) step = 0;
@@ -85,7 +85,7 @@ struct alignas(64) Group {
 		widen();
 		return false;
 	}
-	// Bounds that have become far too wide are drawn closer, in no direction further: other groups go on with those that they know.
+	// Bounds that have become far too wide are narrowed, and widened in no direction: other groups still rely on those that they know.
 	void clearAfterCheck(double leastKick)
 	{
 		sinceTrial.join(sinceCheck);

@@ -1,15 +1,15 @@
 #include "pair_lists.hpp"
-#include "setting.hpp"
+#include "shared_state.hpp"
 #include <algorithm>
 
 namespace contact_law {
 
-PairLists::PairLists(Setting& setting, int begin_, int end_)
-        : s(setting)
+PairLists::PairLists(SharedState& shared, int begin_, int end_)
+        : s(shared)
         , begin(begin_)
         , end(end_)
-        , firstGroup(int(setting.groups.size()))
-        , firstCluster(int(setting.clusters.size()))
+        , firstGroup(int(shared.groups.size()))
+        , firstCluster(int(shared.clusters.size()))
 {
 	for (int first = begin; first < end; first += grainsInGroup) {
 		s.groups.emplace_back();
@@ -76,7 +76,7 @@ void PairLists::findNearby(const PeriodicCell& cell, double reach)
 void PairLists::gatherCandidates(const Group& group, const PeriodicCell& cell)
 {
 	const Box box = boxOf(group); // now, not when boxes were measured
-	const double reach = 2 * s.largestRadius + s.farGap;
+	const double reach = 2 * s.largestRadius + s.skin;
 	const Vec3<double> half { 0.5 * box.edge(0) + reach, 0.5 * box.edge(1) + reach, 0.5 * box.edge(2) + reach };
 	candidates.clear();
 	for (const int g : group.nearby) {
@@ -97,14 +97,14 @@ void PairLists::search(Group& group, const PeriodicCell& cell)
 	for (int i = group.first; i < group.last; ++i) {
 		while (above < candidates.count && candidates.grain[above] <= i)
 			++above;
-		const auto look = [&](int first, int last) {
+		const auto compare = [&](int first, int last) {
 			const int count = s.passes->closeGrains[cell.on](
-			        { candidates, cell, s.grains[i], s.radius[i] + s.farGap, first, last }, found.data());
+			        { candidates, cell, s.grains[i], s.radius[i] + s.skin, first, last }, found.data());
 			for (int k = 0; k < count; ++k)
 				foundPairs.push_back({ i, found[k] });
 		};
-		if (lower > 0) look(0, lower);
-		look(above, candidates.count);
+		if (lower > 0) compare(0, lower);
+		compare(above, candidates.count);
 	}
 	foundNext.assign(foundPairs.size(), step);
 	std::size_t at = 0; // pairs that touch keep doing so
@@ -131,7 +131,7 @@ void PairLists::searchAnew(const PeriodicCell& cell)
 	}
 }
 
-void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across, bool lookAtAll)
+void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across, bool scheduleAll)
 {
 	holdsNow = true;
 	for (Group& group : own()) {
@@ -146,13 +146,13 @@ void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, doub
 		const double perStep = s.dt * around.diagonal() + across;
 		const double ahead = (stepsToNext - 1) * (perStep + s.dt * 2 * stepsToNext * kicks);
 		group.approach += steps * perStep;
-		if (group.approach + ahead > s.farGap)
+		if (group.approach + ahead > s.skin)
 			search(group, cell);
-		else if (lookAtAll || kicks > group.kickNearby || speed > group.speedNearby)
-			group.lookAtAll();
+		else if (scheduleAll || kicks > group.kickNearby || speed > group.speedNearby)
+			group.scheduleAll();
 		group.kickNearby = kicks;
 		group.speedNearby = speed;
-		holdsNow = holdsNow && ahead <= s.farGap;
+		holdsNow = holdsNow && ahead <= s.skin;
 	}
 }
 
@@ -166,23 +166,23 @@ void PairLists::clearAfterCheck()
 const std::vector<NeighbourPair>& PairLists::overlapping(const PeriodicCell& cell)
 {
 	constexpr std::size_t ahead = 8;
-	findDue();
+	findScheduled();
 	overlaps.clear();
-	for (std::size_t k = 0; k < due.size(); ++k) {
-		if (k + ahead < due.size()) {
-			const NeighbourPair& coming = due[k + ahead].group->pairs[due[k + ahead].index];
+	for (std::size_t k = 0; k < scheduled.size(); ++k) {
+		if (k + ahead < scheduled.size()) {
+			const NeighbourPair& coming = scheduled[k + ahead].group->pairs[scheduled[k + ahead].index];
 			__builtin_prefetch(&s.grains[coming.own]);
 			__builtin_prefetch(&s.grains[coming.other]);
 			__builtin_prefetch(&s.radius[coming.own]);
 			__builtin_prefetch(&s.radius[coming.other]);
 		}
-		look(*due[k].group, due[k].index, cell);
+		checkDistance(*scheduled[k].group, scheduled[k].index, cell);
 	}
-	looks += long(due.size());
+	distanceChecks += long(scheduled.size());
 	return overlaps;
 }
 
-// What findDue() will read of groups behind this one: with 100,000 grains they are not in the cache.
+// What findScheduled() will read of groups behind this one: with 100,000 grains they are not in the cache.
 void PairLists::fetchAhead(const Group* group) const
 {
 	const Group* end = own().end();
@@ -193,34 +193,34 @@ void PairLists::fetchAhead(const Group* group) const
 	if (end - group > 2) __builtin_prefetch(group[2].soonestOf.data());
 }
 
-// Stretches of pairs first, whose steps come from memory meanwhile.
-void PairLists::findDue()
+// Stretches of pairs first: the steps of their pairs are fetched from memory in the meantime.
+void PairLists::findScheduled()
 {
-	dueStretches.clear();
+	scheduledStretches.clear();
 	for (Group& group : own()) {
 		fetchAhead(&group);
 		if (group.soonest > step) continue;
 		group.soonest = Group::never;
 		for (int part = 0; part < int(group.soonestOf.size()); ++part)
 			if (group.soonestOf[part] <= step) {
-				dueStretches.push_back({ &group, part });
+				scheduledStretches.push_back({ &group, part });
 				__builtin_prefetch(&group.next[part * Group::stretch]);
 				__builtin_prefetch(&group.next[group.endOfStretch(part) - 1]);
 			} else
 				group.soonest = std::min(group.soonest, group.soonestOf[part]);
 	}
-	due.clear();
-	for (const auto& [group, part] : dueStretches)
-		findDue(*group, part);
+	scheduled.clear();
+	for (const auto& [group, part] : scheduledStretches)
+		findScheduled(*group, part);
 }
 
-void PairLists::findDue(Group& group, int part)
+void PairLists::findScheduled(Group& group, int part)
 {
 	const int last = group.endOfStretch(part);
 	int soonest = Group::never;
 	for (int k = part * Group::stretch; k < last; ++k)
 		if (group.next[k] <= step) {
-			due.push_back({ &group, k });
+			scheduled.push_back({ &group, k });
 			__builtin_prefetch(&group.pairs[k]); // for overlapping()
 		} else
 			soonest = std::min(soonest, group.next[k]);
@@ -228,7 +228,7 @@ void PairLists::findDue(Group& group, int part)
 	group.soonest = std::min(group.soonest, soonest);
 }
 
-void PairLists::look(Group& group, int index, const PeriodicCell& cell)
+void PairLists::checkDistance(Group& group, int index, const PeriodicCell& cell)
 {
 	const NeighbourPair p = group.pairs[index];
 	Vec3<double> separation = separationOf(s.grains[p.own], s.grains[p.other]);
@@ -242,7 +242,7 @@ void PairLists::look(Group& group, int index, const PeriodicCell& cell)
 		const double distance = std::sqrt(squared);
 		next = step + stepsUntilTouch(group, distance - reach, -dot(separation, velocity) / distance);
 	}
-	group.lookAt(index, next);
+	group.schedule(index, next);
 }
 
 /* In k steps two grains come closer by k closing dt + k (k + 1) a dt at most, when no kick changes a velocity by more than a: the distance of two straight lines is convex
@@ -278,7 +278,7 @@ void PairLists::part(int i, int j)
 	int* next = nextOf(i, j);
 	if (!next) return;
 	Group& g = group(i >= begin && i < end ? i : j);
-	g.lookAt(int(next - g.next.data()), step + 1);
+	g.schedule(int(next - g.next.data()), step + 1);
 }
 
 } // namespace contact_law

@@ -1,6 +1,6 @@
-/* Neighbours of a domain's grains, by groups, and when to look whether they touch.
- * A group's pairs hold until its grains and those of groups nearby may have come closer by the far gap: then this group's are searched for anew, and no others. A pair that
- * does not touch is looked at again when its gap, its closing speed and the bound on kicks nearby allow a touch.
+/* Neighbours of a domain's grains, by groups, and when to check whether they touch.
+ * A group's pairs hold until its grains and those of groups nearby may have come closer by the skin: then this group's are searched for anew, and no others. The distance of
+ * a pair that does not touch is checked again in the step in which its gap, its closing speed and the bound on kicks nearby allow a touch.
  * Nothing here changes a result: whatever the lists, a contact forms in the step in which two grains overlap. */
 #pragma once
 #include "groups.hpp"
@@ -8,11 +8,11 @@
 
 namespace contact_law {
 
-struct Setting;
+struct SharedState;
 
 class PairLists {
 public:
-	PairLists(Setting& setting, int begin, int end);
+	PairLists(SharedState& shared, int begin, int end);
 
 	Group& group(int grain); // that the grain, one of the domain's own, is in
 
@@ -23,15 +23,15 @@ public:
 	void searchAnew(const PeriodicCell&); // for all, of grains in a new order: no pair touches until touch() is called for it
 
 	/* The lists `steps` steps after the latest check, to hold for stepsToNext more (fewer when kicks exceed their bounds: then check at once). across: by how much
-	 * boundaries move images in a step [m]. lookAtAll: velocities have changed otherwise than by kicks. */
-	void check(const PeriodicCell&, int steps, int stepsToNext, double across, bool lookAtAll);
+	 * boundaries move images in a step [m]. scheduleAll: velocities have changed otherwise than by kicks. */
+	void check(const PeriodicCell&, int steps, int stepsToNext, double across, bool scheduleAll);
 	bool holdToNext() const { return holds; } // otherwise one step only
 	void clearAfterCheck();                   // ranges and bounds begin anew
 
-	// ---- looking ----
+	// ---- distance checks ----
 
 	void beginStep() { ++step; }
-	// Pairs that overlap and do not touch, by rising indices; they are looked at again in the next step unless touch() is called for them.
+	// Pairs that overlap and do not touch, by rising indices; they are checked again in the next step unless touch() is called for them.
 	const std::vector<NeighbourPair>& overlapping(const PeriodicCell&);
 	void touch(int i, int j); // both of some pair of this domain; nothing happens to one that is not listed
 	void part(int i, int j);
@@ -44,7 +44,7 @@ public:
 				if (group.next[k] != Group::never) visit(group.pairs[k].first(), group.pairs[k].second());
 	}
 
-	long searches = 0, looks = 0; // groups searched for, pairs looked at so far
+	long searches = 0, distanceChecks = 0; // groups searched for, distances of pairs checked so far
 
 private:
 	struct Stretch {
@@ -57,24 +57,24 @@ private:
 	void search(Group&, const PeriodicCell&);
 	void gatherCandidates(const Group&, const PeriodicCell&);
 	int* nextOf(int i, int j);
-	void findDue();
-	void findDue(Group&, int part);
+	void findScheduled();
+	void findScheduled(Group&, int part);
 	void fetchAhead(const Group*) const;
-	void look(Group&, int index, const PeriodicCell&);
+	void checkDistance(Group&, int index, const PeriodicCell&);
 	int stepsUntilTouch(const Group&, double gap, double closing) const;
 
-	Setting& s;
+	SharedState& s;
 	int begin, end, firstGroup, endGroup, firstCluster, endCluster;
 	int step = 0;
 	bool holdsNow = false; // by the latest check
 	bool holds = false;    // likewise from clearAfterCheck() on: other threads read it in the part of a step in which check() is called
 	Candidates candidates;
 	std::vector<NeighbourPair> foundPairs, overlaps;
-	struct Due {
+	struct Scheduled {
 		Group* group;
 		int index; // of the pair, or of the stretch of pairs
 	};
-	std::vector<Due> due, dueStretches; // pairs to look at now, and stretches that have any
+	std::vector<Scheduled> scheduled, scheduledStretches; // pairs to check now, and stretches that have any
 	std::vector<int> foundNext, found;
 };
 

@@ -7,30 +7,30 @@ namespace contact_law {
 // The radii that ordinary contacts see, and all that follows from them and from the necks.
 void Dynamics::shrinkGrains()
 {
-	const double shrunk = neck::shrunkRadius(setting.neck);
-	setting.radius.resize(count);
+	const double shrunk = neck::shrunkRadius(shared.neck);
+	shared.radius.resize(count);
 	for (int k = 0; k < count; ++k)
-		setting.radius[k] = shrunk * setting.grainRadius[k];
-	const auto [smallest, largest] = std::minmax_element(setting.radius.begin(), setting.radius.end());
-	setting.smallestRadius = *smallest;
-	setting.largestRadius = *largest;
-	setting.farGap = 0.8 * setting.smallestRadius;
-	setting.setLeastKick();
-	const Material& m = setting.material[setting.kind[0]];
-	const double r = setting.grainRadius[0];
-	setting.common = deriveShrunkPair(m, r, m, r, setting.pairs, setting.neck);
-	if (setting.neck > 0) setting.commonBond = deriveBond(m, r, m, r, setting.necks.size() == 1 ? setting.necks[0] : setting.neck);
+		shared.radius[k] = shrunk * shared.grainRadius[k];
+	const auto [smallest, largest] = std::minmax_element(shared.radius.begin(), shared.radius.end());
+	shared.smallestRadius = *smallest;
+	shared.largestRadius = *largest;
+	shared.skin = 0.8 * shared.smallestRadius;
+	shared.setLeastKick();
+	const Material& m = shared.material[shared.kind[0]];
+	const double r = shared.grainRadius[0];
+	shared.common = deriveShrunkPair(m, r, m, r, shared.pairs, shared.neck);
+	if (shared.neck > 0) shared.commonBond = deriveBond(m, r, m, r, shared.necks.size() == 1 ? shared.necks[0] : shared.neck);
 }
 
 // Velocities at the positions' moment. Forces go: half of their kick belongs after it.
 void Dynamics::bringVelocitiesToPositions()
 {
-	kickEarly(setting.dt);
+	kickEarly(shared.dt);
 	for (auto& domain : domains)
-		domain->early.clear();
-	kickAll(0.5 * setting.dt);
+		domain->ledger.forgetEarlyKicks();
+	kickAll(0.5 * shared.dt);
 	for (int k = 0; k < count; ++k) {
-		Grain& g = setting.grains[k];
+		Grain& g = shared.grains[k];
 		g.fx = g.fy = g.fz = g.tx = g.ty = g.tz = 0;
 	}
 }
@@ -45,19 +45,19 @@ void Dynamics::sinter(double neck)
 	};
 	const double before = total();
 	bringVelocitiesToPositions();
-	if (bondCount(*this) == 0) setting.necks.clear();
-	std::vector<Domain::AllBonds> bonds;
+	if (bondCount(*this) == 0) shared.necks.clear();
+	std::vector<TouchingPairs::AllBonds> bonds;
 	for (auto& domain : domains)
-		bonds.push_back(domain->sintered(neck));
+		bonds.push_back(domain->touching.sintered(cell(), neck));
 
-	if (std::find(setting.necks.begin(), setting.necks.end(), neck) == setting.necks.end()) setting.necks.push_back(neck);
-	setting.neck = options.neck = std::max(setting.neck, neck);
+	if (std::find(shared.necks.begin(), shared.necks.end(), neck) == shared.necks.end()) shared.necks.push_back(neck);
+	shared.neck = options.neck = std::max(shared.neck, neck);
 	shrinkGrains();
 	for (std::size_t d = 0; d < domains.size(); ++d)
-		domains[d]->setBonds(bonds[d]);
+		domains[d]->touching.setBonds(bonds[d]);
 	makeLists();
 	firstForces();
-	domains[0]->sums.dissipated.disconnection += before - total();
+	domains[0]->ledger.bookDisconnection(before - total());
 }
 
 } // namespace contact_law

@@ -8,21 +8,21 @@ namespace {
 	// visit(a grain), of each kind
 	template <class Visit> void eachKind(const Dynamics& dynamics, Visit&& visit)
 	{
-		const Setting& setting = dynamics.state();
+		const SharedState& shared = dynamics.state();
 		std::set<std::pair<int, double>> seen;
 		for (int k = 0; k < dynamics.grainCount(); ++k)
-			if (seen.emplace(setting.kind[k], setting.grainRadius[k]).second) visit(k);
+			if (seen.emplace(shared.kind[k], shared.grainRadius[k]).second) visit(k);
 	}
 }
 
 double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 {
-	const Setting& setting = dynamics.state();
+	const SharedState& shared = dynamics.state();
 	double least = 1e300;
 	eachKind(dynamics, [&](int k) {
-		const Material& m = setting.material[setting.kind[k]];
-		const BondConstants<double> b = deriveBond(m, setting.grainRadius[k], m, setting.grainRadius[k], neck);
-		least = std::min(least, 2 / fastestVibration(b, setting.inverseMass[k], setting.inverseInertia[k]));
+		const Material& m = shared.material[shared.kind[k]];
+		const BondConstants<double> b = deriveBond(m, shared.grainRadius[k], m, shared.grainRadius[k], neck);
+		least = std::min(least, 2 / fastestVibration(b, shared.inverseMass[k], shared.inverseInertia[k]));
 	});
 	return least;
 }

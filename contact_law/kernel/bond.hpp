@@ -97,15 +97,15 @@ namespace bonds {
 	        const ContactForces<double>& f, double twist)
 	{
 		Breaking first;
-		const auto look = [&](int mode, double stiffness, const Vec3<double>& then, const Vec3<double>& now) {
+		const auto consider = [&](int mode, double stiffness, const Vec3<double>& then, const Vec3<double>& now) {
 			if (0.5 * stiffness * dot(now, now) <= b.breakingEnergy) return;
 			const double fraction = events::fractionUntilLength(then, now, 2 * b.breakingEnergy / stiffness);
 			if (fraction < first.fraction) first = { mode, fraction };
 		};
-		look(ByStretching, b.normalStiffness, { before.overlap, 0, 0 }, { g.overlap, 0, 0 });
-		look(BySliding, b.slidingStiffness, before.sliding, f.slidingDisplacement);
-		look(ByRolling, b.rollingStiffness, before.rolling, f.rollingDisplacement);
-		look(ByTwisting, b.twistingStiffness, { before.twist, 0, 0 }, { twist, 0, 0 });
+		consider(ByStretching, b.normalStiffness, { before.overlap, 0, 0 }, { g.overlap, 0, 0 });
+		consider(BySliding, b.slidingStiffness, before.sliding, f.slidingDisplacement);
+		consider(ByRolling, b.rollingStiffness, before.rolling, f.rollingDisplacement);
+		consider(ByTwisting, b.twistingStiffness, { before.twist, 0, 0 }, { twist, 0, 0 });
 		return first;
 	}
 

@@ -20,8 +20,8 @@ inline void normalForces(const PairConstants<T>& c, const ContactGeometry<T>& g,
 }
 
 // Sliding, rolling and twisting, with the radii and stiffnesses of c (PairConstants, or a bond's).
-template <unsigned mechanisms, class Constants, class T>
-inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, ContactForces<T>& f)
+template <unsigned mechanisms, class Constants, class T, class History>
+inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, const History& h, ContactForces<T>& f)
 {
 	if constexpr (bool(mechanisms & (Sliding | Rolling))) {
 		T across = T(0.); // factor of n1 x n2 in the torques, which sliding and rolling share
@@ -34,9 +34,9 @@ inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, co
 	if constexpr (bool(mechanisms & Twisting)) twisting::addTorques(c, g, h.twist, f);
 }
 
-template <unsigned mechanisms, class T>
-inline ContactForces<T> contactForces(
-        const PairConstants<T>& c, const ContactGeometry<T>& g, const ContactHistory<T>& h, const Vec3<T>& velocity)
+// History: ContactHistory, or of a grain and a plane PlaneHistory.
+template <unsigned mechanisms, class T, class History>
+inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGeometry<T>& g, const History& h, const Vec3<T>& velocity)
 {
 	ContactForces<T> f = ContactForces<T>::none();
 	normalForces<mechanisms>(c, g, velocity, f);
@@ -65,73 +65,6 @@ inline void bookDragFraction(
         const PairConstants<double>& c, double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
 {
 	drag::bookFraction(c, fraction, at, closing, lost);
-}
-
-// ---- limits ----
-
-template <class T> struct Displacements {
-	Vec3<T> sliding, rolling;
-	T twist;
-};
-
-/* Grains that slide with resistance and roll without: their pointers are freed of the rolling displacement whenever it is beyond the limit
- * of resisted rolling, which takes no force. Pointers that have rolled far from the contact would no longer tell how far grains slid. */
-constexpr bool rollsFreely(unsigned mechanisms) { return mechanisms & Sliding && !(mechanisms & Rolling); }
-
-// Whether a displacement is beyond its limit; f: the forces at this instant.
-template <unsigned mechanisms, class T>
-inline MaskOf<T> beyondLimits(const PairConstants<T>& c, const ContactForces<T>& f, const ContactHistory<T>& h)
-{
-	MaskOf<T> beyond = T(1.) < T(0.);
-	if constexpr (bool(mechanisms & Twisting)) beyond = beyond | twisting::beyondLimit(c, h.twist);
-	if constexpr (bool(mechanisms & Sliding)) beyond = beyond | sliding::beyondLimit(c, f.slidingDisplacement);
-	if constexpr (bool(mechanisms & Rolling)) beyond = beyond | rolling::beyondLimit(c, f.rollingDisplacement);
-	if constexpr (rollsFreely(mechanisms))
-		beyond = beyond | rolling::beyondLimit(c, rolling::displacement(h.pointers, c.reducedRadius));
-	return beyond;
-}
-
-/* Return the displacements of `h` that are beyond their limits to them, and book what that dissipates (of lanes that are `counted`);
- * true where pointers moved.
- * `before`: the displacements a step ago, `t`: the way from there. Returning one displacement changes the other a little (second order
- * in the pointers' angles):
- * that too is work, and goes with the slip. */
-template <unsigned mechanisms, class T>
-inline MaskOf<T> returnToLimits(const PairConstants<T>& c, const Vec3<T>& normal, const Displacements<T>& before, const Turning<T>& t,
-        ContactHistory<T>& h, const MaskOf<T>& counted, DissipationOf<T>& lost)
-{
-	const T none(0.);
-	Pointers<T>& p = h.pointers;
-	if constexpr (bool(mechanisms & Twisting)) {
-		const T trial = h.twist;
-		h.twist = twisting::returned(c, trial);
-		lost.twisting = lost.twisting + choose(counted, twisting::dissipation(c, before.twist, trial, h.twist), none);
-	}
-	const Pointers<T> trial = p;
-	const Vec3<T> zeta = sliding::displacement(p, c.radius1, c.radius2, normal), xi = rolling::displacement(p, c.reducedRadius);
-	MaskOf<T> slid = none < none, rolled = none < none;
-	if constexpr (bool(mechanisms & Sliding)) {
-		slid = sliding::beyondLimit(c, zeta);
-		if (anyOf(slid)) p = choose<T>(slid, sliding::returned(p, c.radius1, c.radius2, zeta, c.criticalSliding), p);
-	}
-	if constexpr (bool(mechanisms & (Sliding | Rolling))) {
-		rolled = rolling::beyondLimit(c, xi);
-		const T limit = rollsFreely(mechanisms) ? none : c.criticalRolling;
-		if (anyOf(rolled))
-			p = choose<T>(
-			        rolled, rolling::returned(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit), p);
-	}
-	const MaskOf<T> pointersMoved = slid | rolled;
-	if (!anyOf(pointersMoved)) return pointersMoved;
-	const Pointers<T> moved { p.n1 - trial.n1, p.n2 - trial.n2 };
-	T bySliding = none, byRolling = none;
-	if constexpr (bool(mechanisms & Sliding)) bySliding = sliding::dissipation(c, normal, before.sliding, zeta, p, moved, t);
-	if constexpr (bool(mechanisms & Rolling)) byRolling = rolling::dissipation(c, before.rolling, xi, p, moved, t);
-	const T both = bySliding + byRolling;
-	if constexpr (rollsFreely(mechanisms)) rolled = none < none;
-	lost.sliding = lost.sliding + choose(counted, choose(rolled, choose(slid, bySliding, none), both), none);
-	lost.rolling = lost.rolling + choose(counted, choose(rolled, choose(slid, byRolling, both), none), none);
-	return pointersMoved;
 }
 
 // What the springs of a contact give up when it breaks after a fraction of the step (pointers.hpp), added to what disconnection takes.

@@ -34,10 +34,20 @@ template <class T> struct ContactHistory {
 	T twist; // phi
 };
 
+/* Of a grain against a plane: n2 is the plane's normal, towards the grain, and `anchor` [m] leads, in the plane, from the foot of the
+ * grain's centre to the point of the plane that belongs to n1. */
+template <class T> struct PlanePointers : Pointers<T> {
+	Vec3<T> anchor;
+};
+template <class T> struct PlaneHistory {
+	PlanePointers<T> pointers;
+	T twist;
+};
+
 template <class T> struct ContactGeometry {
-	Vec3<T> normal; // n_c, from the centre of grain 2 to that of grain 1
-	T inverseDistance;
-	T overlap; // delta = r1 + r2 - distance
+	Vec3<T> normal;    // n_c, from the centre of grain 2 to that of grain 1
+	T inverseDistance; // of the centres; 0: of a grain and a plane
+	T overlap;         // delta = r1 + r2 - distance
 };
 
 template <class T> inline ContactGeometry<T> geometryOf(const Vec3<T>& separation, const T& sumOfRadii)

@@ -6,10 +6,9 @@
 // only: its kick is the integral of its force over that fraction, which keeps the trajectory and the ledger of second order in dt.
 // MODEL.md, "The integrator and the ledger", derives each line.
 #pragma once
-#include "contact.hpp"
 #include "cut.hpp"
 #include "events.hpp"
-#include "limit_rule.hpp"
+#include "held.hpp"
 #include <array>
 #include <utility>
 
@@ -32,9 +31,9 @@ inline void setKicks(const ContactMotion& m, double normalBefore, double springs
 
 // The contact at this instant: displacements brought within their limits, forces, stored energies. velocity: v1 - v2 now; springsBefore: the
 // fraction of the springs' forces that belongs before this instant. Returns what cut springs add to that.
-template <unsigned mechanisms>
+template <unsigned mechanisms, class History>
 inline events::Kicks evaluateNow(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before,
-        const Vec3<double>& velocity, double springsBefore, ContactHistory<double>& history, ContactStepResult& r)
+        const Vec3<double>& velocity, double springsBefore, History& history, ContactStepResult& r)
 {
 	const ContactGeometry<double>& g = r.geometry;
 	cut::Result cuts;
@@ -51,9 +50,9 @@ inline events::Kicks evaluateNow(const PairConstants<double>& c, LimitRule limit
 }
 
 // A contact that touched a step ago and does now.
-template <unsigned mechanisms>
+template <unsigned mechanisms, class History>
 inline ContactStepResult keptContact(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m,
-        const ContactGeometry<double>& g, const ContactBefore& before, ContactHistory<double>& history)
+        const ContactGeometry<double>& g, const ContactBefore& before, History& history)
 {
 	ContactStepResult r;
 	r.geometry = g;
@@ -66,14 +65,14 @@ inline ContactStepResult keptContact(const PairConstants<double>& c, LimitRule l
 
 /* A contact that touches now and did not a step ago. Its springs grow from zero: half of their force over the fraction of the step.
  * One that overlapped a step ago already and has no history was placed there by the user: nothing is booked for it. */
-template <unsigned mechanisms>
+template <unsigned mechanisms, class History>
 inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m,
-        const ContactGeometry<double>& g, const ContactBefore& before, ContactHistory<double>& history)
+        const ContactGeometry<double>& g, const ContactBefore& before, History& history)
 {
 	ContactStepResult r;
 	r.geometry = g;
-	const events::Formation formed = events::formationOf(m, c.radius1 + c.radius2, g.overlap);
-	history = events::formedHistory(m, formed.fraction * m.dt);
+	const events::Formation formed = events::formationOf(events::overlapAStepAgo(m, g, c.radius1 + c.radius2, history), g.overlap);
+	events::form(m, formed.fraction * m.dt, history);
 	const double f = formed.fraction;
 	const events::Kicks ofCuts = evaluateNow<mechanisms>(c, limit, m, before, m.velocity, formed.inStep ? f / 2 : 0.5, history, r);
 	if (!formed.inStep) {
@@ -91,9 +90,9 @@ inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule li
 
 /* A contact that breaks inside the step. Its last kicks (a step ago) covered half a step; what is missing to the fraction follows now.
  * The springs' forces are those of this instant, not of the breaking, so that forces and torques balance where the grains are. */
-template <unsigned mechanisms>
+template <unsigned mechanisms, class History>
 inline ContactStepResult brokenContact(const PairConstants<double>& c, const ContactMotion& m, const ContactGeometry<double>& g,
-        const ContactBefore& before, const ContactHistory<double>& h)
+        const ContactBefore& before, const History& h)
 {
 	ContactStepResult r;
 	const double opening = before.overlap - g.overlap, fraction = events::fractionUntilPullOff(c, before.overlap, opening);
@@ -117,11 +116,10 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 /* The whole law for one contact and one step. `history` holds the pointers as the grains carried them to this instant, and the twist of
  * the step before; it comes back as it is after slips (and made anew for a contact that forms). touching = false in the result: no
  * contact now, and the history has no meaning. */
-template <unsigned mechanisms>
-inline ContactStepResult contactStep(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before,
-        ContactHistory<double>& history)
+template <unsigned mechanisms, class History>
+inline ContactStepResult contactStepAt(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m,
+        const ContactGeometry<double>& g, const ContactBefore& before, History& history)
 {
-	const ContactGeometry<double> g = geometryOf(m.separation, c.radius1 + c.radius2);
 	if (!before.touching) {
 		if (g.overlap < 0) return {}; // grains that sintering has shrunk are seen before they touch
 		return newContact<mechanisms>(c, limit, m, g, before, history);
@@ -130,6 +128,13 @@ inline ContactStepResult contactStep(const PairConstants<double>& c, LimitRule l
 		history.twist += twisting::increment(g.normal, g.inverseDistance, m.velocity, m.spin1 - m.spin2, m.dt);
 	if (normal::beyondPullOff(c, g)) return brokenContact<mechanisms>(c, m, g, before, history);
 	return keptContact<mechanisms>(c, limit, m, g, before, history);
+}
+
+template <unsigned mechanisms>
+inline ContactStepResult contactStep(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before,
+        ContactHistory<double>& history)
+{
+	return contactStepAt<mechanisms>(c, limit, m, geometryOf(m.separation, c.radius1 + c.radius2), before, history);
 }
 
 // contactStep by its mechanisms, for callers that know them at run time only.

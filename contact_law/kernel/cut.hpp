@@ -1,10 +1,10 @@
 // The rule of Sirono & Ueno (2017, "S17", section 3.2) for displacements beyond their limits: the spring is cut at the limit, what it stores
-// is lost, and a new one without strain takes its place at once. (The rule of Wada et al. 2007 is returnToLimits() of contact.hpp.)
+// is lost, and a new one without strain takes its place at once. (The rule of Wada et al. 2007 is held.hpp.)
 // A cut is an event inside the step, as formation and breaking are: the force jumps there, and the kick before this instant is the integral
 // of the springs' forces over the step less the half step that was given a step ago. MODEL.md, "Cut springs", derives each line.
 #pragma once
-#include "contact.hpp"
 #include "events.hpp"
+#include "limit_rule.hpp"
 #include "turning.hpp"
 
 namespace contact_law {
@@ -53,7 +53,7 @@ namespace cut {
 		const ContactMotion& motion;
 		double springsBefore; // fraction of the springs' forces that belongs before this instant without a cut
 
-		template <unsigned mode> events::Kicks kicksOf(const ContactHistory<double>& h, double fraction) const
+		template <unsigned mode, class History> events::Kicks kicksOf(const History& h, double fraction) const
 		{
 			ContactForces<double> f = ContactForces<double>::none();
 			tangentialForces<mode>(constants, geometry, h, f);
@@ -81,11 +81,11 @@ namespace cut {
 		static constexpr unsigned mode = Sliding;
 		static double stiffness(const PairConstants<double>& c) { return c.slidingStiffness; }
 		static double limit(const PairConstants<double>& c) { return c.criticalSliding; }
-		static Vec3<double> displacement(const Step& s, const Pointers<double>& p)
+		template <class SomePointers> static Vec3<double> displacement(const Step& s, const SomePointers& p)
 		{
 			return sliding::displacement(p, s.constants.radius1, s.constants.radius2, s.geometry.normal);
 		}
-		static Pointers<double> displaced(const Step& s, const Pointers<double>& p, const Vec3<double>& by)
+		template <class SomePointers> static SomePointers displaced(const Step& s, const SomePointers& p, const Vec3<double>& by)
 		{
 			return sliding::displaced(p, s.constants.radius1, s.constants.radius2, by);
 		}
@@ -94,11 +94,11 @@ namespace cut {
 		static constexpr unsigned mode = Rolling;
 		static double stiffness(const PairConstants<double>& c) { return c.rollingStiffness; }
 		static double limit(const PairConstants<double>& c) { return c.criticalRolling; }
-		static Vec3<double> displacement(const Step& s, const Pointers<double>& p)
+		template <class SomePointers> static Vec3<double> displacement(const Step& s, const SomePointers& p)
 		{
 			return rolling::displacement(p, s.constants.reducedRadius);
 		}
-		static Pointers<double> displaced(const Step& s, const Pointers<double>& p, const Vec3<double>& by)
+		template <class SomePointers> static SomePointers displaced(const Step& s, const SomePointers& p, const Vec3<double>& by)
 		{
 			return rolling::displaced(p, s.constants.radius1, s.constants.radius2, by);
 		}
@@ -110,30 +110,32 @@ namespace cut {
 		const Vec3<double> aStepAgo, trial;
 		Passage<Vec3<double>> passed {};
 
-		InStep(const Step& s, const Vec3<double>& before, const Pointers<double>& p)
+		template <class SomePointers>
+		InStep(const Step& s, const Vec3<double>& before, const SomePointers& p)
 		        : step(s)
 		        , aStepAgo(s.carriedAlong(before))
 		        , trial(Spring::displacement(s, p))
 		{
 		}
 		bool beyondLimit() const { return dot(trial, trial) > Spring::limit(step.constants) * Spring::limit(step.constants); }
-		void cutIn(Pointers<double>& p)
+		template <class SomePointers> void cutIn(SomePointers& p)
 		{
 			passed = passage(aStepAgo, trial, Spring::limit(step.constants));
 			p = Spring::displaced(step, p, passed.now - Spring::displacement(step, p));
 		}
 		// What it took of the motion; `added`: what its kick before this instant is beyond the ordinary one.
-		double book(const Pointers<double>& p, events::Kicks& added) const
+		template <class History> double book(const History& h, events::Kicks& added) const
 		{
+			const auto& p = h.pointers;
 			const Vec3<double> now = Spring::displacement(step, p);
-			events::Kicks before = step.kicksOf<Spring::mode>({ p, 0 }, step.springsBefore);
+			events::Kicks before = step.kicksOf<Spring::mode>(h, step.springsBefore);
 			double unequal = 0;
 			if (passed.any) {
 				added.add(before, -1);
 				before = step.kicksOf<Spring::mode>(
-				        { Spring::displaced(step, p, step.acting(passed, aStepAgo) - now), 0 }, 1);
+				        History { Spring::displaced(step, p, step.acting(passed, aStepAgo) - now), 0 }, 1);
 				added.add(before);
-				unequal = lostByUnequal(before, step.kicksOf<Spring::mode>({ p, 0 }, 0.5), step.motion);
+				unequal = lostByUnequal(before, step.kicksOf<Spring::mode>(h, 0.5), step.motion);
 			}
 			return taken(Spring::stiffness(step.constants), aStepAgo, trial, now, before, step.motion) + unequal;
 		}
@@ -144,12 +146,12 @@ namespace cut {
 		events::Kicks added; // to the kicks before this instant
 	};
 
-	inline void twist(const Step& s, double before, ContactHistory<double>& h, Dissipation& lost, Result& result)
+	template <class History> inline void twist(const Step& s, double before, History& h, Dissipation& lost, Result& result)
 	{
 		const double trial = h.twist;
 		const Passage<double> passed = passage(before, trial, s.constants.criticalTwisting);
 		h.twist = passed.now;
-		ContactHistory<double> acting = h;
+		History acting = h;
 		acting.twist = s.acting(passed, before);
 		const events::Kicks kicks = s.kicksOf<Twisting>(acting, 1), after = s.kicksOf<Twisting>(h, 0.5);
 		lost.twisting += taken(s.constants.twistingStiffness, before, trial, h.twist, kicks, s.motion)
@@ -159,9 +161,11 @@ namespace cut {
 	}
 
 	// Sliding and rolling share the pointers: cutting one spring shifts the other in second order, which is booked with the cut.
+	template <class History>
 	inline void slideAndRoll(
-	        unsigned mechanisms, const Step& s, const ContactBefore& before, Pointers<double>& p, Dissipation& lost, Result& result)
+	        unsigned mechanisms, const Step& s, const ContactBefore& before, History& h, Dissipation& lost, Result& result)
 	{
+		auto& p = h.pointers;
 		InStep<SlidingSpring> slide(s, before.sliding, p);
 		InStep<RollingSpring> roll(s, before.rolling, p);
 		const bool slides = mechanisms & Sliding && slide.beyondLimit(), rolls = mechanisms & Rolling && roll.beyondLimit();
@@ -171,8 +175,8 @@ namespace cut {
 		if (rolls) roll.cutIn(p);
 		if (freed) p = RollingSpring::displaced(s, p, -RollingSpring::displacement(s, p));
 		result.pointersMoved = true;
-		const double bySliding = mechanisms & Sliding ? slide.book(p, result.added) : 0;
-		const double byRolling = mechanisms & Rolling ? roll.book(p, result.added) : 0;
+		const double bySliding = mechanisms & Sliding ? slide.book(h, result.added) : 0;
+		const double byRolling = mechanisms & Rolling ? roll.book(h, result.added) : 0;
 		lost.sliding += slides || freed ? rolls ? bySliding : bySliding + byRolling : 0;
 		lost.rolling += rolls ? slides ? byRolling : bySliding + byRolling : 0;
 	}
@@ -182,13 +186,14 @@ namespace cut {
 /* Cut the springs of `h` whose displacements are beyond their limits, and book what that takes. before: a step ago (zero for a contact that
  * formed since); springsBefore: the fraction of the springs' forces that belongs before this instant without a cut, half of the time for
  * which the contact has existed in the step. */
+template <class History>
 inline cut::Result cutAtLimits(unsigned mechanisms, const PairConstants<double>& c, const ContactGeometry<double>& g,
-        const ContactMotion& m, const ContactBefore& before, double springsBefore, ContactHistory<double>& h, Dissipation& lost)
+        const ContactMotion& m, const ContactBefore& before, double springsBefore, History& h, Dissipation& lost)
 {
 	const cut::Step step { c, g, m, springsBefore };
 	cut::Result result;
 	if (mechanisms & Twisting && twisting::beyondLimit(c, h.twist)) cut::twist(step, before.twist, h, lost, result);
-	if (mechanisms & (Sliding | Rolling)) cut::slideAndRoll(mechanisms, step, before, h.pointers, lost, result);
+	if (mechanisms & (Sliding | Rolling)) cut::slideAndRoll(mechanisms, step, before, h, lost, result);
 	return result;
 }
 

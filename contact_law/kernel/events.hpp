@@ -49,16 +49,35 @@ namespace events {
 		return { { turned(-normal, since * m.spin1), turned(normal, since * m.spin2) }, since * dot(m.spin1 - m.spin2, normal) };
 	}
 
+	inline void form(const ContactMotion& m, double since, ContactHistory<double>& h) { h = formedHistory(m, since); }
+	// On a plane, whose normal stays.
+	inline void form(const ContactMotion& m, double since, PlaneHistory<double>& h)
+	{
+		const Vec3<double>& n = h.pointers.n2;
+		h.pointers.n1 = turned(-n, since * m.spin1);
+		h.pointers.anchor = -(since * (m.velocity - dot(m.velocity, n) * n));
+		h.twist = since * dot(m.spin1, n);
+	}
+
+	inline double overlapAStepAgo(
+	        const ContactMotion& m, const ContactGeometry<double>&, double sumOfRadii, const ContactHistory<double>&)
+	{
+		const Vec3<double> aStepAgo = m.separation - m.dt * m.velocity;
+		return sumOfRadii - std::sqrt(dot(aStepAgo, aStepAgo));
+	}
+	inline double overlapAStepAgo(const ContactMotion& m, const ContactGeometry<double>& g, double, const PlaneHistory<double>&)
+	{
+		return g.overlap + m.dt * dot(m.velocity, g.normal);
+	}
+
 	// Of grains that touch now and did not a step ago.
 	struct Formation {
 		double overlapBefore;
 		bool inStep;     // otherwise they overlapped a step ago already: they were placed there
 		double fraction; // of the step for which the contact has existed
 	};
-	inline Formation formationOf(const ContactMotion& m, double sumOfRadii, double overlap)
+	inline Formation formationOf(double before, double overlap)
 	{
-		const Vec3<double> aStepAgo = m.separation - m.dt * m.velocity;
-		const double before = sumOfRadii - std::sqrt(dot(aStepAgo, aStepAgo));
 		const bool inStep = before <= 0 && overlap > before;
 		return { before, inStep, inStep ? overlap / (overlap - before) : 0. };
 	}

@@ -28,7 +28,7 @@ struct PairOptions {
  * (engine/arrays.hpp). */
 #define CONTACT_LAW_PAIR_CONSTANTS(_)                                                                                                      \
 	_(radius1, true, "Radius of the first grain [m].")                                                                                 \
-	_(radius2, true, "Radius of the second grain [m].")                                                                                \
+	_(radius2, true, "Radius of the second grain [m]; inf: a plane.")                                                                  \
 	_(reducedRadius, true, "R = r1 r2/(r1+r2) [m].")                                                                                   \
 	_(reducedMass, false, "m* = m1 m2/(m1+m2) of solid spheres [kg].")                                                                 \
 	_(reducedYoung, false, "E* [Pa]: 1/E* = sum of (1-nu^2)/E.")                                                                       \
@@ -71,7 +71,8 @@ constexpr PairConstant<T> pairConstantsOf[] = {
 /* Unlike grains. The elastic moduli follow from contact mechanics: 1/E* = sum (1 - nu^2)/E, 1/G* = sum (2 - nu)/G,
  * 1/G' = sum 1/G. The sliding limit is the force G' a0^2/(2 pi), which is (2 - nu) a0/(16 pi) over k_s for equal materials
  * (A22 eqs 18, 19). The rest is a rule: geometric mean of the surface energies, arithmetic mean of xi_crit and of the
- * viscous coefficient T_vis/nu^2. A time unit for two unlike grains is that of equal ones of radius 2R and mass 2m*. */
+ * viscous coefficient T_vis/nu^2. A time unit for two unlike grains is that of equal ones of radius 2R and mass 2m*.
+ * An infinite radius2 is a plane: R = r1, m* = m1. */
 inline PairConstants<double> derivePair(
         const Material& material1, double radius1, const Material& material2, double radius2, const PairOptions& options = {})
 {
@@ -87,8 +88,9 @@ inline PairConstants<double> derivePair(
 	PairConstants<double> c;
 	c.radius1 = radius1;
 	c.radius2 = radius2;
-	c.reducedRadius = radius1 * radius2 / (radius1 + radius2);
-	c.reducedMass = mass1 * mass2 / (mass1 + mass2);
+	const bool plane = std::isinf(radius2);
+	c.reducedRadius = plane ? radius1 : radius1 * radius2 / (radius1 + radius2);
+	c.reducedMass = plane ? mass1 : mass1 * mass2 / (mass1 + mass2);
 	c.reducedYoung = 1 / ((1 - m1.poisson * m1.poisson) / m1.young + (1 - m2.poisson * m2.poisson) / m2.young);
 	c.reducedShear = 1 / ((2 - m1.poisson) / G1 + (2 - m2.poisson) / G2);
 

@@ -13,6 +13,12 @@ template <class T> inline Vec3<T> movedPointer(const Vec3<T>& pointer, const T& 
 	const Vec3<T> moved = (radius * (T(1.) - along * along)) * pointer + move * e;
 	return inverseRoot(dot(moved, moved)) * moved;
 }
+// A plane's anchor likewise: the limit of r movedPointer() for an infinite radius r.
+template <class T> inline Vec3<T> movedAnchor(const PlanePointers<T>& p, const T& move, const Vec3<T>& e)
+{
+	const T along = dot(p.n2, e);
+	return p.anchor + (move / (T(1.) - along * along)) * (e - along * p.n2);
+}
 
 template <class T> inline Vec3<T> choose(const MaskOf<T>& m, const Vec3<T>& yes, const Vec3<T>& no)
 {
@@ -21,6 +27,17 @@ template <class T> inline Vec3<T> choose(const MaskOf<T>& m, const Vec3<T>& yes,
 template <class T> inline Pointers<T> choose(const MaskOf<T>& m, const Pointers<T>& yes, const Pointers<T>& no)
 {
 	return { choose<T>(m, yes.n1, no.n1), choose<T>(m, yes.n2, no.n2) };
+}
+template <class T> inline PlanePointers<T> choose(const MaskOf<T>& m, const PlanePointers<T>& yes, const PlanePointers<T>& no)
+{
+	return { { choose<T>(m, yes.n1, no.n1), no.n2 }, choose<T>(m, yes.anchor, no.anchor) };
+}
+
+// The way of pointers from `a` to `b`.
+template <class T> inline Pointers<T> way(const Pointers<T>& a, const Pointers<T>& b) { return { b.n1 - a.n1, b.n2 - a.n2 }; }
+template <class T> inline PlanePointers<T> way(const PlanePointers<T>& a, const PlanePointers<T>& b)
+{
+	return { { b.n1 - a.n1, b.n2 - a.n2 }, b.anchor - a.anchor };
 }
 
 // How the grains moved through the step.

@@ -38,21 +38,28 @@ namespace rolling {
 	{
 		return c.criticalRolling * c.criticalRolling < dot(xi, xi);
 	}
-	// The pointers with xi returned to the limit and the sliding displacement as it is: each moves by -excess/r_i (Wada's -excess/(2R)
-	// for equal radii).
-	template <class T> inline Pointers<T> returned(const Pointers<T>& p, const T& r1, const T& r2, const Vec3<T>& xi, const T& limit)
+	/* The pointers with xi another `by` along e and the sliding displacement as it is, to first order: each moves by `by` over r_i (Wada's
+	 * -excess/(2R) for equal radii), and the anchor on a plane by `by`. */
+	template <class T> inline Pointers<T> moved(const Pointers<T>& p, const T& by, const T& r1, const T& r2, const Vec3<T>& e)
+	{
+		return { movedPointer(p.n1, by, r1, e), movedPointer(p.n2, by, r2, e) };
+	}
+	template <class T> inline PlanePointers<T> moved(const PlanePointers<T>& p, const T& by, const T& r1, const T&, const Vec3<T>& e)
+	{
+		return { { movedPointer(p.n1, by, r1, e), p.n2 }, movedAnchor(p, by, e) };
+	}
+	// With xi returned to the limit.
+	template <class SomePointers, class T>
+	inline SomePointers returned(const SomePointers& p, const T& r1, const T& r2, const Vec3<T>& xi, const T& limit)
 	{
 		const T squared = dot(xi, xi), inverse = inverseRoot(squared), excess = squared * inverse - limit;
-		const Vec3<T> e = inverse * xi;
-		return { movedPointer(p.n1, -excess, r1, e), movedPointer(p.n2, -excess, r2, e) };
+		return moved(p, -excess, r1, r2, inverse * xi);
 	}
-	// The pointers with xi another `by` and the sliding displacement as it is, to first order.
-	inline Pointers<double> displaced(const Pointers<double>& p, double r1, double r2, const Vec3<double>& by)
+	// With xi another `by`.
+	template <class SomePointers> inline SomePointers displaced(const SomePointers& p, double r1, double r2, const Vec3<double>& by)
 	{
 		const double length = std::sqrt(dot(by, by));
-		if (length == 0) return p;
-		const Vec3<double> e = (1 / length) * by;
-		return { movedPointer(p.n1, length, r1, e), movedPointer(p.n2, length, r2, e) };
+		return length == 0 ? p : moved(p, length, r1, r2, (1 / length) * by);
 	}
 	// What the return of displacement `trial` to pointers p, which moved them by `moved`, dissipates; `before`: the displacement a step
 	// ago.

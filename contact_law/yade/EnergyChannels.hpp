@@ -11,15 +11,17 @@ namespace yade {
 class EnergyChannels {
 public:
 	// EnergyTracker loses its names when it is cleared, and may give them out from one thread only: to be called once a step before
-	// adding.
-	void prepare(Scene& scene)
+	// adding. planes: work is done on moving planes.
+	void prepare(Scene& scene, bool planes = false)
 	{
 		if (preparedAt == scene.iter) return;
 #pragma omp critical(EnergyChannelsPrepare)
 		if (preparedAt != scene.iter) {
 			for (int channel = 0; channel < count; ++channel) {
 				ids[channel] = -1;
-				if (isWork(channel) && !(scene.isPeriodic && channel == boundaryWork)) continue;
+				if (isWork(channel) && !(scene.isPeriodic && channel == boundaryWork)
+				        && !(planes && channel == constraintWork))
+					continue;
 				scene.energy->add(0., nameOf(channel), ids[channel], perStep(channel));
 			}
 			preparedAt = scene.iter;
@@ -34,10 +36,11 @@ public:
 	}
 	void addKinetic(Scene& scene, double energy) { add(scene, 0, energy); }
 	void addBoundaryWork(Scene& scene, double work) { add(scene, boundaryWork, work); }
+	void addConstraintWork(Scene& scene, double work) { add(scene, constraintWork, work); }
 
 	// ---- for an engine that replaces ForceResetter, so that nothing empties channels between steps ----
 
-	// What works are done on in a scene, beside a periodic cell's boundaries.
+	// On what work is done in a scene, apart from a periodic cell's boundaries.
 	struct WorkOn {
 		bool blocked = false, outside = false; // blocked degrees of freedom; outside forces
 	};
@@ -71,7 +74,8 @@ public:
 
 private:
 	static constexpr int count = contact_law::channelCount, boundaryWork = contact_law::channelNumber("boundaryWork"),
-	                     externalWork = contact_law::channelNumber("externalWork");
+	                     externalWork = contact_law::channelNumber("externalWork"),
+	                     constraintWork = contact_law::channelNumber("constraintWork");
 
 	static const char* nameOf(int channel) { return contact_law::channels[channel].name; }
 	// Whether O.energy has a channel anew each step: energies held now are, losses and works add up. (YADE's ForceResetter is what

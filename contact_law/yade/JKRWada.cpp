@@ -42,6 +42,11 @@ namespace {
 	}
 }
 
+namespace {
+	constexpr Real planeRadius = std::numeric_limits<Real>::infinity();
+	const char* const bondsOfPlanes = "neck: must be 0 in scenes with a Wall: there are no sintered bonds to planes";
+}
+
 void JKRMat::requireInRange() const
 {
 	requirePositive("JKRMat: young", young, " [Pa]");
@@ -117,9 +122,10 @@ void JKRWadaPhys::becomeBond()
 	constantsToCome.reset();
 }
 
-void JKRWadaPhys::set(
-        const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_, const Vector3r& velocity_)
+void JKRWadaPhys::set(const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_,
+        const Vector3r& velocity_, bool ofPlane)
 {
+	const Real sign = ofPlane ? 1 : -1; // of the force on YADE's second body
 	touching = true;
 	overlap = g.overlap;
 	slidingDisplacement = fromKernel(f.slidingDisplacement);
@@ -127,8 +133,13 @@ void JKRWadaPhys::set(
 	twist = twist_;
 	dragForce = f.drag;
 	velocity = velocity_;
-	normalForce = -(f.normalForce + f.drag) * fromKernel(g.normal);
-	shearForce = -fromKernel(f.sliding);
+	normalForce = sign * (f.normalForce + f.drag) * fromKernel(g.normal);
+	shearForce = sign * fromKernel(f.sliding);
+}
+
+contact_law::ContactBefore JKRWadaPhys::before() const
+{
+	return { touching, overlap, dragForce, toKernel(slidingDisplacement), toKernel(rollingDisplacement), twist, toKernel(velocity) };
 }
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
@@ -138,8 +149,11 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	const auto& first = *YADE_CAST<JKRMat*>(material1.get());
 	const auto& second = *YADE_CAST<JKRMat*>(material2.get());
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
-	const auto derived =
-	        contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, options(), neck);
+	const bool plane = wallOf(*scene, interaction->getId1());
+	if (plane && neck != 0) refuseInStep(*scene, bondsOfPlanes);
+	const auto derived = plane
+	        ? contact_law::derivePair(second.forKernel(), geometry->refR2, first.forKernel(), planeRadius, options())
+	        : contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, options(), neck);
 	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
 	phys->setConstants(constants.of(derived));
 	if (neck != 0 && scene->iter < bondsBefore) {
@@ -155,6 +169,8 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
 	requireLoopAtRest("sinter()");
 	require(neckNow > 0 && neckNow <= contact_law::largestNeck, "sinter(): neck", neckNow, "> 0 and up to 0.7");
 	const Scene& now = *Omega::instance().getScene();
+	for (const auto& interaction : *now.interactions)
+		if (interaction->isReal() && wallOf(now, interaction->getId1())) throw std::invalid_argument(bondsOfPlanes);
 	if (now.iter < bondsBefore && sinteredEarly == 0) sinteredEarly = neck > 0 ? neck : neckNow;
 	neck = std::max(neck, neckNow);
 	for (const auto& interaction : *now.interactions) {
@@ -183,7 +199,8 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange(const JKRMat& material1, Real
 	material1.requireInRange();
 	material2.requireInRange();
 	requirePositive("radius1", radius1, " [m]");
-	requirePositive("radius2", radius2, " [m]");
+	require(radius2 > 0, "radius2", radius2, "> 0 [m]; inf for a plane");
+	require(neck == 0 || std::isfinite(radius2), "neck", neck, "0 against a plane: there are no sintered bonds to planes");
 }
 
 boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(
@@ -212,10 +229,17 @@ void Law2_ScGeom_JKRWadaPhys_JKRWada::postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&)
 	limitRule = contact_law::LimitRule(number);
 }
 
-bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& physics, Interaction* interaction)
+unsigned Law2_ScGeom_JKRWadaPhys_JKRWada::mechanismsOf(const PairConstants<double>& c) const
 {
+	return contact_law::mechanismsOf(sliding, rolling, twisting, c.dragPerContactRadius > 0 || c.linearDrag > 0);
+}
+
+bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction)
+{
+	if (!shapes.fit(*scene)) return true;
 	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
 	const PairConstants<double> constants = phys.constants->forKernel();
+	if (std::isinf(constants.radius2)) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);
 	const State& state1 = *(*scene->bodies)[interaction->getId1()]->state;
 	const State& state2 = *(*scene->bodies)[interaction->getId2()]->state;
 
@@ -233,12 +257,10 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass,
 		toKernel(imageVelocity), contact_law::inverseInertiaOf(1 / state1.inertia[0], state1.blockedDOFs),
 		contact_law::inverseInertiaOf(1 / state2.inertia[0], state2.blockedDOFs) };
-	const contact_law::ContactBefore before { phys.touching, phys.overlap, phys.dragForce, toKernel(phys.slidingDisplacement),
-		toKernel(phys.rollingDisplacement), phys.twist, toKernel(phys.velocity) };
+	const contact_law::ContactBefore before = phys.before();
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
-	const bool drag = constants.dragPerContactRadius > 0 || constants.linearDrag > 0;
-	const unsigned mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
+	const unsigned mechanisms = mechanismsOf(constants);
 	ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
 	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
 
@@ -263,6 +285,43 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>&, shared_ptr<IPhys>& 
 	if (r.pointersMoved) {
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(history.pointers.n2);
+	}
+	return true;
+}
+
+// A grain (the interaction's second body) and a plane, at one step.
+bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
+        const GenericSpheresContact& geometry, JKRWadaPhys& phys, const PairConstants<double>& constants, const Interaction& interaction)
+{
+	const State& wall = *(*scene->bodies)[interaction.getId1()]->state;
+	const State& grain = *(*scene->bodies)[interaction.getId2()]->state;
+	const contact_law::Plane plane { toKernel(wall.pos), toKernel(geometry.normal), toKernel(wall.vel) };
+	const ContactMotion motion = contact_law::motionPast(plane, toKernel(grain.pos), toKernel(grain.vel), toKernel(grain.angVel),
+	        scene->dt, contact_law::inverseMassAlong(plane.normal, 1 / grain.mass, grain.blockedDOFs),
+	        contact_law::inverseInertiaOf(1 / grain.inertia[0], grain.blockedDOFs));
+	const Vec3d foot = plane.across(toKernel(grain.pos - wall.pos)); // of the grain's centre, from the wall's position
+	contact_law::PlaneHistory<double> history {
+		{ { toKernel(grain.ori * phys.pointer2), plane.normal }, toKernel(phys.pointer1) - foot }, phys.twist
+	};
+	const ContactStepResult r =
+	        contact_law::planeStepWith[mechanismsOf(constants)](constants, limitRule, motion, phys.before(), history);
+
+	const Vector3r force = fromKernel(r.force);
+	scene->forces.addForce(interaction.getId1(), -force);
+	scene->forces.addForce(interaction.getId2(), force);
+	scene->forces.addTorque(interaction.getId2(), fromKernel(r.torque1));
+	if (scene->trackEnergy) {
+		book(r);
+		const Vector3r kicks = (phys.touching ? 0.5 * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero()))
+		        + fromKernel(r.forceBefore);
+		channels.addConstraintWork(*scene, -scene->dt * kicks.dot(wall.vel));
+	}
+	phys.touching = r.touching;
+	if (!r.touching) return false;
+	phys.set(r.geometry, r.now, history.twist, fromKernel(motion.velocity), true);
+	if (r.pointersMoved) {
+		phys.pointer1 = fromKernel(history.pointers.anchor + foot);
+		phys.pointer2 = grain.ori.conjugate() * fromKernel(history.pointers.n1);
 	}
 	return true;
 }
@@ -305,7 +364,7 @@ ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, c
 
 void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
 {
-	channels.prepare(*scene);
+	channels.prepare(*scene, shapes.planes());
 	channels.addKinetic(*scene, r.workBefore);
 	channels.add(*scene, r.stored, r.dissipated);
 }

@@ -2,8 +2,9 @@
 // The formulas stand in ../kernel; MODEL.md lists them with their sources. These classes carry them into YADE.
 #pragma once
 #include "../kernel/bond.hpp"
-#include "../kernel/contact_step.hpp"
+#include "../kernel/plane_step.hpp"
 #include "EnergyChannels.hpp"
+#include "SceneShapes.hpp"
 #include <core/Interaction.hpp>
 #include <core/Scene.hpp>
 #include <core/Dispatching.hpp>
@@ -94,9 +95,10 @@ public:
 	void setBond(const shared_ptr<JKRWadaBond>&);
 	void endBond();
 	void becomeBond();
-	// All but the pointers. velocity: of body 1 past body 2 through the last step.
+	// All but the pointers. velocity: of the kernel's grain 1 past grain 2 through the last step. Against a plane the grain is body 2.
 	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist,
-	        const Vector3r& velocity);
+	        const Vector3r& velocity, bool ofPlane = false);
+	contact_law::ContactBefore before() const; // a step ago, for the next one
 	virtual ~JKRWadaPhys() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRWadaPhys, NormShearPhys,
@@ -108,7 +110,7 @@ public:
 		((Real, restDistance, 0, Attr::readonly, "Distance of the centres at which a bond was made [m]."))
 		((shared_ptr<JKRWadaBond>, bondToCome, , Attr::readonly|Attr::hidden, "The bond that this contact becomes when its forces are next evaluated (sinter())."))
 		((shared_ptr<JKRWadaConstants>, constantsToCome, , Attr::readonly|Attr::hidden, "The constants from then on."))
-		((Vector3r, pointer1, Vector3r::Zero(), Attr::readonly, "Contact pointer of the first body, in the body's own frame: unit vector from its centre to the contact."))
+		((Vector3r, pointer1, Vector3r::Zero(), Attr::readonly, "Contact pointer of the first body, in the body's own frame: unit vector from its centre to the contact. Of a Wall: vector in its plane from its position to the contact [m]."))
 		((Vector3r, pointer2, Vector3r::Zero(), Attr::readonly, "Contact pointer of the second body, likewise."))
 		((Real, overlap, 0, Attr::readonly, "delta = r1 + r2 - distance of the centres [m], r1 and r2 as in constants; negative when the neck is stretched. Of a bond: restDistance - distance."))
 		((Vector3r, slidingDisplacement, Vector3r::Zero(), Attr::readonly, "zeta [m]."))
@@ -170,7 +172,11 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	EnergyChannels channels;
 	contact_law::LimitRule limitRule = contact_law::LimitRule::Held;
 
+	SceneShapes shapes;
+
+	unsigned mechanismsOf(const contact_law::PairConstants<double>&) const;
 	void book(const contact_law::ContactStepResult&);
+	bool goPlane(const GenericSpheresContact&, JKRWadaPhys&, const contact_law::PairConstants<double>&, const Interaction&);
 	void sinter(JKRWadaPhys&, const contact_law::ContactMotion&, contact_law::ContactHistory<double>&, contact_law::ContactStepResult&);
 	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion,
 	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, unsigned mechanisms);
@@ -181,7 +187,7 @@ public:
 	virtual ~Law2_ScGeom_JKRWadaPhys_JKRWada() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_JKRWadaPhys_JKRWada, LawFunctor,
-		"JKR normal force, Wada's sliding, rolling and twisting springs with their limits, and viscous drag, between grains of any radii and materials. "
+		"JKR normal force, Wada's sliding, rolling and twisting springs with their limits, and viscous drag, between grains of any radii and materials, and between grains and planes (Wall). "
 		"Contacts that form or break inside a step are located in time. With O.trackEnergy the energies are in O.energy: those stored now, "
 		"and what was dissipated since the start by slips, connection and disconnection of contacts, drag and the breaking of bonds (contact_law.channels has all names). "
 		"O.energy['kinetic'] is brought from half a step ago, where NewtonIntegrator takes it, to the moment of the stored energies, so that the sum is constant. Use NewtonIntegrator(damping=0).",

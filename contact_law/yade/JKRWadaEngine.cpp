@@ -194,22 +194,21 @@ boost::python::dict JKRWadaEngine::statistics() const
 	const Dynamics& dynamics = current->dynamics;
 	result["contacts"] = contactCount(dynamics);
 	result["bonds"] = bondCount(dynamics);
-	const auto broken = brokenBonds(dynamics);
 	const contact_law::Dissipation lost = dissipated(dynamics);
+	const contact_law::Counts counts = contact_law::counts(dynamics);
 	static const char* const modes[contact_law::bondModes] = { "brokenByStretching", "brokenBySliding", "brokenByRolling",
 		"brokenByTwisting" };
 	for (int mode = 0; mode < contact_law::bondModes; ++mode) {
-		result[modes[mode]] = broken[mode];
+		result[modes[mode]] = counts.brokenBonds[mode];
 		result[modes[mode] + std::string("Energy")] = lost.*contact_law::bondBreakingBy[mode];
 	}
 	result["domains"] = dynamics.parts().size();
 	result["contactUpdates"] = dynamics.counters().contactUpdates;
-	const contact_law::Counts counts = contact_law::counts(dynamics);
 	result["events"] = counts.events;
 	result["formed"] = counts.formed;
 	result["broken"] = counts.broken;
 	result["searches"] = dynamics.counters().searches;
-	result["looks"] = dynamics.counters().looks;
+	result["distanceChecks"] = dynamics.counters().distanceChecks;
 	result["orders"] = dynamics.counters().orders;
 	result["instructions"] = dynamics.state().passes->name;
 	return result;

@@ -66,17 +66,8 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(JKRWadaEngine, GlobalEngine,
 		"Moves spheres of :yref:`JKRMat` under the contact law of :yref:`Law2_ScGeom_JKRWadaPhys_JKRWada`, much faster than YADE's loop: it replaces ForceResetter, collider, "
 		"InteractionLoop and NewtonIntegrator. Each O.step makes subSteps steps of O.dt/subSteps; after it O.bodies are current (positions and velocities of one and the same moment), "
-		"and so is O.energy when O.trackEnergy. Contacts are in O.interactions only with exportInteractions or after writeInteractions(); contact_law.snapshot() has them always. "
-		"Contacts that O.interactions holds at the start, from the functors or from another engine's exportInteractions, are taken over with their springs; handOver() goes the other way. "
-		"Degrees of freedom that a body's state blocks keep their velocity, as with NewtonIntegrator; what contacts do against them is O.energy['constraintWork']. "
-		"Periodic cells may be boxes along the axes, deformed by a diagonal O.cell.velGrad: forces, neighbours and velocities are those of the nearest images, grains keep their unwrapped positions, "
-		"O.cell.homoDeform means what it means with NewtonIntegrator, and O.energy['boundaryWork'] is what the grains did against the moving boundaries (minus what those did on them). A velocity gradient set between two O.steps "
-		"holds from the second O.step on, or at once when prepare() is called. "
-		"A run that blows up stops with the body, the contact and the time in the message, and leaves O.bodies as they were before the step. "
-		"What a script does between two O.steps to positions, velocities, blockedDOFs, O.cell.velGrad, O.dt, subSteps, threads, exportInteractions and O.trackEnergy holds from the next one on; any other change of the bodies, their materials "
-		"or this engine is refused with a RuntimeError. "
-		"Forces and torques in O.forces, permanent or added by engines that stand before this one, act throughout the O.step; what they do is O.energy['externalWork'], with the sign turned. Without a ForceResetter among "
-		"O.engines this engine empties O.forces of what is not permanent. O.save keeps permanent forces. "
+		"and so is O.energy when O.trackEnergy. "
+		"contact_law/SCRIPTS.md says what it does with forces, blocked degrees of freedom, periodic cells and contacts of other engines, and which changes by scripts it obeys. "
 		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
 		((int, subSteps, 1, , "Small steps in one O.step."))
 		((int, threads, 1, , "Threads to use, at most as many as domains."))
@@ -103,7 +94,7 @@ public:
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
 		.def("sinter", &JKRWadaEngine::sinter, boost::python::arg("neck"), "All contacts become bonds of this neck now, without strain where the grains are; existing bonds keep their own neck. All grains shrink by the largest neck, "
 			"which is this engine's neck from now on. What the contacts held is booked as disconnection. Call it between two O.steps. contact_law.sinter() calls this, or the functors'.")
-		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (small steps times contacts, so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), searches (for neighbours, of all grains or as many a part at a time), looks (at pairs that do not touch), orders (times that grains were put into a new order, because fragments had flown apart), domains, instructions.")
+		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (small steps times contacts, so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), searches (for neighbours, of all grains or as many a part at a time), distanceChecks (of pairs that do not touch), orders (times that grains were put into a new order, because fragments had flown apart), domains, instructions.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;

@@ -150,6 +150,7 @@ namespace {
 			const auto* phys = dynamic_cast<const JKRWadaPhys*>(interaction->phys.get());
 			const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
 			if (!phys || !geometry || !phys->touching) continue;
+			if (grains.rowOf[interaction->getId1()] < 0 || grains.rowOf[interaction->getId2()] < 0) continue; // a plane's
 			found.grains.push_back(grains.rowOf[interaction->getId1()]);
 			found.grains.push_back(grains.rowOf[interaction->getId2()]);
 			found.forces.push_back(phys->normalForce.dot(geometry->normal));

@@ -104,11 +104,11 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dynamics& dynamics)
 {
 	std::vector<Place> places;
-	eachContactLane(dynamics, [&](const contact_law::ContactList& list, int lane, int first, int second) {
-		places.push_back({ std::min(first, second), std::max(first, second), &list, nullptr, lane });
+	eachContact(dynamics, [&](const contact_law::ContactList& list, int slot, int first, int second) {
+		places.push_back({ std::min(first, second), std::max(first, second), &list, nullptr, slot });
 	});
-	eachBondLane(dynamics, [&](const contact_law::BondList& list, int lane, int first, int second) {
-		places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, lane });
+	eachBond(dynamics, [&](const contact_law::BondList& list, int slot, int first, int second) {
+		places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, slot });
 	});
 	std::sort(places.begin(), places.end(),
 	        [](const Place& a, const Place& b) { return a.id1 != b.id1 ? a.id1 < b.id1 : a.id2 < b.id2; });
@@ -117,7 +117,7 @@ std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dyn
 
 ContactNow SceneContacts::Place::now(const contact_law::Dynamics& dynamics) const
 {
-	return bonds ? contactNow(dynamics, *bonds, lane) : contactNow(dynamics, *list, lane);
+	return bonds ? contactNow(dynamics, *bonds, slot) : contactNow(dynamics, *list, slot);
 }
 
 bool SceneContacts::inOrder(Scene& scene, const std::vector<Place>& places) const

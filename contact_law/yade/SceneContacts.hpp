@@ -29,7 +29,7 @@ private:
 		int id1, id2;
 		const contact_law::ContactList* list; // null for a bond
 		const contact_law::BondList* bonds;
-		int lane;
+		int slot;
 		contact_law::ContactNow now(const contact_law::Dynamics&) const;
 	};
 	static std::vector<Place> placesOf(const contact_law::Dynamics&);

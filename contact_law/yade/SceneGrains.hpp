@@ -1,4 +1,4 @@
-// YADE's bodies as the fused engine's grains: read at the start, written after each step, and looked through for what scripts have changed meanwhile.
+// YADE's bodies as the fused engine's grains: read at the start, written after each step, and compared with what was written to find what scripts have changed.
 #pragma once
 #include "../engine/dynamics.hpp"
 #include "JKRWada.hpp"

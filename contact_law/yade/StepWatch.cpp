@@ -10,7 +10,7 @@ using contact_law::Dynamics;
 using Motions = std::vector<contact_law::GrainMotion>;
 
 namespace {
-	constexpr long stepsBetweenLooks = 30; // looking through the overlaps takes about half a small step
+	constexpr long stepsBetweenChecks = 30; // of the overlaps, which take about half a small step
 
 	std::string pairOf(const Diagnosis& d) { return bodyName(d.grain) + " and " + bodyName(d.other); }
 	std::string inNumbers(const Diagnosis& d)
@@ -33,15 +33,15 @@ std::string StepWatch::tooDeep(const Dynamics& dynamics)
 void StepWatch::motionsChanged()
 {
 	ledger.forgetSum();
-	stepsSinceLook = stepsBetweenLooks;
+	stepsSinceCheck = stepsBetweenChecks;
 }
 
 std::string StepWatch::wrong(const Dynamics& dynamics, const Motions& motions, long made, long asked, const contact_law::Energies* energies)
 {
 	std::string found = wrongMotion(dynamics, motions, made, asked);
-	stepsSinceLook += made;
-	if (found.empty() && stepsSinceLook >= stepsBetweenLooks) {
-		stepsSinceLook = 0;
+	stepsSinceCheck += made;
+	if (found.empty() && stepsSinceCheck >= stepsBetweenChecks) {
+		stepsSinceCheck = 0;
 		found = tooDeep(dynamics);
 	}
 	if (found.empty() && energies) found = wrongEnergies(dynamics, *energies);

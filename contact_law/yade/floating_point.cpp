@@ -1,4 +1,4 @@
-// What the compiler's flags make of floating-point arithmetic, for the test that looks (tests/equivalence/test_floating_point.py).
+// What the compiler's flags make of floating-point arithmetic (tests/equivalence/test_floating_point.py).
 #include "../engine/dynamics.hpp"
 #include <limits>
 

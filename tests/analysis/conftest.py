@@ -1,18 +1,7 @@
-"""Run folders for the tests of the analysis: two grains from theory, and two small clusters integrated on the
-spot."""
-
-import sys
-from pathlib import Path
+"""Run folders for the tests of the analysis: two grains from theory, and two small clusters."""
 
 import pytest
-
-TOP = Path(__file__).resolve().parents[2]
-for folder in (TOP, Path(__file__).resolve().parent):
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
-
-from small_collision import cluster, collide_clusters  # noqa: E402
-from written_runs import pair_run, write_run  # noqa: E402
+from written_runs import pair_run, two_clusters
 
 
 @pytest.fixture(scope="session")
@@ -25,7 +14,5 @@ def pair_folder(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def cluster_folder(tmp_path_factory):
-    """Path of a run folder of two clusters of some fifty grains."""
-    path = tmp_path_factory.mktemp("clusters") / "run"
-    write_run(path, *collide_clusters(cluster(3.6), velocity=10.0, duration=60e-9))
-    return path
+    """Path of a run folder of two clusters of some fifty grains that stick."""
+    return two_clusters(tmp_path_factory.mktemp("clusters") / "run")

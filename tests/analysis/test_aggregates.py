@@ -40,6 +40,5 @@ def test_bulk_modulus_is_that_of_springs_on_the_lattice():
     stiffness = aggregates.contact_stiffness(FORCE, OVERLAP)
     cell = 4 / 3 * np.pi * R**3 / aggregates.fcc_filling(R, OVERLAP)
     expected = 6 * 0.5 * stiffness * distance**2 / (4.5 * cell)
-    assert aggregates.bulk_modulus(aggregates.fcc_filling(R, OVERLAP), 12.0, R, OVERLAP, FORCE) == pytest.approx(
-        expected, rel=1e-12
-    )
+    found = aggregates.bulk_modulus(aggregates.fcc_filling(R, OVERLAP), 12.0, R, OVERLAP, FORCE)
+    assert found == pytest.approx(expected, rel=1e-12)

@@ -2,13 +2,6 @@
 
 import numpy as np
 import pytest
-from andrews_stress import (
-    compression_stress,
-    contact_force,
-    elastic_stress,
-    plastic_radius,
-    return_stress,
-)
 from scipy.integrate import quad, solve_ivp
 
 from analysis.studies.elastoplastic.andrews_fit import degenerate_curve
@@ -61,6 +54,8 @@ def test_closed_forms_agree_with_the_integrated_motion(spheres):
     assert andrews.time_of_largest_compression(V, spheres) == pytest.approx(tau, rel=1e-6)
     assert andrews.restitution(V, spheres) == pytest.approx(restitution, rel=1e-6)
     assert motion(V, spheres).time_of_parting == pytest.approx(parting, rel=1e-5)
+    for function in (andrews.largest_compression, andrews.time_of_largest_compression, andrews.restitution):
+        assert function(np.array([V, 2 * V]), spheres)[0] == pytest.approx(float(function(V, spheres)))
 
 
 def test_motion_obeys_the_force_and_its_phases_join(spheres):
@@ -72,10 +67,8 @@ def test_motion_obeys_the_force_and_its_phases_join(spheres):
     assert np.abs(np.diff(delta)).max() < 1.01 * V * step and np.abs(np.diff(v)).max() < 0.02 * V
     # v is the rate of delta, and m dv/dt the force, by central differences.
     assert np.abs((delta[2:] - delta[:-2]) / (2 * step) - v[1:-1]).max() < 2e-3 * V
-    returning = t > course.time_of_largest
-    force = np.where(
-        returning, andrews.return_force(delta, course.largest, spheres), andrews.compression_force(delta, spheres)
-    )
+    force = andrews.compression_force(delta, spheres)
+    force = np.where(t > course.time_of_largest, andrews.return_force(delta, course.largest, spheres), force)
     force = np.where(t > course.time_of_parting, 0.0, force)
     rate = andrews.reduced_mass(spheres) * (v[2:] - v[:-2]) / (2 * step)
     away = np.abs(t[1:-1] - course.time_of_parting) > 10 * step  # there the force falls like a square root
@@ -91,22 +84,48 @@ def test_force_and_work_are_continuous_and_work_is_the_integral_of_the_force():
         for function in (andrews.compression_force, andrews.compression_work):
             below, above = (function(critical * (1 + e), spheres) for e in (-1e-9, 1e-9))
             assert above == pytest.approx(below, rel=1e-8)
-        assert andrews.return_force(largest, largest, spheres) == pytest.approx(
-            float(andrews.compression_force(largest, spheres)), rel=1e-12
-        )
-        work = quad(
-            lambda d: andrews.compression_force(d, spheres), 0, largest, points=[critical], epsabs=0, epsrel=1e-11
-        )[0]
+        there = lambda d: andrews.compression_force(d, spheres)
+        back = lambda d: andrews.return_force(d, largest, spheres)
+        assert back(largest) == pytest.approx(float(there(largest)), rel=1e-12)
+        precisely = {"epsabs": 0, "epsrel": 1e-11}
+        work = quad(there, 0, largest, points=[critical], **precisely)[0]
         assert andrews.compression_work(largest, spheres) == pytest.approx(work, rel=1e-9)
         assert work == pytest.approx(andrews.initial_kinetic_energy(V, spheres), rel=1e-9)  # eq 28
-        back = quad(
-            lambda d: andrews.return_force(d, largest, spheres),
-            andrews.return_compression(spheres, largest),
-            largest,
-            epsabs=0,
-            epsrel=1e-11,
-        )[0]
-        assert andrews.returned_work(largest, largest, spheres) == pytest.approx(back, rel=1e-8)
+        returned = quad(back, andrews.return_compression(spheres, largest), largest, **precisely)[0]
+        assert andrews.returned_work(largest, largest, spheres) == pytest.approx(returned, rel=1e-8)
+
+
+# ---- the normal stress in the contact, of which the forces are integrals (A24 B13-B22) ----
+
+
+def elastic_stress(delta, distance, spheres):
+    """Hertz's stress [Pa] at a distance [m] from the centre of the contact: B14; 0 outside a = (R* delta)^(1/2)."""
+    inside = np.maximum(1.0 - distance**2 / (spheres.reduced_radius * delta), 0.0)
+    return 2.0 * spheres.young * np.sqrt(delta) / (np.pi * np.sqrt(spheres.reduced_radius)) * np.sqrt(inside)
+
+
+def compression_stress(delta, distance, spheres):
+    """Stress [Pa] while the compression grows: B16."""
+    return np.minimum(elastic_stress(delta, distance, spheres), spheres.yield_stress)
+
+
+def return_stress(delta, distance, largest, spheres):
+    """Stress [Pa] while the spheres part after the largest compression [m]: B21, B22."""
+    yielded = plastic_radius(largest, spheres)
+    inner = elastic_stress(delta, yielded, spheres)
+    elastic = elastic_stress(delta, distance, spheres)
+    return np.where(distance < yielded, np.minimum(elastic, inner), elastic)
+
+
+def plastic_radius(delta, spheres):
+    """Radius [m] of the yielded part of the contact: B18, B20; 0 below delta_crit."""
+    return np.sqrt(spheres.reduced_radius * andrews.return_compression(spheres, delta))
+
+
+def contact_force(stress, delta, spheres, nodes=4000):
+    """F [N] = integral of 2 pi a' stress(a') over the contact: B13, by the midpoint rule in a'^2."""
+    square = (np.arange(nodes) + 0.5) / nodes * spheres.reduced_radius * delta
+    return np.pi * spheres.reduced_radius * delta * np.mean(stress(np.sqrt(square)))
 
 
 def test_forces_are_integrals_of_the_stresses():
@@ -124,30 +143,17 @@ def test_forces_are_integrals_of_the_stresses():
 
 def test_limits_are_reached():
     elastic, rigid = Spheres(4e-6, 400.0, np.inf, 14.6e6), Spheres(4e-6, 400.0, 1.67e6, np.inf)
-    assert andrews.largest_compression(V, elastic) == pytest.approx(andrews.elastic_compression(V, elastic))
-    assert andrews.time_of_largest_compression(V, elastic) == pytest.approx(
-        1.4716 * andrews.elastic_compression(V, elastic) / V, rel=1e-4
-    )
-    assert andrews.restitution(V, elastic) == 1.0
-    assert andrews.largest_compression(V, rigid) == pytest.approx(andrews.plastic_compression(V, rigid))
-    assert andrews.time_of_largest_compression(V, rigid) == pytest.approx(
-        2 * np.pi / 3**0.5 * (400 / 1.67e6) ** 0.5 * 4e-6
-    )  # eq 33
-    assert andrews.restitution(V, rigid) == 0.0
+    whole, plastic = andrews.elastic_compression(V, elastic), andrews.plastic_compression(V, rigid)
+    eq_33 = 2 * np.pi / 3**0.5 * (400 / 1.67e6) ** 0.5 * 4e-6
+    for spheres, largest, time, restitution in (
+        (elastic, whole, 1.4716 * whole / V, 1.0),
+        (rigid, plastic, eq_33, 0.0),
+    ):
+        assert andrews.largest_compression(V, spheres) == pytest.approx(largest)
+        assert andrews.time_of_largest_compression(V, spheres) == pytest.approx(time, rel=1e-4)
+        assert andrews.restitution(V, spheres) == restitution
     near = Spheres(4e-6, 400.0, 1.67e6, 1e12)
     assert andrews.largest_compression(V, near) == pytest.approx(andrews.largest_compression(V, rigid), rel=1e-6)
-
-
-def test_units_scale_as_they_must():
-    v = np.array([1.0, 2.0, 5.0])
-    for factor in (3.0, 0.1):
-        large = Spheres(factor * PAPER.reduced_radius, PAPER.density, PAPER.yield_stress, PAPER.young)
-        for function in (andrews.largest_compression, andrews.time_of_largest_compression):
-            assert function(v, large) == pytest.approx(factor * function(v, PAPER))
-        assert andrews.restitution(v, large) == pytest.approx(andrews.restitution(v, PAPER))
-        # Pressures in units of rho v^2.
-        stiff = Spheres(PAPER.reduced_radius, PAPER.density, factor**2 * PAPER.yield_stress, factor**2 * PAPER.young)
-        assert andrews.largest_compression(factor * v, stiff) == pytest.approx(andrews.largest_compression(v, PAPER))
 
 
 def test_numbers_of_the_paper():

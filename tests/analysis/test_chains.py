@@ -57,8 +57,7 @@ def test_period_is_that_of_small_vibrations():
 
     pair = pair_constants(ICE, RADIUS)
     step = 1e-5 * pair.equilibrium_overlap
-    slope = (
-        normal_force(pair.equilibrium_overlap + step, pair) - normal_force(pair.equilibrium_overlap - step, pair)
-    ) / (2 * step)
+    below, above = (normal_force(pair.equilibrium_overlap + change, pair) for change in (-step, step))
+    slope = (above - below) / (2 * step)
     assert chains.stretching_period(pair) == pytest.approx(2 * np.pi * np.sqrt(pair.reduced_mass / slope), rel=1e-6)
     assert 20_000 * chains.stretching_period(pair) == pytest.approx(24.4e-6, rel=2e-3)

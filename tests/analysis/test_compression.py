@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.measures.compression import (
-    compression_and_velocity,
-    compression_length,
-    maximum_compression,
-    mutual_velocity,
-)
+from analysis.measures.compression import *
 from analysis.runs.folder import open_run
 
 
@@ -94,9 +89,8 @@ def test_history_agrees_with_the_states(folder, request):
         k = np.argmin(np.abs(run.history["time"] - state.time))
         if run.history["time"][k] == pytest.approx(state.time, rel=1e-12):
             x, speed = state.position[:, 0], state.velocity[:, 0]
-            assert compression_length(x, run.derived["aggregateRadius"]) == pytest.approx(
-                run.history["d"][k], abs=1e-15
-            )
+            d = compression_length(x, run.derived["aggregateRadius"])
+            assert d == pytest.approx(run.history["d"][k], abs=1e-15)
             assert mutual_velocity(x, speed) == pytest.approx(run.history["v"][k], rel=1e-9)
 
 

@@ -5,18 +5,7 @@ import pytest
 
 from analysis.theory import ICE, SILICATE, pair_constants
 from analysis.theory.aggregates import bcca_strength
-from analysis.theory.compression import (
-    bcca_filling,
-    boundary_speed,
-    compressive_strength,
-    compressive_strength_dense,
-    filling_at,
-    rolling_energy,
-    sound_speed,
-    static_from,
-    strength_scale,
-    weakest_cluster,
-)
+from analysis.theory.compression import *
 
 ENERGY = rolling_energy(0.1, 1e-7, 0.8e-9)
 SCALE = strength_scale(ENERGY, 1e-7)

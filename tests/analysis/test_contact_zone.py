@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from small_collision import cluster
 
 from analysis.measures.contact_zone import zone_filling, zone_volume
 from analysis.measures.return_phase import largest_return_speed
-from analysis.studies.collisions import return_values
+from analysis.studies.collisions import returned
 from analysis.studies.elastoplastic.measure import zones_that_meet
+from yade_scripts import packings
 
 
 @pytest.mark.parametrize(("depth", "width"), [(0.25, 0.25), (0.02, 0.4), (1.9, 0.5), (2.0, 0.3)])
@@ -31,20 +31,17 @@ def test_filling_of_the_zone_is_one_in_the_mean_and_sees_holes():
         found.append(zone_filling(x + [3.0, 0, 0], [3.0, 0, 0], 5.0, -1.0, 0.5, 0.5))
     assert np.mean(found) == pytest.approx(1.0, abs=4 * np.std(found) / 40**0.5)
     hole = x[~((x[:, 0] < -2.5) & (np.hypot(x[:, 1], x[:, 2]) < 2.5))]
-    assert (
-        zone_filling(hole, np.zeros(3), 5.0, -1.0, 0.5, 0.5)
-        == 0.0
-        < zone_filling(hole, np.zeros(3), 5.0, 1.0, 0.5, 0.5)
-    )
+    left, right = (zone_filling(hole, np.zeros(3), 5.0, side, 0.5, 0.5) for side in (-1.0, 1.0))
+    assert left == 0.0 < right
 
 
 def test_both_aggregates_count_at_the_pole_where_they_meet():
     """A ball of grains and its copy: removing what is in the zone of the second leaves half; the far pole does not matter."""
     radius, grain = 8.0, 1.0
-    ball = cluster(radius) / 1e-7
+    ball = packings.cpe(0.6, radius, 1.0, 0.0, seed=1).position
     centre = np.array([radius + grain, 0.0, 0.0])
-    near = ((ball[:, 0] < -0.75 * radius) & (np.hypot(ball[:, 1], ball[:, 2]) < 0.25 * radius)).nonzero()[0]
-    far = ((ball[:, 0] > 0.75 * radius) & (np.hypot(ball[:, 1], ball[:, 2]) < 0.25 * radius)).nonzero()[0]
+    polar = np.hypot(ball[:, 1], ball[:, 2]) < 0.25 * radius
+    near, far = (np.flatnonzero(polar & (side * ball[:, 0] > 0.75 * radius)) for side in (-1, 1))
 
     def filling(second):
         position = np.concatenate([ball - centre, second + centre])
@@ -53,9 +50,8 @@ def test_both_aggregates_count_at_the_pole_where_they_meet():
 
     whole, one = filling(ball), zone_filling(ball, np.zeros(3), radius, 1.0)
     assert filling(np.delete(ball, near, axis=0)) == pytest.approx(one / 2)
-    assert filling(np.delete(ball, far, axis=0)) == pytest.approx(
-        one / 2 + (whole - one / 2) * len(ball) / (len(ball) - len(far))
-    )
+    without_far = one / 2 + (whole - one / 2) * len(ball) / (len(ball) - len(far))
+    assert filling(np.delete(ball, far, axis=0)) == pytest.approx(without_far)
 
 
 def test_largest_return_speed():
@@ -68,4 +64,4 @@ def test_largest_return_speed():
     gap = np.cos(time)
     gap[313:316] = np.nan
     assert largest_return_speed(time, gap, np.pi / 2)[0] == pytest.approx(1.0, abs=1e-3)
-    assert np.isnan(return_values({"time": time[:9], "v": np.ones(9)}, 0.0)["return_speed"])
+    assert np.isnan(returned({"time": time[:9], "v": np.ones(9)}, 0.0)[0])

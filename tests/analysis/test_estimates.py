@@ -186,7 +186,7 @@ def test_fractions():
     )
     found = Runs(runs).fractions(lambda t: t.value == "sticks", ("velocity",), lambda t: t.value == "undecided")
     assert found.iloc[0].interval() == pytest.approx((0.7225, 1.0), abs=1e-4)
-    assert found.iloc[1].bounds == (0.25, 0.5) and found.iloc[1].undecided == 1
+    assert found.iloc[1].counts == (1, 2) and found.iloc[1].undecided == 1
     assert found.iloc[1].interval()[1] > Fraction(1, 4).interval()[1]
     assert Fraction(0, 5).chance(1.0, 5) == pytest.approx(2 / 252) and Fraction(5, 10).chance(0.5) == 1.0
     with pytest.raises(ValueError, match="several runs"):
@@ -256,6 +256,7 @@ def test_how_many_pairs_would_decide():
         ),
         ("[[claim]", "paper.toml"),
         ("[other]\na = 1", "other"),
+        ("[[claim]]\nwhere = { v = [1, 2] }\nvalue = [1, 2, 3]", "value has 3 values: must be 2"),
     ],
 )
 def test_a_paper_that_cannot_be_used_is_one_line(tmp_path, text, said):
@@ -266,16 +267,18 @@ def test_a_paper_that_cannot_be_used_is_one_line(tmp_path, text, said):
 
 
 def test_a_claim_of_several_set_ups(tmp_path):
-    """Lists in `where` make a claim for each combination; runs of the page are those of every claim that doesn't say; a note is no test."""
+    """Lists in `where` make a claim for each combination, with its own of what is a list; runs of the page are those of every claim that doesn't
+    say; a note is no test."""
     claim = "[[claim]]\nquantity = 'q'\nlabel = 'at {v}, {s}'\nprinted = ''\nsource = ''\nsentence = 'x'\n"
     texts = (
-        "where = { v = [1, 2], s = ['a', 'b'], w = 3 }\nlow = 1\n",
+        "where = { v = [1, 2], s = ['a', 'b'], w = 3 }\nlow = 1\nmargin = [1, 2, 3, 4]\n",
         "where = { v = 7, s = 'a' }\nnote = 'vague'\nruns = 2\n",
     )
     (tmp_path / "paper.toml").write_text("[page]\nruns = 5\n" + "".join(claim + text for text in texts))
     *four, vague = read_paper(tmp_path)[1]
     assert [c.label for c in four] == ["at 1, a", "at 1, b", "at 2, a", "at 2, b"]
     assert [c.where for c in four][2] == {"v": 2, "s": "a", "w": 3} and [c.sentence for c in four] == ["x", "", "", ""]
+    assert [c.margin for c in four] == [1, 2, 3, 4]
     assert {c.runs for c in four} == {5} and vague.runs == 2 and all(c.test for c in four) and not vague.test
 
 
@@ -289,7 +292,7 @@ def test_predictions_are_held_against_the_runs(tmp_path):
     ]
     (tmp_path / "predictions.csv").write_text(head + "\n".join(rows) + "\n")
     found = predictions(tmp_path, of_mean((10.0, 0.1)))
-    assert [p.held for p in found] == ["no", "yes", "not run", "no"] and found[0].expected == "at least 11"
+    assert [p["held"] for p in found] == ["no", "yes", "not run", "no"] and found[0]["expected"] == "at least 11"
     (tmp_path / "predictions.csv").write_text(head + "x,none,grains=1,1,,,abc,,\n")
     with pytest.raises(PaperError, match="no quantity none"):
         predictions(tmp_path, of_mean((10.0, 0.1)))

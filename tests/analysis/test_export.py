@@ -52,10 +52,7 @@ def expected(state):
     pairs, size = state.contact_pairs, state.cell_size
     between = np.empty((len(pairs), 3))
     for row, (a, b) in enumerate(pairs):
-        shifts = [np.zeros(3)]
-        if size is not None:
-            shifts = [size * np.array(k) for k in np.ndindex(9, 9, 9)]
-            shifts = [shift - 4 * size for shift in shifts]
+        shifts = [np.zeros(3)] if size is None else [size * (np.array(k) - 4) for k in np.ndindex(9, 9, 9)]
         images = [state.position[b] - state.position[a] + shift for shift in shifts]
         between[row] = min(images, key=np.linalg.norm)
     force = np.zeros_like(state.position)
@@ -165,13 +162,8 @@ def test_vtk_reads_every_field(run):
 # ---- OVITO ----
 
 # OVITO's words for the fields that it knows, and the rest as they are
-PARTICLES = {
-    "id": "Particle Identifier",
-    "radius": "Radius",
-    "mass": "Mass",
-    "v": "Velocity",
-    "omega": "Angular Velocity",
-}
+PARTICLES = {"id": "Particle Identifier", "radius": "Radius", "mass": "Mass", "v": "Velocity"}
+PARTICLES["omega"] = "Angular Velocity"
 LINES = {"id1": "Particle Identifier 1", "id2": "Particle Identifier 2"}
 
 
@@ -202,9 +194,8 @@ def test_ovito_reads_every_field(run):
             agree({"position": found["Position"]}, {"position": state.position})
             wanted = {PARTICLES.get(name, name): values for name, values in grains.items()}
             agree({**found, "Radius": 0}, {**wanted, "Radius": 0})
-            assert np.allclose(
-                found["Radius"], state.radius, rtol=1e-6, atol=0
-            )  # OVITO keeps radii in single precision
+            single = 1e-6  # precision, in which OVITO keeps radii
+            assert np.allclose(found["Radius"], state.radius, rtol=single, atol=0)
             if file.endswith(".pvd") and len(ends):
                 lines = {name: values[::2] for name, values in frame["contacts"].items()}  # a value for both ends
                 agree(lines, {LINES.get(name, name): values for name, values in contacts.items()})

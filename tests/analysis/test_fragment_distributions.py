@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.measures.fragments import (
-    cumulative_cross_section,
-    cumulative_grains,
-    cumulative_number,
-    fragment_labels,
-    fragment_sizes,
-    growth_efficiency,
-)
+from analysis.measures.fragments import *
 from analysis.measures.pair_velocities import pair_velocities, root_mean_square
 
 

@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.measures.periodic_compression import (
-    filling_at_pressure,
-    filling_at_share,
-    pressure_over,
-    tension,
-    windows,
-)
+from analysis.measures.periodic_compression import *
 from analysis.studies.compression.curve import FILLINGS, coordination_at, pressure_at
 from analysis.theory.aggregates import bcca_coordination
 from analysis.theory.compression import compressive_strength_dense

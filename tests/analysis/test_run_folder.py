@@ -1,8 +1,10 @@
 """Reading run folders: whole, unfinished, damaged and foreign ones."""
 
+import io
 import json
 import os
 import shutil
+import zipfile
 
 import numpy as np
 import pytest
@@ -230,7 +232,26 @@ def test_damaged_folders_say_what_and_where(folder, damage):
     assert message in str(error.value) and str(folder) in str(error.value) and "\n" not in str(error.value)
 
 
+def packed(name, shape, content=b""):
+    """An array's header and its bytes, compressed, in the place of the array."""
+
+    def spoil(file):
+        with np.load(file) as archive:
+            others = {key: archive[key] for key in archive.files if key != name}
+        np.savez(file, **others)
+        header = io.BytesIO()
+        np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": shape})
+        with zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr(f"{name}.npy", header.getvalue() + content)
+
+    return spoil
+
+
 STATE_DAMAGE = {
+    "a bomb": (packed("radius", (2**24,), bytes(2**27)), "bytes when unpacked; must be at most 20 times as large"),
+    "a size beyond all numbers": (packed("radius", (10**300,)), "'radius' has 0 bytes, by its header 8e+300"),
+    "a size beyond floats": (packed("radius", (10**400,)), "damaged"),
+    "far away": (state(position=np.full((2, 3), 1e300)), "'position' holds a value that is beyond 1e+100"),
     "half": (_halve, "damaged"),
     "a pipe": (_as_pipe, "is no regular file; must be one"),
     "no radius": (state(radius=np.array([1e-7, 0.0])), "'radius' is 0 at index 1; must be > 0"),
@@ -276,6 +297,14 @@ def test_damaged_states_say_what_and_where(folder, damage):
         run.start
     assert message in str(error.value) and "000000.npz" in str(error.value) and "\n" not in str(error.value)
     assert run.last.radius.size == 2
+
+
+def test_some_arrays_of_a_state_are_checked_too(folder):
+    state(position=np.full((2, 3), np.nan))(folder / "states" / "000000.npz")
+    states = open_run(folder).states
+    assert list(states.arrays(0, ("velocity",))) == ["velocity"]
+    with pytest.raises(RunFolderError, match="'position' holds a value that is not finite"):
+        states.arrays(0, ("position",))
 
 
 def test_a_byte_order_mark_is_no_part_of_the_record(folder):

@@ -17,8 +17,8 @@ from analysis.studies.definition import GALLERY
 from analysis.studies.elastoplastic import andrews_fit as fits
 from analysis.studies.elastoplastic.andrews_fit import VELOCITY, Aggregates, fit_moduli
 from analysis.studies.elastoplastic.levenberg import least_squares
-from analysis.studies.elastoplastic.measure import COLUMNS, zones_that_meet
-from analysis.studies.elastoplastic.study import FREE, in_grain_radii, once
+from analysis.studies.elastoplastic.measure import zones_that_meet
+from analysis.studies.elastoplastic.study import FREE, STUDY, in_grain_radii, once
 from analysis.studies.elastoplastic.zones import zone_correlation
 from analysis.studies.find import find
 from yade_scripts.packings import cpe, moved
@@ -150,7 +150,7 @@ def test_correlation_with_the_zones_is_that_about_the_means():
 
 def test_the_gallery_gives_what_it_gave():
     """Numbers of the comparison before the engine of estimates, from the runs that it was made of."""
-    table = in_grain_radii(read_table(GALLERY / "elastoplastic" / "runs.csv", COLUMNS)[0])
+    table = in_grain_radii(read_table(GALLERY / "elastoplastic" / "runs.csv", STUDY.columns)[0])
     assert len(table) == 454 and table.run.is_unique
     same = table[(table.viscoelasticTime == 0) & (table.removeLooseGrains == 0) & (table.initialOverlap == 1)]
     before = same[(same.duration < 2e-6) & (same.seed < 200)]
@@ -166,7 +166,7 @@ def test_the_gallery_gives_what_it_gave():
 
 def test_packings_made_again_are_those_of_the_runs():
     """d(0) and the filling of the zones that meet of runs in the gallery, from their seeds."""
-    table = read_table(GALLERY / "elastoplastic" / "runs.csv", COLUMNS)[0]
+    table = read_table(GALLERY / "elastoplastic" / "runs.csv", STUDY.columns)[0]
     for row in table[table.radius < 4.5e-6].drop_duplicates(["filling"]).itertuples():
         reach, found = row.radius + row.grain_radius, []
         for index, side in ((0, -1.0), (1, 1.0)):

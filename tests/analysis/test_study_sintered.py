@@ -11,7 +11,7 @@ from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS, CHANNELS
 from analysis.runs.table import read_table
 from analysis.studies.definition import GALLERY
-from analysis.studies.sintered.measure import PARTS, measure
+from analysis.studies.sintered.measure import PARTS
 from analysis.studies.sintered.models import chain_ratio, fit_necks
 from analysis.studies.sintered.study import STUDY
 
@@ -54,11 +54,11 @@ def made_run(
 
 
 def results(folder):
-    return STUDY.results(pandas.DataFrame([measure(open_run(path)) for path in sorted(folder.iterdir())]))
+    return STUDY.results(pandas.DataFrame([STUDY.measure(open_run(path)) for path in sorted(folder.iterdir())]))
 
 
 def test_one_run(tmp_path):
-    row = measure(open_run(made_run(tmp_path / "run", 30.0, 0.7, 2, broken=80)))
+    row = STUDY.measure(open_run(made_run(tmp_path / "run", 30.0, 0.7, 2, broken=80)))
     assert (row["neck"], row["packing_seed"], row["growth_velocity"], row["grains"]) == (0.7, 2, 0.0, GRAINS)
     assert row["energy_ratio"] == pytest.approx(MASS * 30.0**2 / 4 / (np.pi * 0.1 * (0.7 * RADIUS) ** 2))
     assert row["largest"] == 1.0 and row["second"] == 0.0 and row["fragments"] == 0.0 and row["outcome"] == "sticking"
@@ -77,7 +77,10 @@ def test_other_runs_are_left_out(tmp_path, capsys):
     made_run(tmp_path / "runs" / "extracted", 10.0, 0.7, 1, packing="cpe")
     assert main(["study", "sintered", str(tmp_path / "runs")]) == 2
     said = capsys.readouterr().err
-    assert "impact = 0.5, S17's scene has 0.0" in said and "packing = cpe, S17's are bcca and file" in said
+    assert (
+        "impact = 0.5, the study of Sirono & Ueno (2017) has 0.0" in said
+        and "packing = cpe, S17's are bcca and file" in said
+    )
 
 
 def test_set_ups_stand_beside_each_other_by_pairs(tmp_path):

@@ -3,17 +3,10 @@
 import numpy as np
 import pytest
 
-from analysis.measures.virial import (
-    cell_velocity,
-    contact_pressure,
-    contact_stress,
-    filling_factor,
-    kinetic_pressure,
-    nearest_image,
-)
+from analysis.measures.virial import *
 
 A = 2e-7
-CUBIC = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+CUBIC = [(2, 0, 0), (0, 2, 0), (0, 0, 2)]
 FCC = [(0, 1, 1), (0, 1, -1), (1, 0, 1), (1, 0, -1), (1, 1, 0), (1, -1, 0)]
 
 
@@ -26,13 +19,10 @@ def crystal(basis, neighbours, cells, edge):
     return half * edge / 2, np.array(pairs), np.full(3, cells * edge)
 
 
-@pytest.mark.parametrize(
-    "basis, neighbours, contacts",
-    [
-        ([(0, 0, 0)], [tuple(2 * x for x in n) for n in CUBIC], 6),
-        ([(0, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 0)], FCC, 12),
-    ],
-)
+CRYSTALS = [([(0, 0, 0)], CUBIC, 6), ([(0, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 0)], FCC, 12)]
+
+
+@pytest.mark.parametrize("basis, neighbours, contacts", CRYSTALS)
 def test_crystal_under_pressure(basis, neighbours, contacts):
     """P = Z n d F/6 of n grains a volume with Z contacts of force F and length d (A24 eq 37 without its prefactor)."""
     position, pairs, cell = crystal(basis, neighbours, 4, A)

@@ -123,28 +123,17 @@ def test_a_film_that_is_stopped_leaves_nothing(tiny):  # noqa: F811
 # ---- nothing is written over what is read ----
 
 
-def test_a_table_is_not_written_over_itself(tiny, capsys):  # noqa: F811
-    main(
-        [
-            "study",
-            str(tiny / "sticking.py"),
-            str(tiny / "runs" / "s1"),
-            str(tiny / "runs" / "s2"),
-            "--figures",
-            str(tiny / "out"),
-        ]
-    )
-    table = tiny / "out" / "runs.csv"
+def test_a_table_is_not_written_over_itself(tiny, capsys, monkeypatch):  # noqa: F811
+    def study(*runs):
+        return main(["study", "sticking.py", *runs, "--figures", "out"])
+
+    monkeypatch.chdir(tiny)
+    study("runs/s1", "runs/s2")
+    table, comparison = tiny / "out" / "runs.csv", tiny / "out" / "comparison.json"
     before, text = table.stat(), table.read_text()
-    (tiny / "out" / "comparison.json").unlink()
+    comparison.unlink()
     capsys.readouterr()
-    assert main(["study", str(tiny / "sticking.py"), str(table), "--figures", str(tiny / "out")]) == 0
-    assert os.path.samestat(table.stat(), before) and (tiny / "out" / "comparison.json").exists()
-    assert (
-        main(
-            ["study", str(tiny / "sticking.py"), str(table), str(tiny / "runs" / "s3"), "--figures", str(tiny / "out")]
-        )
-        == 2
-    )
-    assert capsys.readouterr().err == f"analysis: {table}: is what is read; must be another file\n"
+    assert study("out/runs.csv") == 0 and comparison.exists()
+    assert study("out/runs.csv", "runs/s3") == 2
+    assert capsys.readouterr().err == "analysis: out/runs.csv: is what is read; must be another file\n"
     assert os.path.samestat(table.stat(), before) and table.read_text() == text

@@ -1,12 +1,14 @@
 """Run folders written for tests, in the format that the collision script writes."""
 
 import json
+import re
 from math import pi
 
 import numpy as np
 
 from analysis.runs.format import CHANNELS, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
 from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair_constants, pair_motion
+from yade_scripts import packings
 
 RADIUS = 1e-7
 PAIR = pair_constants(ICE, RADIUS)
@@ -15,25 +17,12 @@ MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS**3
 
 def record(aggregate_radius, parameters=None):
     """The dict of run.json for ice grains of 0.1 um and an aggregate radius [m]."""
-    derived = {
-        "young": ICE.young,
-        "poisson": ICE.poisson,
-        "surfaceEnergy": ICE.surface_energy,
-        "density": ICE.density,
-        "criticalRolling": ICE.critical_rolling,
-        "viscoelasticTime": 0.0,
-        "grainRadius": RADIUS,
-        "grainMass": MASS,
-        "equilibriumContactRadius": PAIR.equilibrium_contact_radius,
-        "equilibriumOverlap": PAIR.equilibrium_overlap,
-        "pullOffOverlap": PAIR.pull_off_overlap,
-        "pullOffForce": PAIR.pull_off_force,
-        "timeUnit": PAIR.time_unit,
-        "timeStep": 0.1 * PAIR.time_unit,
-        "steps": 0,
-        "aggregateRadius": aggregate_radius,
-        "grainsPerAggregate": 1,
-    }
+    material = {"young": ICE.young, "poisson": ICE.poisson, "surfaceEnergy": ICE.surface_energy, "density": ICE.density}
+    material |= {"criticalRolling": ICE.critical_rolling, "viscoelasticTime": 0.0}
+    pair = "equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce timeUnit".split()
+    pair = {name: getattr(PAIR, re.sub("([A-Z])", r"_\1", name).lower()) for name in pair}
+    derived = {**material, "grainRadius": RADIUS, "grainMass": MASS, **pair, "timeStep": 0.1 * PAIR.time_unit}
+    derived |= {"steps": 0, "aggregateRadius": aggregate_radius, "grainsPerAggregate": 1}
     return {
         "format": FORMAT,
         "kind": "collision",
@@ -102,45 +91,49 @@ def pair_run(path, velocity=8.0, samples=201):
 
 def _pair_state(time, overlap, rate, touching):
     x = RADIUS - 0.5 * overlap
-    return state_arrays(
-        time,
-        [[-x, 0, 0], [x, 0, 0]],
-        [[rate / 2, 0, 0], [-rate / 2, 0, 0]],
-        [0, 1],
-        [[0, 1]] if touching else [],
-        [normal_force(overlap, PAIR)] if touching else [],
-    )
+    position, velocity = [[-x, 0, 0], [x, 0, 0]], [[rate / 2, 0, 0], [-rate / 2, 0, 0]]
+    contact = ([[0, 1]], [normal_force(overlap, PAIR)]) if touching else ([], [])
+    return state_arrays(time, position, velocity, [0, 1], *contact)
 
 
 def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, **parameters):
     """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding, and stick (still
     parting at the end unless it settles) or part at half their speed. Returns the path."""
+    values = {"packing": "cpe", "material": "ice", "grains": 2, "velocity": velocity, "seed": seed, "impact": 0.0}
+    pair, lost = np.array([[0, 0, 0], [0, 2 * RADIUS, 0]]), {"slidingDissipation": 1.0}
+    about, v = record(RADIUS, {**values, **parameters}), -0.5 if not sticks else 0.0 if settles else -0.4
+    return meeting(path, about, pair, [[0, 1]], velocity, lost, away=v, sticks=sticks, ended=ended, states=states)
+
+
+def two_clusters(path):
+    """The same of two clusters of some fifty grains that stick, with forces at random and losses of several kinds."""
+    cluster = packings.cpe(0.6, 4.5 * RADIUS, RADIUS, PAIR.equilibrium_overlap, seed=1)
+    position = cluster.position - cluster.position.mean(axis=0)
+    reach = np.abs(position[:, 0]).max() + RADIUS
+    lost = {"connection": 0.3, "drag": 0.9, "normal": -0.2}
+    values = {"radius": 4.5, "velocity": 1.0}
+    return meeting(path, record(reach, values), position, packings.contacts(cluster), 1.0, lost, states=12)
+
+
+def meeting(path, about, one, pairs, velocity, lost, away=0.0, sticks=True, ended=True, states=3):
+    """A run folder of an aggregate `one` (N,3) with contact pairs (M,2), and another like it, that meet at velocity [m/s]: a contact
+    of their first grains forms; lost: {channel: its fraction of the motion's energy}; away: velocity at the end over the first."""
     time = np.linspace(0.0, 4e-7, 401)
     meet, turn = 1e-7, 2e-7
-    away = -0.5 if not sticks else 0.0 if settles else -0.4
     v = velocity * np.interp(time, [0, meet, turn, 3e-7], [1, 1, 0, away])
     d = -velocity * meet + np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(time))])
+    grains, random = len(one), np.random.default_rng(1)
+    energy, touching = grains * MASS * (velocity / 2) ** 2, (time > meet) & (sticks | (time < 3e-7))
     history = {name: np.zeros(time.size) for name in CHANNELS}
-    energy = 2 * MASS * (velocity / 2) ** 2
     history["kinetic"] = energy * (v / velocity) ** 2
-    history["slidingDissipation"] = energy - history["kinetic"]
-    touching = (time > meet) & (sticks | (time < 3e-7))
-    history.update(time=time, d=d, v=v, contacts=2 + touching, contacts_between=touching.astype(int))
-    kept = []
+    history.update({name: part * (energy - history["kinetic"]) for name, part in lost.items()})
+    history.update(time=time, d=d, v=v, contacts=2 * len(pairs) + touching, contacts_between=touching.astype(int))
+    within, kept = np.concatenate([pairs, np.add(pairs, grains)]), []
     for k in np.linspace(0, 400, states).astype(int):
-        x = RADIUS - 0.5 * d[k]
-        position = [[-x, 0, 0], [-x, 2 * RADIUS, 0], [x, 0, 0], [x, 2 * RADIUS, 0]]
-        moving = [[v[k] / 2, 0, 0]] * 2 + [[-v[k] / 2, 0, 0]] * 2
-        kept.append(
-            state_arrays(time[k], position, moving, [0, 0, 1, 1], [[0, 1], [2, 3]] + [[0, 2]] * int(touching[k]))
-        )
-    values = {
-        "packing": "cpe",
-        "material": "ice",
-        "grains": 2,
-        "velocity": velocity,
-        "seed": seed,
-        "impact": 0.0,
-        **parameters,
-    }
-    return write_run(path, record(RADIUS, values), history, kept, ended)
+        shift = np.array([about["derived"]["aggregateRadius"] - 0.5 * d[k], 0, 0])
+        moving = np.repeat([[v[k] / 2, 0, 0], [-v[k] / 2, 0, 0]], grains, axis=0)
+        now = np.concatenate([within, [[0, grains]]]) if touching[k] else within
+        force = random.normal(size=len(now)) * PAIR.pull_off_force
+        position = np.concatenate([one - shift, one + shift])
+        kept.append(state_arrays(time[k], position, moving, np.repeat([0, 1], grains), now, force))
+    return write_run(path, about, history, kept, ended)

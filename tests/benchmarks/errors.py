@@ -9,7 +9,7 @@ thread. A step that is refused or blows up is recorded as that, in its own words
 """
 
 import json
-import subprocess
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +19,9 @@ import numpy as np
 import scene_file
 import starts
 from measured_on import HERE, TOP
+
+sys.path.insert(0, str(HERE.parent))
+from yade_server import YadeServer
 
 from analysis import open_run
 from analysis.measures import ledger
@@ -82,23 +85,22 @@ def of_scripts(asked):
     ledger, seconds; d_max; byFilling of a compression: {filling: [ledger, work [J]] as if the run had ended there}. Of a run
     that did not come to its end only {"failed": its last words}.
     """
+    yade = YadeServer()
     with tempfile.TemporaryDirectory() as folder:
-        folder, commands = Path(folder), []
         for k, given in enumerate(asked):
             script = TOP / "yade_scripts" / ("compress.py" if "strainRate" in given else "collide.py")
-            given = {"threads": 1, **given, "out": folder / str(k)}
-            commands.append([str(script), *(f"{name}={value}" for name, value in given.items())])
-        (folder / "runs.json").write_text(json.dumps(commands))
-        command = ["yade", "-n", "-x", "-j1", str(HERE / "yade_errors.py"), "runs.json"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-        if done.returncode:
-            raise codes.CodeFailed(f"yade_errors.py failed:\n{done.stderr[-2000:]}")
-        return [_of_run(folder / str(k)) for k in range(len(asked))]
+            place = Path(folder) / str(k)
+            place.mkdir()
+            given = {"threads": 1, **given, "out": "run"}
+            yade.run(script, place, arguments=[f"{name}={value}" for name, value in given.items()])
+        return [_of_run(Path(folder) / str(k)) for k in range(len(asked))]
 
 
-def _of_run(path):
+def _of_run(place):
+    path = place / "run"
     if not (path / "ended").exists():
-        return {"failed": path.with_suffix(".txt").read_text().strip().splitlines()[-1]}
+        printed = (place / "stdout").read_text() + (place / "stderr").read_text()
+        return {"failed": printed.strip().splitlines()[-1]}
     history, seconds = open_run(path).history, json.loads((path / "run.json").read_text())["wallTime"]
     if "filling" not in history:
         largest = maximum_compression(history["time"], history["d"], history["v"])

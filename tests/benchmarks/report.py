@@ -42,9 +42,8 @@ def text(results, settings):
         "Whole runs": (solution(results, scenes), OF_SOLUTION),
         "Error against the time step": (errors_by_step(results, settings), of_errors(results, settings)),
     }
-    parts = [
-        f"## {title}\n\n{markdown(rows)}\n\n{note}".rstrip() for title, (rows, note) in sections.items() if len(rows)
-    ]
+    there = {title: section for title, section in sections.items() if len(section[0])}
+    parts = [f"## {title}\n\n{markdown(rows)}\n\n{note}".rstrip() for title, (rows, note) in there.items()]
     return "\n\n".join([HEAD + measured_on(results), *parts]) + "\n"
 
 
@@ -101,15 +100,9 @@ def speed(results, scenes):
                 continue
             best = {n: results.milliseconds(*place).min() for n, place in places.items()}
             ours = {n: (at.scene, at.moment, "engine", n) for n in places}
-            row = {
-                "scene": title,
-                "moment": at.moment,
-                "grains": number(at.grains, 6),
-                "contacts": f"{at.contacts:.0f}",
-            }
-            row |= {"code": CODES[code].name} | both(
-                "ms a step", lambda n: with_worst(results.milliseconds(*places[n]))
-            )
+            row = {"scene": title, "moment": at.moment, "grains": number(at.grains, 6)}
+            row |= {"contacts": f"{at.contacts:.0f}", "code": CODES[code].name}
+            row |= both("ms a step", lambda n: with_worst(results.milliseconds(*places[n])))
             row |= both("ns a contact update", lambda n: number(1e6 * best[n] / at.contacts))
             row |= both("million contact updates/s", lambda n: spread(results.rate(*places[n]), 2, 1e6))
             row |= {"two / one": spread(results.ratio(places[2], places[1]), 2)}
@@ -143,7 +136,7 @@ def counts(results, scenes):
         if (steps := at.measuredSteps) > 0:
             slips, scale = max(0, at.events - at.formed - at.broken), max(at.kinetic, abs(at.boundaryWork))
             row["neighbours searched every … steps"] = f"{steps / at.searches:.0f}" if at.searches else f"> {steps:.0f}"
-            row["looks at pairs, a contact and step"] = number(at.looks / steps / at.contacts, 2)
+            row["distance checks, a contact and step"] = number(at.distanceChecks / steps / at.contacts, 2)
             shares = {part: getattr(at, part) for part in ("lists", "forces", "integration")}
             row |= {f"% of the time: {part}": number(100 * share, 2) for part, share in shares.items()}
             row["% of contact updates that slip"] = number(100 * slips / at.contactUpdates, 2)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pandas as pd
 
 KEYS = {"speed": ["scene", "moment"], "moments": ["scene", "moment"], "error": ["scene", "code"]}
-MOMENTS = """scene moment time progress step runSteps grains contacts pieces measuredSteps searches looks events formed broken
+MOMENTS = """scene moment time progress step runSteps grains contacts pieces measuredSteps searches distanceChecks events formed broken
 contactUpdates energyChange kinetic boundaryWork lists forces eventHandling integration other bytes others cpu cores commit
 settings"""
 COLUMNS = {
@@ -53,10 +53,9 @@ class Results:
             self._read(name)
 
     def _read(self, name):
-        path, self._measured = self.folder / f"{name}.csv", None
-        there = (
-            pd.read_csv(path, float_precision="round_trip") if path.exists() else pd.DataFrame(columns=COLUMNS[name])
-        )
+        path, self._measured, there = self.folder / f"{name}.csv", None, pd.DataFrame(columns=COLUMNS[name])
+        if path.exists():
+            there = pd.read_csv(path, float_precision="round_trip")
         # a moment that was measured again comes last in the file
         setattr(self, name, there.sort_values("progress", kind="stable") if name == "moments" else there)
 

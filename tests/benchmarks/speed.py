@@ -13,7 +13,7 @@ from measured_on import fraction_of_others, machine
 
 from analysis.measures.fragments import fragment_labels
 
-SUMMED = ("searches", "looks", "events", "formed", "broken", "contactUpdates", "energyChange", "boundaryWork")
+SUMMED = ("searches", "distanceChecks", "events", "formed", "broken", "contactUpdates", "energyChange", "boundaryWork")
 
 
 def batches(scenes):
@@ -98,7 +98,7 @@ def measure(batch, begun, settings, done, folder=moments.FOLDER):
         for turn in range(settings.rounds):
             others = max(others, fraction_of_others())
             for place in places:
-                for code, threads in place.answers:
+                for code, threads in ((code, n) for code in place.scene.codes for n in codes.threads_of(code)):
                     if codes.CODES[code].law or turn < settings.peer_rounds:
                         place.measure(code, threads)
                     done()

@@ -98,9 +98,8 @@ def compressed(scene):
     time_unit, overlap = constants["timeUnit"], constants["equilibriumOverlap"]
     cluster = packings.bcca(parameters.grains, parameters.grainRadius, overlap, parameters.seed)
     edge, at_rest, step = smallest_edge(cluster), np.zeros((cluster.grains, 3)), parameters.stepFraction * time_unit
-    made = scene_file.start(
-        cluster.position, at_rest, cluster.radius, [parameters], step, linear_damping=damping, edge=edge
-    )
+    cell = {"linear_damping": damping, "edge": edge}
+    made = scene_file.start(cluster.position, at_rest, cluster.radius, [parameters], step, **cell)
     first = filling_factor(cluster.radius, np.full(3, edge))
     whole = log(parameters.finalFilling / first)
     progress = {name: log((filling or first) / first) / whole for name, filling in scene.moments.items()}

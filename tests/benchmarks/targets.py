@@ -46,12 +46,8 @@ class Target:
         worst = self.found.least if self.at_least else self.found.most
         reached, every = ((x >= self.bound if self.at_least else x < self.bound) for x in (self.found.median, worst))
         verdict = "**reached**" if every else "reached by the median, not in every round"
-        return [
-            self.what,
-            wanted,
-            self.found.text(0 if self.bound >= 100 else 2),
-            verdict if reached else "not reached",
-        ]
+        found = self.found.text(0 if self.bound >= 100 else 2)
+        return [self.what, wanted, found, verdict if reached else "not reached"]
 
 
 def targets(results, settings):

@@ -12,13 +12,13 @@ import pytest
 import settings
 import speed
 import starts
-from measured_scenes import PAPERS, Scene, bench
+from measured_scenes import PAPERS, bench
+from test_harness import SMALL
 
 from yade_scripts import packings
 
 TINY = bench(settings.TINY)
-IN_CELL = {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1}
-CELL = Scene("a small cell", "compression", IN_CELL, {"start": None})
+CELL = SMALL["cell"]
 
 
 @pytest.mark.parametrize("code, scene", [("lammps", TINY["cpe-5"]), ("liggghts", TINY["cpe-5"]), ("lammps", CELL)])
@@ -67,9 +67,8 @@ def test_what_a_peer_cannot_run_is_said(monkeypatch, tmp_path):
 def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
     """A program of that name that only fails, as one does whose libraries are missing."""
     for name in ("lmp", "liggghts"):
-        program(
-            tmp_path, name, f"echo once >> {tmp_path}/{name}.calls; echo no such library >&2; exit 127", monkeypatch
-        )
+        script = f"echo once >> {tmp_path}/{name}.calls; echo no such library >&2; exit 127"
+        program(tmp_path, name, script, monkeypatch)
     assert "pair_style granular" in codes.missing("lammps")
     start = moments.make("one", TINY["cpe-5"], tmp_path)
     place = speed.Place("one", TINY["cpe-5"], "flying", start, settings.TINY, tmp_path, ExitStack())

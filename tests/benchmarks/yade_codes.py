@@ -22,7 +22,7 @@ from yade.wrapper import *
 
 import contact_law
 
-COUNTED = ("searches", "looks", "events", "formed", "broken", "contactUpdates")
+COUNTED = ("searches", "distanceChecks", "events", "formed", "broken", "contactUpdates")
 
 
 def resident():

@@ -12,14 +12,8 @@ STOCK = {"frictionAngle": 0.5, "isCohesive": True, "normalCohesion": 1e9, "shear
 STOCK.update(momentRotationLaw=True, alphaKr=1, alphaKtw=1)
 
 
-def build(scene, sub_steps, threads=1, domains=0):
-    """The fused engine with a scene_file.SceneFile, prepared: O.step() makes sub_steps small steps."""
-    add_bodies(scene)
-    return start_engine(scene, sub_steps, threads, domains)
-
-
-def start_engine(scene, sub_steps, threads=1, domains=0, instructions=""):
-    """As build(), of bodies that are there."""
+def start_engine(scene, sub_steps, threads=1, instructions=""):
+    """The fused engine with a SceneFile whose bodies are there, prepared: O.step() makes sub_steps small steps."""
     omega, head = wrapper.Omega(), scene.head
     omega.trackEnergy = True
     omega.dt = float(head["step"]) * sub_steps
@@ -33,11 +27,8 @@ def start_engine(scene, sub_steps, threads=1, domains=0, instructions=""):
     if scene.periodic:
         # by its name: "O.cell.velGrad = " would hold from the next step on, and the first forces be those of a cell at rest
         omega.cell.updateAttrs({"velGrad": Matrix3(*np.diag(head["strainRate"]).flatten().tolist())})
-    how = {"threads": threads, "domains": domains, "instructions": instructions}
-    engine = wrapper.JKRWadaEngine(subSteps=sub_steps, **how, **law)
-    omega.engines = [engine]
-    engine.prepare()
-    return engine
+    omega.engines = [wrapper.JKRWadaEngine(subSteps=sub_steps, threads=threads, instructions=instructions, **law)]
+    omega.engines[0].prepare()
 
 
 def start_loop(scene, law):

@@ -1,9 +1,9 @@
 """Fresh Debian systems, in each a clean clone, in it the README's commands. Run by `make test-debian`, as root.
 
-    python3 tests/drivers/debian_systems.py bookworm trixie      [--folder FOLDER] [--commands 'make demo' ...]
+    python3 tests/drivers/debian_systems.py bookworm trixie      [--commands 'make demo' ...]
 
-A system is made by debootstrap with the mirror of this system's apt, and removed afterwards; with --folder it is made
-in FOLDER, or found there as an earlier call left it, and kept. Each runs in mount and process namespaces of its own.
+A system is made by debootstrap with the mirror of this system's apt, and removed afterwards. Each runs in mount and
+process namespaces of its own.
 What is tested is the last commit. Writes results/debian.md: system, versions, result and time of each command.
 Exit status: 0 when every command of every system succeeded, otherwise 1; 2 when it could not begin.
 """
@@ -45,23 +45,20 @@ class System:
     suite: str
     folder: Path
     commit: str = "unknown"
-    kept: bool = False  # made by an earlier call
     versions: dict = field(default_factory=dict)
     results: list = field(default_factory=list)  # (command, what became of it, seconds)
 
     def make(self, mirror):
         """Debootstrap, packages that come before the clone, and the clone."""
-        self.kept = (self.folder / "usr/bin/apt-get").exists()
-        if not self.kept:
-            _run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
+        self.folder.mkdir()
+        run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
         # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
         (self.folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
         self.inside(f"apt-get -q update && apt-get -q -y --no-install-recommends install {' '.join(BASE)}", check=True)
         clone = self.folder / CLONE.lstrip("/")
-        shutil.rmtree(clone, ignore_errors=True)
-        _run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
-        self.commit = _run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
+        run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
+        self.commit = run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
 
     def inside(self, command, check=False):
         """CompletedProcess of a shell command within the system, with processes, mounts and nothing of this one's
@@ -71,7 +68,7 @@ class System:
         enter += [f'{mounts} && exec chroot "$0" /bin/sh -c "$1"', str(self.folder), command]
         kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
         own = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "TERM": "dumb"}
-        return _run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
+        return run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
 
     def try_commands(self, commands):
         """Run them in the clone, the next even if one fails; yields after each."""
@@ -92,10 +89,12 @@ class System:
         return all(not result.startswith("failed") for _, result, _ in self.results)
 
 
-def _run(command, check=True, env=None):
-    done = subprocess.run(command, capture_output=True, text=True, env=env, stdin=subprocess.DEVNULL)
+def run(command, check=True, **more):
+    """CompletedProcess; CannotBegin with its last line when it fails."""
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, **more)
     if check and done.returncode:
-        raise CannotBegin(f"{command[0]}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
+        lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        raise CannotBegin(f"{' '.join(map(str, command[:4]))}: {lines[-1] if lines else done.returncode}")
     return done
 
 
@@ -109,12 +108,17 @@ def outcome(done):
     return f"failed: {counts[-1].strip() if counts else lines[-1][:150] if lines else done.returncode}"
 
 
+def archives():
+    """[(address, code name, suite)] of Debian's archives that apt uses here."""
+    asked = ["--format", "$(REPO_URI) $(CODENAME) $(SUITE) $(ORIGIN)", "Created-By: Packages"]
+    found = [line.split(" ") for line in run(["apt-get", "indextargets", *asked]).stdout.splitlines()]
+    return sorted({tuple(about) for *about, origin in found if origin == "Debian"})
+
+
 def mirror_of_this_system():
-    """The address of Debian's archive that apt uses here."""
-    targets = _run(["apt-get", "indextargets", "--format", "$(REPO_URI) $(ORIGIN) $(SUITE)", "Created-By: Packages"])
-    for line in targets.stdout.splitlines():
-        address, *about = line.split(" ")
-        if about and about[0] == "Debian" and "-" not in about[-1]:
+    """The address of that which is no update of another."""
+    for address, _, suite in archives():
+        if "-" not in suite:
             return address
     raise CannotBegin("apt has no Debian archive among its sources")
 
@@ -140,15 +144,13 @@ def table(systems):
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
-            name = system.suite + (", kept from an earlier call with its packages" if system.kept else "")
-            lines.append(f"| {name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
+            lines.append(f"| {system.suite} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
     return "\n".join(lines) + "\n"
 
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("suites", nargs="+", metavar="SUITE")
-    parser.add_argument("--folder", type=Path, help="make the systems there, or find them there, and keep them")
     parser.add_argument("--commands", nargs="+", metavar="COMMAND", help="instead of the README's")
     parser.add_argument("--out", type=Path, default=RESULTS, help="where the table goes (default: %(default)s)")
     return parser.parse_args(arguments)
@@ -162,12 +164,11 @@ def main(arguments):
             raise CannotBegin("must be run as root: debootstrap and chroot need it (sudo make test-debian)")
         if not shutil.which("debootstrap"):
             raise CannotBegin("debootstrap: not installed; must be there (apt-get install debootstrap)")
-        folder = options.folder or Path(scratch := tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
+        scratch = Path(tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
         mirror, commands = mirror_of_this_system(), options.commands or commands_of_the_readme()
         systems = []
         for suite in options.suites:
-            systems.append(System(suite, folder / suite))
-            systems[-1].folder.mkdir(parents=True, exist_ok=True)
+            systems.append(System(suite, scratch / suite))
             systems[-1].make(mirror)
             for _ in systems[-1].try_commands(commands):
                 options.out.write_text(table(systems))

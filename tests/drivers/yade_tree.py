@@ -13,6 +13,8 @@ import sys
 import time
 from pathlib import Path
 
+from debian_systems import CannotBegin, archives, run
+
 TOP = Path(__file__).resolve().parents[2]
 FOLDER = TOP / "build/yade-tree"
 SOURCE, CLONE = FOLDER / "source", FOLDER / "clone"
@@ -22,29 +24,9 @@ CHECKS = (
 )
 
 
-class Failed(Exception):
-    """The message is one line."""
-
-
-def run(command, **more):
-    """Run to its end; Failed with its last line when it fails."""
-    done = subprocess.run(command, capture_output=True, text=True, **more)
-    if done.returncode:
-        lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        raise Failed(f"{' '.join(map(str, command[:4]))}: {lines[-1] if lines else done.returncode}")
-    return done.stdout
-
-
 def installed_version():
     """Of Debian's package yade, without Debian's own revision."""
-    return re.sub(r"^\d+:|-[^-]*$", "", run(["dpkg-query", "-W", "-f", "${Version}", "yade"]))
-
-
-def archives():
-    """Lines of deb-src for the archives that apt uses here."""
-    listed = run(["apt-get", "indextargets", "--format", "$(REPO_URI) $(ORIGIN) $(CODENAME)", "Created-By: Packages"])
-    found = {tuple(line.split(" ")) for line in listed.splitlines()}
-    return [f"deb-src {where} {name} main" for where, origin, name in sorted(found) if origin == "Debian"]
+    return re.sub(r"^\d+:|-[^-]*$", "", run(["dpkg-query", "-W", "-f", "${Version}", "yade"]).stdout)
 
 
 def fetch(version):
@@ -54,17 +36,17 @@ def fetch(version):
     apt = FOLDER / "apt"
     for part in ("lists/partial", "archives/partial"):
         (apt / part).mkdir(parents=True, exist_ok=True)
-    (apt / "sources.list").write_text("\n".join(archives()) + "\n")
+    sources = [f"deb-src {address} {name} main\n" for address, name, _ in archives()]
+    (apt / "sources.list").write_text("".join(sources))
     places = {"Etc::SourceList": "sources.list", "State::lists": "lists", "Cache": ".", "Cache::archives": "archives"}
     options = [word for name, place in places.items() for word in ("-o", f"Dir::{name}={apt / place}")]
     options += ["-o", "Dir::Etc::SourceParts=-", "-o", "APT::Sandbox::User="]
     run(["apt-get", *options, "-q", "update"])
     # Where Debian's own parts of the source package are missing, apt fails after it has checked and kept YADE's.
     subprocess.run(["apt-get", *options, "-q", "source", "--download-only", "yade"], cwd=apt, capture_output=True)
-    files = list(apt.glob(f"yade_{version}.orig.tar.*"))
-    files = [file for file in files if file.suffix != ".asc"]
+    files = [file for file in apt.glob(f"yade_{version}.orig.tar.*") if file.suffix != ".asc"]
     if not files:
-        raise Failed(f"yade {version}: Debian's archive has no source of it")
+        raise CannotBegin(f"yade {version}: Debian's archive has no source of it")
     unpacked = FOLDER / "unpacked"
     shutil.rmtree(unpacked, ignore_errors=True)
     unpacked.mkdir()
@@ -84,8 +66,8 @@ def main():
         print(f"compiled against the headers of YADE {version}: {time.monotonic() - begun:.0f} s", flush=True)
         environment = {name: value for name, value in os.environ.items() if name != "YADE_PREFIX"}
         for command in CHECKS:
-            print(run(command, cwd=CLONE, env=environment).strip().splitlines()[-1], flush=True)
-    except Failed as error:
+            print(run(command, cwd=CLONE, env=environment).stdout.strip().splitlines()[-1], flush=True)
+    except CannotBegin as error:
         print(f"yade_tree.py: {error}", file=sys.stderr)
         return 1
     return 0

@@ -103,7 +103,7 @@ def test_sintered_twice_at_once_a_contact_keeps_the_first_neck(steps):
 def test_same_bits_on_one_and_two_threads_and_after_a_checkpoint(kind, count, speed):
     def state():
         counts = O.engines[0].statistics()
-        counts = {name: n for name, n in counts.items() if name not in ("searches", "looks")}
+        counts = {name: n for name, n in counts.items() if name not in ("searches", "distanceChecks")}
         return positions().tolist(), counts, necks()
 
     def end(threads, save=False):

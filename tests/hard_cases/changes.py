@@ -27,15 +27,6 @@ def run(text, **names):
     exec(text, {**globals(), **names})
 
 
-def said(call):
-    """What a call is refused with, or ''."""
-    try:
-        call()
-    except (RuntimeError, ValueError) as error:
-        return str(error)
-    return ""
-
-
 def require_refused(cases, attempt):
     """Each case (text: words) of what attempt(text) does is refused with one line that has these words."""
     others = {}

@@ -54,15 +54,6 @@ def test_grains_overlapping_far_beyond_contact_fly_apart_and_energy_stays(mover)
     assert total_energy() == pytest.approx(first, rel=1e-3)
 
 
-def test_coincident_centres_stop_the_engine_and_name_the_body():
-    start(0.1)
-    for x in (0, 5e-7, 5e-7):
-        grain((x, 0, 0), 1e-7, ice())
-    message = refusal(steps=10)
-    assert "body 1" in message and "\n" not in message
-    assert positions().tolist() == [[0, 0, 0], [5e-7, 0, 0], [5e-7, 0, 0]]  # the last good state
-
-
 @BOTH
 def test_size_ratio_ten(mover):
     """Dust of 0.1 um settling on a grain of 1 um with some speed: sticks, and the ledger closes."""

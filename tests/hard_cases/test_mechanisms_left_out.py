@@ -57,20 +57,3 @@ def test_grains_without_rolling_resistance_turn_on_each_other_without_end(how, l
     assert np.abs(spins - [1, -1 / 1.6]).max() < 1e-3
     assert max(b.state.vel.norm() for b in O.bodies) < 1e-3 * rate * r1
     assert abs(energies()["slidingDissipation"]) < 1e-3 * energies()["kinetic"]
-
-
-@pytest.mark.parametrize("springs", SPRINGS[1:], ids=named)
-def test_aggregates_collide(springs):
-    """Two BPCA aggregates of 200 grains at 25 m/s for 1,500 steps."""
-    from yade_scripts import packings
-
-    new_scene(0.2 * unit)
-    for side in (-1, 1):
-        aggregate = packings.bpca(200, 1e-7, constants(ice(), 1e-7)["equilibriumOverlap"], 2 + side)
-        for x in aggregate.position - aggregate.position.mean(axis=0) + [side * 2.2e-6, 0, 0]:
-            grain(x, 1e-7, ice(), (-12.5 * side, 0, 0))
-    fused_engine(subSteps=50, **springs)
-    O.dt *= 50
-    _, ledger = record(121)
-    total = np.array([sum(one.values()) for one in ledger])
-    assert np.abs(total - total[0]).max() < 4e-3 * ledger[0]["kinetic"]

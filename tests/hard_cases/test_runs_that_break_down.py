@@ -64,12 +64,14 @@ def test_a_body_put_onto_another_is_noticed(away):
     assert "body 1" in message and "body 3" in message
 
 
-def test_grains_that_overlap_too_far_at_the_start_are_refused():
+@pytest.mark.parametrize("apart, overlap", [(0.9e-7, "1.1"), (0.0, "2")])
+def test_grains_that_overlap_too_far_at_the_start_are_refused(apart, overlap):
     new_scene(0.01 * unit)
-    for x in (0, 5e-7, 5.9e-7):
+    for x in (0, 5e-7, 5e-7 + apart):
         grain((x, 0, 0), 1e-7, ice())
     fused_engine()
-    assert "body 1 and body 2 overlap by 1.1 of the smaller radius at the start: must be at most 1" in refusal()
+    words = f"body 1 and body 2 overlap by {overlap} of the smaller radius at the start: must be at most 1"
+    assert words in refusal() and positions()[:, 0].tolist() == [0, 5e-7, 5e-7 + apart]
 
 
 def test_after_a_failure_a_checkpoint_holds_the_last_good_state():

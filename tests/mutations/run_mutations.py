@@ -1,9 +1,9 @@
 """Breaks copies of the code, one slip each, and asks whether the tests notice; writes results/mutations.md.
 
-    python3 tests/mutations/run_mutations.py [WORD ...] [-j JOBS] [--suite] [--out FILE]
+    python3 tests/mutations/run_mutations.py [WORD ...] [-j JOBS] [--out FILE]
 
 WORD: only mutations with one of these in their room, file or description; their results are printed, and not written without --out.
---suite: what the expected tests miss, the whole suite tries. First the expected tests run on unchanged code, where they must pass.
+First the expected tests run on unchanged code, where they must pass.
 Exit status: 0 when all were caught, otherwise 1.
 """
 
@@ -16,6 +16,7 @@ import sys
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,81 +50,66 @@ class Result:
         return f"**not tried: {self.error}**" if self.error else f"`{self.test}`" if self.test else "**nothing**"
 
 
-class Copy:
-    """A copy of the work tree, with what make built, in a temporary folder."""
-
-    def __init__(self, compiles):
-        self._folder = tempfile.TemporaryDirectory(prefix="mutation-")
-        self.top = Path(self._folder.name)
-        listed = subprocess.run(
-            ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-            cwd=TOP,
-            capture_output=True,
-            check=True,
-        )
-        for name in filter(None, listed.stdout.decode().split("\0")):
-            if (TOP / name).exists():
-                (self.top / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(TOP / name, self.top / name)
+@contextmanager
+def copy_of_the_tree(compiles):
+    """Path of a copy of the work tree, with what make built, in a temporary folder."""
+    with tempfile.TemporaryDirectory(prefix="mutation-") as top:
+        asked = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+        listed = subprocess.run(asked, cwd=TOP, capture_output=True, check=True, text=True).stdout.split("\0")
+        for name in (name for name in listed if name and (TOP / name).exists()):
+            (Path(top) / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(TOP / name, Path(top) / name)
         left_out = shutil.ignore_patterns("lint", "ovito", "harness", *(() if compiles else COMPILED))
-        shutil.copytree(TOP / "build", self.top / "build", symlinks=True, ignore=left_out)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self._folder.cleanup()
-
-    def compile(self):
-        """Result of what doesn't compile, or None. The commit stays, so that only what changed is compiled."""
-        commit = (self.top / "build" / "commit.list").read_text().strip()
-        done = subprocess.run(
-            ["make", "-j2", f"COMMIT={commit}", "build"], cwd=self.top, capture_output=True, text=True
-        )
-        return Result(error=done.stderr.strip().splitlines()[-1]) if done.returncode else None
-
-    def test(self, tests, jobs=0):
-        """Result of these tests (paths); jobs: files at once."""
-        command = [sys.executable, "-m", "pytest", "-q", "-x", "-rf", "-p", "no:cacheprovider", *tests]
-        command += ["-n", str(jobs), "--dist", "loadfile"]
-        try:
-            done = subprocess.run(command, cwd=self.top, capture_output=True, text=True, timeout=LONGEST)
-        except subprocess.TimeoutExpired:
-            return Result(error=f"no end within {LONGEST} s")
-        if re.search(r"^E .*(no end within|TimeoutExpired)", done.stdout, re.MULTILINE):
-            return Result(error="a test ran into its time limit, which says nothing: try again on a quiet machine")
-        failed = re.search(r"^FAILED (.+?)(?: - .*)?$", done.stdout, re.MULTILINE)
-        if done.returncode == 0 or (done.returncode == 1 and failed):
-            return Result(failed and failed.group(1))
-        return Result(error=(done.stdout + done.stderr).strip().splitlines()[-1])
+        shutil.copytree(TOP / "build", Path(top) / "build", symlinks=True, ignore=left_out)
+        yield Path(top)
 
 
-def tried(mutation, suite):
+def compiled(top):
+    """Result of what doesn't compile, or None. The commit stays, so that only what changed is compiled."""
+    commit = (top / "build" / "commit.list").read_text().strip()
+    done = subprocess.run(["make", "-j2", f"COMMIT={commit}", "build"], cwd=top, capture_output=True, text=True)
+    return Result(error=done.stderr.strip().splitlines()[-1]) if done.returncode else None
+
+
+def tested(top, tests, jobs=0):
+    """Result of these tests (paths); jobs: files at once."""
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-rfE", "-p", "no:cacheprovider", *tests]
+    command += ["-n", str(jobs), "--dist", "loadfile"]
+    try:
+        done = subprocess.run(command, cwd=top, capture_output=True, text=True, timeout=LONGEST)
+    except subprocess.TimeoutExpired:
+        return Result(error=f"no end within {LONGEST} s")
+    if re.search(r"^E .*(no end within|TimeoutExpired)", done.stdout, re.MULTILINE):
+        return Result(error="a test ran into its time limit, which says nothing: try again on a quiet machine")
+    failed = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", done.stdout, re.MULTILINE)
+    if done.returncode == 0 or (done.returncode == 1 and failed):
+        return Result(failed and failed.group(1))
+    return Result(error=(done.stdout + done.stderr).strip().splitlines()[-1])
+
+
+def tried(mutation):
     """Result of one mutation."""
-    compiles = mutation.plugin or (suite and mutation.file.startswith("contact_law/"))
-    with Copy(compiles) as copy:
-        mutation.apply(copy.top)
-        result = (copy.compile() if compiles else None) or copy.test(mutation.tests)
-        return result if result.test or result.error or not suite else copy.test(["tests"])
+    with copy_of_the_tree(mutation.plugin) as top:
+        mutation.apply(top)
+        return (compiled(top) if mutation.plugin else None) or tested(top, mutation.tests)
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("words", nargs="*", metavar="WORD")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--suite", action="store_true")
     parser.add_argument("--out", type=Path)
     options = parser.parse_args(arguments)
     begun, about = time.monotonic(), machine()
     chosen = [m for m in read() if not options.words or any(w in f"{m.room} {m.file} {m.wrong}" for w in options.words)]
-    with Copy(False) as copy:
-        unchanged = copy.test(sorted({test for mutation in chosen for test in mutation.tests}), options.jobs)
+    with copy_of_the_tree(False) as top:
+        unchanged = tested(top, sorted({test for mutation in chosen for test in mutation.tests}), options.jobs)
     if unchanged.test or unchanged.error:
         print(f"run_mutations.py: without any mutation: {unchanged}; must pass", file=sys.stderr)
         return 1
     rows, missed = [], 0
     with ThreadPoolExecutor(options.jobs) as pool:
-        for mutation, result in zip(chosen, pool.map(lambda m: tried(m, options.suite), chosen)):
+        for mutation, result in zip(chosen, pool.map(tried, chosen)):
             rows.append(f"| {mutation.room} | {mutation.wrong} | {result} |\n")
             print(rows[-1], end="", flush=True)
             missed += not result.test

@@ -111,21 +111,6 @@ def test_characteristic_radius_is_that_of_a22():
     assert abs(large / 72.27 - 1) < 4 * scatter * (1 + 1 / 2) ** 0.5
 
 
-def test_filling_falls_slowly_with_size():
-    """BPCA has the dimension 3: N (r/r_c)^3 tends to a constant, 0.13 (A22's aggregates: 0.1324)."""
-    filling = {
-        grains: np.mean(
-            [
-                grains * (RADIUS / packings.characteristic_radius(packings.bpca(grains, RADIUS, OVERLAP, seed))) ** 3
-                for seed in range(8)
-            ]
-        )
-        for grains in (500, 4000, 16000)
-    }
-    assert filling[500] > filling[4000] > filling[16000] > 0.12
-    assert filling[16000] == pytest.approx(50000 / 72.27**3, rel=0.04)
-
-
 def test_radii_of_a_single_pair_by_hand():
     """Two grains at +-d/2: r_gyr = d/2; unlike ones with masses m, M at the distance d: r_gyr = d (m M)^(1/2)/(m + M)."""
     pair = packings.bpca(2, RADIUS, OVERLAP, 1)

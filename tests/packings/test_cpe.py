@@ -4,6 +4,8 @@ import time
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
@@ -133,13 +135,7 @@ def test_the_largest_piece_is_what_hangs_together():
     assert 0 < piece.parameters["dropped"] == packing.grains - piece.grains < 0.02 * packing.grains
     rows = {tuple(position) for position in packing.position}
     assert all(tuple(position) in rows for position in piece.position)
-    reached, pairs = {0}, packings.contacts(piece)
-    neighbours = [[] for _ in range(piece.grains)]
-    for i, j in pairs:
-        neighbours[i].append(j)
-        neighbours[j].append(i)
-    front = [0]
-    while front:
-        front = [j for i in front for j in neighbours[i] if j not in reached and not reached.add(j)]
-    assert len(reached) == piece.grains
+    pairs = packings.contacts(piece)
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=2 * (piece.grains,))
+    assert connected_components(graph, directed=False)[0] == 1
     assert packings.largest_piece(piece).grains == piece.grains

@@ -93,23 +93,21 @@ def test_command_line(run):
         assert f"{name}: {packing.grains} grains" in done.stdout
 
 
-@pytest.mark.parametrize(
-    "arguments, message",
-    [
-        ("from=run/states/000020.npz", "radius: not given; must be that of the sphere to cut [grain radii]"),
-        ("from=run/states/000020.npz radius=90", "radius = 90: a larger sphere than the cell holds; must be at most"),
-        ("from=run/states/none.npz radius=5", "run/states/none.npz: No such file or directory"),
-        ("from=run/run.json radius=5", "run/run.json: of an unknown format; must be npz, csv, xyz, LAMMPS"),
-        ("from=run/states/000020.npz radius=5 filling=0.4", "filling: unknown parameter; must be one of radius, seed"),
-        (
-            "run/states/000020.npz from=run/states/000020.npz radius=5",
-            "make_packing.py: run/states/000020.npz: is what is read; must be another file",
-        ),
-    ],
-)
-def test_wrong_input_gives_one_line(run, arguments, message):
+STATE = "run/states/000020.npz"
+WRONG = {
+    f"from={STATE}": "radius: not given; must be that of the sphere to cut [grain radii]",
+    f"from={STATE} radius=90": "radius = 90: a larger sphere than the cell holds; must be at most",
+    "from=run/states/none.npz radius=5": "run/states/none.npz: No such file or directory",
+    "from=run/run.json radius=5": "run/run.json: of an unknown format; must be npz, csv, xyz, LAMMPS",
+    f"from={STATE} radius=5 filling=0.4": "filling: unknown parameter; must be one of radius, seed",
+    f"{STATE} from={STATE} radius=5": f"make_packing.py: {STATE}: is what is read; must be another file",
+}
+
+
+@pytest.mark.parametrize("arguments", WRONG)
+def test_wrong_input_gives_one_line(run, arguments):
     done = make_packing(run, "x.npz", *arguments.split())
-    assert done.returncode != 0 and done.stderr.count("\n") == 1 and message in done.stderr
+    assert done.returncode != 0 and done.stderr.count("\n") == 1 and WRONG[arguments] in done.stderr
     assert not (run / "x.npz").exists()
 
 
@@ -137,15 +135,8 @@ def test_cut_spheres_collide(run, tmp_path):
     """collide.py packing=file takes two of them; until they meet nothing moves in them."""
     files = [str(tmp_path / name) for name in ("d.npz", "e.npz")]
     assert make_packing(run, *files, last_state(run), "radius=6", "seed=4").returncode == 0
-    given = (
-        "packing=file",
-        f"file={files[0]}",
-        f"projectileFile={files[1]}",
-        "velocity=3",
-        "duration=5e-9",
-        "threads=1",
-    )
-    _, history = completed(tmp_path, *given)
+    given = ("packing=file", f"file={files[0]}", f"projectileFile={files[1]}")
+    _, history = completed(tmp_path, *given, "velocity=3", "duration=5e-9", "threads=1")
     assert np.ptp(history["contacts"]) == 0 and history["contacts"][0] > 100
     total = sum(history[name] for name in CHANNELS)
     assert np.abs(total - total[0]).max() < 1e-9 * history["kinetic"][0]

@@ -36,19 +36,16 @@ def test_planar_cpe_is_a_hexagonal_lattice_in_a_circle(filling, relative_radius,
 
 def test_planar_filling_has_the_limit_of_the_lattice():
     assert packings.maximum_filling(1.0, 0.0, True) == pytest.approx(np.pi / (2 * np.sqrt(3)))
-    with pytest.raises(
-        packings.PackingError, match="filling = 0.95: more than the lattice holds; must be at most 0.916"
-    ):
+    message = "filling = 0.95: more than the lattice holds; must be at most 0.916"
+    with pytest.raises(packings.PackingError, match=message):
         packings.cpe(0.95, 20 * RADIUS, RADIUS, OVERLAP, 1, planar=True)
 
 
 def test_mean_coordination_of_planar_packings():
     """Six neighbours times the fraction of sites that is filled, on average over seeds; 4 standard errors, and the rim (some 4 per cent at R = 60)."""
     filling = 0.5
-    found = [
-        2 * len(packings.contacts(p)) / p.grains
-        for p in (packings.cpe(filling, 60 * RADIUS, RADIUS, OVERLAP, seed, planar=True) for seed in range(8))
-    ]
+    made = [packings.cpe(filling, 60 * RADIUS, RADIUS, OVERLAP, seed, planar=True) for seed in range(8)]
+    found = [2 * len(packings.contacts(packing)) / packing.grains for packing in made]
     expected = 6 * filling / packings.maximum_filling(RADIUS, OVERLAP, True)
     assert 0.95 * expected - 4 * np.std(found) / np.sqrt(8) < np.mean(found) < expected
 
@@ -77,11 +74,12 @@ def test_bcca_is_a_function_of_seed_and_index():
 def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, dimension):
     """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991). Mean of the logarithm over 12 aggregates at 64 and 1024
     grains; within 4 standard errors and 0.15 (small clusters)."""
-    size = lambda grains: [
-        np.log(np.sqrt((bcca(grains, 1.0, 0.0, seed, planar=planar).position ** 2).sum(axis=1).mean()))
-        for seed in range(12)
-    ]
-    small, large = size(64), size(1024)
+
+    def sizes(grains):
+        made = [bcca(grains, 1.0, 0.0, seed, planar=planar) for seed in range(12)]
+        return [np.log(packings.gyration_radius(packing)) for packing in made]
+
+    small, large = sizes(64), sizes(1024)
     slope = (np.mean(large) - np.mean(small)) / np.log(16)
     error = np.hypot(np.std(small), np.std(large)) / np.sqrt(12) / np.log(16)
     assert abs(slope - 1 / dimension) < 4 * error + 0.15 / dimension**2, (1 / slope, error)

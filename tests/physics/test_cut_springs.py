@@ -1,4 +1,4 @@
-"""The limit rule `cut` (Sirono & Ueno 2017, section 3.2) on pairs, against closed forms: energy a cut, run-out, mean resistance, order of convergence."""
+"""The limit rule `cut` (Sirono & Ueno 2017, section 3.2) on pairs, against closed forms: energy a cut, run-out (so the mean resistance), order of convergence."""
 
 import pytest
 from scenes import *
@@ -8,7 +8,6 @@ MODES_OF_PAIRS = ["rolling", "sliding", "twisting"]
 RADIUS, INERTIA = 1e-7, 0.4 * 4 / 3 * np.pi * 1e-21 * 1000 * 1e-14
 SPINS = dict(sliding=((0, 0, 1), (0, 0, 1)), rolling=((0, 0, 1), (0, 0, -1)), twisting=((1, 0, 0), (-1, 0, 0)))
 RATE = dict(sliding=2 * RADIUS, rolling=RADIUS, twisting=2)  # of the displacement, at these spins
-LEVER = dict(sliding=RADIUS, rolling=RADIUS / 2, twisting=1)
 
 
 def spring(mode):
@@ -68,33 +67,9 @@ def test_run_out_of_a_pair_that_turns_freely(mode, engine):
     assert run_out(mode, engine, "held", 20.5, 0.0125)[0] == pytest.approx(21.5 / 2, rel=2e-3)
 
 
-@pytest.mark.parametrize("mode", MODES_OF_PAIRS)
-@pytest.mark.parametrize("limit", ["held", "cut"])
-def test_mean_resistance(mode, limit):
-    """Spins held at a given value over 16.5 limits: the mean torque is half of the one at the limit, which `held` keeps, and 16 cuts take k crit^2/2 each."""
-    k, crit = spring(mode)
-    pair(mode, 0.1, 16.5 * crit / RATE[mode] / (2000 * 0.1 * unit), limit, "xyzXYZ")
-    torques = []
-    for _ in range(2001):
-        O.step()
-        torques.append(abs(O.forces.t(0)[0 if mode == "twisting" else 2]))
-    largest, energy = k * crit * LEVER[mode], 0.5 * k * crit**2
-    stored, lost = energies()[mode] / energy, energies()[mode + "Dissipation"] / energy
-    if limit == "cut":
-        assert np.mean(torques) == pytest.approx(largest / 2, rel=2e-2)
-        assert lost == pytest.approx(16, rel=2e-3) and stored == pytest.approx(0.25, rel=3e-2)
-    else:
-        assert np.mean(torques) == pytest.approx(largest, rel=4e-2)  # half of it over the first limit of 16.5
-        assert lost == pytest.approx(31, rel=2e-3) and stored == pytest.approx(1, rel=1e-3)
-
-
 def test_a_rule_of_another_name_is_refused_in_one_line():
     with pytest.raises(ValueError, match="^limit = 'broken': must be 'held' or 'cut'$"):
         Law2_ScGeom_JKRWadaPhys_JKRWada(limit="broken")
     pair("rolling", 0.1, 0, "held", "", "fused")
     O.engines[0].limit = "Cut"
     assert refusal() == "JKRWadaEngine: limit = 'Cut': must be 'held' or 'cut'"
-    O.engines[0].limit = "held"
-    O.step()
-    O.engines[0].limit = "cut"
-    assert "limit was changed after the start: it must stay 'held', not 'cut'" in refusal()

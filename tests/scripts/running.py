@@ -11,9 +11,7 @@ import numpy as np
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPTS = os.path.join(TOP, "yade_scripts")
 STUDIES = os.path.join(SCRIPTS, "studies")
-COLLIDE, COMPRESS, RUN_TABLE, STUDY = (
-    os.path.join(SCRIPTS, name) for name in ("collide.py", "compress.py", "run_table.py", "study.py")
-)
+COLLIDE, COMPRESS, STUDY = (os.path.join(SCRIPTS, name) for name in ("collide.py", "compress.py", "study.py"))
 PYTHON = "/usr/bin/python3"  # the one that YADE runs in
 TINY = ("radius=4", "velocity=30", "duration=15e-9")  # 2 x 26 grains that meet after some 7 ns
 

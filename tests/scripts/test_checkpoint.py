@@ -10,6 +10,7 @@ import pytest
 from running import (
     COLLIDE,
     COMPRESS,
+    TINY,
     call,
     collide,
     completed,
@@ -18,7 +19,7 @@ from running import (
     refusal,
     same_bits,
     stop_midway,
-)  # fmt: skip
+)
 from shrinking_cell import SHRINK
 
 # A second or so of stepping, with a checkpoint after each few steps.
@@ -27,6 +28,7 @@ OFTEN = "checkpointInterval=0.05"
 KINDS = {
     "necks": (COLLIDE, "packing=bcca grains=512 planar=1 neck=0.3 velocity=60 duration=300e-9 threads=1", 0.0),
     "shorter steps": (COLLIDE, "radius=8 velocity=30 duration=400e-9 threads=1 stepFraction=0.2 impactStepFraction=0.06", 0.0),
+    "a step that the run chooses": (COLLIDE, "radius=10 velocity=10 duration=300e-9 threads=1 stepFraction=auto", 0.0),
     # one that is compressed or stretched, with an end that follows from the history
     "compression": (COMPRESS, "grains=64 strainRate=2e-5 threads=1 finalFilling=0.2 stretch=x", 0.5),
     "a user's own": (SHRINK, "duration=200e-9 rate=3e-5 threads=1", 0.0),
@@ -65,25 +67,18 @@ def test_a_killed_run_resumes_to_the_same_bits(straight, killed, tmp_path):
     assert read_json(run, "run.json")["outcome"] == "completed"
 
 
-def test_a_stopped_run_resumes_to_the_same_bits(straight, tmp_path):
-    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes."""
-    assert stop_midway(tmp_path, [*RUN, OFTEN], signal.SIGTERM).returncode == 143
-    before = read_json(tmp_path, "run", "run.json")
-    assert before["outcome"] == "interrupted"
-    completed(tmp_path, *RUN, "resume=1")
-    assert same_bits(tmp_path / "run", straight)
-    assert read_json(tmp_path, "run", "run.json")["wallTime"] > before["wallTime"]
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
+    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes."""
     script, arguments, after = KINDS[name]
     arguments = arguments.split()
     (tmp_path / "straight").mkdir()
     completed(tmp_path / "straight", *arguments, script=script)
     number = signal.SIGTERM if name == "shorter steps" else signal.SIGKILL
     stop_midway(tmp_path, [*arguments, OFTEN], number, script, after)
-    completed(tmp_path, *arguments, "resume=1", script=script)
+    before = read_json(tmp_path, "run", "run.json")["wallTime"]
+    about, _ = completed(tmp_path, *arguments, "resume=1", script=script)
+    assert about["wallTime"] > before
     assert same_bits(tmp_path / "run", tmp_path / "straight" / "run")
 
 
@@ -106,38 +101,38 @@ def test_a_checkpoint_of_other_parameters_is_refused(killed):
     assert sorted(os.listdir(killed / "run")) == before
 
 
-@pytest.mark.parametrize(
-    "damage, message",
-    [
-        (('"commit": "', '"commit": "0'), "written by the plugin of commit 0"),
-        (('"yade": "', '"yade": "1'), "written by YADE 1"),
-        (("scene-", "nothing-"), "not a checkpoint ([Errno 2]"),
-        (('"drag", ', ""), "of a history with other columns"),
-        (('"kind": "collision"', '"kind": "toy"'), "of a run with kind = toy, not collision"),
-        (None, "not a checkpoint ("),
-    ],
-    ids=["commit", "yade", "no scene", "columns", "kind", "cut off"],
-)
-def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, damage, message):
+DAMAGED = {
+    "commit": ('"commit": "', '"commit": "0', "written by the plugin of commit 0"),
+    "yade": ('"yade": "', '"yade": "1', "written by YADE 1"),
+    "no scene": ("scene-", "nothing-", "not a checkpoint ([Errno 2]"),
+    "columns": ('"drag", ', "", "of a history with other columns"),
+    "kind": ('"kind": "collision"', '"kind": "toy"', "of a run with kind = toy, not collision"),
+    "cut off": (": ", "", "not a checkpoint ("),
+}
+
+
+@pytest.mark.parametrize("what", DAMAGED)
+def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, what):
+    text, becomes, message = DAMAGED[what]
     shutil.copytree(killed / "run", tmp_path / "run")
     path = tmp_path / "run" / "checkpoint" / "recorder.npz"
     held = read_arrays(path)
-    about = str(held["about"])
-    np.savez(path, rows=held["rows"], about=about.replace(*damage) if damage else about[:20])
+    np.savez(path, rows=held["rows"], about=str(held["about"]).replace(text, becomes))
     line = refusal(collide(tmp_path, *RUN, "out=run", "resume=1"))
     assert line.startswith(f"collide.py: run/checkpoint: {message}") and "must be " in line
 
 
-@pytest.mark.parametrize(
-    "checkpoint", [False, True], ids=["resume without a checkpoint", "a checkpoint that is replaced"]
-)
-def test_a_run_starts_from_the_beginning(straight, killed, tmp_path, checkpoint):
-    if checkpoint:
-        shutil.copytree(killed / "run", tmp_path / "run")
-        line = refusal(collide(tmp_path, *RUN, "out=run"))
-        assert "holds a run that was stopped" in line and "resume=1" in line and "overwrite=1" in line
-    completed(tmp_path, *RUN, "overwrite=1" if checkpoint else "resume=1")
+def test_a_run_with_a_checkpoint_starts_again_only_when_asked(straight, killed, tmp_path):
+    shutil.copytree(killed / "run", tmp_path / "run")
+    line = refusal(collide(tmp_path, *RUN, "out=run"))
+    assert "holds a run that was stopped" in line and "resume=1" in line and "overwrite=1" in line
+    completed(tmp_path, *RUN, "overwrite=1")
     assert same_bits(tmp_path / "run", straight) and not (tmp_path / "run" / "checkpoint").exists()
+
+
+def test_resume_without_a_checkpoint_starts_from_the_beginning(tmp_path):
+    _, history = completed(tmp_path, *TINY, "resume=1")
+    assert history["time"][0] == 0
 
 
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):

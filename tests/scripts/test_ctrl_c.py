@@ -2,12 +2,10 @@
 
 import os
 import signal
-import subprocess
 
 import pytest
-from running import COLLIDE, PYTHON, TOP, environment
+from running import COLLIDE, PYTHON, STUDY, TOP, environment, start
 
-STUDY = os.path.join(TOP, "yade_scripts", "study.py")
 # A module in the place of one that the command imports: tells that it is being imported, and takes its time.
 SLOW = "import os, sys, time\nopen(os.environ['IMPORTING'], 'w').close()\ntime.sleep(60)\n"
 COMMANDS = {
@@ -27,15 +25,8 @@ def interrupted(command, module, folder):
     (folder / f"{module}.py").write_text(SLOW)
     importing = folder / "importing"
     os.mkfifo(importing)
-    process = subprocess.Popen(
-        command,
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment(PYTHONPATH=f"{folder}:{TOP}", IMPORTING=str(importing)),
-        preexec_fn=hear_ctrl_c,
-    )
+    how = {"env": environment(PYTHONPATH=f"{folder}:{TOP}", IMPORTING=str(importing)), "preexec_fn": hear_ctrl_c}
+    process = start(folder, *command, **how)
     with open(importing):  # waits for the other end
         process.send_signal(signal.SIGINT)
     output = process.communicate(timeout=50)

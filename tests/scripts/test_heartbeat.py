@@ -7,6 +7,7 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
+from running import wait_for
 
 from analysis.__main__ import main
 from analysis.runs import running
@@ -50,9 +51,7 @@ def test_a_run_beats_until_it_ends_and_leaves_nothing(tmp_path):
     host, boot = running.this_machine()
     first = read_heartbeat(tmp_path / "run")
     assert (first.host, first.boot, first.pid, first.job, first.interval) == (host, boot, os.getpid(), None, 0.02)
-    deadline = time.monotonic() + 20
-    while read_heartbeat(tmp_path / "run").beat < 3:
-        assert time.monotonic() < deadline
+    wait_for(lambda: read_heartbeat(tmp_path / "run").beat >= 3, 20)
     beating.stop()
     assert os.listdir(tmp_path / "run") == []
 
@@ -97,14 +96,13 @@ def test_a_heartbeat_that_changes_between_two_looks_is_one(tmp_path):
 def test_a_heartbeat_that_stops_is_missed_after_three_intervals(tmp_path):
     folder = left_by(tmp_path / "run", Heartbeat("node7", "another boot", interval=0.1))
     assert place(folder)
-    deadline = time.monotonic() + 20
-    while place(folder):
-        assert time.monotonic() < deadline
+    wait_for(lambda: not place(folder), 20)
 
 
-@pytest.mark.parametrize(
-    "text", ["", "[]", '{"interval": -1, "job": "1; rm", "host": 3}', '{"interval": 1e99, "start": 1.5}']
-)
+DAMAGED = ["", "[]", '{"interval": -1, "job": "1; rm", "host": 3}', '{"interval": 1e99, "start": 1.5}']
+
+
+@pytest.mark.parametrize("text", DAMAGED)
 def test_a_damaged_heartbeat_is_judged_by_its_age(tmp_path, text):
     folder = left_by(tmp_path / "run", ELSEWHERE)
     (tmp_path / "run" / HEARTBEAT_FILE).write_text(text)

@@ -4,12 +4,13 @@ import fcntl
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
+from running import wait_for
 
 from analysis.runs.running import being_written, locked_inodes
 from yade_scripts.parameters.errors import InputError
@@ -47,19 +48,15 @@ def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):
     assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"]
 
 
-def test_an_ended_run_is_replaced_only_when_asked(tmp_path):
-    path = ended_run(tmp_path / "run")
+def test_an_ended_run_is_replaced_only_when_asked_and_another_without_asking(tmp_path):
+    path, other = ended_run(tmp_path / "run"), ended_run(tmp_path / "other")
     with pytest.raises(RunFolderError, match="holds a run that has ended; must be another folder"):
         RunFolder(str(path))
     RunFolder(str(path), overwrite=True)
-    assert sorted(os.listdir(path)) == ["run.json", "states"] and os.listdir(path / "states") == []
-
-
-def test_a_run_that_has_not_ended_is_replaced(tmp_path):
-    path = ended_run(tmp_path / "run")
-    os.unlink(path / "ended")
-    RunFolder(str(path))
-    assert sorted(os.listdir(path)) == ["run.json", "states"]
+    os.unlink(other / "ended")
+    RunFolder(str(other))
+    for folder in (path, other):
+        assert sorted(os.listdir(folder)) == ["run.json", "states"] and os.listdir(folder / "states") == []
 
 
 @pytest.mark.parametrize("overwrite", [False, True])
@@ -101,25 +98,23 @@ def test_a_folder_that_a_killed_run_began_is_used(tmp_path, left):
     for name in left:
         (tmp_path / "run" / name).write_bytes(b"half")
     RunFolder(str(tmp_path / "run"))
-    assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"] and not os.listdir(
-        tmp_path / "run" / "states"
-    )
+    assert sorted(os.listdir(tmp_path / "run")) == ["run.json", "states"]
+    assert os.listdir(tmp_path / "run" / "states") == []
 
 
 def test_a_folder_in_use_is_refused_until_the_run_is_gone(tmp_path):
     path = str(tmp_path / "run")
-    script = (
-        "import sys; sys.path.insert(0, sys.argv[1])\n"
-        "from yade_scripts.run.folder import RunFolder\n"
-        "folder = RunFolder(sys.argv[2]); print(flush=True); sys.stdin.read()"
-    )
-    top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    command = [sys.executable, "-c", script, top, path]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
-        other.stdout.readline()
-        with pytest.raises(RunFolderError, match="another run is writing there"):
-            RunFolder(path)
-        other.kill()
+    begun, has_begun = os.pipe()
+    other = os.fork()
+    if other == 0:
+        RunFolder(path)
+        os.write(has_begun, b".")
+        signal.pause()
+    os.read(begun, 1)
+    with pytest.raises(RunFolderError, match="another run is writing there"):
+        RunFolder(path)
+    os.kill(other, signal.SIGKILL)
+    os.waitpid(other, 0)
     RunFolder(path)
 
 
@@ -144,9 +139,7 @@ def test_being_written_while_another_process_waits_for_the_lock(tmp_path):
     script = "import fcntl, os, sys; print(flush=True); fcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX)"
     with subprocess.Popen([sys.executable, "-c", script, path], stdout=subprocess.PIPE) as waiting:
         waiting.stdout.readline()
-        deadline = time.monotonic() + 20
-        while not any("->" in lock and f" {waiting.pid} " in lock for lock in open("/proc/locks")):
-            assert time.monotonic() < deadline and waiting.poll() is None
+        wait_for(lambda: any("->" in lock and f" {waiting.pid} " in lock for lock in open("/proc/locks")))
         assert being_written(path) and not being_written(str(tmp_path))
         waiting.kill()
     os.close(folder._lock)
@@ -166,32 +159,22 @@ FOREIGN = "run.json has no list of the files that a run wrote"
 MINE = ("history.npz", "states/000000.npz", "states/mine.npz", "checkpoint/recorder.npz", "checkpoint/mine", "mine")
 
 
-@pytest.mark.parametrize(
-    "files, message",
-    [
-        ({"thesis.tex": "x"}, "exists and is no run folder"),
-        ({"states/000000.npz": "x"}, "exists and is no run folder"),  # someone may have put them aside
-        ({"heartbeat.json": '{"pulse": 60}'}, "exists and is no run folder"),
-        ({"run.json": "no json"}, FOREIGN),
-        ({"run.json": "[]"}, FOREIGN),
-        ({"run.json": '{"format": 3, "parameters": {}, "derived": {}}', "ended": ""}, FOREIGN),  # of version 0.3
-        ({"run.json": '{"format": 3, "files": ["../mine", "history.npz"]}'}, FOREIGN),
-        ({"run.json": '{"format": 3, "files": []}'}, "no run has written it; must be moved away|not a checkpoint"),
-    ],
-    ids=[
-        "no run",
-        "states alone",
-        "a heartbeat",
-        "no JSON",
-        "a list",
-        "an earlier version",
-        "a list that leads out",
-        "others' files",
-    ],
-)
+OTHERS = {
+    "no run": ({"thesis.tex": "x"}, "exists and is no run folder"),
+    "states that someone put aside": ({"states/000000.npz": "x"}, "exists and is no run folder"),
+    "a heartbeat": ({"heartbeat.json": '{"pulse": 60}'}, "exists and is no run folder"),
+    "no JSON": ({"run.json": "no json"}, FOREIGN),
+    "a list": ({"run.json": "[]"}, FOREIGN),
+    "version 0.3": ({"run.json": '{"format": 3, "parameters": {}, "derived": {}}', "ended": ""}, FOREIGN),
+    "a list that leads out": ({"run.json": '{"format": 3, "files": ["../mine", "history.npz"]}'}, FOREIGN),
+    "others' files": ({"run.json": '{"format": 3, "files": []}'}, "no run has written it; must be moved|no.* checkpoint"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", OTHERS)
 @pytest.mark.parametrize("options", [{}, {"overwrite": True}, {"resume": True, "overwrite": True}], ids=str)
-def test_a_folder_of_other_files_is_left_as_it_is(tmp_path, files, message, options):
-    path = tmp_path / "run"
+def test_a_folder_of_other_files_is_left_as_it_is(tmp_path, what, options):
+    (files, message), path = OTHERS[what], tmp_path / "run"
     for name, text in {**({name: "mine" for name in MINE} if "run.json" in files else {}), **files}.items():
         (path / name).parent.mkdir(parents=True, exist_ok=True)
         (path / name).write_text(text)

@@ -12,16 +12,7 @@ from yade_scripts import stability
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
 
-PLANAR = (
-    "radius=6",
-    "filling=0.7",
-    "planar=1",
-    "velocity=60",
-    "duration=6e-9",
-    "seed=2",
-    "stepFraction=0.05",
-    "neck=0.5",
-)
+PLANAR = "radius=6 filling=0.7 planar=1 velocity=60 duration=6e-9 seed=2 stepFraction=0.05 neck=0.5".split()
 
 
 @pytest.fixture(scope="module", params=["fused", "functors"])
@@ -91,17 +82,6 @@ def test_run_json_tells_of_the_bonds(run):
     assert derived["shrunkRadius"] == pytest.approx(0.9806e-7, rel=1e-4)
     assert derived["breakingEnergy"] == pytest.approx(np.pi * 0.25e-14 * 0.1)
     assert derived["aggregateRadius"] == pytest.approx(parameters["radius"] * 1e-7)
-
-
-def test_both_engines_tell_the_same_story(tmp_path):
-    """Until rounding has grown: the energies after 7 ns, when the aggregates have met."""
-    ends = []
-    for engine in ("fused", "functors"):
-        (tmp_path / engine).mkdir()
-        scene = ("radius=4", "velocity=40", "neck=0.4", "duration=7e-9", f"engine={engine}")
-        _, history = completed(tmp_path / engine, *scene)
-        ends.append([history[channel][-1] / history["kinetic"][0] for channel in CHANNELS])
-    assert ends[0] == pytest.approx(ends[1], abs=1e-9) and ends[0][CHANNELS.index("bondBreaking")] > 0
 
 
 def test_bonds_lower_the_stable_step():

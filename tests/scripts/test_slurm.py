@@ -10,6 +10,7 @@ from analysis.runs import running
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows, slurm, slurm_task
 from yade_scripts.runner.batch import StudyFolder
+from yade_scripts.runner.log import failure
 
 HEADER = "description radius velocity threads out\n"
 TABLE = HEADER + "a 5 10 1 runs/a\nb 5 11 2 runs/b\nc 5 12 1 runs/c\nrefused 5 -1 1 runs/d\n"
@@ -113,8 +114,8 @@ def test_arrays_are_no_larger_than_slurm_takes_them():
     """A thousand tasks, and rows of one number of threads each."""
     made = {number: rows.StudyRow("", {}, "", KIND, KIND.parse({"threads": str(number)})) for number in (1, 2)}
     found = slurm.arrays([made[1 + number % 2] for number in range(2446)])
-    assert [(rows.threads(group[0]), len(group)) for group in found] == [(1, 1000), (1, 223), (2, 1000), (2, 223)]
-    assert all(len(set(map(rows.threads, group))) == 1 for group in found)
+    assert [(group[0].threads, len(group)) for group in found] == [(1, 1000), (1, 223), (2, 1000), (2, 223)]
+    assert all(len({row.threads for row in group}) == 1 for group in found)
 
 
 @pytest.mark.parametrize(
@@ -127,7 +128,7 @@ def test_arrays_are_no_larger_than_slurm_takes_them():
             "a.table",
             "radius !EXEC\n5 yade\n",
             ["--slurm"],
-            "!EXEC: a column of yade-batch alone; must be left out for Slurm",
+            "a.table: the column !EXEC is for yade-batch alone; must be left out",
         ),
         (
             "a b.table",
@@ -163,7 +164,7 @@ DEAF = 'trap "echo TERM; trap - TERM" TERM; for i in $(seq 40); do sleep 0.02; d
 def task(tmp_path, commands, monkeypatch):
     """begin(script of what yade does) -> Run, and its log."""
     handlers = {number: signal.getsignal(number) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
-    row = rows.StudyRow("a", {}, "collide.py", KIND, KIND.parse({"threads": "2"}))
+    row = rows.StudyRow("a", {}, "/collide.py", KIND, KIND.parse({"threads": "2"}))
     log = tmp_path / "a.log"
 
     def begin(script):
@@ -184,19 +185,19 @@ def test_a_task_runs_its_row_as_yade_batch_would(task):
     run, log = task("echo collide.py: no; exit 1")
     assert run.wait() == 1 and not run.limit_is_near
     assert log.read_text().splitlines() == [
-        "rows.table:2 -n --threads=2 -x collide.py",
+        "rows.table:2 -n --threads=2 -x /collide.py",
         "collide.py: no",
         "",
         "JOB SUMMARY",
         "status  : 256 (FAILED)",
     ]
-    assert rows._failure(str(log)) == "collide.py: no"
+    assert failure(log, "run") == "collide.py: no"
 
 
 def test_a_run_that_is_killed_has_failed(task):
     run, log = task("kill -9 $$")
     assert run.wait() == 137
-    assert rows._failure(str(log)) == "killed by signal 9"
+    assert failure(log, "run") == "killed by signal 9"
 
 
 @pytest.mark.parametrize("number, near", [(signal.SIGUSR1, True), (signal.SIGTERM, False)], ids=["limit", "SIGTERM"])
@@ -216,7 +217,7 @@ def test_a_signal_to_all_of_the_job_is_not_passed_on(task, monkeypatch):
     monkeypatch.setattr(slurm_task, "ALL_SIGNALLED", 0.2)
     run, log = task(DEAF)
     after_begin(log)
-    os.kill(run._process.pid, signal.SIGTERM)
+    os.kill(run.process.pid, signal.SIGTERM)
     os.kill(os.getpid(), signal.SIGTERM)
     assert run.wait() == 143
     assert log.read_text().splitlines()[1:] == ["TERM"]

@@ -60,7 +60,7 @@ def test_status_from_another_process(first_call):
     assert midway.stdout.splitlines()[-1].startswith("tiny: ")
 
 
-def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_call):
+def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_call, tmp_path):
     folder, _, _ = first_call
     ended = os.stat(folder / "runs" / "tiny" / "ends" / "ended").st_mtime_ns
     write_table(folder, "tiny.table", "ends", "killed")
@@ -73,18 +73,8 @@ def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_ca
     assert same_bits(folder / "runs" / "tiny" / "killed", folder / "straight")
     again = study(folder, "tiny.table")  # nothing left: no estimate, nothing run
     assert (again.returncode, again.stdout) == (0, "tiny: 2 rows, 2 done, 0 failed\n")
-
-
-def test_an_ended_run_with_other_parameters_fails_its_row(first_call, tmp_path):
-    folder, _, _ = first_call
-    os.makedirs(tmp_path / "runs")
-    os.symlink(folder / "runs" / "tiny", tmp_path / "runs" / "tiny")
-    (tmp_path / "tiny.table").write_text(HEADER + ROWS["ends"].replace(" 10e-9", " 20e-9"))
-    refused = study(tmp_path, "tiny.table")
-    assert refused.returncode == 1 and refused.stderr.count("\n") == 1
-    words = "holds an ended run with duration = 1e-08, not 2e-08; must be the same, or removed"
-    assert refused.stderr.startswith(f"study.py: ends: runs/tiny/ends: {words}")
-    assert read_json(folder, "runs", "tiny", "ends", "run.json")["parameters"]["duration"] == 10e-9
+    elsewhere = study(tmp_path, folder / "tiny.table", "--status")
+    assert elsewhere.stdout == study(folder, "tiny.table", "--status").stdout and "2 done" in elsewhere.stdout
 
 
 def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
@@ -110,23 +100,22 @@ def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
     assert lines[0].split()[:2] == ["waiting", "killed"] and "checkpoint at " in lines[0]
 
 
-@pytest.mark.parametrize(
-    "text, message",
-    [
-        (None, "No such file or directory; must be "),
-        ("radius velocity\n", "no rows; must be "),
-        ("radius velocity\n4\n", "line 2 has 1 cells; must be 2"),
-        ("radius velocity\n= 3\n", "line 2: = has no row above; must be a value"),
-        ("radius out\n4 a\n5 a\n", "lines 2 and 3 both have out = a; must be one"),
-    ],
-    ids=["missing", "empty", "short", "nothing above", "same folder"],
-)
-def test_tables_that_cannot_be_used_run_nothing(tmp_path, text, message):
+USELESS = {
+    None: "No such file or directory; must be ",
+    "radius velocity\n": "no rows; must be ",
+    "radius velocity\n4\n": "line 2 has 1 cells; must be 2",
+    "radius velocity\n= 3\n": "line 2: = has no row above; must be a value",
+    "radius out\n4 a\n5 a\n": "lines 2 and 3 both have out = a; must be one",
+}
+
+
+@pytest.mark.parametrize("text", USELESS)
+def test_tables_that_cannot_be_used_run_nothing(tmp_path, text):
     if text:
         (tmp_path / "rows.table").write_text(text)
     failed = study(tmp_path, "rows.table")
     assert failed.returncode == 2 and failed.stderr.count("\n") == 1
-    assert failed.stderr.startswith(f"study.py: rows.table: {message}")
+    assert failed.stderr.startswith(f"study.py: rows.table: {USELESS[text]}")
     assert "runs" not in os.listdir(tmp_path)
 
 

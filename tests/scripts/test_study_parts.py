@@ -2,6 +2,7 @@
 
 import io
 import os
+import time
 
 import pytest
 
@@ -9,7 +10,9 @@ from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
 from yade_scripts.run import agreement, table
+from yade_scripts.run.closing_line import closing_line, outcome_told
 from yade_scripts.runner import cost, rows, view
+from yade_scripts.runner.batch import Batch, StudyFolder
 from yade_scripts.runner.screen import Screen
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
@@ -75,7 +78,30 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
     assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
     os.unlink(tmp_path / "run" / "run.json")
     (tmp_path / "run" / "run.json").write_text('{"outcome": "running", "derived": {"steps": 1, "timeStep": 1}}')
+    os.mkfifo(tmp_path / "log")
     assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
+    os.mkfifo(tmp_path / "speed.json")
+    study_folder = StudyFolder("any")
+    study_folder.path = str(tmp_path)
+    assert study_folder.cost([given], [rows.State(rows.WAITING)]).measured is None
+    with pytest.raises(table.TableError, match="log: is no regular file; must be one"):
+        table.read(tmp_path / "log")
+
+
+def test_failures_count_from_a_moment_on_whatever_the_clock_does(tmp_path):
+    given, log = row(out=str(tmp_path / "run")), tmp_path / "log"
+    (tmp_path / "run").mkdir()
+    for file, text in (
+        (log, "\nJOB SUMMARY\nstatus  : 256\n"),
+        (tmp_path / "run" / "run.json", '{"outcome": "failed: x"}'),
+    ):
+        file.write_text(text)
+        before = rows.traces(given, str(log))
+        assert rows.state(given, str(log)).kind == rows.FAILED
+        assert rows.state(given, str(log), before).kind == rows.WAITING
+        os.utime(file, (0, 0))  # written anew after the clock was set back
+        assert rows.state(given, str(log), before).kind == rows.FAILED
+        file.unlink()
 
 
 def test_contact_updates_are_those_of_a_packing():
@@ -168,6 +194,32 @@ def test_a_bcca_row_agrees_with_its_run_whatever_the_radius_became():
     run["derived"] = {"timeUnit": 1e-10, "firstTouch": 1e-9}
     assert agreement.difference(KIND, wanted, run) is None
     assert agreement.difference(KIND, wanted.changed(grains=65), run) == "grains = 64, not 65"
+
+
+def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path, monkeypatch):
+    """One that takes more than there are runs alone."""
+    (tmp_path / "bin").mkdir()
+    yade = tmp_path / "bin" / "yade"
+    yade.write_text(f"#!/bin/sh\necho begin $2 >> {tmp_path}/told; sleep 0.5; echo end $2 >> {tmp_path}/told\n")
+    yade.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{yade.parent}:{os.environ['PATH']}")
+    (tmp_path / "rows.table").write_text(
+        "threads out\n" + "".join(f"{n} runs/{i}\n" for i, n in enumerate((3, 1, 1, 2)))
+    )
+    folder = StudyFolder("any")
+    folder.path, folder.held = str(tmp_path), os.open(tmp_path, os.O_RDONLY)
+    with Batch(folder, rows.read(tmp_path / "rows.table"), 2) as batch:
+        while batch.running():
+            time.sleep(0.01)
+    os.close(folder.held)
+    told = (tmp_path / "told").read_text().replace("--threads=", "").splitlines()
+    assert told == ["begin 3", "end 3", "begin 1", "begin 1", "end 1", "end 1", "begin 2", "end 2"]
+
+
+@pytest.mark.parametrize("outcome", ["completed", "interrupted", "failed: energy (1 J): (a) b"])
+def test_the_outcome_is_read_back_from_the_closing_line(outcome):
+    assert outcome_told("Welcome\n" + closing_line("runs/a (1)\n", outcome, 12.34) + "\nbye\n") == outcome
+    assert outcome_told("Welcome\n") is None
 
 
 class Terminal(io.StringIO):

@@ -81,6 +81,8 @@ def test_a_collision_and_its_summary(installed, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
     done = call("dust-analysis", "summary", str(run))
     assert done.returncode == 0 and "outcome" in done.stdout
+    swept = call("/usr/bin/python3", "-c", "from yade_scripts import collide; collide(velocity=-1)")
+    assert swept.stderr.splitlines()[-1].endswith("ParameterError: velocity = -1: must be > 0 [m/s]")
 
 
 def test_a_study_by_the_name_of_its_table(installed):

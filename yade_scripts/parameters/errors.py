@@ -4,6 +4,8 @@ import os
 import sys
 from contextlib import contextmanager, suppress
 
+from analysis.printable import printable
+
 
 class InputError(Exception):
     """Input that can't be used; the message is one line: what, where, what it must be."""
@@ -15,11 +17,12 @@ def one_line_errors(script):
     try:
         yield
     except (InputError, ImportError, MemoryError) as error:
-        sys.stderr.write(f'{script}: {" ".join(str(error).split()) or type(error).__name__}\n')
+        tell(" ".join(str(error).split()) or type(error).__name__, script)
         sys.exit(2)
 
 
-def tell(text):
-    """One line on stderr that begins with the script's name; nothing when it can't be written."""
+def tell(text, script=None):
+    """One line on stderr that begins with the name of the script, which is this process's by default; nothing when it can't be
+    written."""
     with suppress(OSError):
-        sys.stderr.write(f"{os.path.basename(sys.argv[0])}: {text}\n")
+        print(printable(f"{script or os.path.basename(sys.argv[0])}: {text}"), file=sys.stderr, flush=True)

@@ -14,7 +14,7 @@ import os
 
 import numpy as np
 
-from analysis.runs.arrays import UNREADABLE, RunFolderError, require_regular
+from analysis.runs.arrays import UNREADABLE, RunFolderError, read_headers, require_regular
 from analysis.runs.folder import read_state
 from analysis.runs.format import CHECKPOINT_FOLDER, STATES_FOLDER, state_file
 from yade_scripts.parameters.errors import InputError
@@ -46,11 +46,13 @@ class Checkpoint:
         try:
             require_regular(os.path.join(self.folder, RECORDER))
             with np.load(os.path.join(self.folder, RECORDER)) as file:
+                read_headers(os.path.join(self.folder, RECORDER), file, ["rows", "about"])
                 self.rows, about = file["rows"], json.loads(str(file["about"]))
             self.run, self.wallTime = about["run"], about["wallTime"]
             self.columns = about.get("columns", [])
             self.scene = os.path.join(self.folder, about["scene"])
             os.stat(self.scene)
+            require_regular(self.scene)
             # None: of a version that did not write them, which require_agreement() refuses.
             names = ("iteration", "interval", "states", "sums")
             self.iteration, self.interval, self.states, self._sums = map(about.get, names)

@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass
 
+from analysis.runs.arrays import RunFolderError, require_regular
 from analysis.runs.write import write_text
 from yade_scripts.parameters.errors import InputError
 
@@ -32,8 +33,11 @@ def read(path):
     another number of cells than the header, two columns have one name, or there are no rows.
     """
     try:
+        require_regular(path)
         with open(path, encoding="utf-8-sig") as file:  # some editors begin a file with a byte order mark
             lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
+    except RunFolderError as error:
+        raise TableError(error) from None
     except (OSError, UnicodeDecodeError) as error:
         raise TableError(f'{path}: {getattr(error, "strerror", error)}; must be a table of parameters') from None
     used = [(number, cells) for number, cells in enumerate(lines, 1) if cells]
@@ -61,6 +65,8 @@ def read(path):
 
 def _require_once(path, names):
     for name in names:
+        if not name:
+            raise TableError(f"{path}: has a column without a name")
         if names.count(name) > 1:
             raise TableError(f"{path}: has the column {name} {names.count(name)} times; must be once")
 

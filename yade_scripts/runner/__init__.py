@@ -1,1 +1,1 @@
-"""Runs tables of any kind of run: rows, yade-batch, estimates, what is shown."""
+"""Runs tables of any kind of run: rows at work, estimates, what is shown."""

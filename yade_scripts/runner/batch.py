@@ -1,22 +1,22 @@
-"""A study's folder for logs, its yade-batch, and what is measured for the estimate."""
+"""A study's folder for logs, its rows at work, and what is measured for the estimate."""
 
 import fcntl
 import json
 import os
-import signal
 import subprocess
-import time
 from contextlib import suppress
 
-from analysis.runs.running import being_written
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.folder import read_json
 from yade_scripts.run.folder import write_json
-from yade_scripts.runner.batch_command import LOGS, batch_command
 from yade_scripts.runner.cost import TELLING, Cost
+from yade_scripts.runner.job import Job
 from yade_scripts.runner.rows import DONE, write
 
+LOGS = os.path.join("runs", "logs")
 MEASURING = 300  # s, at most
 MEASURE_SPEED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "measure_speed.py")
-NICE = "10"  # as yade-batch runs its jobs
+NICE = 10  # as yade-batch runs its jobs
 LEFT = "left.table"  # the rows that are run
 
 
@@ -25,7 +25,7 @@ class StudyBusy(RuntimeError):
 
 
 class StudyFolder:
-    """runs/logs/NAME: a log for each row, yade-batch's own, the table of what was left, the measured speed."""
+    """runs/logs/NAME: a log for each row, the table of what was left, the measured speed."""
 
     def __init__(self, name):
         self.path = os.path.join(LOGS, name)
@@ -57,13 +57,12 @@ class StudyFolder:
 
     def cost(self, rows, states):
         """Cost from the rows that have ended, and from what was measured."""
-        ended = [(row, state.seconds) for row, state in zip(rows, states) if state.kind == DONE and state.seconds]
+        ended = [(row, s.seconds) for row, s in zip(rows, states) if row.kind and s.kind == DONE and s.seconds]
         try:
-            with open(self.file("speed.json")) as file:
-                speed = json.load(file)
-            row = next(row for row in rows if row.name == speed["row"] and row.parameters)
-            measured = row, speed["contactUpdatesPerSecond"], speed["setup"]
-        except (OSError, ValueError, KeyError, StopIteration):
+            speed = read_json(self.file("speed.json"))
+            row = next(row for row in rows if row.name == speed["row"] and row.kind and row.parameters)
+            measured = row, float(speed["contactUpdatesPerSecond"]), float(speed["setup"])
+        except (RunFolderError, ValueError, TypeError, KeyError, StopIteration):
             measured = None
         return Cost(measured, ended)
 
@@ -72,9 +71,9 @@ class StudyFolder:
         if any(state.kind == DONE and (state.seconds or 0) >= TELLING for state in states):
             return
         scene = [f"{name}={text}" for name, text in row.cells.items() if name[0] != "!"]
-        command = ["nice", "-n", NICE, "yade", "-n", "-x", MEASURE_SPEED, row.script, *scene]
+        command = ["yade", "-n", f"--nice={NICE}", "-x", MEASURE_SPEED, row.script, *scene]
         environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
-        together = max(1, at_once // (row.parameters.threads or 1))
+        together = max(1, at_once // row.threads)
         pieces = [
             subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
             for _ in range(together)
@@ -100,40 +99,40 @@ class StudyFolder:
 
 
 class Batch:
-    """yade-batch at work on rows, in a session of its own, so that stop() reaches the jobs and Ctrl-C doesn't."""
+    """Rows at work, as many at once as `threads` allows, in sessions of their own: Ctrl-C reaches this process alone."""
 
-    def __init__(self, folder, rows, jobs):
-        self.rows = rows
+    def __init__(self, folder, rows, threads):
+        self._folder, self._threads, self._jobs = folder, threads, []
         left = folder.file(LEFT)
-        write(left, rows)
+        self._waiting = list(zip(rows, write(left, rows)))
         folder.remove_logs(rows)
-        self._output = open(folder.file("yade-batch.out"), "w")
-        command = batch_command(left, folder.file("@.log"), ["-j", str(jobs), "--nice", NICE])
-        # Jobs inherit the study's lock: it is free again when the last of them has ended, even if this process is killed.
-        self._process = subprocess.Popen(
-            command,
-            stdout=self._output,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            start_new_session=True,
-            pass_fds=[folder.held],
-        )
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self._output.close()
+        self.stop()
 
     def running(self):
-        return self._process.poll() is None
+        """Start what there is room for; whether there is something that has not come to its end."""
+        self._jobs = [job for job in self._jobs if job.poll() is None]
+        for row, batch_row in list(self._waiting):
+            busy = sum(job.row.threads for job in self._jobs)
+            if not busy or busy + row.threads <= self._threads:
+                self._waiting.remove((row, batch_row))
+                self._jobs.append(self._start(row, batch_row))
+        return bool(self._jobs)
 
     def stop(self):
-        """End yade-batch and have the runs write their checkpoints; returns when they have."""
-        try:
-            os.killpg(self._process.pid, signal.SIGTERM)
-        except ProcessLookupError:
-            pass
-        self._process.wait()
-        while any(being_written(row.out) for row in self.rows):
-            time.sleep(0.1)
+        """Have the runs write their checkpoints; returns when they have. No other row is started."""
+        self._waiting = []
+        for job in self._jobs:
+            job.process.terminate()
+        for job in self._jobs:
+            job.process.wait()
+            job.poll()
+
+    def _start(self, row, batch_row):
+        # Jobs inherit the study's lock: it is free again when the last of them has ended, even if this process is killed.
+        of_process = dict(start_new_session=True, pass_fds=[self._folder.held])
+        return Job(row, batch_row, self._folder.log(row), [f"--nice={NICE}"], **of_process)

@@ -24,6 +24,8 @@ class Cost:
 
     def seconds(self, wanted):
         """Estimated wall time [s] of a row's run, or None when too little is known."""
+        if wanted.kind is None:
+            return None
         size = run_size(wanted)
         similar = [
             (run_size(row), time)

@@ -1,14 +1,14 @@
 """The rows of a study, and what has become of each, from its run folder and its log."""
 
 import os
-import re
-import signal
-from dataclasses import dataclass
+import types
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from analysis.runs.format import ENDED_FILE, RUN_FILE
 from analysis.runs.running import place
-from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, changed, end_time, run_of  # noqa: F401
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, end_time, run_of  # noqa: F401
 from analysis.runs.status import running as running_state
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import checkpoint, table
@@ -16,14 +16,19 @@ from yade_scripts.run.agreement import difference
 from yade_scripts.run.file_name import file_name
 from yade_scripts.run.kind import Kind, NoKind, kind_of
 from yade_scripts.run.parameters import RunParameters
-from yade_scripts.runner.batch_command import DEFAULT_SCRIPT, failure
+from yade_scripts.runner.log import failure
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+SCRIPTS = os.path.join(TOP, "yade_scripts")
+DEFAULT_SCRIPT = os.path.join(SCRIPTS, "collide.py")
+THREADS = ("!THREADS", "!OMP_NUM_THREADS")
+OF_YADE_BATCH = ("!SCRIPT", *THREADS)  # its columns that have a meaning here, too
 
 
 @dataclass(frozen=True)
 class StudyRow:
-    """A row of a table: its kind of run and parameters (None where they are wrong), or the error of these."""
+    """A row of a table: its kind of run and parameters (None where they are wrong), or the error of these. Where a script was not
+    to be run, kind is None and the parameters are those of every kind."""
 
     name: str
     cells: dict
@@ -31,11 +36,17 @@ class StudyRow:
     kind: Kind = None
     parameters: RunParameters = None
     error: str = None
+    threads_of_yade: int = None
 
     @property
     def out(self):
         """The run folder."""
         return self.parameters.out
+
+    @property
+    def threads(self):
+        """Processors that the run takes."""
+        return self.threads_of_yade or self.parameters.threads or 1
 
     @cached_property
     def estimate(self):
@@ -43,49 +54,40 @@ class StudyRow:
         return self.kind.estimate(self.parameters)
 
 
-def read(path):
+def read(path, run_scripts=True):
     """[StudyRow] of a table; raises TableError, also when two rows would write to one folder or one log.
 
-    The column !SCRIPT names the script of a row's kind of run, as for yade-batch; without it rows are collisions.
+    The column !SCRIPT names the script of a row's kind of run, as for yade-batch; without it rows are collisions. run_scripts: whether
+    scripts of others than this suite may be imported, which tell their kinds of run.
     """
     rows, lines, kinds = [], {}, {}
     for row in table.read(path):
+        _require_columns(path, row)
         name = file_name(row.description)
-        script, kind, parameters, error = find_script(row.cells.get("!SCRIPT", DEFAULT_SCRIPT)), None, None, None
+        script, kind, parameters, threads, error = find_script(row.cells.get("!SCRIPT", DEFAULT_SCRIPT)), *[None] * 4
         try:
-            kind = kinds[script] = kinds.get(script) or kind_of(script)
-            parameters = kind.parse(row.parameters, row.description)
+            if run_scripts or os.path.dirname(os.path.realpath(script)) == os.path.realpath(SCRIPTS):
+                kind = kinds[script] = kinds.get(script) or kind_of(script)
+                parameters = kind.parse(row.parameters, row.description)
+            else:
+                known = {name: cell for name, cell in row.cells.items() if name in ("out", "threads")}
+                parameters = RunParameters.parse(known, row.description)
+            threads = _threads_of_yade(row.cells, parameters)
         except (ParameterError, NoKind) as problem:
-            error = f"line {row.line} of {path}: {problem}"
+            parameters, error = None, f"line {row.line} of {path}: {problem}"
         for key in {f"description = {row.description}", f"out = {parameters.out if parameters else name}"}:
             if key in lines:
                 raise table.TableError(f"{path}: lines {lines[key]} and {row.line} both have {key}; must be one")
             lines[key] = row.line
-        rows.append(StudyRow(name, row.cells, script, kind, parameters, error))
+        rows.append(StudyRow(name, row.cells, script, kind, parameters, error, threads))
     return rows
 
 
 def write(path, rows):
-    """Write rows as a table for yade-batch, and for jobs of Slurm, whose runs resume in the same folders."""
-    table.write(
-        path,
-        [
-            {
-                "description": row.name,
-                **row.cells,
-                "out": row.out,
-                "resume": 1,
-                "!SCRIPT": row.script,
-                "!THREADS": threads(row),
-            }
-            for row in rows
-        ],
-    )
-
-
-def threads(row):
-    """Processors that a row's run takes."""
-    return row.parameters.threads or 1
+    """Write rows as a table whose runs resume in the same folders; [FILE:LINE] of each, by which its script finds it."""
+    own = lambda row: {"description": row.name, "out": row.out}
+    table.write(path, [{**own(row), **row.cells, "resume": 1, "!THREADS": row.threads} for row in rows])
+    return [f"{path}:{row.line}" for row in table.read(path)]
 
 
 def find_script(name):
@@ -94,8 +96,18 @@ def find_script(name):
     return own if not os.path.isfile(name) and os.path.isfile(own) else name
 
 
-def state(row, log, since=0.0):
-    """What has become of a row. log: the file that its output goes to; failures before `since` don't count."""
+def traces(row, log):
+    """{file: when and where it was written} of what tells of a row's failure, for state(); of no clock but the files' own."""
+    found = {}
+    for file in () if row.error else (log, os.path.join(row.out, RUN_FILE)):
+        with suppress(OSError):
+            about = os.stat(file)
+            found[file] = about.st_mtime_ns, about.st_ino
+    return found
+
+
+def state(row, log, before=types.MappingProxyType({})):
+    """What has become of a row. log: the file that its output goes to; failures of which traces() were there `before` don't count."""
     if row.error:
         return State(FAILED, note=row.error)
     folder = row.out
@@ -107,10 +119,12 @@ def state(row, log, since=0.0):
         return running_state(folder, run, where)
     outcome = run.get("outcome", "")
     note, progress = _stopped(folder, run)
-    problem = _failure(log) if changed(log) >= since else None
+    now = traces(row, log)
+    new = {file for file in now if now[file] != before.get(file)}
+    problem = failure(log, folder) if log in new else None
     if problem:
         return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
-    if outcome.startswith("failed") and changed(os.path.join(folder, RUN_FILE)) >= since:
+    if outcome.startswith("failed") and os.path.join(folder, RUN_FILE) in new:
         return State(FAILED, progress, note=f"{folder}: {outcome}")
     return State(WAITING, progress, run.get("wallTime"), note=note)
 
@@ -118,7 +132,7 @@ def state(row, log, since=0.0):
 def _ended(row, run):
     if not run:
         return State(FAILED, note=f"{row.out}: holds an ended run without a readable {RUN_FILE}; must be removed")
-    differs = difference(row.kind, row.parameters, run)
+    differs = row.kind and difference(row.kind, row.parameters, run)
     if differs:
         note = f"{row.out}: holds an ended run with {differs}; must be the same, or removed to run the row"
         return State(FAILED, note=note)
@@ -139,18 +153,19 @@ def _stopped(folder, run):
     return f"checkpoint at {100 * reached:.0f} %", reached
 
 
-def _failure(log):
-    """Why the job of a log failed; None when it did not, or yade-batch hasn't seen its end."""
-    try:
-        with open(log, errors="replace") as file:
-            summary = file.read().partition("JOB SUMMARY")[2]
-    except OSError:
-        return None
-    if not summary:
-        return None
-    status = re.search(r"^status  : (\d+)", summary, re.MULTILINE)
-    code = int(status.group(1)) >> 8 if status else 0  # of the shell: 128 and more for a signal
-    if code > 128 and code - 128 not in (signal.SIGINT, signal.SIGTERM):
-        return f"killed by signal {code - 128}"
-    problem = failure(log)
-    return problem and problem.removeprefix(f"{log}: ")
+def _require_columns(path, row):
+    others = [name for name in row.cells if name[0] == "!" and name not in OF_YADE_BATCH]
+    if others:
+        must = f"must be left out, or one of {', '.join(OF_YADE_BATCH)}"
+        raise table.TableError(f"{path}: the column {others[0]} is for yade-batch alone; {must}")
+
+
+def _threads_of_yade(cells, parameters):
+    """Of yade-batch's columns, or None; ParameterError where they and `threads` say different things."""
+    column, found = RunParameters.columns()["threads"], parameters.threads
+    for name in (name for name in THREADS if name in cells):
+        given = replace(column, name=name).value(cells[name])
+        if found not in (None, given):
+            raise ParameterError(f"{name} = {given}: threads are {found}; must be the same")
+        found = given
+    return found

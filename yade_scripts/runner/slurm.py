@@ -11,17 +11,18 @@ import shlex
 import subprocess
 import sys
 
+from analysis.printable import shell_line
+from analysis.runs.arrays import RunFolderError, require_regular
 from analysis.runs.running import states_of_job
 from analysis.runs.write import write_text
 from yade_scripts.run.file_name import file_name
 from yade_scripts.run.table import TableError, read
-from yade_scripts.runner.rows import threads, write
+from yade_scripts.runner.rows import write
 
 TASK = os.path.join(os.path.dirname(os.path.abspath(__file__)), "slurm_task.py")
 ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
 BEFORE_THE_LIMIT = 60  # s
 LARGEST = 1000  # tasks of an array, by Slurm's default MaxArraySize
-OF_YADE_BATCH = ("!SCRIPT", "!THREADS", "!OMP_NUM_THREADS")  # columns that have a meaning here, too
 OVER = (
     "COMPLETED",
     "CANCELLED",
@@ -42,7 +43,7 @@ class SlurmError(Exception):
 
 def arrays(rows):
     """[[row, ...], ...]: rows that take as many processors each make an array, at most LARGEST of them."""
-    uniform = [[row for row in rows if threads(row) == number] for number in sorted(set(map(threads, rows)))]
+    uniform = [[row for row in rows if row.threads == number] for number in sorted({row.threads for row in rows})]
     return [group[first : first + LARGEST] for group in uniform for first in range(0, len(group), LARGEST)]
 
 
@@ -52,11 +53,11 @@ def job_script(study_folder, folder, rows, at_once=None):
     study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks of it at once at most (None: as Slurm likes).
     """
     name = os.path.basename(study_folder.path)
-    task = " ".join(map(shlex.quote, (sys.executable, TASK, os.path.join(folder, ROWS))))
+    task = shlex.join([sys.executable, TASK, os.path.join(folder, ROWS)])
     return f"""#!/bin/sh
 #SBATCH --job-name={name}
 #SBATCH --array=1-{len(rows)}{f"%{at_once}" if at_once else ""}
-#SBATCH --cpus-per-task={threads(rows[0])}
+#SBATCH --cpus-per-task={rows[0].threads}
 #SBATCH --signal=B:USR1@{BEFORE_THE_LIMIT}
 #SBATCH --requeue
 #SBATCH --open-mode=append
@@ -65,14 +66,11 @@ exec {task} "$SLURM_ARRAY_TASK_ID"
 """
 
 
-def require_usable(study_folder, rows):
-    """Raise SlurmError for names and columns that a job can't have."""
+def require_usable(study_folder):
+    """Raise SlurmError for a name that a job can't have."""
     name = os.path.basename(study_folder.path)
     if name != file_name(name):
         raise SlurmError(f"{name}: a table's name must be of letters, digits and -_.,=+ for Slurm")
-    others = sorted({column for row in rows for column in row.cells if column[0] == "!"} - set(OF_YADE_BATCH))
-    if others:
-        raise SlurmError(f"{others[0]}: a column of yade-batch alone; must be left out for Slurm")
 
 
 def submit(study_folder, rows, at_once=None, options=()):
@@ -88,11 +86,12 @@ def queued(study_folder):
     for number in _numbers(study_folder):
         folder = study_folder.file(f"slurm-{number}")
         try:
+            require_regular(os.path.join(folder, JOB))
             with open(os.path.join(folder, JOB)) as file:
                 job = file.read().strip()
             states = states_of_job(job) if job.isdecimal() else None
             names = [row.description for row in read(os.path.join(folder, ROWS))] if states else []
-        except (OSError, TableError):  # being submitted, or refused by sbatch
+        except (OSError, UnicodeDecodeError, RunFolderError, TableError):  # being submitted, or refused by sbatch
             continue
         tasks = {f"{job}_{task}": name for task, name in enumerate(names, 1)}
         found |= {
@@ -106,7 +105,7 @@ def scripts(study_folder, rows, at_once=None, options=()):
     first, groups = _next_number(study_folder), arrays(rows)
     folders = [study_folder.file(f"slurm-{number}") for number in range(first, first + len(groups))]
     texts = (job_script(study_folder, *pair, at_once) for pair in zip(folders, groups))
-    return [f"{text}# {shlex.join(_command(folder, options))}\n" for text, folder in zip(texts, folders)]
+    return [f"{text}# {shell_line(_command(folder, options))}\n" for text, folder in zip(texts, folders)]
 
 
 def _submit(study_folder, rows, at_once, options):

@@ -14,15 +14,16 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
+from analysis.printable import printable
 from analysis.runs.running import this_job
-from yade_scripts.parameters.errors import one_line_errors
+from yade_scripts.parameters.errors import one_line_errors, tell
 from yade_scripts.run import table
 from yade_scripts.runner import rows
+from yade_scripts.runner.job import Job
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 
 POLL = 0.1  # s
 ALL_SIGNALLED = 2.0  # s in which Slurm's SIGTERM to all processes of a job has reached the run
-STOPPED = (128 + signal.SIGTERM, 128 + signal.SIGINT)
 
 
 def main(arguments):
@@ -30,7 +31,7 @@ def main(arguments):
     with one_line_errors("slurm_task.py"):
         row, line = rows.read(path)[number], table.read(path)[number].line
     log = os.path.join(os.path.dirname(os.path.dirname(path)), f"{row.name}.log")
-    before = rows.state(row, log, since=time.time())
+    before = rows.state(row, log, rows.traces(row, log))
     if before.kind == DONE:
         print(f"{row.name}: has ended before", flush=True)
         return 0
@@ -45,36 +46,24 @@ def main(arguments):
         _queue_again()
     if after.kind == FAILED:
         return _refuse(row, after.note, status)
-    print(f"{row.name}: {after.kind} {after.note}".rstrip(), flush=True)
+    print(printable(f"{row.name}: {after.kind} {after.note}".rstrip()), flush=True)
     return status or int(after.kind != DONE)
 
 
-class Run:
-    """yade at work on a row. batch_row: FILE:LINE of a table; log: of all that it prints, and of how it ended."""
+class Run(Job):
+    """yade at work on a row, and the signals that this process has had."""
 
-    def __init__(self, row, batch_row, log):
+    def __init__(self, *arguments):
         self.limit_is_near, self._stopped = False, None
         for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._note)
-        self._log = open(log, "w")
-        self._process = subprocess.Popen(
-            ["yade", "-n", f"--threads={rows.threads(row)}", "-x", row.script],
-            stdout=self._log,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            env={**os.environ, "YADE_BATCH": batch_row, "DISPLAY": ""},
-        )
+        super().__init__(*arguments)
 
     def wait(self):
-        """Its exit status, as a shell has it. A run that was stopped is none that failed: its log has no summary then."""
-        while self._process.poll() is None:
+        """Its exit status, as a shell has it."""
+        while (status := self.poll()) is None:
             time.sleep(POLL)
             self._pass_on()
-        code = self._process.returncode
-        status = code if code >= 0 else 128 - code
-        if status not in STOPPED:  # as yade-batch writes it
-            self._log.write(f"\nJOB SUMMARY\nstatus  : {status << 8} ({'FAILED' if status else 'OK'})\n")
-        self._log.close()
         return status
 
     def _note(self, number, _frame):
@@ -86,9 +75,9 @@ class Run:
         others as a rule to all of the job: then the run handles them no more."""
         wait = 0.0 if self.limit_is_near else ALL_SIGNALLED
         if self._stopped and time.monotonic() > self._stopped + wait:
-            handles = _handles(self._process.pid, signal.SIGTERM)
+            handles = _handles(self.process.pid, signal.SIGTERM)
             if handles:
-                self._process.terminate()
+                self.process.terminate()
             if handles or not self.limit_is_near:  # otherwise it hasn't begun to handle them
                 self._stopped = float("inf")
 
@@ -109,7 +98,7 @@ def _queue_again():
 
 
 def _refuse(row, reason, status=0):
-    print(f"slurm_task.py: {row.name}: {reason}", file=sys.stderr, flush=True)
+    tell(f"{row.name}: {reason}", "slurm_task.py")
     return status or 1
 
 

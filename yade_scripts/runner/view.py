@@ -1,5 +1,6 @@
 """What a study looks like as text."""
 
+from analysis.printable import printable
 from analysis.report.status import counts, duration_text
 from analysis.report.status import line as run_line
 from analysis.runs.status import FAILED, RUNNING, WAITING
@@ -10,7 +11,7 @@ SHOWN = 15  # lines of a live table
 
 def headline(name, states, cost, rows, at_once):
     """One line: how many rows are done, running, waiting, failed, and the time left."""
-    return f"{name}: {counts(states)}{_left(total_left(states, cost, rows, at_once))}"
+    return f"{printable(name)}: {counts(states)}{_left(total_left(states, cost, rows, at_once))}"
 
 
 def total_left(states, cost, rows, at_once):

@@ -1,9 +1,9 @@
 """Writes the tables of the study of Arakawa et al. (2024): python3 yade_scripts/studies/elastoplastic.py
 
-full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every scene, at its default step. desk is a
+full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every collision, at its default step. desk is a
 selection for two hours on two cores, at twice that step. first is one figure for a first look (Fig. 8, R = 40), some ten
 minutes on two cores. Rows are in the order in which they are
-worth having: small scenes first, and every figure gets its first points early.
+worth having: small aggregates first, and every figure gets its first points early.
 """
 
 import os
@@ -34,7 +34,7 @@ DESK_VELOCITIES = 6
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
 SLOW = (0, 2)
 TIME_UNIT = "1.936532021439599e-10"  # s: t0 of ice
-# A24 follows aggregates of 80 grain radii for 1000 ns, which is 64.6 t0 per grain radius; times from the start.
+# The paper follows aggregates of 80 grain radii for 1000 ns, which is 64.6 t0 per grain radius; times from the start.
 DURATION = "64.6*{radius}*" + TIME_UNIT
 # The slowest at R = 40 are followed for twice as long, when more of them have stuck or parted.
 FOLLOWED = {(40, i): "1e-6" for i in range(3)}  # {(radius, i): duration [s]}

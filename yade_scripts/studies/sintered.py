@@ -23,7 +23,7 @@ SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
 GROWN = "runs/sintered-grown"  # where sintered_growth.py leaves compacted aggregates
 # 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
 DURATION = "24.4e-6"  # s
-# Above 10 m/s half of it: in 21 runs that went on (W07's sliding spring, two seeds) no largest piece changed after 9.2 us, and no part
+# Above 10 m/s half of it: in 21 runs that went on (the sliding spring of Wada et al. 2007, two seeds) no largest piece changed after 9.2 us, and no part
 # of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by up to 0.05 K(0).
 FAST, DURATION_FAST = 10.0, "12.2e-6"  # m/s, s
 STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates,

@@ -7,7 +7,7 @@ isn't said from what they start. Here an aggregate starts as a BCCA cluster of S
 in random orientations, until it has 1,024 grains: each collision's largest piece, at rest, is the next one's aggregate
 (yade_scripts/packings/collided.py).
 
-The start decides how compact aggregates are. S17's Fig. 6 has about two contacts a grain at low V_g and three at high V_g, and Fig. 17
+The start decides how compact aggregates are. The paper's Fig. 6 has about two contacts a grain at low V_g and three at high V_g, and Fig. 17
 needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (analysis/theory/chains.py). One collision, START = 512, gives
 2.15, 2.49 and 3.01 at 1, 3 and 10 m/s (one seed). Six from START = 16 gave 2.5, 2.9 and 3.2, which Figs 6 and 17 exclude. So it is 512.
 
@@ -32,6 +32,7 @@ from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings.bcca import bcca
 from yade_scripts.packings.collided import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.parameters.errors import tell
 from yade_scripts.studies.sintered import DURATION, GRAINS, GROWN, SLIDING, TABLES
 from yade_scripts.studies.sintered import grown as grown_of
 
@@ -127,7 +128,7 @@ def main(arguments):
                 print(found.result(), flush=True)
             except (PackingError, OSError) as error:
                 failed = 1
-                print(f"sintered_growth.py: {error}", file=sys.stderr, flush=True)
+                tell(error, "sintered_growth.py")
     return failed
 
 

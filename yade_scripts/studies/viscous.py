@@ -39,7 +39,7 @@ EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, of which the desk table has the 
 FOLLOWED = {"endWhenApart": 0, "stepFraction": 0.2, "impactStepFraction": 0.1}
 
 PREDICTED_GRAINS, PREDICTED_SEEDS, PREDICTED_EXPONENTS = 10_000, 2, range(17, 21)
-# Seven offsets are no mean of A22's eq 29: the head-on peak has the weight 1/12 in place of 1/24, and <f_gro> of 2,000 grains at
+# Seven offsets are no mean by the paper's eq 29: the head-on peak has the weight 1/12 in place of 1/24, and <f_gro> of 2,000 grains at
 # 63 m/s is higher by 0.04.
 EVERY_SECOND, THE_OTHERS = TWELFTHS[::2], TWELFTHS[1::2]
 
@@ -52,7 +52,7 @@ def grid(grains, exponents, seed):
 
 
 def desk():
-    """Scenes of the small study: every seed in turn, the paper's size first, then size by size."""
+    """Collisions of the desk table: every seed in turn, the paper's size first, then size by size."""
     scenes = []
     most = max(seeds for _, seeds in DESK.values())
     for seed in range(1, most + 1):
@@ -64,13 +64,13 @@ def desk():
 
 
 def full():
-    """Scenes of the paper, those of Fig. 1 first."""
+    """Collisions of the paper, those of Fig. 1 first."""
     scenes = grid(FULL_GRAINS, EXPONENTS, 1)
     return sorted(scenes, key=lambda scene: scene[1:3] != REFERENCE)
 
 
 def prediction():
-    """Scenes that were predicted, without drag and with the most: of every second offset head-on ones first, then seed by seed, and
+    """Collisions that were predicted, without drag and with the most: of every second offset head-on ones first, then seed by seed, and
     one of the paper's size; then the offsets between, seed by seed."""
     scenes = [
         scene
@@ -84,7 +84,7 @@ def prediction():
 
 
 def own():
-    """Scenes of the paper's size at 50.1 m/s: offsets about the edge of merging first, pair by pair, then the others."""
+    """Collisions of the paper's size at 50.1 m/s: offsets about the edge of merging first, pair by pair, then the others."""
     scenes = [
         (FULL_GRAINS, twelfths, REFERENCE[1], time, seed)
         for seed in range(1, REFERENCE_SEEDS + 1)

@@ -14,8 +14,8 @@ KINDS = (COMPRESSION.name,)
 
 @styled
 def compression_figure(run):
-    """Figure of pressure (averaged over 1000 t0) beside K13 eq 25 and T23, coordination beside A24 eq 45, and every
-    channel's change over the work of the boundaries so far, all while the cell shrinks."""
+    """Figure of pressure (averaged over 1000 t0) beside Kataoka et al. (2013), eq 25, and Tatsuuma et al. (2023), coordination beside Arakawa et
+    al. (2024), eq 45, and every channel's change over the work of the boundaries until then, all while the cell shrinks."""
     history = run.history
     part = slice(0, int(np.argmax(history["filling"])) + 1)
     filling = history["filling"][part]
@@ -23,7 +23,7 @@ def compression_figure(run):
     strength, contacts, energy = axes[0]
     _draw_pressure(strength, history, run.derived)
     contacts.plot(filling, history["coordination"][part], color=OURS)
-    contacts.plot(filling, bcca_coordination(filling), "--", color=PAPER, label="A24 eq 45")
+    contacts.plot(filling, bcca_coordination(filling), "--", color=PAPER, label="Arakawa et al. (2024), eq 45")
     contacts.set_ylabel("coordination number $Z$")
     _draw_channels(energy, filling, history, part)
     for place in (strength, contacts, energy):
@@ -39,7 +39,9 @@ def _draw_pressure(axes, history, derived):
     axes.plot(filling[pressure > 0], pressure[pressure > 0], color=OURS)
     if "rollingEnergy" in derived:
         scale = strength_scale(derived["rollingEnergy"], derived["grainRadius"])
-        axes.plot(filling, compressive_strength(filling, scale), "--", color=PAPER, label="K13 eq 25")
+        axes.plot(
+            filling, compressive_strength(filling, scale), "--", color=PAPER, label="Kataoka et al. (2013), eq 25"
+        )
         axes.plot(filling, compressive_strength_dense(filling, scale), ":", color=PAPER, label="Tatsuuma et al. (2023)")
     axes.set_yscale("log")
     axes.set_ylabel("pressure $P$  [Pa]")
@@ -54,7 +56,7 @@ def _draw_channels(axes, filling, history, part):
         if name not in work and len(change) and np.abs(change / done[shown]).max() > 0.01:
             axes.plot(filling[shown], change / done[shown], color=COLOURS[name], label=LABELS[name])
     axes.set_ylim(-1.0, 1.6)
-    axes.set_ylabel("part of the boundaries' work so far")
+    axes.set_ylabel("part of the boundaries' work until then")
 
 
 FIGURE = compression_figure

@@ -1,5 +1,5 @@
-"""Normal forces at the contacts in a slab around the collision axis, around the largest compression: A24 Fig.
-13."""
+"""Normal forces at the contacts in a slab around the collision axis, around the largest compression: Arakawa et al.
+(2024, A24), Fig. 13."""
 
 import numpy as np
 from matplotlib.collections import LineCollection

@@ -1,5 +1,5 @@
-"""Snapshots of the grains, coloured by aggregate: the half behind the plane z = 0, as A24 Fig. 3 but cut
-open."""
+"""Snapshots of the grains, coloured by aggregate: the half behind the plane z = 0, as Fig. 3 of Arakawa et al.
+(2024, A24) but cut open."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Compression length and mutual velocity against time, as A24 Fig. 4."""
+"""Compression length and mutual velocity against time, as Fig. 4 of Arakawa et al. (2024, A24)."""
 
 import numpy as np
 

@@ -1,1 +1,1 @@
-"""A24's collision with compressed aggregates in place of close-packed and extracted (CPE) ones."""
+"""The collision of Arakawa et al. (2024) with compressed aggregates in place of close-packed and extracted (CPE) ones."""

@@ -2,10 +2,7 @@
 
 from ..curve_figure import CurveFigure
 
-SHOWN = ("slidingDissipation", "rollingDissipation", "twistingDissipation")
-CAPTION = "Dissipated until the largest compression. Bars: standard errors."
-FIGURES = (
-    CurveFigure(
-        "channels", CAPTION, "channels", "velocity", "kind", "channel", {"channel": SHOWN}, y_label="% of $K(0)$"
-    ),
-)
+LOST = {"channel": ("slidingDissipation", "rollingDissipation", "twistingDissipation")}
+CAPTION = "Dissipated in each way until the largest compression. Bars: standard errors."
+AXES = ("channel", "kind", "velocity")
+FIGURES = (CurveFigure("channels", CAPTION, "channels", *AXES, LOST, line="", y_label="% of $K(0)$"),)

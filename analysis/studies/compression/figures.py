@@ -12,10 +12,7 @@ from ..runs import Runs
 from .strength import VALID_TO, by_filling, furthest, named
 from .study import ICE
 
-AGREEMENT = (
-    1 / 1.13**3,
-    1.13**3,
-)  # of P: 13 % in the filling factor at one pressure, which K13 calls good agreement (section 3.7)
+AGREEMENT = (1 / 1.13**3, 1.13**3)  # of P: 13 % in φ at one pressure, which K13 calls good agreement (section 3.7)
 STEP = {"stepFraction": 0.3}
 SLOW = {**ICE, **STEP, "strainRate": 3e-7}
 THOUSAND = {**ICE, **STEP, "grains": 1024, "strainRate": 1e-6}
@@ -52,7 +49,9 @@ def _every_cluster(results):
         where = settled.loc[grains].index
         text = f"mean of {len(clusters)} clusters" if len(clusters) > 1 else "1 cluster"
         points(place, where, [means.loc[grains, filling] for filling in where], colours[grains], text)
-        place.set(xscale="log", yscale="log", title=level("grains").label(grains), xlabel=level("filling").axis())
+        place.set(
+            xscale="log", yscale="log", title=level("grains").label(grains), xlabel=level("filling").head(math=True)
+        )
         _eq_25(place, {})
         place.set(xlim=(1e-3, 0.3))
         plain_ticks(place.yaxis)
@@ -62,12 +61,9 @@ def _every_cluster(results):
 
 
 def _over_eq_25(name, caption, colour, panel="", **where):
-    where = {
-        key: value for key, value in {**THOUSAND, **where}.items() if key not in (colour, panel) and value is not None
-    }
-    return CurveFigure(
-        name, caption + NOTE, "strength", "filling", colour, panel, where, "xy", "$P$ over eq 25", paper=_eq_25
-    )
+    own = {**THOUSAND, **where, colour: None, panel: None}
+    own, label = {key: value for key, value in own.items() if value is not None}, "$P$ over eq 25"
+    return CurveFigure(name, caption + NOTE, "strength", "filling", colour, panel, own, "xy", label, paper=_eq_25)
 
 
 def _shares(name, caption, panel, **where):

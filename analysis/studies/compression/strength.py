@@ -36,7 +36,7 @@ def by_filling(clusters):
     static = np.maximum(bcca_filling(clusters.grains), static_from(clusters.strainRate, clusters.grains, *of_run))
     scale, spanned = strength_scale(clusters.rolling_energy, clusters.grainRadius), clusters.spanned_from.fillna(0.0)
     parts = []
-    for filling, half, pressure, contacts in zip(FILLINGS, HALF_BINS, PRESSURES, COORDINATIONS):
+    for filling, half, pressure, contacts in zip(FILLINGS, HALF_BINS, PRESSURES.values(), COORDINATIONS.values()):
         there = clusters.largest_filling * ROUNDING >= filling * half
         own = clusters.assign(
             filling=filling,

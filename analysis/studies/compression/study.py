@@ -10,7 +10,7 @@ from ...theory.compression import compressive_strength_dense, strength_scale, te
 from ..definition import Quantity, Study
 from ..grains import OF_GRAINS
 from ..runs import Runs, along, ratios, select, together
-from .measure import COLUMNS, DIMENSIONS, ENERGIES, ENERGY_FILLINGS, NUMBERS, TWISTING, measure
+from .measure import DIMENSIONS, ENERGIES, ENERGY_FILLINGS, MEASURED, NUMBERS, TWISTING
 from .strength import SET, VALID_TO, by_filling, exponent, furthest, level, named, with_bins
 
 # K13's ice (section 3.1), of which one number is changed at a time.
@@ -35,7 +35,7 @@ SPANS = [(0.0, filling) for filling in UNTIL] + list(zip(UNTIL, UNTIL[1:]))
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     table = named(table)
     clusters = furthest(table)
     runs = Runs(clusters, "seed", ("grains",))
@@ -92,7 +92,7 @@ def _channels(runs):
     rows = runs.of(pandas.concat(spans, ignore_index=True))
     total = rows.estimates(lambda t: sum(t[way] for way in WAYS), by)
     shares = together({way: ratios(rows.estimates(way, by), total) for way in WAYS}, "channel")
-    yield Quantity("shares", "part of all that is dissipated between two filling factors", shares, "%", 0.01)
+    yield Quantity("shares", "part of all that is dissipated between two filling factors", shares, "%")
     twisting, rolling = (select(shares, channel=way, since=0.0, until=VALID_TO) for way in ("twisting", "rolling"))
     over = ratios(twisting, rolling)
     yield Quantity("twisting_over_rolling", f"dissipation by twisting over rolling, until {VALID_TO:g}", over)
@@ -104,30 +104,23 @@ def _tension(runs):
     """Cells that are stretched after the compression."""
     by, theirs = (*SET, "stretched_axes", "finalFilling"), lambda t: (t.largest_filling, t.surfaceEnergy, t.grainRadius)
     tensile = runs.estimates("tensile_strength", by)
-    yield Quantity("tensile", "largest tension while a cell is stretched", tensile, "kPa", 1e3)
+    yield Quantity("tensile", "largest tension while a cell is stretched", tensile, "kPa")
     one = runs.where(stretched_axes=1).estimates(lambda t: t.tensile_strength / tensile_strength(*theirs(t)), by)
     yield Quantity("tensile_over", "the same along one axis over 0.6 MPa phi^1.8 (Tatsuuma et al. 2019)", one)
 
 
-def remarks(results):
-    """How well the runs' energy ledgers close."""
-    yield f"the energy ledger closes to {results.table.closure.max():.2g} of the work of the boundaries or better in all runs"
-
-
 STUDY = Study(
-    title="Static compression of fluffy aggregates",
+    title="Kataoka et al. (2013): static compression of fluffy aggregates",
     question="Which pressure compresses a fluffy aggregate to a given filling factor, and on which properties of its grains does that depend?",
     # BCCA clusters in cells that shrink uniformly, without viscous drag.
     scene=Scene(
-        name="K13's scene",
+        name="the study of Kataoka et al. (2013)",
         values={"viscoelasticTime": 0.0, "packing": "bcca", "limit": "held"},
         numbers=NUMBERS,
         measured=(*OF_GRAINS, "initial_filling", "largest_filling", "last_filling", "stretched_axes"),
         kind=COMPRESSION.name,
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
-    remarks=remarks,
     independent="clusters",
 )

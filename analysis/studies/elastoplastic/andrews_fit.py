@@ -10,14 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...statistics import smoothed_scatter
-from ...theory.andrews import (
-    Spheres,
-    largest_compression,
-    restitution,
-    stress_if_rigid,
-    time_of_largest_compression,
-    young_if_elastic,
-)
+from ...theory import andrews
 from ..estimate import ROUNDING
 from .levenberg import least_squares
 
@@ -41,7 +34,8 @@ class Aggregates:
         """(d_max [grain radii], t_max [s]) at a radius [grain radii] and a velocity [m/s]."""
         # Everything in the model is proportional to R*.
         spheres = self._spheres(0.5 * (radius + self.offset))
-        depth, time = largest_compression(velocity, spheres), time_of_largest_compression(velocity, spheres)
+        depth = andrews.largest_compression(velocity, spheres)
+        time = andrews.time_of_largest_compression(velocity, spheres)
         return depth - 2.0 * self.offset, time * self.grain_radius + self.time_of_contact(velocity)
 
     def time_of_contact(self, velocity):
@@ -50,12 +44,12 @@ class Aggregates:
 
     def restitution(self, velocity):
         """Coefficient of restitution (A24 section 5.3), the same for every size."""
-        return restitution(velocity, self._spheres(1.0))
+        return andrews.restitution(velocity, self._spheres(1.0))
 
     def _spheres(self, reduced_radius):
         with np.errstate(divide="ignore"):
             young = 1.0 / np.maximum(self.compliance, 0.0)
-        return Spheres(reduced_radius, self.density, self.stress, young)
+        return andrews.Spheres(reduced_radius, self.density, self.stress, young)
 
 
 # What A24 prints, by filling: sigma_plastic, E* [Pa] (eqs 34, 35), delta_offset [grain radii] (18, 20), delta_max/R* (19, 21).
@@ -67,12 +61,6 @@ def printed(filling, grain):
     filling."""
     stress, young, offset, _ = PRINTED[filling]
     return Aggregates(stress, 1.0 / young, offset, filling * grain.grain_density, grain.grain_radius)
-
-
-def printed_line(filling):
-    """(c1, c2) of d_max = c1 R - c2 at VELOCITY: A24 eq 14, from its eqs 18 to 21 backwards, since it prints them for 0.4 alone."""
-    _, _, offset, ratio = PRINTED[filling]
-    return 0.5 * ratio, offset * (2.0 - 0.5 * ratio)
 
 
 def straight_line(x, y, weights):
@@ -166,7 +154,7 @@ def _residuals(rows, weights):
         return root * (np.concatenate(both, axis=1) - data) / error
 
     ratio = np.average(2.0 * depth[0][0] / radius / velocity, weights=number)
-    return residuals, stress_if_rigid(max(ratio, 1e-3), 1.0, density)
+    return residuals, andrews.stress_if_rigid(max(ratio, 1e-3), 1.0, density)
 
 
 def _points(rows, weights, columns):
@@ -194,7 +182,7 @@ def time_exponent(rows, weights):
 def degenerate_curve(ratio, density, velocity=VELOCITY, samples=200):
     """(sigma_plastic, 1/E*) (samples,) [Pa, 1/Pa] of all elastoplastic spheres with delta_max/R* = ratio at a velocity [m/s]: A24 Fig. 10,
     from the rigid-plastic limit to the stress from which nothing yields."""
-    least, young = stress_if_rigid(ratio, velocity, density), young_if_elastic(ratio, velocity, density)
+    least, young = andrews.stress_if_rigid(ratio, velocity, density), andrews.young_if_elastic(ratio, velocity, density)
     stress = np.linspace(least, elastic_stress(ratio, young), samples)
     # Eqs 27 to 29 are quadratic in delta_crit/R*; the smaller root is the one below delta_max.
     rest = 0.5 * ratio**2 * (1.0 - least / stress)

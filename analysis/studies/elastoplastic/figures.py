@@ -12,18 +12,13 @@ from ..definition import StudyFigure
 from ..grains import PAPERS
 from ..snapshot_figure import SnapshotFigure
 from .andrews_fit import PRINTED, VELOCITY, at_velocity, degenerate_curve, printed
-from .study import FREE, MEGA, PER_GIGA, in_grain_radii
+from .study import FREE, in_grain_radii
 
 GRAIN = SimpleNamespace(grain_density=ICE.density, grain_radius=PAPERS["ice"]["grainRadius"])
 SNAPSHOTS = (0.0, 150e-9, 500e-9)  # s
 SNAPSHOTS_RADIUS = 40.0  # grain radii: a size whose states can be kept
 SIZES = (40.0, 60.0, 80.0)  # that have several velocities
-CHANNELS_SHOWN = (
-    *(f"{way}Dissipation" for way in ("sliding", "rolling", "twisting")),
-    "normal",
-    "sliding",
-    "connection",
-)
+CHANNELS_SHOWN = ("slidingDissipation", "rollingDissipation", "twistingDissipation", "normal", "sliding", "connection")
 OF_VELOCITY = {"x": "velocity", "colour": "radius", "panel": "filling", "logarithmic": "x"}
 
 
@@ -60,38 +55,23 @@ def size_figure(results):
 @styled
 def moduli_figure(results):
     """Pairs of yield stress and 1/E* with A24's delta_max/R*, A24's values and our fits, with those of resampled pairs: A24 Fig. 10."""
-    stress, compliance = (results.series(name, fit=FREE) for name in ("stress", "compliance"))
+    names = ("stress", "compliance")
+    stress, compliance = (results.series(name, fit=FREE).map(results[name].shown) for name in names)
     if not len(stress):
         return None
+    units = np.array([[results[name].scale] for name in names])
     figure, axes = panels(1, len(stress), 5.0, 4.2)
     for place, (filling, sigma), soft in zip(axes[0], stress.items(), compliance):
-        place.plot(
-            sigma.draws[0] / MEGA,
-            np.maximum(soft.draws[0], 0.0) / PER_GIGA,
-            ".",
-            color="0.75",
-            ms=2,
-            label="of resampled pairs",
-            zorder=0,
-        )
-        place.errorbar(
-            [sigma.value / MEGA],
-            [soft.value / PER_GIGA],
-            [(soft.error or 0.0) / PER_GIGA],
-            [(sigma.error or 0.0) / MEGA],
-            fmt="o",
-            color=OURS,
-            capsize=3,
-            label=f"our fit ({FREE}), {pairs_text([sigma])}",
-        )
+        drawn = sigma.draws[0], np.maximum(soft.draws[0], 0.0)
+        place.plot(*drawn, ".", color="0.75", ms=2, label="of resampled pairs", zorder=0)
+        errors, label = (soft.error or 0.0, sigma.error or 0.0), f"our fit ({FREE}), {pairs_text([sigma])}"
+        place.errorbar(sigma.value, soft.value, *errors, fmt="o", color=OURS, capsize=3, label=label)
         if filling in PRINTED:
             theirs, young, _, ratio = PRINTED[filling]
-            curve = degenerate_curve(ratio, filling * GRAIN.grain_density)
-            label = f"A24: $\\delta_{{max}}/R^*$ = {ratio:g}"
-            place.plot(curve[0] / MEGA, curve[1] / PER_GIGA, "--", color=PAPER, lw=1.2, label=label)
-            place.plot(
-                [theirs / MEGA], [1.0 / young / PER_GIGA], "*", ms=13, mfc="none", color=PAPER, label="A24's fit"
-            )
+            curve = degenerate_curve(ratio, filling * GRAIN.grain_density) / units
+            place.plot(*curve, "--", color=PAPER, lw=1.2, label=f"A24: $\\delta_{{max}}/R^*$ = {ratio:g}")
+            point = [[theirs], [1.0 / young]] / units
+            place.plot(*point, "*", ms=13, mfc="none", color=PAPER, label="A24's fit")
         place.set_xlabel(r"yield stress $\sigma_{plastic}$  [MPa]")
         place.set_ylabel("$1/E^*$  [1/GPa];  0: rigid-plastic")
         place.set_title(f"$\\phi$ = {filling:g}", fontsize=10)

@@ -1,76 +1,39 @@
-"""One row of numbers for each collision."""
+"""What is measured of each collision of A24's: largest compression, packings, outcome and energy."""
 
 import numpy as np
 
 from ...measures.contact_zone import DEPTH, WIDTH, zone_filling
 from ...measures.coordination import inner_coordination
-from ...measures.of_run import derived_constants
-from ...runs.arrays import RunFolderError
 from ...runs.table import Column
-from ..collisions import COLLISION_COLUMNS, collision_values, largest_compression
+from ..collisions import COMPACT, largest_compression
+from ..columns import GRAIN_RADIUS, SEED, VELOCITY, constant, group, one, parameter
 from ..grains import require_papers_grains
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.
 SKIN = 2.0  # grain radii
-# What a run may have changed, and what A24 has: drag, grains outside the largest piece, overlap of neighbours at the start.
-UNCHANGED = {"viscoelasticTime": 0.0, "removeLooseGrains": 0.0, "initialOverlap": 1.0}
-
-COLUMNS = (
-    Column("filling", "", "filling factor"),
-    Column("radius", "m", "radius of an aggregate"),
-    Column("velocity", "m/s", "collision velocity"),
-    Column("seed", "", "random seed of the pair of aggregates", kind="i"),
-    Column("viscoelasticTime", "s", "T_vis of the viscous drag"),
-    Column("removeLooseGrains", "", "1: grains outside the largest piece are left out"),
-    Column("initialOverlap", "", "overlap of neighbours at the start, of that at rest"),
-    Column("duration", "s", "how long the collision is followed"),
-    Column("grain_radius", "m", "radius of a grain"),
-    Column("grain_density", "kg/m^3", "density of a grain"),
-    Column("pull_off_force", "N", "F_c"),
-    Column("overlap", "m", "delta_0, the overlap at equilibrium"),
-    Column("offset", "m", "d(0) + 2 r, by which the centres of mass are closer than the spheres' centres by chance"),
-    Column("d_max", "m", "largest compression length of the first compression"),
-    Column("d_max_error", "m", "its error, see measures.compression.Maximum"),
-    Column("exceeded", "", "whether d grows beyond it later", kind="b"),
-    Column("t_max", "s", "time of d_max"),
-    Column("t_max_error", "s", "its error"),
-    Column("inner_coordination", "", f"the same of the grains {SKIN:g} r below the surface", gaps=True),
-    Column(
-        "zone_filling",
-        "",
-        f"grains per volume in the two zones that meet, {DEPTH:g} R deep and {WIDTH:g} R in radius about the contact poles, "
-        "over that of the whole aggregates; mean of the two",
-        gaps=True,
-    ),
-    *COLLISION_COLUMNS,
+ZONES = (
+    f"grains per volume in the two zones that meet, {DEPTH:g} R deep and {WIDTH:g} R in radius about the contact poles, over that of the whole "
+    "aggregates; mean of the two"
 )
 
 
-def measure(run):
-    """{column: value} of a RunFolder of A24's scene that has ended. NotMeasured where the grains are not A24's, or the
-    aggregates never met or never turned around, RunFolderError where something is missing."""
+def _duration(run):
+    return float(run.parameters.get("duration") or run.history["time"][-1])
+
+
+def _compression(run, row):
     require_papers_grains(run)
-    history = run.history
     maximum, exceeded = largest_compression(run)
-    scene = _scene(run)
-    start, radius, grain_radius = run.start, scene["radius"], scene["grain_radius"]
+    offset = float(run.history["d"][0]) + 2.0 * row["grain_radius"]
+    return offset, maximum.length, maximum.length_error, exceeded, maximum.time, maximum.time_error
+
+
+def _packings(run, row):
+    start, radius, grain_radius = run.start, row["radius"], row["grain_radius"]
     # The spheres stand at -+(R + r) on the collision axis (A24 section 3).
-    places = np.array([-1.0, 1.0])[start.aggregate] * (radius + grain_radius)
-    centres = np.stack([places, 0.0 * places, 0.0 * places], axis=1)
-    return {
-        **scene,
-        "offset": float(history["d"][0]) + 2.0 * grain_radius,
-        "d_max": maximum.length,
-        "d_max_error": maximum.length_error,
-        "exceeded": exceeded,
-        "t_max": maximum.time,
-        "t_max_error": maximum.time_error,
-        "inner_coordination": inner_coordination(
-            start.position, start.contact_pairs, centres, radius - SKIN * grain_radius
-        ),
-        "zone_filling": zones_that_meet(start.position, start.aggregate, radius, grain_radius),
-        **collision_values(run, scene["velocity"], maximum.time),
-    }
+    centres = np.array([-1.0, 1.0])[start.aggregate, None] * (radius + grain_radius) * np.array([1.0, 0.0, 0.0])
+    inside = inner_coordination(start.position, start.contact_pairs, centres, radius - SKIN * grain_radius)
+    return inside, zones_that_meet(start.position, start.aggregate, radius, grain_radius)
 
 
 def zones_that_meet(position, aggregate, radius, grain_radius):
@@ -83,22 +46,35 @@ def zones_that_meet(position, aggregate, radius, grain_radius):
     return float(np.mean(found))
 
 
-def _scene(run):
-    """The columns that say what collided."""
-    parameters = run.parameters
-    names = {
-        "radius": "aggregateRadius",
-        "grain_radius": "grainRadius",
-        "grain_density": "density",
-        "pull_off_force": "pullOffForce",
-        "overlap": "equilibriumOverlap",
-    }
-    constants = derived_constants(run, names)
-    try:
-        # Runs of earlier versions have no key for what was not there to be changed.
-        changes = {name: float(parameters.get(name, usual)) for name, usual in UNCHANGED.items()}
-        duration = float(parameters.get("duration") or run.history["time"][-1])
-    except (TypeError, ValueError) as error:
-        raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
-    given = {"filling": float(parameters["filling"]), "velocity": float(parameters["velocity"])}
-    return {**given, "seed": int(parameters["seed"]), **changes, "duration": duration, **constants}
+# What a run may have changed, and what A24 has: drag, grains outside the largest piece, overlap of neighbours at the start.
+UNCHANGED = {"viscoelasticTime": 0.0, "removeLooseGrains": 0.0, "initialOverlap": 1.0}
+
+MEASURED = (
+    parameter("filling", "", "filling factor"),
+    constant("radius", "m", "radius of an aggregate", "aggregateRadius"),
+    VELOCITY,
+    SEED,
+    parameter("viscoelasticTime", "s", "T_vis of the viscous drag", usual=0.0),
+    parameter("removeLooseGrains", "", "1: grains outside the largest piece are left out", usual=0.0),
+    parameter("initialOverlap", "", "overlap of neighbours at the start, of that at rest", usual=1.0),
+    one("duration", "s", "how long the collision is followed", _duration),
+    GRAIN_RADIUS,
+    constant("grain_density", "kg/m^3", "density of a grain", "density"),
+    constant("pull_off_force", "N", "F_c", "pullOffForce"),
+    constant("overlap", "m", "delta_0, the overlap at equilibrium", "equilibriumOverlap"),
+    group(
+        _compression,
+        Column("offset", "m", "d(0) + 2 r, by which the centres of mass are closer than the spheres' by chance"),
+        Column("d_max", "m", "largest compression length of the first compression"),
+        Column("d_max_error", "m", "its error, see measures.compression.Maximum"),
+        Column("exceeded", "", "whether d grows beyond it later", kind="b"),
+        Column("t_max", "s", "time of d_max"),
+        Column("t_max_error", "s", "its error"),
+    ),
+    group(
+        _packings,
+        Column("inner_coordination", "", f"mean number of contacts of grains {SKIN:g} r below the surface", gaps=True),
+        Column("zone_filling", "", ZONES, gaps=True),
+    ),
+    *COMPACT,
+)

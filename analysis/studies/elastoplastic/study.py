@@ -6,46 +6,31 @@ import pandas
 
 from ...measures.outcome import STICKING, UNDECIDED
 from ...runs.collect import Scene
-from ...runs.format import LOST_CHANNELS
 from ...theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, poisson_ratio
 from ...theory.andrews import stress_if_rigid, young_if_elastic
-from ..collisions import HEAD_ON_ICE, at_maximum, channel_quantity, outcome_quantities
+from ..collisions import HEAD_ON_ICE, energy_quantities, outcome_quantities
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
-from ..runs import Runs, at, each, select, together
-from .andrews_fit import (
-    FEWEST_VELOCITIES,
-    PRINTED,
-    VELOCITY,
-    Aggregates,
-    at_velocity,
-    elastic_stress,
-    fit_moduli,
-    papers_offset,
-    papers_way,
-    printed,
-    size_line,
-    straight_line,
-    time_exponent,
-)
-from .measure import COLUMNS, UNCHANGED, measure
+from ..runs import Runs, at, differences, each, select, together
+from . import andrews_fit as fits
+from .measure import MEASURED, UNCHANGED
 from .zones import FEWEST_PAIRS, zone_correlation
 
 PAIR = ("filling", "radius")
 POINT = (*PAIR, "velocity")
-MEGA, PER_GIGA, NANO = 1e6, 1e-9, 1e-9
 BY_SIZE, PAPERS, FREE = "A24's way", "A24's δ_offset", "all three free"  # how delta_offset is found
 NUMBERS = ("σ", "1/E*", "δ_offset")
+DEPTH_AND_TIME = (("d", "d_max", "r"), ("t_max", "t_max", "ns"))
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     table = in_grain_radii(table)
     same = np.logical_and.reduce([table[name] == usual for name, usual in UNCHANGED.items()])
     runs, grain = Runs(once(table[same]), "seed", PAIR), table.iloc[0]  # all of one material
-    one_velocity = runs.of(runs.table[at_velocity(runs.table)])
+    one_velocity = runs.of(runs.table[fits.at_velocity(runs.table)])
     yield Quantity("d_max", "largest compression length", runs.estimates("d", POINT), "r")
-    yield Quantity("t_max", "its time", runs.estimates("t_max", POINT), "ns", NANO)
+    yield Quantity("t_max", "its time", runs.estimates("t_max", POINT), "ns")
     yield from _sizes(one_velocity, grain)
     yield from _moduli(runs, grain)
     yield from _times(runs, grain)
@@ -77,12 +62,12 @@ def finite(series):
 def _sizes(runs, grain):
     """The straight line of d_max against size at A24's velocity, and what follows from its delta_max/R*."""
     several = runs.of(runs.table[runs.table.groupby("filling").radius.transform("nunique") > 1])
-    line = several.fit(size_line, ("c1", "c2", "δ_offset", "δ_max/R*", "d_max at 60 r"), ("filling",), fitted=2)
+    line = several.fit(fits.size_line, ("c1", "c2", "δ_offset", "δ_max/R*", "d_max at 60 r"), ("filling",), fitted=2)
     yield Quantity("line", "d_max = c1 R - c2 r at 3.2 m/s (A24 eq 14), δ_offset and δ_max/R* (eqs 18, 19)", line, "r")
     ends = {
-        "σ, rigid-plastic": lambda x, rho: stress_if_rigid(x, VELOCITY, rho),
-        "E*, elastic": lambda x, rho: young_if_elastic(x, VELOCITY, rho),
-        "σ, from which elastic": lambda x, rho: elastic_stress(x, young_if_elastic(x, VELOCITY, rho)),
+        "σ, rigid-plastic": lambda x, rho: stress_if_rigid(x, fits.VELOCITY, rho),
+        "E*, elastic": lambda x, rho: young_if_elastic(x, fits.VELOCITY, rho),
+        "σ, from which elastic": lambda x, rho: fits.elastic_stress(x, young_if_elastic(x, fits.VELOCITY, rho)),
     }
     ratio = select(line, number="δ_max/R*")
     values = {
@@ -90,17 +75,17 @@ def _sizes(runs, grain):
         for name, f in ends.items()
     }
     yield Quantity(
-        "ends", "ends of the curve of (σ, E*) with that δ_max/R* (A24 Fig. 10)", together(values, "end"), "MPa", MEGA
+        "ends", "ends of the curve of (σ, E*) with that δ_max/R* (A24 Fig. 10)", together(values, "end"), "MPa"
     )
 
 
 def _moduli(runs, grain):
     """Yield stress, E* and delta_offset of Andrews's spheres."""
-    ways = {BY_SIZE: papers_way, PAPERS: papers_offset, FREE: fit_moduli}
-    fits = together({way: runs.fit(f, NUMBERS, ("filling",)) for way, f in ways.items()}, "fit")
-    stress, compliance, offset = (select(finite(fits), number=number) for number in NUMBERS)
-    yield Quantity("stress", "yield stress σ", stress, "MPa", MEGA)
-    yield Quantity("compliance", "1/E*; 0: rigid-plastic", compliance, "1/GPa", PER_GIGA)
+    ways = {BY_SIZE: fits.papers_way, PAPERS: fits.papers_offset, FREE: fits.fit_moduli}
+    found = together({way: runs.fit(f, NUMBERS, ("filling",)) for way, f in ways.items()}, "fit")
+    stress, compliance, offset = (select(finite(found), number=number) for number in NUMBERS)
+    yield Quantity("stress", "yield stress σ", stress, "MPa")
+    yield Quantity("compliance", "1/E*; 0: rigid-plastic", compliance, "1/GPa")
     yield Quantity("offset", "δ_offset", offset, "r")
     yield from _constants(runs, grain, stress, compliance)
     yield from _of_fit(runs, grain, *(select(series, fit=FREE) for series in (stress, compliance, offset)))
@@ -118,7 +103,7 @@ def _constants(runs, grain, stress, compliance):
     both = {"counted inside": counted, "A24 eq 39": each(counted, lambda _, filling: exact(sites(filling)))}
     yield Quantity("coordination", "contacts of a grain", together(both, "how"))
     modulus = each(counted, lambda _, filling: exact(bulk(filling)))
-    yield Quantity("bulk_modulus", "K_agg (A24 eq 41)", modulus, "MPa", MEGA)
+    yield Quantity("bulk_modulus", "K_agg (A24 eq 41)", modulus, "MPa")
     ratio = lambda e, filling, fit: combine(lambda k: poisson_ratio(1.0 / np.maximum(k, 1e-15), bulk(filling)), e)
     yield Quantity("poisson", "ν_agg from E* and K_agg (A24 eq 42)", each(compliance, ratio))
 
@@ -131,18 +116,18 @@ def _of_fit(runs, grain, *fit):
     def of_model(f, filling, *more):
         """Estimate of f(Aggregates as fitted at a filling, numbers of other estimates)."""
         density = filling * grain.grain_density
-        g = lambda *numbers: f(Aggregates(*numbers[:3], density, grain.grain_radius), *numbers[3:])
+        g = lambda *numbers: f(fits.Aggregates(*numbers[:3], density, grain.grain_radius), *numbers[3:])
         return combine(g, *(at(series, filling=filling) for series in fit), *more)
 
-    for k, (column, name, unit, scale) in enumerate((("d", "d_max", "r", 1.0), ("t_max", "t_max", "ns", NANO))):
+    for k, (column, name, unit) in enumerate(DEPTH_AND_TIME):
         less = lambda e, filling, *place: of_model(lambda model, y: y - model.at(*place)[k], filling, e)
         values = each(ours(runs.estimates(column, POINT)), less)
-        yield Quantity(f"{name}_beyond", f"{name} less that of Andrews's spheres, {FREE}", values, unit, scale)
+        yield Quantity(f"{name}_beyond", f"{name} less that of Andrews's spheres, {FREE}", values, unit)
     points = runs.estimates("d", ("filling", "velocity"))
-    theirs = points[points.index.get_level_values("filling").isin(PRINTED)]
+    theirs = points[points.index.get_level_values("filling").isin(fits.PRINTED)]
     of = {
         FREE: each(ours(points), lambda _, filling, v: of_model(lambda model: model.restitution(v), filling)),
-        "A24's σ, E*": each(theirs, lambda _, filling, v: exact(printed(filling, grain).restitution(v))),
+        "A24's σ, E*": each(theirs, lambda _, filling, v: exact(fits.printed(filling, grain).restitution(v))),
     }
     e = together(of, "fit")
     yield Quantity("andrews", "restitution of Andrews's spheres, and its square", together({"e": e, "e²": e * e}, "of"))
@@ -151,21 +136,21 @@ def _of_fit(runs, grain, *fit):
 def _times(runs, grain):
     """t_max beside A24's fitted model, and how tau_max goes with the velocity."""
     parts = []
-    for filling, own in runs.table[runs.table.filling.isin(PRINTED)].groupby("filling"):
-        model = printed(filling, grain)
+    for filling, own in runs.table[runs.table.filling.isin(fits.PRINTED)].groupby("filling"):
+        model = fits.printed(filling, grain)
         d, t = model.at(own.radius, own.velocity)
         parts.append(
             own.assign(deeper=own.d - d, late=own.t_max - t, tau=own.t_max - model.time_of_contact(own.velocity))
         )
     beside = runs.of(pandas.concat(parts) if parts else runs.table[:0].assign(deeper=0.0, late=0.0, tau=0.0))
     yield Quantity("deeper", "d_max less that of A24's fitted model", beside.estimates("deeper", POINT), "r")
-    yield Quantity("late", "t_max less that of A24's fitted model", beside.estimates("late", POINT), "ns", NANO)
-    line = beside.of(beside.table[at_velocity(beside.table)])
+    yield Quantity("late", "t_max less that of A24's fitted model", beside.estimates("late", POINT), "ns")
+    line = beside.of(beside.table[fits.at_velocity(beside.table)])
     line = line.fit(lateness, ("as they are", "with A24's d_max"), ("filling",))
-    yield Quantity("late_mean", "the same at 3.2 m/s, mean over the pairs of all sizes", line, "ns", NANO)
-    several = beside.table.groupby(list(PAIR)).velocity.transform("nunique") >= FEWEST_VELOCITIES
+    yield Quantity("late_mean", "the same at 3.2 m/s, mean over the pairs of all sizes", line, "ns")
+    several = beside.table.groupby(list(PAIR)).velocity.transform("nunique") >= fits.FEWEST_VELOCITIES
     trend = select(
-        beside.of(beside.table[several]).fit(time_exponent, ("exponent",), PAIR, fitted=2), number="exponent"
+        beside.of(beside.table[several]).fit(fits.time_exponent, ("exponent",), PAIR, fitted=2), number="exponent"
     )
     meaning = "exponent of τ_max (with A24's δ_offset) as a power of the velocity; 0: rigid-plastic, -0.2: elastic"
     yield Quantity("trend", meaning, finite(trend))
@@ -174,7 +159,9 @@ def _times(runs, grain):
 def lateness(rows, weights):
     """(B, 2): means of late, as it is and where deeper is 0: by a straight line through all pairs."""
     late = rows.late.to_numpy()
-    return np.stack([weights @ late / weights.sum(axis=1), straight_line(rows.deeper.to_numpy(), late, weights)[1]], 1)
+    return np.stack(
+        [weights @ late / weights.sum(axis=1), fits.straight_line(rows.deeper.to_numpy(), late, weights)[1]], 1
+    )
 
 
 def _return(runs):
@@ -182,15 +169,13 @@ def _return(runs):
     share = {"e": lambda t: t.return_speed / t.velocity, "e²": lambda t: (t.return_speed / t.velocity) ** 2}
     meaning = "largest speed at which the halves part over the collision velocity, and its square, the kinetic energy over K(0)"
     yield Quantity("rebound", meaning, runs.parts(share, POINT, "of"))
-    yield Quantity("return_time", "its time", runs.estimates("return_time", POINT), "ns", NANO)
+    yield Quantity("return_time", "its time", runs.estimates("return_time", POINT), "ns")
     ended = (*POINT, "duration")
     wanted = ("sticking", "restitution")
     yield from (own for own in outcome_quantities(runs, ended) if own.name in wanted)
     together_at_end = runs.fractions(lambda t: t.outcome.isin((STICKING, UNDECIDED)), ended)
     yield Quantity("in_one_piece", "runs in one piece when they end (A24: at 1 µs)", together_at_end)
-    lost = runs.estimates(lambda t: t[[at_maximum(c) for c in LOST_CHANNELS]].sum(axis=1), POINT)
-    yield Quantity("dissipated", "dissipated until t_max, of K(0)", lost, "%", 0.01)
-    yield channel_quantity(runs, POINT, at_maximum, "energy", "change of each channel until t_max, of K(0)")
+    yield from energy_quantities(runs, POINT, "dissipated", "energy")
 
 
 def _packings(runs):
@@ -205,21 +190,17 @@ def _packings(runs):
 
 def _changes(table, same):
     """Runs with one thing changed less the same pairs without."""
-    key = [*POINT, "seed"]
-    usual = once(table[same])[[*key, "d", "t_max"]]
-    changed = table[~same].assign(
-        changed=[change(*own) for own in table.loc[~same, list(UNCHANGED)].itertuples(index=False)]
-    )
-    both = Runs(changed.merge(usual, on=key, suffixes=("", "_usual")), "seed", PAIR)
-    for name, column, unit, scale in (("d_max", "d", "r", 1.0), ("t_max", "t_max", "ns", NANO)):
-        values = both.estimates(lambda t: t[column] - t[f"{column}_usual"], (*POINT, "changed"))
-        yield Quantity(
-            f"{name}_change", f"{name} with one thing changed less that of the same pairs without", values, unit, scale
-        )
+    words = [change(*own) for own in table[list(UNCHANGED)].itertuples(index=False)]
+    table = table.assign(changed=words)
+    both = Runs(pandas.concat([once(table[same]), table[~same]]), "seed", PAIR)
+    meaning = "with one thing changed less that of the same pairs without"
+    for column, name, unit in DEPTH_AND_TIME:
+        values = both.beside("changed", "", column, POINT, differences, same_pairs=True).sort_index()
+        yield Quantity(f"{name}_change", f"{name} {meaning}", values, unit)
 
 
 def change(drag, remove, overlap):
-    """What differs from A24's scene (values of UNCHANGED), in words.
+    """What differs from A24's collisions (values of UNCHANGED), in words.
 
     >>> change(3e-12, 0.0, 1.0), change(0.0, 1.0, 0.5)
     ('drag, T_vis = 3 ps', 'loose grains left out, neighbours with 0.5 of the overlap')
@@ -236,12 +217,11 @@ STUDY = Study(
     "stress and elastic modulus?",
     # Head-on collisions of CPE aggregates without bonds, springs held at their limits.
     scene=Scene(
-        name="A24's scene",
+        name="the study of Arakawa et al. (2024)",
         values={"packing": "cpe", **{name: value for name, value in HEAD_ON_ICE.items() if name not in UNCHANGED}},
         numbers=("filling", "radius", "velocity", "seed"),
         measured=(*UNCHANGED, "duration"),
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
 )

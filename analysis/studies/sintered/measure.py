@@ -1,19 +1,20 @@
-"""One row of numbers for each collision."""
+"""What is measured of each collision of S17's: aggregates, outcome, pieces, necks, energy and loops."""
 
 from math import nan, pi
 
 import numpy as np
 
 from ...measures.fragments import fragment_labels, fragment_sizes
-from ...measures.ledger import closure, initial_kinetic_energy
+from ...measures.ledger import initial_kinetic_energy
 from ...measures.loops import loops
-from ...measures.of_run import derived_constants, met
+from ...measures.of_run import derived_constants
 from ...measures.structure import gyration_radius
 from ...runs.format import BROKEN_BONDS
 from ...runs.table import Column
 from ...theory.chains import breaking_energy, stretching_period
 from ...theory.pair_constants import ICE, pair_constants
-from ..collisions import OUTCOME_COLUMNS, outcome_values
+from ..collisions import OUTCOME
+from ..columns import CLOSURE, END, GRAIN_RADIUS, MET, VELOCITY, VISCOUS_TIME, constant, group, parameter
 from ..definition import NotMeasured
 from ..grains import require_papers_grains
 
@@ -36,104 +37,58 @@ FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
 PACKINGS = ("bcca", "file")
 LATER = {"gaps": True, "absent": nan}  # of columns that the first runs don't have
 
-COLUMNS = (
-    Column("planar", "", "1: grains in a plane", kind="i"),
-    Column("neck", "", "beta; 0: unsintered"),
-    Column("velocity", "m/s", "collision velocity V_c"),
-    Column("growth_velocity", "m/s", "V_g of the compacted aggregates; 0: BCCA"),
-    Column("criticalRolling", "m", "xi_crit"),
-    Column("viscoelasticTime", "s", "T_vis"),
-    Column("cut", "", "1: springs are cut at the limits, 0: held there", kind="i"),
-    Column("sliding_factor", "", "k_s over W07's 8 a0 G*; 2: S17 eqs 11 and 12"),
-    Column("packing_seed", "", "random seed of the aggregates", kind="i"),
-    Column("grains", "", "grains of both aggregates", kind="i"),
-    Column("grain_radius", "m", "R, before sintering"),
-    Column("contacts", "", "contacts a grain at the start"),
-    Column("initial_radius", "", "gyration radius of an aggregate at the start, mean of both, in R"),
-    Column("met", "", "whether the aggregates touched", kind="b"),
-    Column("touching", "", "largest number of contacts between the aggregates", **LATER),
-    *OUTCOME_COLUMNS,
-    Column("largest", "", "sticking efficiency: fraction of the mass in the largest piece"),
-    Column("second", "", "fraction of the mass in the second one"),
-    Column("fragments", "", f"fraction of the mass in pieces of less than {FRAGMENT:g} of it"),
-    Column("gyration_radius", "", "gyration radius of the largest piece, in R (S17 eq 13)"),
-    Column("energy_ratio", "", "E_k/E_sint, E_k = m V_c^2/4 (S17 section 5.3)", gaps=True),
-    Column("necks_at_start", "", "sintered bonds at the start", kind="i"),
-    *(Column(name, "", "necks broken so", kind="i") for name in BROKEN_BONDS),
-    *(Column(f"part_{n}", "K(0)", f"{LABELS[n]}: at the end, or until then") for n in PARTS),
-    *(Column(f"left_{n}", "K(0)", f"kinetic and stored energy after {n} periods", **LATER) for n in TIMES),
-    *(Column(f"part_{n}_{EARLY}", "K(0)", f"{LABELS[n]} after {EARLY} periods", **LATER) for n in PARTS),
-    Column("loops_at_start", "", "independent loops of contacts in both aggregates at the start", **LATER),
-    Column("loops", "", "the same at the end", **LATER),
-    Column("loop_grains_at_start", "", "grains in loops at the start", **LATER),
-    Column("loop_grains", "", "the same at the end", **LATER),
-    Column("ended_by", "", "whether the run ended before its duration, because nothing could meet or break", kind="b"),
-    Column("closure", "", "largest error of the energy ledger over K(0)"),
-    Column("time", "s", "time at the end"),
-)
 
-
-def measure(run):
-    """{column: value} of a RunFolder of S17's scene that has ended. NotMeasured where the aggregates are of
-    another kind, of unlike grains or of other grains than S17's (but for xi_crit and the sliding spring), RunFolderError
-    where something is missing."""
+def _aggregates(run, row):
+    """NotMeasured where the aggregates are of another kind, of unlike grains or of other grains than S17's (but for xi_crit and the sliding
+    spring)."""
     require_papers_grains(run, but=("criticalRolling", "slidingStiffnessFactor"))
-    start, end, history = run.start, run.last, run.history
+    start, parameters, about = run.start, run.parameters, run.derived.get("targetPacking") or {}
     if not np.allclose(start.radius, start.radius[0]):
         raise NotMeasured(f"{run.path}: grains of unlike radii, S17's are equal")
-    parameters = run.parameters
     if parameters["packing"] not in PACKINGS:
         raise NotMeasured(f"{run.path}: packing = {parameters['packing']}, S17's are {' and '.join(PACKINGS)}")
-    constants = derived_constants(run, {name: name for name in ("grainRadius", "density", "surfaceEnergy")})
-    radius, grains = constants["grainRadius"], len(start.radius)
-    velocity, neck = float(parameters["velocity"]), float(parameters["neck"])
-    about = run.derived.get("targetPacking") or {}
-    return {
-        "planar": int(parameters["planar"]),
-        "neck": neck,
-        "velocity": velocity,
-        "growth_velocity": float(about.get("growthVelocity", 0.0)),
-        "criticalRolling": float(run.derived["criticalRolling"]),
-        "viscoelasticTime": float(parameters["viscoelasticTime"]),
-        "cut": int(parameters.get("limit", "held") == "cut"),
-        "sliding_factor": float(parameters.get("slidingStiffnessFactor", 1.0)),
-        "packing_seed": int(about.get("seed", parameters["seed"])),
-        "grains": grains,
-        "grain_radius": radius,
-        "contacts": 2.0 * len(start.contact_pairs) / grains,
-        "initial_radius": float(np.mean([gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)]))
-        / radius,
-        "met": met(run),
-        "touching": int(history["contacts_between"].max()),
-        **outcome_values(run, velocity),
-        **pieces(end.position, end.contact_pairs, radius),
-        "energy_ratio": energy_ratio(neck, velocity, **constants) if neck else float("nan"),
-        "necks_at_start": int(np.count_nonzero(start.contact_bonded)),
-        **{name: int(history[name][-1]) if name in history else 0 for name in BROKEN_BONDS},
-        **partition(history),
-        **partition_in_time(history, stretching_period(pair_constants(ICE, radius))),
-        **dict(zip(("loops_at_start", "loop_grains_at_start"), loops(grains, start.contact_pairs))),
-        **dict(zip(("loops", "loop_grains"), loops(grains, end.contact_pairs))),
-        "ended_by": bool(history["time"][-1] < 0.999 * float(parameters["duration"])),
-        "closure": closure(history),
-        "time": float(history["time"][-1]),
-    }
+    contacts = 2.0 * len(start.contact_pairs) / len(start.radius)
+    radii = [gyration_radius(start.position[start.aggregate == k]) for k in (0, 1)]
+    springs = int(parameters.get("limit", "held") == "cut"), float(parameters.get("slidingStiffnessFactor", 1.0))
+    named = float(about.get("growthVelocity", 0.0)), int(about.get("seed", parameters["seed"]))
+    return *springs, *named, len(start.radius), contacts, float(np.mean(radii)) / row["grain_radius"]
+
+
+def _necks(run, row):
+    constants = row["grain_radius"], *derived_constants(run, "density", "surfaceEnergy")
+    ratio = energy_ratio(row["neck"], row["velocity"], *constants) if row["neck"] else nan
+    broken = (int(run.history[name][-1]) if name in run.history else 0 for name in BROKEN_BONDS)
+    return ratio, int(np.count_nonzero(run.start.contact_bonded)), *broken
+
+
+def _parts(run, row):
+    """partition() at the end; what is left after each of TIMES; partition() after EARLY of them. NaN where the run is not that long."""
+    time, period = run.history["time"], stretching_period(pair_constants(ICE, row["grain_radius"]))
+
+    def after(number):
+        reached = time[-1] >= REACHED * number * period
+        place = int(np.argmin(np.abs(time - number * period)))
+        return partition(run.history, place) if reached else [nan] * len(PARTS)
+
+    return *partition(run.history), *(sum(after(number)[:2]) for number in TIMES), *after(EARLY)
+
+
+def _loops(run, row):
+    """Numbers of loops at the start and at the end, then of the grains in them."""
+    return np.transpose([loops(row["grains"], state.contact_pairs) for state in (run.start, run.last)]).ravel().tolist()
 
 
 def pieces(position, pairs, radius):
-    """{column: value} of the pieces that equal grains at position (N,3) [m], joined by pairs (M,2), make; radius: R [m].
+    """Mass fractions of the largest of the pieces that equal grains at position (N,3) [m], joined by pairs (M,2), make, of the second, and of all
+    below FRAGMENT; gyration radius of the largest over radius, R [m].
 
-    >>> pieces([[0.0, 0, 0], [2, 0, 0], [9, 0, 0]], [[0, 1]], 1.0)["largest"].__round__(3)
-    0.667
+    >>> [round(value, 3) for value in pieces([[0.0, 0, 0], [2, 0, 0], [9, 0, 0]], [[0, 1]], 1.0)]
+    [0.667, 0.333, 0.0, 1.0]
     """
     labels = fragment_labels(len(position), pairs)
     fractions = fragment_sizes(labels) / len(position)
-    return {
-        "largest": float(fractions[0]),
-        "second": float(fractions[1]) if len(fractions) > 1 else 0.0,
-        "fragments": float(fractions[fractions < FRAGMENT].sum()),
-        "gyration_radius": gyration_radius(np.asarray(position)[labels == 0]) / radius,
-    }
+    second, small = fractions[1] if len(fractions) > 1 else 0.0, fractions[fractions < FRAGMENT].sum()
+    return *map(float, (fractions[0], second, small)), gyration_radius(np.asarray(position)[labels == 0]) / radius
 
 
 def energy_ratio(neck, velocity, grainRadius, density, surfaceEnergy):
@@ -146,24 +101,66 @@ def energy_ratio(neck, velocity, grainRadius, density, surfaceEnergy):
     return 0.25 * mass * velocity**2 / breaking_energy(neck, grainRadius, surfaceEnergy)
 
 
-def partition(history, row=-1):
-    """{part_NAME: value} of PARTS at a row of the history, changes over K(0); they add up to 1 for an exact ledger."""
+def partition(history, place=-1):
+    """Values of PARTS at a place of the history, changes over K(0); they add up to 1 for an exact ledger."""
     unit = initial_kinetic_energy(history)
-    found = {}
-    for name, (_, channels) in PARTS.items():
-        change = sum(history[c][row] - history[c][0] for c in channels) / unit
-        found[f"part_{name}"] = float(change + (name == "kinetic"))
-    return found
+    change = lambda channels: sum(history[c][place] - history[c][0] for c in channels) / unit
+    return [float(change(channels) + (name == "kinetic")) for name, (_, channels) in PARTS.items()]
 
 
-def partition_in_time(history, period):
-    """{column: value} of the energies after TIMES periods [s], and of every part after EARLY; NaN where the run is not that
-    long."""
-    time, found = history["time"], {}
-    for number in TIMES:
-        reached = time[-1] >= REACHED * number * period
-        parts = partition(history, int(np.argmin(np.abs(time - number * period))))
-        found[f"left_{number}"] = parts["part_kinetic"] + parts["part_elastic"] if reached else nan
-        if number == EARLY:
-            found.update({f"{name}_{EARLY}": value if reached else nan for name, value in parts.items()})
-    return found
+MEASURED = (
+    parameter("planar", "", "1: grains in a plane", "i"),
+    parameter("neck", "", "beta; 0: unsintered"),
+    VELOCITY,
+    constant("criticalRolling", "m", "xi_crit"),
+    VISCOUS_TIME,
+    GRAIN_RADIUS,
+    group(
+        _aggregates,
+        Column("cut", "", "1: springs are cut at the limits, 0: held there", kind="i"),
+        Column("sliding_factor", "", "k_s over W07's 8 a0 G*; 2: S17 eqs 11 and 12"),
+        Column("growth_velocity", "m/s", "V_g of the compacted aggregates; 0: BCCA"),
+        Column("packing_seed", "", "random seed of the aggregates", kind="i"),
+        Column("grains", "", "grains of both aggregates", kind="i"),
+        Column("contacts", "", "contacts a grain at the start"),
+        Column("initial_radius", "", "gyration radius of an aggregate at the start, mean of both, in R"),
+    ),
+    MET,
+    OUTCOME,
+    group(
+        lambda run, row: (int(run.history["contacts_between"].max()),),
+        Column("touching", "", "largest number of contacts between the aggregates", **LATER),
+    ),
+    group(
+        lambda run, row: pieces(run.last.position, run.last.contact_pairs, row["grain_radius"]),
+        Column("largest", "", "sticking efficiency: fraction of the mass in the largest piece"),
+        Column("second", "", "fraction of the mass in the second one"),
+        Column("fragments", "", f"fraction of the mass in pieces of less than {FRAGMENT:g} of it"),
+        Column("gyration_radius", "", "gyration radius of the largest piece, in R (S17 eq 13)"),
+    ),
+    group(
+        _necks,
+        Column("energy_ratio", "", "E_k/E_sint, E_k = m V_c^2/4 (S17 section 5.3)", gaps=True),
+        Column("necks_at_start", "", "sintered bonds at the start", kind="i"),
+        *(Column(name, "", "necks broken so", kind="i") for name in BROKEN_BONDS),
+    ),
+    group(
+        _parts,
+        *(Column(f"part_{n}", "K(0)", f"{LABELS[n]}: at the end, or until then") for n in PARTS),
+        *(Column(f"left_{n}", "K(0)", f"kinetic and stored energy after {n} periods", **LATER) for n in TIMES),
+        *(Column(f"part_{n}_{EARLY}", "K(0)", f"{LABELS[n]} after {EARLY} periods", **LATER) for n in PARTS),
+    ),
+    group(
+        _loops,
+        Column("loops_at_start", "", "independent loops of contacts in both aggregates at the start", **LATER),
+        Column("loops", "", "the same at the end", **LATER),
+        Column("loop_grains_at_start", "", "grains in loops at the start", **LATER),
+        Column("loop_grains", "", "the same at the end", **LATER),
+    ),
+    group(
+        lambda run, row: (bool(run.history["time"][-1] < 0.999 * float(run.parameters["duration"])),),
+        Column("ended_by", "", "whether the run ended before its duration: nothing could meet or break", kind="b"),
+    ),
+    CLOSURE,
+    END,
+)

@@ -26,12 +26,12 @@ def fit_necks(rows, weights):
     x = np.log(x)
     if len(np.unique(x[broken > 0].round(3))) < 2:
         return np.full((len(weights), 2), np.nan)
-    wanted, exponent = (weights @ (broken * x)) / (weights @ broken), np.ones(len(weights))
+    target, exponent = (weights @ (broken * x)) / (weights @ broken), np.ones(len(weights))
     for _ in range(ROUNDS):
         share = weights * grains * np.exp(exponent[:, None] * (x - x.max()))
         share /= share.sum(axis=1, keepdims=True)
         mean = share @ x
-        exponent += np.clip((wanted - mean) / (share @ x**2 - mean**2), -0.5, 0.5)
+        exponent += np.clip((target - mean) / (share @ x**2 - mean**2), -0.5, 0.5)
     amplitude = (weights @ broken) / (weights * grains * np.exp(exponent[:, None] * x)).sum(axis=1)
     return np.stack([amplitude, exponent], axis=1)
 

@@ -10,7 +10,7 @@ from ..collisions import outcome_quantities
 from ..definition import Quantity, Study
 from ..runs import Runs, alike, along, differences, ratios, select, together
 from ..threshold import threshold_velocity
-from .measure import COLUMNS, LABELS, TIMES, measure
+from .measure import LABELS, MEASURED, TIMES
 from .models import chain_ratio, fit_necks, papers_necks
 
 POINT = ("setup", "growth_velocity", "neck", "velocity")
@@ -26,7 +26,7 @@ MODES = {name: name.removeprefix("brokenBy").lower() for name in BROKEN_BONDS}
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     broken = table[list(BROKEN_BONDS)].sum(axis=1)
     table = table.assign(
         setup=[_setup(row) for row in table.itertuples()],
@@ -106,7 +106,7 @@ def _necks(runs):
     by = ("setup", "growth_velocity", "neck")
     total = cut.estimates("broken", by)
     modes = together({mode: ratios(cut.estimates(name, by), total) for name, mode in MODES.items()}, "mode")
-    yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%", 0.01)
+    yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%")
 
 
 def _models(runs):
@@ -134,7 +134,7 @@ def _energies(runs):
     """Where the energy goes at 10 m/s, BCCA."""
     by = ("setup", "neck")
     lost = runs.parts({LABELS[n]: lambda t, n=n: t[f"part_{n}"] / t.lost for n in LOST}, by, "way")
-    yield Quantity("lost", "lost in each way at 10 m/s, of all that is lost, BCCA", lost, "%", 0.01)
+    yield Quantity("lost", "lost in each way at 10 m/s, of all that is lost, BCCA", lost, "%")
     necks = lambda t: 2 * t.necks / t.energy_ratio  # K(0) is half an E_k = m V_c^2/4 a grain
     parts = {LABELS[name]: f"part_{name}" for name in LABELS} | {"N_cut E_sint": necks}
     yield Quantity("energy", "energy at the end, or lost until then, of K(0)", runs.parts(parts, by, "part"))
@@ -147,12 +147,11 @@ STUDY = Study(
     question="Do sintered icy aggregates grow, bounce or break when they collide, and is it the same in three dimensions?",
     # Head-on collisions of equal aggregates of equal ice grains: BCCA ones, and those that collisions have compacted.
     scene=Scene(
-        name="S17's scene",
+        name="the study of Sirono & Ueno (2017)",
         values={"material": "ice", "impact": 0.0, "sizes": "equal"},
         numbers=("velocity", "neck", "planar", "viscoelasticTime"),
         measured=("criticalRolling", "growth_velocity", "cut", "sliding_factor", "grains", "packing_seed"),
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
 )

@@ -4,14 +4,13 @@ import numpy as np
 
 from ...figures.panels import PAPER
 from ..curve_figure import CurveFigure
+from ..runs import Runs
 from ..snapshot_figure import SnapshotFigure
 
 V_FRA = 50.0, 60.0  # m/s (section 3.2)
 SNAPSHOTS = (0.0, 0.32e-6, 0.63e-6, 1.27e-6, 6.34e-6)  # s: Fig. 1
-SHOWN_GRAINS, PAPERS_RADIUS = (
-    2000,
-    72.27,
-)  # a size whose states can be kept; r_c of the paper's aggregates, in grain radii
+SHOWN_GRAINS = 2000  # a size whose states can be kept
+PAPERS_RADIUS = 72.27  # r_c of the paper's aggregates, in grain radii
 
 
 def _threshold(axes, panel):
@@ -26,20 +25,12 @@ def _inverse(axes, panel):
 
 def _collisions(results):
     """The first pair of SHOWN_GRAINS at 50.1 m/s, B_off^2 = 3/12, without drag and with the most."""
-    table = results.table
-    own = table[
-        (table.grains == SHOWN_GRAINS)
-        & ((table.velocity - 50.12).abs() < 0.1)
-        & ((12 * table.impact**2 - 3).abs() < 0.01)
-    ]
+    own = Runs(results.table).where(grains=SHOWN_GRAINS, velocity=10**1.7, impact=0.5).table
     own = own[own.seed == own.seed.min()].sort_values("viscoelasticTime")
     for row in own.iloc[[0, -1]].itertuples() if len(own) > 1 else ():
         scale = row.characteristic_radius / row.grain_radius / PAPERS_RADIUS
-        yield (
-            row,
-            f"$T_{{vis}}$ = {row.viscoelasticTime * 1e12:g} ps, {row.grains} grains each",
-            [scale * t for t in SNAPSHOTS],
-        )
+        title = f"$T_{{vis}}$ = {row.viscoelasticTime * 1e12:g} ps, {row.grains} grains each"
+        yield row, title, [scale * t for t in SNAPSHOTS]
 
 
 OF_SIZE = {"x": "velocity", "colour": "viscoelasticTime", "panel": "grains", "logarithmic": "x"}

@@ -5,31 +5,25 @@ has run at both would count twice."""
 
 from math import log10
 
-ROUNDED = 2e-3  # relative, of velocities: 50.1 for 10^1.7, 20 for 10^1.3 would be 2.4e-3
-OFFSET_ROUNDED = 1e-3  # of B_off
-TIME_DIGITS = 16  # of T_vis [s]
-
 
 def velocity_of_grid(velocity):
-    """10^(0.1 i) m/s (A22 section 2.4) where a velocity [m/s] is that to ROUNDED, else the velocity.
+    """10^(0.1 i) m/s (A22 section 2.4) where a velocity [m/s] is that to 0.2 %: 50.1 for 10^1.7; 20 for 10^1.3 would be 0.24 %.
 
     >>> velocity_of_grid(50.1) == 10 ** (0.1 * 17), velocity_of_grid(45.0)
     (True, 45.0)
     """
-    if velocity <= 0:
-        return velocity
-    nearest = 10 ** (0.1 * round(10 * log10(velocity)))
-    return nearest if abs(velocity / nearest - 1) < ROUNDED else velocity
+    nearest = 10 ** (0.1 * round(10 * log10(velocity))) if velocity > 0 else velocity
+    return nearest if abs(velocity - nearest) < 2e-3 * nearest else velocity
 
 
 def offset_of_grid(offset):
-    """(k/12)^(1/2) where B_off is that to OFFSET_ROUNDED, else B_off.
+    """(k/12)^(1/2) where B_off is that to 0.001, else B_off.
 
     >>> offset_of_grid(0.2887) == (1 / 12) ** 0.5, offset_of_grid(0.3)
     (True, 0.3)
     """
     nearest = (round(12 * offset**2) / 12) ** 0.5
-    return nearest if abs(offset - nearest) < OFFSET_ROUNDED else offset
+    return nearest if abs(offset - nearest) < 1e-3 else offset
 
 
 def time_of_grid(viscous_time):
@@ -38,4 +32,4 @@ def time_of_grid(viscous_time):
     >>> time_of_grid(6.00000001e-12)
     6e-12
     """
-    return round(viscous_time, TIME_DIGITS)
+    return round(viscous_time, 16)

@@ -1,5 +1,7 @@
 """The study of A22's collisions: which quantities the runs tell. A pair of aggregates collides at every offset, velocity and T_vis."""
 
+from functools import reduce
+
 import numpy as np
 import pandas
 
@@ -9,16 +11,8 @@ from ..definition import Quantity, Study
 from ..estimate import combine, exact
 from ..runs import Runs, alike, along, differences, ratios, select, together
 from ..threshold import threshold_velocity
-from .growth import (
-    LARGE_FITTED,
-    MERGED,
-    SMALL,
-    SMALL_FITTED,
-    SQUARES,
-    fragment_exponent,
-    offset_weights,
-)
-from .measure import COLUMNS, DISSIPATION, FAST, measure, sizes_from_text
+from .growth import LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fragment_exponent, offset_weights
+from .measure import DISSIPATION, EVENTS, FAST, MEASURED, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
 REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # the collision that A22 shows most
@@ -36,7 +30,7 @@ WAYS = {
 
 
 def quantities(table):
-    """Quantities of a table of runs (measure.COLUMNS)."""
+    """Quantities of a table of runs (measure.MEASURED)."""
     ways = {name: table[list(channels)].sum(axis=1) for name, channels in WAYS.items()}
     lost, unit = table[list(DISSIPATION)].sum(axis=1), 2 * table.grains * table.energy_unit
     table = table.assign(square=(table.impact**2).round(9), lost=lost, unit=unit, **ways)
@@ -80,7 +74,7 @@ def _offsets(runs):
     edge = runs.over("square", EDGE).estimates("growth", POINT)
     yield Quantity("drag_edge", "the same, mean over B_off^2 = 2/12 to 5/12", _drag(edge))
     loss = runs.parts(_over("kinetic_at_start"), (*POINT, "square"), "channel")
-    yield Quantity("loss_at_offset", "lost in each way at 50.1 m/s, of K(0)", loss, "%", 0.01)
+    yield Quantity("loss_at_offset", "lost in each way at 50.1 m/s, of K(0)", loss, "%")
 
 
 def _energies(runs):
@@ -90,25 +84,21 @@ def _energies(runs):
     yield Quantity("largest", "grains of the largest fragment, 50.1 m/s, B_off^2 = 3/12", largest)
     yield Quantity("drag_largest", "the same, 6 ps less without drag", _drag(largest))
     loss = own.parts(_over("lost"), POINT, "channel")
-    yield Quantity("loss", "lost in each way there, of all that is lost", loss, "%", 0.01)
-    lead = differences(
-        select(loss, channel="rolling"), _largest([select(loss, channel=way) for way in WAYS if way != "rolling"])
-    )
-    yield Quantity("rolling_lead", "rolling less the largest of the other ways", lead, "%", 0.01)
+    yield Quantity("loss", "lost in each way there, of all that is lost", loss, "%")
+    rolling, *others = (select(loss, channel=way) for way in WAYS)
+    lead = differences(rolling, reduce(_largest, others))
+    yield Quantity("rolling_lead", "rolling less the largest of the other ways", lead, "%")
     total = own.parts({name: name for name in WAYS if name != "drag"}, POINT, "channel")
     by_drag = ratios(select(total, viscoelasticTime=MOST_DRAG), select(total, viscoelasticTime=NO_DRAG))
     yield Quantity("drag_ratio", "lost there with 6 ps over without drag", by_drag)
     at_end = at_square.parts(_over("unit"), CURVE, "channel")
     yield Quantity("loss_per_grain", "lost in each way over N_tot F_c delta_c, B_off^2 = 3/12", at_end)
-    events = {"N_con": lambda t: t.formed, "N_cut": lambda t: t.broken, "both": lambda t: t.formed + t.broken}
-    per_grain = {name: lambda t, of=of: of(t) / (2 * t.grains) for name, of in events.items()}
-    yield Quantity(
-        "events", "contacts formed and broken over N_tot, B_off^2 = 3/12", at_square.parts(per_grain, CURVE, "event")
-    )
-    speed = own.estimates("pair_speed", POINT)
-    yield Quantity(
-        "pair_speed", "largest rms of v_rel of neighbours over the states, 50.1 m/s, B_off^2 = 3/12", speed, "m/s"
-    )
+    per_grain = {symbol: lambda t, name=name: t[name] / (2 * t.grains) for name, symbol in EVENTS.items()}
+    per_grain["both"] = lambda t: sum(t[name] for name in EVENTS) / (2 * t.grains)
+    of_events = at_square.parts(per_grain, CURVE, "event")
+    yield Quantity("events", "contacts formed and broken over N_tot, B_off^2 = 3/12", of_events)
+    meaning = "largest rms of v_rel of neighbours over the states, 50.1 m/s, B_off^2 = 3/12"
+    yield Quantity("pair_speed", meaning, own.estimates("pair_speed", POINT), "m/s")
     fast = own.estimates("fast_pairs", POINT)
     yield Quantity("fast_pairs", f"neighbours there that approach or part faster than {FAST:g} m/s, over N_tot", fast)
 
@@ -122,12 +112,8 @@ def _fragments(runs):
     runs = runs.over("square", SQUARES, offset_weights)
     found = {"grains_in_fragments": cumulative_grains, "cross_section": cumulative_cross_section}
     grains, section = (runs.of(_by_size(table, f)).estimates("value", (*CURVE, "fragment")) for f in found.values())
-    yield Quantity(
-        "grains_in_fragments",
-        "<N_cum(<= N)>: grains in fragments of at most N grains, mean over 13 offsets",
-        grains,
-        listed=False,
-    )
+    meaning = "<N_cum(<= N)>: grains in fragments of at most N grains, mean over 13 offsets"
+    yield Quantity("grains_in_fragments", meaning, grains, listed=False)
     alphas = {
         "small": _fitted(grains, lambda each, n: n <= SMALL_FITTED * 2 * each),
         "large": _fitted(grains, lambda each, n: (n >= LARGE_FITTED) & (n <= each) & (each >= 10 * LARGE_FITTED)),
@@ -136,10 +122,8 @@ def _fragments(runs):
     yield Quantity("alpha", meaning, together(alphas, "fragments"))
     each, n = (section.index.get_level_values(name) for name in ("grains", "fragment"))
     ends = [section[kept].groupby(level=list(CURVE)).last() for kept in (n <= SMALL_FITTED * 2 * each, n == 2 * each)]
-    share = 1.0 - ratios(*ends)
-    yield Quantity(
-        "large_share", f"part of the cross-section in fragments beyond {SMALL_FITTED:.0%} of all grains", share
-    )
+    meaning = f"part of the cross-section in fragments beyond {SMALL_FITTED:.0%} of all grains"
+    yield Quantity("large_share", meaning, 1.0 - ratios(*ends))
 
 
 def _grains(runs):
@@ -156,13 +140,9 @@ def _over(column):
     return {name: lambda t, name=name: t[name] / t[column] for name in WAYS}
 
 
-def _largest(of):
-    """Series of the largest of several, draw by draw."""
-    largest = of[0]
-    for other in of[1:]:
-        first, second = largest.align(other, join="inner")
-        largest = first.combine(second, lambda a, b: combine(np.maximum, a, b))
-    return largest
+def _largest(first, second):
+    """Series of the larger of two of the same runs, draw by draw."""
+    return first.combine(second, lambda a, b: combine(np.maximum, a, b))
 
 
 def _by_size(table, cumulative):
@@ -199,11 +179,10 @@ STUDY = Study(
     "fragments distributed?",
     # Collisions of equal BPCA aggregates of equal ice grains, without bonds, springs held at their limits.
     scene=Scene(
-        name="A22's scene",
+        name="the study of Arakawa et al. (2022)",
         values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal", "limit": "held"},
         numbers=("grains", "impact", "velocity", "viscoelasticTime", "seed"),
     ),
-    columns=COLUMNS,
-    measure=measure,
+    measured=MEASURED,
     quantities=quantities,
 )

@@ -6,6 +6,7 @@
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/common/Sphere.hpp>
+#include <pkg/common/Wall.hpp>
 #include <pkg/dem/ScGeom.hpp>
 #include <cstddef>
 
@@ -120,6 +121,8 @@ namespace proof {
 			MEMBER(State, densityScaling, Real),
 			MEMBER_BY(State, blockedDOFs, blockedDOFs, compareBlockedDOFs),
 			MEMBER(Sphere, radius, Real),
+			MEMBER(Wall, sense, int),
+			MEMBER(Wall, axis, int),
 			MEMBER(Body, id, int),
 			MEMBER(Body, groupMask, int),
 			MEMBER(Body, flags, int),

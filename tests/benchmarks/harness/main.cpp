@@ -111,10 +111,10 @@ void measure(harness::Run& run, const Settings& settings, long threads)
 	const Counted after(dynamics);
 	const double mean = 0.5 * (contacts + contact_law::contactCount(dynamics));
 	std::printf("{\"threads\": %d, \"steps\": %ld, \"msPerStep\": %.6g, \"contacts\": %.1f, \"contactUpdatesPerSecond\": %.5g, "
-	            "\"searches\": %.4g, \"looks\": %ld, \"events\": %ld, \"formed\": %ld, \"broken\": %ld}\n",
+	            "\"searches\": %.4g, \"distanceChecks\": %ld, \"events\": %ld, \"formed\": %ld, \"broken\": %ld}\n",
 	        dynamics.threadCount(), settings.steps, 1e3 * seconds / double(settings.steps), mean,
 	        mean * double(settings.steps) / seconds, after.counters.searches - before.counters.searches,
-	        after.counters.looks - before.counters.looks, after.counts.events - before.counts.events,
+	        after.counters.distanceChecks - before.counters.distanceChecks, after.counts.events - before.counts.events,
 	        after.counts.formed - before.counts.formed, after.counts.broken - before.counts.broken);
 	std::fflush(stdout);
 }

@@ -132,11 +132,11 @@ public:
 			copyMoving(motions[k], now.grains[k]);
 		if (scene.periodic()) set(now.head.cellSize, engine->cell().size);
 		now.contacts.clear();
-		const auto keep = [&](const auto& list, int lane, int, int) {
-			now.contacts.push_back(recordOf(contact_law::contactNow(*engine, list, lane)));
+		const auto keep = [&](const auto& list, int slot, int, int) {
+			now.contacts.push_back(recordOf(contact_law::contactNow(*engine, list, slot)));
 		};
-		contact_law::eachContactLane(*engine, keep);
-		contact_law::eachBondLane(*engine, keep);
+		contact_law::eachContact(*engine, keep);
+		contact_law::eachBond(*engine, keep);
 		return now;
 	}
 

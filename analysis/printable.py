@@ -1,0 +1,37 @@
+"""Names and values from outside, as a terminal may see them."""
+
+import shlex
+
+
+def printable(text):
+    """One line of a text (or of anything's str()): what is not printable becomes an escape, as with ls -b.
+
+    >>> print(printable("a\\x1b[31mb\\nc \\u00e4 \\udcff"))
+    a\\x1b[31mb\\nc \u00e4 \\xff
+    """
+    return "".join(c if c.isprintable() else _escape(c) for c in str(text))
+
+
+def printable_lines(text):
+    """printable() of each line of a text."""
+    return "\n".join(map(printable, text.split("\n")))
+
+
+def shell_line(words):
+    """A command, as one may paste it into a shell; words: strings and paths.
+
+    >>> print(shell_line(["ls", "my runs", "$x"]))
+    ls 'my runs' '$x'
+    """
+    words = [str(word) for word in words]
+    return " ".join(shlex.quote(word) if word.isprintable() else f"$'{_ansi_c(word)}'" for word in words)
+
+
+def _escape(c):
+    if 0xDC80 <= ord(c) <= 0xDCFF:  # a byte of a file's name that is no UTF-8
+        return f"\\x{ord(c) - 0xDC00:02x}"
+    return c.encode("unicode_escape").decode()
+
+
+def _ansi_c(word):
+    return "".join(f"\\{c}" if c in "\\'" else c if c.isprintable() else _escape(c) for c in word)

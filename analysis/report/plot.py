@@ -1,0 +1,142 @@
+"""A column of a table of runs against another, with error bars over pairs of aggregates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas
+
+from ..measures.outcome import STICKING, UNDECIDED
+from ..runs.format import CHANNELS
+from ..runs.named import unknown
+from ..runs.table import RUN
+from ..studies.curve_figure import CurveFigure
+from ..studies.definition import Quantity, Results
+from ..studies.estimate import Fraction
+from ..studies.runs import Runs, each
+from .rows import at_end, table, varied
+
+SEED, CHANNEL, LARGEST = "seed", "channel", "largest_fraction"
+
+
+class CannotPlot(ValueError):
+    """What is asked for cannot be drawn from these runs; the message is one line."""
+
+
+@dataclass(frozen=True)
+class OfDecided:
+    """How many of the decided runs of a Fraction ended so; the interval (95 %, Wilson) counts the undecided ones either way."""
+
+    fraction: Fraction
+    error = None
+
+    @property
+    def pairs(self):
+        return self.fraction.pairs - self.fraction.undecided
+
+    @property
+    def value(self):
+        return self.fraction.successes / self.pairs if self.pairs else np.nan
+
+    def interval(self):
+        return self.fraction.interval()
+
+
+def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
+    """matplotlib Figure of runs (a table(), or what that takes).
+
+    what: "sticking" (fraction of the runs that stick, with Wilson's 95 % intervals; of the decided ones: those that are undecided, or
+    have not ended, widen the interval, counted either way, and are named above), "largest" (mass fraction of the largest piece), "energy" (change of every
+    channel from the start to the end, over K(0)), or any column. x: a column of numbers; by: a column that tells curves (panels, of
+    "energy") apart; where: {column: value} of the runs that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it
+    spans a decade). Bars but of "sticking" are standard errors of the mean over pairs of aggregates, which are told by their seed;
+    open points are single pairs.
+
+    CannotPlot (ValueError) where runs differ in parameters beside x, by and the seed; UnknownName (KeyError) for a wrong column.
+    """
+    found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
+    for name in (x, by, *(where or {})):
+        if name and name not in found:
+            raise unknown("table of runs", name, found.columns)
+    drawn = Runs(found, SEED if SEED in found else RUN)
+    drawn = drawn.where(**where) if where else drawn
+    _require_drawable(drawn.table, x, by)
+    quantity = _quantity(what, drawn, [x, by] if by else [x])
+    if not len(quantity.values):
+        raise CannotPlot(f"{what}: no run has a value")
+    figure = _curves(what, drawn.table, x, by, logarithmic).draw(Results(drawn.table, {quantity.name: quantity}))
+    for axes in figure.axes:
+        if axes.get_xlabel() == x:
+            axes.set_xlabel(_with_unit(found, x))
+    figure.suptitle(_about(drawn.table, what), fontsize=10)
+    return figure
+
+
+def _quantity(what, drawn, by):
+    """Quantity of what is drawn."""
+    if what == "sticking":
+        collisions = drawn.of(drawn.table[drawn.table.outcome.notna()])
+        values = collisions.fractions(lambda table: table.outcome == STICKING, by, _undecided)
+        return Quantity(what, "", each(values, lambda fraction, *_: OfDecided(fraction)))
+    if what == "energy":
+        changing = {c: at_end(c) for c in CHANNELS if c == "kinetic" or drawn.table[at_end(c)].any()}
+        return Quantity(what, "", drawn.parts(changing, by, CHANNEL), "%", 0.01)
+    column = LARGEST if what == "largest" else what
+    if column not in drawn.table:
+        raise unknown("table of runs", what, ("sticking", "largest", "energy", *drawn.table.columns))
+    _require_numbers(drawn.table, column)
+    return Quantity(what, "", drawn.estimates(column, by))
+
+
+def _curves(what, found, x, by, logarithmic):
+    """CurveFigure of what is drawn."""
+    if logarithmic is None:
+        low, high = found[x].min(), found[x].max()
+        logarithmic = "x" if low > 0 and high >= 10 * low else ""
+    labels = {
+        "sticking": "runs that stick, of the decided ones",
+        "largest": "mass of the largest piece, of all",
+        "energy": "change from start to end, of K(0)  [%]",
+    }
+    return CurveFigure(
+        *(what, "", what, x),
+        colour=CHANNEL if what == "energy" else by,
+        panel=by if what == "energy" else "",
+        logarithmic=logarithmic,
+        y_label=labels.get(what) or _with_unit(found, what),
+        limits=(-0.03, 1.03) if what in ("sticking", "largest") else None,
+        line="-" if x in found.attrs.get("parameters", ()) else "",
+    )
+
+
+def _require_drawable(found, x, by):
+    _require_numbers(found, x)
+    if not len(found):
+        raise CannotPlot("no run is left")
+    others = [name for name in varied(found) if name not in (x, by, SEED)]
+    if others and x in found.attrs.get("parameters", ()):
+        values = ", ".join(
+            f"{value:g}" if isinstance(value, float) else str(value) for value in found[others[0]].unique()
+        )
+        raise CannotPlot(f"the runs differ in {', '.join(others)} too: choose by or where ({others[0]} is {values})")
+
+
+def _require_numbers(found, name):
+    if found[name].dtype.kind not in "fiub":
+        raise CannotPlot(f"{name}: holds words, or nothing; must be a column of numbers")
+
+
+def _undecided(found):
+    """Whether runs have no outcome that counts (n,): they say so, or have not ended."""
+    return found.outcome.map(lambda text: str(text).startswith(UNDECIDED)) | ~found.ended.astype(bool)
+
+
+def _with_unit(found, name):
+    unit = found.attrs.get("units", {}).get(name, "")
+    return name + (f"  [{unit}]" if unit not in ("", "1") else "")
+
+
+def _about(found, what):
+    """How many runs there are, and how many of them have no outcome that counts."""
+    undecided = int(_undecided(found).sum())
+    text = f"{len(found)} runs" + (f", {undecided} of them undecided or not ended" if undecided else "")
+    return text + (" (in the bars, counted either way)" if undecided and what == "sticking" else "")

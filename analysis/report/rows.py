@@ -1,0 +1,183 @@
+"""A row a run: its parameters and what became of it, as a pandas DataFrame."""
+
+import os
+import warnings
+from inspect import cleandoc
+
+import numpy as np
+
+from ..measures.coordination import mean_coordination
+from ..measures.fragments import fragment_labels
+from ..measures.ledger import fractions_at
+from ..measures.pieces import STRUCTURE, structure_of
+from ..progress import progress
+from ..runs.arrays import RunFolderError
+from ..runs.collect import run_folders
+from ..runs.folder import RunFolder, open_run
+from ..runs.format import CHANNEL_TABLE, CHANNELS, PARAMETER_UNITS, RUN_KINDS
+from ..runs.table import FOLDER, RUN, Column, columns_text, described, make_table
+from .summary import COMPRESSION_KEYS, ENERGY_KEYS, OUTCOME_KEYS, summarise
+
+at_end = "{}_at_end".format
+final = "final_{}".format
+of_largest = "largest_{}".format
+
+# How a run is stored and carried out, which says nothing of its physics.
+_BOOKKEEPING = ("out", "overwrite", "resume", "checkpointInterval", "threads", "states")
+
+_OF_MATERIAL = ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling")
+
+OUTCOME = (
+    Column("kind", "", "of run", "O"),
+    Column("ended", "", "whether it came to its planned end; another one is measured as far as it went", "b"),
+    Column("time", "s", "of the last sample"),
+    *(column for column in OUTCOME_KEYS if column.name != "mass_fractions"),
+    Column("largest_fraction", "1", "fraction of the mass in the largest piece", gaps=True),
+    Column("second_fraction", "1", "in the second largest", gaps=True),
+)
+LARGEST = (
+    *(Column(of_largest(c.name), c.unit, f"of the largest piece: {c.meaning}", gaps=True) for c in STRUCTURE),
+    Column("largest_coordination", "1", "of the largest piece: mean number of contacts of a grain", gaps=True),
+)
+ENERGIES = (
+    *ENERGY_KEYS,
+    *(
+        Column(
+            at_end(c.name), "K(0)", f"{c.label}, change from the start to the end (kinetic: what is left)", gaps=True
+        )
+        for c in CHANNEL_TABLE
+    ),
+)
+SERIES = tuple(
+    Column(final(series.name), series.unit, f"at the end: {series.meaning}", gaps=True)
+    for kind in RUN_KINDS.values()
+    for series in kind.series
+)
+MEASURED = (*OUTCOME, *LARGEST, *COMPRESSION_KEYS, *ENERGIES, *SERIES)
+# What is said of a run in one line.
+SHORT = (
+    *("outcome", "largest_fraction", "fragments", "growth_efficiency", "restitution", "d_max"),
+    *("final_filling", "final_pressure", "energy_closure"),
+)
+
+
+def table(runs, structure=True):
+    """DataFrame with a row a run.
+
+    runs: a path (a run folder, or a folder with such up to two levels below), a pattern ("runs/**"), a RunFolder, or a list of these.
+    structure: whether the structure of the largest piece is measured, which takes a moment for 100,000 grains.
+
+    Columns: run (the folder's name), the parameters of run.json by their names (but for those of bookkeeping), MEASURED (outcome,
+    largest piece, energies in J and over K(0), last values of the kind's series) and folder (the path). All SI; units and meanings
+    are in .attrs["units"] and .attrs["meanings"], names of the parameters in .attrs["parameters"]. Where there is no value stands NaN or None.
+
+    A run that cannot be read is left out with a warning; RunFolderError where none is left.
+
+    >>> list(column.name for column in LARGEST)
+    ['largest_filling_factor', 'largest_gyration_radius', 'largest_fractal_dimension', 'largest_coordination']
+    """
+    measured, problems = measure(runs, lambda run: row(run, structure))
+    if not measured:
+        raise RunFolderError(problems[0] if problems else "no runs given")
+    for problem in problems:
+        warnings.warn(problem, stacklevel=2)
+    return frame(measured)
+
+
+table.__doc__ = f"{cleandoc(table.__doc__)}\n\n{columns_text(MEASURED)}"
+
+
+def frame(measured):
+    """DataFrame as of table() from [(path, row())]."""
+    made, measures = make_table(measured), {column.name for column in MEASURED}
+    parameters = [name for name in made if name not in (RUN, FOLDER, *measures)]
+    order = [RUN, *parameters, *(column.name for column in MEASURED if column.name in made), FOLDER]
+    units = [Column(name, PARAMETER_UNITS.get(name, ""), "parameter of the run") for name in parameters]
+    found = described(made[order], (*units, *MEASURED))
+    found.attrs["parameters"] = parameters
+    return found
+
+
+def short_text(found):
+    """A line a run of a table(): its folder, the parameters in which the runs differ, and SHORT as far as there is any."""
+    first = [FOLDER, *(["velocity"] if "velocity" in found else []), *varied(found)]
+    shown = [name for name in SHORT if name in found and found[name].notna().any()]
+    names = dict.fromkeys([*first, *([] if found.ended.all() else ["ended"]), *shown])
+    units = {name: found.attrs["units"].get(name, "") for name in names}
+    heads = {name: name + (f" [{unit}]" if unit not in ("", "1") else "") for name, unit in units.items()}
+    text = found[list(names)].rename(columns={**heads, FOLDER: RUN})
+    return text.to_string(index=False, na_rep="-", float_format="{:.4g}".format)
+
+
+def measure(runs, of):
+    """([(path, of(RunFolder))], [what is wrong with the others, one line each]) of runs as in table()."""
+    measured, problems = [], []
+    for run, problem in progress(_folders(runs), "reading runs"):
+        try:
+            if problem:
+                raise RunFolderError(problem)
+            run = run if isinstance(run, RunFolder) else open_run(run)
+            measured.append((run.path, of(run)))
+        except RunFolderError as error:
+            problems.append(str(error))
+    return measured, problems
+
+
+def row(run, structure=True):
+    """{column: value} of a RunFolder, its parameters and MEASURED; RunFolderError when a state is missing or damaged."""
+    numbers = summarise(run)
+    del numbers[RUN]
+    fractions = numbers.pop("mass_fractions") or (None, None)
+    of_k = fractions_at(run.history, run.history["time"][-1]) or {}
+    values = {
+        "kind": run.kind.name,
+        **numbers,
+        **dict(zip(("largest_fraction", "second_fraction"), fractions)),
+        **{at_end(channel): of_k.get(channel) for channel in CHANNELS},
+        **{
+            final(series.name): run.history[series.name][-1] for series in run.kind.series if series.name in run.history
+        },
+        **(_largest(run.last) if structure else {}),
+    }
+    numeric = {column.name for column in MEASURED if column.kind == "f"}
+    gaps = {name: np.nan for name, value in values.items() if value is None and name in numeric}
+    return {**_parameters(run), **values, **gaps}
+
+
+def _parameters(run):
+    """{name: value} of a run's parameters; one that was left open and that the run derived has that value."""
+    given = {name: value for name, value in run.parameters.items() if name not in _BOOKKEEPING}
+    return {name: run.derived.get(name) if value is None else value for name, value in given.items()}
+
+
+def varied(found):
+    """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, the
+    duration, and the size of aggregates that are grown or read, or grains of those that are cut."""
+    names = [name for name in found.attrs.get("parameters", ()) if found[name].nunique(dropna=False) > 1]
+    packings = set(found.packing) if "packing" in found else set()
+    cut, sizes = ("grains", "projectileGrains"), ("filling", "radius")
+    sizes = cut if packings == {"cpe"} else () if "cpe" in packings else sizes
+    for name in (*(_OF_MATERIAL if "material" in names else ()), "duration", *sizes):
+        others = ["material"] if name in _OF_MATERIAL else [other for other in names if other != name]
+        if name in names and others and found.groupby(others, dropna=False)[name].nunique().max() == 1:
+            names.remove(name)
+    return names
+
+
+def _largest(state):
+    """{column: value} of LARGEST of the state's largest piece."""
+    labels = fragment_labels(len(state.radius), state.contact_pairs)
+    own = np.flatnonzero(labels == 0)
+    structure = structure_of(state.position, state.radius, [own], state.cell_size)
+    contacts = state.contact_pairs[labels[state.contact_pairs[:, 0]] == 0]
+    return {
+        **{of_largest(name): float(values[0]) for name, values in structure.items()},
+        "largest_coordination": mean_coordination(len(own), contacts),
+    }
+
+
+def _folders(runs):
+    """[(RunFolder or its path, None) or (None, what is wrong)] of what table() is given."""
+    several = [runs] if isinstance(runs, (str, os.PathLike, RunFolder)) else list(runs)
+    opened = [run for run in several if isinstance(run, RunFolder)]
+    return [(run, None) for run in opened] + run_folders([path for path in several if path not in opened])

@@ -1,0 +1,31 @@
+// What JKRWadaEngine leaves in O.energy.
+#include "JKRWadaEngineRun.hpp"
+
+namespace yade {
+
+void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking booking)
+{
+	const bool known = booking == Booking::AlreadyInOEnergy;
+	if (!booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
+	booked = true;
+	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics);
+	current->workOn.outside = current->workOn.outside || !current->outside.empty() || now.externalWork != 0;
+	channels.set(*scene, now, known, current->workOn);
+}
+
+// Whether O.energy has the energies of this run still: a script may have cleared it.
+bool JKRWadaEngine::isInOEnergy() const
+{
+	int kinetic = -1;
+	scene->energy->findId("kinetic", kinetic, false, false);
+	return booked && kinetic >= 0;
+}
+
+// O.energy holds what this run has booked before it was saved.
+void JKRWadaEngine::continueBooking()
+{
+	booked = isInOEnergy();
+	if (booked) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
+}
+
+} // namespace yade

@@ -1,0 +1,87 @@
+#include "SceneShapes.hpp"
+#include "JKRWada.hpp"
+#include "Refusal.hpp"
+#include <core/Body.hpp>
+#include <core/BodyContainer.hpp>
+#include <pkg/common/Sphere.hpp>
+#include <pkg/common/Wall.hpp>
+#include <mutex>
+#include <thread>
+
+namespace yade {
+
+namespace {
+	// What is wrong with a plane, or empty.
+	std::string faultOf(const Wall& wall, const State& state, const Scene& scene)
+	{
+		if (wall.sense != 0) return "sense = " + text(wall.sense) + ", must be 0: planes hold grains on both sides";
+		if (state.blockedDOFs != State::DOF_ALL)
+			return "blockedDOFs must be 'xyzXYZ': planes rest or move at the velocity that they are given";
+		if (!state.angVel.isZero()) return "angVel must be zero: planes do not turn";
+		if (scene.isPeriodic) return "O.periodic must be False: there are no planes in periodic cells";
+		return "";
+	}
+
+	// What is wrong with the scene for the functors, or empty.
+	std::string faultOf(const Scene& scene, bool& anyPlane)
+	{
+		anyPlane = false;
+		for (const auto& body : *scene.bodies) {
+			if (!body || !dynamic_cast<const JKRMat*>(body->material.get())) continue;
+			const std::string who = bodyName(body->getId());
+			if (body->isClumpMember())
+				return who + " is a member of clump " + text(body->clumpId) + ": grains of JKRMat must be single spheres";
+			if (dynamic_cast<const Sphere*>(body->shape.get())) continue;
+			const auto* wall = dynamic_cast<const Wall*>(body->shape.get());
+			if (!wall)
+				return who + " is a " + (body->shape ? body->shape->getClassName() : "body without shape")
+				        + ": bodies of JKRMat must be Spheres or Walls";
+			anyPlane = true;
+			const std::string fault = faultOf(*wall, *body->state, scene);
+			if (!fault.empty()) return who + ", a Wall: " + fault;
+		}
+		return "";
+	}
+
+	std::mutex refusals;
+	std::string pending; // the refusal that Python will hear of
+
+	int raisePending(void*)
+	{
+		std::string what;
+		{
+			const std::lock_guard<std::mutex> only(refusals);
+			what.swap(pending);
+		}
+		PyErr_SetString(PyExc_RuntimeError, what.c_str());
+		return -1;
+	}
+}
+
+const Wall* wallOf(const Scene& scene, int id) { return dynamic_cast<const Wall*>((*scene.bodies)[id]->shape.get()); }
+
+void refuseInStep(Scene& scene, const std::string& what)
+{
+	const std::lock_guard<std::mutex> only(refusals);
+	if (!pending.empty()) return;
+	pending = what;
+	scene.stopAtIter = scene.iter + 1;
+	if (Py_AddPendingCall(raisePending, nullptr) != 0) pending.clear(); // no room now: at the next step
+	// The main thread looks for such calls when another wants Python's lock.
+	std::thread([] { PyGILState_Release(PyGILState_Ensure()); }).detach();
+}
+
+bool SceneShapes::fit(Scene& scene)
+{
+	if (lookedAt == scene.iter) return fine;
+#pragma omp critical(SceneShapesFit)
+	if (lookedAt != scene.iter) {
+		const std::string fault = faultOf(scene, anyPlane);
+		fine = fault.empty();
+		if (!fine) refuseInStep(scene, "Law2_ScGeom_JKRWadaPhys_JKRWada: " + fault);
+		lookedAt = scene.iter;
+	}
+	return fine;
+}
+
+} // namespace yade

@@ -1,0 +1,21 @@
+// An infinite plane across an axis, through the body's position.
+#pragma once
+#include <core/Shape.hpp>
+
+namespace yade {
+
+class Wall : public Shape {
+public:
+	Wall();
+	~Wall() override;
+	YADE_INTERFACE_OVERRIDES_(Wall)
+	YADE_INTERFACE_INDEX_OVERRIDES_
+
+	int sense; // side on which it meets spheres; 0: both
+	int axis;
+};
+static_assert(sizeof(Wall) == 104, "Wall");
+YADE_INTERFACE_AT_(Wall, sense, 92)
+YADE_INTERFACE_AT_(Wall, axis, 96)
+
+} // namespace yade

@@ -1,0 +1,100 @@
+"""What the analysis is like in a notebook: names, what a run shows, wrong names, pickles, tables of runs and of fragments."""
+
+import pickle
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import analysis
+from analysis.report.rows import LARGEST, MEASURED, table
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.format import CHANNELS
+
+TOP = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def run(cluster_folder):
+    return analysis.open_run(cluster_folder)
+
+
+def test_what_there_is_is_there_and_documented():
+    assert set(analysis.__all__) < set(dir(analysis)) and {"table", "plot", "wilson", "open_run"} < set(
+        analysis.__all__
+    )
+    for name in analysis.__all__:
+        thing = getattr(analysis, name)
+        assert thing.__doc__, name
+        of_arrays = thing.__module__.startswith("analysis.measures")
+        assert ">>>" in thing.__doc__ or not of_arrays, name
+
+
+def test_importing_it_loads_nothing_else():
+    found = "import sys, analysis; print([m for m in ('numpy', 'scipy', 'pandas', 'matplotlib') if m in sys.modules])"
+    done = subprocess.run(["/usr/bin/python3", "-c", found], cwd=TOP, capture_output=True, text=True)
+    assert done.stdout == "[]\n", done.stderr
+
+
+def test_a_run_and_a_state_are_a_few_lines(run):
+    for text in (repr(run), repr(run.last), repr(run.history), repr(run.states)):
+        assert len(text.splitlines()) < 12 and max(map(len, text.splitlines())) < 300
+    assert "velocity 10 m/s" in repr(run) and "velocity 10 m/s" in run._repr_html_()
+
+
+@pytest.mark.parametrize(
+    "ask, close",
+    [
+        (lambda run: run.history["kinetc"], "kinetic"),
+        (lambda run: run.parameters["velocty"], "velocity"),
+        (lambda run: run.last.positions, "position"),
+        (lambda run: analysis.plot("largest", run, by="velocty"), "velocity"),
+    ],
+)
+def test_a_wrong_name_names_the_right_ones(run, ask, close):
+    with pytest.raises(KeyError) as wrong:
+        ask(run)
+    assert f"did you mean {close}?" in str(wrong.value) and "\n" not in str(wrong.value)
+
+
+def test_runs_and_states_pickle(run):
+    for one in (run.history["time"], run.last.position):
+        assert not one.flags.writeable
+    copied, state = pickle.loads(pickle.dumps((run, run.last)))
+    assert np.array_equal(copied.history["d"], run.history["d"]) and copied.parameters == run.parameters
+    assert np.array_equal(state.position, copied.last.position)
+    assert not state.position.flags.writeable and not copied.history["d"].flags.writeable
+
+
+def test_a_table_has_a_row_a_run(run, pair_folder, tmp_path):
+    (tmp_path / "logs").mkdir()
+    for number, folder in enumerate((run.path, pair_folder[0])):
+        (tmp_path / f"r{number}").symlink_to(folder)
+    found = table(f"{tmp_path}/**")
+    numbers = analysis.summarise(run)
+    assert found.run.tolist() == ["r0", "r1"] and found.outcome.tolist() == ["sticking", "bouncing"]
+    for name in ("largest_fragment", "growth_efficiency", "energy_closure", "d_max", *CHANNELS):
+        assert found[name][0] == numbers[name], name
+    assert found.filter(like="_at_end").sum(axis=1).tolist() == pytest.approx([1.0, 1.0], abs=0.02)
+    assert {column.name for column in MEASURED[:20]} <= set(found) and found.attrs["units"]["velocity"] == "m/s"
+    piece = run.last.fragments().iloc[0]
+    for column in LARGEST:
+        assert np.array_equal(found[column.name][0], piece[column.name.removeprefix("largest_")], equal_nan=True)
+    assert table([run, str(tmp_path), f"{tmp_path}/r*"]).run.tolist() == ["run", "r0", "r1"]
+
+
+def test_a_run_that_cannot_be_read_is_named_and_left_out(run, tmp_path):
+    (tmp_path / "run.json").write_text("{}")
+    with pytest.warns(UserWarning, match="not the record of a run"):
+        assert len(table([run, tmp_path])) == 1
+    with pytest.raises(RunFolderError, match="no run folder matches"):
+        table(f"{tmp_path}/*/*")
+
+
+def test_fragments_of_a_state(run):
+    found, state = run.last.fragments(), run.last
+    assert found.grains.sum() == len(state.radius) and found.mass_fraction.sum() == pytest.approx(1.0, rel=1e-12)
+    assert (found.grains * found.coordination).sum() == 2 * len(state.contact_pairs)
+    assert (found.grains * found.projectile_fraction).sum() == pytest.approx(np.sum(state.aggregate == 1), rel=1e-12)
+    assert 0.2 < found.filling_factor[0] < 0.7 and found.attrs["units"]["gyration_radius"] == "m"

@@ -1,0 +1,87 @@
+"""Figures of a table of runs: what is counted, what is said, what is refused."""
+
+import pandas
+import pytest
+
+from analysis import wilson
+from analysis.__main__ import main
+from analysis.report.plot import CannotPlot, plot
+
+ENDS = {
+    1.0: ("sticking", "sticking", "bouncing", "undecided: still moving"),
+    3.0: ("fragmentation",) * 3 + ("sticking",),
+}
+
+
+@pytest.fixture
+def runs():
+    """A table of eight runs at two velocities, in the form of analysis.table."""
+    rows = [
+        {
+            "run": f"v{velocity}-s{seed}",
+            "velocity": velocity,
+            "seed": seed,
+            "impact": 0.5,
+            "outcome": outcome,
+            "ended": True,
+        }
+        for velocity, outcomes in ENDS.items()
+        for seed, outcome in enumerate(outcomes)
+    ]
+    found = pandas.DataFrame(rows).assign(largest_fraction=[0.9, 0.7, 0.5, 0.3, 0.4, 0.2, 0.2, 0.0])
+    found.attrs.update(units={"velocity": "m/s", "largest_fraction": "1"}, parameters=["velocity", "seed", "impact"])
+    return found
+
+
+def drawn(figure):
+    """([(x, y)], [(low, high)]) of the first curve, and all that is written."""
+    (axes,) = figure.axes
+    bars = axes.collections[0].get_segments()
+    texts = [figure._suptitle.get_text(), axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
+    return list(zip(*axes.lines[0].get_data())), [tuple(bar[:, 1]) for bar in bars], " | ".join(texts)
+
+
+def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs):
+    points, bars, said = drawn(plot("sticking", runs))
+    assert points == [(1.0, pytest.approx(2 / 3, rel=1e-12)), (3.0, 0.25)]
+    assert bars[0] == pytest.approx((wilson(2, 4)[0], wilson(3, 4)[1]), rel=1e-12)
+    assert bars[1] == pytest.approx(wilson(1, 4), rel=1e-12)
+    assert (
+        "8 runs, 1 of them undecided or not ended (in the bars, counted either way)" in said
+        and "3 to 4 pairs" in said
+        and "[m/s]" in said
+    )
+
+
+def test_a_mean_has_the_error_of_its_pairs(runs):
+    points, bars, _ = drawn(plot("largest", runs))
+    assert points == [(1.0, pytest.approx(0.6, rel=1e-12)), (3.0, pytest.approx(0.2, rel=1e-12))]
+    spread = runs.largest_fraction[:4].std() / 2
+    assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx(spread, rel=0.1)  # by bootstrap
+
+
+def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
+    runs.loc[0, "impact"] = 0.0
+    with pytest.raises(CannotPlot, match=r"^the runs differ in impact too: .* \(impact is 0, 0.5\)$"):
+        plot("sticking", runs)
+    runs.loc[1, "ended"] = False
+    assert "7 runs, 2 of them undecided or" in drawn(plot("sticking", runs, where={"impact": 0.5}))[2]
+    for wrong in ({"x": "outcome"}, {"where": {"impact": 7}}):
+        with pytest.raises(CannotPlot):
+            plot("largest", runs, **wrong)
+
+
+@pytest.mark.parametrize(
+    "what, x", [("sticking", "velocity"), ("energy", "velocity"), ("fragments", "largest_filling_factor")]
+)
+def test_the_command_writes_a_picture_and_prints_its_path_last(cluster_folder, tmp_path, capsys, what, x):
+    file = tmp_path / "new" / "a.png"
+    assert main(["plot", what, str(cluster_folder), "--x", x, "--out", str(file)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(file) and file.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("options", [["--x", "velocty"], ["--where", "velocity=7"], ["--by", "nothing"]])
+def test_the_command_says_what_is_wrong(cluster_folder, tmp_path, capsys, monkeypatch, options):
+    monkeypatch.chdir(tmp_path)
+    assert main(["plot", "sticking", str(cluster_folder), *options]) == 2
+    assert capsys.readouterr().err.count("\n") == 1 and list(tmp_path.iterdir()) == []

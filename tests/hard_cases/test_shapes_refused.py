@@ -1,0 +1,75 @@
+"""What the contact law cannot hold between is refused in one line: shapes, clumps, planes that turn or are free."""
+
+import time
+
+import pytest
+from scenes import *
+
+R = 1e-7  # of the grains [m]
+
+
+def facet(m):
+    O.bodies.append(utils.facet([(-9e-7, -9e-7, 0), (9e-7, -9e-7, 0), (0, 9e-7, 0)], material=m))
+
+
+def box(m):
+    O.bodies.append(utils.box((0, 0, -R), (1e-6, 1e-6, R), material=m, fixed=True))
+
+
+def clump(m):
+    O.bodies.appendClumped([utils.sphere((x, 0, -0.9 * R), R, material=m) for x in (0, 1e-7)])
+
+
+def plane(m, **changes):
+    body = utils.wall(0, axis=2, material=m)
+    O.bodies.append(body)
+    for name, value in changes.items():
+        setattr(body.shape if name == "sense" else body.state, name, value)
+
+
+REFUSED = [
+    ("facet", {}, "body 0 is a Facet: bodies of JKRMat must be Spheres or Walls"),
+    ("box", {}, "body 0 is a Box: bodies of JKRMat must be Spheres or Walls"),
+    ("clump", {}, "body 0 is a member of clump 2: grains of JKRMat must be single spheres"),
+    ("plane", dict(sense=1), "body 0, a Wall: sense = 1, must be 0"),
+    ("plane", dict(angVel=(0, 0, 1)), "body 0, a Wall: angVel must be zero"),
+    ("plane", dict(blockedDOFs="xyXYZ"), "body 0, a Wall: blockedDOFs must be 'xyzXYZ'"),
+    ("plane", dict(neck=0.5), "neck: must be 0 in scenes with a Wall"),
+]
+
+
+def said(add, changes):
+    """What the functors refuse such a scene with, at the latest soon after the step."""
+    neck = changes.get("neck", 0)
+    new_scene(1e-3 * unit, neck=neck)
+    loop = O.engines[2]
+    bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
+    shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
+    functors = loop.physDispatcher.functors, loop.lawDispatcher.functors
+    O.engines = [O.engines[0], InsertionSortCollider(bounds), InteractionLoop(shapes, *functors), O.engines[3]]
+    globals()[add](ice(), **{} if neck else changes)
+    grain((0, 0, 0.999 * R), R, ice())
+    try:
+        O.step()
+        end = time.time() + 10
+        while time.time() < end:
+            pass
+    except RuntimeError as error:
+        return str(error)
+
+
+@pytest.mark.in_yade
+@pytest.mark.parametrize("add, changes, line", REFUSED, ids=[line[:24] for _, _, line in REFUSED])
+def test_refused_in_one_line_by_functors_and_engine(add, changes, line):
+    told = said(add, changes)
+    assert line in told and "\n" not in told
+    fused_engine()
+    assert "must be a sphere of JKRMat" in refusal()
+
+
+def said_to_threads():
+    return [said(add, changes) for add, changes, _ in REFUSED]
+
+
+def test_refused_whichever_thread_meets_it(yade):
+    assert all(line in told for told, (_, _, line) in zip(yade(said_to_threads, threads=3), REFUSED))

@@ -1,0 +1,148 @@
+"""Names from outside are names: no shell, no expression and no terminal takes them for anything else."""
+
+import os
+import shlex
+import subprocess
+
+import pytest
+from running import COLLIDE, PYTHON, TINY, TOP, call, study
+
+from analysis.printable import printable, shell_line
+
+NAME = "x;touch PWNED;y $n & `touch PWNED` $(touch PWNED) 50%s @ 'it' \"q\" <a>b \u00fc #h \\n -n "
+NAME += "l" * (200 - len(NAME))
+RED = "\x1b[31m"
+TABLE = "description radius velocity duration states\na 4 30 1e-9 2\n"
+
+
+def run_analysis(folder, *arguments):
+    return call(folder, PYTHON, "-m", "analysis", *arguments, PYTHONPATH=TOP)
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory):
+    """A folder of this name, in which a table of this name and a run in a folder of this name came to their ends, by the suite behind
+    such a name."""
+    folder = tmp_path_factory.mktemp("names") / NAME
+    folder.mkdir()
+    (folder / f"{NAME}.table").write_text(TABLE)
+    suite = NAME[:100]
+    os.symlink(TOP, folder / suite)
+    done = call(folder, PYTHON, f"{suite}/yade_scripts/study.py", f"{NAME}.table", "-j", "1")
+    assert (done.returncode, done.stderr) == (0, ""), done.stdout + done.stderr
+    done = call(folder, "yade", "-n", "-x", f"{suite}/yade_scripts/collide.py", *TINY, "states=2", f"out={NAME}")
+    assert done.returncode == 0, done.stderr
+    yield folder
+    assert [path for path in folder.parent.rglob("PWNED*")] == []
+
+
+def test_a_table_of_any_name_is_run(here):
+    assert sorted(os.listdir(here / "runs")) == ["a", "logs"] and (here / "runs/a/ended").exists()
+    assert os.listdir(here / "runs/logs") == [NAME]
+    done = study(here, f"{NAME}.table", "--status")
+    assert done.returncode == 0 and done.stdout.splitlines()[0].split()[:2] == ["done", "a"]
+
+
+@pytest.mark.parametrize(
+    "command, made",
+    [
+        (["summary", NAME], None),
+        (["figures", NAME], "figures/energy.png"),
+        (["export", NAME, "--format", "all"], "export/run.pvd"),
+        (["film", NAME, "--out", f"{NAME}.mp4"], None),
+        (["status", NAME], None),
+        (["study", "elastoplastic", NAME, "--figures", "figures"], None),
+    ],
+    ids=lambda value: value[0] if isinstance(value, list) else "",
+)
+def test_the_analysis_of_a_run_of_any_name(here, command, made):
+    done = run_analysis(here, *command)
+    expected = 2 if command[0] == "study" else 0  # of another scene: left out
+    assert done.returncode == expected and "Traceback" not in done.stderr, done.stderr
+    assert made is None or (here / NAME / made).exists()
+
+
+@pytest.mark.parametrize(
+    "column, cell, arguments",
+    [
+        ("!COUNT", "open('PWNED','w')", []),
+        ("!AFFINITY", "open('PWNED','w')", ["--slurm", "--dry-run"]),
+        ("!EXEC", "touch${IFS}PWNED;yade", ["--status"]),
+    ],
+)
+def test_columns_that_yade_batch_takes_for_programs_are_refused(tmp_path, column, cell, arguments):
+    (tmp_path / "rows.table").write_text(f"radius {column}\n4 {cell}\n")
+    done = study(tmp_path, "rows.table", *arguments)
+    assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
+    assert done.stderr.startswith(f"study.py: rows.table: the column {column} is for yade-batch alone; must be ")
+    assert os.listdir(tmp_path) == ["rows.table"]
+
+
+def test_status_runs_no_script_that_a_table_names(tmp_path):
+    (tmp_path / "mine.py").write_text("open('PWNED', 'w')\n")
+    (tmp_path / "rows.table").write_text("description !SCRIPT out threads\na mine.py runs/b 2\nb none.py * -1\n")
+    done = study(tmp_path, "rows.table", "--status")
+    assert [line.split()[:2] for line in done.stdout.splitlines()[:2]] == [["waiting", "a"], ["failed", "b"]]
+    assert sorted(os.listdir(tmp_path)) == ["mine.py", "rows.table"]
+
+
+@pytest.mark.parametrize(
+    "header, cells, words",
+    [
+        ("!THREADS threads", "2 1", "!THREADS = 2: threads are 1; must be the same"),
+        ("!THREADS !OMP_NUM_THREADS", "2 1", "!OMP_NUM_THREADS = 1: threads are 2; must be the same"),
+        ("!OMP_NUM_THREADS radius", "os.nice(1) 4", "!OMP_NUM_THREADS = os.nice(1): not a finite number; must be >= 1"),
+    ],
+)
+def test_threads_of_yade_batch_are_obeyed_or_refused(tmp_path, header, cells, words):
+    (tmp_path / "rows.table").write_text(f"{header}\n{cells}\n")
+    assert words in study(tmp_path, "rows.table", "--status").stdout
+
+
+def test_a_table_of_ours_is_run_by_yade_batch(tmp_path):
+    """As users call it, who choose its names themselves."""
+    (tmp_path / "rows.table").write_text("radius! velocity material duration seed!\n4 10 'ice' 5e-10 1\n= = ice = 2\n")
+    done = call(
+        tmp_path, "yade-batch", "--disable-pynotify", "--log", "@.log", "-j", "1", "-l", "2", "rows.table", COLLIDE
+    )
+    assert done.returncode == 0 and os.listdir(tmp_path / "runs") == ["radius=4,seed=1"], done.stdout
+
+
+def test_no_escape_sequence_reaches_the_terminal(tmp_path):
+    name = f"a{RED}b"
+    (tmp_path / f"{name}.table").write_text(f"description radius {RED}\n{name} -1 2\n")
+    (tmp_path / "cell.table").write_text(f"description radius out\n{name} -1{RED} runs/{name}\nmore 4 runs/{name}x\n")
+    (tmp_path / name).mkdir()
+    (tmp_path / name / "run.json").write_text('{"outcome": "failed: \\u001b[31m", "format": 3}')
+    said = [
+        study(tmp_path, f"{name}.table", "--status"),
+        study(tmp_path, f"none{name}.table"),
+        study(tmp_path, "cell.table", "--status"),
+        study(tmp_path, f"{name}.table", "--slurm", "--dry-run"),
+        run_analysis(tmp_path, "summary", name, f"none{name}"),
+        run_analysis(tmp_path, "status", name),
+        run_analysis(tmp_path, "film", name, "--rate", RED),
+        call(tmp_path, "yade", "-n", "-x", COLLIDE, f"out={name}", f"radius={RED}"),
+        call(tmp_path, PYTHON, f"{TOP}/contact_law/installation.py", "uninstall", name),
+    ]
+    for done in said:
+        assert "\x1b" not in done.stdout + done.stderr and "\\x1b[31m" in done.stdout + done.stderr, done
+
+
+@pytest.mark.parametrize("word", [NAME, f"a{RED}b", "a\nb", "", "\u202e\u2028", "\udcff"], ids=range(6))
+def test_text_is_printable_and_commands_can_be_pasted(word):
+    assert printable(word).isprintable()
+    line = shell_line(["printf", "%s", word])
+    assert line.isprintable() and (not word.isprintable() or shlex.split(line)[2] == word)
+    done = subprocess.run(["bash", "-c", line], capture_output=True, env={"LC_ALL": "C.UTF-8", "PATH": "/usr/bin:/bin"})
+    assert done.stdout == os.fsencode(word)
+
+
+@pytest.mark.parametrize("way", ["argument", "environment"])
+def test_a_prefix_is_a_name_for_make_and_the_shell(tmp_path, way):
+    prefix = str(tmp_path / NAME)
+    more = {"PREFIX": prefix} if way == "environment" else {}
+    arguments = [] if more else [f"PREFIX={prefix}"]
+    done = call(tmp_path, "make", "-s", "-f", f"{TOP}/Makefile", "-C", TOP, "uninstall", *arguments, **more)
+    assert done.stderr.splitlines()[0] == f"make uninstall: {prefix}/lib/contact_law: no installation there"
+    assert os.listdir(tmp_path) == [] and not os.path.exists(f"{TOP}/PWNED")

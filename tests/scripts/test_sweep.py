@@ -1,0 +1,89 @@
+"""Runs from Python: a sweep is checked, run, resumed and returned as a table; README's question as a user would ask it."""
+
+import re
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+from running import PYTHON, TOP, collide, environment, read_json, refusal, start, wait_for
+
+from analysis.runs.format import PARAMETER_UNITS
+from yade_scripts import collide as from_python
+from yade_scripts.experiments import collision, compression
+from yade_scripts.parameters import ParameterError
+from yade_scripts.runner.sweep import RunsFailed
+
+QUESTION = re.search(r"```python\n(from yade_scripts.*?)```", (Path(TOP) / "README.md").read_text(), re.S).group(1)
+SMALL = (
+    ("[1, 3, 10, 30]", "[1, 30]"),
+    ("range(6)", "range(2)"),
+    ("[500, 100]", "[16, 4]"),
+    ("grains=500", "grains=16"),
+)
+
+
+def python(folder, text):
+    return subprocess.run(
+        [PYTHON, "-c", text], cwd=folder, capture_output=True, text=True, env=environment(PYTHONPATH=TOP)
+    )
+
+
+def test_the_question_of_the_readme(tmp_path):
+    """As printed, with small aggregates; asked again nothing is run, asked for more only what is missing."""
+    question = QUESTION
+    assert len(question.splitlines()) <= 15
+    for large, small in SMALL:
+        assert large in question
+        question = question.replace(large, small)
+    first = python(tmp_path, question)
+    assert first.returncode == 0 and first.stderr == "", first.stderr
+    assert "8 rows, 0 done or failed, 8 to run; estimated time" in first.stdout and "largest_filling" in first.stdout
+    assert (tmp_path / "sticking.png").read_bytes().startswith(b"\x89PNG")
+    ended = {file: file.stat().st_mtime_ns for file in tmp_path.glob("runs/*/ended")}
+    more = python(tmp_path, question.replace("[1, 30]", "[1, 10, 30]").replace("[16, 4]", "16"))
+    assert "6 rows, 4 done or failed, 2 to run" in more.stdout, more.stderr
+    assert len(ended) == 8 and all(file.stat().st_mtime_ns == time for file, time in ended.items())
+
+
+@pytest.mark.parametrize(
+    "name, value", [("velocty", 3), ("velocity", -1), ("seed", 1.5), ("packing", "bccca"), ("radius", "1e-7m")]
+)
+def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monkeypatch, name, value):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ParameterError) as wrong:
+        from_python(**{name: [value], "grains": [16, 32]})
+    assert refusal(collide(tmp_path, f"{name}={value}")) == f"collide.py: {wrong.value}"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"out": "x"}, {"resume": 1}, {"file": "a b.npz", "packing": "file"}, {"jobs": 0}, {"folder": "a b"}, {"seed": []}],
+)
+def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):
+    with pytest.raises(ParameterError, match="must be"):
+        from_python(**{"folder": tmp_path / "runs", **given})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_that_fails_is_named(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(RunsFailed, match=r"^collide-.*v3000.*: the run broke down at t = "):
+        from_python(folder="own", radius=5, velocity=[10, 3000], duration=10e-9, stepFraction=0.4)
+    assert len(list(tmp_path.glob("own/*/ended"))) == 1
+
+
+def test_an_interrupted_sweep_leaves_checkpoints(tmp_path):
+    text = "from yade_scripts import collide; collide(radius=10, velocity=10, duration=2e-6, checkpointInterval=0.1)"
+    process = start(tmp_path, PYTHON, "-c", text, env=environment(PYTHONPATH=TOP))
+    wait_for(lambda: list(tmp_path.glob("runs/*/checkpoint/recorder.npz")))
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    (run,) = tmp_path.glob("runs/*/run.json")
+    assert "KeyboardInterrupt" in errors and read_json(run)["outcome"] == "interrupted"
+
+
+def test_units_of_parameters_are_the_scripts_own():
+    columns = {**collision.KIND.parameters.columns(), **compression.KIND.parameters.columns()}
+    assert {name: column.unit for name, column in columns.items() if column.unit} == PARAMETER_UNITS

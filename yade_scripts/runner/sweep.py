@@ -1,0 +1,136 @@
+"""Runs from Python: one call makes the rows of a sweep, has study.py run what is missing, and returns their table.
+
+Needs yade and yade-batch on PATH, not to be called within YADE."""
+
+import hashlib
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from inspect import cleandoc
+from itertools import product
+
+from analysis.progress import bar
+from analysis.report.rows import table as table_of_runs
+from analysis.runs.format import ENDED_FILE
+from analysis.runs.status import DONE, state
+from yade_scripts.experiments import collision, compression
+from yade_scripts.parameters import ParameterError
+from yade_scripts.run import table
+
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+STUDY = os.path.join(TOP, "study.py")
+OURS = ("out", "overwrite", "resume")  # parameters that a sweep sets
+POLL = 0.5  # s
+TOLD = 3  # failures that an exception names
+
+
+class RunsFailed(RuntimeError):
+    """Runs of a sweep that failed; the message says which, and why. The others have run, and stay."""
+
+
+def collide(folder="runs", jobs=None, **parameters):
+    """Run collisions, and return analysis.table() of them: a row for every combination of the values.
+
+    parameters: as collide.py has them (below); a list, range or array stands for several values, None for the default.
+    folder: where the run folders go, named after their parameters; those that are there are resumed, or taken as they are when
+    they have ended. jobs: threads at once (one for each core).
+
+    The rows stand in a table in the folder, which study.py runs too: --status tells how far they are from any shell.
+    ParameterError (a ValueError with the line that collide.py has) for a wrong name or value, before anything runs; RunsFailed
+    when a run failed, or yade is missing. Ctrl-C stops the runs, each with a checkpoint.
+
+        runs = collide(velocity=[1, 3, 10, 30], seed=range(6), packing="bcca", grains=500, material="silicate")
+    """
+    return _sweep(collision.KIND, "collide.py", parameters, folder, jobs)
+
+
+def compress(folder="runs", jobs=None, **parameters):
+    """Run static compressions; everything as collide(), with the parameters of compress.py."""
+    return _sweep(compression.KIND, "compress.py", parameters, folder, jobs)
+
+
+for _function, _kind in ((collide, collision.KIND), (compress, compression.KIND)):
+    _function.__doc__ = cleandoc(_function.__doc__) + "\n" + _kind.parameters.help_text(without=OURS)
+
+
+def _sweep(kind, script, parameters, folder, jobs):
+    if jobs is not None and not jobs >= 1:
+        raise ParameterError(f"jobs = {jobs}: must be 1 or more")
+    rows = _rows(kind, script, parameters, os.fspath(folder))
+    name = hashlib.sha256(repr(rows).encode()).hexdigest()[:8]
+    file = os.path.join(folder, f"{kind.name}-{name}.table")
+    os.makedirs(folder, exist_ok=True)
+    table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
+    _run(file, [row["out"] for row in rows], jobs or os.cpu_count())
+    return table_of_runs([row["out"] for row in rows])
+
+
+def _rows(kind, script, parameters, folder):
+    """[{column: text}] of a table, checked."""
+    for name in OURS:
+        if name in parameters:
+            raise ParameterError(f"{name}: is the sweep's own; must be left out (folder says where the runs go)")
+    rows, folder = [], _text("folder", folder)
+    for values in product(*map(_listed, parameters, parameters.values())):
+        cells = {name: _text(name, value) for name, value in zip(parameters, values) if value is not None}
+        out = os.path.basename(kind.parse(cells).out)
+        rows.append(
+            {"description": out, **cells, "out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
+        )
+    return rows
+
+
+def _listed(name, value):
+    """The values of a parameter as a list of Python's own."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    values = list(value) if isinstance(value, (list, tuple, range, set)) else [value]
+    if not values:
+        raise ParameterError(f"{name}: has no value; must be one or several")
+    return values
+
+
+def _text(name, value):
+    """A value as the cell of a table."""
+    text = str(int(value)) if isinstance(value, bool) else str(value)
+    if not text or text in ("=", "*") or any(c.isspace() or c == "#" for c in text):
+        raise ParameterError(f"{name} = {text}: holds what the cell of a table can't; must be without blanks and #")
+    return text
+
+
+def _run(file, folders, jobs):
+    """Have study.py run a table; RunsFailed unless all its runs have ended."""
+    command = [sys.executable, STUDY, file, "-j", str(jobs)]
+    with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as errors:
+        # In a session of its own, so that Ctrl-C reaches it once, and by us.
+        study = subprocess.Popen(command, stdout=said, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True)
+        try:
+            _wait(study, said.fileno(), folders)
+        except BaseException:
+            study.send_signal(signal.SIGINT)
+            study.wait()
+            raise
+        errors.seek(0)
+        lines = [line.removeprefix("study.py: ") for line in errors.read().splitlines()]
+    if study.returncode:
+        more = f", and {len(lines) - TOLD} more" if len(lines) > TOLD else ""
+        raise RunsFailed("; ".join(lines[:TOLD]) + more or f"{file}: study.py ended with status {study.returncode}")
+
+
+def _wait(study, said, folders):
+    """Show how far the runs are until study.py has ended; its estimate comes first."""
+    ended, told = {folder for folder in folders if os.path.exists(os.path.join(folder, ENDED_FILE))}, 0
+    with bar(len(folders), "runs", len(ended)) as shown:
+        while study.poll() is None:
+            text = os.pread(said, 10_000, told).decode()
+            if told == 0 and "\n" in text:
+                told = len(text.encode())
+                shown.write(text.rstrip("\n"))
+            states = {folder: state(folder) for folder in folders if folder not in ended and os.path.isdir(folder)}
+            ended |= {folder for folder, found in states.items() if found.kind == DONE}
+            reached = len(ended) + sum(found.progress for folder, found in states.items() if folder not in ended)
+            if reached > shown.n:
+                shown.update(reached - shown.n)
+            time.sleep(POLL)
