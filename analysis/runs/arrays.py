@@ -93,6 +93,8 @@ def read_headers(file, archive, names):
         with archive.zip.open(f"{name}.npy") as member:
             read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
             shape, _, dtype = read[np.lib.format.read_magic(member)](member)
+            if dtype.hasobject:  # whose length no header tells
+                raise ValueError("Object arrays cannot be loaded when allow_pickle=False")
             length, expected = archive.zip.getinfo(f"{name}.npy").file_size - member.tell(), math.prod(shape) * dtype.itemsize
         if length != expected:
             raise RunFolderError(f"{file}: damaged: '{name}' has {length} bytes, by its header {expected:.6g}")
