@@ -40,7 +40,7 @@ def contact_strength(state, constants):
 def is_recent(time, end, touch):
     """Whether a time [s] lies so near to the end that the energy of an oscillating piece shows at some such time, not only how it
     happens to be divided at the end: in the last quarter since the first touch."""
-    return time >= end - RECENT * (end - touch)
+    return time >= end - RECENT * max(0.0, end - touch)
 
 
 def why_undecided(kind, counted, states, constants, touch):
