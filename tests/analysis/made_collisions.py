@@ -31,6 +31,7 @@ def made_run(
     course = motion(velocity, spheres)
     contact = 2.0 * (RADIUS - OFFSET) / velocity
     time = np.linspace(0.0, contact + 2.0 * course.time_of_parting, 401)
+    time = np.append(time, [parameters[name] for name in ("duration",) if name in parameters])
     d = stretch * course.compression((time - contact) / stretch) - 2.0 * OFFSET + shift * RADIUS
     v = course.velocity((time - contact) / stretch)
     if sticks and settles:
@@ -42,7 +43,9 @@ def made_run(
     history["slidingDissipation"] = energy - history["kinetic"]
     touching = (time > contact) & (sticks | (time < contact + stretch * course.time_of_parting))
     history.update(time=time, d=d, v=v, contacts=2 + touching, contacts_between=touching.astype(int))
-    states = [_state(time[k], d[k], v[k], size, bool(touching[k])) for k in range(0, 401, 50)]
+    states = [
+        _state(time[k], d[k], v[k], size, bool(touching[k])) for k in (*range(0, 401, 50), *range(401, len(time)))
+    ]
     values = {
         "packing": "cpe",
         "material": "ice",

@@ -27,7 +27,7 @@ def chain(start, number):
 def made_run(
     path, velocity, neck, seed, largest=GRAINS, growth=0.0, broken=0, speed=0.0, duration=24.4e-6, **parameters
 ):
-    """A collision of two straight chains: at the end a piece of `largest` grains, the rest a second piece; necks broken by sliding (one in
+    """A collision of two straight chains: at the end a piece of `largest` grains, the rest a second piece beside it; necks broken by sliding (one in
     eight) and rolling; its halves part at `speed` [m/s] all the time."""
     time, kinetic = np.linspace(0, 4e-6, 21), GRAINS * 0.5 * MASS * (velocity / 2) ** 2
     history = {name: np.zeros(21) for name in CHANNELS}
@@ -45,6 +45,7 @@ def made_run(
     ]
     for state in states:
         state["contact_bonded"] = np.full(len(state["contact_pairs"]), neck > 0)
+    states[1]["position"][largest:, 0] += RADIUS
     own = dict(packing="file" if growth else "bcca", neck=neck, velocity=velocity, seed=1 if growth else seed)
     about = record(200 * RADIUS, {**PLAIN, **own, "duration": duration, **parameters})
     about["derived"].update(criticalRolling=2e-10)

@@ -1,5 +1,7 @@
 """Spheres of files that hold whole arrays: npz, VTK, and the YAML of pyFracAggregate."""
 
+import locale
+
 import numpy as np
 
 from analysis.runs.arrays import RunFolderError, array_names, read_arrays
@@ -42,7 +44,11 @@ def of_vtk(path):
     if legacy:
         reader.ReadAllScalarsOn()
         reader.ReadAllFieldsOn()
-    reader.Update()
+    spoken = locale.setlocale(locale.LC_ALL)
+    try:
+        reader.Update()
+    finally:
+        locale.setlocale(locale.LC_ALL, spoken)  # which VTK leaves as C: text files would be ASCII from then on
     output = None if problems.GetOutput() else reader.GetOutputDataObject(0)
     if not hasattr(output, "GetPoints") or output.GetPoints() is None:
         raise PackingError(f"{path}: no points in it that VTK can read; must be a file of points with their radii")
