@@ -11,7 +11,7 @@ Scripts write what stands here and the analysis reads it. All quantities are in 
     heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
 
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
-and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Versions before 0.4.0 wrote no `files`:
+and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Versions before 0.5.0 wrote no `files`:
 their runs are read, but neither resumed nor replaced.
 """
 

@@ -210,7 +210,7 @@ def _usable(path, overwrite, resume):
     if written is None:
         raise RunFolderError(
             f"out = {path}: its {RUN_FILE} has no list of the files that a run wrote (as of another program, or before version "
-            "0.4.0); must be another folder, or that one moved away"
+            "0.5.0); must be another folder, or that one moved away"
         )
     if os.path.exists(os.path.join(path, ENDED_FILE)) and not (overwrite or resume and checkpoint.exists(path)):
         raise RunFolderError(f"out = {path}: holds a run that has ended; must be another folder, or overwrite=1")
