@@ -3,6 +3,10 @@ another one.
 
 Pieces may meet when the spheres around them do, on straight lines. A piece may break where its two sides move against each other with more
 energy than the contacts between them hold (cuts.loose_cuts), and as long as it has not had the time to rebound as a whole.
+
+Tried on 104 collisions that were followed ten times as long as by default (BCCA of 2 x 64 and 2 x 256 grains, BPCA, CPE at R = 10 and 20, in the
+plane, with necks; 0.3 to 20 m/s; judged at 60 times each): none became another outcome after it was decided. Pieces of unsintered
+grains are decided within 1 to 4 rebound times, sintered ones that ring after up to 30.
 """
 
 import numpy as np

@@ -20,6 +20,7 @@ COMPRESSION_KEYS = (
 OUTCOME_KEYS = (
     Column("restitution", "1", "coefficient of restitution, where there is one (measures.outcome)", gaps=True),
     Column("outcome", "", "sticking, bouncing, fragmentation, never met, undecided (measures.outcome)", "O", gaps=True),
+    Column("why_undecided", "", "why an outcome may still become another one; none of decided ones", "O", gaps=True),
     Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O", gaps=True),
     Column("largest_fragment", "", "number of grains of the largest piece", gaps=True),
     Column("fragments", "", "number of pieces", gaps=True),
@@ -117,6 +118,8 @@ def _collision_measures(run, numbers):
     f1, f2 = numbers["mass_fractions"]
     kind = numbers["outcome"] + ("" if run.ended else ", so far")
     yield "outcome", f"{kind} (mass in the two largest fragments: {f1:.2%}, {f2:.2%})"
+    if numbers["why_undecided"]:
+        yield "", numbers["why_undecided"]
     restitution = numbers["restitution"]
     yield "restitution", _no_restitution(numbers) if restitution is None else f"{restitution:.4g}"
     grains, fragments = run.start.radius.size, numbers["fragments"]
