@@ -21,9 +21,14 @@ def environment(**more):
     return {name: value for name, value in os.environ.items() if name != "YADE_BATCH"} | more
 
 
+def hear_ctrl_c():
+    """As in a terminal: what a shell starts in the background ignores Ctrl-C, and so would the tests' processes."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def start(folder, *command, **options):
     """A process in a folder that writes to pipes."""
-    pipes = dict(stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment())
+    pipes = dict(stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(), preexec_fn=hear_ctrl_c)
     return subprocess.Popen(command, cwd=folder, **{**pipes, **options})
 
 

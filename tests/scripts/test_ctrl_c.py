@@ -15,17 +15,12 @@ COMMANDS = {
 }
 
 
-def hear_ctrl_c():
-    """As in a terminal: what a shell starts in the background ignores Ctrl-C, and so would the tests' processes."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
 def interrupted(command, module, folder):
     """The process, after Ctrl-C while it imported the module."""
     (folder / f"{module}.py").write_text(SLOW)
     importing = folder / "importing"
     os.mkfifo(importing)
-    how = {"env": environment(PYTHONPATH=f"{folder}:{TOP}", IMPORTING=str(importing)), "preexec_fn": hear_ctrl_c}
+    how = {"env": environment(PYTHONPATH=f"{folder}:{TOP}", IMPORTING=str(importing))}
     process = start(folder, *command, **how)
     with open(importing):  # waits for the other end
         process.send_signal(signal.SIGINT)
