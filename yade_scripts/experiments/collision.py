@@ -6,12 +6,10 @@ from math import sqrt
 import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
-from analysis.measures.decided import REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
-from analysis.measures.of_run import outcome_of_run
-from analysis.runs.folder import open_run
+from analysis.measures.decided import REBOUND_PER_RADIUS, rebound_time
 from analysis.runs.format import COLLISION, RESTING
 from yade_scripts import packings, stability, step_choice
-from yade_scripts.experiments import impact_step
+from yade_scripts.experiments import ending, impact_step
 from yade_scripts.materials import pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.approach import first_touch
@@ -25,7 +23,6 @@ from yade_scripts.stability import AUTO
 
 WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
 LARGEST_NECK = 0.7  # the largest of S17
-CHECKS = 100  # times in a run that it is looked whether pieces are apart
 VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
@@ -202,7 +199,7 @@ def prepare(parameters, threads):
         controls.append(impact_step.control(parameters, until))
         reason = impact_step.reason(parameters, until)
     if parameters.endWhenApart:
-        controls.append(_end_when_apart(parameters, constants, aggregate_radius, touch))
+        controls.append(ending.when_apart(parameters, constants, aggregate_radius, touch))
     material = yade_scene.material_of(parameters)
     return Scene(
         parameters=parameters,
@@ -263,28 +260,6 @@ def _sizes(aggregate_radius, pair, from_file):
         found[f"{name}GyrationRadius"] = packings.gyration_radius(packing)
         found[f"{name}CharacteristicRadius"] = packings.characteristic_radius(packing)
     return found
-
-
-def _end_when_apart(parameters, constants, aggregate_radius, touch):
-    """Scene.control of endWhenApart."""
-    known = {**constants, **(constants["bond"] or {}), "aggregateRadius": aggregate_radius}
-    known.update(grainRadius=parameters.grainRadius, density=parameters.density)
-
-    begin = -np.inf if touch is None else touch
-
-    def control(recorder, state):
-        if not recorder.is_one_of(CHECKS):
-            return False
-        recorder.note(RESTING, float(has_come_to_rest(state, known, begin, parameters.duration)))
-        recent = recorder.recent(RESTING, RECENT * (state["time"] - (touch or 0.0)))
-        return bool(np.all(recent[np.isfinite(recent)]))
-
-    return control
-
-
-def why_undecided(folder):
-    """Why the outcome of the run in a folder is not decided (analysis.measures.decided), or None."""
-    return outcome_of_run(open_run(folder)).why_undecided
 
 
 def with_duration(parameters, time_unit, touch):
@@ -402,4 +377,4 @@ def _typical_way(parameters):
     return 2 * (parameters.radius + 1) * (1 - sqrt(1 - parameters.impact**2)) + 1.4
 
 
-KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, why_undecided)
+KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, ending.why_undecided)
