@@ -9,6 +9,8 @@ plane, with necks; 0.3 to 20 m/s; judged at 60 times each): none became another 
 grains are decided within 1 to 4 rebound times, sintered ones that ring after up to 30.
 """
 
+from itertools import chain
+
 import numpy as np
 
 from .cuts import loose_cuts
@@ -47,21 +49,21 @@ def is_recent(time, end, touch):
     return time >= end - RECENT * max(0.0, end - touch)
 
 
-def why_undecided(kind, counted, states, constants, touch):
+def why_undecided(kind, counted, end, constants, touch, recent=()):
     """Why an outcome may still become another one, in a few words; None where it is decided.
 
-    kind: of outcome.collision_outcome at the last of states, counted (N,) bool as there. states: mappings with time, position, velocity
-    (N,3), radius, aggregate (N,), contact_pairs (M,2), contact_bonded (M,), SI: those that are recent, the end among them. constants: a
+    kind: of outcome.collision_outcome at the state `end`, counted (N,) bool as there. end, and those states before it that are recent:
+    mappings with time, position, velocity (N,3), radius, aggregate (N,), contact_pairs (M,2), contact_bonded (M,), SI. constants: a
     mapping with the derived CONSTANTS of run.json. touch: time [s] of the first touch (where the aggregates never met of no meaning).
     """
-    pieces, end = _Pieces(states[-1], constants), states[-1]["time"]
+    pieces = _Pieces(end, constants)
     if kind == NEVER_MET:
         return "the aggregates may still meet" if pieces_can_meet(*pieces.flight, EVER) else None
-    breaking = (_why_breaking(kind, _Pieces(state, constants), counted) for state in states)
-    breaking = next(filter(None, breaking), None)
-    if kind == STICKING:
-        return pieces.why_rebounding(end - touch) or breaking
-    return _why_meeting(kind, pieces, counted) or (breaking if kind == BOUNCING else None)
+    why = pieces.why_rebounding(end["time"] - touch) if kind == STICKING else _why_meeting(kind, pieces, counted)
+    if why or kind not in (STICKING, BOUNCING):
+        return why
+    of_all = (_why_breaking(kind, _Pieces(state, constants), counted) for state in chain([end], recent))
+    return next(filter(None, of_all), None)
 
 
 def has_come_to_rest(state, constants, touch, duration):
@@ -110,14 +112,15 @@ class _Pieces:
 
 
 def _why_breaking(kind, pieces, counted):
-    """For an outcome that the loss of a side of one of the largest pieces makes another one."""
+    """For an outcome that the loss of a side of one of the largest pieces makes another one; not told of pieces that are no such outcome
+    yet."""
     shares, *largest = pieces.shares(counted)
-    largest = largest[: 2 if kind == BOUNCING else 1]
+    largest = np.array([piece for piece in largest[: 2 if kind == BOUNCING else 1] if piece is not None])
     cut, side = pieces.loose_cuts()
     for piece in largest:
         lost = side[cut == piece].max(initial=0.0) / pieces.mass.sum()
-        left = sorted((shares[other] - lost * (other == piece) for other in largest if other is not None), reverse=True)
-        if lost and classify(*(left + [0.0])[:2]) != kind:
+        seen, left = (sorted(shares[largest] - less * (largest == piece), reverse=True) for less in (0.0, lost))
+        if classify(*(seen + [0.0])[:2]) == kind != classify(*(left + [0.0])[:2]):
             return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
 
 

@@ -42,8 +42,9 @@ def outcome_of_run(run):
         return found
     counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
     touch = run.derived.get("firstTouch", run.history["time"][np.argmax(run.history["contacts_between"] > 0)])
-    recent = [vars(run.states[i]) for i in np.flatnonzero(is_recent(run.states.times, end.time, touch))]
-    return found.if_decided(why_undecided(found.kind, counted, recent, run.derived, touch))
+    before = np.flatnonzero(is_recent(run.states.times, end.time, touch))[:-1]
+    recent = (vars(run.states[index]) for index in before)  # read only where they are needed
+    return found.if_decided(why_undecided(found.kind, counted, vars(end), run.derived, touch, recent))
 
 
 def derived_constants(run, *names):

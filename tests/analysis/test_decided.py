@@ -67,7 +67,7 @@ def test_chains(kind, state, since_touch, reason):
     if kind == "fragmentation" and reason is None:
         state["position"] *= 5  # farther apart than the spheres around them
     state["time"] = since_touch
-    why = decided.why_undecided(kind, np.ones(20, dtype=bool), [state], CONSTANTS, 0.0)
+    why = decided.why_undecided(kind, np.ones(20, dtype=bool), state, CONSTANTS, 0.0)
     assert (why is None) if reason is None else (reason in why)
 
 
@@ -91,8 +91,11 @@ def test_a_collision_has_come_to_rest(state, since_touch, longer, rests):
 def test_a_piece_that_oscillates_is_not_judged_by_its_turning_point():
     """At the end it is at rest for a moment, a little before it was not; long before does not count."""
     moving, still = ({**chain(velocity), "time": LONG} for velocity in (parting(20, 1.1, 10), STILL))
-    why = lambda *states: decided.why_undecided("sticking", np.ones(20, dtype=bool), states, CONSTANTS, 0.0)
-    assert why(still) is None and "parts of 50%" in why(moving, still)
+    why = lambda end, *recent, kind="sticking": decided.why_undecided(
+        kind, np.ones(20, dtype=bool), end, CONSTANTS, 0.0, recent
+    )
+    assert why(still) is None and "parts of 50%" in why(still, moving)
+    assert why({**chain(APART, [9]), "time": LONG}, moving, kind="bouncing") is None  # it was one piece a little before
     assert decided.is_recent(np.array([0.74, 0.76, 1.0]) * LONG, LONG, 0.0).tolist() == [False, True, True]
 
 
