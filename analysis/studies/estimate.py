@@ -16,6 +16,8 @@ import pandas
 from scipy.stats import binomtest, fisher_exact
 from scipy.stats import t as student
 
+from ..measures.probability import wilson
+
 CONFIDENCE = 0.95
 DRAWS = 1000
 RANDOM_SEED = 20240124
@@ -154,8 +156,8 @@ class Fraction(Number):
 
     def interval(self, confidence=CONFIDENCE):
         """(low, high): Wilson's interval, with the undecided runs counted either way."""
-        low, high = (binomtest(k, self.pairs).proportion_ci(confidence, method="wilson") for k in self.counts)
-        return float(low.low), float(high.high)
+        low, high = (wilson(k, self.pairs, confidence) for k in self.counts)
+        return low[0], high[1]
 
     def chance(self, value, runs=EXACT):
         """p (Fisher; the binomial test where the other has no error) of the fraction `value` of so many runs; the larger of both ways

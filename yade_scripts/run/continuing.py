@@ -1,9 +1,9 @@
 """continue=FOLDER: a run that was stopped, or ended before its outcome was decided, goes on with its own parameters. Needs no YADE."""
 
 import os
-import shlex
 import sys
 
+from analysis.printable import shell_line
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import read_json
 from analysis.runs.format import RUN_FILE
@@ -43,4 +43,4 @@ def _held(kind, folder):
 def command(folder, **changed):
     """The command that continues the run in a folder, as this process was called."""
     words = ["yade", "-n", "-x", sys.argv[0], f"{CONTINUE}={folder}"]
-    return shlex.join(words + [f"{name}={value:g}" for name, value in changed.items()])
+    return shell_line(words + [f"{name}={value:g}" for name, value in changed.items()])
