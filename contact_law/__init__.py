@@ -14,6 +14,7 @@ import sys
 
 from .grain_arrays import snapshot  # noqa: F401 (of the package)
 from .sintering import sinter  # noqa: F401
+from .yade_functions import give_way, show_contacts
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 with open(os.path.join(TOP, "contact_law/VERSION")) as _file:
@@ -98,6 +99,8 @@ def _start():
         raise ImportError(plugin.refusal)
     names = list(plugin.classNames)
     _publish(yade, names)
+    give_way(yade)
+    show_contacts(yade, vars(sys.modules["__main__"]))
     return names, plugin.commit, plugin.channels
 
 

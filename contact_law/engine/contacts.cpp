@@ -124,6 +124,21 @@ bool constrained(const Dynamics& dynamics)
 	        dynamics.parts().begin(), dynamics.parts().end(), [](const auto& domain) { return !domain->constraints.grains.empty(); });
 }
 
+std::vector<OutsideForce> wholeForces(const Dynamics& dynamics)
+{
+	std::vector<OutsideForce> all(dynamics.grainCount());
+	for (int k = 0; k < dynamics.grainCount(); ++k) {
+		const Grain& g = dynamics.state().grains[k];
+		all[dynamics.given(k)] = { dynamics.given(k), { g.fx, g.fy, g.fz }, { g.tx, g.ty, g.tz } };
+	}
+	for (const auto& domain : dynamics.parts())
+		for (const Constrained& c : domain->constraints.grains) {
+			OutsideForce& of = all[dynamics.given(c.grain)];
+			of.force = of.force + c.force, of.torque = of.torque + c.torque;
+		}
+	return all;
+}
+
 std::vector<OutsideForce> outsideForces(const Dynamics& dynamics)
 {
 	std::vector<OutsideForce> all;
@@ -148,6 +163,17 @@ Counts counts(const Dynamics& dynamics)
 	for (const auto& domain : dynamics.parts())
 		total += domain->ledger.counts;
 	return total;
+}
+
+Booked booked(const Dynamics& dynamics)
+{
+	Booked all { dissipated(dynamics), counts(dynamics), dynamics.counters() };
+	for (const auto& domain : dynamics.parts()) {
+		all.boundaryWork += domain->ledger.boundaryWork();
+		all.constraintWork += domain->constraints.work;
+		all.externalWork += domain->outside.work;
+	}
+	return all;
 }
 
 } // namespace contact_law

@@ -4,6 +4,14 @@
 
 namespace contact_law {
 
+// What a run has booked since its start [J] and counted.
+struct Booked {
+	Dissipation lost;
+	Counts counts;
+	Dynamics::Counters counters;
+	double boundaryWork = 0, constraintWork = 0, externalWork = 0;
+};
+
 // One contact or bond.
 struct ContactNow {
 	int first, second;
@@ -52,11 +60,14 @@ std::vector<NormalForces> normalForces(const Dynamics&);
 
 int contactCount(const Dynamics&); // bonds among them
 int bondCount(const Dynamics&);
-bool constrained(const Dynamics&);                        // whether any grain has a blocked degree of freedom
+bool constrained(const Dynamics&); // whether any grain has a blocked degree of freedom
+// On each grain as given: of contacts, bonds and outside forces, with what blocked degrees of freedom withhold.
+std::vector<OutsideForce> wholeForces(const Dynamics&);
 std::vector<OutsideForce> outsideForces(const Dynamics&); // by rising index of the grain as given
 
 // Since the start:
 Dissipation dissipated(const Dynamics&); // [J]
 Counts counts(const Dynamics&);
+Booked booked(const Dynamics&);
 
 } // namespace contact_law

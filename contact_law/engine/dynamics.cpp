@@ -184,9 +184,9 @@ Domain& Dynamics::domainOf(int index)
 
 Dynamics::Counters Dynamics::counters() const
 {
-	Counters c;
-	c.contactUpdates = contactUpdates;
-	c.orders = orders;
+	Counters c = countedBefore;
+	c.contactUpdates += contactUpdates;
+	c.orders += orders;
 	for (const auto& domain : domains) {
 		c.searches += double(domain->lists.searches) / double(shared.groups.size());
 		c.distanceChecks += domain->lists.distanceChecks;

@@ -23,6 +23,7 @@ struct GrainInput : GrainMotion {
 };
 
 struct Inherited; // exchange.hpp
+struct Booked;    // contacts.hpp
 
 void copyMotion(const GrainMotion&, Grain&); // all but orientation and blocked degrees of freedom, which grains don't carry
 void copyMotion(const Grain&, GrainMotion&);
@@ -99,6 +100,8 @@ public:
 	 * the steps (time_step.cpp). */
 	void setStep(double dt);
 	void setThreads(int threads) { options.threads = threads; }
+	// Goes on booking where another run of these grains ended.
+	void continueFrom(const Booked&);
 
 	// ---- its state ----
 
@@ -155,6 +158,7 @@ private:
 	Options options;
 	SharedState shared;
 	long contactUpdates = 0;
+	Counters countedBefore; // by the run that this one continues
 	int count = 0;
 	std::vector<int> original, indexHere; // index given, by index here; and the other way round
 	std::vector<std::unique_ptr<Domain>> domains;

@@ -52,6 +52,15 @@ void Dynamics::completeInheritedStep()
 	}
 }
 
+void Dynamics::continueFrom(const Booked& before)
+{
+	Domain& one = *domains[0];
+	one.ledger.add(before.lost, before.counts, before.boundaryWork);
+	one.constraints.work += before.constraintWork;
+	one.outside.work += before.externalWork;
+	countedBefore = before.counters;
+}
+
 void readAhead(const Dynamics& dynamics, std::vector<GrainMotion>& grains)
 {
 	dynamics.read(grains);

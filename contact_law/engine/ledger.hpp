@@ -91,6 +91,10 @@ public:
 	}
 	void addMeanFieldWork(double work) { meanField += work; }
 	void bookDisconnection(double energy) { lost.disconnection += energy; }
+	void add(const Dissipation& dissipated, const Counts& counted, double boundaryWork)
+	{
+		lost += dissipated, counts += counted, boundary.done += boundaryWork;
+	}
 	void doubleBoundaryWork() { boundary.done *= 2; } // Dynamics::completeInheritedStep()
 
 	// ---- so far [J] ----

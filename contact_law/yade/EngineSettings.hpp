@@ -5,7 +5,7 @@
 
 namespace yade {
 
-constexpr const char* otherEngine = "; a new JKRWadaEngine, made after writeInteractions(), takes the contacts over";
+constexpr const char* otherEngine = "; a new JKRWadaEngine takes the contacts over";
 
 struct EngineSettings {
 	int domains;

@@ -1,8 +1,8 @@
 #include "../engine/exchange.hpp"
 #include "../engine/stability.hpp"
+#include "ContactsHolder.hpp"
 #include "JKRWadaEngineRun.hpp"
 #include "RunningLoop.hpp"
-#include "SceneForces.hpp"
 
 namespace yade {
 
@@ -13,9 +13,10 @@ YADE_PLUGIN((JKRWadaEngine));
 CREATE_LOGGER(JKRWadaEngine);
 
 // What a script has changed since the last step holds from here on, or is refused.
-void JKRWadaEngine::takeChanges()
+void JKRWadaEngine::takeChanges(Moment moment)
 {
 	current->settings.requireSame(settings());
+	if (current->grains.hasMore(*scene)) startAgain(moment);
 	const auto set = [this](std::size_t k, const GrainMotion& motion) {
 		if (!finite(motion)) refuseInEngine(bodyName(k) + " was given a position or velocity that is not a finite number");
 		current->dynamics.set(int(k), motion);
@@ -40,7 +41,7 @@ void JKRWadaEngine::takeStep()
 // The forces that others put on the grains hold through this O.step.
 void JKRWadaEngine::takeForces()
 {
-	std::vector<contact_law::OutsideForce> now = SceneForces::take(*scene, current->grains.size(), current->dynamics.threadCount());
+	std::vector<contact_law::OutsideForce> now = current->forces.take(*scene, current->grains.size(), current->dynamics.threadCount());
 	const auto onset = current->stepBehind ? Dynamics::Onset::AStepAgo : Dynamics::Onset::Now;
 	current->stepBehind = false;
 	if (now == current->outside) return;
@@ -57,8 +58,10 @@ void JKRWadaEngine::enter(Moment moment)
 	if (!failure.empty()) refuseInEngine(failure);
 	requireInRange();
 	if (!current) start(moment);
+	if (!ContactsHolder(*scene).is(current->name))
+		refuseInEngine("other engines have moved these grains since this engine's last step: make a new engine");
 	current->dynamics.setThreads(threads);
-	takeChanges();
+	takeChanges(moment);
 }
 
 // O.pause() ends O.run() while the last step is still being made: that is waited for.
@@ -90,9 +93,9 @@ void JKRWadaEngine::action()
 	if (!wrong.empty()) fail(scene->time + std::min(made + 1, long(subSteps)) * smallStep, wrong);
 	writeBodies();
 	if (exportInteractions)
-		current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
-	else
-		current->contacts.withdraw(*scene);
+		writeContacts();
+	else if (current->contacts.withdraw(*scene))
+		ContactsHolder(*scene).set(current->name, false);
 	if (scene->trackEnergy) writeEnergies(energies);
 	actedAt = scene->iter;
 }
@@ -102,7 +105,7 @@ void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 	failure = "the run broke down at t = " + text(time) + " s: " + what
 	        + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s" + advice;
 	current.reset();
-	forgetSaved(); // by an earlier O.save, of another moment than the bodies are
+	ContactsHolder(*scene).clear();
 	refuseInEngine(failure);
 }
 
@@ -112,7 +115,7 @@ void JKRWadaEngine::prepare()
 	enter(Moment::BetweenSteps);
 	SceneCell::takeVelocityGradient(*scene, current->dynamics);
 	if (scene->isPeriodic) bringBodies(); // the mean velocity field is in the grains' velocities now
-	if (exportInteractions) current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
+	if (exportInteractions) writeContacts();
 	if (scene->trackEnergy) writeEnergies(current->dynamics.energies());
 }
 
@@ -120,7 +123,14 @@ void JKRWadaEngine::writeInteractions()
 {
 	const auto rest = atRest("writeInteractions()");
 	enter(Moment::BetweenSteps);
+	writeContacts();
+}
+
+void JKRWadaEngine::writeContacts()
+{
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
+	current->forces.write(*scene, current->dynamics, current->outside);
+	ContactsHolder(*scene).set(current->name, true);
 }
 
 void JKRWadaEngine::sinter(Real neckNow)
@@ -139,7 +149,7 @@ void JKRWadaEngine::sinter(Real neckNow)
 	current->settings.neck = neck;
 	current->watch.motionsChanged();
 	bringBodies();
-	if (exportInteractions) current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
+	if (exportInteractions) writeContacts();
 	if (scene->trackEnergy) writeEnergies(current->dynamics.energies());
 }
 
@@ -158,8 +168,48 @@ void JKRWadaEngine::handOver()
 	scene->time += smallStep;
 	scene->iter += 1;
 	scene->dt = smallStep;
+	current->forces.withdraw(*scene);
 	current.reset();
-	forgetSaved(); // by an earlier O.save
+	ContactsHolder(*scene).clear();
+}
+
+// Contacts go to O.interactions, where whatever moves the grains from here on finds them, in the state of the bodies as this engine left them.
+void JKRWadaEngine::leave()
+{
+	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
+	const auto isThere = [this](int id) { return current->grains.isThere(*scene, id); };
+	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions, isThere);
+	current->forces.withdraw(*scene);
+	current.reset();
+	ContactsHolder(*scene).clear();
+}
+
+void JKRWadaEngine::giveWay()
+{
+	const Scene& now = *Omega::instance().getScene();
+	const auto& engines = now._nextEngines.empty() ? now.engines : now._nextEngines;
+	const auto isThis = [this](const boost::shared_ptr<Engine>& engine) { return engine.get() == this && !engine->dead; };
+	if (std::any_of(engines.begin(), engines.end(), isThis)) return;
+	const auto rest = atRest("O.engines was given others");
+	if (!current && !savedState.empty()) {
+		scene = Omega::instance().getScene().get();
+		start(Moment::BetweenSteps);
+	}
+	if (current && current->scene.lock().get() == &now && ContactsHolder(*scene).is(current->name)) leave();
+}
+
+// Bodies were added: another run of all bodies, which has the contacts of this one and goes on booking.
+void JKRWadaEngine::startAgain(Moment moment)
+{
+	const SceneGrains all(*scene); // refuses bodies that cannot be moved, while nothing is changed
+	const contact_law::Booked before = contact_law::booked(current->dynamics);
+	const bool wasBooked = booked;
+	const EnergyChannels::WorkOn workOn = current->workOn;
+	leave();
+	start(moment, true);
+	current->dynamics.continueFrom(before);
+	booked = wasBooked;
+	current->workOn = workOn;
 }
 
 void JKRWadaEngine::writeBodies() { current->grains.write(current->now, orientations, current->dynamics.threadCount()); }

@@ -27,8 +27,11 @@ class JKRWadaEngine : public GlobalEngine {
 	void requireInRange() const;
 	void requireOwnScene() const;
 
-	std::shared_ptr<Run> newRun(Moment);
-	void start(Moment);
+	std::shared_ptr<Run> newRun(Moment, bool again);
+	void start(Moment, bool again = false); // again: with bodies that were added
+	void startAgain(Moment);
+	void leave();
+	void writeContacts();
 	void continueBooking();
 	void forgetSaved();
 	bool isInOEnergy() const;
@@ -36,7 +39,7 @@ class JKRWadaEngine : public GlobalEngine {
 	static void requireStable(const contact_law::Dynamics&, Real step);
 	static void requireAlone(const Scene&);
 	void enter(Moment);
-	void takeChanges();
+	void takeChanges(Moment);
 	void takeStep();
 	void takeForces();
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
@@ -48,9 +51,11 @@ class JKRWadaEngine : public GlobalEngine {
 public:
 	void action() override;
 	void preSave(JKRWadaEngine&);
+	void postSave(JKRWadaEngine&) { forgetSaved(); } // a copy of this engine would start from it
 	void prepare();
 	void writeInteractions();
 	void handOver();
+	void giveWay();
 	void sinter(Real neck);
 	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
@@ -82,16 +87,17 @@ public:
 		((bool, twisting, true, , "Whether contacts resist twisting."))
 		((std::string, limit, contact_law::limitRuleNames[0], , "What happens to sliding, rolling and twisting springs of ordinary contacts at their limits. 'held': the displacement is held there (Wada et al. 2007). 'cut': the spring is cut, what it stores is lost, and a new one without strain takes its place (Sirono & Ueno 2017)."))
 		((bool, orientations, false, , "Whether to follow the bodies' orientations (State.ori); otherwise they stay as they were."))
-		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
+		((bool, exportInteractions, false, , "Whether to write all contacts to O.interactions, and the forces on the grains to O.forces, after each O.step, for recorders and stresses. It costs as much as some 25 small steps."))
 		((Real, smallStep, 0, Attr::readonly, "O.dt/subSteps of the latest step [s]."))
 		((bool, booked, false, Attr::readonly|Attr::hidden, "Whether O.energy has the energies of this run."))
 		((std::vector<Real>, savedState, , Attr::readonly|Attr::hidden, "The engine's arrays, in a checkpoint (engine/checkpoint.cpp)."))
 		((std::vector<Real>, savedForces, , Attr::readonly|Attr::hidden, "Permanent forces of O.forces, in a checkpoint: id, force and torque each.")),
 		,
 		.def("prepare", &JKRWadaEngine::prepare, "Read the bodies and compute forces and energies without moving anything, so that O.energy and contact_law.snapshot() have the start.")
-		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys). They go at the next O.step, unless exportInteractions.")
+		.def("writeInteractions", &JKRWadaEngine::writeInteractions, "Write all contacts to O.interactions now (real ones, by rising ids, with ScGeom and JKRWadaPhys), and the forces on the grains to O.forces. They go at the next O.step, unless exportInteractions.")
 		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors continue from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
+		.def("giveWay", &JKRWadaEngine::giveWay, "Leave the contacts in O.interactions, to whatever moves the grains from here on, unless this engine is among O.engines and not dead. `import contact_law` has this called whenever O.engines is set.")
 		.def("sinter", &JKRWadaEngine::sinter, boost::python::arg("neck"), "All contacts become bonds of this neck now, without strain where the grains are; existing bonds keep their own neck. All grains shrink by the largest neck, "
 			"which is this engine's neck from now on. What the contacts held is booked as disconnection. Call it between two O.steps. contact_law.sinter() calls this, or the functors'.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (small steps times contacts, so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), searches (for neighbours, of all grains or as many a part at a time), distanceChecks (of pairs that do not touch), orders (times that grains were put into a new order, because fragments had flown apart), domains, instructions.")

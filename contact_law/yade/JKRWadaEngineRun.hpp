@@ -2,6 +2,7 @@
 #pragma once
 #include "JKRWadaEngine.hpp"
 #include "SceneContacts.hpp"
+#include "SceneForces.hpp"
 #include "StepWatch.hpp"
 #include <boost/weak_ptr.hpp>
 
@@ -15,6 +16,8 @@ struct JKRWadaEngine::Run {
 	bool stepBehind;         // until the first step: velocities came from the functors
 	contact_law::Dynamics dynamics;
 	boost::weak_ptr<Scene> scene; // whose grains these are
+	std::string name;             // of this run, as ContactsHolder
+	SceneForces forces {};
 	std::vector<contact_law::GrainMotion> now {};
 	StepWatch watch {};
 	std::vector<contact_law::OutsideForce> outside {}; // by ids, as they are held

@@ -1,6 +1,5 @@
 // What JKRWadaEngine leaves in checkpoints.
 #include "JKRWadaEngineRun.hpp"
-#include "SceneForces.hpp"
 
 namespace yade {
 

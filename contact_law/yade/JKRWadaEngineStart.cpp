@@ -1,8 +1,8 @@
 // How a run of JKRWadaEngine starts: what is asked for, whether it can be had, and the grains with their contacts.
 #include "../engine/exchange.hpp"
 #include "../engine/stability.hpp"
+#include "ContactsHolder.hpp"
 #include "JKRWadaEngineRun.hpp"
-#include "SceneForces.hpp"
 
 namespace yade {
 
@@ -70,8 +70,16 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	return options;
 }
 
+namespace {
+	std::string nextName()
+	{
+		static std::atomic<int> runs { 0 };
+		return "JKRWadaEngine " + std::to_string(++runs);
+	}
+}
+
 // The grains of the scene, with contacts from the checkpoint, from O.interactions, or where they overlap.
-std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment)
+std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool again)
 {
 	SceneGrains grains(*scene);
 	if (grains.size() == 0) refuseInEngine("there are no bodies");
@@ -85,26 +93,28 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment)
 		if (one.bonded && one.neck > neck)
 			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)
 			        + ": must be the largest neck they were made with");
-	const bool inherits = !continued && !inherited.contacts.empty(), stepBehind = inherits && inherited.stepBehind;
-	if (!continued) SceneForces::dropThoseOfOtherEngines(*scene, grains.size(), threads, stepBehind);
+	const ContactsHolder holder(*scene);
+	if (!continued && holder.onlyInEngine()) refuseInEngine(ContactsHolder::refusal);
+	const bool inherits = again || (!continued && !inherited.contacts.empty()), stepBehind = inherits && inherited.stepBehind;
+	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains.size(), threads, stepBehind || holder.isWritten());
 	SceneCell cell;
 	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);
 	const auto started = [&](auto&&... from) {
 		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), stepBehind,
-		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene() });
+		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene(), nextName() });
 	};
 	return continued ? started(savedState) : inherits ? started(inherited) : started();
 }
 
-void JKRWadaEngine::start(Moment moment)
+void JKRWadaEngine::start(Moment moment, bool again)
 {
 	requireAlone(*scene);
 	const bool continued = !savedState.empty();
 	SceneForces::restorePermanent(*scene, savedForces);
 	std::shared_ptr<Run> run;
 	try {
-		run = newRun(moment);
+		run = newRun(moment, again);
 	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
 		refuseInEngine(refusal.what());
 	}
@@ -123,6 +133,7 @@ void JKRWadaEngine::start(Moment moment)
 	// that of the last step: one that was set since is taken by prepare(), or in the next step
 	SceneCell::applyVelocityGradient(*scene, current->dynamics);
 	forgetSaved();
+	ContactsHolder(*scene).set(current->name, false);
 }
 
 void JKRWadaEngine::requireSound(const Run& run)

@@ -101,7 +101,7 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 	return inherited;
 }
 
-std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dynamics& dynamics)
+std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dynamics& dynamics, const IsThere& isThere)
 {
 	std::vector<Place> places;
 	eachContact(dynamics, [&](const contact_law::ContactList& list, int slot, int first, int second) {
@@ -110,6 +110,8 @@ std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dyn
 	eachBond(dynamics, [&](const contact_law::BondList& list, int slot, int first, int second) {
 		places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, slot });
 	});
+	const auto ofGone = [&](const Place& place) { return !(isThere(place.id1) && isThere(place.id2)); };
+	if (isThere) places.erase(std::remove_if(places.begin(), places.end(), ofGone), places.end());
 	std::sort(places.begin(), places.end(),
 	        [](const Place& a, const Place& b) { return a.id1 != b.id1 ? a.id1 < b.id1 : a.id2 < b.id2; });
 	return places;
@@ -165,9 +167,9 @@ void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
 	held.swap(now);
 }
 
-void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, Stage stage)
+void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, Stage stage, const IsThere& isThere)
 {
-	const std::vector<Place> places = placesOf(dynamics);
+	const std::vector<Place> places = placesOf(dynamics, isThere);
 	const auto now = [&](size_t k, int id1) {
 		const ContactNow c = places[k].now(dynamics);
 		return c.first == id1 ? c : contact_law::swapped(c);
@@ -194,10 +196,12 @@ void SceneContacts::requireKept(const Scene& scene) const
 		        + " that were written: this engine's contacts cannot be erased there");
 }
 
-void SceneContacts::withdraw(Scene& scene)
+bool SceneContacts::withdraw(Scene& scene)
 {
-	if (!held.empty()) scene.interactions->clear();
+	const bool any = !held.empty();
+	if (any) scene.interactions->clear();
 	held.clear();
+	return any;
 }
 
 } // namespace yade

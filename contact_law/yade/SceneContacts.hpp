@@ -2,6 +2,7 @@
 #pragma once
 #include "../engine/exchange.hpp"
 #include "JKRWada.hpp"
+#include <functional>
 
 namespace yade {
 
@@ -15,14 +16,15 @@ public:
 	 * at this call. */
 	enum class Stage { OfPositions, AStepBehind };
 	/* All contacts, in the order of their bodies' ids, as real interactions with ScGeom and JKRWadaPhys; those that have ended go. Interactions of contacts
-	 * that continue stay the same objects. */
-	void write(Scene&, const contact_law::Dynamics&, Stage);
+	 * that continue stay the same objects. isThere: whether there is still a body of an id; contacts of those that are gone go too. */
+	using IsThere = std::function<bool(int id)>;
+	void write(Scene&, const contact_law::Dynamics&, Stage, const IsThere& isThere = {});
 
 	// Throws std::runtime_error when a script has erased some of what was written.
 	void requireKept(const Scene&) const;
 
-	// Empties O.interactions of what was written before and is no longer so.
-	void withdraw(Scene&);
+	// Empties O.interactions of what was written before and is no longer so; whether there was anything.
+	bool withdraw(Scene&);
 
 private:
 	struct Place { // of a contact in the engine, bodies in rising order
@@ -32,7 +34,7 @@ private:
 		int slot;
 		contact_law::ContactNow now(const contact_law::Dynamics&) const;
 	};
-	static std::vector<Place> placesOf(const contact_law::Dynamics&);
+	static std::vector<Place> placesOf(const contact_law::Dynamics&, const IsThere&);
 	bool inOrder(Scene&, const std::vector<Place>&) const;
 	void arrange(Scene&, const std::vector<Place>&);
 	shared_ptr<Interaction> made(const Scene&, const contact_law::ContactNow&, int id1, int id2);

@@ -1,4 +1,5 @@
 #include "SceneForces.hpp"
+#include "../engine/contacts.hpp"
 #include "Refusal.hpp"
 #include "SceneGrains.hpp"
 #include <core/GlobalEngine.hpp>
@@ -12,6 +13,7 @@ using contact_law::OutsideForce;
 namespace {
 	constexpr std::size_t numbersSaved = 7; // id, force, torque
 
+	Vector3r yadeVector(const contact_law::Vec3<double>& v) { return Vector3r(v.x, v.y, v.z); }
 	contact_law::Vec3<double> kernelVector(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 	bool allFinite(const Vector3r& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
@@ -46,7 +48,68 @@ namespace {
 	}
 }
 
+SceneForces::Load SceneForces::whole(Scene& scene, int id) { return { scene.forces.getForce(id), scene.forces.getTorque(id) }; }
+
+SceneForces::Load SceneForces::notPermanent(Scene& scene, int id)
+{
+	const Load all = whole(scene, id);
+	if (!scene.forces.getPermForceUsed()) return all;
+	const Load kept { scene.forces.getPermForce(id), scene.forces.getPermTorque(id) };
+	return all == kept ? Load { Vector3r::Zero(), Vector3r::Zero() } : Load { all.force - kept.force, all.torque - kept.torque };
+}
+
+void SceneForces::write(Scene& scene, const contact_law::Dynamics& dynamics, const std::vector<OutsideForce>& outside)
+{
+	withdraw(scene);
+	scene.forces.sync();
+	std::vector<OutsideForce> added = contact_law::wholeForces(dynamics);
+	// those of other engines are there until ForceResetter's turn; without it, only the permanent ones are
+	const bool there = hasForceResetter(scene);
+	for (const OutsideForce& held : outside) {
+		const OutsideForce shown = there ? held : permanentOn(scene, held.grain);
+		OutsideForce& of = added[held.grain];
+		of.force = of.force - shown.force, of.torque = of.torque - shown.torque;
+	}
+	for (int id = 0; id < int(added.size()); ++id)
+		before.push_back(notPermanent(scene, id));
+	for (const OutsideForce& f : added) {
+		scene.forces.addForce(f.grain, yadeVector(f.force));
+		scene.forces.addTorque(f.grain, yadeVector(f.torque));
+	}
+	scene.forces.sync();
+	for (int id = 0; id < int(added.size()); ++id)
+		after.push_back(whole(scene, id));
+}
+
+void SceneForces::withdraw(Scene& scene)
+{
+	if (after.empty()) return;
+	scene.forces.sync();
+	std::vector<Load> left = before;
+	for (int id = 0; id < int(left.size()); ++id) {
+		const Load now = whole(scene, id);
+		if (now == after[id]) continue;
+		left[id].force += now.force - after[id].force;
+		left[id].torque += now.torque - after[id].torque;
+	}
+	scene.forces.reset(scene.iter);
+	for (int id = 0; id < int(left.size()); ++id) {
+		if (!left[id].force.isZero(0)) scene.forces.addForce(id, left[id].force);
+		if (!left[id].torque.isZero(0)) scene.forces.addTorque(id, left[id].torque);
+	}
+	before.clear(), after.clear();
+}
+
 std::vector<OutsideForce> SceneForces::take(Scene& scene, std::size_t bodies, int threads)
+{
+	if (hasForceResetter(scene))
+		before.clear(), after.clear(); // they are gone
+	else
+		withdraw(scene);
+	return found(scene, bodies, threads);
+}
+
+std::vector<OutsideForce> SceneForces::found(Scene& scene, std::size_t bodies, int threads)
 {
 	std::vector<OutsideForce> found;
 	if (!anyForce(scene, bodies, threads)) return found;
@@ -61,11 +124,11 @@ std::vector<OutsideForce> SceneForces::take(Scene& scene, std::size_t bodies, in
 	return found;
 }
 
-void SceneForces::dropThoseOfOtherEngines(Scene& scene, std::size_t bodies, int threads, bool ofFunctors)
+void SceneForces::dropThoseOfOtherEngines(Scene& scene, std::size_t bodies, int threads, bool ofContacts)
 {
 	if (scene.iter == 0 || hasForceResetter(scene)) return;
-	if (!ofFunctors) {
-		for (const OutsideForce& f : take(scene, bodies, threads)) {
+	if (!ofContacts) {
+		for (const OutsideForce& f : found(scene, bodies, threads)) {
 			if (f == permanentOn(scene, f.grain)) continue;
 			refuseInEngine("O.forces has a force or torque on " + bodyName(f.grain)
 			        + " from before this engine's first step: it must be 0 or permanent (O.forces.reset() clears it, "

@@ -1,6 +1,6 @@
 // Forces that other engines and scripts put on the grains (O.forces), as the fused engine takes them.
 #pragma once
-#include "../engine/outside_forces.hpp"
+#include "../engine/dynamics.hpp"
 #include <core/Scene.hpp>
 #include <vector>
 
@@ -8,15 +8,30 @@ namespace yade {
 
 class SceneForces {
 public:
-	/* Those in O.forces now, by rising id; none is no entry. Unless a ForceResetter does it, O.forces is emptied of what is not permanent:
+	/* What write() added goes. Those in O.forces now, by rising id; none is no entry. Unless a ForceResetter does it, O.forces is emptied of what is not permanent:
 	 * forces are held over one O.step. Throws std::runtime_error, with one line, when one is not finite. */
-	static std::vector<contact_law::OutsideForce> take(Scene&, std::size_t bodies, int threads);
+	std::vector<contact_law::OutsideForce> take(Scene&, std::size_t bodies, int threads);
 	// Before the first step: what the last step of other engines left is dropped, or refused where it may be someone's wish.
-	static void dropThoseOfOtherEngines(Scene&, std::size_t bodies, int threads, bool ofFunctors);
+	static void dropThoseOfOtherEngines(Scene&, std::size_t bodies, int threads, bool ofContacts);
 
 	// Permanent forces (O.forces.setPermF, setPermT), which YADE does not save: a row of seven numbers a body that has one.
 	static std::vector<Real> permanent(Scene&);
 	static void restorePermanent(Scene&, const std::vector<Real>&); // unless there are others
+
+	/* All that acts on each grain, for YADE's functions, until the next take() or withdraw(). outside: as taken last. With what a script has added
+	 * since. */
+	void write(Scene&, const contact_law::Dynamics&, const std::vector<contact_law::OutsideForce>& outside);
+	void withdraw(Scene&);
+
+private:
+	struct Load {
+		Vector3r force, torque;
+		bool operator==(const Load& other) const { return force == other.force && torque == other.torque; }
+	};
+	static std::vector<contact_law::OutsideForce> found(Scene&, std::size_t bodies, int threads);
+	static Load notPermanent(Scene&, int id);
+	static Load whole(Scene&, int id);
+	std::vector<Load> before, after; // write(), of each body: not permanent; all
 };
 
 } // namespace yade

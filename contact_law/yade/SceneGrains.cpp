@@ -132,17 +132,12 @@ void SceneGrains::write(std::vector<GrainMotion>& now, bool orientations, int th
 	written.swap(now);
 }
 
-void SceneGrains::requireThere(const Scene& scene) const
+bool SceneGrains::hasMore(const Scene& scene) const
 {
-	const BodyContainer& there = *scene.bodies;
-	if (there.size() != size())
-		refuseInEngine("there are " + std::to_string(there.size()) + " bodies, must be the " + std::to_string(size())
-		        + " of the start: bodies were added or cleared; make a new engine");
-	for (std::size_t k = 0; k < size(); ++k) {
-		if (isThere(scene, k)) continue;
-		refuseInEngine(bodyName(k) + (there[k] ? " was replaced by another" : " was erased")
-		        + " after the start: bodies must stay those of the start; make a new engine");
-	}
+	if (scene.bodies->size() <= size()) return false;
+	requireSameMaterials();
+	requireKept(scene);
+	return true;
 }
 
 void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) const
@@ -161,7 +156,19 @@ void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) co
 
 void SceneGrains::requireSame(const Scene& scene) const
 {
-	requireThere(scene);
+	const std::size_t there = scene.bodies->size();
+	if (there != size())
+		refuseInEngine("there are " + std::to_string(there) + " bodies, must be the " + std::to_string(size())
+		        + " of the latest step: bodies were cleared");
+	requireKept(scene);
+}
+
+void SceneGrains::requireKept(const Scene& scene) const
+{
+	for (std::size_t k = 0; k < size(); ++k)
+		if (!isThere(scene, k))
+			refuseInEngine(bodyName(k) + ((*scene.bodies)[k] ? " was replaced by another" : " was erased")
+			        + " after the start: bodies must stay; make a new engine");
 	for (std::size_t k = 0; k < size(); ++k)
 		if (!sameBody(k)) refuseChange(k);
 }

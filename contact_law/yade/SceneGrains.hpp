@@ -26,8 +26,9 @@ public:
 	// As if the bodies had been given these motions.
 	void setWritten(const std::vector<contact_law::GrainMotion>& motions) { written = motions; }
 
-	// Throws std::runtime_error when the scene has not the bodies any more that it had.
-	void requireThere(const Scene&) const;
+	// Whether bodies were added behind those that are as they were. Throws std::runtime_error where these were changed too.
+	bool hasMore(const Scene&) const;
+	bool isThere(const Scene& scene, std::size_t k) const { return k < scene.bodies->size() && (*scene.bodies)[k] == bodies[k].body; }
 	// What the bodies are now, with what a script has changed, row by row: vectors (size(), 3), radii (size()). Throws likewise.
 	struct Columns {
 		double *position, *velocity, *angularVelocity, *radius;
@@ -57,9 +58,9 @@ private:
 	Kept read(const shared_ptr<Body>&, std::size_t id);
 	int kindOf(const shared_ptr<JKRMat>&);
 	std::string firstBodyOf(int kind) const;
-	bool isThere(const Scene& scene, std::size_t k) const { return (*scene.bodies)[k] == bodies[k].body; }
 	bool sameBody(std::size_t k) const;
 	void requireSame(const Scene&) const;
+	void requireKept(const Scene&) const; // of the bodies that there were
 	[[noreturn]] void refuseChange(std::size_t k) const;
 	void requireSameMaterials() const;
 

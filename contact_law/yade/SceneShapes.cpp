@@ -1,4 +1,5 @@
 #include "SceneShapes.hpp"
+#include "ContactsHolder.hpp"
 #include "JKRWada.hpp"
 #include "Refusal.hpp"
 #include <core/Body.hpp>
@@ -76,9 +77,13 @@ bool SceneShapes::fit(Scene& scene)
 	if (lookedAt == scene.iter) return fine;
 #pragma omp critical(SceneShapesFit)
 	if (lookedAt != scene.iter) {
-		const std::string fault = faultOf(scene, anyPlane);
+		ContactsHolder holder(scene);
+		const std::string fault = holder.onlyInEngine() ? ContactsHolder::refusal : faultOf(scene, anyPlane);
 		fine = fault.empty();
-		if (!fine) refuseInStep(scene, "Law2_ScGeom_JKRWadaPhys_JKRWada: " + fault);
+		if (!fine)
+			refuseInStep(scene, "Law2_ScGeom_JKRWadaPhys_JKRWada: " + fault);
+		else
+			holder.clear(); // those in O.interactions are the functors' from here on
 		lookedAt = scene.iter;
 	}
 	return fine;

@@ -74,28 +74,6 @@ def test_a_saved_scene_of_the_functors_continues_with_the_engine():
     assert largest_difference(state(), straight) < 1e-9
 
 
-def test_an_engine_takes_over_from_an_engine_that_wrote_its_interactions():
-    """With another number of sub-steps, say. Everything is of one moment then; only impulses of events within the last small step are forgotten."""
-
-    def begun(**options):
-        start("like")
-        to_engine(10, **options)
-        O.run(15, True)
-
-    begun(exportInteractions=True)
-    O.run(15, True)
-    straight = positions()
-    begun(exportInteractions=True)
-    O.dt *= 1.5
-    O.engines = [JKRWadaEngine(subSteps=15)]
-    O.run(10, True)
-    taken = difference(positions(), straight)
-    begun()
-    O.engines = [JKRWadaEngine(subSteps=10)]  # springs unstrained
-    O.run(15, True)
-    assert taken < 1e-6 < difference(positions(), straight) and len(O.interactions) == 0
-
-
 def test_what_cannot_be_handed_over_is_refused():
     start("like", count=8)
     fused_engine()

@@ -163,6 +163,7 @@ private:                                                                        
 		if (Archive::is_saving::value) preSave(*this);                                                                             \
 		archive& boost::serialization::make_nvp(#Base, boost::serialization::base_object<Base>(*this));                            \
 		::yade::attributes::serialize(archive, *this);                                                                             \
+		if (Archive::is_saving::value) postSave(*this);                                                                            \
 		if (Archive::is_loading::value) postLoad(*this); /* O.load doesn't call callPostLoad() of a plugin's classes */            \
 	}                                                                                                                                  \
                                                                                                                                            \

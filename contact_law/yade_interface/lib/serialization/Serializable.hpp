@@ -34,6 +34,7 @@ public:
 	// found by name lookup when a class has no postLoad of its own
 	template <class T> void postLoad(T&) {}
 	template <class T> void preSave(T&) {}
+	template <class T> void postSave(T&) {}
 
 	SAVED_BY_YADE_MEMBER
 };

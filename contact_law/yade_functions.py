@@ -1,0 +1,50 @@
+"""What YADE's own calls do in scenes that JKRWadaEngine moves."""
+
+import functools
+
+# Of yade.utils: they read O.interactions or O.forces, which the fused engine leaves empty.
+OF_CONTACTS = """
+    avgNumInteractions bodyNumInteractionsHistogram bodyStressTensors fabricTensor forcesOnCoordPlane forcesOnPlane getBodyIdsContacts
+    getStress getStressAndTangent getStressProfile getStressProfile_contact interactionAnglesHistogram intrsOfEachBody maxOverlapRatio
+    normalShearStressTensors numIntrsOfEachBody plotDirections plotNumInteractionsHistogram stressTensorOfPeriodicCell sumForces
+    sumTorques totalForceInVolume unbalancedForce
+""".split()
+
+
+def _writing_first(yade, function):
+    """The function, before which a JKRWadaEngine writes contacts and forces to where YADE keeps them."""
+
+    @functools.wraps(function, assigned=("__doc__", "__name__"))
+    def call(*arguments, **named):
+        for engine in yade.O.engines:
+            if isinstance(engine, yade.wrapper.JKRWadaEngine) and not engine.dead:
+                engine.writeInteractions()
+        return function(*arguments, **named)
+
+    return call
+
+
+def give_way(yade):
+    """O.engines = ... leaves no contact behind: an engine that goes gives them to those that come."""
+    engines = yade.wrapper.Omega.engines
+
+    def replace(omega, others):
+        before = engines.fget(omega)
+        engines.fset(omega, others)
+        for engine in before:
+            if isinstance(engine, yade.wrapper.JKRWadaEngine):
+                engine.giveWay()
+
+    yade.wrapper.Omega.engines = property(engines.fget, replace, doc=engines.__doc__)
+
+
+def show_contacts(yade, main):
+    """yade.utils' functions of contacts have them with the fused engine too; main: the namespace of YADE's scripts."""
+    for name in OF_CONTACTS:
+        function = getattr(yade.utils, name, None)
+        if function is None:
+            continue
+        obeying = _writing_first(yade, function)
+        for namespace in (vars(yade.utils), vars(yade._utils), main):
+            if namespace.get(name) is function:
+                namespace[name] = obeying

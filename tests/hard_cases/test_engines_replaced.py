@@ -1,0 +1,193 @@
+"""A script puts another engine in JKRWadaEngine's place, or adds grains, in the middle of a run: no spring is lost."""
+
+import copy
+
+import pytest
+from changes import *
+
+pytestmark = pytest.mark.in_yade
+STEPS = 60  # before and after the change
+BOOKED = ("constraintWork", "externalWork", "boundaryWork")
+
+
+def strained(periodic=False, **options):
+    """27 grains that have collided: springs are strained, slide and hold."""
+    new_scene(0.1 * unit)
+    converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
+    if periodic:
+        O.periodic = True
+        O.cell.setBox(3e-6, 3e-6, 3e-6)
+        O.cell.velGrad = Matrix3(-1e5, 0, 0, 0, 0, 0, 0, 0, 0)
+    fused_engine(subSteps=5, **options)
+    O.dt *= 5
+    steps(STEPS)
+    assert engine().statistics()["contacts"] > 20 and energies()["slidingDissipation"] > 0
+
+
+def label_it():
+    engine().label = "mover"
+    O.engines = O.engines
+
+
+REPLACED = {
+    "O.engines = [JKRWadaEngine(subSteps=5)]": {},
+    "O.engines = [copy.deepcopy(engine())]": {},
+    "O.save('s.yade'); O.engines = [copy.deepcopy(engine())]": {},
+    "O.save('s.yade'); O.load('s.yade'); O.engines = [JKRWadaEngine(subSteps=5)]": {},
+    "old = engine(); O.engines = [JKRWadaEngine(subSteps=5)]; O.engines = [old]": {},
+    "O.engines = []; O.step(); O.engines = [JKRWadaEngine(subSteps=5)]": {},
+    "label_it(); O.engines = [JKRWadaEngine(subSteps=5, label='mover')]": {},
+    "label_it(); engine().writeInteractions(); O.engines = [JKRWadaEngine(subSteps=5)]": {},
+    "O.engines = [JKRWadaEngine(subSteps=5)] ": dict(exportInteractions=True),
+    "O.engines = [JKRWadaEngine(subSteps=5)]  ": dict(periodic=True),
+    "O.bodies.append(utils.sphere((9e-7, 9e-7, 9e-7), 1e-7, material=ice()))": {},
+    "O.bodies.append(utils.sphere((9e-7, 9e-7, 9e-7), 1e-7, material=ice())) ": dict(periodic=True, exportInteractions=True),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("change", REPLACED)
+def test_contacts_are_handed_over(change):
+    """To another engine, or to this one with more grains: positions and ledger as if nothing had been."""
+    ends = []
+    for text in ("pass", change):
+        strained(**REPLACED[change])
+        run(text, copy=copy, label_it=label_it)
+        steps(STEPS)
+        ends.append((positions()[:27], energies(*BOOKED)))
+    (x, e), (y, f) = ends
+    assert np.abs(x - y).max() < 1e-5 * 1e-7
+    scale = e["kinetic"] + e["connection"]
+    assert {name: f[name] for name in e if abs(f[name] - e[name]) > 1e-5 * scale} == {}
+
+
+def test_the_functors_take_over_without_a_call():
+    """Velocities are of the positions' moment, where the functors want those of half a step before: the difference is of first order."""
+    differences = []
+    for finer in (1, 4):
+        ends = []
+        for handed in (False, True):
+            strained()
+            O.dt /= 5 * finer
+            engine().subSteps = 1
+            if handed:
+                engine().handOver()
+            O.engines = functor_engines()
+            steps(100 * finer)
+            ends.append(positions())
+        differences.append(np.abs(ends[0] - ends[1]).max() / 1e-7)
+    assert differences[1] < 0.5 * differences[0] < 5e-3
+
+
+def set_behind_the_back(engines):
+    """As where contact_law is not imported (YADE_PREFIX): the plain setter of O.engines."""
+    replace = type(O).engines.fset
+    plain = next(cell.cell_contents for cell in replace.__closure__ if isinstance(cell.cell_contents, property))
+    plain.fset(O, engines)
+
+
+HELD = ["the contacts of these grains are in another JKRWadaEngine", "handOver()"]
+REFUSED = {
+    "O.engines[0].dead = True; O.engines += functor_engines(); O.engines[0].dead = False; O.step()": ["is among O.engines too"],
+    "set_behind_the_back([JKRWadaEngine()]); O.step()": HELD,
+    "set_behind_the_back(functor_engines()); O.run(2, True)": HELD,
+    "O.save('s.yade'); O.load('s.yade'); set_behind_the_back([JKRWadaEngine()]); O.step()": HELD,
+    "kept = engine(); kept.writeInteractions(); set_behind_the_back([JKRWadaEngine()]); O.step(); kept.prepare()": ["other engines have moved"],
+}  # fmt: skip
+
+
+def test_what_would_lose_contacts_is_refused():
+    def attempt(text):
+        chain()
+        steps(20)
+        run(text, set_behind_the_back=set_behind_the_back)
+
+    require_refused(REFUSED, attempt)
+
+
+def test_grains_that_are_added_meet_the_others():
+    """A grain is shot at a resting chain in the middle of a run: as if it had been there, far away, from the start."""
+
+    def end(late):
+        chain(speed=0)
+        bullet = lambda y: grain((2e-7, y, 0), 1e-7, O.bodies[0].material, (0, -2, 0))  # noqa: E731
+        if not late:
+            bullet(2.05e-7 + 2 * 40 * O.dt)
+        steps(40)
+        if late:
+            bullet(2.05e-7)
+        formed = engine().statistics()["formed"]
+        steps(200)
+        return positions(), energies(), engine().statistics()["formed"] - formed
+
+    (x, e, formed), (y, f, formed_late) = end(False), end(True)
+    assert formed == formed_late > 0 and np.abs(x - y).max() < 1e-7 * 1e-7
+    assert abs(sum(e.values()) - sum(f.values())) < 1e-7 * e["kinetic"]
+
+
+def test_counts_and_losses_go_on_when_grains_are_added():
+    strained()
+    O.trackEnergy = False
+    before = engine().statistics()
+    O.bodies.append(utils.sphere((9e-7, 9e-7, 9e-7), 1e-7, material=ice()))
+    O.trackEnergy = True
+    engine().prepare()
+    after = engine().statistics()
+    assert all(after[name] >= before[name] > 0 for name in ("contactUpdates", "events", "formed"))
+
+
+def test_yades_functions_have_contacts_and_forces():
+    """unbalancedForce, stresses and the like are those of the functors, to the step by which they lag."""
+    functions = {
+        "unbalancedForce": lambda: utils.unbalancedForce(),
+        "getStress": lambda: np.array(utils.getStress(1e-18)).ravel(),
+        "bodyStressTensors": lambda: np.array([list(t.row(j)) for t in utils.bodyStressTensors() for j in range(3)]),
+        "avgNumInteractions": lambda: utils.avgNumInteractions(),
+        "sumForces": lambda: np.array(utils.sumForces([0, 1], (1, 1, 0))),
+    }
+    found = {}
+    for mover in ("functors", "fused"):
+        chain()
+        O.dt /= 10
+        if mover == "functors":
+            O.engines = functor_engines()
+        steps(400)
+        found[mover] = {name: function() for name, function in functions.items()}
+    for name in functions:
+        fused, functors = (np.asarray(found[mover][name]) for mover in ("fused", "functors"))
+        assert np.abs(fused - functors).max() < 0.03 * np.abs(functors).max(), name
+    assert found["fused"]["unbalancedForce"] > 0
+
+
+def test_forces_that_were_written_are_not_taken_for_outside_ones():
+    """The run's bits don't depend on whether anybody looked, with gravity, permanent forces and a script's addF among them."""
+
+    def end(look):
+        chain(exportInteractions=look == "export")
+        O.engines = [GravityEngine(gravity=(0, 0, -1e7))] + O.engines
+        O.forces.setPermF(1, (1e-10, 0, 0))
+        for k in range(40):
+            if look == "call":
+                utils.unbalancedForce()
+            O.forces.addF(2, (0, 1e-10 * (k % 3), 0))
+            O.step()
+        return positions()
+
+    straight = end("")
+    assert np.abs(end("call") - straight).max() < 1e-12 * 1e-7
+    assert np.abs(end("export") - straight).max() < 1e-12 * 1e-7
+
+
+def test_forces_of_the_grains_stand_in_o_forces():
+    """After writeInteractions(): of contacts, and what others have put on the grains, as the functors leave them."""
+    chain()
+    O.forces.setPermF(1, (0, 0, 3e-10))
+    steps(20)
+    assert O.forces.f(0).norm() == 0
+    engine().writeInteractions()
+    total = sum((O.forces.f(b.id) for b in O.bodies), Vector3.Zero)
+    assert O.forces.f(0).norm() > 1e-10 and (total - Vector3(0, 0, 3e-10)).norm() < 1e-20
+    contacts = Vector3.Zero
+    for i in O.interactions:
+        force = i.phys.normalForce + i.phys.shearForce
+        contacts += force * ((i.id2 == 1) - (i.id1 == 1))
+    assert (O.forces.f(1) - contacts - Vector3(0, 0, 3e-10)).norm() < 1e-9 * contacts.norm()
