@@ -55,7 +55,7 @@ endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-markdown python3-pytest python3-pytest-xdist \
-            python3-vtk9 ffmpeg
+            python3-vtk9 ffmpeg libjs-three
 
 # ---- flags ----
 
@@ -210,6 +210,12 @@ test: all
 # Results in tests/mutations/results.
 test-mutations: all
 	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
+
+# The page of `analysis view` in a real browser (160 MB); once it is there, make test has it too.
+.PHONY: test-viewer
+test-viewer: all
+	@$(MAKE) --no-print-directory deps PACKAGES="chromium chromium-driver python3-selenium"
+	@$(PYTHON) -m pytest -p no:cacheprovider tests/analysis/test_viewer.py
 
 # With it the tests open exports in OVITO too (200 MB from PyPI, in a folder of its own).
 .PHONY: ovito

@@ -1,4 +1,4 @@
-"""Command line: python3 -m analysis summary RUNS..., plot WHAT RUNS..., figures RUN, export RUN, film RUN, status RUNS..., study [NAME RUNS...]."""
+"""Command line: python3 -m analysis summary RUNS..., plot WHAT RUNS..., figures RUN, view RUN, film RUN, export RUN, status RUNS..., study [NAME RUNS...]."""
 
 import argparse
 import os
@@ -10,7 +10,7 @@ from .signals import end_quietly
 if __name__ == "__main__":
     end_quietly(signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
-from .commands import export, figures, film, plot, status, study, summary  # noqa: E402
+from .commands import export, figures, film, plot, status, study, summary, view  # noqa: E402
 from .printable import printable  # noqa: E402
 
 
@@ -31,11 +31,11 @@ def _parser():
         prog="python3 -m analysis",
         description="Analyse run folders.",
         epilog="Exit status: 0, or 2 if a run could not be analysed. A run that has not ended is analysed as far as it "
-        "went by summary, figures, export and film, and left out by study.",
+        "went by summary, figures, view, film and export, and left out by study.",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for command in (summary, plot, figures, export, film, status, study):
+    for command in (summary, plot, figures, view, film, export, status, study):
         command.add_parser(commands)
     return parser
 

@@ -1,0 +1,91 @@
+"""A page on which a run's aggregates can be turned: one HTML file with the states and three.js in it, which needs no network."""
+
+import base64
+import json
+from pathlib import Path
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader
+
+from ...figures.style import AGGREGATE_COLOURS, run_title
+from ...progress import progress
+from ...runs.write import require_file, write_text
+from ..fields import exported_states
+
+THREE = Path("/usr/share/javascript/three")  # of Debian's libjs-three
+_SCRIPTS = ("build/three.min.js", "examples/js/controls/OrbitControls.js")
+_HERE = Path(__file__).parent
+_FAST = 99.0  # percentile of the speeds that the scale of colours ends at
+
+
+class NoThree(Exception):
+    """three.js cannot be read; the message is one line."""
+
+
+def write_view(run, file, three=THREE):
+    """Write the states of a RunFolder as a page of HTML; returns `file`.
+
+    three: folder of three.js (r110 to r147) with build/three.min.js and examples/js/controls/OrbitControls.js. NoThree when it lacks them,
+    RunFolderError when a state is damaged or there is none, OSError."""
+    require_file(file)
+    scripts = _scripts(Path(three))
+    page = Environment(loader=FileSystemLoader(_HERE), autoescape=True).get_template("page.html")
+    data = json.dumps(_data(run)).replace("<", "\\u003c")  # no text in it can end the script
+    viewer = (_HERE / "viewer.js").read_text(encoding="utf-8")
+    write_text(file, page.render(title=run.path.resolve().name, scripts=scripts, data=data, viewer=viewer))
+    return file
+
+
+def _scripts(three):
+    try:
+        return [(three / name).read_text(encoding="utf-8") for name in _SCRIPTS]
+    except OSError as error:
+        raise NoThree(
+            f"{error.filename}: {error.strerror}; three.js must be there (apt-get install libjs-three, or --three FOLDER)"
+        ) from None
+
+
+def _data(run):
+    """What the page shows, for JSON: arrays in base64, little-endian. Lengths in grain radii about the middle of the start."""
+    first = run.start
+    unit, cell = float(first.radius.max()), first.cell_size
+    origin = (first.position.min(axis=0) + first.position.max(axis=0)) / 2 if cell is None else cell / 2
+    states = [
+        _state(exported, origin, unit)
+        for exported in progress(exported_states(run), "reading states", len(run.states))
+    ]
+    speeds = np.concatenate([state.pop("speeds") for state in states])
+    return {
+        "title": run_title(run),
+        "unit": unit,
+        "radius": _packed(first.radius / unit, "<f4"),
+        "aggregate": _packed(first.aggregate, "u1"),
+        "colours": AGGREGATE_COLOURS,
+        "fast": float(np.percentile(speeds, _FAST)),
+        "states": states,
+    }
+
+
+def _state(exported, origin, unit):
+    state = exported.state
+    position = state.position if state.cell_size is None else state.position % state.cell_size
+    speed = np.linalg.norm(state.velocity - state.velocity.mean(axis=0), axis=1)
+    bonded = np.zeros(len(speed), dtype=bool)
+    bonded[state.contact_pairs[state.contact_bonded].ravel()] = True
+    return {
+        "time": state.time,
+        "speeds": speed,
+        "position": _packed((position - origin) / unit, "<f4"),
+        "speed": _packed(speed, "<f4"),
+        "coordination": _packed(np.minimum(exported.coordination(), 255), "u1"),
+        "fragment": _packed(exported.fragments(), "<u4"),
+        "bond": _packed(bonded, "u1"),
+        "first": _packed(exported.first, "<u4"),
+        "between": _packed(exported.between / unit, "<f4"),
+        "bonded": _packed(state.contact_bonded, "u1"),
+        "cell": None if state.cell_size is None else [(state.cell_size / unit).tolist(), (-origin / unit).tolist()],
+    }
+
+
+def _packed(array, kind):
+    return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()

@@ -1,0 +1,100 @@
+"""The page on which aggregates are turned, as a real browser shows it."""
+
+import base64
+import io
+import json
+import re
+import shutil
+
+import numpy as np
+import pytest
+from PIL import Image
+from written_runs import RADIUS, two_clusters, two_pairs
+
+from analysis.__main__ import main
+from analysis.export.viewer import THREE
+from analysis.figures.style import AGGREGATE_COLOURS
+from analysis.runs.folder import open_run
+
+pytestmark = pytest.mark.skipif(not THREE.exists(), reason="libjs-three is not installed")
+webdriver = pytest.importorskip("selenium.webdriver") if shutil.which("chromedriver") else None
+in_browser = pytest.mark.skipif(webdriver is None, reason="chromium is not installed (make test-viewer installs it)")
+
+
+def _page(run):
+    assert main(["view", str(run)]) == 0
+    return run / "view.html"
+
+
+def test_the_page_holds_the_states_and_reaches_for_nothing(tmp_path):
+    run = two_clusters(tmp_path / "</script><b>x")
+    page = _page(run).read_text()
+    data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
+    states = open_run(run).states
+    middle = (states[0].position.min(axis=0) + states[0].position.max(axis=0)) / 2
+    for packed, state in zip(data["states"], states, strict=True):
+        position = np.frombuffer(base64.b64decode(packed["position"]), dtype="<f4").reshape(-1, 3)
+        assert np.allclose(position * RADIUS + middle, state.position, atol=1e-5 * RADIUS)
+    assert not re.search(r'<(script|link|img)[^>]*(src|href)="', page) and "<b>x" not in page
+
+
+def test_what_cannot_be_written_is_one_line(tmp_path, capsys):
+    run = two_pairs(tmp_path / "run", 1.0, 1)
+    assert main(["view", str(run), "--three", str(tmp_path)]) == 2
+    assert "apt-get install libjs-three" in capsys.readouterr().err and not (run / "view.html").exists()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    options = webdriver.ChromeOptions()
+    software = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    for option in ["--headless=new", "--no-sandbox", "--window-size=800,600", *software]:
+        options.add_argument(option)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(options=options)
+    yield driver
+    driver.quit()
+
+
+def _shown(driver, number):
+    """The picture (H, W, 3) once the state of this number is drawn."""
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    WebDriverWait(driver, 20).until(lambda d: d.execute_script("return document.body.dataset.drawn") == str(number))
+    return np.asarray(Image.open(io.BytesIO(driver.get_screenshot_as_png())).convert("RGB")).astype(float) / 255
+
+
+def _place(picture, colour):
+    """(mean column, number) of the pixels of a hue, below the bar at the top and above that at the bottom."""
+    seen, colour = picture[80:-60], np.array(colour)
+    cosine = seen @ colour / np.linalg.norm(seen + 1e-9, axis=2) / np.linalg.norm(colour)
+    found = np.argwhere((cosine > 0.985) & (np.ptp(seen, axis=2) > 0.15))
+    return found[:, 1].mean() if len(found) else None, len(found)
+
+
+@in_browser
+def test_a_browser_draws_turns_and_goes_through_the_states(tmp_path, browser):
+    browser.get(_page(two_clusters(tmp_path / "run")).as_uri())
+    first = _shown(browser, 0)
+    (left, many), (right, others) = (_place(first, colour) for colour in AGGREGATE_COLOURS)
+    assert min(many, others) > 500 and left < right  # aggregate 1 comes from -x
+    browser.execute_script("let s = document.getElementById('slider'); s.value = 11; s.oninput();")
+    last = _shown(browser, 11)
+    (left_now, _), (right_now, _) = (_place(last, colour) for colour in AGGREGATE_COLOURS)
+    assert abs(last - first).mean() > 1e-3 and right_now - left_now < right - left
+    assert "ns" in browser.find_element("id", "time").text and "nm" in browser.find_element("id", "length").text
+
+    choose = "let c = document.getElementById('colour'); c.value = arguments[0]; c.onchange();"
+    for way in ("coordination", "speed", "fragment", "bond"):
+        browser.execute_script(choose, way)
+        assert browser.find_element("id", "legend").text
+        assert abs(_shown(browser, 11) - last).mean() > 1e-3, way
+    browser.find_element("id", "contacts").click()
+    assert abs(_shown(browser, 11) - last).mean() > 1e-3
+
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    before = _shown(browser, 11)
+    ActionChains(browser).drag_and_drop_by_offset(browser.find_element("tag name", "canvas"), 200, 60).perform()
+    assert abs(_shown(browser, 11) - before).mean() > 1e-3
+    assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
