@@ -1,8 +1,9 @@
-"""python3 -m analysis film RUN [--out FILE] [--rate FRAMES]"""
+"""python3 -m analysis film RUN [--out FILE] [--rate FRAMES] [--along AXIS] [--colour BY] [--width PIXELS]"""
 
 import argparse
 from pathlib import Path
 
+from ..figures.grain_colours import COLOURINGS
 from ..printable import printable
 from . import FAILED, complain
 
@@ -12,12 +13,21 @@ def add_parser(commands):
     parser = commands.add_parser(
         "film",
         help="write a film of a run's states",
-        description="Write a film with a frame for each saved state, seen along -z. Needs ffmpeg.",
+        description="Write a film with a frame for each saved state. Needs ffmpeg.",
     )
     parser.add_argument("run", metavar="RUN", help="run folder")
-    parser.add_argument("--out", metavar="FILE", help="where to (default: RUN/film.mp4)")
+    parser.add_argument("--out", metavar="FILE", help="where to (default: RUN/film.mp4); .gif: repeats")
     parser.add_argument("--rate", metavar="FRAMES", type=_rate, default=10.0, help="states a second (default: 10)")
+    parser.add_argument("--along", choices="xyz", default="z", help="axis along which it is seen (default: z)")
+    parser.add_argument("--colour", choices=COLOURINGS, default="aggregate", help="of the grains (default: aggregate)")
+    parser.add_argument("--width", metavar="PIXELS", type=_width, default=960, help="from 160 to 3840 (default: 960)")
     parser.set_defaults(command=run)
+
+
+def _width(text):
+    if not text.isascii() or not text.isdigit() or not 160 <= int(text) <= 3840:
+        raise argparse.ArgumentTypeError(f"{text}: must be a whole number from 160 to 3840")
+    return int(text)
 
 
 def _rate(text):
@@ -39,7 +49,7 @@ def run(options):
     try:
         folder = open_run(options.run)
         file = Path(options.out) if options.out else folder.path / "film.mp4"
-        print(printable(write_film(folder, file, options.rate)))
+        print(printable(write_film(folder, file, options.rate, options.width, options.along, options.colour)))
     except (RunFolderError, NoFilm) as error:
         complain(error)
         return FAILED

@@ -1,21 +1,27 @@
-"""A film of a run: a frame for each saved state, seen along -z, grains coloured by aggregate; encoded by ffmpeg."""
+"""A film of a run: a frame for each saved state, seen along an axis, with a scale bar; encoded by ffmpeg."""
 
 import os
 import subprocess
 import tempfile
+from functools import cache
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from ..figures.grain_colours import COLOURINGS, Patch, Range, on_scale
 from ..figures.sphere_raster import paint_spheres
-from ..figures.style import AGGREGATE_COLOURS, NANO
+from ..figures.style import NANO
 from ..progress import progress
 from ..runs.write import replacing, require_file
+from .fields import Exported
 
 FRAMES_PER_SECOND = 10
 WIDTH = 960  # pixels
 _TALLEST = 1080  # pixels
 _MARGIN = 2.0  # grain radii
+_H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"]
+_GIF = ["-vf", "split[a][b];[a]palettegen=64[p];[b][p]paletteuse=dither=none", "-loop", "0"]
+_INK = (60, 60, 60)
 _LARGEST_VIEW = 2.0  # sizes of the view at the start: what flies farther leaves it
 
 
@@ -23,57 +29,107 @@ class NoFilm(Exception):
     """The film could not be encoded; the message is one line."""
 
 
-def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH):
-    """Write the states of a RunFolder as a film (H.264 in the container that the file's ending names), `width` pixels
-    wide. The file appears when it is complete. Grains of a periodic cell are drawn within it.
+AXES = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}  # to the right, up, towards the viewer (but y: away)
+_NARROWEST = 480  # pixels, for the legend
+
+
+def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, along="z", colour="aggregate"):
+    """Write the states of a RunFolder as a film (H.264 in the container that the file's ending names, or a .gif that repeats), `width`
+    pixels wide, seen from far along the axis `along`, coloured by one of grain_colours.COLOURINGS. The file appears when it is
+    complete. Grains of a periodic cell are drawn within it.
 
     NoFilm when ffmpeg is missing or fails, RunFolderError when a state is damaged or there is none."""
     require_file(file)  # before the frames are drawn
-    view = _view(run)
+    axes = list(AXES[along])
+    view = _view(run, axes)
     pixel = max((view[1] - view[0]) / width, (view[3] - view[2]) / _TALLEST)
-    frames = (_frame(state, view, pixel) for state in progress(run.states, "drawing frames"))
+    more = max(0.0, min(width, _NARROWEST) * pixel - (view[1] - view[0])) / 2
+    view = (view[0] - more, view[1] + more, *view[2:])
+    of = Range.of(progress(run.states, "finding the scales"))
+    way = COLOURINGS[colour]
+    frames = (
+        _frame(state, axes, way.colours(Exported(state, None), of), way.legend(of), view, pixel)
+        for state in progress(run.states, "drawing frames")
+    )
     with replacing(file, ending=file.suffix) as part:
         _encode(frames, os.path.abspath(part.name), frames_per_second)
     return file
 
 
-def _drawn(state):
-    """Positions (N, 3) [m]: in a periodic cell the images inside it."""
-    return state.position if state.cell_size is None else state.position % state.cell_size
+def _drawn(state, axes):
+    """Positions (N, 3) [m] to the right, up, towards the viewer: in a periodic cell the images inside it."""
+    position = state.position if state.cell_size is None else state.position % state.cell_size
+    return position[:, axes] * (1, 1, -1 if axes[2] == 1 else 1)
 
 
-def _view(run):
+def _view(run, axes):
     """(x0, x1, y0, y1) [m] that holds the grains of all states but those that fly far off."""
     first, margin = run.start, _MARGIN * run.start.radius.max()
     states = progress(run.states, "finding the view")
     if first.cell_size is not None:
-        edges = np.max([state.cell_size for state in states], axis=0)
+        edges = np.max([state.cell_size for state in states], axis=0)[axes]
         return -margin, edges[0] + margin, -margin, edges[1] + margin
-    low, high = first.position[:, :2].min(axis=0) - margin, first.position[:, :2].max(axis=0) + margin
+    plane = axes[:2]
+    low, high = first.position[:, plane].min(axis=0) - margin, first.position[:, plane].max(axis=0) + margin
     middle, half = (low + high) / 2, (high - low) / 2
-    reach = np.max([np.abs(state.position[:, :2] - middle).max(axis=0) for state in states], axis=0) + margin
+    reach = np.max([np.abs(state.position[:, plane] - middle).max(axis=0) for state in states], axis=0) + margin
     half = np.minimum(reach, _LARGEST_VIEW * half.max())
     return middle[0] - half[0], middle[0] + half[0], middle[1] - half[1], middle[1] + half[1]
 
 
-def _frame(state, view, pixel):
+def _frame(state, axes, colours, legend, view, pixel):
     """RGB bytes (H, W, 3) of a state, H and W even, as the encoder wants them."""
-    colours = np.array(AGGREGATE_COLOURS)[state.aggregate % len(AGGREGATE_COLOURS)]
-    position = _drawn(state)
+    position = _drawn(state, axes)
     fading = max(4.0, np.ptp(position[:, 2]) / state.radius.max())  # from front to back
     image = paint_spheres(position, state.radius, colours, view, pixel, fading=fading)[::-1]
     image = np.pad(image, [(0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)], mode="edge")
     picture = Image.fromarray(np.round(255 * image).astype(np.uint8))
-    text = f"t = {state.time * NANO:.1f} ns"
-    ImageDraw.Draw(picture).text((12, 10), text, fill=(60, 60, 60), font=_font())
+    canvas = ImageDraw.Draw(picture)
+    canvas.text((12, 10), f"t = {state.time * NANO:.1f} ns", fill=_INK, font=_font())
+    _draw_legend(canvas, legend, 12, picture.height - 28)
+    _draw_length(canvas, pixel, picture.width - 12, 16)
     return np.asarray(picture)
 
 
-def _font():
+def _draw_legend(canvas, legend, x, y):
+    """Patches or a scale in a row, from (x, y) [pixels] on."""
+    for entry in legend:
+        if isinstance(entry, Patch):
+            canvas.ellipse((x, y + 4, x + 12, y + 16), fill=_rgb(entry.colour))
+            x = _write(canvas, entry.text, x + 18, y)
+        else:
+            x = _write(canvas, entry.low, x, y) - 8
+            for k, colour in enumerate(on_scale(np.linspace(0, 1, 120))):
+                canvas.line((x + k, y + 4, x + k, y + 16), fill=_rgb(colour))
+            x = _write(canvas, entry.high, x + 128, y)
+
+
+def _write(canvas, text, x, y):
+    canvas.text((x, y), text, fill=_INK, font=_font(16))
+    return x + int(canvas.textlength(text, font=_font(16))) + 16
+
+
+def _draw_length(canvas, pixel, right, y):
+    """A bar of a round length, up to a sixth of the width."""
+    most = canvas.im.size[0] / 6 * pixel
+    power = 10.0 ** np.floor(np.log10(most))
+    length = power * next(digit for digit in (5, 2, 1) if digit * power <= most)
+    text = f"{length * 1e9:.0f} nm" if length < 0.999e-6 else f"{length * 1e6:.0f} µm"
+    left = right - length / pixel
+    canvas.line((left, y + 24, right, y + 24), fill=_INK, width=3)
+    canvas.text(((left + right) / 2 - canvas.textlength(text, font=_font(16)) / 2, y), text, fill=_INK, font=_font(16))
+
+
+def _rgb(colour):
+    return tuple(int(round(255 * value)) for value in colour)
+
+
+@cache
+def _font(size=20):
     """matplotlib's own, so that it is there wherever this is."""
     import matplotlib
 
-    return ImageFont.truetype(os.path.join(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf"), 20)
+    return ImageFont.truetype(os.path.join(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf"), size)
 
 
 def _encode(frames, file, frames_per_second):
@@ -81,7 +137,7 @@ def _encode(frames, file, frames_per_second):
     first = next(frames)
     size = f"{first.shape[1]}x{first.shape[0]}"
     command = ["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size]
-    command += ["-r", str(frames_per_second), "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18", file]
+    command += ["-r", str(frames_per_second), "-i", "-", *(_GIF if file.endswith(".gif") else _H264), file]
     with tempfile.TemporaryFile() as messages:
         try:
             encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=messages)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from .grain_colours import AGGREGATE_COLOURS
 from .sphere_raster import paint_spheres
-from .style import AGGREGATE_COLOURS
 
 PIXELS = 420  # across a panel
 MICRO = 1e6

@@ -1,4 +1,4 @@
-"""Common look of the figures: sizes, fonts, one colour for each aggregate (those of the channels: runs.format)."""
+"""Common look of the figures: sizes and fonts (colours of grains: grain_colours; of the channels: runs.format)."""
 
 import io
 
@@ -19,8 +19,6 @@ _SETTINGS = {
     "axes.spines.right": False,
     "savefig.dpi": 150,
 }
-
-AGGREGATE_COLOURS = ((0.92, 0.60, 0.18), (0.24, 0.52, 0.82))
 
 
 def styled(make):

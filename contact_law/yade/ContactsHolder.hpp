@@ -30,8 +30,9 @@ public:
 		const auto tag = std::find_if(scene.tags.begin(), scene.tags.end(), isHolder);
 		return tag != scene.tags.end() && tag->find(also) != std::string::npos;
 	}
-	static constexpr const char* refusal = "the contacts of these grains are in another JKRWadaEngine, which has not given way: call its "
-	                                       "handOver() first, or import contact_law before O.engines is set";
+	static constexpr const char* refusal =
+	        "the contacts of these grains are in another JKRWadaEngine, which has not given way: call its "
+	        "handOver() first, or import contact_law before O.engines is set";
 
 private:
 	static constexpr const char *key = "contacts=", *also = ", O.interactions";

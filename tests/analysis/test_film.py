@@ -10,7 +10,7 @@ import pytest
 from written_runs import CHANNELS, RADIUS, record, state_arrays, write_run
 
 from analysis.__main__ import main
-from analysis.figures.style import AGGREGATE_COLOURS
+from analysis.figures.grain_colours import AGGREGATE_COLOURS
 
 needs_ffmpeg = pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
 
@@ -38,6 +38,7 @@ def _frames(file):
 def _places(frame, colour):
     """Mean column, as a fraction of the width, of the pixels whose hue is the colour's."""
     colour = np.array(colour)
+    frame = frame[:-40]  # without the legend
     same_hue = (frame @ colour) / np.linalg.norm(frame + 1e-9, axis=2) / np.linalg.norm(colour) > 0.985
     return np.argwhere(same_hue)[:, 1].mean() / frame.shape[1]
 

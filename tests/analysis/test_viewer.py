@@ -13,7 +13,7 @@ from written_runs import RADIUS, two_clusters, two_pairs
 
 from analysis.__main__ import main
 from analysis.export.viewer import THREE
-from analysis.figures.style import AGGREGATE_COLOURS
+from analysis.figures.grain_colours import AGGREGATE_COLOURS
 from analysis.runs.folder import open_run
 
 pytestmark = pytest.mark.skipif(not THREE.exists(), reason="libjs-three is not installed")
@@ -85,7 +85,7 @@ def test_a_browser_draws_turns_and_goes_through_the_states(tmp_path, browser):
     assert "ns" in browser.find_element("id", "time").text and "nm" in browser.find_element("id", "length").text
 
     choose = "let c = document.getElementById('colour'); c.value = arguments[0]; c.onchange();"
-    for way in ("coordination", "speed", "fragment", "bond"):
+    for way in ("contacts", "speed", "fragment", "bond"):
         browser.execute_script(choose, way)
         assert browser.find_element("id", "legend").text
         assert abs(_shown(browser, 11) - last).mean() > 1e-3, way

@@ -2,12 +2,14 @@
 
 import base64
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader
 
-from ...figures.style import AGGREGATE_COLOURS, run_title
+from ...figures.grain_colours import BONDED, COLOURINGS, SCALE, Range
+from ...figures.style import run_title
 from ...progress import progress
 from ...runs.write import require_file, write_text
 from ..fields import exported_states
@@ -15,7 +17,6 @@ from ..fields import exported_states
 THREE = Path("/usr/share/javascript/three")  # of Debian's libjs-three
 _SCRIPTS = ("build/three.min.js", "examples/js/controls/OrbitControls.js")
 _HERE = Path(__file__).parent
-_FAST = 99.0  # percentile of the speeds that the scale of colours ends at
 
 
 class NoThree(Exception):
@@ -32,7 +33,9 @@ def write_view(run, file, three=THREE):
     page = Environment(loader=FileSystemLoader(_HERE), autoescape=True).get_template("page.html")
     data = json.dumps(_data(run)).replace("<", "\\u003c")  # no text in it can end the script
     viewer = (_HERE / "viewer.js").read_text(encoding="utf-8")
-    write_text(file, page.render(title=run.path.resolve().name, scripts=scripts, data=data, viewer=viewer))
+    write_text(
+        file, page.render(title=run.path.resolve().name, ways=COLOURINGS, scripts=scripts, data=data, viewer=viewer)
+    )
     return file
 
 
@@ -50,36 +53,26 @@ def _data(run):
     first = run.start
     unit, cell = float(first.radius.max()), first.cell_size
     origin = (first.position.min(axis=0) + first.position.max(axis=0)) / 2 if cell is None else cell / 2
-    states = [
-        _state(exported, origin, unit)
-        for exported in progress(exported_states(run), "reading states", len(run.states))
-    ]
-    speeds = np.concatenate([state.pop("speeds") for state in states])
+    of = Range.of(progress(run.states, "finding the scales"))
+    states = progress(exported_states(run), "reading states", len(run.states))
     return {
         "title": run_title(run),
         "unit": unit,
         "radius": _packed(first.radius / unit, "<f4"),
-        "aggregate": _packed(first.aggregate, "u1"),
-        "colours": AGGREGATE_COLOURS,
-        "fast": float(np.percentile(speeds, _FAST)),
-        "states": states,
+        "legends": {name: list(map(asdict, way.legend(of))) for name, way in COLOURINGS.items()},
+        "scale": SCALE,
+        "bond": BONDED,
+        "states": [_state(exported, of, origin, unit) for exported in states],
     }
 
 
-def _state(exported, origin, unit):
+def _state(exported, of, origin, unit):
     state = exported.state
     position = state.position if state.cell_size is None else state.position % state.cell_size
-    speed = np.linalg.norm(state.velocity - state.velocity.mean(axis=0), axis=1)
-    bonded = np.zeros(len(speed), dtype=bool)
-    bonded[state.contact_pairs[state.contact_bonded].ravel()] = True
     return {
         "time": state.time,
-        "speeds": speed,
         "position": _packed((position - origin) / unit, "<f4"),
-        "speed": _packed(speed, "<f4"),
-        "coordination": _packed(np.minimum(exported.coordination(), 255), "u1"),
-        "fragment": _packed(exported.fragments(), "<u4"),
-        "bond": _packed(bonded, "u1"),
+        "colours": {name: _packed(np.round(255 * way.colours(exported, of)), "u1") for name, way in COLOURINGS.items()},
         "first": _packed(exported.first, "<u4"),
         "between": _packed(exported.between / unit, "<f4"),
         "bonded": _packed(state.contact_bonded, "u1"),

@@ -13,51 +13,27 @@
   }
   const floats = (text) => new Float32Array(bytes(text).buffer);
   const whole = (text) => new Uint32Array(bytes(text).buffer);
-  const radius = floats(data.radius), aggregate = bytes(data.aggregate), count = radius.length;
+  const radius = floats(data.radius), count = radius.length;
   const unpacked = [];
   function state(number) { // unpacked once
     if (!unpacked[number]) {
       const packed = data.states[number];
       unpacked[number] = {
-        time: packed.time, cell: packed.cell, position: floats(packed.position), speed: floats(packed.speed),
-        coordination: bytes(packed.coordination), fragment: whole(packed.fragment), bond: bytes(packed.bond),
+        time: packed.time, cell: packed.cell, position: floats(packed.position), colours: packed.colours,
         first: whole(packed.first), between: floats(packed.between), bonded: bytes(packed.bonded),
       };
     }
     return unpacked[number];
   }
 
-  // ---- colours ----
+  // ---- legends ----
 
-  const GREY = [0.75, 0.75, 0.75], BOND = [0.80, 0.25, 0.25], CONTACT = [0.25, 0.25, 0.25];
-  const MOST = 8; // contacts of a grain
-  const PIECES = [[0.24, 0.52, 0.82], [0.92, 0.60, 0.18], [0.30, 0.65, 0.35], [0.75, 0.35, 0.60], [0.55, 0.45, 0.30], [0.35, 0.70, 0.75]];
-  const SCALE = [[0.27, 0.00, 0.33], [0.23, 0.32, 0.55], [0.13, 0.57, 0.55], [0.37, 0.79, 0.38], [0.99, 0.91, 0.14]]; // viridis
-  function onScale(share) {
-    const place = Math.max(0, Math.min(1, share)) * (SCALE.length - 1), low = Math.min(Math.floor(place), SCALE.length - 2);
-    return SCALE[low].map((value, k) => value + (place - low) * (SCALE[low + 1][k] - value));
-  }
   const css = (colour) => `rgb(${colour.map((value) => Math.round(255 * value)).join(",")})`;
-  const patch = (colour, text) => [`<span class="patch" style="background:${css(colour)}"></span>${text}`];
-  const scale = (low, high) =>
-    [`${low}<span class="scale" style="background:linear-gradient(90deg,${SCALE.map(css).join(",")})"></span>${high}`];
-  const digits = (number) => Number(number.toPrecision(3)).toString();
-  const WAYS = {
-    aggregate: {
-      of: (s, k) => data.colours[aggregate[k] % data.colours.length],
-      legend: () => Array.from(new Set(aggregate)).sort().map((a) => patch(data.colours[a % data.colours.length], `aggregate ${a + 1}`)),
-    },
-    coordination: { of: (s, k) => onScale(s.coordination[k] / MOST), legend: () => [scale("0", `${MOST} or more contacts`)] },
-    speed: {
-      of: (s, k) => onScale(s.speed[k] / (data.fast || 1)),
-      legend: () => [scale("0", `${digits(data.fast)} m/s past the centre of mass`)],
-    },
-    fragment: {
-      of: (s, k) => (s.fragment[k] < PIECES.length ? PIECES[s.fragment[k]] : GREY),
-      legend: () => PIECES.map((colour, k) => patch(colour, k ? `${k + 1}.` : "largest piece")).concat([patch(GREY, "smaller")]),
-    },
-    bond: { of: (s, k) => (s.bond[k] ? BOND : GREY), legend: () => [patch(BOND, "sintered to a neighbour"), patch(GREY, "not")] },
-  };
+  const gradient = `linear-gradient(90deg,${data.scale.map(css).join(",")})`;
+  function legend(entry) {
+    return entry.colour ? `<span><span class="patch" style="background:${css(entry.colour)}"></span>${entry.text}</span>`
+      : `<span>${entry.low}<span class="scale" style="background:${gradient}"></span>${entry.high}</span>`;
+  }
 
   // ---- what is drawn ----
 
@@ -81,7 +57,8 @@
     grains.setAttribute(name, attribute);
     return attribute;
   };
-  const centre = instanced("centre", new Float32Array(3 * count), 3), colour = instanced("colour", new Float32Array(3 * count), 3);
+  const centre = instanced("centre", new Float32Array(3 * count), 3), colour = new THREE.InstancedBufferAttribute(new Uint8Array(3 * count), 3, true);
+  grains.setAttribute("colour", colour);
   instanced("radius", radius, 1);
   const spheres = new THREE.ShaderMaterial({
     extensions: { fragDepth: true },
@@ -115,6 +92,7 @@
   contacts.frustumCulled = false;
   contacts.visible = false;
   scene.add(contacts);
+  const CONTACT = [0.25, 0.25, 0.25];
   let box = null;
 
   // ---- showing a state ----
@@ -125,10 +103,10 @@
   let shown = 0, reach = 1;
 
   function showColours(s) {
-    const way = WAYS[byId("colour").value];
-    for (let k = 0; k < count; ++k) colour.array.set(way.of(s, k), 3 * k);
+    const way = byId("colour").value;
+    colour.array.set(bytes(s.colours[way]));
     colour.needsUpdate = true;
-    byId("legend").innerHTML = way.legend().join("");
+    byId("legend").innerHTML = data.legends[way].map(legend).join(" ");
   }
   function showContacts(s) {
     const ends = new Float32Array(2 * s.between.length), tints = new Float32Array(ends.length);
@@ -137,7 +115,7 @@
         const begin = s.position[3 * s.first[m] + k];
         ends[6 * m + k] = begin;
         ends[6 * m + 3 + k] = begin + s.between[3 * m + k];
-        tints[6 * m + k] = tints[6 * m + 3 + k] = (s.bonded[m] ? BOND : CONTACT)[k];
+        tints[6 * m + k] = tints[6 * m + 3 + k] = (s.bonded[m] ? data.bond : CONTACT)[k];
       }
     }
     contacts.geometry.dispose();
@@ -182,7 +160,7 @@
     const about = window.innerWidth / 6 / pixels, power = Math.pow(10, Math.floor(Math.log10(about)));
     const length = power * [5, 2, 1].find((digit) => digit * power <= about);
     byId("length").style.width = `${length * pixels}px`;
-    byId("length").textContent = length < 0.9999e-6 ? `${digits(1e9 * length)} nm` : `${digits(1e6 * length)} µm`;
+    byId("length").textContent = length < 0.9999e-6 ? `${Math.round(1e9 * length)} nm` : `${Math.round(1e6 * length)} µm`;
   }
   let scheduled = false;
   function draw() {

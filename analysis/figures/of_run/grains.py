@@ -5,8 +5,9 @@ import numpy as np
 
 from ...measures.of_run import maximum_of_run
 from ...runs.format import COLLISION
+from ..grain_colours import AGGREGATE_COLOURS
 from ..sphere_raster import paint_spheres
-from ..style import AGGREGATE_COLOURS, NANO, new_figure, run_title, styled
+from ..style import NANO, new_figure, run_title, styled
 
 # More pixels than this across would only cost time: the figure is about 1,300 wide.
 _PIXELS_ACROSS = 1500
