@@ -2,13 +2,12 @@
 
 import argparse
 import os
-import signal
 import sys
 
-from .signals import end_quietly
+from .signals import ENDING, end_quietly
 
 if __name__ == "__main__":
-    end_quietly(signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    end_quietly(*ENDING)
 
 from .commands import export, figures, film, plot, status, study, summary, view  # noqa: E402
 from .printable import printable  # noqa: E402

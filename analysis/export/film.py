@@ -13,6 +13,7 @@ from ..figures.sphere_raster import paint_spheres
 from ..figures.style import NANO
 from ..progress import progress
 from ..runs.write import replacing, require_file
+from ..signals import held
 from .fields import Exported
 
 FRAMES_PER_SECOND = 10
@@ -139,21 +140,24 @@ def _encode(frames, file, frames_per_second):
     command = ["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size]
     command += ["-r", str(frames_per_second), "-i", "-", *(_GIF if file.endswith(".gif") else _H264), file]
     with tempfile.TemporaryFile() as messages:
+        encoder = None
         try:
-            encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=messages)
-        except FileNotFoundError:
-            raise NoFilm("ffmpeg: not installed; must be there to write a film (apt-get install ffmpeg)") from None
-        try:
+            with held():  # an encoder that nobody knows would write on
+                encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=messages)
             encoder.stdin.write(first.tobytes())
             for frame in frames:
                 encoder.stdin.write(frame.tobytes())
+        except FileNotFoundError:
+            raise NoFilm("ffmpeg: not installed; must be there to write a film (apt-get install ffmpeg)") from None
         except BrokenPipeError:
             pass  # it says why below
         except BaseException:
-            encoder.kill()
+            if encoder:
+                encoder.kill()
             raise
         finally:
-            encoder.communicate()
+            if encoder:
+                encoder.communicate()
         messages.seek(0)
         lines = messages.read().decode(errors="replace").strip().splitlines()
     if encoder.returncode:
