@@ -1,5 +1,6 @@
 """Shared by all tests: the repository's top on sys.path, and scripts in YADE, each in a process of its own."""
 
+import os
 import pickle
 import signal
 import subprocess
@@ -10,7 +11,11 @@ from pathlib import Path
 import pytest
 
 TOP = Path(__file__).resolve().parents[1]
+ROOMS = [
+    str(TOP / "tests" / room) for room in (".", "scripts", "analysis", "benchmarks")
+]  # whose helpers others import
 sys.path.insert(0, str(TOP))
+sys.path += ROOMS
 
 from approx import without_absolute_tolerance
 from yade_server import YadeServer
@@ -23,7 +28,7 @@ class YadeFailed(AssertionError):
 
 
 SERVER = YadeServer()
-TO_CALL = f"import sys\nsys.path[:0] = [{str(TOP)!r}, {str(TOP / 'tests')!r}]\nfrom yade_call import answer\nanswer()\n"
+TO_CALL = f"import sys\nsys.path[:0] = {[str(TOP), *ROOMS]}\nfrom yade_call import answer\nanswer()\n"
 
 
 def call_in_yade(path, name, arguments, threads=1, timeout=300):
@@ -75,3 +80,17 @@ def pytest_pyfunc_call(pyfuncitem):
 @pytest.fixture
 def yade():
     return run_yade
+
+
+@pytest.fixture
+def program(tmp_path, monkeypatch):
+    """program(name, script) makes a shell script that is found before any other program of that name."""
+    folder = tmp_path / "bin"
+    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+
+    def made(name, script):
+        folder.mkdir(exist_ok=True)
+        (folder / name).write_text(f"#!/bin/sh\n{script}\n")
+        (folder / name).chmod(0o755)
+
+    return made

@@ -2,17 +2,15 @@
 
 import numpy as np
 import pytest
+from of_ice import ICE, OVERLAP, RADIUS
 from scipy.spatial import cKDTree
 from scipy.stats import kstest
 
 from yade_scripts import packings
-from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
+from yade_scripts.materials import pair_constants
 from yade_scripts.packings import grain_sizes
 from yade_scripts.packings.aggregate import AggregateParameters, make
 
-ICE = MATERIALS["ice"]
-RADIUS = ICE.grainRadius
-OVERLAP = equilibrium_overlap(ICE)
 UNLIKE = {"two": dict(sizes="two", ratio=2.5, fraction=0.3), "lognormal": dict(sizes="lognormal", spread=0.4)}
 
 
@@ -65,10 +63,17 @@ def test_grains_of_unlike_size(name, make_one):
         require_ballistic(packing)
 
 
-def test_distance_at_rest_is_the_equilibrium_of_each_pair():
+def test_single_pairs_by_hand():
+    """Two grains at +-d/2: r_gyr = d/2; unlike ones with masses m, M at the distance d: r_gyr = d (m M)^(1/2)/(m + M)."""
     for first, second in ((1e-7, 1e-7), (1e-7, 3e-7), (0.5e-7, 4e-7)):
         expected = first + second - pair_constants(ICE, (first, second))["equilibriumOverlap"]
         assert grain_sizes.touching_distance(first, second, RADIUS, OVERLAP) == pytest.approx(expected, rel=1e-13)
+    pair = packings.bpca(2, RADIUS, OVERLAP, 1)
+    assert packings.gyration_radius(pair) == pytest.approx((2 * RADIUS - OVERLAP) / 2, rel=1e-12)
+    assert packings.characteristic_radius(pair) == pytest.approx((5 / 3) ** 0.5 * (2 * RADIUS - OVERLAP) / 2, rel=1e-12)
+    unlike = packings.bpca(2, RADIUS, OVERLAP, 1, radii=[RADIUS, 2 * RADIUS])
+    distance = grain_sizes.touching_distance(RADIUS, 2 * RADIUS, RADIUS, OVERLAP)
+    assert packings.gyration_radius(unlike) == pytest.approx(distance * 8**0.5 / 9, rel=1e-12)
 
 
 def test_radii_that_were_asked_for():
@@ -84,15 +89,12 @@ def test_radii_that_were_asked_for():
         assert low <= drawn.min() and drawn.max() <= high
 
 
-def test_same_seed_same_aggregate_other_seed_or_index_another():
+def test_same_seed_same_aggregate_whatever_the_sizes():
+    """Sizes come from a stream of their own."""
     one = packings.bpca(400, RADIUS, OVERLAP, 5)
     assert np.array_equal(one.position, packings.bpca(400, RADIUS, OVERLAP, 5).position)
     for seed, index in ((6, 0), (5, 1)):
         assert not np.allclose(one.position[1:], packings.bpca(400, RADIUS, OVERLAP, seed, index).position[1:])
-
-
-def test_unlike_sizes_leave_equal_grains_as_they_are():
-    """Sizes come from a stream of their own."""
     plain = make(AggregateParameters.parse(dict(packing="bpca", grains=200, seed=3)), OVERLAP, 0)
     assert np.array_equal(plain.position, packings.bpca(200, RADIUS, OVERLAP, 3).position)
     cells = dict(packing="bpca", grains=200, seed=3, sizes="two", sizeRatio=2, sizeFraction=0.25)
@@ -109,16 +111,6 @@ def test_characteristic_radius_is_that_of_a22():
     assert 0.001 < scatter < 0.01
     large = packings.characteristic_radius(packings.bpca(50000, RADIUS, OVERLAP, 1)) / RADIUS
     assert abs(large / 72.27 - 1) < 4 * scatter * (1 + 1 / 2) ** 0.5
-
-
-def test_radii_of_a_single_pair_by_hand():
-    """Two grains at +-d/2: r_gyr = d/2; unlike ones with masses m, M at the distance d: r_gyr = d (m M)^(1/2)/(m + M)."""
-    pair = packings.bpca(2, RADIUS, OVERLAP, 1)
-    assert packings.gyration_radius(pair) == pytest.approx((2 * RADIUS - OVERLAP) / 2, rel=1e-12)
-    assert packings.characteristic_radius(pair) == pytest.approx((5 / 3) ** 0.5 * (2 * RADIUS - OVERLAP) / 2, rel=1e-12)
-    unlike = packings.bpca(2, RADIUS, OVERLAP, 1, radii=[RADIUS, 2 * RADIUS])
-    distance = grain_sizes.touching_distance(RADIUS, 2 * RADIUS, RADIUS, OVERLAP)
-    assert packings.gyration_radius(unlike) == pytest.approx(distance * 8**0.5 / 9, rel=1e-12)
 
 
 def test_isotropy():

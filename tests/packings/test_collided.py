@@ -1,12 +1,7 @@
 """The largest piece that a collision left, as a packing."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-
-sys.path.append(str(Path(__file__).resolve().parent.parent / "analysis"))
 from written_runs import PAIR, RADIUS, record, state_arrays, write_run
 
 from analysis.runs.format import CHANNELS
@@ -31,7 +26,7 @@ def made_run(path, bonded=False):
     return write_run(path, record(4 * RADIUS, {"packing": "bcca", "seed": 5}), history, [{**state, "time": 0.0}, state])
 
 
-def test_its_contacts_are_at_rest_and_it_has_hardly_moved(tmp_path):
+def test_at_rest_hardly_moved_turned_in_its_plane_and_saved_for_the_next_run(tmp_path):
     packing = largest_piece_of_run(made_run(tmp_path / "run"))
     assert packing.grains == 4 and packing.seed == 5 and packing.parameters["of"] == 7
     assert contacts(packing).tolist() == [[0, 1], [1, 2], [2, 3]]
@@ -40,10 +35,6 @@ def test_its_contacts_are_at_rest_and_it_has_hardly_moved(tmp_path):
     assert 0 < packing.parameters["largestMotion"] < 0.02 * RADIUS
     assert packing.position.mean(axis=0) == pytest.approx(0, abs=1e-12 * RADIUS)
     assert np.all(packing.position[:, 2] == 0)
-
-
-def test_turned_in_its_plane_and_saved_for_the_next_run(tmp_path):
-    packing = largest_piece_of_run(made_run(tmp_path / "run"))
     one, other = turned(packing, 3, 0), turned(packing, 3, 1)
     assert np.all(one.position[:, 2] == 0) and not np.allclose(one.position, other.position)
     assert gyration_radius(one) == pytest.approx(gyration_radius(packing), rel=1e-12)

@@ -1,23 +1,16 @@
 """Spheres cut out of a compression: what is kept, contacts at rest, and what moves when they are set free."""
 
 import os
-import sys
-from pathlib import Path
 
 import pytest
+from of_ice import ICE, OVERLAP
+from of_ice import SPACING as APART
+from running import COMPRESS, completed, make_packing
 from scenes import *
-
-sys.path.append(str(Path(__file__).resolve().parent.parent / "scripts"))
-from running import COMPRESS, PYTHON, SCRIPTS, call, completed
 
 from analysis.runs.format import CHANNELS
 from yade_scripts import packings
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
-
-MAKE_PACKING = os.path.join(SCRIPTS, "make_packing.py")
-OVERLAP = equilibrium_overlap(MATERIALS["ice"])
-APART = 2e-7 - OVERLAP
 
 
 def pressed_lattice(side=8, strain=0.004, noise=0.0, seed=1):
@@ -48,24 +41,16 @@ def test_contacts_come_to_rest_by_a_small_motion(noise):
     assert len(packings.contacts(packing)) > 2 * packing.grains
 
 
-def test_a_function_of_state_seed_and_index():
+def test_a_function_of_state_seed_and_index_without_grains_that_lost_their_neighbours():
     state = pressed_lattice()
     one, same, other = (cut(state, CutParameters.parse({"radius": 5, "seed": 3}), index) for index in (0, 0, 1))
     assert np.array_equal(one.position, same.position)
     assert one.grains != other.grains or not np.allclose(one.position, other.position)
-
-
-def test_grains_that_lost_their_neighbours_are_dropped():
-    state = pressed_lattice()
     loose = PeriodicState(state.position * 1.3, state.radius, state.contact_pairs[:40], state.cell_size * 1.3, OVERLAP)
     packing = cut(loose, CutParameters.parse({"radius": 7, "seed": 1}))
     assert packing.parameters["dropped"] > packing.grains
     first, second = packings.contacts(packing).T
     assert len(set(first) | set(second)) == packing.grains
-
-
-def make_packing(folder, *arguments):
-    return call(folder, PYTHON, MAKE_PACKING, *arguments)
 
 
 @pytest.fixture(scope="module")
@@ -88,8 +73,7 @@ def test_command_line(run):
         packing = packings.load(run / name)
         assert 0.25 < packing.parameters["filling"] < 0.55
         assert overlaps(packing) == pytest.approx(OVERLAP, rel=2e-3)
-        of_ice = {name: getattr(MATERIALS["ice"], name) for name in ("young", "poisson", "surfaceEnergy")}
-        assert {name: packing.parameters[name] for name in of_ice} == of_ice
+        assert all(packing.parameters[name] == getattr(ICE, name) for name in ("young", "poisson", "surfaceEnergy"))
         assert f"{name}: {packing.grains} grains" in done.stdout
 
 

@@ -1,15 +1,12 @@
 """Orientation and lattice phase are uniform: tests at 99.9 % confidence each, of fixed seeds."""
 
 import numpy as np
+from of_ice import OVERLAP, RADIUS, SPACING
 from scipy.stats import kstest, norm
 
 from yade_scripts import packings
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings import lattice
 
-RADIUS = MATERIALS["ice"].grainRadius
-OVERLAP = equilibrium_overlap(MATERIALS["ice"])
-SPACING = 2 * RADIUS - OVERLAP
 CONFIDENCE = 0.999
 
 

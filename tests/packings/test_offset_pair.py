@@ -2,15 +2,12 @@
 
 import numpy as np
 import pytest
+from of_ice import OVERLAP, RADIUS
 
 from yade_scripts import packings
 from yade_scripts.experiments.collision import CollisionParameters, place
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.approach import first_touch
 from yade_scripts.packings.offset_pair import START_GAP, offset_pair
-
-RADIUS = MATERIALS["ice"].grainRadius
-OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 
 
 def centre(packing):

@@ -2,24 +2,13 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
+from of_ice import OVERLAP, RADIUS, SPACING
 from scipy.spatial import cKDTree
 
+from analysis.measures.fragments import fragment_labels
 from yade_scripts import packings
 from yade_scripts.experiments.collision import CollisionParameters, place
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings import bcca, extent
-
-RADIUS = MATERIALS["ice"].grainRadius
-OVERLAP = equilibrium_overlap(MATERIALS["ice"])
-SPACING = 2 * RADIUS - OVERLAP
-
-
-def clusters(packing):
-    pairs = packings.contacts(packing)
-    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=2 * (packing.grains,))
-    return connected_components(graph, directed=False)[0]
 
 
 @pytest.mark.parametrize("filling, relative_radius, grains", [(0.6, 20, 240), (0.9, 25, 562), (0.3, 10, 30)])
@@ -34,15 +23,11 @@ def test_planar_cpe_is_a_hexagonal_lattice_in_a_circle(filling, relative_radius,
     assert np.allclose(distance, SPACING, rtol=1e-9) and np.bincount(pairs.ravel()).max() <= 6
 
 
-def test_planar_filling_has_the_limit_of_the_lattice():
+def test_planar_packings_have_the_limit_and_the_coordination_of_the_lattice():
     assert packings.maximum_filling(1.0, 0.0, True) == pytest.approx(np.pi / (2 * np.sqrt(3)))
     message = "filling = 0.95: more than the lattice holds; must be at most 0.916"
     with pytest.raises(packings.PackingError, match=message):
         packings.cpe(0.95, 20 * RADIUS, RADIUS, OVERLAP, 1, planar=True)
-
-
-def test_mean_coordination_of_planar_packings():
-    """Six neighbours times the fraction of sites that is filled, on average over seeds; 4 standard errors, and the rim (some 4 per cent at R = 60)."""
     filling = 0.5
     made = [packings.cpe(filling, 60 * RADIUS, RADIUS, OVERLAP, seed, planar=True) for seed in range(8)]
     found = [2 * len(packings.contacts(packing)) / packing.grains for packing in made]
@@ -54,7 +39,7 @@ def test_mean_coordination_of_planar_packings():
 @pytest.mark.parametrize("grains", [2, 7, 256])
 def test_bcca_is_one_cluster_whose_grains_touch_and_never_overlap_more(planar, grains):
     packing = bcca(grains, RADIUS, OVERLAP, 5, planar=planar)
-    assert packing.grains == grains and clusters(packing) == 1
+    assert packing.grains == grains and fragment_labels(grains, packings.contacts(packing)).max() == 0
     assert np.allclose(packing.position.mean(axis=0), 0, atol=1e-9 * RADIUS)
     nearest = cKDTree(packing.position).query(packing.position, 2)[0][:, 1]
     assert np.allclose(nearest.min(), SPACING, rtol=1e-9) and np.all(nearest < SPACING * (1 + 1e-9))

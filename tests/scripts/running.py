@@ -1,5 +1,6 @@
 """Runs the scripts as a user does."""
 
+import io
 import json
 import os
 import signal
@@ -53,6 +54,10 @@ def study(folder, *arguments):
     return call(folder, PYTHON, STUDY, *arguments)
 
 
+def make_packing(folder, *arguments):
+    return call(folder, PYTHON, os.path.join(SCRIPTS, "make_packing.py"), *arguments)
+
+
 def messages(process):
     """What was written to stderr but for the two lines that YADE itself writes at each start."""
     return [
@@ -65,6 +70,11 @@ def refusal(process):
     lines = messages(process)
     assert process.returncode == 2 and len(lines) == 1, (process.returncode, lines)
     return lines[0]
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
 
 
 def wait_for(condition, seconds=60):
