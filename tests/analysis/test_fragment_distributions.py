@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from written_runs import chain
 
 from analysis.measures.fragments import *
 from analysis.measures.pair_velocities import pair_velocities, root_mean_square
@@ -9,8 +10,9 @@ from analysis.measures.pair_velocities import pair_velocities, root_mean_square
 
 def chains(sizes):
     """Contact pairs of fragments that are chains of these sizes."""
-    ends = np.concatenate([[0], np.cumsum(sizes)])
-    return np.array([[k, k + 1] for a, b in zip(ends, ends[1:]) for k in range(a, b - 1)]).reshape(-1, 2)
+    return np.concatenate(
+        [np.reshape(chain(start, n), (-1, 2)) for start, n in zip(np.cumsum([0, *sizes]), sizes)]
+    ).astype(int)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -34,6 +36,7 @@ def test_cumulative_distributions_of_hand_made_fragments(seed):
 def test_growth_efficiency_from_coalescence_to_dust(sizes, growth):
     largest = fragment_sizes(fragment_labels(200, chains(sizes))).max()
     assert growth_efficiency(largest, 100, 100) == pytest.approx(growth)
+    assert growth_efficiency(43957, 50000, 50000) == pytest.approx(-0.12086) and growth_efficiency(30, 20, 10) == 1.0
 
 
 def test_velocities_of_neighbours_by_all_pairs():

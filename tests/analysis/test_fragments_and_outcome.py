@@ -2,15 +2,9 @@
 
 import numpy as np
 import pytest
-from written_runs import state_arrays
+from written_runs import chain, state_arrays
 
-from analysis.measures.fragments import (
-    belongs_to_an_aggregate,
-    fragment_labels,
-    fragment_masses,
-    fragment_sizes,
-    growth_efficiency,
-)
+from analysis.measures.fragments import *
 from analysis.measures.outcome import classify, collision_outcome, restitution
 
 
@@ -19,17 +13,15 @@ def _labels_by_flooding(grains, pairs):
     for i, j in pairs:
         neighbours[i].add(j)
         neighbours[j].add(i)
-    pieces, seen = [], set()
-    for first in range(grains):
-        if first in seen:
-            continue
-        piece, todo = set(), [first]
+    pieces, left = [], set(range(grains))
+    while left:
+        piece, todo = set(), [min(left)]
         while todo:
             grain = todo.pop()
             if grain not in piece:
                 piece.add(grain)
                 todo += neighbours[grain]
-        seen |= piece
+        left -= piece
         pieces.append(piece)
     return pieces
 
@@ -57,63 +49,38 @@ def test_crumbs_of_a_packing_do_not_count():
     assert np.array_equal(np.flatnonzero(~counted), [9])
 
 
-@pytest.mark.parametrize(
-    "f1, f2, kind",
-    [
-        (1.0, 0.0, "sticking"),
-        (0.9, 0.1, "sticking"),
-        (0.89, 0.11, "fragmentation"),
-        (0.5, 0.5, "bouncing"),
-        (0.65, 0.25, "bouncing"),
-        (0.66, 0.24, "fragmentation"),
-        (0.45, 0.44, "fragmentation"),
-        (0.1, 0.1, "fragmentation"),
-    ],
-)
-def test_rule(f1, f2, kind):
-    assert classify(f1, f2) == kind
-
-
-def test_growth_efficiency_of_a22_equation_28():
-    assert growth_efficiency(43957, 50000, 50000) == pytest.approx(-0.12086)
-    assert growth_efficiency(30, 20, 10) == 1.0
+def test_rule():
+    rule = {(1.0, 0.0): "sticking", (0.9, 0.1): "sticking", (0.5, 0.5): "bouncing", (0.65, 0.25): "bouncing"}
+    torn = ((0.89, 0.11), (0.66, 0.24), (0.45, 0.44), (0.1, 0.1))
+    for fractions, kind in {**rule, **dict.fromkeys(torn, "fragmentation")}.items():
+        assert classify(*fractions) == kind, fractions
 
 
 def test_restitution_is_projected():
-    assert restitution([-2.0, 0.0, 0.0], [0.5, 3.0, 0.0]) == pytest.approx(0.25)
-    assert restitution([-2.0, 0.0, 0.0], [-0.5, 3.0, 0.0]) is None
-    assert restitution([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]) is None
+    approach = [-2.0, 0.0, 0.0]
+    assert restitution(approach, [0.5, 3.0, 0.0]) == pytest.approx(0.25)
+    assert restitution(approach, [-0.5, 3.0, 0.0]) is None and restitution([0.0, 0.0, 0.0], approach) is None
 
 
-def _chain(first, grains):
-    return [[k, k + 1] for k in range(first, first + grains - 1)]
-
-
-def _state(velocity, pairs, half):
+def _state(velocity, *chains, half=20):
+    """A state of two aggregates of half of the grains each; chains: (first grain, number) of what hangs together."""
     position = np.arange(2.0 * half)[:, None] * [1e-7, 0, 0]
+    pairs = [pair for one in chains for pair in (chain(*one) if isinstance(one, tuple) else [one])]
     return state_arrays(0.0, position, velocity, np.repeat([0, 1], half), pairs)
 
 
+MEETING = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], 20, axis=0)
+START, STILL = _state(MEETING, (0, 20), (20, 20)), np.zeros((40, 3))
+
+
 def _outcome(start, end, met=True):
-    return collision_outcome(
-        start["radius"],
-        start["aggregate"],
-        start["velocity"],
-        start["contact_pairs"],
-        end["velocity"],
-        end["contact_pairs"],
-        met,
-    )
-
-
-def _start(half=20):
-    velocity = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], half, axis=0)
-    return _state(velocity, _chain(0, half) + _chain(half, half), half)
+    both = "velocity", "contact_pairs"
+    about = (start[name] for name in ("radius", "aggregate", *both))
+    return collision_outcome(*about, *(end[name] for name in both), met)
 
 
 def test_sticking():
-    end = _state(np.zeros((40, 3)), _chain(0, 40), 20)
-    outcome = _outcome(_start(), end)
+    outcome = _outcome(START, _state(STILL, (0, 40)))
     assert (outcome.kind, outcome.restitution, outcome.largest_fragment) == ("sticking", 0.0, 40)
     assert outcome.growth_efficiency == 1.0 and outcome.fragments == 1
 
@@ -122,16 +89,17 @@ def test_sticking():
 def test_bouncing_with_known_restitution_whichever_fragment_is_heavier(moved):
     cut = 20 + moved
     velocity = np.where(np.arange(40)[:, None] < cut, [[-0.3, 0.1, 0]], [[0.3, 0.1, 0]])
-    outcome = _outcome(_start(), _state(velocity, _chain(0, cut) + _chain(cut, 40 - cut), 20))
+    outcome = _outcome(START, _state(velocity, (0, cut), (cut, 40 - cut)))
     assert outcome.kind == "bouncing" and outcome.restitution == pytest.approx(0.3)
     assert outcome.largest_fragment == max(cut, 40 - cut)
     assert outcome.growth_efficiency == pytest.approx((max(cut, 40 - cut) - 20) / 20)
 
 
-def test_pieces_that_passed_each_other_have_no_restitution():
-    velocity = np.repeat([[0.5, 0, 0], [-0.5, 0, 0]], 20, axis=0)
-    outcome = _outcome(_start(), _state(velocity, _chain(0, 20) + _chain(20, 20), 20))
+def test_pieces_that_passed_each_other_or_never_met_have_no_restitution():
+    outcome = _outcome(START, _state(0.5 * MEETING, (0, 20), (20, 20)))
     assert outcome.kind == "bouncing" and outcome.restitution is None
+    outcome = _outcome(START, START, met=False)
+    assert (outcome.kind, outcome.restitution, outcome.mass_fractions) == ("never met", None, (0.5, 0.5))
 
 
 @pytest.mark.parametrize(
@@ -146,28 +114,22 @@ def test_two_large_pieces_that_are_not_the_two_aggregates_are_fragments(pieces):
     """Two pieces with nine tenths of the mass and more than a quarter each, flying apart: no bounce, no restitution."""
     pairs = [[i, j] for piece in pieces for i, j in zip(piece, piece[1:])]
     velocity = np.where(np.isin(np.arange(40), pieces[0])[:, None], [[-0.3, 0, 0]], [[0.3, 0, 0]])
-    outcome = _outcome(_start(), _state(velocity, pairs, 20))
+    outcome = _outcome(START, _state(velocity, *pairs))
     assert sum(outcome.mass_fractions) == 1.0 and min(outcome.mass_fractions) > 0.25
     assert outcome.kind == "fragmentation" and outcome.restitution is None
 
 
 def test_fragmentation():
-    outcome = _outcome(_start(), _state(np.zeros((40, 3)), _chain(0, 10) + _chain(20, 12), 20))
+    outcome = _outcome(START, _state(STILL, (0, 10), (20, 12)))
     assert outcome.kind == "fragmentation" and outcome.mass_fractions == (0.3, 0.25)
     assert outcome.restitution is None and outcome.largest_fragment == 12
 
 
 def test_a_grain_that_was_alone_does_not_spoil_sticking():
-    velocity = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], 20, axis=0)
-    # Grains 16 to 19, a fifth of aggregate 0, lie about singly from the start.
-    start = _state(velocity, _chain(0, 16) + _chain(20, 20), 20)
-    outcome = _outcome(start, _state(np.zeros((40, 3)), _chain(0, 16) + _chain(20, 20) + [[15, 20]], 20))
+    """Grains 16 to 19, a fifth of aggregate 0, lie about singly from the start."""
+    start, end = _state(MEETING, (0, 16), (20, 20)), _state(STILL, (0, 16), (20, 20), [15, 20])
+    outcome = _outcome(start, end)
     assert outcome.kind == "sticking" and outcome.excluded_grains == 4 and outcome.mass_fractions[0] == 1.0
-
-
-def test_aggregates_that_never_met_are_no_bounce():
-    outcome = _outcome(_start(), _start(), met=False)
-    assert (outcome.kind, outcome.restitution, outcome.mass_fractions) == ("never met", None, (0.5, 0.5))
 
 
 def test_one_aggregate_alone_is_refused():

@@ -4,11 +4,11 @@ beside each other, and both models against closed forms."""
 import numpy as np
 import pandas
 import pytest
-from written_runs import MASS, RADIUS, record, state_arrays, write_run
+from written_runs import MASS, RADIUS, chain, losing, record, state_arrays, write_run
 
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
-from analysis.runs.format import BROKEN_BONDS, CHANNELS
+from analysis.runs.format import BROKEN_BONDS
 from analysis.runs.table import read_table
 from analysis.studies.definition import GALLERY
 from analysis.studies.sintered.measure import PARTS
@@ -20,31 +20,20 @@ PLAIN = dict(material="ice", planar=1, viscoelasticTime=0.0, limit="cut", slidin
 LOST = {"rollingDissipation": 0.4, "disconnection": 0.1, "normal": 0.05}
 
 
-def chain(start, number):
-    return [[k, k + 1] for k in range(start, start + number - 1)]
-
-
 def made_run(
     path, velocity, neck, seed, largest=GRAINS, growth=0.0, broken=0, speed=0.0, duration=24.4e-6, **parameters
 ):
     """A collision of two straight chains: at the end a piece of `largest` grains, the rest a second piece beside it; necks broken by sliding (one in
     eight) and rolling; its halves part at `speed` [m/s] all the time."""
-    time, kinetic = np.linspace(0, 4e-6, 21), GRAINS * 0.5 * MASS * (velocity / 2) ** 2
-    history = {name: np.zeros(21) for name in CHANNELS}
-    history.update({name: part * kinetic * time / time[-1] for name, part in LOST.items()})
-    history["kinetic"] = kinetic * (1 - sum(LOST.values()) * time / time[-1])
-    history.update(time=time, d=0 * time, v=np.full(21, speed), contacts=0 * time.astype(int))
-    history["contacts_between"] = (time > 0).astype(int)
-    for name, number in zip(BROKEN_BONDS, (0, broken // 8, broken - broken // 8, 0)):
-        history[name] = np.linspace(0, number, 21).round().astype(int)
-    position, half = 2 * RADIUS * np.arange(GRAINS)[:, None] * (1, 0, 0), GRAINS // 2
-    ends = ((0.0, half), (4e-6, largest))
-    states = [
-        state_arrays(t, position, 0 * position, np.repeat([0, 1], half), chain(0, n) + chain(n, GRAINS - n))
-        for t, n in ends
-    ]
-    for state in states:
-        state["contact_bonded"] = np.full(len(state["contact_pairs"]), neck > 0)
+    time, half = np.linspace(0, 4e-6, 21), GRAINS // 2
+    counts = zip(BROKEN_BONDS, (0, broken // 8, broken - broken // 8, 0))
+    counts = {name: np.linspace(0, number, 21).round().astype(int) for name, number in counts}
+    history = losing(time, half * MASS * (velocity / 2) ** 2, LOST, time > 0, v=np.full(21, speed), **counts)
+    position, states = 2 * RADIUS * np.arange(GRAINS)[:, None] * (1, 0, 0), []
+    for t, n in ((0.0, half), (4e-6, largest)):
+        pairs = chain(0, n) + chain(n, GRAINS - n)
+        states.append(state_arrays(t, position, 0 * position, np.repeat([0, 1], half), pairs))
+        states[-1]["contact_bonded"] = np.full(len(pairs), neck > 0)
     states[1]["position"][largest:, 0] += RADIUS
     own = dict(packing="file" if growth else "bcca", neck=neck, velocity=velocity, seed=1 if growth else seed)
     about = record(200 * RADIUS, {**PLAIN, **own, "duration": duration, **parameters})
@@ -78,10 +67,8 @@ def test_other_runs_are_left_out(tmp_path, capsys):
     made_run(tmp_path / "runs" / "extracted", 10.0, 0.7, 1, packing="cpe")
     assert main(["study", "sintered", str(tmp_path / "runs")]) == 2
     said = capsys.readouterr().err
-    assert (
-        "impact = 0.5, the study of Sirono & Ueno (2017) has 0.0" in said
-        and "packing = cpe, S17's are bcca and file" in said
-    )
+    assert "impact = 0.5, the study of Sirono & Ueno (2017) has 0.0" in said
+    assert "packing = cpe, S17's are bcca and file" in said
 
 
 def test_set_ups_stand_beside_each_other_by_pairs(tmp_path):

@@ -23,17 +23,31 @@ def record(aggregate_radius, parameters=None):
     pair = {name: getattr(PAIR, re.sub("([A-Z])", r"_\1", name).lower()) for name in pair}
     derived = {**material, "grainRadius": RADIUS, "grainMass": MASS, **pair, "timeStep": 0.1 * PAIR.time_unit}
     derived |= {"steps": 0, "aggregateRadius": aggregate_radius, "grainsPerAggregate": 1}
+    about = {"format": FORMAT, "kind": "collision", "parameters": parameters or {"material": "ice"}, "derived": derived}
+    about |= {"versions": {}, "commit": "unknown", "seed": 1, "hardware": {"cpu": "", "cores": 1}}
+    return {**about, "wallTime": 0.0, "outcome": "completed"}
+
+
+def chain(start, number):
+    """Contact pairs of so many grains in a row, from this one on."""
+    return [[k, k + 1] for k in range(start, start + number - 1)]
+
+
+def losing(time, energy=0.0, lost={}, touching=0, **series):
+    """A collision's history (T,): an energy [J], of which fractions {channel: part} go evenly over the time; nothing else happens but
+    what other series tell."""
+    zero = np.zeros(len(time))
+    history = {name: lost.get(name, 0.0) * energy * time / time[-1] for name in CHANNELS}
+    history["kinetic"] = energy - sum(history.values())
+    touching = zero.astype(int) + touching
     return {
-        "format": FORMAT,
-        "kind": "collision",
-        "parameters": parameters or {"material": "ice"},
-        "derived": derived,
-        "versions": {},
-        "commit": "unknown",
-        "seed": 1,
-        "hardware": {"cpu": "", "cores": 1},
-        "wallTime": 0.0,
-        "outcome": "completed",
+        **history,
+        "time": time,
+        "d": zero,
+        "v": zero,
+        "contacts": 0 * touching,
+        "contacts_between": touching,
+        **series,
     }
 
 

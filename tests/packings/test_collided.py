@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from written_runs import PAIR, RADIUS, record, state_arrays, write_run
+from written_runs import PAIR, RADIUS, losing, record, state_arrays, write_run
 
-from analysis.runs.format import CHANNELS
 from yade_scripts.packings import contacts, gyration_radius, load, save
 from yade_scripts.packings.collided import largest_piece_of_run, turned
 from yade_scripts.packings.from_file import packing_from_file
@@ -20,10 +19,8 @@ def made_run(path, bonded=False):
     position[3] = position[2] + 1.002 * REST * np.array([0.6, 0.8, 0.0])
     state = state_arrays(1e-9, position, 0 * position, [0, 0, 0, 0, 1, 1, 1], [[0, 1], [1, 2], [2, 3], [4, 5]])
     state["contact_bonded"][:] = bonded
-    history = {name: np.zeros(2) for name in CHANNELS}
-    history.update(time=np.array([0, 1e-9]), d=np.zeros(2), v=np.zeros(2))
-    history.update(contacts=np.zeros(2, int), contacts_between=np.zeros(2, int))
-    return write_run(path, record(4 * RADIUS, {"packing": "bcca", "seed": 5}), history, [{**state, "time": 0.0}, state])
+    about = record(4 * RADIUS, {"packing": "bcca", "seed": 5})
+    return write_run(path, about, losing(np.array([0, 1e-9])), [{**state, "time": 0.0}, state])
 
 
 def test_at_rest_hardly_moved_turned_in_its_plane_and_saved_for_the_next_run(tmp_path):

@@ -52,17 +52,13 @@ def test_the_cell_follows_k13(run):
     assert edge[0] == pytest.approx(spread + 2.1e-7, rel=1e-9)
 
 
-def test_it_ends_where_it_should(run):
+def test_it_ends_where_it_should_and_the_ledger_closes(run):
     _, about, history = run
     assert about["outcome"] == "completed" and about["kind"] == "compression"
     assert 0.5 <= history["filling"][-1] < 0.502 and history["filling"][-2] < 0.5
     assert about["parameters"]["initialFilling"] == pytest.approx(history["filling"][0])
     assert history["coordination"] == pytest.approx(2 * history["contacts"] / 128)
     assert 127 <= history["contacts"][0] <= 130 and history["coordination"][-1] > 4
-
-
-def test_the_ledger_closes_with_the_work_of_the_boundaries(run):
-    _, _, history = run
     assert history["rollingDissipation"][-1] > 0.05 * -history["boundaryWork"][-1]
     assert worst_closure(history) < 3e-5
 

@@ -25,9 +25,8 @@ def diluted_crystal(filling):
     wanted = round(filling * (cells * edge) ** 3 / (4 / 3 * np.pi * R**3))
     kept = np.sort(np.random.default_rng(5).choice(len(sites), wanted, replace=False))
     packing = packings.Packing(sites[kept], np.full(wanted, R), 0)
-    return PeriodicState(
-        packing.position, packing.radius, packings.contacts(packing), np.full(3, cells * edge), OVERLAP
-    )
+    cell = np.full(3, cells * edge)
+    return PeriodicState(packing.position, packing.radius, packings.contacts(packing), cell, OVERLAP)
 
 
 @pytest.fixture
@@ -53,16 +52,13 @@ def test_both_spheres_have_the_filling_that_was_asked_for(made_cell):
     assert os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns == before
 
 
-def test_a_cell_that_is_not_there_and_one_of_another_filling(made_cell, monkeypatch):
+def test_what_cannot_be_cut_is_refused_and_the_script_says_what_it_does(made_cell, monkeypatch, capsys):
     with pytest.raises(PackingError, match="f0.3-s9/states: no states; must be those of a cell"):
         compressed.cut_pair(0.3, 9)
     monkeypatch.setattr(compressed, "PLACES", 3)
     monkeypatch.setattr(compressed, "TOLERANCE", 1e-9)
     with pytest.raises(PackingError, match="no sphere of that filling in 3 places; must be another cell"):
         compressed.cut_pair(0.4, 3)
-
-
-def test_the_script_says_what_it_does(capsys):
     compressed.main(["--help"])
     assert "compressed.py cut" in capsys.readouterr().out
     with pytest.raises(SystemExit) as ended:

@@ -33,9 +33,8 @@ def test_a_pair_sticks_below_its_velocity_and_parts_above():
 
 
 def test_the_clusters_energy_is_accounted_for():
-    changes = {
-        name: float(value) for name, value in re.findall(r"^(\w+) +([+-]\S+) K\(0\)$", example("cluster.py"), re.M)
-    }
+    found = re.findall(r"^(\w+) +([+-]\S+) K\(0\)$", example("cluster.py"), re.M)
+    changes = {name: float(value) for name, value in found}
     assert changes["kinetic"] < -0.1 and changes["rollingDissipation"] > 0.05
     assert abs(changes.pop("sum")) < 1e-3 and abs(sum(changes.values())) < 2e-3
 

@@ -3,7 +3,7 @@
 import json
 import os
 import time
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def as_machine(monkeypatch, host):
     monkeypatch.setattr(running, "this_machine", lambda: (host, "its boot"))
 
 
-def test_a_run_beats_until_it_ends_and_leaves_nothing(tmp_path):
+def test_a_run_beats_until_it_ends_and_a_job_of_an_array_says_its_task(tmp_path, monkeypatch):
     (tmp_path / "run").mkdir()
     beating = Beating(str(tmp_path / "run"), interval=0.02)
     host, boot = running.this_machine()
@@ -54,9 +54,6 @@ def test_a_run_beats_until_it_ends_and_leaves_nothing(tmp_path):
     wait_for(lambda: read_heartbeat(tmp_path / "run").beat >= 3, 20)
     beating.stop()
     assert os.listdir(tmp_path / "run") == []
-
-
-def test_a_job_of_an_array_says_its_task(tmp_path, monkeypatch):
     monkeypatch.setenv("SLURM_JOB_ID", "14")
     assert running.this_job() == ("14", 0)
     for name, value in {"ARRAY_JOB_ID": "12", "ARRAY_TASK_ID": "3", "RESTART_COUNT": "2"}.items():
@@ -85,18 +82,15 @@ def test_elsewhere_it_is_the_age_by_the_file_servers_clock(tmp_path, monkeypatch
     assert sorted(os.listdir(young)) == [".heartbeat-1", HEARTBEAT_FILE]
 
 
-def test_a_heartbeat_that_changes_between_two_looks_is_one(tmp_path):
+def test_a_heartbeat_that_changes_is_one_until_it_stops_for_three_intervals(tmp_path):
     """Whatever the file server's clock says of it."""
     folder = left_by(tmp_path / "run", ELSEWHERE, STALE)
     assert place(folder) is None
-    left_by(tmp_path / "run", Heartbeat(**{**asdict(ELSEWHERE), "beat": 1}), STALE)
+    left_by(tmp_path / "run", replace(ELSEWHERE, beat=1), STALE)
     assert place(folder) and place(folder)
-
-
-def test_a_heartbeat_that_stops_is_missed_after_three_intervals(tmp_path):
-    folder = left_by(tmp_path / "run", Heartbeat("node7", "another boot", interval=0.1))
-    assert place(folder)
-    wait_for(lambda: not place(folder), 20)
+    quick = left_by(tmp_path / "quick", replace(ELSEWHERE, interval=0.1))
+    assert place(quick)
+    wait_for(lambda: not place(quick), 20)
 
 
 DAMAGED = ["", "[]", '{"interval": -1, "job": "1; rm", "host": 3}', '{"interval": 1e99, "start": 1.5}']
@@ -124,20 +118,16 @@ def test_a_damaged_heartbeat_is_judged_by_its_age(tmp_path, text):
         ("", 1, STALE, False),
     ],
 )
-def test_slurm_tells_before_the_heartbeat(tmp_path, monkeypatch, answer, status, age, is_running):
-    squeue = tmp_path / "bin" / "squeue"
-    squeue.parent.mkdir()
-    squeue.write_text(f'#!/bin/sh\n[ "$*" = "-h -r -j 12 -o %i %T" ] || exit 3\necho "{answer}"\nexit {status}\n')
-    squeue.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{squeue.parent}:{os.environ['PATH']}")
-    found = place(left_by(tmp_path / "run", Heartbeat(**{**asdict(ELSEWHERE), "job": "12_3"}), age))
+def test_slurm_tells_before_the_heartbeat(tmp_path, program, answer, status, age, is_running):
+    program("squeue", f'[ "$*" = "-h -r -j 12 -o %i %T" ] || exit 3\necho "{answer}"\nexit {status}')
+    found = place(left_by(tmp_path / "run", replace(ELSEWHERE, job="12_3"), age))
     assert bool(found) == is_running
     assert not found or str(found) == "on node7, Slurm job 12_3"
 
 
 def test_a_job_that_is_begun_anew_takes_over_at_once(tmp_path, monkeypatch):
     monkeypatch.setenv("SLURM_JOB_ID", "12")
-    folder = left_by(tmp_path / "run", Heartbeat(**{**asdict(ELSEWHERE), "job": "12"}))
+    folder = left_by(tmp_path / "run", replace(ELSEWHERE, job="12"))
     assert place(folder)
     monkeypatch.setenv("SLURM_RESTART_COUNT", "1")
     assert place(folder) is None

@@ -43,39 +43,35 @@ def test_a_table_of_any_name_is_run(here):
     assert done.returncode == 0 and done.stdout.splitlines()[0].split()[:2] == ["done", "a"]
 
 
-@pytest.mark.parametrize(
-    "command, made",
-    [
-        (["summary", NAME], None),
-        (["figures", NAME], "figures/energy.png"),
-        (["export", NAME, "--format", "all"], "export/run.pvd"),
-        (["film", NAME, "--out", f"{NAME}.mp4"], None),
-        (["status", NAME], None),
-        (["study", "elastoplastic", NAME, "--figures", "figures"], None),
-    ],
-    ids=lambda value: value[0] if isinstance(value, list) else "",
-)
-def test_the_analysis_of_a_run_of_any_name(here, command, made):
+COMMANDS = {
+    ("summary", NAME): None,
+    ("figures", NAME): "figures/energy.png",
+    ("export", NAME, "--format", "all"): "export/run.pvd",
+    ("film", NAME, "--out", f"{NAME}.mp4"): None,
+    ("status", NAME): None,
+    ("study", "elastoplastic", NAME, "--figures", "figures"): None,
+}
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command[0])
+def test_the_analysis_of_a_run_of_any_name(here, command):
     done = run_analysis(here, *command)
     expected = 2 if command[0] == "study" else 0  # of another scene: left out
     assert done.returncode == expected and "Traceback" not in done.stderr, done.stderr
-    assert made is None or (here / NAME / made).exists()
+    assert (here / NAME / (COMMANDS[command] or "")).exists()
 
 
-@pytest.mark.parametrize(
-    "column, cell, arguments",
-    [
-        ("!COUNT", "open('PWNED','w')", []),
-        ("!AFFINITY", "open('PWNED','w')", ["--slurm", "--dry-run"]),
-        ("!EXEC", "touch${IFS}PWNED;yade", ["--status"]),
-    ],
-)
-def test_columns_that_yade_batch_takes_for_programs_are_refused(tmp_path, column, cell, arguments):
-    (tmp_path / "rows.table").write_text(f"radius {column}\n4 {cell}\n")
-    done = study(tmp_path, "rows.table", *arguments)
-    assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
-    assert done.stderr.startswith(f"study.py: rows.table: the column {column} is for yade-batch alone; must be ")
-    assert os.listdir(tmp_path) == ["rows.table"]
+def test_columns_that_yade_batch_takes_for_programs_are_refused(tmp_path):
+    for column, cell, *arguments in (
+        ("!COUNT", "open('PWNED','w')"),
+        ("!AFFINITY", "open('PWNED','w')", "--slurm", "--dry-run"),
+        ("!EXEC", "touch${IFS}PWNED;yade", "--status"),
+    ):
+        (tmp_path / "rows.table").write_text(f"radius {column}\n4 {cell}\n")
+        done = study(tmp_path, "rows.table", *arguments)
+        assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
+        assert done.stderr.startswith(f"study.py: rows.table: the column {column} is for yade-batch alone; must be ")
+        assert os.listdir(tmp_path) == ["rows.table"]
 
 
 def test_status_runs_no_script_that_a_table_names(tmp_path):
@@ -86,25 +82,21 @@ def test_status_runs_no_script_that_a_table_names(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["mine.py", "rows.table"]
 
 
-@pytest.mark.parametrize(
-    "header, cells, words",
-    [
-        ("!THREADS threads", "2 1", "!THREADS = 2: threads are 1; must be the same"),
-        ("!THREADS !OMP_NUM_THREADS", "2 1", "!OMP_NUM_THREADS = 1: threads are 2; must be the same"),
-        ("!OMP_NUM_THREADS radius", "os.nice(1) 4", "!OMP_NUM_THREADS = os.nice(1): not a finite number; must be >= 1"),
-    ],
-)
-def test_threads_of_yade_batch_are_obeyed_or_refused(tmp_path, header, cells, words):
-    (tmp_path / "rows.table").write_text(f"{header}\n{cells}\n")
-    assert words in study(tmp_path, "rows.table", "--status").stdout
+def test_threads_of_yade_batch_are_obeyed_or_refused(tmp_path):
+    for rows, words in {
+        "!THREADS threads\n2 1\n": "!THREADS = 2: threads are 1; must be the same",
+        "!THREADS !OMP_NUM_THREADS\n2 1\n": "!OMP_NUM_THREADS = 1: threads are 2; must be the same",
+        "!OMP_NUM_THREADS radius\nos.nice(1) 4\n": "!OMP_NUM_THREADS = os.nice(1): not a finite number; must be >= 1",
+    }.items():
+        (tmp_path / "rows.table").write_text(rows)
+        assert words in study(tmp_path, "rows.table", "--status").stdout
 
 
 def test_a_table_of_ours_is_run_by_yade_batch(tmp_path):
     """As users call it, who choose its names themselves."""
     (tmp_path / "rows.table").write_text("radius! velocity material duration seed!\n4 10 'ice' 5e-10 1\n= = ice = 2\n")
-    done = call(
-        tmp_path, "yade-batch", "--disable-pynotify", "--log", "@.log", "-j", "1", "-l", "2", "rows.table", COLLIDE
-    )
+    options = ("--disable-pynotify", "--log", "@.log", "-j", "1", "-l", "2")
+    done = call(tmp_path, "yade-batch", *options, "rows.table", COLLIDE)
     assert done.returncode == 0 and os.listdir(tmp_path / "runs") == ["radius=4,seed=1"], done.stdout
 
 

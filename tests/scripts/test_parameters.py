@@ -5,6 +5,7 @@ import re
 import time
 
 import pytest
+from refused import refused
 
 from yade_scripts import stability
 from yade_scripts.experiments import collision
@@ -28,7 +29,7 @@ def complete(texts, constants=ICE_PAIR, threads=1):
     return collision.complete(parse(texts), constants, threads)
 
 
-def test_defaults_are_the_scene_of_the_demo():
+def test_defaults_are_the_scene_of_the_demo_and_stay():
     given = parse({})
     assert (given.filling, given.radius, given.grains) == (0.4, 20, 3200)
     assert given.velocity == 10**0.5 and given.out == "runs/collide-ice-f0.4-R20-v3.162-s1"
@@ -36,6 +37,12 @@ def test_defaults_are_the_scene_of_the_demo():
     missing = {name for name, value in found.as_dict().items() if value is None}
     files, sizes = {"projectileGrains", "projectileFile", "file"}, {"sizeRatio", "sizeFraction", "sizeSpread"}
     assert found.threads == 1 and missing == files | sizes | {"duration", "impactStepFraction", "tolerance"}
+    with pytest.raises(AttributeError):
+        parse({}).velocity = 3.0
+    by_grains = parse({"grains": "1000", "filling": "0.3"})
+    assert by_grains.grains == 1000
+    assert by_grains.radius == pytest.approx((1000 / 0.3) ** (1 / 3), rel=1e-14)
+    assert grain_number(0.3, by_grains.radius) == 1000
 
 
 @pytest.mark.parametrize(
@@ -56,18 +63,6 @@ def test_defaults_are_the_scene_of_the_demo():
 def test_values(name, text, value):
     found = getattr(parse({name: text}), name)
     assert found == value and type(found) is type(value)
-
-
-def test_parameters_cannot_be_changed_in_place():
-    with pytest.raises(AttributeError):
-        parse({}).velocity = 3.0
-
-
-def test_grains_and_radius_give_each_other():
-    by_grains = parse({"grains": "1000", "filling": "0.3"})
-    assert by_grains.grains == 1000
-    assert by_grains.radius == pytest.approx((1000 / 0.3) ** (1 / 3), rel=1e-14)
-    assert grain_number(0.3, by_grains.radius) == 1000
 
 
 def test_no_packing_is_made_while_parsing():
@@ -175,15 +170,14 @@ WRONG = {
 
 @pytest.mark.parametrize("given", WRONG, ids=lambda given: given[:40])
 def test_wrong_parameters(given):
-    with pytest.raises(ParameterError) as error:
+    with refused(ParameterError, WRONG[given], "must be"):
         parse(arguments.from_arguments(given.split()))
-    assert WRONG[given] in str(error.value) and "\n" not in str(error.value) and "must be" in str(error.value)
 
 
-@pytest.mark.parametrize("value", [float("nan"), None, True])
-def test_values_of_another_type_are_no_numbers(value):
-    with pytest.raises(ParameterError, match=f"velocity = {value}: not a finite number"):
-        parse({"velocity": value})
+def test_values_of_another_type_are_no_numbers():
+    for value in (float("nan"), None, True):
+        with pytest.raises(ParameterError, match=f"velocity = {value}: not a finite number"):
+            parse({"velocity": value})
 
 
 def test_drag_and_dense_packings_lower_the_stable_step():
@@ -197,19 +191,12 @@ def test_drag_and_dense_packings_lower_the_stable_step():
         complete({"stepFraction": "0.3"}, with_drag(6e-12))
 
 
-@pytest.mark.parametrize(
-    "texts", [{"duration": "1e10"}, {"duration": 1e-9, "stepFraction": 1e-300}, {"duration": 1e300}], ids=str
-)
-def test_runs_without_an_end_are_refused(texts):
-    words = r"^duration = .*: .* steps of .* t0; must be at most 1e\+09 steps, .* s with"
-    with pytest.raises(ParameterError, match=words):
-        complete(texts)
-
-
-def test_the_default_duration_is_countable_too():
-    tiny = complete({"stepFraction": 1e-12})
+def test_runs_without_an_end_are_refused():
+    for texts in ({"duration": "1e10"}, {"duration": 1e-9, "stepFraction": 1e-300}, {"duration": 1e300}):
+        with refused(ParameterError, "duration = ", " t0; must be at most 1e+09 steps, ", " s with"):
+            complete(texts)
     with pytest.raises(ParameterError, match=r"duration = .* must be at most 1e\+09 steps"):
-        collision.with_duration(tiny, ICE_PAIR["timeUnit"], 0.0)
+        collision.with_duration(complete({"stepFraction": 1e-12}), ICE_PAIR["timeUnit"], 0.0)
     longest = 1e9 * 0.1 * ICE_PAIR["timeUnit"]
     assert complete({"duration": 0.999 * longest}).duration == 0.999 * longest
 
@@ -224,14 +211,11 @@ def test_the_default_duration_counts_from_the_first_touch():
         collision.with_duration(given, ICE_PAIR["timeUnit"], None)
 
 
-def test_threads_of_the_functors_are_those_of_yade():
+def test_threads_of_the_functors_are_those_of_yade_and_of_the_engine_its_own():
     functors = {"engine": "functors"}
     assert complete(functors, threads=2).threads == 2
     with pytest.raises(ParameterError, match="threads = 3: YADE was started with 1; must be "):
         complete({"threads": "3", **functors})
-
-
-def test_threads_of_the_fused_engine_are_its_own():
     assert complete({}).threads == 1
     assert complete({"threads": "2"}).threads == 2
     with pytest.raises(ParameterError, match="threads = 99999: more than this machine has cores; must be 1 to "):

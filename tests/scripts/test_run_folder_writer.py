@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 import pytest
-from running import wait_for
+from running import Terminal, wait_for
 
 from analysis.runs.running import being_written, locked_inodes
 from yade_scripts.parameters.errors import InputError
@@ -49,13 +49,17 @@ def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):
 
 
 def test_an_ended_run_is_replaced_only_when_asked_and_another_without_asking(tmp_path):
-    path, other = ended_run(tmp_path / "run"), ended_run(tmp_path / "other")
+    """One that was killed between the mark of its end and the removal of its checkpoint has both: it is replaced, not resumed."""
+    path, other, both = (ended_run(tmp_path / name) for name in ("run", "other", "both"))
     with pytest.raises(RunFolderError, match="holds a run that has ended; must be another folder"):
         RunFolder(str(path))
     RunFolder(str(path), overwrite=True)
     os.unlink(other / "ended")
     RunFolder(str(other))
-    for folder in (path, other):
+    (both / "checkpoint").mkdir()
+    (both / "checkpoint" / "recorder.npz").write_bytes(b"")
+    assert RunFolder(str(both), overwrite=True, resume=True).checkpoint is None
+    for folder in (path, other, both):
         assert sorted(os.listdir(folder)) == ["run.json", "states"] and os.listdir(folder / "states") == []
 
 
@@ -80,15 +84,6 @@ def test_a_run_that_ends_while_its_folder_is_opened_is_not_erased(tmp_path, monk
     with pytest.raises(RunFolderError, match="holds a run that has ended"):
         RunFolder(str(path))
     assert sorted(os.listdir(path)) == ["ended", "history.npz", "run.json", "states"]
-
-
-def test_an_ended_run_is_replaced_rather_than_resumed(tmp_path):
-    """One that was killed between the mark of its end and the removal of its checkpoint has both."""
-    path = ended_run(tmp_path / "run")
-    (path / "checkpoint").mkdir()
-    (path / "checkpoint" / "recorder.npz").write_bytes(b"")
-    assert RunFolder(str(path), overwrite=True, resume=True).checkpoint is None
-    assert sorted(os.listdir(path)) == ["run.json", "states"]
 
 
 @pytest.mark.parametrize("left", [[], [".run.json.x.unfinished"], ["states/.000000.npz.x.unfinished"]], ids=str)
@@ -229,19 +224,13 @@ def test_schedule(duration, steps, interval):
     assert steps <= schedule.steps < steps + interval and schedule.interval == interval
     samples = schedule.steps // interval
     assert samples * interval == schedule.steps and samples >= min(300, steps)
-    assert {0, samples} <= schedule.states <= set(range(samples + 1))
-    assert len(schedule.states) == min(22, samples + 1)
+    assert {0, samples} <= schedule.states <= set(range(samples + 1)) and len(schedule.states) == min(22, samples + 1)
 
 
 def test_a_run_of_very_many_steps_has_a_history_that_fits_in_memory():
     schedule = Schedule.of(1.0, 1e-9)
     samples = schedule.steps // schedule.interval
     assert 1e9 <= schedule.steps < 1e9 + schedule.interval and 0.9 * MOST_SAMPLES < samples <= MOST_SAMPLES
-
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
 
 
 def test_progress_shows_the_time_left_on_a_terminal_only():

@@ -26,7 +26,7 @@ def states(run):
     return [read_arrays(run, "states", name) for name in sorted(os.listdir(run / "states"))]
 
 
-def test_bonds_break_and_new_contacts_are_none(run):
+def test_bonds_break_new_contacts_are_none_and_a_plane_stays_one_to_the_bit(run):
     all_states = states(run)
     assert all_states[0]["contact_bonded"].all() and len(all_states[0]["contact_bonded"]) >= 50
     number = [state["contact_bonded"].sum() for state in all_states]
@@ -35,6 +35,10 @@ def test_bonds_break_and_new_contacts_are_none(run):
     sides = end["aggregate"][end["contact_pairs"]]
     between = sides[:, 0] != sides[:, 1]
     assert between.any() and not end["contact_bonded"][between].any()
+    for state in all_states:
+        assert np.all(state["position"][:, 2] == 0) and np.all(state["velocity"][:, 2] == 0)
+        assert np.all(state["angular_velocity"][:, :2] == 0)
+    assert np.any(end["angular_velocity"][:, 2] != 0)
 
 
 def test_broken_bonds_by_mode_are_in_history_and_states(run):
@@ -58,23 +62,13 @@ def test_runs_without_bonds_have_no_columns_for_them(tmp_path):
     assert not set(BROKEN_BONDS) & set(read.history) and read.last.contact_neck is None is read.last.bonds_broken
 
 
-def test_a_plane_stays_a_plane_to_the_bit(run):
-    for state in states(run):
-        assert np.all(state["position"][:, 2] == 0) and np.all(state["velocity"][:, 2] == 0)
-        assert np.all(state["angular_velocity"][:, :2] == 0)
-    assert np.any(states(run)[-1]["angular_velocity"][:, 2] != 0)
-
-
-def test_ledger_has_bond_breaking_and_closes(run):
+def test_ledger_has_bond_breaking_and_closes_and_run_json_tells_of_the_bonds(run):
     history = read_arrays(run, "history.npz")
     broken = history["bondBreaking"]
     assert broken[0] == 0 and broken[-1] > 0
     total = sum(history[channel] for channel in CHANNELS)
     assert np.abs(total - total[0]).max() < 2e-3 * history["kinetic"][0]
     assert np.all(history["twisting"] == 0)
-
-
-def test_run_json_tells_of_the_bonds(run):
     about = read_json(run, "run.json")
     parameters, derived = about["parameters"], about["derived"]
     assert parameters["neck"] == 0.5 and parameters["planar"] == 1

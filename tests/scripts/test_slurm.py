@@ -2,6 +2,7 @@
 
 import os
 import signal
+from types import SimpleNamespace
 
 import pytest
 from running import PYTHON, TOP, study
@@ -28,22 +29,12 @@ exec {PYTHON} {TOP}/yade_scripts/runner/slurm_task.py runs/logs/three/slurm-1/ro
 """
 
 
-def command(folder, name, script):
-    """A command of this name in a folder that comes first in PATH."""
-    folder.mkdir(exist_ok=True)
-    (folder / name).write_text(f"#!/bin/sh\n{script}\n")
-    (folder / name).chmod(0o755)
-
-
 @pytest.fixture
-def commands(tmp_path, monkeypatch):
+def commands(program, monkeypatch):
     """sbatch, which writes its arguments to a file and names job 12, then 13; squeue, by which all their tasks wait."""
-    bin_folder = tmp_path / "bin"
-    command(bin_folder, "sbatch", 'echo "$@" >> sbatch; echo $((11 + $(wc -l < sbatch)))')
-    command(bin_folder, "squeue", 'for task in 1 2; do echo "$4_$task PENDING"; done')
-    monkeypatch.setenv("PATH", f"{bin_folder}:{os.environ['PATH']}")
+    program("sbatch", 'echo "$@" >> sbatch; echo $((11 + $(wc -l < sbatch)))')
+    program("squeue", 'for task in 1 2; do echo "$4_$task PENDING"; done')
     monkeypatch.setattr(running, "_ANSWERS", {})
-    return bin_folder
 
 
 @pytest.fixture
@@ -75,9 +66,7 @@ def test_the_script_of_an_array(tmp_path):
     write_table(tmp_path)
     done = study(tmp_path, "three.table", "--slurm", "--dry-run", "-j", "4", "--", "--time=5")
     assert (done.returncode, done.stderr) == (1, REFUSED)
-    second = (
-        SCRIPT.replace("1-2%4", "1-1%4").replace("cpus-per-task=1", "cpus-per-task=2").replace("slurm-1", "slurm-2")
-    )
+    second = SCRIPT.replace("1-2%4", "1-1%4").replace("task=1", "task=2").replace("slurm-1", "slurm-2")
     assert done.stdout == SCRIPT + "\n" + second
     assert os.listdir(tmp_path) == ["three.table"]
 
@@ -118,42 +107,28 @@ def test_arrays_are_no_larger_than_slurm_takes_them():
     assert all(len({row.threads for row in group}) == 1 for group in found)
 
 
-@pytest.mark.parametrize(
-    "name, text, arguments, message",
-    [
-        ("a.table", HEADER + "a 5 10 1 a\n", ["--dry-run"], "--dry-run: must be given with --slurm"),
-        ("a.table", HEADER + "a 5 10 1 a\n", ["--", "--time=5"], "--time=5: must be given with --slurm"),
-        ("a.table", HEADER + "a 5 10 1 a\n", ["--slurm"], "sbatch: Batch job submission failed: no such partition"),
-        (
-            "a.table",
-            "radius !EXEC\n5 yade\n",
-            ["--slurm"],
-            "a.table: the column !EXEC is for yade-batch alone; must be left out",
-        ),
-        (
-            "a b.table",
-            HEADER + "a 5 10 1 a\n",
-            ["--slurm"],
-            "a b: a table's name must be of letters, digits and -_.,=+",
-        ),
-    ],
-    ids=["dry run", "options", "sbatch", "column", "name"],
-)
-def test_what_cannot_be_submitted_is_one_line(tmp_path, commands, call, name, text, arguments, message):
-    command(commands, "sbatch", "echo Batch job submission failed: no such partition >&2; exit 1")
-    write_table(tmp_path, text, name)
-    status, _, errors = call(name, *arguments)
-    assert status == 2
-    assert message in errors.splitlines()[-1]
+ONE = HEADER + "a 5 10 1 a\n"
+NOT_SUBMITTED = {
+    "a.table --dry-run": "--dry-run: must be given with --slurm",
+    "a.table -- --time=5": "--time=5: must be given with --slurm",
+    "a.table --slurm": "sbatch: Batch job submission failed: no such partition",
+    "a+(b).table --slurm": "a+(b): a table's name must be of letters, digits and -_.,=+",
+}
+
+
+@pytest.mark.parametrize("arguments", NOT_SUBMITTED)
+def test_what_cannot_be_submitted_is_one_line(tmp_path, program, call, arguments):
+    program("sbatch", "echo Batch job submission failed: no such partition >&2; exit 1")
+    write_table(tmp_path, ONE, arguments.split()[0])
+    status, _, errors = call(*arguments.split())
+    assert status == 2 and NOT_SUBMITTED[arguments] in errors.splitlines()[-1]
 
 
 def test_without_slurm_it_is_one_line(tmp_path, monkeypatch, call):
-    write_table(tmp_path, HEADER + "a 5 10 1 a\n")
+    write_table(tmp_path, ONE)
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert call("three.table", "--slurm")[::2] == (
-        2,
-        "study.py: sbatch: not found; must be on a machine that submits to Slurm\n",
-    )
+    status, _, errors = call("three.table", "--slurm")
+    assert (status, errors) == (2, "study.py: sbatch: not found; must be on a machine that submits to Slurm\n")
 
 
 STOPS = 'trap "echo TERM; exit 143" TERM; while :; do sleep 0.02; done'
@@ -161,14 +136,14 @@ DEAF = 'trap "echo TERM; trap - TERM" TERM; for i in $(seq 40); do sleep 0.02; d
 
 
 @pytest.fixture
-def task(tmp_path, commands, monkeypatch):
+def task(tmp_path, program):
     """begin(script of what yade does) -> Run, and its log."""
     handlers = {number: signal.getsignal(number) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
     row = rows.StudyRow("a", {}, "/collide.py", KIND, KIND.parse({"threads": "2"}))
     log = tmp_path / "a.log"
 
     def begin(script):
-        command(commands, "yade", f'echo "$YADE_BATCH" "$@"; {script}')
+        program("yade", f'echo "$YADE_BATCH" "$@"; {script}')
         return slurm_task.Run(row, "rows.table:2", str(log)), log
 
     yield begin
@@ -184,20 +159,13 @@ def after_begin(log):
 def test_a_task_runs_its_row_as_yade_batch_would(task):
     run, log = task("echo collide.py: no; exit 1")
     assert run.wait() == 1 and not run.limit_is_near
-    assert log.read_text().splitlines() == [
-        "rows.table:2 -n --threads=2 -x /collide.py",
-        "collide.py: no",
-        "",
-        "JOB SUMMARY",
-        "status  : 256 (FAILED)",
-    ]
+    command, *told = log.read_text().splitlines()
+    assert command == "rows.table:2 -n --threads=2 -x /collide.py"
+    assert told == ["collide.py: no", "", "JOB SUMMARY", "status  : 256 (FAILED)"]
     assert failure(log, "run") == "collide.py: no"
-
-
-def test_a_run_that_is_killed_has_failed(task):
+    log.unlink()
     run, log = task("kill -9 $$")
-    assert run.wait() == 137
-    assert failure(log, "run") == "killed by signal 9"
+    assert run.wait() == 137 and failure(log, "run") == "killed by signal 9"
 
 
 @pytest.mark.parametrize("number, near", [(signal.SIGUSR1, True), (signal.SIGTERM, False)], ids=["limit", "SIGTERM"])
@@ -225,30 +193,26 @@ def test_a_signal_to_all_of_the_job_is_not_passed_on(task, monkeypatch):
 
 @pytest.mark.parametrize("progress, requeued", [(0.5, True), (0.1, False)], ids=["further", "no further"])
 def test_a_task_at_its_limit_is_put_into_the_queue_again_if_it_came_further(
-    tmp_path, commands, monkeypatch, progress, requeued
+    tmp_path, program, monkeypatch, progress, requeued
 ):
     """Otherwise it would begin anew for ever."""
-    write_table(tmp_path, HEADER + "a 5 10 1 a\n", "rows.table")
     (tmp_path / "logs" / "slurm-1").mkdir(parents=True)
-    os.rename(tmp_path / "rows.table", tmp_path / "logs" / "slurm-1" / "rows.table")
+    write_table(tmp_path, ONE, "logs/slurm-1/rows.table")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("SLURM_ARRAY_JOB_ID", "12")
     monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "3")
-    command(commands, "scontrol", 'echo "$@" > scontrol')
+    program("scontrol", 'echo "$@" > scontrol')
     states = iter([rows.State(rows.WAITING, 0.1), rows.State(rows.WAITING, progress, note="checkpoint")])
     monkeypatch.setattr(rows, "state", lambda *_, **__: next(states))
-
-    def stopped(*_):
-        return type("Stopped", (), {"limit_is_near": True, "wait": lambda self: 143})()
-
-    monkeypatch.setattr(slurm_task, "Run", stopped)
+    stopped = SimpleNamespace(limit_is_near=True, wait=lambda: 143)
+    monkeypatch.setattr(slurm_task, "Run", lambda *_: stopped)
     assert slurm_task.main(["logs/slurm-1/rows.table", "1"]) == 143
-    assert (tmp_path / "scontrol").exists() == requeued
-    assert not requeued or (tmp_path / "scontrol").read_text() == "requeue 12_3\n"
+    asked = tmp_path / "scontrol"
+    assert asked.read_text() == "requeue 12_3\n" if requeued else not asked.exists()
 
 
 def test_a_row_that_ended_or_runs_elsewhere_is_not_run(tmp_path, capsys, monkeypatch):
-    write_table(tmp_path, HEADER + "a 5 10 1 a\n", "rows.table")
+    write_table(tmp_path, ONE, "rows.table")
     monkeypatch.setattr(slurm_task, "Run", None)
     for state, status, text in (
         (rows.State(rows.DONE, 1.0), 0, "a: has ended before\n"),

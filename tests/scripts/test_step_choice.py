@@ -1,25 +1,22 @@
 """stepFraction=auto: the step that is chosen, what is said of it, and that real runs keep to the tolerance."""
 
-import os
 import re
-import sys
 
 import numpy as np
 import pytest
-from running import TINY, TOP, collide, messages, read_json
+from errors import of_scripts
+from refused import refused
+from running import TINY, collide, messages, read_json
 from scipy.stats import binom
+from step_choice import COLLISIONS, COMPRESSIONS, FILLINGS, met
 
-from yade_scripts import stability, step_choice
+from yade_scripts import stability
+from yade_scripts import step_choice as rule
 from yade_scripts.experiments import collision, compression
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run.agreement import difference
-
-BENCHMARKS = os.path.join(TOP, "tests", "benchmarks")
-sys.path.insert(0, BENCHMARKS)
-from errors import of_scripts
-from step_choice import COLLISIONS, COMPRESSIONS, FILLINGS, met
 
 AUTO = {"stepFraction": "auto"}
 parse = KIND.parse
@@ -39,7 +36,7 @@ def chosen(**given):
 
 
 def expected_error(parameters, constants):
-    of_kind = step_choice.compression_errors if hasattr(parameters, "strainRate") else step_choice.collision_errors
+    of_kind = rule.compression_errors if hasattr(parameters, "strainRate") else rule.collision_errors
     return sum(of_kind(parameters, constants).values()) * parameters.stepFraction**2
 
 
@@ -80,13 +77,10 @@ def test_the_step_is_the_longest_of_two_digits_that_keeps_to_the_tolerance(scene
     assert steps == sorted(steps) and steps[0] < steps[-1]
 
 
-def test_drag_and_dense_packings_limit_it():
+def test_the_limits_of_stability_and_of_the_tolerance():
     for scene in ({"viscoelasticTime": 6e-12}, {"filling": 0.7}):
         found, _, limit = chosen(tolerance=1e-2, **scene)
         assert found.stepFraction == limit < 0.4
-
-
-def test_a_tolerance_that_no_step_reaches():
     with pytest.raises(ParameterError) as error:
         chosen(tolerance=1e-7, velocity=0.5)
     words = r"tolerance = 1e-07: would take a step of 0\.00\d+ t0; must be at least (\S+) in this scene, for 0\.01 t0, or .*"
@@ -180,7 +174,7 @@ def test_so_are_those_of_compressions():
 
 
 # Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds.
-# (radius, velocity, filling, T_vis, material, tolerance)
+COLUMNS = ("radius", "velocity", "filling", "viscoelasticTime", "material", "tolerance")
 OTHER_SCENES = [
     (7, 0.8, 0.45, 0, "ice", 1e-3), (9, 1.5, 0.35, 0, "ice", 1e-4), (8, 2.3, 0.5, 2e-12, "ice", 1e-4),
     (12, 2.3, 0.3, 0, "ice", 1e-4), (8, 4.2, 0.4, 0, "ice", 3e-5), (11, 4.2, 0.55, 4e-12, "ice", 1e-4),
@@ -210,64 +204,50 @@ OTHER_KINDS = {
 }  # fmt: skip
 
 
-def errors_over_tolerance(scenes):
-    """(error over the tolerance) of each scene, run with stepFraction=auto."""
+BATCHES = {
+    "collisions": ([{"seed": 1000 + k, **dict(zip(COLUMNS, one))} for k, one in enumerate(OTHER_SCENES)], 0.999, 5, 0.05),
+    "every other kind": ([{"seed": 2000, **one} for one in OTHER_KINDS.values()], 0.996, 3, 0.03),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("batch", BATCHES)
+def test_runs_that_are_in_no_fit_keep_to_the_tolerance(batch):
+    """With 1 in 20 beyond it at most, more than 4 of 18 collisions would be a chance of 0.1 %, more than 3 of 14 others of 0.4 %. None is
+    far beyond it, nor are steps much shorter than they need be."""
+    scenes, chance, most, median = BATCHES[batch]
     found = of_scripts([{**AUTO, **scene} for scene in scenes])
     assert not [answer["failed"] for answer in found if "failed" in answer]
     over = np.array([answer["ledger"] / scene["tolerance"] for answer, scene in zip(found, scenes, strict=True)])
-    assert len(over) == len(scenes) and np.all(over > 1e-6)  # all met
-    return over
+    assert np.all(over > 1e-6), over  # all met
+    assert np.count_nonzero(over > 1) <= binom.ppf(chance, len(over), 0.05), over
+    assert over.max() < most and np.median(over) > median, over
 
 
-def test_runs_that_are_in_no_fit_keep_to_the_tolerance():
-    """18 collisions; with 19 of 20 to keep to it, more than 4 that don't would be a chance of 0.1 %."""
-    names = ("radius", "velocity", "filling", "viscoelasticTime", "material", "tolerance")
-    scenes = [{"seed": 1000 + number, **dict(zip(names, scene))} for number, scene in enumerate(OTHER_SCENES)]
-    over = errors_over_tolerance(scenes)
-    assert np.count_nonzero(over > 1) <= binom.ppf(0.999, len(over), 0.05)
-    assert over.max() < 5 and np.median(over) > 0.05  # nor is the step much shorter than it need be
+NOT_MEASURED = [
+    ({"packing": "file", "file": "any.npz"}, "packing = file"),
+    ({"packing": "bpca", "sizes": "two", "sizeRatio": 2}, "sizes = two"),
+    ({"strainRate": 1e-5, "finalPressure": 1e4}, "finalPressure, which may end a run at any filling"),
+    ({"strainRate": 1e-5, "finalFilling": 0.6}, "finalFilling = 0.6, only 0.1 to 0.5"),
+    ({"strainRate": 1e-5, "grains": 40}, "fewer than 64 grains"),
+    ({"strainRate": 1e-5, "limit": "cut"}, "limit = cut in a compression"),
+    ({"strainRate": 1e-5, "slidingStiffnessFactor": 2}, "slidingStiffnessFactor = 2"),
+    ({"strainRate": 1e-5, "material": "silicate"}, "a rolling energy of 183 F_c delta_c, only 2.5 to 60 "),
+]
 
 
-def test_so_do_runs_of_every_other_kind():
-    """At most 1 in 20 beyond it would be 3 of 14 at most, by a chance of 0.4 %; none far."""
-    over = errors_over_tolerance([{"seed": 2000, **scene} for scene in OTHER_KINDS.values()])
-    assert np.count_nonzero(over > 1) <= binom.ppf(0.996, len(over), 0.05), dict(zip(OTHER_KINDS, over))
-    assert over.max() < 3 and np.median(over) > 0.03, dict(zip(OTHER_KINDS, over))
-
-
-@pytest.mark.parametrize(
-    "given, what",
-    [
-        ({"packing": "file", "file": "any.npz"}, "packing = file"),
-        ({"packing": "bpca", "sizes": "two", "sizeRatio": 2}, "sizes = two"),
-        ({"strainRate": 1e-5, "finalPressure": 1e4}, "finalPressure, which may end a run at any filling"),
-        ({"strainRate": 1e-5, "finalFilling": 0.6}, "finalFilling = 0.6, only 0.1 to 0.5"),
-        ({"strainRate": 1e-5, "grains": 40}, "fewer than 64 grains"),
-        ({"strainRate": 1e-5, "limit": "cut"}, "limit = cut in a compression"),
-        ({"strainRate": 1e-5, "slidingStiffnessFactor": 2}, "slidingStiffnessFactor = 2"),
-        ({"strainRate": 1e-5, "material": "silicate"}, "a rolling energy of 183 F_c delta_c, only 2.5 to 60 "),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize("given, what", NOT_MEASURED, ids=str)
 def test_what_was_not_measured_is_refused(given, what):
-    with pytest.raises(ParameterError, match=re.escape(f"stepFraction = auto: not measured with {what}")):
-        kind = compression if "strainRate" in given else collision
+    kind = compression if "strainRate" in given else collision
+    with refused(ParameterError, f"stepFraction = auto: not measured with {what}"):
         parameters = kind.KIND.parse({**AUTO, **given})
         kind.complete(parameters, pair_constants(parameters), 1)
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    """(folder, finished process) of a tiny collision with stepFraction=auto."""
-    folder = tmp_path_factory.mktemp("auto")
-    process = collide(folder, *TINY, "stepFraction=auto", "tolerance=3e-4", "out=run")
+def test_a_run_says_and_keeps_what_it_chose(tmp_path):
+    """A row of a table that gives auto, or the step that was chosen, agrees with it, and the estimate counts the steps that will be chosen."""
+    process = collide(tmp_path, *TINY, "stepFraction=auto", "tolerance=3e-4", "out=run")
     assert process.returncode == 0 and messages(process) == [], process.stderr
-    return folder / "run", process
-
-
-def test_a_run_says_and_keeps_what_it_chose(run):
-    folder, process = run
-    about = read_json(folder, "run.json")
+    about = read_json(tmp_path, "run", "run.json")
     values, derived = about["parameters"], about["derived"]
     assert 0.01 <= values["stepFraction"] <= 0.4 and values["tolerance"] == 3e-4
     assert derived["timeStep"] == values["stepFraction"] * derived["timeUnit"]
@@ -276,11 +256,7 @@ def test_a_run_says_and_keeps_what_it_chose(run):
     reason = f'{values["stepFraction"]:g} t0 for a ledger error of at most 0.0003 of K(0)'
     assert derived["stepChoice"].startswith(reason)
     assert values["stepFraction"] == chosen(tolerance=3e-4, radius=4, velocity=30)[0].stepFraction
-
-
-def test_agreement_with_a_run_that_chose_its_step(run):
-    about = read_json(run[0], "run.json")
-    step = about["parameters"]["stepFraction"]
+    step = values["stepFraction"]
     tiny = dict(argument.split("=") for argument in TINY)
     row = parse({**tiny, **AUTO, "tolerance": 3e-4})
     assert difference(KIND, row, about) is None
@@ -292,10 +268,5 @@ def test_agreement_with_a_run_that_chose_its_step(run):
     del fixed["parameters"]["tolerance"]  # written before there was a choice
     assert difference(KIND, row, fixed) == "stepFraction = 0.1, not auto"
     assert difference(KIND, parse(tiny), fixed) is None
-
-
-def test_estimates_count_the_steps_that_will_be_chosen(run):
-    tiny = dict(argument.split("=") for argument in TINY)
-    step = read_json(run[0], "run.json")["parameters"]["stepFraction"]
-    row, same = parse({**tiny, **AUTO, "tolerance": 3e-4}), parse({**tiny, "stepFraction": step})
+    same = parse({**tiny, "stepFraction": step})
     assert KIND.estimate(row) == KIND.estimate(same) != KIND.estimate(parse(tiny))

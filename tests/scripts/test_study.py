@@ -16,8 +16,11 @@ ROWS = {
 }
 
 
-def begin(folder, *arguments):
-    return start(folder, PYTHON, STUDY, *arguments)
+def killed_run(folder, *arguments):
+    """(study.py at work on tiny.table, its run `killed`, which has a checkpoint)."""
+    process, run = start(folder, PYTHON, STUDY, "tiny.table", *arguments), folder / "runs" / "tiny" / "killed"
+    wait_for((run / "checkpoint" / "recorder.npz").exists)
+    return process, run
 
 
 def write_table(folder, name, *rows):
@@ -29,9 +32,7 @@ def first_call(tmp_path_factory):
     """(folder, the finished study, --status midway): one row ends, one is killed, one fails, one is refused."""
     folder = tmp_path_factory.mktemp("study")
     write_table(folder, "tiny.table", *ROWS)
-    process = begin(folder, "tiny.table", "-j", "2")
-    run = folder / "runs" / "tiny" / "killed"
-    wait_for((run / "checkpoint" / "recorder.npz").exists)
+    process, run = killed_run(folder, "-j", "2")
     os.kill(process_writing(run), signal.SIGSTOP)  # so that it is still running when asked
     midway = study(folder, "tiny.table", "--status")
     os.kill(process_writing(run), signal.SIGKILL)
@@ -39,8 +40,8 @@ def first_call(tmp_path_factory):
     return folder, (process.returncode, output, errors), midway
 
 
-def test_failures_fail_the_study_after_all_others_have_run(first_call):
-    folder, (status, output, errors), _ = first_call
+def test_failures_fail_the_study_after_all_others_have_run_and_status_tells_it_meanwhile(first_call):
+    folder, (status, output, errors), midway = first_call
     assert status == 1 and output.splitlines()[-1] == "tiny: 4 rows, 1 done, 3 failed"
     first = output.splitlines()[0]  # the estimate
     assert first.startswith("tiny: 4 rows, 1 done or failed, 3 to run; estimated time 00:")
@@ -50,10 +51,6 @@ def test_failures_fail_the_study_after_all_others_have_run(first_call):
     assert fails.startswith("study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run broke down at t = ")
     assert refused == "study.py: refused: line 5 of tiny.table: velocity = -1: must be > 0 [m/s]"
     assert sorted(os.listdir(folder / "runs" / "tiny")) == ["ends", "fails", "killed"]
-
-
-def test_status_from_another_process(first_call):
-    _, _, midway = first_call
     assert midway.returncode == 0 and midway.stderr == ""
     states = [line.split()[:2] for line in midway.stdout.splitlines()]
     assert ["running", "killed"] in states and ["failed", "refused"] in states
@@ -82,9 +79,7 @@ def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
     old = tmp_path / "runs" / "logs" / "tiny" / "ends.log"  # of an earlier failure
     old.parent.mkdir(parents=True)
     old.write_text("status  : 1 (FAILED)\nfinished: long ago\n")
-    process = begin(tmp_path, "tiny.table", "-j", "1")
-    run = tmp_path / "runs" / "tiny" / "killed"
-    wait_for((run / "checkpoint" / "recorder.npz").exists)
+    process, run = killed_run(tmp_path, "-j", "1")
     assert not old.exists()
     busy = study(tmp_path, "tiny.table")
     assert busy.returncode == 2 and "this study is being run by another process" in busy.stderr

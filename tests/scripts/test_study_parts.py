@@ -1,10 +1,11 @@
 """Tables, estimates and texts of a study, without running one."""
 
-import io
 import os
 import time
+from io import StringIO
 
 import pytest
+from running import Terminal
 
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND
@@ -24,17 +25,17 @@ def row(**cells):
 
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
+    """With a spreadsheet's byte order mark too."""
+    path = tmp_path / "rows.table"
     written = [{"description": "a", "radius": 4, "!THREADS": 1}, {"description": "b", "velocity": "10**0.5"}]
-    table.write(tmp_path / "rows.table", written, "what these are\nand their units")
-    assert (tmp_path / "rows.table").read_text().startswith("# what these are\n# and their units\ndescription")
-    back = table.read(tmp_path / "rows.table")
-    assert [row.description for row in back] == ["a", "b"]
-    assert [row.cells for row in back] == [{"radius": "4", "!THREADS": "1"}, {"velocity": "10**0.5"}]
-
-
-def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path):
-    (tmp_path / "rows.table").write_text("radius velocity\n4 10\n", encoding="utf-8-sig")
-    assert [found.cells for found in table.read(tmp_path / "rows.table")] == [{"radius": "4", "velocity": "10"}]
+    table.write(path, written, "what these are\nand their units")
+    comments, names = path.read_text().split("\ndescription")
+    assert comments == "# what these are\n# and their units"
+    for text, encoding in ((f"{comments}\ndescription{names}", "utf-8"), (f"description{names}", "utf-8-sig")):
+        path.write_text(text, encoding=encoding)
+        back = table.read(path)
+        assert [row.description for row in back] == ["a", "b"]
+        assert [row.cells for row in back] == [{"radius": "4", "!THREADS": "1"}, {"velocity": "10**0.5"}]
 
 
 @pytest.mark.parametrize("names", ["radius velocity radius", "radius! velocity radius"])
@@ -47,15 +48,14 @@ def test_a_column_that_is_there_twice_is_refused(tmp_path, names):
 def test_names_of_any_length_are_names_of_files(tmp_path):
     """Two descriptions of 400 characters that differ in the last one."""
     for letter in ("x", "\u00e9"):
-        (tmp_path / "rows.table").write_text(
-            "description radius velocity\n" + "".join(f"{letter * 400}{end} 4 10\n" for end in "ab")
-        )
+        lines = "".join(f"{letter * 400}{end} 4 10\n" for end in "ab")
+        (tmp_path / "rows.table").write_text("description radius velocity\n" + lines)
         found = rows.read(tmp_path / "rows.table")
-        assert len({found_row.name for found_row in found}) == len({found_row.out for found_row in found}) == 2
-        for found_row in found:
-            assert not found_row.error
-            (tmp_path / f"{found_row.name}.log").write_text("")
-            os.makedirs(tmp_path / found_row.out)
+        assert len({row.name for row in found}) == len({row.out for row in found}) == 2
+        for one in found:
+            assert not one.error
+            (tmp_path / f"{one.name}.log").write_text("")
+            os.makedirs(tmp_path / one.out)
     assert rows.file_name("f0.4-R40,i=5 s1") == "f0.4-R40,i=5_s1"
 
 
@@ -151,61 +151,54 @@ def test_makespan(running, waiting, at_once, expected):
     assert cost.makespan(running, waiting, at_once) == expected
 
 
+def differences(wanted, run):
+    """Of the wanted parameters, and of those with each of some changed, from a run."""
+    return lambda **changed: agreement.difference(KIND, wanted.changed(**changed), run)
+
+
 def test_difference_names_the_first_parameter_that_disagrees():
     wanted = parse({"radius": 40, "velocity": "10**(0.1*5)"})
-    difference = lambda given, run: agreement.difference(KIND, given, run)
-    run = {
-        "format": 2,
-        "kind": "collision",
-        "parameters": {**wanted.as_dict(), "duration": 40 * 64.6 * 2e-10 + 3e-8, "threads": 2, "out": "elsewhere"},
-        "derived": {"timeUnit": 2e-10, "firstTouch": 3e-8},
-    }
-    assert difference(wanted, run) is None
-    assert difference(wanted.changed(velocity=3.0), run) == "velocity = 3.16227766017, not 3"
-    assert difference(wanted.changed(duration=1e-9), run) == "duration = 5.468e-07, not 1e-09"
-    assert difference(wanted.changed(young=6e9), run) == "young = 7000000000, not 6000000000"
-    assert difference(wanted, {**run, "kind": "compression"}) == "kind = compression, not collision"
+    given = {**wanted.as_dict(), "duration": 40 * 64.6 * 2e-10 + 3e-8, "threads": 2, "out": "elsewhere"}
+    run = {"format": 2, "kind": "collision", "parameters": given, "derived": {"timeUnit": 2e-10, "firstTouch": 3e-8}}
+    difference = differences(wanted, run)
+    assert difference() is None
+    assert difference(velocity=3.0) == "velocity = 3.16227766017, not 3"
+    assert difference(duration=1e-9) == "duration = 5.468e-07, not 1e-09"
+    assert difference(young=6e9) == "young = 7000000000, not 6000000000"
+    assert differences(wanted, {**run, "kind": "compression"})() == "kind = compression, not collision"
     del run["derived"]["firstTouch"]  # never met, with a duration that was given
-    assert difference(wanted, run) == "duration = 5.468e-07, not the default"
+    assert difference() == "duration = 5.468e-07, not the default"
 
 
 def test_runs_of_format_1_agree_with_rows_that_give_no_duration():
     """Their default didn't count the time until the first touch; properties of the material stand under derived."""
     wanted = parse({"radius": 40})
     properties = ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling")
-    parameters = {**wanted.as_dict(), "duration": 40 * 64.6 * 2e-10}
-    run = {
-        "format": 1,
-        "parameters": {name: value for name, value in parameters.items() if name not in (*properties, "impact")},
-        "derived": {"timeUnit": 2e-10, **{name: getattr(wanted, name) for name in properties}},
-    }
-    assert agreement.difference(KIND, wanted, run) is None
-    assert agreement.difference(KIND, wanted.changed(impact=0.5), run) == "impact = 0, not 0.5"
-    assert agreement.difference(KIND, wanted.changed(poisson=0.3), run) == "poisson = 0.25, not 0.3"
-    assert agreement.difference(KIND, wanted.changed(duration=1e-9), run) == "duration = 5.168e-07, not 1e-09"
-    run["parameters"]["duration"] *= 1.1
-    assert agreement.difference(KIND, wanted, run) == "duration = 5.6848e-07, not 5.168e-07"
+    given = {name: value for name, value in wanted.as_dict().items() if name not in (*properties, "impact")}
+    given["duration"] = 40 * 64.6 * 2e-10
+    derived = {"timeUnit": 2e-10, **{name: getattr(wanted, name) for name in properties}}
+    difference = differences(wanted, {"format": 1, "parameters": given, "derived": derived})
+    assert difference() is None
+    assert difference(impact=0.5) == "impact = 0, not 0.5"
+    assert difference(poisson=0.3) == "poisson = 0.25, not 0.3"
+    assert difference(duration=1e-9) == "duration = 5.168e-07, not 1e-09"
+    given["duration"] *= 1.1
+    assert difference() == "duration = 5.6848e-07, not 5.168e-07"
 
 
 def test_a_bcca_row_agrees_with_its_run_whatever_the_radius_became():
     wanted = parse({"packing": "bcca", "grains": 64})
-    duration = 1e-9 + 4 * 17.3 * 1e-7 / wanted.velocity
-    run = {"format": 3, "parameters": wanted.changed(radius=17.3, filling=0.0124, duration=duration).as_dict()}
-    run["derived"] = {"timeUnit": 1e-10, "firstTouch": 1e-9}
-    assert agreement.difference(KIND, wanted, run) is None
-    assert agreement.difference(KIND, wanted.changed(grains=65), run) == "grains = 64, not 65"
+    became = wanted.changed(radius=17.3, filling=0.0124, duration=1e-9 + 4 * 17.3 * 1e-7 / wanted.velocity)
+    derived = {"timeUnit": 1e-10, "firstTouch": 1e-9}
+    difference = differences(wanted, {"format": 3, "parameters": became.as_dict(), "derived": derived})
+    assert difference() is None and difference(grains=65) == "grains = 64, not 65"
 
 
-def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path, monkeypatch):
+def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path, program):
     """One that takes more than there are runs alone."""
-    (tmp_path / "bin").mkdir()
-    yade = tmp_path / "bin" / "yade"
-    yade.write_text(f"#!/bin/sh\necho begin $2 >> {tmp_path}/told; sleep 0.5; echo end $2 >> {tmp_path}/told\n")
-    yade.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{yade.parent}:{os.environ['PATH']}")
-    (tmp_path / "rows.table").write_text(
-        "threads out\n" + "".join(f"{n} runs/{i}\n" for i, n in enumerate((3, 1, 1, 2)))
-    )
+    program("yade", f"echo begin $2 >> {tmp_path}/told; sleep 0.5; echo end $2 >> {tmp_path}/told")
+    lines = "".join(f"{threads} runs/{k}\n" for k, threads in enumerate((3, 1, 1, 2)))
+    (tmp_path / "rows.table").write_text("threads out\n" + lines)
     folder = StudyFolder("any")
     folder.path, folder.held = str(tmp_path), os.open(tmp_path, os.O_RDONLY)
     with Batch(folder, rows.read(tmp_path / "rows.table"), 2) as batch:
@@ -222,22 +215,13 @@ def test_the_outcome_is_read_back_from_the_closing_line(outcome):
     assert outcome_told("Welcome\n") is None
 
 
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
-
-
 def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
     three = [rows.StudyRow(name, {}, "collide.py", KIND, parse({"radius": 40})) for name in "abc"]
-    states = [
-        rows.State(rows.RUNNING, 0.43, 60, 25.0),
-        rows.State(rows.DONE, 1.0, 44.0),
-        rows.State(rows.FAILED, note="it broke"),
-    ]
-    text = view.live_table("tiny", three, states, cost.Cost(), 2)
+    states = [rows.State(rows.RUNNING, 0.43, 60, 25.0), rows.State(rows.DONE, 1.0, 44.0)]
+    text = view.live_table("tiny", three, [*states, rows.State(rows.FAILED, note="it broke")], cost.Cost(), 2)
     assert text.splitlines()[0] == "tiny: 1 done, 1 running, 0 waiting, 1 failed; 00:25 left"
     assert "[########............]  43.0 %    00:25 left" in text and "it broke" in text
-    terminal, file = Terminal(), io.StringIO()
+    terminal, file = Terminal(), StringIO()
     for stream in (terminal, file):
         screen = Screen(stream)
         screen.draw(text)

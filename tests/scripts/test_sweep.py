@@ -2,11 +2,10 @@
 
 import re
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
-from running import PYTHON, TOP, collide, environment, read_json, refusal, start, wait_for
+from running import PYTHON, TOP, call, collide, environment, read_json, refusal, start, wait_for
 
 from analysis.runs.format import PARAMETER_UNITS
 from yade_scripts import collide as from_python
@@ -15,25 +14,18 @@ from yade_scripts.parameters import ParameterError
 from yade_scripts.runner.sweep import RunsFailed
 
 QUESTION = re.search(r"```python\n(from yade_scripts.*?)```", (Path(TOP) / "README.md").read_text(), re.S).group(1)
-SMALL = (
-    ("[1, 3, 10, 30]", "[1, 30]"),
-    ("range(6)", "range(2)"),
-    ("[500, 100]", "[16, 4]"),
-    ("grains=500", "grains=16"),
-)
+SMALL = {"[1, 3, 10, 30]": "[1, 30]", "range(6)": "range(2)", "[500, 100]": "[16, 4]", "grains=500": "grains=16"}
 
 
 def python(folder, text):
-    return subprocess.run(
-        [PYTHON, "-c", text], cwd=folder, capture_output=True, text=True, env=environment(PYTHONPATH=TOP)
-    )
+    return call(folder, PYTHON, "-c", text, PYTHONPATH=TOP)
 
 
 def test_the_question_of_the_readme(tmp_path):
     """As printed, with small aggregates; asked again nothing is run, asked for more only what is missing."""
     question = QUESTION
     assert len(question.splitlines()) <= 15
-    for large, small in SMALL:
+    for large, small in SMALL.items():
         assert large in question
         question = question.replace(large, small)
     first = python(tmp_path, question)
