@@ -21,13 +21,10 @@ def test_numbers_of_the_paper():
         assert 3 < stress / aggregates.bcca_strength(filling) < 10
 
 
-def test_poissons_ratio_and_the_modulus_are_each_others_inverse():
+def test_poissons_ratio_and_modulus_are_inverse_and_the_densest_lattice_has_twelve_contacts():
     poisson = np.linspace(-0.9, 0.49, 30)
     young = aggregates.reduced_young(poisson, 70e6)
     assert aggregates.poisson_ratio(young, 70e6) == pytest.approx(poisson, abs=1e-12)
-
-
-def test_the_densest_lattice_has_twelve_contacts():
     densest = aggregates.fcc_filling(R, OVERLAP)
     assert aggregates.fcc_filling(R, 0.0) == pytest.approx(np.pi / 18**0.5) and densest > np.pi / 18**0.5
     assert aggregates.cpe_coordination(densest, R, OVERLAP) == pytest.approx(12.0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.theory import ICE, chains, pair_constants
+from analysis.theory import ICE, chains, normal_force, pair_constants
 
 RADIUS = 1e-7
 MASS = 4 / 3 * np.pi * ICE.density * RADIUS**3
@@ -25,12 +25,18 @@ def test_neck_of_the_kernel():
     assert chains.rolling_stiffness(0.5, RADIUS, ICE.young) == pytest.approx(expected)
 
 
-def test_force_balances_the_kinetic_energy():
+def test_force_balances_the_kinetic_energy_and_its_limits():
     """k u^2/2 = N m V^2/4 a chain, F = k u."""
     stiffness = chains.chain_stiffness(12.0, 0.6, RADIUS, ICE.young)
     force = chains.largest_force(7.0, 12.0, 0.6, RADIUS, ICE.young, MASS)
     stretch = force / stiffness
     assert 0.5 * stiffness * stretch**2 == pytest.approx(12.0 * MASS * 7.0**2 / 4)
+    assert chains.largest_force(10.0, np.inf, 0.7, RADIUS, ICE.young, MASS) == 0
+    assert np.isinf(chains.sticking_ratio(10.0, np.inf, 0.7, *GRAIN))
+    with pytest.raises(ValueError, match="must be above 3"):
+        chains.chain_stiffness(3.0, 0.7, RADIUS, ICE.young)
+    thousand = chains.chain_stiffness(np.array([1e3, 2e3]), 0.7, RADIUS, ICE.young)
+    assert thousand[0] / thousand[1] == pytest.approx(8.0, rel=0.01)  # bending: as the length's inverse cube
 
 
 def test_what_the_text_says_of_fig_17():
@@ -42,19 +48,8 @@ def test_what_the_text_says_of_fig_17():
     assert chains.bouncing_velocity(22.0, 0.7, *GRAIN) == pytest.approx(10.0 * ratio(10.0, 22.0, 0.7))
 
 
-def test_limits():
-    assert chains.largest_force(10.0, np.inf, 0.7, RADIUS, ICE.young, MASS) == 0
-    assert np.isinf(chains.sticking_ratio(10.0, np.inf, 0.7, *GRAIN))
-    with pytest.raises(ValueError, match="must be above 3"):
-        chains.chain_stiffness(3.0, 0.7, RADIUS, ICE.young)
-    thousand = chains.chain_stiffness(np.array([1e3, 2e3]), 0.7, RADIUS, ICE.young)
-    assert thousand[0] / thousand[1] == pytest.approx(8.0, rel=0.01)  # bending: as the length's inverse cube
-
-
 def test_period_is_that_of_small_vibrations():
     """Against the JKR force's slope at equilibrium, by differences."""
-    from analysis.theory import normal_force
-
     pair = pair_constants(ICE, RADIUS)
     step = 1e-5 * pair.equilibrium_overlap
     below, above = (normal_force(pair.equilibrium_overlap + change, pair) for change in (-step, step))

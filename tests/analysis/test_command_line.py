@@ -21,7 +21,7 @@ def analyse(*arguments):
     return subprocess.run(command, cwd=TOP, capture_output=True, text=True)
 
 
-def test_json_of_one_run_is_an_object(pair_folder):
+def test_json_of_one_run_is_an_object_of_several_a_list_in_their_order(pair_folder, cluster_folder):
     path, velocity, collision = pair_folder
     done = analyse("summary", "--json", path)
     numbers = json.loads(done.stdout)
@@ -32,9 +32,6 @@ def test_json_of_one_run_is_an_object(pair_folder):
     assert 0.3 < numbers["t_max"] / collision.duration < 0.5
     assert numbers["energy_closure"] < 1e-9
     assert numbers["disconnection"] == pytest.approx(4 / 45 * 3.969e-17, rel=1e-4)
-
-
-def test_json_of_several_runs_is_a_list_in_their_order(pair_folder, cluster_folder):
     done = analyse("summary", pair_folder[0], cluster_folder, "--json")
     runs = json.loads(done.stdout)
     assert [r["run"] for r in runs] == [str(pair_folder[0]), str(cluster_folder)]
@@ -62,56 +59,57 @@ def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folde
     assert (alone.returncode, alone.stdout, alone.stderr.count("\n")) == (2, "", 1) and "run.json" in alone.stderr
 
 
-def test_an_unfinished_run_says_so(pair_folder, tmp_path):
-    path = shutil.copytree(pair_folder[0], tmp_path / "run")
-    (path / "ended").unlink()
-    done = analyse("summary", "--long", path)
+@pytest.fixture
+def run(pair_folder, tmp_path):
+    """A folder of its own of the pair's run."""
+    return shutil.copytree(pair_folder[0], tmp_path / "run")
+
+
+def set_to_zero(run, names):
+    """These arrays of a folder."""
+    for file in (run / "history.npz", *(run / "states").iterdir()):
+        with np.load(file) as archive:
+            arrays = dict(archive)
+        np.savez(file, **{name: np.zeros_like(own) if name in names else own for name, own in arrays.items()})
+
+
+def test_an_unfinished_run_says_so(run):
+    (run / "ended").unlink()
+    done = analyse("summary", "--long", run)
     assert done.returncode == 0 and "NOT ENDED" in done.stdout
-    assert json.loads(analyse("summary", "--json", path).stdout)["ended"] is False
+    assert json.loads(analyse("summary", "--json", run).stdout)["ended"] is False
 
 
-def test_aggregates_that_never_met_have_that_outcome(pair_folder, tmp_path):
-    path = shutil.copytree(pair_folder[0], tmp_path / "run")
-    with np.load(path / "history.npz") as archive:
-        arrays = {**archive, "contacts_between": np.zeros(archive["time"].size, int)}
-    np.savez(path / "history.npz", **arrays)
-    numbers = json.loads(analyse("summary", "--json", path).stdout)
+def test_aggregates_that_never_met_have_that_outcome(run):
+    set_to_zero(run, {"contacts_between"})
+    numbers = json.loads(analyse("summary", "--json", run).stdout)
     assert numbers["outcome"] == "never met" and numbers["restitution"] is None
-    table = analyse("summary", "--long", path).stdout
+    table = analyse("summary", "--long", run).stdout
     assert re.search(r"outcome +never met", table) and re.search(r"restitution +none: never met", table)
 
 
-def test_a_run_at_rest_has_no_closure_and_no_restitution(pair_folder, tmp_path):
-    path = shutil.copytree(pair_folder[0], tmp_path / "run")
-    for file in (path / "history.npz", *(path / "states").iterdir()):
-        with np.load(file) as archive:
-            arrays = dict(archive)
-        for name in {"kinetic", "velocity"} & set(arrays):
-            arrays[name] = np.zeros_like(arrays[name])
-        np.savez(file, **arrays)
-    numbers = json.loads(analyse("summary", "--json", path).stdout)
+def test_a_run_at_rest_has_no_closure_and_no_restitution(run, tmp_path):
+    set_to_zero(run, {"kinetic", "velocity"})
+    numbers = json.loads(analyse("summary", "--json", run).stdout)
     assert numbers["energy_closure"] is None and numbers["restitution"] is None
-    told = analyse("summary", "--long", path).stdout
+    told = analyse("summary", "--long", run).stdout
     assert "undefined" in told and "no velocity at the start" in told
-    drawn = analyse("figures", path, "--out", tmp_path / "figures")
+    drawn = analyse("figures", run, "--out", tmp_path / "figures")
     assert drawn.returncode == 2 and "no kinetic energy at the start" in drawn.stderr
 
 
-@pytest.mark.parametrize("arguments", [[], ["summary"], ["figures"], ["figures", "a", "b"], ["draw", "a"]])
-def test_wrong_use_exits_with_2(arguments):
-    done = analyse(*arguments)
-    assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
+def test_wrong_use_exits_with_2():
+    for arguments in ([], ["summary"], ["figures"], ["figures", "a", "b"], ["draw", "a"]):
+        done = analyse(*arguments)
+        assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
 
 
-def test_figures_are_written_where_asked(cluster_folder, tmp_path):
+def test_figures_are_written_where_asked_and_a_place_that_cannot_be_written_is_one_line(cluster_folder, tmp_path):
     done = analyse("figures", cluster_folder, "--out", tmp_path / "new" / "place")
     assert done.returncode == 0 and done.stderr == ""
     names = [line.rsplit("/", 1)[1] for line in done.stdout.splitlines()]
     assert sorted(names) == ["energy.png", "forces.png", "grains.png", "motion.png"]
     assert all((tmp_path / "new" / "place" / name).read_bytes().startswith(b"\x89PNG") for name in names)
-
-
-def test_a_place_that_cannot_be_written_is_one_line(cluster_folder, tmp_path):
     (tmp_path / "taken").write_text("")
     done = analyse("figures", cluster_folder, "--out", tmp_path / "taken")
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and "taken" in done.stderr

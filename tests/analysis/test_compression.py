@@ -7,10 +7,15 @@ from analysis.measures.compression import *
 from analysis.runs.folder import open_run
 
 
-def test_d_and_v_of_three_grains():
+def test_d_and_v_of_few_grains():
+    """One empty side leaves no value, and a grain at zero belongs to neither."""
     x, speed = np.array([-3.0, 1.0, 2.0]), np.array([4.0, -1.0, -2.0])
     assert compression_length(x, 2.5) == pytest.approx(5.0 - (1.5 + 3.0))
     assert mutual_velocity(x, speed) == pytest.approx(-(-1.5 - 4.0))
+    assert np.isnan(compression_length([1.0, 2.0], 1.0)) and np.isnan(mutual_velocity([-1.0, 0.0], [0.0, 0.0]))
+    assert np.all(np.isnan(compression_and_velocity([0.0, 0.0], [1.0, 1.0], 1.0)))
+    x, speed = np.array([-1.0, 0.0, 3.0]), np.array([2.0, 100.0, -2.0])
+    assert compression_and_velocity(x, speed, 2.0) == (0.0, 4.0)
 
 
 def test_v_is_the_rate_of_d():
@@ -21,21 +26,24 @@ def test_v_is_the_rate_of_d():
     assert mutual_velocity(x, speed) == pytest.approx(rate, abs=1e-10)
 
 
-def test_one_empty_side_leaves_no_value():
-    assert np.isnan(compression_length([1.0, 2.0], 1.0)) and np.isnan(mutual_velocity([-1.0, 0.0], [0.0, 0.0]))
-    assert np.all(np.isnan(compression_and_velocity([0.0, 0.0], [1.0, 1.0], 1.0)))
-
-
-def test_a_grain_at_zero_belongs_to_neither_side():
-    x, speed = np.array([-1.0, 0.0, 3.0]), np.array([2.0, 100.0, -2.0])
-    assert compression_and_velocity(x, speed, 2.0) == (0.0, 4.0)
-
-
 def test_maximum_of_a_parabola_between_samples():
+    """At an end it is only a bound; samples without a value are left out."""
     time = np.linspace(0.0, 10.0, 8)
     maximum = maximum_compression(time, 5.0 - (time - 4.1) ** 2, -2.0 * (time - 4.1))
     assert (maximum.length, maximum.time) == pytest.approx((5.0, 4.1), rel=1e-12)
     assert maximum.inside and maximum.length_error < 1e-12 and maximum.time_error < 1e-12
+    time = np.linspace(0.0, 1.0, 5)
+    rising = maximum_compression(time, time, np.ones(5))
+    falling = maximum_compression(time, -time, -np.ones(5))
+    assert not rising.inside and (rising.length, rising.time) == (1.0, 1.0)
+    assert not falling.inside and (falling.length, falling.time) == (0.0, 0.0)
+    time = np.linspace(0.0, 10.0, 51)
+    d, v = 5.0 - (time - 4.1) ** 2, -2.0 * (time - 4.1)
+    d[40:] = v[40:] = np.nan
+    assert maximum_compression(time, d, v).length == pytest.approx(5.0, rel=1e-12)
+    assert maximum_compression(time, np.full(51, np.nan), v) is None
+    with pytest.raises(ValueError, match="equally long"):
+        maximum_compression(np.arange(3.0), np.arange(4.0), np.arange(3.0))
 
 
 def test_maximum_of_a_cosine_converges_with_the_fourth_power_of_the_interval():
@@ -58,27 +66,6 @@ def test_noise_stays_within_the_stated_error():
         assert maximum.length == pytest.approx(5.0, abs=4e-3)
         assert abs(maximum.time - 4.1) <= maximum.time_error * (1 + 1e-9) < 0.5
         assert 0 < maximum.length_error < 1e-2
-
-
-def test_maximum_at_an_end_is_only_a_bound():
-    time = np.linspace(0.0, 1.0, 5)
-    rising = maximum_compression(time, time, np.ones(5))
-    falling = maximum_compression(time, -time, -np.ones(5))
-    assert not rising.inside and (rising.length, rising.time) == (1.0, 1.0)
-    assert not falling.inside and (falling.length, falling.time) == (0.0, 0.0)
-
-
-def test_samples_without_a_value_are_left_out():
-    time = np.linspace(0.0, 10.0, 51)
-    d, v = 5.0 - (time - 4.1) ** 2, -2.0 * (time - 4.1)
-    d[40:] = v[40:] = np.nan
-    assert maximum_compression(time, d, v).length == pytest.approx(5.0, rel=1e-12)
-    assert maximum_compression(time, np.full(51, np.nan), v) is None
-
-
-def test_unequal_lengths_are_refused():
-    with pytest.raises(ValueError, match="equally long"):
-        maximum_compression(np.arange(3.0), np.arange(4.0), np.arange(3.0))
 
 
 @pytest.mark.parametrize("folder", ["pair_folder", "cluster_folder"])

@@ -91,9 +91,8 @@ def test_a_collision_has_come_to_rest(state, since_touch, longer, rests):
 def test_a_piece_that_oscillates_is_not_judged_by_its_turning_point():
     """At the end it is at rest for a moment, a little before it was not; long before does not count."""
     moving, still = ({**chain(velocity), "time": LONG} for velocity in (parting(20, 1.1, 10), STILL))
-    why = lambda end, *recent, kind="sticking": decided.why_undecided(
-        kind, np.ones(20, dtype=bool), end, CONSTANTS, 0.0, recent
-    )
+    counted = np.ones(20, dtype=bool)
+    why = lambda end, *recent, kind="sticking": decided.why_undecided(kind, counted, end, CONSTANTS, 0.0, recent)
     assert why(still) is None and "parts of 50%" in why(still, moving)
     assert why({**chain(APART, [9]), "time": LONG}, moving, kind="bouncing") is None  # it was one piece a little before
     assert decided.is_recent(np.array([0.74, 0.76, 1.0]) * LONG, LONG, 0.0).tolist() == [False, True, True]
@@ -111,11 +110,7 @@ def test_cuts_are_those_contacts_without_which_there_is_a_piece_more(seed):
     grains = random.integers(2, 60)
     pairs = np.unique(np.sort(random.integers(0, grains, (int(0.65 * grains), 2))), axis=0)
     pairs = pairs[pairs[:, 0] < pairs[:, 1]]
-    position, velocity, mass = (
-        random.normal(size=(grains, 3)),
-        random.normal(size=(grains, 3)),
-        random.uniform(1, 2, grains),
-    )
+    position, velocity, mass = *random.normal(size=(2, grains, 3)), random.uniform(1, 2, grains)
     labels = fragment_labels(grains, pairs)
     one = np.zeros(grains, dtype=int)  # all of one aggregate: no cut between two
     _, sides = loose_cuts(position, velocity, mass, pairs, labels, one, np.full(len(pairs), -1.0))

@@ -37,7 +37,7 @@ def test_a_diagonal_chain_spans_one_direction_only():
     assert spanned_axes(position, pairs, np.full(3, 4.0)) == 1
 
 
-def test_pieces_are_not_added_up():
+def test_pieces_are_not_added_up_and_a_free_cluster_spans_nothing():
     """Two chains that cross without touching, along x and along y: no piece spans two directions."""
     along = np.arange(4.0)
     x = np.stack([along, np.zeros(4), np.zeros(4)], axis=1)
@@ -47,8 +47,5 @@ def test_pieces_are_not_added_up():
     assert spanned_axes(np.concatenate([x, y]), both, np.full(3, 4.0)) == 1
     # One contact between them makes a network of two directions.
     assert spanned_axes(np.concatenate([x, y]), np.concatenate([both, [(2, 4)]]), np.full(3, 4.0)) == 2
-
-
-def test_a_free_cluster_spans_nothing():
     assert spanned_axes(np.eye(3), [(0, 1), (1, 2), (2, 0)], np.full(3, 9.0)) == 0
     assert spanned_axes(np.eye(3), [], np.full(3, 9.0)) == 0

@@ -49,23 +49,19 @@ def test_pressure_by_the_work_counts_what_happens_between_samples():
     assert pressures == pytest.approx(SCALE * fillings**3, rel=0.02)
 
 
-def test_coordination_at_fillings():
-    """Of A24 eq 45, whatever the bin's width."""
+def test_coordination_at_fillings_and_bins_to_the_end_of_runs():
+    """Of A24 eq 45, whatever the bin's width; to 0.5 and to random close packing, as far as the study's tables go."""
     history = compression()
     history["coordination"] = bcca_coordination(history["filling"]) + 0.1
     found = coordination_at(history)
     inside = np.isfinite(found)
     assert inside.sum() > 10 and found[inside] == pytest.approx(bcca_coordination(FILLINGS[inside]) + 0.1, rel=1e-12)
-
-
-def test_bins_reach_the_end_of_runs():
-    """Of those to 0.5 and to random close packing, as far as the tables of the study go."""
     for high in (0.5, 0.64):
         found = pressure_at(compression(high=high))
         assert FILLINGS[np.isfinite(found)][-1] > 0.97 * high
 
 
-def test_filling_from_which_on_one_channel_has_a_share_of_another():
+def test_fillings_at_a_share_of_a_channel_and_at_a_pressure():
     history = compression(samples=2001)
     other = history["filling"].copy()
     one = np.where(history["filling"] > 0.1, 0.2 * other, 0.0)
@@ -74,14 +70,13 @@ def test_filling_from_which_on_one_channel_has_a_share_of_another():
     one[10] = 0.9  # for a moment
     assert filling_at_share(history, "one", "other", 0.1) == pytest.approx(0.1, rel=3e-3)
     assert np.isnan(filling_at_share(history, "one", "other", 0.3))  # not to the end
-
-
-def test_filling_at_a_pressure():
     history = compression()
     assert filling_at_pressure(history, 300.0, 1000.0) == pytest.approx((300 / SCALE) ** (1 / 3), rel=2e-3)
     history["boundaryWork"][2000:] -= 1e-6 * history["boundaryWork"][2000]  # for a moment
     assert filling_at_pressure(history, 300.0, 1000.0) == pytest.approx((300 / SCALE) ** (1 / 3), rel=2e-3)
     assert np.isnan(filling_at_pressure(history, 1e9, 1000.0))
+    assert windows(np.arange(10.0), 4.0) == [(0, 4), (4, 8)]
+    assert windows(np.arange(3.0), 4.0) == [(0, 3)]
 
 
 def test_tension_of_a_stretched_cell():
@@ -103,8 +98,3 @@ def test_tension_of_a_stretched_cell():
     fillings, stress = tension(both, 5e4)
     assert stress[:4] == pytest.approx(50.0, rel=1e-9) and stress[-2:] == pytest.approx(0.0, abs=1e-9)
     assert fillings[0] > fillings[-1]
-
-
-def test_windows_leave_the_incomplete_one_out():
-    assert windows(np.arange(10.0), 4.0) == [(0, 4), (4, 8)]
-    assert windows(np.arange(3.0), 4.0) == [(0, 3)]

@@ -6,14 +6,9 @@ import sys
 
 import pytest
 from made_collisions import made_run
+from running import Terminal
 
 from analysis.__main__ import main
-
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
-
 
 COMMANDS = {
     "figures": ("drawing", ("figures",)),
@@ -33,8 +28,7 @@ def test_a_bar_is_drawn_on_a_terminal_alone(tmp_path, monkeypatch, capsys, name)
         monkeypatch.setattr(sys, "stderr", stream)
         assert main([command, str(tmp_path / "run"), *options]) == 0
         drawn = stream.getvalue()
-        assert (what in drawn and "%" in drawn and "<" in drawn) if shown else not drawn
-        if shown:  # of which nothing stays
-            assert drawn.endswith("\r")
+        whole = what in drawn and "%" in drawn and "<" in drawn and drawn.endswith("\r")  # nothing of it stays
+        assert whole if shown else not drawn
         files = capsys.readouterr().out.splitlines()
         assert files and all(str(tmp_path) in line for line in files)

@@ -14,7 +14,4 @@ def test_smoothed_scatter_follows_a_power_without_bias():
     found = [smoothed_scatter(v, random.normal(size=(3, 8)).std(axis=0, ddof=1) / v, np.full(8, 3)) for _ in range(400)]
     logs = np.log(found)
     assert np.all(np.abs(logs.mean(axis=0) + np.log(v)) < 3.3 * logs.std(axis=0) / 20)
-
-
-def test_points_without_scatter_tell_none():
     assert np.all(np.isnan(smoothed_scatter(np.ones(3), np.zeros(3), np.full(3, 5))))

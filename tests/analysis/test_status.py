@@ -37,22 +37,17 @@ def test_a_run_that_writes_is_running_and_its_pace_gives_the_time_left(tmp_path)
     assert again.left == pytest.approx(490.0)  # the wall time of earlier starts counts
 
 
-def test_a_run_that_is_silent_has_stopped(tmp_path):
+def test_runs_that_are_silent_or_said_that_they_stop_are_waiting(tmp_path):
+    """Figures made of them are no sign of life."""
     found = state(run_folder(tmp_path / "r", "running", 0.5, begun=SILENCE + 200.0, written=SILENCE + 1.0), NOW)
     assert found.kind == WAITING and "without a word, starts again" in found.note
     assert found.left == pytest.approx(199.0)
     assert state(tmp_path / "r", NOW - 2.0).kind == RUNNING
-
-
-def test_a_run_that_said_that_it_stops_is_waiting_at_once(tmp_path):
-    folder = run_folder(tmp_path / "r", "interrupted", 0.2, written=1.0, wall_time=50.0)
+    folder = run_folder(tmp_path / "said", "interrupted", 0.2, written=1.0, wall_time=50.0)
     (folder / "checkpoint").mkdir()
     found = state(folder, NOW)
     assert found.kind == WAITING and found.note == "stopped, has a checkpoint" and found.left == pytest.approx(200.0)
-
-
-def test_figures_made_of_a_stopped_run_are_no_sign_of_life(tmp_path):
-    folder = run_folder(tmp_path / "r", "running", 0.5, begun=9000.0, written=8000.0)
+    folder = run_folder(tmp_path / "drawn", "running", 0.5, begun=9000.0, written=8000.0)
     (folder / "figures").mkdir()
     os.utime(folder, (NOW, NOW))
     assert state(folder, NOW).kind == WAITING

@@ -14,26 +14,19 @@ def lattice(cells):
     return np.stack(np.meshgrid(*3 * [np.arange(cells)]), axis=-1).reshape(-1, 3).astype(float)
 
 
-@pytest.mark.parametrize("cells", [1, 2, 5])
-def test_simple_cubic_lattice_with_images(cells):
-    """The same for any cell, also where the distance reaches over several images."""
-    counts = grains_within(lattice(cells), list(SHELLS), 3 * [float(cells)])
-    assert counts.tolist() == list(SHELLS.values())
+def test_simple_cubic_lattice_with_images():
+    """The same for any cell, also where the distance reaches over several images, and wherever the positions are."""
+    for cells in (1, 2, 3, 5):
+        moved = lattice(cells) + [7.25, -3.0, 0.1] + float(cells) * np.arange(cells**3)[:, None]
+        for position in (lattice(cells), moved):
+            assert grains_within(position, list(SHELLS), 3 * [float(cells)]).tolist() == list(SHELLS.values())
 
 
-def test_position_may_be_outside_of_the_cell():
-    moved = lattice(3) + [7.25, -3.0, 0.1] + 3.0 * np.arange(27)[:, None]
-    assert grains_within(moved, list(SHELLS), 3 * [3.0]).tolist() == list(SHELLS.values())
-
-
-def test_open_space_and_few_origins():
+def test_open_space_few_origins_and_the_dimensions_of_plane_and_space():
     line = np.arange(101.0)[:, None] * [1, 0, 0]
     counts = grains_within(line, [2.5])
     assert counts[0] == pytest.approx((97 * 5 + 2 * 4 + 2 * 3) / 101)
     assert grains_within(line, [2.5], origins=11)[0] == pytest.approx((9 * 5 + 2 * 3) / 11)
-
-
-def test_dimensions_of_plane_and_space():
     plane = np.stack(np.meshgrid(np.arange(60), np.arange(60), [0]), axis=-1).reshape(-1, 3).astype(float)
     distance = np.array([10.5, 25.5])
     assert fractal_dimension(distance, grains_within(plane, distance, [60, 60, 1e3]))[0] == pytest.approx(2, abs=0.05)

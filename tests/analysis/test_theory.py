@@ -35,11 +35,6 @@ CONSTANTS |= dict(sliding_stiffness=79.176, rolling_stiffness=3.7699, twisting_s
 CONSTANTS |= dict(critical_sliding=0.43071e-9, critical_rolling=0.8e-9, critical_twisting=1 / (16 * pi))
 
 
-def test_constants_of_ice():
-    assert {name: getattr(ICE, name) for name in CONSTANTS} == pytest.approx(CONSTANTS, rel=1.5e-5)
-    assert ICE.time_unit == pytest.approx(1.936e-10, rel=3e-4)
-
-
 def test_unlike_pair_follows_the_rules():
     one, other = replace(theory.ICE, viscoelastic_time=1e-12), replace(theory.SILICATE, viscoelastic_time=5e-12)
     pair = theory.pair_constants(one, 1e-7, other, 3e-7)
@@ -58,18 +53,23 @@ def test_unlike_pair_follows_the_rules():
     )
 
 
-def test_linear_damping_of_k13_equation_4():
+def test_linear_damping_of_k13_equation_4_and_strong_drag():
     pair = theory.pair_constants(theory.ICE, 1e-7, linear_damping=0.01)
     grain_mass = 4 / 3 * pi * 1000 * 1e-7**3
     assert pair.linear_drag == pytest.approx(0.01 * grain_mass / 1.9365e-10, rel=1e-4)
     assert theory.sticking_velocity(pair) > theory.sticking_velocity_without_drag(pair)
+    pair, overdamped = viscous(6), viscous(20)
+    assert theory.sticking_velocity(pair) / theory.sticking_velocity_without_drag(pair) == pytest.approx(10, rel=0.15)
+    assert theory.sticking_velocity(overdamped) == inf and theory.collide_pair(300.0, overdamped).sticks
 
 
-def test_exchanging_the_grains_changes_nothing():
+def test_constants_of_ice_and_of_exchanged_grains():
     there = theory.pair_constants(theory.ICE, 1e-7, theory.SILICATE, 3e-7, 0.01)
     back = theory.pair_constants(theory.SILICATE, 3e-7, theory.ICE, 1e-7, 0.01)
     assert vars(there) == pytest.approx(vars(back), rel=1e-14)
     assert vars(ICE) == vars(theory.pair_constants(theory.ICE, 1e-7, theory.ICE, 1e-7))
+    assert {name: getattr(ICE, name) for name in CONSTANTS} == pytest.approx(CONSTANTS, rel=1.5e-5)
+    assert ICE.time_unit == pytest.approx(1.936e-10, rel=3e-4)
 
 
 def _root_in_many_digits(overlap):
@@ -109,12 +109,14 @@ def test_force_and_energy_at_the_papers_points():
     assert theory.contact_radius(delta0, ICE) == pytest.approx(ICE.equilibrium_contact_radius, rel=1e-15)
 
 
-def test_separated_grains_do_not_interact():
+def test_separated_grains_do_not_interact_and_stiffness_is_the_slope_of_the_force():
     beyond = -1.0001 * ICE.pull_off_overlap
-    assert (
-        theory.normal_force(beyond, ICE) == theory.normal_energy(beyond, ICE) == theory.contact_radius(beyond, ICE) == 0
-    )
+    for function in (theory.normal_force, theory.normal_energy, theory.contact_radius):
+        assert function(beyond, ICE) == 0
     assert np.isnan(theory.contact_radius_root(-0.8255))
+    for overlap in (-0.7, 0.0, 1.0, 6.0):
+        slope = (theory.normalised_force(overlap + 1e-6) - theory.normalised_force(overlap - 1e-6)) / 2e-6
+        assert theory.normalised_stiffness(overlap) == pytest.approx(slope, rel=1e-8)
 
 
 @pytest.mark.parametrize("overlap", [-0.8, -0.3, 0.0, 0.9, 4.0])
@@ -125,15 +127,12 @@ def test_energy_is_the_integral_of_the_force(overlap):
     assert rise == pytest.approx(work, abs=1e-11 + error)
 
 
-def test_stiffness_is_the_slope_of_the_force():
-    for overlap in (-0.7, 0.0, 1.0, 6.0):
-        slope = (theory.normalised_force(overlap + 1e-6) - theory.normalised_force(overlap - 1e-6)) / 2e-6
-        assert theory.normalised_stiffness(overlap) == pytest.approx(slope, rel=1e-8)
-
-
-def test_sticking_velocity_of_ice_grains():
+def test_sticking_and_elastic_rebound_of_ice_grains():
     assert theory.sticking_velocity_without_drag(ICE) == pytest.approx(5.95, abs=0.005)
     assert theory.sticking_velocity(ICE) == pytest.approx(theory.sticking_velocity_without_drag(ICE), rel=1e-10)
+    velocity, threshold = 8.0, theory.sticking_velocity_without_drag(ICE)
+    collision = theory.collide_pair(velocity, ICE)
+    assert collision.rebound_velocity == pytest.approx((velocity**2 - threshold**2) ** 0.5, rel=1e-9)
 
 
 def as_printed(velocity, time, pair):
@@ -165,19 +164,6 @@ def test_sticking_and_rebound_with_drag_against_the_equation_as_printed(picoseco
     rebound, duration = as_printed(2 * threshold, time, pair)
     collision = theory.collide_pair(2 * threshold, pair)
     assert (collision.rebound_velocity, collision.duration) == pytest.approx((rebound, duration), rel=1e-6)
-
-
-def test_strong_drag():
-    """T_vis of 6 ps: some ten times the velocity without drag (A22 footnote 2 and Fig. 5); a pair that is overdamped always sticks."""
-    pair, overdamped = viscous(6), viscous(20)
-    assert theory.sticking_velocity(pair) / theory.sticking_velocity_without_drag(pair) == pytest.approx(10, rel=0.15)
-    assert theory.sticking_velocity(overdamped) == inf and theory.collide_pair(300.0, overdamped).sticks
-
-
-def test_elastic_rebound_obeys_the_energy_balance():
-    velocity, threshold = 8.0, theory.sticking_velocity_without_drag(ICE)
-    collision = theory.collide_pair(velocity, ICE)
-    assert collision.rebound_velocity == pytest.approx((velocity**2 - threshold**2) ** 0.5, rel=1e-9)
 
 
 def test_motion_of_a_pair_ends_in_the_same_rebound():
