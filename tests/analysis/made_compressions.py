@@ -13,24 +13,11 @@ CONSTANTS = ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "cri
 
 def compression_record(seed, **others):
     """The dict of run.json of ice grains (or of others: parameters by name)."""
-    given = {
-        "material": "ice",
-        "grains": GRAINS,
-        "packing": "bcca",
-        "seed": seed,
-        "strainRate": 3e-7,
-        "linearDamping": 0.01,
-        "criticalRolling": 0.8e-9,
-        "grainRadius": RADIUS,
-        "slidingStiffnessFactor": 1.0,
-        "stepFraction": 0.2,
-        "finalFilling": 0.5,
-        "viscoelasticTime": 0.0,
-        **others,
-    }
+    given = dict(material="ice", grains=GRAINS, packing="bcca", seed=seed, strainRate=3e-7, linearDamping=0.01)
+    given |= dict(criticalRolling=0.8e-9, grainRadius=RADIUS, slidingStiffnessFactor=1.0, stepFraction=0.2)
+    given |= dict(finalFilling=0.5, viscoelasticTime=0.0) | others
     about = {**record(1.0, given), "kind": "compression", "seed": seed}
-    own = {name: given[name] for name in CONSTANTS if name in given}
-    derived = {**about["derived"], **own}
+    derived = {**about["derived"], **{name: given[name] for name in CONSTANTS if name in given}}
     energy = rolling_energy(derived["surfaceEnergy"], derived["grainRadius"], derived["criticalRolling"])
     return {**about, "derived": {**derived, "rollingEnergy": energy}}
 
@@ -80,12 +67,6 @@ def _states(history):
 
 
 # K13's silicate, by the parameters' names.
-SILICATE_GRAINS = {
-    "material": "silicate",
-    "grainRadius": 6e-7,
-    "young": SILICATE.young,
-    "poisson": SILICATE.poisson,
-    "density": SILICATE.density,
-    "surfaceEnergy": SILICATE.surface_energy,
-    "criticalRolling": SILICATE.critical_rolling,
-}
+SILICATE_GRAINS = dict(material="silicate", grainRadius=6e-7, young=SILICATE.young, poisson=SILICATE.poisson)
+SILICATE_GRAINS |= dict(density=SILICATE.density, surfaceEnergy=SILICATE.surface_energy)
+SILICATE_GRAINS |= dict(criticalRolling=SILICATE.critical_rolling)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from written_runs import CHANNELS, MASS, RADIUS, record, state_arrays, write_run
+from written_runs import MASS, RADIUS, losing, record, state_arrays, write_run
 
 from analysis.__main__ import main
 from analysis.export.fields import CONTACTS, GRAINS
@@ -36,12 +36,8 @@ def _states(periodic):
 
 @pytest.fixture(params=[False, True], ids=["free", "periodic"])
 def run(request, tmp_path):
-    about, names = record(1e-6), CELL_SERIES if request.param else ("d", "v", "contacts_between")
-    about["kind"] = "compression" if request.param else "collision"
-    history = {name: np.zeros(3) for name in (*CHANNELS, *names)}
-    history.update(time=np.arange(3) * 1e-9, contacts=np.zeros(3, dtype=int))
-    if not request.param:
-        history["contacts_between"] = np.zeros(3, dtype=int)
+    about = {**record(1e-6), "kind": "compression" if request.param else "collision"}
+    history = losing(np.arange(3) * 1e-9, **{name: np.zeros(3) for name in CELL_SERIES if request.param})
     folder = write_run(tmp_path / "run", about, history, list(_states(request.param)))
     assert main(["export", str(folder), "--format", "all"]) == 0
     return open_run(folder)
@@ -59,24 +55,13 @@ def expected(state):
     for (a, b), f, way in zip(pairs, state.contact_normal_force, between):
         force[b] += f * way / np.linalg.norm(way)
         force[a] -= f * way / np.linalg.norm(way)
-    grains = {
-        "id": np.arange(5),
-        "radius": state.radius,
-        "mass": MASS * (state.radius / RADIUS) ** 3,
-        "v": state.velocity,
-        "omega": state.angular_velocity,
-        "aggregate": state.aggregate,
-        "fragment": [0, 0, 0, 1, 1] if len(pairs) else np.arange(5),
-        "coordination": [1, 2, 1, 1, 1] if len(pairs) else np.zeros(5),
-        "normal_force": force,
-    }
-    contacts = {
-        "id1": pairs[:, 0],
-        "id2": pairs[:, 1],
-        "normal_force": state.contact_normal_force,
-        "bonded": state.contact_bonded,
-        "overlap": [state.radius[a] + state.radius[b] - np.linalg.norm(d) for (a, b), d in zip(pairs, between)],
-    }
+    grains = {"id": np.arange(5), "radius": state.radius, "mass": MASS * (state.radius / RADIUS) ** 3}
+    grains |= {"v": state.velocity, "omega": state.angular_velocity, "aggregate": state.aggregate}
+    pieces, numbers = ([0, 0, 0, 1, 1], [1, 2, 1, 1, 1]) if len(pairs) else (np.arange(5), np.zeros(5))
+    grains |= {"fragment": pieces, "coordination": numbers, "normal_force": force}
+    overlap = [state.radius[a] + state.radius[b] - np.linalg.norm(d) for (a, b), d in zip(pairs, between)]
+    contacts = {"id1": pairs[:, 0], "id2": pairs[:, 1], "normal_force": state.contact_normal_force}
+    contacts |= {"bonded": state.contact_bonded, "overlap": overlap}
     ends = np.array([[state.position[a], state.position[a] + d] for (a, _), d in zip(pairs, between)]).reshape(-1, 2, 3)
     return grains, contacts, ends
 
@@ -232,20 +217,17 @@ def test_xyz_has_every_field_to_the_bit(run):
 # ---- what is refused ----
 
 
-def test_runs_without_states_and_damaged_ones_get_one_line(run, capsys):
+def test_what_cannot_be_exported_gets_one_line(run, tmp_path, capsys):
+    def refused(words, *options):
+        assert main(["export", str(run.path), *options]) == 2
+        message = capsys.readouterr().err
+        assert words in message and message.count("\n") == 1
+
+    (tmp_path / "file").write_text("")
+    refused("file", "--out", str(tmp_path / "file" / "x"))
     file = sorted((run.path / "states").iterdir())[1]
     file.write_bytes(file.read_bytes()[:100])
-    assert main(["export", str(run.path)]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    refused("damaged")
     for state in (run.path / "states").iterdir():
         state.unlink()
-    assert main(["export", str(run.path), "--format", "xyz"]) == 2
-    message = capsys.readouterr().err
-    assert "holds no state" in message and message.count("\n") == 1
-
-
-def test_a_folder_that_cannot_be_made_gets_one_line(run, tmp_path, capsys):
-    (tmp_path / "file").write_text("")
-    assert main(["export", str(run.path), "--out", str(tmp_path / "file" / "x")]) == 2
-    message = capsys.readouterr().err
-    assert "file" in message and message.count("\n") == 1
+    refused("holds no state", "--format", "xyz")

@@ -68,37 +68,29 @@ def test_force_lines_are_the_contacts_of_the_slab(run):
         assert to_rgb(axes.get_facecolor()) == (0.0, 0.0, 0.0)
 
 
-def test_grains_are_shown_at_start_maximum_and_end(run):
+def test_grains_are_shown_at_start_maximum_and_end_or_at_the_times_asked_for(run):
+    """The nearest state to each time, once; more than three in two columns."""
     titles = [axes.get_title(loc="left") for axes in grains_figure(run).axes]
     assert titles[0] == "$t$ = 0.0 ns" and titles[-1] == f"$t$ = {run.last.time * 1e9:.1f} ns" and 2 <= len(titles) <= 3
+    times = [run.states.times[k] + 1e-13 for k in (0, 2, 3, 5)]
+    expected = [f"$t$ = {run.states.times[k] * 1e9:.1f} ns" for k in (0, 2, 3, 5)]
+    for make in (grains_figure, forces_figure):
+        figure = make(run, [*times, times[-1]])
+        assert [axes.get_title(loc="left") for axes in figure.axes] == expected
 
 
-def test_nearer_sphere_hides_the_farther_one():
+def test_painted_spheres():
+    """The nearer one hides the farther; the area is that of a disc; what is smaller than a pixel is seen."""
     position, colour = np.array([[0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [3.0, 0.0, 0.0]]), np.eye(3)
     image = paint_spheres(position, np.ones(3), colour, (-1.5, 4.5, -1.5, 1.5), 0.05)
     assert image.shape == (60, 120, 3)
     assert np.argmax(image[30, 30]) == 0 and np.argmax(image[30, 90]) == 2
     assert not np.any((image[..., 1] > 0) & (image[..., 0] == 0) & (image[..., 2] == 0))
     assert np.all(image[0, 0] == 1.0)
-
-
-def test_painted_area_is_that_of_a_disc():
     image = paint_spheres(np.zeros((1, 3)), np.ones(1), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.02)
     assert np.sum(image[..., 1] == 0.0) * 0.02**2 == pytest.approx(np.pi, rel=0.01)
-
-
-def test_a_grain_smaller_than_a_pixel_is_seen():
     image = paint_spheres(np.zeros((1, 3)), np.full(1, 0.01), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.5)
     assert np.any(image[..., 1] == 0.0)
-
-
-def test_states_are_shown_at_the_times_asked_for(run):
-    """The nearest state to each time, once; more than three in two columns."""
-    times = [run.states.times[k] + 1e-13 for k in (0, 2, 3, 5)]
-    expected = [f"$t$ = {run.states.times[k] * 1e9:.1f} ns" for k in (0, 2, 3, 5)]
-    for make in (grains_figure, forces_figure):
-        figure = make(run, [*times, times[-1]])
-        assert [axes.get_title(loc="left") for axes in figure.axes] == expected
 
 
 def test_colours_of_what_is_drawn_are_kept_in_a_small_picture(tmp_path):

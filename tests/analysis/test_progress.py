@@ -23,7 +23,7 @@ def test_a_bar_is_drawn_on_a_terminal_alone(tmp_path, monkeypatch, capsys, name)
     if name == "film" and not shutil.which("ffmpeg"):
         pytest.skip("ffmpeg is not installed")
     what, (command, *options) = COMMANDS[name]
-    made_run(tmp_path / "run", 40.0, 3.0, 1, 0.0)
+    made_run(tmp_path / "run", 40.0, 3.0, 1)
     for stream, shown in ((Terminal(), True), (io.StringIO(), False)):
         monkeypatch.setattr(sys, "stderr", stream)
         assert main([command, str(tmp_path / "run"), *options]) == 0

@@ -9,8 +9,6 @@ from written_runs import MASS, RADIUS, chain, losing, record, state_arrays, writ
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS
-from analysis.runs.table import read_table
-from analysis.studies.definition import GALLERY
 from analysis.studies.sintered.measure import PARTS
 from analysis.studies.sintered.models import chain_ratio, fit_necks
 from analysis.studies.sintered.study import STUDY
@@ -99,7 +97,7 @@ def test_one_piece_that_its_contact_cannot_hold_is_undecided(tmp_path):
     assert (sticking.successes, sticking.pairs, sticking.undecided) == (1, 2, 1)
 
 
-def test_necks_by_a_power_law_are_fitted_exactly_and_zeros_count():
+def test_necks_by_a_power_law_are_fitted_exactly_and_the_chain_model_of_contacts():
     ratios = np.tile([0.01, 0.3, 1.0, 3.0], 3)
     rows = pandas.DataFrame({"energy_ratio": ratios, "broken": 2048 * 0.05 * ratios**1.4, "grains": 2048})
     weights = np.random.default_rng(1).exponential(size=(5, len(rows)))
@@ -107,27 +105,5 @@ def test_necks_by_a_power_law_are_fitted_exactly_and_zeros_count():
     without = rows.assign(broken=rows.broken.where(rows.energy_ratio > 0.1, 0))
     assert fit_necks(without, weights)[:, 1].min() > 1.4
     assert np.isnan(fit_necks(rows[rows.energy_ratio == 1.0], weights[:, :3])).all()
-
-
-def test_the_chain_model_of_contacts():
-    """S17 Fig. 17: 'almost unity' at 10 m/s with loops; softer chains of fewer contacts stick; three contacts are outside of it."""
     loops, few, many, none = chain_ratio([np.nan, 2.12, 2.5, 3.0], [0.7] * 4, [10.0] * 4, [RADIUS] * 4)
     assert loops == pytest.approx(0.75, abs=0.01) and many < few and none == 0.0
-
-
-def test_the_gallerys_numbers_are_those_of_the_analysis_before():
-    """Values and errors (None: not compared) that the study had before estimates carried their draws."""
-    found = STUDY.results(read_table(GALLERY / "sintered" / "runs.csv", STUDY.columns)[0])
-    bcca = {"growth_velocity": 0, "neck": 0.7}
-    for name, where, value, error in (
-        ("largest", {**bcca, "setup": "cut", "velocity": 15}, 0.934375, 0.0323),
-        ("largest", {"setup": "held", "growth_velocity": 0, "neck": 0.5, "velocity": 30}, 0.42959, 0.0742),
-        ("necks_change", {**bcca, "setup": "space", "velocity": 30}, 0.3409, 0.036),
-        ("necks_change", {**bcca, "setup": "30 Å", "velocity": 30}, 1.05063, 0.0229),
-        ("lost", {"setup": "cut", "neck": 0, "way": "rolling friction"}, 0.7495, 0.0041),
-        ("left", {"setup": "cut", "periods": 20000}, 0.215, 0.017),
-        ("necks_law", {"setup": "cut", "number": "exponent"}, 1.2926, 0.0252),
-        ("gyration_change", {"setup": "cut", "velocity": 20}, 27.6, 2.4),
-    ):
-        own = found[name].at(**where)
-        assert (own.value, own.error) == (pytest.approx(value, rel=3e-3), pytest.approx(error, rel=0.1)), name

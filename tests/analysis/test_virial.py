@@ -37,17 +37,13 @@ def test_crystal_under_pressure(basis, neighbours, contacts):
     assert stress == pytest.approx(expected * np.eye(3), rel=1e-12, abs=1e-12 * expected)
 
 
-def test_stress_of_one_axis_is_the_force_on_a_face():
+def test_stress_of_one_axis_is_the_force_on_a_face_and_sliding_does_not_press():
     """Springs along x only: the stress is the force through a plane across x over its area."""
     position, pairs, cell = crystal([(0, 0, 0)], [(2, 0, 0)], 3, A)
     force = np.tile([-2e-9, 0, 0], (len(pairs), 1))  # on the first: pulled back from its neighbour ahead
     stress = contact_stress(position, pairs, force, cell)
     assert stress[0, 0] == pytest.approx(9 * 2e-9 / (3 * A) ** 2, rel=1e-12)
     assert np.abs(stress).sum() == pytest.approx(stress[0, 0], rel=1e-12)
-
-
-def test_sliding_does_not_press():
-    """Forces at right angles to their contacts shear, and leave the trace at zero."""
     random = np.random.default_rng(4)
     position, cell = random.uniform(0, 1, (30, 3)), np.ones(3)
     pairs = random.integers(0, 30, (60, 2))
@@ -73,7 +69,4 @@ def test_images_do_not_matter():
     forces = random.normal(size=30)
     first, second = (contact_pressure(x, pairs, forces, cell) for x in (position, elsewhere))
     assert second == pytest.approx(first, rel=1e-9)
-
-
-def test_filling_factor():
     assert filling_factor([1.0, 1.0], [4.0, 4.0, 4.0]) == pytest.approx(2 * 4 / 3 * np.pi / 64)
