@@ -42,8 +42,8 @@ CODES = {
     "engine-portable": Code("JKRWadaEngine, portable", OURS, "fused", "portable"),
     "functors": Code("functors in YADE's loop", OURS, "functors"),
     "stock": Code("YADE's own loop, stock cohesive law", STOCK, "stock"),
-    "lammps": Code("LAMMPS", peers.PROGRAMS["lammps"].physics),
-    "liggghts": Code("LIGGGHTS", peers.PROGRAMS["liggghts"].physics),
+    "lammps": Code("LAMMPS", peers.PHYSICS["lammps"]),
+    "liggghts": Code("LIGGGHTS", peers.PHYSICS["liggghts"]),
 }
 
 

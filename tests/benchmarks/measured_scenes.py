@@ -37,7 +37,7 @@ OF_S17 = {"flying": 0.0, "touching": 0.5e-6, "later": 1.5e-6}
 CPE = {"packing": "cpe", "filling": 0.4, "stepFraction": 0.1, "velocity": "10**0.5"}
 OF_A24 = {"flying": 0.0, "compressed": 0.4e-6, "apart": 0.8e-6}
 FAST = {**CPE, "radius": 20, "velocity": 60, "duration": "120e-9"}
-OF_FAST = {"flying": 0.0, "compressing": 30e-9, "fragments": 110e-9}
+OF_FAST, OF_CPE = {"flying": 0.0, "compressing": 30e-9, "fragments": 110e-9}, {"flying": 0.0, "compressed": 0.2e-6}
 WITH_DRAG, SLOWLY = {**A22, "viscoelasticTime": "6e-12"}, {**A22, "velocity": 0.5}
 PAPERS = {
     "a22": Scene("A22: two BPCA of 50,000 at 50.1 m/s, B_off 0.5", "collision", A22, OF_A22, 0.5e-6),
@@ -48,9 +48,7 @@ PAPERS = {
     "s17": Scene("S17: 2 x 1,024 planar BCCA, beta 0.7, 20 m/s", "collision", S17, OF_S17, 0.3e-6),
     "a24": Scene("A24: two CPE, R 80, 3.16 m/s", "collision", {**CPE, "radius": 80}, OF_A24, 0.1e-6),
     "cpe-fast": Scene("two CPE, R 20, 60 m/s", "collision", FAST, OF_FAST, 0.2e-6),
-    "cpe": Scene(
-        "two CPE, R 40, 3.16 m/s", "collision", {**CPE, "radius": 40}, {"flying": 0.0, "compressed": 0.2e-6}, 0.1e-6
-    ),
+    "cpe": Scene("two CPE, R 40, 3.16 m/s", "collision", {**CPE, "radius": 40}, OF_CPE, 0.1e-6),
 }
 
 

@@ -1,8 +1,8 @@
 """LAMMPS and LIGGGHTS on the same grains: is it installed, and how fast does it go?
 
 Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that
-mean SI or reduced units; their inputs are in.lammps and in.liggghts. Materials' constants are the scene's; friction limits
-are those of JKR-Wada at zero load. What differs is in Peer.physics. One material and one size only; contacts start without
+mean SI or reduced units. Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What
+differs is in PHYSICS. One material and one size only; contacts start without
 springs, there is no drag, and a periodic cell keeps its size.
 """
 
@@ -13,7 +13,6 @@ import shutil
 import subprocess
 import tempfile
 import time
-from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 from pathlib import Path
@@ -31,25 +30,12 @@ FEWEST_STEPS, UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 
 
-@dataclass(frozen=True)
-class Peer:
-    """program, as it is called; physics, in words. Its input is in.NAME."""
-
-    program: str
-    physics: str
-
-
-PROGRAMS = {
-    "lammps": Peer(
-        "lmp",
-        "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the "
-        "largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
-    ),
-    "liggghts": Peer(
-        "liggghts",
-        "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), tangential "
-        "history, rolling epsd2; no twisting, no energy ledger.",
-    ),
+PROGRAMS = {"lammps": "lmp", "liggghts": "liggghts"}  # whose inputs are in.lammps and in.liggghts
+PHYSICS = {
+    "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the "
+    "largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
+    "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), "
+    "tangential history, rolling epsd2; no twisting, no energy ledger.",
 }
 
 
@@ -59,7 +45,7 @@ class PeerFailed(RuntimeError):
 
 def missing(code, scene=None):
     """Why this code cannot be measured here, or on this SceneFile, in a line; None when it can."""
-    program = PROGRAMS[code].program
+    program = PROGRAMS[code]
     if not shutil.which(program):
         return f"{program} is not installed (make bench-peers installs it)"
     if code == "lammps" and "granular" not in help_text(shutil.which(program)):
@@ -78,7 +64,7 @@ def help_text(program):
 
 
 def version(code):
-    text = help_text(shutil.which(PROGRAMS[code].program))
+    text = help_text(shutil.which(PROGRAMS[code]))
     found = re.search(r"Version (LIGGGHTS\S* \S+?),|Simulator - (.+)", text)
     return next(group for group in found.groups() if group) if found else "unknown"
 
@@ -118,7 +104,7 @@ def measure(code, scene, steps, cores=1, skin=0.3):
     numbers = {"steps": steps, "skin": skin, "processes": cores, "boundary": "p" if scene.periodic else "f"}
     numbers |= {"bins": bin_edge(scene), **scaled_constants(scene)}
     variables = [word for name, value in numbers.items() for word in ("-var", name, str(value))]
-    command = [PROGRAMS[code].program, "-in", str(HERE / f"in.{code}"), "-log", "none", *variables]
+    command = [PROGRAMS[code], "-in", str(HERE / f"in.{code}"), "-log", "none", *variables]
     if cores > 1:
         command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores), *command]
     with tempfile.TemporaryDirectory() as folder:
@@ -130,9 +116,9 @@ def measure(code, scene, steps, cores=1, skin=0.3):
     # grains and contacts (twice, once from each grain)
     counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)
     if done.returncode or not loop:
-        raise PeerFailed(f"{PROGRAMS[code].program} failed: {last_words(done)}")
+        raise PeerFailed(f"{PROGRAMS[code]} failed: {last_words(done)}")
     if len(counted) < 2 or int(counted[-1][0]) != len(scene.grains):
-        raise PeerFailed(f"{PROGRAMS[code].program} lost grains or counted nothing:\n{done.stdout[-1500:]}")
+        raise PeerFailed(f"{PROGRAMS[code]} lost grains or counted nothing:\n{done.stdout[-1500:]}")
     contacts = sum(float(count) for _, count in counted) / 2 / len(counted)
     found = {"grains": len(scene.grains), "contacts": contacts, "steps": steps, "seconds": float(loop.group(1))}
     return {**found, "fraction": fraction, "version": version(code), "skin": skin}

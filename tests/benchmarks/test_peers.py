@@ -1,7 +1,6 @@
 """LAMMPS and LIGGGHTS get the grains that the engine gets; one that is missing, unfit or broken is said and left out. Starts
 of scenes are what they are said to be."""
 
-import os
 from contextlib import ExitStack
 
 import codes
@@ -49,26 +48,18 @@ def test_they_get_the_cell_the_spins_and_room(tmp_path):
     assert (highest == -lowest).all() and (highest > 2 * np.abs(flying.grains["position"]).max(axis=0) / 1e-7).all()
 
 
-def program(folder, name, script, monkeypatch):
-    """A program of that name, before others of it."""
-    (folder / name).write_text(f"#!/bin/sh\n{script}\n")
-    (folder / name).chmod(0o755)
-    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
-
-
-def test_what_a_peer_cannot_run_is_said(monkeypatch, tmp_path):
-    program(tmp_path, "lmp", "echo granular", monkeypatch)
+def test_what_a_peer_cannot_run_is_said(program):
+    program("lmp", "echo granular")
     unfit = [(PAPERS["s17"], "it has no sintered bonds"), (TINY["cpe-5"], None)]
     unfit += [(TINY[kind], "it is measured on like grains only") for kind in ("materials", "radii")]
     for scene, reason in unfit:
         assert peers.missing("lammps", starts.of(scene).scene) == reason
 
 
-def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, monkeypatch):
-    """A program of that name that only fails, as one does whose libraries are missing."""
+def test_a_peer_that_fails_is_noted_and_not_tried_again(tmp_path, program):
+    """As one does whose libraries are missing."""
     for name in ("lmp", "liggghts"):
-        script = f"echo once >> {tmp_path}/{name}.calls; echo no such library >&2; exit 127"
-        program(tmp_path, name, script, monkeypatch)
+        program(name, f"echo once >> {tmp_path}/{name}.calls; echo no such library >&2; exit 127")
     assert "pair_style granular" in codes.missing("lammps")
     start = moments.make("one", TINY["cpe-5"], tmp_path)
     place = speed.Place("one", TINY["cpe-5"], "flying", start, settings.TINY, tmp_path, ExitStack())

@@ -27,9 +27,11 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
 )";
 
 struct Settings {
-	std::string scene, instructions, out, control;
-	long steps = 500, rounds = 1, domains = 0, together = 50, warm = 0;
+	std::string scene;
 	std::vector<long> threads { 1 };
+	std::map<std::string, long> numbers { { "steps", 500 }, { "rounds", 1 }, { "domains", 0 }, { "together", 50 }, { "warm", 0 } };
+	std::map<std::string, std::string> words { { "instructions", "" }, { "out", "" }, { "control", "" } };
+	long operator[](const char* name) const { return numbers.at(name); }
 };
 
 long wholeNumber(const std::string& name, const std::string& text, long least)
@@ -45,36 +47,22 @@ long wholeNumber(const std::string& name, const std::string& text, long least)
 	return number;
 }
 
-std::vector<long> wholeNumbers(const std::string& name, const std::string& text)
-{
-	std::vector<long> found;
-	std::istringstream parts(text + ',');
-	for (std::string part; std::getline(parts, part, ',');)
-		found.push_back(wholeNumber(name, part, 1));
-	return found;
-}
-
-struct Number {
-	long Settings::*member, least;
-};
-const std::map<std::string, Number> numbers { { "steps", { &Settings::steps, 1 } }, { "rounds", { &Settings::rounds, 1 } },
-	{ "domains", { &Settings::domains, 0 } }, { "together", { &Settings::together, 1 } }, { "warm", { &Settings::warm, 0 } } };
-const std::map<std::string, std::string Settings::*> words { { "instructions", &Settings::instructions }, { "out", &Settings::out },
-	{ "control", &Settings::control } };
-
 void take(Settings& settings, const std::string& argument)
 {
 	const std::size_t equals = argument.find('=');
 	const std::string name = argument.substr(0, equals), value = equals == std::string::npos ? "" : argument.substr(equals + 1);
 	if (equals == std::string::npos && settings.scene.empty())
 		settings.scene = argument;
-	else if (numbers.count(name))
-		settings.*numbers.at(name).member = wholeNumber(name, value, numbers.at(name).least);
-	else if (words.count(name))
-		settings.*words.at(name) = value;
-	else if (name == "threads")
-		settings.threads = wholeNumbers(name, value);
-	else
+	else if (settings.numbers.count(name))
+		settings.numbers[name] = wholeNumber(name, value, name == "domains" || name == "warm" ? 0 : 1);
+	else if (settings.words.count(name))
+		settings.words[name] = value;
+	else if (name == "threads") {
+		settings.threads.clear();
+		std::istringstream parts(value + ',');
+		for (std::string part; std::getline(parts, part, ',');)
+			settings.threads.push_back(wholeNumber(name, part, 1));
+	} else
 		throw std::invalid_argument(argument + ": no such parameter; build/harness --help lists them");
 }
 
@@ -91,10 +79,11 @@ struct Counted { // since the start
 // Tells perf to begin or to end sampling.
 void tell(const Settings& settings, const char* command)
 {
-	if (settings.control.empty()) return;
-	std::ofstream control(settings.control);
+	const std::string& path = settings.words.at("control");
+	if (path.empty()) return;
+	std::ofstream control(path);
 	control << command << std::endl;
-	if (!control) throw std::runtime_error(settings.control + ": must be a fifo that perf reads");
+	if (!control) throw std::runtime_error(path + ": must be a fifo that perf reads");
 }
 
 void measure(harness::Run& run, const Settings& settings, long threads)
@@ -105,15 +94,15 @@ void measure(harness::Run& run, const Settings& settings, long threads)
 	const double contacts = contact_law::contactCount(dynamics);
 	tell(settings, "enable");
 	const auto start = std::chrono::steady_clock::now();
-	run.run(settings.steps, settings.together);
+	run.run(settings["steps"], settings["together"]);
 	const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 	tell(settings, "disable");
 	const Counted after(dynamics);
 	const double mean = 0.5 * (contacts + contact_law::contactCount(dynamics));
 	std::printf("{\"threads\": %d, \"steps\": %ld, \"msPerStep\": %.6g, \"contacts\": %.1f, \"contactUpdatesPerSecond\": %.5g, "
 	            "\"searches\": %.4g, \"distanceChecks\": %ld, \"events\": %ld, \"formed\": %ld, \"broken\": %ld}\n",
-	        dynamics.threadCount(), settings.steps, 1e3 * seconds / double(settings.steps), mean,
-	        mean * double(settings.steps) / seconds, after.counters.searches - before.counters.searches,
+	        dynamics.threadCount(), settings["steps"], 1e3 * seconds / double(settings["steps"]), mean,
+	        mean * double(settings["steps"]) / seconds, after.counters.searches - before.counters.searches,
 	        after.counters.distanceChecks - before.counters.distanceChecks, after.counts.events - before.counts.events,
 	        after.counts.formed - before.counts.formed, after.counts.broken - before.counts.broken);
 	std::fflush(stdout);
@@ -122,14 +111,15 @@ void measure(harness::Run& run, const Settings& settings, long threads)
 void runScene(const Settings& settings)
 {
 	if (settings.scene.empty()) throw std::invalid_argument("no scene: must be given first; build/harness --help says more");
-	harness::Run run(harness::readScene(settings.scene), int(settings.domains), int(settings.threads[0]), settings.instructions);
+	harness::Run run(
+	        harness::readScene(settings.scene), int(settings["domains"]), int(settings.threads[0]), settings.words.at("instructions"));
 	const double energy = run.totalEnergy(), kinetic = run.kineticEnergy();
-	run.run(settings.warm, settings.together);
-	for (long round = 0; round < settings.rounds; ++round)
+	run.run(settings["warm"], settings["together"]);
+	for (long round = 0; round < settings["rounds"]; ++round)
 		for (const long threads : settings.threads)
 			measure(run, settings, threads);
 	const harness::Scene end = run.sceneNow();
-	if (!settings.out.empty()) harness::writeScene(settings.out, end);
+	if (const std::string& out = settings.words.at("out"); !out.empty()) harness::writeScene(out, end);
 	std::printf("{\"grains\": %zu, \"contacts\": %zu, \"time\": %.9g, \"energyChange\": %.6g, \"kinetic\": %.6g, \"instructions\": "
 	            "\"%s\", \"domains\": %zu, "
 	            "\"hash\": \"%016llx\"}\n",
