@@ -14,13 +14,14 @@ COMMANDS = ("dust-analysis", "dust-collide", "dust-compress", "dust-packing", "d
 SMALL = ("grains=30", "packing=bpca", "velocity=20", "duration=2e-9", "stepFraction=0.1")
 
 
-def installation(action, prefix, environment=None):
-    return subprocess.run(
-        [sys.executable, str(TOP / "contact_law/installation.py"), action, str(prefix)],
-        capture_output=True,
-        text=True,
-        env=environment or {**os.environ, "PYTHONUSERBASE": str(prefix)},
-    )
+def installation(action, prefix, base=None):
+    command = [sys.executable, str(TOP / "contact_law/installation.py"), action, str(prefix)]
+    environment = {**os.environ, "PYTHONUSERBASE": str(base or prefix)}
+    return subprocess.run(command, capture_output=True, text=True, env=environment)
+
+
+def refused(done, words):
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and words in done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -30,19 +31,8 @@ def installed(tmp_path_factory):
     done = installation("install", prefix)
     assert done.returncode == 0, done.stderr
     paths = {"PATH": f"{prefix}/bin:/usr/bin:/bin", "HOME": str(elsewhere), "PYTHONUSERBASE": str(prefix)}
-
-    def call(*command, **more):
-        return subprocess.run(
-            command,
-            cwd=elsewhere,
-            env={**paths, "LC_ALL": "C.UTF-8"},
-            capture_output=True,
-            text=True,
-            timeout=120,
-            **more,
-        )
-
-    return prefix, call
+    how = dict(cwd=elsewhere, env={**paths, "LC_ALL": "C.UTF-8"}, capture_output=True, text=True, timeout=120)
+    return prefix, lambda *command: subprocess.run(command, **how)
 
 
 def test_a_script_of_any_folder_imports_the_contact_law(installed, tmp_path):
@@ -54,18 +44,12 @@ def test_a_script_of_any_folder_imports_the_contact_law(installed, tmp_path):
     assert f"found {prefix}/lib/contact_law/contact_law/__init__.py" in done.stdout
 
 
-def test_any_python_imports_the_analysis(installed):
+def test_any_python_imports_the_analysis_and_commands_tell_its_version_and_commit(installed):
     prefix, call = installed
-    done = call(
-        "/usr/bin/python3", "-c", "import analysis; print(analysis.__file__, analysis.__version__, analysis.commit)"
-    )
-    file, version, commit = done.stdout.rsplit(maxsplit=2)
+    ask = "import analysis; print(analysis.__file__, analysis.__version__, analysis.commit)"
+    file, version, commit = call("/usr/bin/python3", "-c", ask).stdout.rsplit(maxsplit=2)
     assert file == f"{prefix}/lib/contact_law/analysis/__init__.py"
     assert version == (TOP / "contact_law/VERSION").read_text().strip() and commit
-
-
-def test_the_commands_tell_one_version_and_commit(installed):
-    _, call = installed
     told = set()
     for command in COMMANDS:
         done = call(command, "--version")
@@ -100,13 +84,7 @@ def test_files_that_the_analysis_reads_are_installed(installed):
     ask = "from analysis.studies.definition import GALLERY; print(GALLERY)"
     gallery = Path(call("/usr/bin/python3", "-c", ask).stdout.strip())
     assert gallery.is_relative_to(prefix)
-    for pattern in (
-        "gallery/*/*.json",
-        "gallery/*/snapshots/*",
-        "studies/*.html",
-        "studies/*/*.toml",
-        "studies/*/*.csv",
-    ):
+    for pattern in "gallery/*/*.json gallery/*/snapshots/* studies/*.html studies/*/*.toml studies/*/*.csv".split():
         files = list((TOP / "analysis").glob(pattern))
         assert files
         for file in files:
@@ -121,8 +99,7 @@ def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
     assert {file.name for file in (tmp_path / "bin").iterdir()} == {*COMMANDS, "other"}
     assert installation("uninstall", tmp_path).returncode == 0
     assert [path for path in tmp_path.rglob("*") if path.is_file() or path.is_symlink()] == [tmp_path / "bin/other"]
-    done = installation("uninstall", tmp_path)
-    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
+    refused(installation("uninstall", tmp_path), "")
 
 
 def test_only_what_was_installed_is_removed(tmp_path):
@@ -141,8 +118,7 @@ def test_only_what_was_installed_is_removed(tmp_path):
     listed += [[str(outside / "named"), digest], ["../outside/analysis.py", digest]]
     (folder / "installed.json").write_text(json.dumps(listed))
     kept = {file: file.read_bytes() for file in [changed, mine, *outside.rglob("*.*"), outside / "named"]}
-    refused = installation("install", prefix)
-    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "must be moved away" in refused.stderr
+    refused(installation("install", prefix), "must be moved away")
     done = installation("uninstall", prefix)
     assert done.returncode == 0 and f"{changed}: is not what was installed" in done.stdout
     assert {file: file.read_bytes() for file in kept} == kept
@@ -157,8 +133,7 @@ def test_an_installation_without_its_list_is_left_as_it_is(tmp_path, listed, act
     for file in (mine, prefix / "lib/contact_law/mine"):
         file.write_text("mine")
     (prefix / "lib/contact_law/installed.json").write_text(listed.format(mine=mine))
-    done = installation(action, prefix)
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "must be moved away" in done.stderr
+    refused(installation(action, prefix), "must be moved away")
     assert mine.exists() and sorted(os.listdir(prefix / "lib/contact_law")) == ["installed.json", "mine"]
 
 
@@ -167,13 +142,12 @@ def test_what_is_in_the_way_is_kept(tmp_path, name):
     name = name.replace("python3", f"python3.{sys.version_info.minor}")
     (tmp_path / name).parent.mkdir(parents=True)
     (tmp_path / name).write_text("another program")
-    done = installation("install", tmp_path)
-    assert done.returncode == 2 and f"{name}: exists and is not part of an installation" in done.stderr
+    refused(installation("install", tmp_path), f"{name}: exists and is not part of an installation")
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == [tmp_path / name]
     assert (tmp_path / name).read_text() == "another program"
 
 
 def test_a_folder_that_no_python_searches_is_named(tmp_path):
-    done = installation("install", tmp_path, {**os.environ, "PYTHONUSERBASE": "/nowhere"})
+    done = installation("install", tmp_path, "/nowhere")
     assert done.returncode == 0
     assert f"PYTHONPATH={tmp_path}/lib/contact_law" in done.stdout
