@@ -14,16 +14,13 @@ MASS = 4 / 3 * np.pi * 1e-21 * 1000
 
 
 def test_numbers_of_k13():
+    """And of section 3.7, silicate: v_d = 4.01 cm/s and c_s = 0.77 cm/s at a filling of 0.01, equal at 0.034."""
     assert ENERGY == pytest.approx(4.74e-16, rel=1e-3) and SCALE == pytest.approx(4.74e5, rel=1e-3)
     assert rolling_energy(0.02, 0.6e-6, 2e-9) == pytest.approx(1.42e-15, rel=2e-3)
     assert bcca_filling(16384) == pytest.approx(3.63e-3, rel=1e-3)
     for filling, speed in ((1e-3, 0.127), (1e-2, 0.059), (1e-1, 0.027)):  # section 3.2
         assert boundary_speed(filling, 3e-7, 16384, 1e-7, UNIT) == pytest.approx(speed, rel=0.02)
     assert sound_speed(1.0, ENERGY, MASS) == pytest.approx(11.0, rel=0.04)  # eq 28
-
-
-def test_static_from_of_silicate():
-    """Section 3.7: v_d = 4.01 cm/s and c_s = 0.77 cm/s at a filling of 0.01, equal at 0.034."""
     unit, mass = pair_constants(SILICATE, 0.6e-6).time_unit, 4 / 3 * np.pi * (0.6e-6) ** 3 * 2650
     energy = rolling_energy(0.02, 0.6e-6, 2e-9)
     assert boundary_speed(0.01, 3e-7, 16384, 0.6e-6, unit) == pytest.approx(0.0401, rel=0.01)

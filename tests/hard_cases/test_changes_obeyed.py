@@ -7,10 +7,8 @@ pytestmark = pytest.mark.in_yade
 
 
 def all_states():
-    return [
-        [list(b.state.pos), list(b.state.vel), list(b.state.angVel), b.state.blockedDOFs, list(b.state.ori)]
-        for b in O.bodies
-    ]
+    states = [b.state for b in O.bodies]
+    return [[list(s.pos), list(s.vel), list(s.angVel), s.blockedDOFs, list(s.ori)] for s in states]
 
 
 def flying_together(**options):
@@ -218,24 +216,16 @@ def test_energies_after_the_functors_and_a_checkpoint(tracked):
     assert end(True) == close_to(straight, "connection")
 
 
-def test_an_engine_that_is_dead_for_a_while_continues():
-    chain()
-    steps(40)
-    straight = positions()
-    chain()
-    for engine().dead in [False] * 20 + [True] * 20 + [False] * 20:
-        O.step()
-    assert (positions() == straight).all()
-
-
-def test_threads_may_change():
-    def end(threads):
+def test_an_engine_that_is_dead_for_a_while_continues_on_any_threads():
+    def end(dead, threads):
         new_scene(0.1 * unit)
         converging(64, 1, [ice()], [1e-7])
         fused_engine()
-        for k in range(100):
+        for k in range(100 + dead):
+            engine().dead = 40 <= k < 40 + dead
             engine().threads = threads(k)
             O.step()
         return positions()
 
-    assert (end(lambda k: 1) == end(lambda k: 1 + k // 10 % 2)).all()
+    straight = end(0, lambda k: 1)
+    assert (straight == end(20, lambda k: 1)).all() and (straight == end(0, lambda k: 1 + k // 10 % 2)).all()

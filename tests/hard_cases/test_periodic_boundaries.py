@@ -51,18 +51,16 @@ def test_neighbours_are_found_in_cells_of_few_grains():
     """The smallest cell that may be, one grid cell an axis at times: as many contacts as all pairs' nearest images have."""
     size = np.array([5.7e-7, 6.5e-7, 9e-7])
     box(size)
-    random = np.random.default_rng(4)
-    placed = []
+    distance = lambda x, y: np.linalg.norm(x - y - size * np.round((x - y) / size), axis=-1)
+    random, placed = np.random.default_rng(4), np.empty((0, 3))
     while len(placed) < 24:
         x = size * random.random(3)
-        if all(np.linalg.norm((x - y) - size * np.round((x - y) / size)) > 1.9e-7 for y in placed):
-            placed.append(x)
+        if (distance(x, placed) > 1.9e-7).all():
+            placed = np.vstack([placed, x])
     for x in placed:
         grain(x + size * random.integers(-3, 4, size=3), 1e-7, ice())
     O.engines[0].prepare()
-    apart = positions()[:, None] - positions()[None]
-    apart -= size * np.round(apart / size)
-    touching = np.count_nonzero(np.linalg.norm(apart, axis=2)[np.triu_indices(len(apart), 1)] < 2e-7)
+    touching = np.count_nonzero(np.triu(distance(positions()[:, None], positions()) < 2e-7, 1))
     assert O.engines[0].statistics()["contacts"] == touching > 3
 
 

@@ -63,7 +63,7 @@ def test_a_run_beats_until_it_ends_and_a_job_of_an_array_says_its_task(tmp_path,
     beating.stop()
 
 
-def test_on_this_machine_the_lock_tells(tmp_path):
+def test_on_this_machine_the_lock_tells_elsewhere_the_age_by_the_file_servers_clock(tmp_path, monkeypatch):
     host, boot = running.this_machine()
     assert place(left_by(tmp_path / "killed", Heartbeat(host, boot))) is None
     assert place(left_by(tmp_path / "before a new start of the machine", Heartbeat(host, "another boot"))).host == host
@@ -72,9 +72,6 @@ def test_on_this_machine_the_lock_tells(tmp_path):
     folder.close()
     os.close(folder._lock)
     assert place(folder.path) is None
-
-
-def test_elsewhere_it_is_the_age_by_the_file_servers_clock(tmp_path, monkeypatch):
     young, old = left_by(tmp_path / "young", ELSEWHERE), left_by(tmp_path / "old", ELSEWHERE, STALE)
     monkeypatch.setattr(time, "time", lambda: 0.0)  # this machine's clock is years behind
     assert place(young) == running.Place("node7", None, False) and str(place(young)) == "on node7"
@@ -93,15 +90,14 @@ def test_a_heartbeat_that_changes_is_one_until_it_stops_for_three_intervals(tmp_
     wait_for(lambda: not place(quick), 20)
 
 
-DAMAGED = ["", "[]", '{"interval": -1, "job": "1; rm", "host": 3}', '{"interval": 1e99, "start": 1.5}']
-
-
-@pytest.mark.parametrize("text", DAMAGED)
+@pytest.mark.parametrize(
+    "text", ["", "[]", '{"interval": -1, "job": "1; rm", "host": 3}', '{"interval": 1e99, "start": 1.5}']
+)
 def test_a_damaged_heartbeat_is_judged_by_its_age(tmp_path, text):
-    folder = left_by(tmp_path / "run", ELSEWHERE)
-    (tmp_path / "run" / HEARTBEAT_FILE).write_text(text)
+    folder, file = left_by(tmp_path / "run", ELSEWHERE), tmp_path / "run" / HEARTBEAT_FILE
+    file.write_text(text)
     assert place(folder) == running.Place("an unknown machine", None, False)
-    os.utime(tmp_path / "run" / HEARTBEAT_FILE, (1, 1))
+    os.utime(file, (1, 1))
     running._LOOKS.__init__()
     assert place(folder) is None
 

@@ -34,7 +34,6 @@ def test_the_script_and_the_fused_line():
 
 
 def test_the_commands_are_there():
-    """Every make target, script, table and file that the documents name exists, and the analysis answers."""
     known = subprocess.run(["make", "-pRrq", ":"], cwd=TOP, capture_output=True, text=True).stdout
     for document in DOCUMENTS:
         text = document.read_text().replace("study-NAME", "study-viscous").replace("NAME", "viscous")
@@ -48,7 +47,6 @@ def test_the_commands_are_there():
 
 
 def test_the_table_of_studies_is_that_of_their_tables():
-    """Runs, contact updates and disk in STUDIES.md are what the tables give."""
     study, seen = None, set()
     for line in (TOP / "analysis/STUDIES.md").read_text().splitlines():
         cells = [cell.strip() for cell in line.split("|")[1:-1]]

@@ -10,6 +10,7 @@ import sys
 
 import numpy as np
 import pytest
+from refused import refused
 from running import Terminal, wait_for
 
 from analysis.runs.running import being_written, locked_inodes
@@ -29,16 +30,13 @@ def ended_run(path):
     return path
 
 
-def test_files_are_whole_and_no_others_stay(tmp_path):
+def test_files_are_whole_and_a_write_that_fails_leaves_them_as_they_were(tmp_path):
     ended_run(tmp_path / "a" / "b")
     found = {os.path.relpath(os.path.join(at, name), tmp_path) for at, _, names in os.walk(tmp_path) for name in names}
     assert found == {"a/b/run.json", "a/b/history.npz", "a/b/ended", "a/b/states/000000.npz"}
     run = json.loads((tmp_path / "a" / "b" / "run.json").read_text())
     assert {name: run[name] for name in ("format", "outcome")} == {"format": 3, "outcome": "completed"}
     assert {f"a/b/{name}" for name in run["files"]} > found - {"a/b/run.json"}
-
-
-def test_a_write_that_fails_leaves_the_file_as_it_was(tmp_path):
     folder = RunFolder(str(tmp_path / "run"))
     folder.write_run({"outcome": "running"})
     with pytest.raises(ValueError):
@@ -122,11 +120,7 @@ LOCKS = """1: FLOCK  ADVISORY  WRITE 1234 08:01:131 0 EOF
 """
 
 
-def test_a_process_that_waits_for_a_lock_does_not_hold_it():
-    assert locked_inodes(LOCKS.splitlines(keepends=True)) == {131, 4026531992}
-
-
-def test_being_written_while_another_process_waits_for_the_lock(tmp_path):
+def test_a_process_that_waits_for_a_lock_does_not_hold_it(tmp_path):
     """A waiting process has a line of its own in the kernel's list."""
     path = str(tmp_path / "run")
     assert not being_written(path)
@@ -139,6 +133,7 @@ def test_being_written_while_another_process_waits_for_the_lock(tmp_path):
         waiting.kill()
     os.close(folder._lock)
     assert not being_written(path)
+    assert locked_inodes(LOCKS.splitlines(keepends=True)) == {131, 4026531992}
 
 
 def contents(folder):
@@ -170,19 +165,25 @@ OTHERS = {
 @pytest.mark.parametrize("options", [{}, {"overwrite": True}, {"resume": True, "overwrite": True}], ids=str)
 def test_a_folder_of_other_files_is_left_as_it_is(tmp_path, what, options):
     (files, message), path = OTHERS[what], tmp_path / "run"
-    for name, text in {**({name: "mine" for name in MINE} if "run.json" in files else {}), **files}.items():
+    mine = dict.fromkeys(MINE if "run.json" in files else (), "mine")
+    for name, text in {**mine, **files}.items():
         (path / name).parent.mkdir(parents=True, exist_ok=True)
         (path / name).write_text(text)
     before = contents(path)
-    with pytest.raises(InputError, match=message) as refused:
+    with pytest.raises(InputError, match=message) as error:
         RunFolder(str(path), **options)
-    assert contents(path) == before and "\n" not in str(refused.value)
+    assert contents(path) == before and "\n" not in str(error.value)
 
 
-def test_a_file_is_left_as_it_is(tmp_path):
+def test_a_file_is_left_as_it_is_and_an_unwritable_folder_is_one_line(tmp_path):
     (tmp_path / "run").write_text("mine")
-    with pytest.raises(RunFolderError, match="is a file; must be a folder"):
-        RunFolder(str(tmp_path / "run"), overwrite=True)
+    for path, words in (
+        (tmp_path / "run", "is a file; must be a folder"),
+        ("x" * 256, "File name too long"),
+        ("/proc/run", ""),
+    ):
+        with refused(RunFolderError, f"out = {path}: ", words, "must be a folder"):
+            RunFolder(str(path), overwrite=True)
 
 
 @pytest.mark.parametrize("name", ["run.json", "history.npz", "ended", "states", "states/000000.npz", "checkpoint"])
@@ -209,26 +210,15 @@ def test_what_others_put_into_a_run_folder_stays(tmp_path):
     assert set(contents(path)) == others | {"run.json"}
 
 
-@pytest.mark.parametrize("path, words", [("/proc/run", ".*"), ("x" * 256, "File name too long")])
-def test_an_unwritable_folder_is_one_line(path, words):
-    with pytest.raises(RunFolderError, match=f"out = {path}: {words}; must be a folder that can be written"):
-        RunFolder(path)
-
-
-@pytest.mark.parametrize(
-    "duration, steps, interval", [(250e-9, 12950, 43), (1e-12, 1, 1), (10e-12, 10, 1), (1e-6, 51800, 50)]
-)
-def test_schedule(duration, steps, interval):
-    step = duration / steps
-    schedule = Schedule.of(duration, step)
-    assert steps <= schedule.steps < steps + interval and schedule.interval == interval
-    samples = schedule.steps // interval
-    assert samples * interval == schedule.steps and samples >= min(300, steps)
-    assert {0, samples} <= schedule.states <= set(range(samples + 1)) and len(schedule.states) == min(22, samples + 1)
-
-
-def test_a_run_of_very_many_steps_has_a_history_that_fits_in_memory():
-    schedule = Schedule.of(1.0, 1e-9)
+def test_schedule():
+    for duration, steps, interval in ((250e-9, 12950, 43), (1e-12, 1, 1), (10e-12, 10, 1), (1e-6, 51800, 50)):
+        schedule = Schedule.of(duration, duration / steps)
+        assert steps <= schedule.steps < steps + interval and schedule.interval == interval
+        samples = schedule.steps // interval
+        assert samples * interval == schedule.steps and samples >= min(300, steps)
+        assert {0, samples} <= schedule.states <= set(range(samples + 1))
+        assert len(schedule.states) == min(22, samples + 1)
+    schedule = Schedule.of(1.0, 1e-9)  # of very many steps: a history that fits in memory
     samples = schedule.steps // schedule.interval
     assert 1e9 <= schedule.steps < 1e9 + schedule.interval and 0.9 * MOST_SAMPLES < samples <= MOST_SAMPLES
 
