@@ -141,19 +141,26 @@ def test_forces_are_integrals_of_the_stresses():
         assert force == pytest.approx(float(andrews.return_force(delta, largest, PAPER)), rel=1e-4)
 
 
-def test_limits_are_reached():
+def test_limits_are_reached_and_motion_without_elasticity_is_that_of_a_large_modulus():
+    """E* = 1e3 sigma: the same d and v until the largest compression to 1e-4, which is of the order of delta_crit; then rest."""
     elastic, rigid = Spheres(4e-6, 400.0, np.inf, 14.6e6), Spheres(4e-6, 400.0, 1.67e6, np.inf)
     whole, plastic = andrews.elastic_compression(V, elastic), andrews.plastic_compression(V, rigid)
     eq_33 = 2 * np.pi / 3**0.5 * (400 / 1.67e6) ** 0.5 * 4e-6
-    for spheres, largest, time, restitution in (
-        (elastic, whole, 1.4716 * whole / V, 1.0),
-        (rigid, plastic, eq_33, 0.0),
-    ):
+    limits = (elastic, whole, 1.4716 * whole / V, 1.0), (rigid, plastic, eq_33, 0.0)
+    for spheres, largest, time, restitution in limits:
         assert andrews.largest_compression(V, spheres) == pytest.approx(largest)
         assert andrews.time_of_largest_compression(V, spheres) == pytest.approx(time, rel=1e-4)
         assert andrews.restitution(V, spheres) == restitution
     near = Spheres(4e-6, 400.0, 1.67e6, 1e12)
     assert andrews.largest_compression(V, near) == pytest.approx(andrews.largest_compression(V, rigid), rel=1e-6)
+    rigid, stiff = Spheres(4e-6, 400.0, 2e6, np.inf), Spheres(4e-6, 400.0, 2e6, 2e9)
+    limit, near = rigid_motion(3.0, rigid), motion(3.0, stiff)
+    assert (limit.largest, limit.time_of_largest) == pytest.approx((near.largest, near.time_of_largest), rel=1e-4)
+    time = np.linspace(-0.5, 1.0, 40) * limit.time_of_largest
+    assert limit.compression(time) == pytest.approx(near.compression(time), abs=1e-3 * near.largest)
+    assert limit.velocity(time) == pytest.approx(near.velocity(time), abs=3e-3)
+    assert limit.velocity(2 * limit.time_of_largest) == 0.0 and limit.restitution == 0.0
+    assert limit.compression(2 * limit.time_of_largest) == limit.largest
 
 
 def test_numbers_of_the_paper():
@@ -167,15 +174,3 @@ def test_numbers_of_the_paper():
     with np.errstate(divide="ignore"):
         on_curve = andrews.largest_compression(V, Spheres(1.0, 400.0, sigma, 1.0 / compliance))
     assert on_curve == pytest.approx(np.full(sigma.size, 0.113), rel=1e-9)
-
-
-def test_motion_without_elasticity_is_the_limit_of_a_large_modulus():
-    """E* = 1e3 sigma: the same d and v until the largest compression to 1e-4, which is of the order of delta_crit; then rest."""
-    rigid, stiff = Spheres(4e-6, 400.0, 2e6, np.inf), Spheres(4e-6, 400.0, 2e6, 2e9)
-    limit, near = rigid_motion(3.0, rigid), motion(3.0, stiff)
-    assert (limit.largest, limit.time_of_largest) == pytest.approx((near.largest, near.time_of_largest), rel=1e-4)
-    time = np.linspace(-0.5, 1.0, 40) * limit.time_of_largest
-    assert limit.compression(time) == pytest.approx(near.compression(time), abs=1e-3 * near.largest)
-    assert limit.velocity(time) == pytest.approx(near.velocity(time), abs=3e-3)
-    assert limit.velocity(2 * limit.time_of_largest) == 0.0 and limit.restitution == 0.0
-    assert limit.compression(2 * limit.time_of_largest) == limit.largest

@@ -30,11 +30,22 @@ def test_what_there_is_is_there_and_documented():
     assert done.stdout == "[]\n", done.stderr  # importing it loads nothing else
 
 
-def test_a_run_and_a_state_are_a_few_lines(run):
+def test_runs_and_states_are_a_few_lines_pickle_and_have_fragments(run):
     for thing in (run, run.last, run.history, run.states):
         text = repr(thing).replace(str(run.path), "")
         assert len(text.splitlines()) < 12 and max(map(len, text.splitlines())) < 300
     assert "velocity 1 m/s" in repr(run) and "velocity 1 m/s" in run._repr_html_()
+    for one in (run.history["time"], run.last.position):
+        assert not one.flags.writeable
+    copied, state = pickle.loads(pickle.dumps((run, run.last)))
+    assert np.array_equal(copied.history["d"], run.history["d"]) and copied.parameters == run.parameters
+    assert np.array_equal(state.position, copied.last.position)
+    assert not state.position.flags.writeable and not copied.history["d"].flags.writeable
+    found, state = run.last.fragments(), run.last
+    assert found.grains.sum() == len(state.radius) and found.mass_fraction.sum() == pytest.approx(1.0, rel=1e-12)
+    assert (found.grains * found.coordination).sum() == 2 * len(state.contact_pairs)
+    assert (found.grains * found.projectile_fraction).sum() == pytest.approx(np.sum(state.aggregate == 1), rel=1e-12)
+    assert 0.2 < found.filling_factor[0] < 0.7 and found.attrs["units"]["gyration_radius"] == "m"
 
 
 @pytest.mark.parametrize(
@@ -50,15 +61,6 @@ def test_a_wrong_name_names_the_right_ones(run, ask, close):
     with pytest.raises(KeyError) as wrong:
         ask(run)
     assert f"did you mean {close}?" in str(wrong.value) and "\n" not in str(wrong.value)
-
-
-def test_runs_and_states_pickle(run):
-    for one in (run.history["time"], run.last.position):
-        assert not one.flags.writeable
-    copied, state = pickle.loads(pickle.dumps((run, run.last)))
-    assert np.array_equal(copied.history["d"], run.history["d"]) and copied.parameters == run.parameters
-    assert np.array_equal(state.position, copied.last.position)
-    assert not state.position.flags.writeable and not copied.history["d"].flags.writeable
 
 
 def test_a_table_has_a_row_a_run(run, pair_folder, tmp_path):
@@ -84,11 +86,3 @@ def test_a_run_that_cannot_be_read_is_named_and_left_out(run, tmp_path):
         assert len(table([run, tmp_path])) == 1
     with pytest.raises(RunFolderError, match="no run folder matches"):
         table(f"{tmp_path}/*/*")
-
-
-def test_fragments_of_a_state(run):
-    found, state = run.last.fragments(), run.last
-    assert found.grains.sum() == len(state.radius) and found.mass_fraction.sum() == pytest.approx(1.0, rel=1e-12)
-    assert (found.grains * found.coordination).sum() == 2 * len(state.contact_pairs)
-    assert (found.grains * found.projectile_fraction).sum() == pytest.approx(np.sum(state.aggregate == 1), rel=1e-12)
-    assert 0.2 < found.filling_factor[0] < 0.7 and found.attrs["units"]["gyration_radius"] == "m"

@@ -37,17 +37,13 @@ def _change_arrays(file, **changed):
     np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
 
 
-def test_a_whole_run(folder):
+def test_a_whole_run_of_which_nothing_can_be_changed(folder):
     run = open_run(folder)
     assert run.ended and len(run.states) == 3 and run.derived["grainRadius"] == 1e-7
     assert run.start.time == 0.0 and run.last.time == run.history["time"][-1]
     assert run.states.times == pytest.approx([state.time for state in run.states])
     assert run.states.nearest(run.last.time * 0.99) == 2
     assert run.last.position.shape == (2, 3) and len(run.start.contact_pairs) == 1 and len(run.last.contact_pairs) == 0
-
-
-def test_nothing_read_can_be_changed(folder):
-    run = open_run(folder)
     for change in (
         lambda: run.history["d"].__setitem__(0, 1.0),
         lambda: run.start.position.__setitem__(0, 1.0),

@@ -46,9 +46,11 @@ def found(tmp_path_factory):
     return of_json((tmp_path / "out" / "comparison.json").read_text())
 
 
-def test_the_power_law_comes_back(found):
+def test_what_was_made_comes_back(found):
     """The mean of factors 0.8, 1.2, 0.9, 1.1 has the standard error 0.0913. Before the state at 0.0305 cells are not connected along
-    z: the first bin above is that of 0.0422, where fits begin."""
+    z: the first bin above is that of 0.0422, where fits begin. Twice the pressure at twice E_roll, of the two clusters that have 0.8
+    and 1.2 of it otherwise: their mean is 1. Rolling until 0.1 and twisting beyond; a cubic lattice 3.4 r0 apart has one site nearer
+    than 3 r0 and 93 nearer than 10 r0."""
     (n,), (scale,) = (rows(found[name], material="ice", criticalRolling=8e-10) for name in ("exponent", "level"))
     assert n["value"] == pytest.approx(3.0, abs=1e-3) and n["error"] < 1e-3
     assert scale["value"] == pytest.approx(1.0, rel=1e-3) and scale["error"] == pytest.approx(0.0913, rel=0.06)
@@ -57,17 +59,9 @@ def test_the_power_law_comes_back(found):
     dense = rows(found["dense"], filling=0.49)[0]
     assert dense["value"] == pytest.approx(0.49**3 * (1 / 0.49 - 1 / 0.74) ** 3, rel=5e-3)
     assert all(row["value"] == pytest.approx(0.0, abs=1e-9) for row in found["contacts"])
-
-
-def test_what_a_parameter_changes_by_the_same_clusters(found):
-    """Twice the pressure at twice E_roll, of the two clusters that have 0.8 and 1.2 of it otherwise: their mean is 1."""
     (change,) = found["change"]
     assert (change["changed"], change["criticalRolling"], change["pairs"]) == ("critical displacement", 1.6e-9, 2)
     assert change["value"] == pytest.approx(1.0, rel=1e-3) and change["error"] == pytest.approx(0.2, rel=0.1)
-
-
-def test_channels_structure_tension_and_silicate(found):
-    """Rolling until 0.1 and twisting beyond; a cubic lattice 3.4 r0 apart has one site nearer than 3 r0 and 93 nearer than 10 r0."""
     base = {"material": "ice", "criticalRolling": 8e-10}
     for since, until, channel in ((0.03, 0.1, "rolling"), (0.3, 0.4, "twisting")):
         (row,) = rows(found["shares"], **base, since=since, until=until, channel=channel)

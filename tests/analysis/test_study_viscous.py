@@ -147,7 +147,7 @@ def test_rounded_numbers_are_those_of_the_grid(tmp_path, capsys):
     assert json.loads(said.out)["provenance"]["runs"] == 2 and "b: the same grains, impact, velocity" in said.err
 
 
-def test_weights_are_exact_for_one_and_for_the_square():
+def test_weights_are_exact_for_one_and_for_the_square_and_sizes_are_text_and_back():
     squares = np.array(TWELFTHS)
     weights = offset_weights(squares)
     assert weights.sum() == pytest.approx(1, rel=1e-14)  # <1> = 1
@@ -156,6 +156,10 @@ def test_weights_are_exact_for_one_and_for_the_square():
     assert offset_weights(uneven) @ (3 - 2 * uneven) == pytest.approx(2, rel=1e-14)
     # of B^4 the trapezoidal rule has the error h^2/6
     assert weights @ squares**2 - 1 / 3 == pytest.approx(1 / 12**2 / 6, rel=1e-9)
+    sizes = np.random.default_rng(1).integers(1, 9, 50)
+    assert sorted(sizes_from_text(sizes_text(sizes))) == sorted(sizes)
+    with pytest.raises(ValueError):
+        sizes_from_text("3 fragments")
 
 
 def test_threshold_of_made_data():
@@ -176,10 +180,3 @@ def test_fits_recover_the_law(exponent, amplitude):
     grains = amplitude * numbers ** (2 - exponent) / (2 - exponent)
     assert fragment_exponent(numbers, np.stack([grains, 7 * grains])) == pytest.approx([exponent] * 2, rel=1e-9)
     assert np.isnan(fragment_exponent(numbers, 0 * numbers)) and np.isnan(fragment_exponent([1, 2], [1.0, 2.0]))
-
-
-def test_sizes_as_text_and_back():
-    sizes = np.random.default_rng(1).integers(1, 9, 50)
-    assert sorted(sizes_from_text(sizes_text(sizes))) == sorted(sizes)
-    with pytest.raises(ValueError):
-        sizes_from_text("3 fragments")

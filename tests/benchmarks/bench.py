@@ -7,7 +7,7 @@ collision and pair), papers (moments of the papers' runs), compressions (error a
 Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
 100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
 measured with the same plugin (its commit), machine and settings, are not done again (--again measures anew). Results:
-speed.csv, moments.csv, error.csv (results.py), bench.md (tables, and whether each target is reached) and figures.
+speed.csv, moments.csv, error.csv (results.py) and bench.md (tables, and whether each target is reached).
 --quick measures less, and writes to build/bench; --tiny only shows that it works.
 """
 
@@ -21,7 +21,6 @@ from measured_on import RESULTS, TOP, built_commit, machine
 sys.path.insert(0, str(TOP))
 import codes
 import errors
-import figures
 import measured_scenes
 import moments
 import report
@@ -108,7 +107,6 @@ def main():
             sys.exit(f"bench: {given.out} holds no measurement: must be measured first (--only measure)")
         text = report.text(results, how)
         (given.out / "bench.md").write_text(text)
-        figures.draw(results, how, given.out)
         print(text)
 
 

@@ -60,7 +60,6 @@ def test_measures_everything_and_says_what_it_goes_without(tiny):
     assert set(measured[measured.code == "engine"].threads) == {1, 2}
     assert set(measured[measured.code == "engine-portable"].version) == {"portable"}
     assert set(results.speed[results.speed.note.notna()].code) == {"lammps", "liggghts"}
-    assert all((folder / name).stat().st_size > 10000 for name in ("bench-speed.png", "bench-error.png"))
     page = (folder / "bench.md").read_text()
     assert page in printed
     not_measured = "/ LAMMPS, one core | at least 10 | - | not measured |"

@@ -55,7 +55,7 @@ def test_graze_and_miss_of_two_pairs(fraction, meets):
         assert apart[0] == pytest.approx(4 * RADIUS)
 
 
-def test_equal_aggregates_of_cpe_stay_where_they_were():
+def test_equal_aggregates_of_cpe_stay_where_they_were_and_two_sizes_of_aggregates_and_of_grains():
     """A24 section 3: centres at -/+(R + r), the offset in units of 2 (R + r)."""
     cells = dict(packing="cpe", radius=6, filling=0.4, impact=0.5, seed=2)
     _, pair, velocities = place(CollisionParameters.parse(cells), OVERLAP)
@@ -63,9 +63,6 @@ def test_equal_aggregates_of_cpe_stay_where_they_were():
         made = packings.cpe(0.4, 6 * RADIUS, RADIUS, OVERLAP, 2, index)
         assert np.allclose(pair[index].position - made.position, sign * 7 * RADIUS * np.array([1, 0.5, 0]), rtol=1e-9)
     assert velocities[0][0] == -velocities[1][0] == 10**0.5 / 2
-
-
-def test_two_sizes_of_aggregates_and_of_grains():
     cells = dict(packing="bcca", grains=90, projectileGrains=30, sizes="lognormal", sizeSpread=0.2, seed=4)
     parameters, pair, _ = place(CollisionParameters.parse(cells), OVERLAP)
     assert [packing.grains for packing in pair] == [90, 30]

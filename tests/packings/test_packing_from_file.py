@@ -158,12 +158,8 @@ def test_the_step_of_files_is_that_of_their_smallest_grain(tmp_path):
         require(1.01 * made)
     packings.save(path, packings.bpca(40, RADIUS, OVERLAP, 1))
     require(0.3)
-
-
-def test_contacts_of_the_smallest_grain_of_a_file_must_be_small(tmp_path):
     tiny = RADIUS / 1e4
     path = write(tmp_path / "a.npz", np.array([[0.0, 0, 0], [2 * RADIUS, 0, 0]]), np.array([RADIUS, tiny]))
     parameters = CollisionParameters.parse(dict(packing="file", file=path, stepFraction=1e-9))
-    pair = [packings.load(path)] * 2
     with pytest.raises(ParameterError, match="grainRadius = 1e-11: contacts at rest have a radius of"):
-        require_step_of_files(parameters, pair_constants(ICE), pair)
+        require_step_of_files(parameters, constants, [packings.load(path)] * 2)
