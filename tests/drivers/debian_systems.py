@@ -132,15 +132,10 @@ def commands_of_the_readme():
 def table(systems):
     """The page that the repository keeps."""
     cores = len(os.sched_getaffinity(0))
-    lines = [
-        "# Fresh Debian systems",
-        "",
-        f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
-        f"{' and '.join(BASE)} added; the first command installs all other packages.",
-        "",
-        "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |",
-        "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|",
-    ]
+    about = f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
+    about += f"{' and '.join(BASE)} added; the first command installs all other packages."
+    head = "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |"
+    lines = ["# Fresh Debian systems", "", about, "", head, "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|"]
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())

@@ -70,18 +70,8 @@ class Trial:
 
     def from_elsewhere(self, *command):
         """What a command prints on what passes for another machine of a shared disk."""
-        apart = (
-            "unshare",
-            "--uts",
-            "--pid",
-            "--fork",
-            "--mount-proc",
-            "sh",
-            "-c",
-            'hostname elsewhere; exec "$@"',
-            "sh",
-        )
-        return self.call(*apart, PYTHON, *command).stdout
+        apart = "unshare --uts --pid --fork --mount-proc sh -c".split()
+        return self.call(*apart, 'hostname elsewhere; exec "$@"', "sh", PYTHON, *command).stdout
 
     def wait(self, condition):
         deadline = time.monotonic() + PATIENCE
@@ -157,10 +147,9 @@ def ends(trial, job):
     trial.check("tasks of the short rows", f"{states.count('COMPLETED')} COMPLETED", "8 COMPLETED")
     status = trial.study("--status").stdout.splitlines()
     trial.check("--status", status[-1].partition(";")[0], "dozen: 10 done, 0 running, 0 waiting, 2 failed")
-    killed = next(line for line in status if " killed " in line)
-    trial.check("--status of `killed`", " ".join(killed.split()[:6]), "failed killed killed by signal 9")
-    failed = next(line for line in status if " fails " in line)
-    trial.check("--status of `fails`", "the run broke down" in failed, True)
+    for name, words in (("killed", "killed by signal 9"), ("fails", "the run broke down")):
+        line = next(line for line in status if f" {name} " in line)
+        trial.check(f"--status of `{name}`", words if words in line else line, words)
 
 
 def what_is_left(trial):
