@@ -267,5 +267,5 @@ def test_predictions_are_held_against_the_runs(tmp_path):
 
 
 def test_numbers_as_text():
-    assert number_text(0.04999, 0.00996) == "0.0500 ± 0.0100" or number_text(0.04999, 0.00996) == "0.050 ± 0.010"
+    assert number_text(0.04999, 0.00996) in ("0.0500 ± 0.0100", "0.050 ± 0.010")
     assert number_text(-0.2749, 0.061) == "-0.275 ± 0.061" and number_text(float("nan")) == "-"

@@ -90,20 +90,9 @@ def test_grains_of_another_material_are_refused(tmp_path, material, told, messag
     assert packing_from_file(path, RADIUS, equilibrium_overlap(material), grains=material).grains == 2
 
 
-def test_a_run_compares_its_own_grains(tmp_path):
-    path = pair_of(SOFTER, tmp_path / "a.npz", *TOLD, packing="compressed")
-    with pytest.raises(packings.PackingError, match="made of grains with surfaceEnergy = 0.02, not 0.1"):
-        place(CollisionParameters.parse(dict(packing="file", file=path)), OVERLAP)
-    own = CollisionParameters.parse(dict(packing="file", file=path, surfaceEnergy=0.02))
-    assert place(own, equilibrium_overlap(SOFTER))[0].grains == 2
-
-
 def test_packings_that_tell_no_material_go_on_working(tmp_path):
-    """Of another program, or of cpe that was made loose on purpose."""
     other = write(tmp_path / "other.npz", PAIR, np.full(2, RADIUS))
     assert packing_from_file(other, RADIUS, OVERLAP, grains=ICE).grains == 2
-    packings.save(str(tmp_path / "cpe.npz"), packings.cpe(0.3, 6 * RADIUS, RADIUS, 0.5 * OVERLAP, 1))
-    assert packing_from_file(str(tmp_path / "cpe.npz"), RADIUS, OVERLAP, grains=ICE).grains > 10
 
 
 def test_parameters_that_are_none(tmp_path):

@@ -116,11 +116,6 @@ def test_a_run_with_a_checkpoint_starts_again_only_when_asked(straight, killed, 
     assert same_bits(tmp_path / "run", straight) and not (tmp_path / "run" / "checkpoint").exists()
 
 
-def test_resume_without_a_checkpoint_starts_from_the_beginning(tmp_path):
-    _, history = completed(tmp_path, *TINY, "resume=1")
-    assert history["time"][0] == 0
-
-
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     """Its line has the command; what the command says of other parameters, or of no more time, is refused."""
     fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()

@@ -161,8 +161,3 @@ def test_wrong_parameters_give_one_line_and_run_nothing(tmp_path, arguments):
     (tmp_path / "rows.table").write_text("radius velocity\n4 10\n4 fast\n")
     assert refusal(collide(tmp_path, *arguments.split())).startswith(f"collide.py: {WRONG[arguments]}")
     assert os.listdir(tmp_path) == ["rows.table"]
-
-
-def test_a_misspelt_column_gives_one_line(tmp_path):
-    (tmp_path / "rows.table").write_text("radius velocty\n4 10\n")
-    assert refusal(collide(tmp_path, YADE_BATCH="rows.table:2")).startswith("collide.py: velocty: unknown parameter")
