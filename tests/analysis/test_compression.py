@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from analysis.measures.compression import *
-from analysis.runs.folder import open_run
 
 
 def test_d_and_v_of_few_grains():
@@ -66,24 +65,3 @@ def test_noise_stays_within_the_stated_error():
         assert maximum.length == pytest.approx(5.0, abs=4e-3)
         assert abs(maximum.time - 4.1) <= maximum.time_error * (1 + 1e-9) < 0.5
         assert 0 < maximum.length_error < 1e-2
-
-
-@pytest.mark.parametrize("folder", ["pair_folder", "cluster_folder"])
-def test_history_agrees_with_the_states(folder, request):
-    path = request.getfixturevalue(folder)
-    run = open_run(path[0] if isinstance(path, tuple) else path)
-    for state in run.states:
-        k = np.argmin(np.abs(run.history["time"] - state.time))
-        if run.history["time"][k] == pytest.approx(state.time, rel=1e-12):
-            x, speed = state.position[:, 0], state.velocity[:, 0]
-            d = compression_length(x, run.derived["aggregateRadius"])
-            assert d == pytest.approx(run.history["d"][k], abs=1e-15)
-            assert mutual_velocity(x, speed) == pytest.approx(run.history["v"][k], rel=1e-9)
-
-
-def test_pair_is_compressed_as_theory_says(pair_folder):
-    path, _, collision = pair_folder
-    run = open_run(path)
-    maximum = maximum_compression(run.history["time"], run.history["d"], run.history["v"])
-    # d counts from R_agg = 0: two grains that just touch are at -2 r.
-    assert maximum.length + 2 * run.derived["grainRadius"] == pytest.approx(collision.largest_overlap, rel=1e-6)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from analysis.measures.ledger import closure, closure_history, final_values, fractions, fractions_at, total_energy
-from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, LABELS, LOST, STORED, WORK
 
 
@@ -50,7 +49,3 @@ def test_fractions_add_up_to_one():
     assert parts["normal"] == pytest.approx([0.0, 0.0, -0.5, -1.0]) and parts["kinetic"][0] == 1.0
     between = fractions_at(_history(time=np.arange(4.0)), 2.5)
     assert between["normal"] == pytest.approx(-0.75) and sum(between.values()) == pytest.approx(1.0)
-
-
-def test_ledger_of_an_integrated_pair_closes(pair_folder):
-    assert closure(open_run(pair_folder[0]).history) < 1e-9

@@ -48,8 +48,8 @@ LIMITS = {
 
 @pytest.mark.parametrize("reason", LIMITS)
 def test_limits_are_told_at_once(reason):
-    start = time.perf_counter()
+    start = time.process_time()
     for text in LIMITS[reason]:
         with pytest.raises(NotANumber, match=f"^{reason}$") if reason else nullcontext():
             evaluate(text)
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
