@@ -22,9 +22,10 @@ def compression_record(seed, **others):
     return {**about, "derived": {**derived, "rollingEnergy": energy}}
 
 
-def compression_history(pressure, low=0.002, high=0.5, rate=3e-7, samples=3000, stretched=False):
+def compression_history(pressure, low=0.002, high=0.5, stretched=False):
     """A history: pressure(filling) [Pa], a constant strain rate, rolling until a filling of 0.1 and twisting beyond; the
     work that the pressure does."""
+    rate, samples = 3e-7, 3000
     filling = np.geomspace(low, high, samples)
     if stretched:
         filling = np.concatenate([filling, np.geomspace(high, 0.4 * high, samples)[1:]])

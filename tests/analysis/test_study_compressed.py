@@ -10,9 +10,9 @@ from analysis.__main__ import main
 PACKING = {"packing": "compressed", "filling": 0.401, "nominal": 0.4, "aggregateRadius": 20 * RADIUS}
 
 
-def collision(path, seed, velocity=3.0, compressed=False, **derived):
+def collision(path, seed, compressed=False, **derived):
     about = {"targetPacking": {**PACKING, "cell": seed}, "projectilePacking": {**PACKING, "filling": 0.399}}
-    two_pairs(path, velocity, seed, packing="file" if compressed else "cpe", filling=0.4, radius=20.0)
+    two_pairs(path, 3.0, seed, packing="file" if compressed else "cpe", filling=0.4, radius=20.0)
     record = json.loads((path / "run.json").read_text())
     record["derived"].update({**(about if compressed else {}), **derived})
     (path / "run.json").write_text(json.dumps(record))

@@ -13,8 +13,8 @@ from analysis.studies.runs import alike
 SCALE = 4.7374e5
 
 
-def power(factor=1.0, exponent=3.0):
-    return lambda filling: factor * SCALE * filling**exponent
+def power(factor=1.0):
+    return lambda filling: factor * SCALE * filling**3
 
 
 def of_json(text):

@@ -24,22 +24,22 @@ COUNTS = {"formed": 2.5 * GRAINS, "broken": 1.5 * GRAINS}
 LOST = {"rollingDissipation": 0.4, "slidingDissipation": 0.2, "connection": 0.1, "disconnection": 0.05}
 
 
-def made_run(path, velocity, square, viscous_time, seed, counted=True, met=True, **parameters):
+def made_run(path, velocity, square, viscous_time, seed, **parameters):
     """A collision whose largest fragment makes f_gro = (1 - B^2) 2/3 ln(V_FRA/v) + noise of the seed, the rest in fragments
     of one and two grains."""
     noise = 0.02 * np.random.default_rng((seed, int(1e12 * viscous_time))).normal()
-    growth = np.clip((1 - square) * 2 / 3 * np.log(V_FRA / velocity) + noise, -0.9, 0.9) if met else 0.0
+    growth = np.clip((1 - square) * 2 / 3 * np.log(V_FRA / velocity) + noise, -0.9, 0.9)
     largest = int(round(GRAINS * (1 + growth)))
     whole = chain(0, GRAINS) + chain(GRAINS, GRAINS)
-    pairs = chain(0, largest) + chain(largest, min(2, 2 * GRAINS - largest)) if met else whole
+    pairs = chain(0, largest) + chain(largest, min(2, 2 * GRAINS - largest))
     position = 2.3 * RADIUS * np.arange(2 * GRAINS)[:, None] * (1, 0, 0)
     position[1::2] -= (0.3 * RADIUS, 0, 0)  # pairs nearer than 2.2 r
     moving = np.zeros_like(position)
     moving[1::2, 0] = -0.5  # which approach at 0.5 m/s
     aggregate, time = np.repeat([0, 1], GRAINS), np.linspace(0, 2e-6, 21)
-    counts = {name: (number * time / time[-1]).astype(int) for name, number in COUNTS.items() if counted}
+    counts = {name: (number * time / time[-1]).astype(int) for name, number in COUNTS.items()}
     lost = {**LOST, "drag": 0.1 if viscous_time else 0.0}
-    history = losing(time, GRAINS * MASS * (velocity / 2) ** 2, lost, (time > 0) & met, **counts)
+    history = losing(time, GRAINS * MASS * (velocity / 2) ** 2, lost, time > 0, **counts)
     states = [
         state_arrays(0.0, position, 0 * moving, aggregate, whole),
         state_arrays(0.6e-6, position, moving, aggregate, whole),

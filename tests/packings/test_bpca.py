@@ -14,16 +14,15 @@ from yade_scripts.packings.aggregate import AggregateParameters, make
 UNLIKE = {"two": dict(sizes="two", ratio=2.5, fraction=0.3), "lognormal": dict(sizes="lognormal", spread=0.4)}
 
 
-def unlike_radii(name, grains, seed=1):
+def unlike_radii(name, grains):
     options = dict(UNLIKE[name])
-    return grain_sizes.radii(options.pop("sizes"), grains, RADIUS, np.random.default_rng(seed), **options)
+    return grain_sizes.radii(options.pop("sizes"), grains, RADIUS, np.random.default_rng(1), **options)
 
 
-def distances_over_rest(packing, reach=1.0):
-    """(pairs (M,2), distance over that at which the two rest against each other (M,)) of the pairs nearer than `reach` of the
-    largest distance at rest."""
+def distances_over_rest(packing):
+    """(pairs (M,2), distance over that at which the two rest against each other (M,)) of the pairs nearer than the largest diameter."""
     radius = packing.radius
-    pairs = cKDTree(packing.position).query_pairs(2 * radius.max() * reach, output_type="ndarray")
+    pairs = cKDTree(packing.position).query_pairs(2 * radius.max(), output_type="ndarray")
     distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
     rest = grain_sizes.touching_distance(radius[pairs[:, 0]], radius[pairs[:, 1]], RADIUS, OVERLAP)
     return pairs, distance / rest

@@ -13,13 +13,13 @@ from yade_scripts import packings
 from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
 
 
-def pressed_lattice(side=8, strain=0.004, noise=0.0, seed=1):
-    """A simple cubic lattice in its cell, neighbours closer than at rest by a strain, sites moved by `noise` [m]."""
-    edge = APART * (1 - strain)
+def pressed_lattice(noise=0.0):
+    """A simple cubic lattice in its cell, neighbours closer than at rest by a strain of 0.004, sites moved by `noise` [m]."""
+    side, edge = 8, APART * (1 - 0.004)
     site = np.stack(np.meshgrid(*3 * [np.arange(side)], indexing="ij"), axis=-1).reshape(-1, 3)
     row = {tuple(s): k for k, s in enumerate(site)}
     pairs = [(row[tuple(s)], row[tuple((s + n) % side)]) for s in site for n in np.eye(3, dtype=int)]
-    position = edge * site + noise * np.random.default_rng(seed).normal(size=site.shape)
+    position = edge * site + noise * np.random.default_rng(1).normal(size=site.shape)
     return PeriodicState(position, np.full(len(site), 1e-7), np.array(pairs), np.full(3, side * edge), OVERLAP)
 
 
