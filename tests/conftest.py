@@ -11,9 +11,8 @@ from pathlib import Path
 import pytest
 
 TOP = Path(__file__).resolve().parents[1]
-ROOMS = [
-    str(TOP / "tests" / room) for room in (".", "scripts", "analysis", "benchmarks")
-]  # whose helpers others import
+# Folders whose helpers other folders' tests import.
+ROOMS = [str(TOP / "tests" / room) for room in (".", "scripts", "analysis", "benchmarks")]
 sys.path.insert(0, str(TOP))
 sys.path += ROOMS
 
