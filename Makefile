@@ -164,7 +164,9 @@ $(eval $(call LIST,flags,$(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FL
 # Links to the installed files, beside which the plugin lies: YADE_PREFIX=$PWD/build yade. yade-batch starts bin/yade-double.
 build/overlay: Makefile
 	@mkdir -p $(OVERLAY) build/bin
-	@ln -sfn $(YADE_LIBRARIES)/* $(OVERLAY)/
+	@ln -sfn $(filter-out %/py,$(wildcard $(YADE_LIBRARIES)/*)) $(OVERLAY)/
+	@rm -rf $(OVERLAY)/py && mkdir $(OVERLAY)/py
+	@ln -sfn $(YADE_LIBRARIES)/py/* "$(CURDIR)/contact_law" $(OVERLAY)/py/
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
 

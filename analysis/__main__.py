@@ -4,10 +4,12 @@ import argparse
 import os
 import sys
 
+from .libraries import require_libraries
 from .signals import ENDING, end_quietly
 
 if __name__ == "__main__":
     end_quietly(*ENDING)
+    require_libraries()
 
 from .commands import export, figures, film, plot, status, study, summary, view  # noqa: E402
 from .printable import printable  # noqa: E402

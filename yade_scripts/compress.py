@@ -21,9 +21,11 @@ import signal
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
+from analysis.libraries import require_libraries
 from analysis.signals import end_quietly
 
 end_quietly(signal.SIGINT)
+require_libraries()
 from yade_scripts.experiments.compression import KIND
 from yade_scripts.run import script
 

@@ -18,9 +18,11 @@ import sys
 from dataclasses import dataclass
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from analysis.libraries import require_libraries
 from analysis.signals import end_quietly
 
 end_quietly(signal.SIGINT)
+require_libraries()
 from analysis.printable import printable, shell_line
 from analysis.runs.write import require_file
 from analysis.version import version_text

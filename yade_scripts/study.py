@@ -31,9 +31,11 @@ from dataclasses import replace
 from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from analysis.libraries import require_libraries
 from analysis.signals import end_quietly
 
 end_quietly(signal.SIGINT)
+require_libraries()
 from analysis.printable import printable
 from analysis.runs.write import require_file
 from analysis.version import version_text
@@ -145,11 +147,17 @@ class Study:
         again = sum(state.progress > 0 for state in states if state.kind not in (DONE, FAILED))
         estimate = "unknown" if seconds is None else view.duration_text(seconds)
         print(
-            f'{printable(self.name)}: {len(self.rows)} rows, {len(self.rows) - len(left)} done or failed, {len(left)} to run'
+            f'{printable(self.name)}: {len(self.rows)} rows, {_counted(states, DONE, FAILED)}{len(left)} to run'
             f'{f", {again} of them from checkpoints" if again else ""}; estimated time {estimate} with '
             f'{self.jobs} at once ({self.folder.basis(self.rows, states)})',
             flush=True,
         )
+
+
+def _counted(states, *kinds):
+    """'3 done, 1 failed, ', of those that there are."""
+    counts = [(sum(state.kind == kind for state in states), kind) for kind in kinds]
+    return "".join(f"{count} {kind}, " for count, kind in counts if count)
 
 
 def submit(study, at_once, sbatch, dry_run):
@@ -216,7 +224,8 @@ def close(study, stop):
     states = study.states()
     failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
     for row, state in failures:
-        tell(f"{row.name}: {state.note}", SCRIPT)
+        if not row.error:  # told at the start
+            tell(f"{row.name}: {state.note}", SCRIPT)
     stopped = [row for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
     for row in () if stop.received else stopped:
         tell(f"{row.name}: was stopped; another call resumes it", SCRIPT)
@@ -254,9 +263,9 @@ def main(arguments):
         return 2
     study.forget_failures()
     stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup
-    for row in study.rows:
-        if row.error:
-            tell(f"{row.name}: {row.error}; the other rows are run", SCRIPT)
+    wrong = [row for row in study.rows if row.error]
+    for row in wrong:
+        tell(f"{row.name}: {row.error}{'; the other rows are run' if len(wrong) < len(study.rows) else ''}", SCRIPT)
     try:
         study.announce()
         run(study, stop)

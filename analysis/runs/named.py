@@ -5,7 +5,7 @@ from difflib import get_close_matches
 
 import numpy as np
 
-LISTED = 50  # names
+LISTED = 20  # names
 
 
 class UnknownName(KeyError, AttributeError):
@@ -46,11 +46,15 @@ class Named(Mapping):
 
 def unknown(what, name, names):
     """UnknownName for a name that isn't one of `names`; many are not listed where one is close."""
+    return UnknownName(f"{what}: no {name}{suggested(name, names)}")
+
+
+def suggested(name, names):
+    """What a message says of a name that isn't one of `names`: which is close, and which there are, unless they are many."""
     names = list(map(str, names))
     close = get_close_matches(str(name), names, 1)
     hint = f" (did you mean {close[0]}?)" if close else ""
-    listed = "" if close and len(names) > LISTED else f"; must be one of {', '.join(names)}"
-    return UnknownName(f"{what}: no {name}{hint}{listed}")
+    return hint + ("" if close and len(names) > LISTED else f"; must be one of {', '.join(names)}")
 
 
 def protect(values):

@@ -8,12 +8,17 @@ from dataclasses import dataclass, field, fields, replace
 from textwrap import fill
 from typing import Any, Callable
 
+from analysis.runs.named import suggested
 from yade_scripts.parameters.arithmetic import NotANumber, evaluate
 from yade_scripts.parameters.errors import InputError
 
 
 class ParameterError(InputError, ValueError):
     """A wrong parameter; the message is one line: what, where, what it must be."""
+
+
+class UnknownParameter(ParameterError):
+    """A name that is no parameter's."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +142,7 @@ class Parameters:
         columns, values = cls.columns(), {}
         for name, text in texts.items():
             if name not in columns:
-                raise ParameterError(f"{_shortened(name)}: unknown parameter; must be one of {', '.join(columns)}")
+                raise UnknownParameter(f"{_shortened(name)}: unknown parameter{suggested(name, columns)}")
             values[name] = columns[name].value(text)
         if not values.get("unusual"):
             for name, value in values.items():

@@ -5,7 +5,7 @@ import sys
 import time
 
 from yade_scripts.parameters import ParameterError
-from yade_scripts.parameters.errors import one_line_errors
+from yade_scripts.parameters.errors import InputError, one_line_errors
 from yade_scripts.run import continuing
 from yade_scripts.run.arguments import gather
 from yade_scripts.stability import AUTO, require_countable
@@ -28,6 +28,8 @@ def main(kind, description):
         sys.exit(0)
     with one_line_errors(script):
         texts, row = gather(sys.argv[1:])
+        if "yade" not in sys.modules:
+            raise InputError(f"must be run by YADE: yade -n -x {sys.argv[0]} velocity=3, say")
         parameters = continuing.parameters(kind, texts) if continuing.CONTINUE in texts else kind.parse(texts, row)
         from yade.wrapper import Omega
 

@@ -44,6 +44,8 @@ def read(path):
     if len(used) < 2:
         raise TableError(f"{path}: no rows; must be a line of names, then rows of values")
     header = used[0][1]
+    if any("," in name for name in header):
+        raise TableError(f"{path}: line {used[0][0]} has commas; names and values must be parted by blanks")
     _require_once(path, [name.rstrip("!") for name in header])
     marked = [name for name in header if name.endswith("!")] or header
     rows, above = [], {}

@@ -10,7 +10,7 @@ from analysis.runs.format import ENDED_FILE, RUN_FILE
 from analysis.runs.running import place
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, end_time, run_of  # noqa: F401
 from analysis.runs.status import running as running_state
-from yade_scripts.parameters import ParameterError
+from yade_scripts.parameters import ParameterError, UnknownParameter
 from yade_scripts.run import checkpoint, table
 from yade_scripts.run.agreement import difference
 from yade_scripts.run.file_name import file_name
@@ -73,6 +73,8 @@ def read(path, run_scripts=True):
                 known = {name: cell for name, cell in row.cells.items() if name in ("out", "threads")}
                 parameters = RunParameters.parse(known, row.description)
             threads = _threads_of_yade(row.cells, parameters)
+        except UnknownParameter as problem:  # a column's, of all rows
+            raise table.TableError(f"{path}: {problem}") from None
         except (ParameterError, NoKind) as problem:
             parameters, error = None, f"line {row.line} of {path}: {problem}"
         for key in {f"description = {row.description}", f"out = {parameters.out if parameters else name}"}:
