@@ -32,6 +32,7 @@ from yade_scripts.packings.cut import CutParameters, cut, is_periodic_state, rea
 from yade_scripts.packings.describe import description
 from yade_scripts.packings.imported import ImportParameters, grains_of, imported
 from yade_scripts.parameters import ParameterError, one_of, parameter
+from yade_scripts.parameters.errors import one_line_errors
 from yade_scripts.run.arguments import from_arguments
 
 WITHOUT_EFFECT = ("density", "criticalRolling", "viscoelasticTime")
@@ -105,9 +106,5 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    try:
+    with one_line_errors("make_packing.py"):
         sys.exit(main(sys.argv[1:]))
-    except (ParameterError, packings.PackingError, ImportError) as error:
-        sys.exit(printable(f"make_packing.py: {error}"))
-    except OSError as error:
-        sys.exit(printable(f"make_packing.py: {error.filename}: {error.strerror}"))

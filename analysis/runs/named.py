@@ -49,12 +49,12 @@ def unknown(what, name, names):
     return UnknownName(f"{what}: no {name}{suggested(name, names)}")
 
 
-def suggested(name, names):
-    """What a message says of a name that isn't one of `names`: which is close, and which there are, unless they are many."""
+def suggested(name, names, many=""):
+    """What a message says of a name that isn't one of `names`: which is close, and which there are, or `many` in place of a long list."""
     names = list(map(str, names))
     close = get_close_matches(str(name), names, 1)
     hint = f" (did you mean {close[0]}?)" if close else ""
-    return hint + ("" if close and len(names) > LISTED else f"; must be one of {', '.join(names)}")
+    return hint + (many if close and len(names) > LISTED else f"; must be one of {', '.join(names)}")
 
 
 def protect(values):

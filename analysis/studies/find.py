@@ -7,6 +7,7 @@ from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 
 from .. import studies
+from ..runs.named import suggested
 
 
 class NoSuchStudy(Exception):
@@ -23,7 +24,7 @@ def find(name):
     if name.endswith(".py"):
         return replace(_own(Path(name)).STUDY, name=Path(name).stem, folder=Path(name).resolve())
     if name not in names():
-        raise NoSuchStudy(f"no study {name}: must be one of {', '.join(names())}, or a file NAME.py of one's own")
+        raise NoSuchStudy(f"no study {name}{suggested(name, names())}, or a file NAME.py of one's own")
     return replace(_module(f"{name}.study").STUDY, name=name, folder=Path(studies.__path__[0]) / name)
 
 

@@ -91,7 +91,7 @@ def test_properties_of_a_material_are_columns_of_their_own():
 
 # Arguments of the command line, as one gives them: what the refusal says.
 WRONG = {
-    "velocty=3": "velocty: unknown parameter; must be one of velocity, impact",
+    "velocty=3": "velocty: unknown parameter (did you mean velocity?); must be one",
     "velocity=fast": "velocity = fast: not a finite number; must be > 0 [m/s]",
     "velocity=": "velocity = : not a finite number",
     "velocity=nan": "velocity = nan: not a finite number",

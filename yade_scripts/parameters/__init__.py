@@ -142,7 +142,9 @@ class Parameters:
         columns, values = cls.columns(), {}
         for name, text in texts.items():
             if name not in columns:
-                raise UnknownParameter(f"{_shortened(name)}: unknown parameter{suggested(name, columns)}")
+                raise UnknownParameter(
+                    f"{_shortened(name)}: unknown parameter{suggested(name, columns, '; must be one that --help lists')}"
+                )
             values[name] = columns[name].value(text)
         if not values.get("unusual"):
             for name, value in values.items():

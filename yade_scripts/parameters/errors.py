@@ -13,11 +13,14 @@ class InputError(Exception):
 
 @contextmanager
 def one_line_errors(script):
-    """Within it, an InputError, or a plugin that isn't built, becomes one line and exit status 2."""
+    """Within it, an InputError, a file that can't be used, or a plugin that isn't built, becomes one line and exit status 2."""
     try:
         yield
     except (InputError, ImportError, MemoryError) as error:
         tell(" ".join(str(error).split()) or type(error).__name__, script)
+        sys.exit(2)
+    except OSError as error:
+        tell(f"{error.filename}: {error.strerror}" if error.filename else error, script)
         sys.exit(2)
 
 

@@ -35,6 +35,8 @@ def gather(arguments):
 def read_row(row):
     """({column: text}, description) of FILE:LINE, lines counted from 1; columns named !... are yade-batch's own."""
     file, _, line = row.rpartition(":")
+    if not file:
+        raise ParameterError(f"table = {row}: must be FILE:LINE, one row of a table; study.py runs all")
     try:
         rows = {str(found.line): found for found in table.read(file)}
     except table.TableError as error:

@@ -1,0 +1,129 @@
+"""What a command gets wrong at its start, as one types it, and the one line that says so (values of parameters: test_parameters.py)."""
+
+import shlex
+import sys
+
+import pytest
+from running import PYTHON, SCRIPTS, call, messages
+
+from analysis.__main__ import main as analysis
+from yade_scripts import make_packing, study
+from yade_scripts.parameters.errors import one_line_errors
+
+TABLES = {
+    "commas.table": "packing,grains,velocity\nbcca,20,3\n",
+    "column.table": "packing grains velocty\nbcca 20 3\nbcca 20 4\n",
+    "cells.table": "packing grains velocity\nbcca 20\n",
+    "above.table": "packing grains velocity\n= 20 3\n",
+    "twice.table": "velocity grains velocity\n3 20 3\n",
+    "same.table": "packing grains velocity out\nbcca 20 3 runs/a\nbcca 20 4 runs/a\n",
+    "text.txt": "hello\n",
+    "no.json": "{}",
+}
+# what is typed: words of the line, which is all that is said
+MISTAKES = {
+    "analysis summary empty": "empty: no run folder (run.json) there",
+    "analysis summary nowhere": "nowhere: no such folder",
+    "analysis summary text.txt": "text.txt: is not a folder",
+    "analysis figures empty": "empty/run.json: missing, so this is not a run folder",
+    "analysis figures text.txt": "text.txt: is not a folder",
+    "analysis view empty": "empty/run.json: missing, so this is not a run folder",
+    "analysis film empty": "empty/run.json: missing, so this is not a run folder",
+    "analysis film empty --rate 0": "argument --rate: 0: must be from 0.1 to 120",
+    "analysis film empty --width 9.5": "argument --width: 9.5: must be a whole number from 160 to 3840",
+    "analysis film empty --colour blue": "invalid choice: 'blue' (choose from 'aggregate'",
+    "analysis film empty --along w": "invalid choice: 'w' (choose from 'x', 'y', 'z')",
+    "analysis export empty --format ply": "invalid choice: 'ply' (choose from 'vtk', 'xyz', 'all')",
+    "analysis plot sticking empty": "empty: no run folder (run.json) there",
+    "analysis plot sticking nowhere": "nowhere: no such folder",
+    "analysis status nowhere": "nowhere: no such folder",
+    "analysis study viscos empty": "no study viscos (did you mean viscous?); must be one of compressed, ",
+    "analysis study viscous empty": "empty: no run folder (run.json) there",
+    "analysis study own.py empty": "own.py",
+    "analysis summry empty": "invalid choice: 'summry' (choose from 'summary', ",
+    "analysis summary": "the following arguments are required: RUNS",
+    "study commas.table": "commas.table: line 1 has commas; names and values must be parted by blanks",
+    "study column.table": "column.table: velocty: unknown parameter (did you mean velocity?)",
+    "study cells.table": "cells.table: line 2 has 2 cells; must be 3, one for each name",
+    "study above.table": "above.table: line 2: = has no row above; must be a value",
+    "study twice.table": "twice.table: has the column velocity 2 times; must be once",
+    "study same.table": "same.table: lines 2 and 3 both have out = runs/a; must be one",
+    "study text.txt": "text.txt: no rows; must be a line of names, then rows of values",
+    "study empty": "empty: is no regular file; must be one",
+    "study nowhere.table": "nowhere.table: No such file or directory; must be a table",
+    "study": "the following arguments are required: TABLE",
+    "study cells.table -j 0": "-j = 0: must be 1 or more",
+    "study cells.table -j x": "argument -j/--jobs: invalid int value: 'x'",
+    "make_packing a.txt": "a.txt: a packing is saved as .npz; must end in .npz",
+    "make_packing a.npz packing=bcc": "packing = bcc: must be cpe or bcca or bpca",
+    "make_packing a.npz grain=10": "grain: unknown parameter (did you mean grains?)",
+    "make_packing a.npz grains": "grains: a packing is saved as .npz",
+    "make_packing a.npz from=nowhere.xyz unit=um": "nowhere.xyz: No such file or directory",
+    "make_packing a.npz from=text.txt unit=um": "text.txt: of an unknown format; must be npz, csv, xyz, ",
+    "make_packing a.npz from=text.txt unit=cmm": "unit = cmm: must be m or cm or mm or um or nm or radius",
+    "make_packing nowhere/a.npz packing=bcca grains=10": "nowhere/a.npz: No such file or directory",
+}  # fmt: skip
+
+
+def make(arguments):
+    with one_line_errors("make_packing.py"):
+        return make_packing.main(arguments)
+
+
+COMMANDS = {"analysis": analysis, "study": study.main, "make_packing": make}
+# the same of what YADE runs
+OF_YADE = {
+    "velocity 3": "argument 'velocity': not understood; must be name=value, or --help",
+    "velocity=3 velocity=4": "velocity: given twice; must be given once",
+    "--velocity=3": "--velocity: unknown parameter (did you mean velocity?)",
+    "table=column.table": "table = column.table: must be FILE:LINE, one row of a table; study.py runs all",
+    "table=nowhere.table:2": "table nowhere.table: No such file or directory; must be a table",
+    "packing=file": "file: not given with packing = file; must be a packing",
+    "packing=file file=text.txt": "text.txt: not a packing; must be an .npz that make_packing.py wrote",
+    "out=text.txt": "out = text.txt: is a file; must be a folder",
+    "continue=empty": "continue = empty: empty/run.json: missing",
+}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    for name, text in TABLES.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "empty").mkdir()
+    monkeypatch.chdir(tmp_path)
+    yield tmp_path
+    assert {path.name for path in tmp_path.iterdir()} == {*TABLES, "empty"}  # nothing was made
+
+
+@pytest.mark.parametrize("typed", MISTAKES)
+def test_mistakes_get_one_line(folder, capsys, monkeypatch, typed):
+    command, *arguments = shlex.split(typed)
+    monkeypatch.setattr(sys, "argv", [f"{command}.py", *arguments])
+    try:
+        status = COMMANDS[command](arguments)
+    except SystemExit as end:
+        status = end.code
+    said = capsys.readouterr().err.splitlines()
+    of_argparse = bool(said) and said[0].startswith("usage: ")  # which shows the usage first
+    assert status == 2 and MISTAKES[typed] in said[-1] and (of_argparse or len(said) == 1), said
+
+
+@pytest.mark.parametrize("typed", OF_YADE)
+def test_mistakes_of_what_yade_runs(folder, typed):
+    ended = call(folder, "yade", "-n", "-x", f"{SCRIPTS}/collide.py", *shlex.split(typed))
+    (said,) = messages(ended)
+    assert ended.returncode == 2 and said.startswith("collide.py: ") and OF_YADE[typed] in said
+
+
+@pytest.mark.parametrize("script", ["collide.py", "compress.py"])
+def test_python_in_place_of_yade(folder, script):
+    ended = call(folder, PYTHON, f"{SCRIPTS}/{script}")
+    assert ended.returncode == 2 and f"{script}: must be run by YADE: yade -n -x " in ended.stderr
+    assert ended.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("script", ["collide.py", "make_packing.py", "study.py", "analysis"])
+def test_a_python_without_the_libraries(folder, script):
+    command = ["-m", script] if script == "analysis" else [f"{SCRIPTS}/{script}"]
+    ended = call(folder, PYTHON, "-S", *command, PYTHONPATH=f"{SCRIPTS}/..")  # -S: nor what Debian installs
+    assert ended.returncode == 2 and "has no numpy, " in ended.stderr and ended.stderr.count("\n") == 1
