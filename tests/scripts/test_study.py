@@ -44,7 +44,7 @@ def test_failures_fail_the_study_after_all_others_have_run_and_status_tells_it_m
     folder, (status, output, errors), midway = first_call
     assert status == 1 and output.splitlines()[-1] == "tiny: 4 rows, 1 done, 3 failed"
     first = output.splitlines()[0]  # the estimate
-    assert first.startswith("tiny: 4 rows, 1 done or failed, 3 to run; estimated time 00:")
+    assert first.startswith("tiny: 4 rows, 1 failed, 3 to run; estimated time 00:")
     assert "with 2 at once (measured: " in first
     killed, fails, refused = (line for line in errors.splitlines() if not line.endswith("the other rows are run"))
     assert killed.startswith("study.py: killed: killed by signal 9 (checkpoint at ")
@@ -63,7 +63,7 @@ def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_ca
     write_table(folder, "tiny.table", "ends", "killed")
     done = study(folder, "tiny.table")
     assert done.returncode == 0 and done.stderr == "", done.stderr
-    assert "2 rows, 1 done or failed, 1 to run, 1 of them from checkpoints; estimated time" in done.stdout
+    assert "2 rows, 1 done, 1 to run, 1 of them from checkpoints; estimated time" in done.stdout
     assert done.stdout.splitlines()[-1] == "tiny: 2 rows, 2 done, 0 failed"
     assert os.stat(folder / "runs" / "tiny" / "ends" / "ended").st_mtime_ns == ended
     assert collide(folder, "radius=10", "velocity=10", "duration=500e-9", "out=straight").returncode == 0
