@@ -8,7 +8,8 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 6; // 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4
+	constexpr int formatNumber =
+	        7; // 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const SharedState& shared)
 	{
@@ -91,6 +92,7 @@ namespace {
 			transferSlots<Bond>(archive, list, shared);
 		for (ContactList& list : domain.touching.contacts)
 			transferSlots<Contact>(archive, list, shared);
+		domain.planes.transfer(archive);
 	}
 }
 
@@ -100,6 +102,22 @@ template <class Archive> void Ledger::transfer(Archive& archive)
 	transferNumbers(archive, eventWork, meanField);
 	contact_law::transfer(archive, boundary);
 	transferPushes(archive, early);
+}
+
+template <class Archive> void PlaneContacts::transfer(Archive& archive)
+{
+	for (std::size_t p = 0; p < positions.size(); ++p)
+		contact_law::transfer(archive, positions[p]), contact_law::transfer(archive, after[p]);
+	archive.number(work);
+	std::size_t size = contacts.size();
+	archive.number(size);
+	contacts.resize(size);
+	for (PlaneContact& c : contacts) {
+		transferNumbers(archive, c.grain, c.plane, c.side, c.before.touching, c.before.overlap, c.before.drag, c.before.twist);
+		for (Vec3<double>* v : { &c.n1, &c.point, &c.before.sliding, &c.before.rolling, &c.before.velocity })
+			contact_law::transfer(archive, *v);
+		if (Archive::restoring) c.constants = s.constantsOnPlane(c.grain, c.plane);
+	}
 }
 
 // What must be known before the grains can be laid out, and what must be as it was.
@@ -128,6 +146,14 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 		for (const MaterialRow& row : materialList)
 			archive.same(shared.material[kind].*row.member,
 			        [&] { return std::string(row.name) + " of material " + std::to_string(kind); });
+	archive.same(shared.planes.size(), named("the number of Walls"));
+	for (const PlaneInput& plane : shared.planes) {
+		const auto ofPlane = [&](const char* what) {
+			return [&, what] { return what + (" of body " + std::to_string(plane.id)); };
+		};
+		archive.same(plane.axis, ofPlane("the axis"));
+		archive.same(plane.kind, ofPlane("the number of the material"));
+	}
 	original.resize(count);
 	for (int k = 0; k < count; ++k) {
 		archive.number(original[k]);
@@ -141,7 +167,7 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 {
 	for (int k = 0; k < count; ++k) {
 		const auto same = [&](double value, const char* name) {
-			archive.same(value, [&] { return std::string(name) + " of body " + std::to_string(original[k]); });
+			archive.same(value, [&] { return std::string(name) + " of body " + std::to_string(id(original[k])); });
 		};
 		same(shared.grainRadius[k], "the radius"), same(1 / shared.inverseMass[k], "the mass");
 		same(1 / shared.inverseInertia[k], "the moment of inertia");
@@ -156,6 +182,8 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 		transfer(archive, by);
 	transferNumbers(archive, contactUpdates, sizesWhenOrdered, stepsSinceTrial, orders);
 	transfer(archive, shared.convective);
+	for (PlaneInput& plane : shared.planes)
+		transfer(archive, plane.velocity);
 	for (auto& domain : domains)
 		transfer(archive, *domain, shared);
 }

@@ -102,6 +102,24 @@ std::vector<NormalForces> normalForces(const Dynamics& dynamics)
 	return found;
 }
 
+Vec3<double> planePosition(const Dynamics& dynamics, int plane) { return dynamics.parts()[0]->planes.positions[plane]; }
+
+Vec3<double> pushOn(const Dynamics& dynamics, int plane)
+{
+	Vec3<double> push { 0, 0, 0 };
+	for (const auto& domain : dynamics.parts())
+		push = push + domain->planes.pushes[plane];
+	return push;
+}
+
+int planeContactCount(const Dynamics& dynamics)
+{
+	int total = 0;
+	for (const auto& domain : dynamics.parts())
+		total += int(domain->planes.contacts.size());
+	return total;
+}
+
 int contactCount(const Dynamics& dynamics)
 {
 	int total = 0;
@@ -170,7 +188,7 @@ Booked booked(const Dynamics& dynamics)
 	Booked all { dissipated(dynamics), counts(dynamics), dynamics.counters() };
 	for (const auto& domain : dynamics.parts()) {
 		all.boundaryWork += domain->ledger.boundaryWork();
-		all.constraintWork += domain->constraints.work;
+		all.constraintWork += domain->constraints.work + domain->planes.work;
 		all.externalWork += domain->outside.work;
 	}
 	return all;

@@ -58,7 +58,18 @@ struct NormalForces {
 // The contacts of each domain, then the bonds of each; by all threads.
 std::vector<NormalForces> normalForces(const Dynamics&);
 
-int contactCount(const Dynamics&); // bonds among them
+// visit(domain, contact), of every grain's with a plane
+template <class Visit> void eachPlaneContact(const Dynamics& dynamics, Visit&& visit)
+{
+	for (const auto& domain : dynamics.parts())
+		for (const PlaneContact& contact : domain->planes.contacts)
+			visit(*domain, contact);
+}
+Vec3<double> planePosition(const Dynamics&, int plane); // [m]
+Vec3<double> pushOn(const Dynamics&, int plane);        // by all grains, through the latest step [N]
+
+int contactCount(const Dynamics&); // between grains, bonds among them
+int planeContactCount(const Dynamics&);
 int bondCount(const Dynamics&);
 bool constrained(const Dynamics&); // whether any grain has a blocked degree of freedom
 // On each grain as given: of contacts, bonds and outside forces, with what blocked degrees of freedom withhold.

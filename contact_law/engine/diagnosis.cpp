@@ -30,14 +30,27 @@ namespace {
 		return (shared.radius[i] + shared.radius[j] - std::sqrt(dot(d, d))) / std::min(shared.radius[i], shared.radius[j]);
 	}
 
+	int idOf(const Dynamics& dynamics, int here) { return dynamics.id(dynamics.given(here)); }
+
 	struct Pair { // here
 		int i, j;
 	};
-	// as given, in rising order
+	// in rising order
 	Diagnosis ofPair(const Dynamics& dynamics, Pair p, double overlap, double force)
 	{
-		const int first = dynamics.given(p.i), second = dynamics.given(p.j);
+		const int first = idOf(dynamics, p.i), second = idOf(dynamics, p.j);
 		return { std::min(first, second), std::max(first, second), 0, overlap, force };
+	}
+	Diagnosis ofPair(const Dynamics& dynamics, const PlaneContact& c, double overlap, double force)
+	{
+		return { idOf(dynamics, c.grain), dynamics.state().planes[c.plane].id, 0, overlap, force };
+	}
+
+	double relativeOverlap(const SharedState& shared, const PlaneContact& c) { return c.before.overlap / shared.radius[c.grain]; }
+	double normalForce(const PlaneContact& c)
+	{
+		const ContactGeometry<double> g { {}, 0, c.before.overlap };
+		return contactForces<0>(c.constants, g, PlaneHistory<double> {}, Vec3<double> {}).normalForce;
 	}
 
 	Diagnosis deepestOverlap(const Dynamics& dynamics, const Domain& domain)
@@ -53,8 +66,12 @@ namespace {
 				const double least = std::max(shared.radius[i], shared.radius[j]);
 				if (dot(d, d) >= least * least) continue;
 				const double overlap = relativeOverlap(shared, i, j, d);
-				if (overlap > found.overlap) found = ofPair(dynamics, { i, j }, overlap, 0);
+				if (overlap > found.overlap) found = ofPair(dynamics, Pair { i, j }, overlap, 0);
 			}
+		}
+		for (const PlaneContact& c : domain.planes.contacts) {
+			const double overlap = relativeOverlap(shared, c);
+			if (overlap > std::max(1., found.overlap)) found = ofPair(dynamics, c, overlap, 0);
 		}
 		return found;
 	}
@@ -65,13 +82,14 @@ Diagnosis diagnoseGrain(const Dynamics& dynamics, int given)
 	const SharedState& shared = dynamics.state();
 	const int grain = given == FastestGrain ? fastestGrain(dynamics) : dynamics.here(given);
 	Diagnosis found;
-	found.grain = dynamics.given(grain);
+	found.grain = idOf(dynamics, grain);
 	found.speed = std::sqrt(speedSquared(shared.grains[grain]));
-	const auto consider = [&](int i, int j, const Vec3<double>& d, double force) {
+	const auto take = [&](int other, double overlap, double force) {
 		if (found.other >= 0 && std::abs(force) <= std::abs(found.force)) return;
-		found.other = dynamics.given(i == grain ? j : i);
-		found.overlap = relativeOverlap(shared, i, j, d);
-		found.force = force;
+		found.other = other, found.overlap = overlap, found.force = force;
+	};
+	const auto consider = [&](int i, int j, const Vec3<double>& d, double force) {
+		take(idOf(dynamics, i == grain ? j : i), relativeOverlap(shared, i, j, d), force);
 	};
 	eachContact(dynamics, [&](const ContactList& list, int slot, int, int) {
 		if (list.first(slot) != grain && list.second(slot) != grain) return;
@@ -86,21 +104,27 @@ Diagnosis diagnoseGrain(const Dynamics& dynamics, int given)
 		const Vec3<double> d = separationBefore(dynamics, b.i, b.j);
 		consider(b.i, b.j, d, b.constants.normalStiffness * (b.rest - std::sqrt(dot(d, d))));
 	});
+	eachPlaneContact(dynamics, [&](const Domain&, const PlaneContact& c) {
+		if (c.grain == grain) take(shared.planes[c.plane].id, relativeOverlap(shared, c), normalForce(c));
+	});
 	return found;
 }
 
 Diagnosis largestForce(const Dynamics& dynamics)
 {
 	Diagnosis found;
-	const auto consider = [&](int i, int j, double force) {
-		if (found.grain >= 0 && std::abs(force) <= std::abs(found.force)) return;
-		found = ofPair(dynamics, { i, j }, relativeOverlap(dynamics.state(), i, j, separationNow(dynamics, i, j)), force);
+	const auto take = [&](const auto& pair, double overlap, double force) {
+		if (found.grain < 0 || std::abs(force) > std::abs(found.force)) found = ofPair(dynamics, pair, overlap, force);
 	};
 	const auto considerSlot = [&](const auto& list, int slot, int, int) {
-		consider(list.first(slot), list.second(slot), normalForceNow(dynamics, list, slot));
+		const Pair p { list.first(slot), list.second(slot) };
+		const double overlap = relativeOverlap(dynamics.state(), p.i, p.j, separationNow(dynamics, p.i, p.j));
+		take(p, overlap, normalForceNow(dynamics, list, slot));
 	};
 	eachContact(dynamics, considerSlot);
 	eachBond(dynamics, considerSlot);
+	eachPlaneContact(
+	        dynamics, [&](const Domain&, const PlaneContact& c) { take(c, relativeOverlap(dynamics.state(), c), normalForce(c)); });
 	return found;
 }
 

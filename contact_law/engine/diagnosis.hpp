@@ -5,14 +5,15 @@ namespace contact_law {
 
 class Dynamics;
 
-// A grain, and one that it touches; both as given, -1: none.
+// A grain, and what it touches, another or a plane; both as their owner calls them, -1: none.
 struct Diagnosis {
 	int grain = -1, other = -1;
-	double speed = 0, overlap = 0, force = 0; // of the grain [m/s]; over the smaller radius; along the normal [N]
+	double speed = 0, overlap = 0,
+	       force = 0; // of the grain [m/s]; over the smaller radius (of a plane: the grain's); along the normal [N]
 };
 
 enum { FastestGrain = -1 };
-// The given grain, or the one that moves fastest, with its contact that had the largest force before the grains moved.
+// The grain as given, or the one that moves fastest, with its contact that had the largest force before the grains moved.
 Diagnosis diagnoseGrain(const Dynamics&, int grain = FastestGrain);
 // The contact with the largest force of all.
 Diagnosis largestForce(const Dynamics&);

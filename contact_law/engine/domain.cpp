@@ -9,6 +9,7 @@ Domain::Domain(SharedState& shared, int begin_, int end_, int dummy_)
         , lists(shared, begin_, end_)
         , touching(shared, begin_, end_, dummy_)
         , ledger(cell)
+        , planes(shared, ledger, begin_, end_)
         , s(shared)
         , dummy(dummy_)
         , events(shared, cell, lists, touching, ledger)
@@ -94,6 +95,7 @@ void Domain::addFirstForces()
 	addForces(Interior, touching.order.sortedBlocks, touching.contacts[Interior].blockCount(), false);
 	addBondForces();
 	events.formContacts();
+	planes.addForces(velocities);
 }
 
 void Domain::addOtherForces(bool behind)
@@ -197,6 +199,7 @@ Domain::Contents Domain::takeOut()
 	all.touching = touching.takeOut();
 	all.constrained.swap(constraints.grains);
 	all.outside.swap(outside.grains);
+	all.onPlanes.swap(planes.contacts);
 	return all;
 }
 
@@ -207,6 +210,8 @@ void Domain::place(const Contents& all, const std::vector<int>& to)
 		if (touching.owns(c.grain)) constraints.grains.push_back(c);
 	sortByGrain(constraints.grains);
 	place(renumbered(all.outside, to));
+	for (const PlaneContact& c : renumbered(all.onPlanes, to))
+		planes.place(c);
 }
 
 void Domain::place(const std::vector<OutsideForce>& all)
@@ -232,6 +237,7 @@ StoredEnergy<double> Domain::energies()
 		s.passes->bondEnergies(bondPassFor(o), part);
 		total += part;
 	}
+	total += planes.energies();
 	return total;
 }
 

@@ -6,6 +6,7 @@
 #include "ledger.hpp"
 #include "outside_forces.hpp"
 #include "pair_lists.hpp"
+#include "plane_contacts.hpp"
 #include "touching_pairs.hpp"
 
 namespace contact_law {
@@ -26,6 +27,7 @@ public:
 		TouchingPairs::Contents touching;
 		std::vector<Constrained> constrained;
 		std::vector<OutsideForce> outside;
+		std::vector<PlaneContact> onPlanes;
 	};
 	Contents takeOut();
 	void place(const Contents&, const std::vector<int>& to); // what is now this domain's; to: new indices of grains
@@ -48,6 +50,7 @@ public:
 	Ledger ledger;
 	Constraints constraints;
 	OutsideForces outside;
+	PlaneContacts planes;
 
 private:
 	struct Caller { // of a pass

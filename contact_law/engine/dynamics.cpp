@@ -50,9 +50,12 @@ void Dynamics::prepare(const Grains& grains, const Materials& materials)
 {
 	if (grains.empty()) throw std::invalid_argument("no grains: at least one sphere is needed");
 	count = int(grains.size());
+	for (const GrainInput& g : grains)
+		ids.push_back(g.id);
 	indexHere.resize(count);
 	shared.passes = &instructionSet(options.instructions);
 	shared.material = materials;
+	shared.planes = options.planes;
 	shared.pairs = options.pairs;
 	shared.neck = options.neck;
 	if (shared.neck > 0) shared.necks = { shared.neck };
@@ -106,6 +109,15 @@ void Dynamics::set(int index, const GrainMotion& now)
 	copyMotion(now, p);
 	shared.displace(k, positionOf(p) - from);
 	kick(shared, p, k, -0.5 * shared.dt);
+	velocitiesSet = true;
+	outdateLists();
+}
+
+void Dynamics::setPlane(int plane, const Vec3<double>& position, const Vec3<double>& velocity)
+{
+	shared.planes[plane].velocity = velocity;
+	for (auto& domain : domains)
+		domain->planes.positions[plane] = position;
 	velocitiesSet = true;
 	outdateLists();
 }
@@ -212,7 +224,7 @@ void Dynamics::firstForces()
 void Dynamics::takeVelocities()
 {
 	for (auto& domain : domains)
-		domain->touching.takeVelocities(cell());
+		domain->touching.takeVelocities(cell()), domain->planes.takeVelocities();
 	velocitiesSet = false;
 }
 
@@ -244,6 +256,7 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 		}
 		shares.each([&](int d) {
 			domains[d]->cell.advance(sizeAtEnd - double(steps - step) * growth, rate);
+			domains[d]->planes.advance();
 			keepLists(d, lists);
 			domains[d]->addFirstForces();
 		});
@@ -338,7 +351,7 @@ Energies Dynamics::energies()
 		e.stored += stored[d];
 		e.kinetic += kinetic[d] + convective[d];
 		e.boundaryWork += domains[d]->ledger.boundaryWork() - convective[d];
-		e.constraintWork += domains[d]->constraints.work;
+		e.constraintWork += domains[d]->constraints.work + domains[d]->planes.work;
 		e.externalWork += domains[d]->outside.work;
 	}
 	return e;

@@ -20,6 +20,7 @@ struct GrainMotion {
 struct GrainInput : GrainMotion {
 	double radius, mass, inertia; // m, kg, kg m2
 	int kind;                     // index of its material
+	int id = 0;                   // as its owner calls it
 };
 
 struct Inherited; // exchange.hpp
@@ -57,6 +58,7 @@ public:
 		int domains = 0, threads = 1;        // domains = 0: by the number of grains
 		std::string instructions;            // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool orientations = false;           // whether to follow the grains' orientations
+		std::vector<PlaneInput> planes;      // in open space
 		PeriodicCell cell {};                // at the start's moment; off: open space
 		Vec3<double> convective { 0, 0, 0 }; // see setMeanField
 	};
@@ -86,6 +88,8 @@ public:
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);
+	// A plane that something else has moved, or given another velocity.
+	void setPlane(int plane, const Vec3<double>& position, const Vec3<double>& velocity);
 	/* All outside forces from now on, by rising grain (those not given have none). Onset::Now: positions and velocities of this moment stay, and the force acts from here
 	 * on. Onset::AStepAgo: it has acted already in the kick that the velocities of half a step ago came from, as other owners of the grains leave them. */
 	enum class Onset { Now, AStepAgo };
@@ -115,6 +119,7 @@ public:
 	const std::vector<std::unique_ptr<Domain>>& parts() const { return domains; }
 	int given(int here) const { return original[here]; } // a grain's index as given, by its index in state()
 	int here(int given) const { return indexHere[given]; }
+	int id(int given) const { return ids[given]; } // of a grain, as its owner calls it
 	int grainCount() const { return count; }
 	bool followsOrientations() const { return options.orientations; }
 	int threadCount() const { return std::max(1, std::min(options.threads, domainCount())); }
@@ -160,6 +165,7 @@ private:
 	long contactUpdates = 0;
 	Counters countedBefore; // by the run that this one continues
 	int count = 0;
+	std::vector<int> ids;                 // as given
 	std::vector<int> original, indexHere; // index given, by index here; and the other way round
 	std::vector<std::unique_ptr<Domain>> domains;
 	double sizesWhenOrdered = 0; // groupSizes() when grains were put into their order

@@ -27,6 +27,13 @@ void Dynamics::inherit(const Inherited& inherited)
 			           : domain->touching.place(Contact {
 			                   i, j, history, shared.constantsOf(i, j), one.drag, one.overlap, velocityBefore(i, j) });
 	}
+	for (const Inherited::OnPlane& one : inherited.onPlanes) {
+		PlaneContact contact = one.contact;
+		contact.grain = indexHere[one.grain], contact.plane = one.plane;
+		contact.constants = shared.constantsOnPlane(contact.grain, contact.plane);
+		for (auto& domain : domains)
+			inherited.stepBehind ? domain->planes.inherit(contact, one.force) : domain->planes.place(contact);
+	}
 	for (auto& domain : domains)
 		domain->touching.sort();
 	makeLists();

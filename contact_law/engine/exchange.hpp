@@ -14,10 +14,18 @@ struct Inherited {
 		double rest = 0, neck = 0; // of a bond
 	};
 	std::vector<One> contacts;
+	struct OnPlane {
+		int grain, plane;     // as given
+		PlaneContact contact; // but its grain, plane and constants
+		Vec3<double> force;   // on the grain
+	};
+	std::vector<OnPlane> onPlanes;
 	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
 	 * scenes with drag `previous`, the velocities another step before. Otherwise all is of one moment. */
 	bool stepBehind = false;
 	std::vector<Vec3<double>> previous;
+
+	bool empty() const { return contacts.empty() && onPlanes.empty(); }
 
 	std::vector<double> necks() const; // of the bonds, each once
 };

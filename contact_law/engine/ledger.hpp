@@ -65,6 +65,14 @@ public:
 		if (cell.on) boundary.addEarly(image.shift, r.force, r.forceBefore);
 		++counts.events;
 	}
+	// A step of an own grain on a plane.
+	void bookOnPlane(int index, const Grain& grain, const ContactStepResult& r, double dt)
+	{
+		lost += r.dissipated;
+		const EarlyKick kick { index, r.forceBefore - 0.5 * r.force, r.torqueBefore1 - 0.5 * r.torque1 };
+		eventWork += dt * (dot(kick.force, velocityOf(grain)) + dot(kick.torque, spinOf(grain)));
+		keep(kick);
+	}
 	void keep(const EarlyKick& kick) { early.push_back(kick); } // of an own grain
 	// A contact's kick that no pass adds.
 	void addCrossing(const Image& image, const Vec3<double>& kick)

@@ -18,6 +18,7 @@ void Dynamics::makeLists()
 		domain->lists.findNearby(cell(), reach() + boxMargin * shared.largestRadius);
 		domain->lists.searchAnew(cell());
 		domain->touching.markIn(domain->lists);
+		domain->planes.outdate();
 	}
 	listAge = {};
 }
@@ -27,6 +28,8 @@ void Dynamics::outdateLists()
 	if (listAge.outdated) return; // a script may set every grain
 	for (Group& group : shared.groups)
 		group.approach = 2 * shared.skin;
+	for (auto& domain : domains)
+		domain->planes.outdate();
 	listAge.outdated = true;
 }
 

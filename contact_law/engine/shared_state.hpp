@@ -6,6 +6,7 @@
 #include "contact_list.hpp"
 #include "groups.hpp"
 #include "orientations.hpp"
+#include <limits>
 
 namespace contact_law {
 
@@ -16,6 +17,12 @@ constexpr bool ownsFirst(Ownership o) { return o != SecondOwned; }
 constexpr bool ownsSecond(Ownership o) { return o != FirstOwned; }
 constexpr bool isCounted(Ownership o) { return ownsFirst(o); }
 
+// A half-space of its own material, bounded by a plane across an axis, which rests or moves at a velocity of its own.
+struct PlaneInput {
+	int axis, kind, id;              // of the coordinate; of the material; as its owner calls it
+	Vec3<double> position, velocity; // at the start [m], now [m/s]
+};
+
 struct SharedState {
 	Aligned<Grain> grains;                                   // then, for each domain, two dummies that unused slots point to
 	std::vector<Group> groups;                               // of all domains
@@ -25,6 +32,7 @@ struct SharedState {
 	std::vector<Material> material;                          // kinds of material
 	std::vector<int> kind;                                   // of each grain
 	std::vector<Orientation> orientation;                    // likewise; none where the scene doesn't ask for them
+	std::vector<PlaneInput> planes;                          // where they are now: each domain's plane_contacts.hpp
 	std::vector<unsigned> blocked;                           // likewise (kernel/blocked.hpp)
 	PairOptions pairs;
 	double neck = 0; // radius of sintered bonds' necks over that of the grains, the largest, by which all grains have shrunk; 0: none
@@ -67,6 +75,11 @@ struct SharedState {
 	{
 		return uniform ? common
 		               : deriveShrunkPair(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], pairs, neck);
+	}
+	PairConstants<double> constantsOnPlane(int grain, int plane) const
+	{
+		constexpr double radius = std::numeric_limits<double>::infinity();
+		return derivePair(material[kind[grain]], grainRadius[grain], material[planes[plane].kind], radius, pairs);
 	}
 	bool uniformBonds() const { return uniform && necks.size() <= 1; }
 	BondConstants<double> bondOf(int i, int j, double beta) const

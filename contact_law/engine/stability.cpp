@@ -30,10 +30,14 @@ double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 double unstableStep(const Dynamics& dynamics)
 {
 	double least = 1e300;
-	eachKind(dynamics, [&](int k) {
-		const PairConstants<double> c = dynamics.state().constantsOf(k, k);
+	const auto consider = [&least](const PairConstants<double>& c) {
 		const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
 		least = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
+	};
+	eachKind(dynamics, [&](int k) {
+		consider(dynamics.state().constantsOf(k, k));
+		for (int plane = 0; plane < int(dynamics.state().planes.size()); ++plane)
+			consider(dynamics.state().constantsOnPlane(k, plane));
 	});
 	if (bondCount(dynamics) > 0)
 		for (const double neck : dynamics.state().necks)

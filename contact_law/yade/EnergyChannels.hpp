@@ -42,7 +42,7 @@ public:
 
 	// On what work is done in a scene, apart from a periodic cell's boundaries.
 	struct WorkOn {
-		bool blocked = false, outside = false; // blocked degrees of freedom; outside forces
+		bool blocked = false, outside = false; // blocked degrees of freedom or planes; outside forces
 	};
 	// The channels' values at present. known: O.energy holds them already, from a checkpoint.
 	void set(Scene& scene, const contact_law::Energies& energies, bool known, WorkOn there)
@@ -81,7 +81,7 @@ private:
 	// Whether O.energy has a channel anew each step: energies held now are, losses and works add up. (YADE's ForceResetter is what
 	// empties those.)
 	static bool perStep(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Stored; }
-	// Channels only of scenes that have blocked degrees of freedom, outside forces, or a periodic cell.
+	// Channels only of scenes that have blocked degrees of freedom or planes, outside forces, or a periodic cell.
 	static bool isWork(int channel) { return contact_law::channels[channel].kind == contact_law::ChannelKind::Work; }
 	static bool isDone(int work, const Scene& scene, WorkOn there)
 	{

@@ -44,7 +44,6 @@ namespace {
 
 namespace {
 	constexpr Real planeRadius = std::numeric_limits<Real>::infinity();
-	const char* const bondsOfPlanes = "neck: must be 0 in scenes with a Wall: there are no sintered bonds to planes";
 }
 
 void JKRMat::requireInRange() const
@@ -295,9 +294,10 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 {
 	const State& wall = *(*scene->bodies)[interaction.getId1()]->state;
 	const State& grain = *(*scene->bodies)[interaction.getId2()]->state;
+	const Real dt = phys.current ? 0 : scene->dt; // JKRWadaEngine has brought the contact here already
 	const contact_law::Plane plane { toKernel(wall.pos), toKernel(geometry.normal), toKernel(wall.vel) };
-	const ContactMotion motion = contact_law::motionPast(plane, toKernel(grain.pos), toKernel(grain.vel), toKernel(grain.angVel),
-	        scene->dt, contact_law::inverseMassAlong(plane.normal, 1 / grain.mass, grain.blockedDOFs),
+	const ContactMotion motion = contact_law::motionPast(plane, toKernel(grain.pos), toKernel(grain.vel), toKernel(grain.angVel), dt,
+	        contact_law::inverseMassAlong(plane.normal, 1 / grain.mass, grain.blockedDOFs),
 	        contact_law::inverseInertiaOf(1 / grain.inertia[0], grain.blockedDOFs));
 	const Vec3d foot = plane.across(toKernel(grain.pos - wall.pos)); // of the grain's centre, from the wall's position
 	contact_law::PlaneHistory<double> history {
@@ -314,11 +314,12 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 		book(r);
 		const Vector3r kicks = (phys.touching ? 0.5 * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero()))
 		        + fromKernel(r.forceBefore);
-		channels.addConstraintWork(*scene, -scene->dt * kicks.dot(wall.vel));
+		channels.addConstraintWork(*scene, -dt * kicks.dot(wall.vel));
 	}
 	phys.touching = r.touching;
 	if (!r.touching) return false;
 	phys.set(r.geometry, r.now, history.twist, fromKernel(motion.velocity), true);
+	phys.current = false;
 	if (r.pointersMoved) {
 		phys.pointer1 = fromKernel(history.pointers.anchor + foot);
 		phys.pointer2 = grain.ori.conjugate() * fromKernel(history.pointers.n1);

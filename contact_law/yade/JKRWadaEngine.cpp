@@ -3,6 +3,7 @@
 #include "ContactsHolder.hpp"
 #include "JKRWadaEngineRun.hpp"
 #include "RunningLoop.hpp"
+#include "SceneShapes.hpp"
 
 namespace yade {
 
@@ -18,11 +19,13 @@ void JKRWadaEngine::takeChanges(Moment moment)
 	current->settings.requireSame(settings());
 	if (current->grains.hasMore(*scene)) startAgain(moment);
 	const auto set = [this](std::size_t k, const GrainMotion& motion) {
-		if (!finite(motion)) refuseInEngine(bodyName(k) + " was given a position or velocity that is not a finite number");
+		if (!finite(motion))
+			refuseInEngine(bodyName(current->grains.idOf(k)) + " was given a position or velocity that is not a finite number");
 		current->dynamics.set(int(k), motion);
 		current->watch.motionsChanged();
 	};
 	current->grains.eachChange(*scene, orientations, current->dynamics.threadCount(), set);
+	current->grains.planes.takeChanges(*scene, current->dynamics);
 	if (exportInteractions) current->contacts.requireKept(*scene);
 	takeStep();
 }
@@ -41,7 +44,7 @@ void JKRWadaEngine::takeStep()
 // The forces that others put on the grains hold through this O.step.
 void JKRWadaEngine::takeForces()
 {
-	std::vector<contact_law::OutsideForce> now = current->forces.take(*scene, current->grains.size(), current->dynamics.threadCount());
+	std::vector<contact_law::OutsideForce> now = current->forces.take(*scene, current->grains, current->dynamics.threadCount());
 	const auto onset = current->stepBehind ? Dynamics::Onset::AStepAgo : Dynamics::Onset::Now;
 	current->stepBehind = false;
 	if (now == current->outside) return;
@@ -78,6 +81,8 @@ void JKRWadaEngine::action()
 	enter(Moment::WithinStep);
 	takeForces();
 	current->cell.require(*scene, current->dynamics);
+	const std::string tooFast = current->grains.planes.tooFast(smallStep, current->dynamics.state().smallestRadius);
+	if (!tooFast.empty()) refuseInEngine(tooFast);
 	const std::string wrongCell = current->cell.wrong(*scene, current->dynamics, subSteps);
 	if (!wrongCell.empty()) fail(scene->time + scene->dt, wrongCell, "");
 	const contact_law::Vec3<double> cellAtEnd = SceneCell::now(*scene);
@@ -92,6 +97,7 @@ void JKRWadaEngine::action()
 	        current->watch.wrong(current->dynamics, current->now, made, subSteps, scene->trackEnergy ? &energies : nullptr);
 	if (!wrong.empty()) fail(scene->time + std::min(made + 1, long(subSteps)) * smallStep, wrong);
 	writeBodies();
+	current->grains.planes.push(*scene, current->dynamics);
 	if (exportInteractions)
 		writeContacts();
 	else if (current->contacts.withdraw(*scene))
@@ -129,7 +135,7 @@ void JKRWadaEngine::writeInteractions()
 void JKRWadaEngine::writeContacts()
 {
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
-	current->forces.write(*scene, current->dynamics, current->outside);
+	current->forces.write(*scene, current->grains, current->dynamics, current->outside);
 	ContactsHolder(*scene).set(current->name, true);
 }
 
@@ -139,6 +145,7 @@ void JKRWadaEngine::sinter(Real neckNow)
 	if (!(neckNow > 0 && neckNow <= contact_law::largestNeck))
 		refuseInEngine("sinter(): neck = " + text(neckNow) + ": must be > 0 and up to 0.7");
 	enter(Moment::BetweenSteps);
+	if (!current->grains.planes.empty()) refuseInEngine(bondsOfPlanes);
 	const double unstable = contact_law::unstableStepOfBonds(current->dynamics, neckNow);
 	if (!(smallStep < unstable))
 		refuseInEngine("sinter(): the small step O.dt/subSteps is " + text(smallStep) + " s: must be below " + text(unstable)
@@ -165,6 +172,7 @@ void JKRWadaEngine::handOver()
 		current->now[k].orientation = motionOf(current->grains.stateOf(k)).orientation;
 	contact_law::readAhead(current->dynamics, current->now);
 	current->grains.write(current->now, true, current->dynamics.threadCount()); // functors turn the pointers with their bodies
+	current->grains.planes.write(current->dynamics, smallStep);
 	scene->time += smallStep;
 	scene->iter += 1;
 	scene->dt = smallStep;
@@ -177,7 +185,7 @@ void JKRWadaEngine::handOver()
 void JKRWadaEngine::leave()
 {
 	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
-	const auto isThere = [this](int id) { return current->grains.isThere(*scene, id); };
+	const auto isThere = [this](int id) { return current->grains.hasBody(*scene, id); };
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions, isThere);
 	current->forces.withdraw(*scene);
 	current.reset();
@@ -212,7 +220,11 @@ void JKRWadaEngine::startAgain(Moment moment)
 	current->workOn = workOn;
 }
 
-void JKRWadaEngine::writeBodies() { current->grains.write(current->now, orientations, current->dynamics.threadCount()); }
+void JKRWadaEngine::writeBodies()
+{
+	current->grains.write(current->now, orientations, current->dynamics.threadCount());
+	current->grains.planes.write(current->dynamics);
+}
 
 // After a change between steps. Velocities that are the same but for rounding too: a checkpoint must find them as the engine has them.
 void JKRWadaEngine::bringBodies()
@@ -243,6 +255,7 @@ boost::python::dict JKRWadaEngine::statistics() const
 	if (!current) return result;
 	const Dynamics& dynamics = current->dynamics;
 	result["contacts"] = contactCount(dynamics);
+	result["planeContacts"] = planeContactCount(dynamics);
 	result["bonds"] = bondCount(dynamics);
 	const contact_law::Dissipation lost = dissipated(dynamics);
 	const contact_law::Counts counts = contact_law::counts(dynamics);

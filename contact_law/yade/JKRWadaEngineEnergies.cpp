@@ -8,7 +8,7 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 	const bool known = booking == Booking::AlreadyInOEnergy;
 	if (!booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
 	booked = true;
-	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics);
+	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics) || !current->grains.planes.empty();
 	current->workOn.outside = current->workOn.outside || !current->outside.empty() || now.externalWork != 0;
 	channels.set(*scene, now, known, current->workOn);
 }

@@ -20,7 +20,7 @@ struct JKRWadaEngine::Run {
 	SceneForces forces {};
 	std::vector<contact_law::GrainMotion> now {};
 	StepWatch watch {};
-	std::vector<contact_law::OutsideForce> outside {}; // by ids, as they are held
+	std::vector<contact_law::OutsideForce> outside {}; // by grains, as they are held
 	EnergyChannels::WorkOn workOn {};                  // at any time: the scene then has the channel
 };
 

@@ -3,6 +3,7 @@
 #include "../engine/stability.hpp"
 #include "ContactsHolder.hpp"
 #include "JKRWadaEngineRun.hpp"
+#include "SceneShapes.hpp"
 
 namespace yade {
 
@@ -82,24 +83,26 @@ namespace {
 std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool again)
 {
 	SceneGrains grains(*scene);
-	if (grains.size() == 0) refuseInEngine("there are no bodies");
+	if (grains.size() == 0) refuseInEngine("there are no spheres");
+	if (neck != 0 && !grains.planes.empty()) refuseInEngine(bondsOfPlanes);
 	const auto materials = grains.materials();
 	const bool continued = !savedState.empty();
 	Dynamics::Options options = optionsFor(materials);
 	options.dt = continued ? smallStep : scene->dt / subSteps;
 	SceneContacts contacts;
-	const contact_law::Inherited inherited = contacts.take(*scene, options.dt);
+	const contact_law::Inherited inherited = contacts.take(*scene, grains, options.dt);
 	for (const auto& one : inherited.contacts)
 		if (one.bonded && one.neck > neck)
 			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)
 			        + ": must be the largest neck they were made with");
 	const ContactsHolder holder(*scene);
 	if (!continued && holder.onlyInEngine()) refuseInEngine(ContactsHolder::refusal);
-	const bool inherits = again || (!continued && !inherited.contacts.empty()), stepBehind = inherits && inherited.stepBehind;
-	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains.size(), threads, stepBehind || holder.isWritten());
+	const bool inherits = again || (!continued && !inherited.empty()), stepBehind = inherits && inherited.stepBehind;
+	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, threads, stepBehind || holder.isWritten());
 	SceneCell cell;
 	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);
+	options.planes = grains.planes.planes();
 	const auto started = [&](auto&&... from) {
 		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), stepBehind,
 		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene(), nextName() });
@@ -126,6 +129,7 @@ void JKRWadaEngine::start(Moment moment, bool again)
 	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
 		current->dynamics.read(current->now);
 		current->grains.setWritten(current->now);
+		current->grains.planes.setWritten(current->dynamics);
 		current->watch.motionsChanged(); // losses so far may be below zero, after sinter()
 		continueBooking();
 	} else

@@ -8,7 +8,6 @@
 #include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 namespace yade {
@@ -103,14 +102,13 @@ namespace {
 		return { Column(grains.ids), Column(grains.position), Column(grains.velocity), Column(grains.angularVelocity),
 			Column(grains.radius) };
 	}
-	// Its bodies are spheres, and there is one of every id.
 	GrainColumns columnsOf(const JKRWadaEngine& fused)
 	{
 		const std::size_t count = fused.bodyCount();
 		GrainColumns all { Column<int>(count), Column<double>(3 * count), Column<double>(3 * count), Column<double>(3 * count),
 			Column<double>(count) };
-		std::iota(all.ids.data(), all.ids.data() + count, 0);
-		fused.readBodies({ all.position.data(), all.velocity.data(), all.angularVelocity.data(), all.radius.data() });
+		fused.readBodies(
+		        { all.ids.data(), all.position.data(), all.velocity.data(), all.angularVelocity.data(), all.radius.data() });
 		return all;
 	}
 

@@ -1,6 +1,7 @@
 #include "SceneContacts.hpp"
 #include "../kernel/turning.hpp"
 #include "Refusal.hpp"
+#include "SceneShapes.hpp"
 #include <core/Body.hpp>
 #include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -10,6 +11,7 @@ namespace yade {
 
 using contact_law::ContactNow;
 using contact_law::Inherited;
+using contact_law::PlaneContact;
 using Vec3d = contact_law::Vec3<double>;
 
 namespace {
@@ -32,13 +34,14 @@ namespace {
 
 	void writeContact(const Scene& scene, const ContactNow& c, SceneContacts::Stage stage, Interaction& interaction)
 	{
-		const State &state1 = stateOf(scene, c.first), &state2 = stateOf(scene, c.second);
+		const int id1 = interaction.getId1(), id2 = interaction.getId2(); // of c.first, c.second
+		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
 		auto& geometry = static_cast<ScGeom&>(*interaction.geom);
 		auto& phys = static_cast<JKRWadaPhys&>(*interaction.phys);
 		interaction.cellDist = Vector3i(-int(c.shift.x), -int(c.shift.y), -int(c.shift.z)); // of body 2, not body 1
 		geometry.normal = -fromKernel(c.geometry.normal);                                   // YADE's points from body 1 to body 2
-		geometry.refR1 = radiusOf(scene, c.first); // YADE's geometry is that of the bodies, shrunk by sintering or not
-		geometry.refR2 = radiusOf(scene, c.second);
+		geometry.refR1 = radiusOf(scene, id1); // YADE's geometry is that of the bodies, shrunk by sintering or not
+		geometry.refR2 = radiusOf(scene, id2);
 		geometry.penetrationDepth = c.geometry.overlap
 		        + (geometry.refR1 + geometry.refR2 - (c.bonded ? c.rest : c.constants.radius1 + c.constants.radius2));
 		geometry.contactPoint = state1.pos + (geometry.refR1 - 0.5 * geometry.penetrationDepth) * geometry.normal;
@@ -50,9 +53,46 @@ namespace {
 		phys.restDistance = c.rest;
 	}
 
+	ContactNow inOrderOf(const ContactNow& c, const contact_law::Dynamics& dynamics, int firstId)
+	{
+		return dynamics.id(c.first) == firstId ? c : contact_law::swapped(c);
+	}
+
+	// As Ig2_Wall_Sphere_ScGeom and the functors leave it: the Wall is the first body.
+	void writeContact(const Scene& scene, const contact_law::PlaneContacts& all, const PlaneContact& c, SceneContacts::Stage stage,
+	        Interaction& interaction)
+	{
+		const contact_law::ContactGeometry<double> g = all.geometryOf(c);
+		const State &wall = stateOf(scene, interaction.getId1()), &grain = stateOf(scene, interaction.getId2());
+		const int axis = wallOf(scene, interaction.getId1())->axis;
+		auto& geometry = static_cast<ScGeom&>(*interaction.geom);
+		auto& phys = static_cast<JKRWadaPhys&>(*interaction.phys);
+		geometry.normal = fromKernel(g.normal);
+		geometry.refR1 = geometry.refR2 = radiusOf(scene, interaction.getId2());
+		geometry.penetrationDepth = g.overlap;
+		geometry.contactPoint = grain.pos;
+		geometry.contactPoint[axis] = wall.pos[axis];
+		phys.set(g, all.forcesOf(c), c.before.twist, fromKernel(c.before.velocity), true);
+		phys.pointer1 = fromKernel(c.point);
+		phys.pointer2 = grain.ori.conjugate() * fromKernel(c.n1);
+		phys.current = stage == SceneContacts::Stage::OfPositions;
+	}
+
+	Inherited::OnPlane onPlane(const JKRWadaPhys& phys, const Vec3d& normal, const State& grain)
+	{
+		Inherited::OnPlane one;
+		one.contact.side = normal.x + normal.y + normal.z; // along an axis
+		one.contact.n1 = toKernel(grain.ori * phys.pointer2);
+		one.contact.point = toKernel(phys.pointer1);
+		one.contact.before = phys.before();
+		one.force = toKernel(phys.normalForce + phys.shearForce);
+		return one;
+	}
+
 	/* The velocities through the step before the last: the last step's less what the contacts' forces added (but for impulses of contacts that formed or broke, which
 	 * shows in the drag of that one grain and step only). */
-	std::vector<Vec3d> velocitiesBefore(const Scene& scene, const std::vector<shared_ptr<Interaction>>& contacts, Real dt)
+	std::vector<Vec3d> velocitiesBefore(
+	        const Scene& scene, const SceneGrains& grains, const std::vector<shared_ptr<Interaction>>& contacts, Real dt)
 	{
 		std::vector<Vec3d> forces(scene.bodies->size(), Vec3d { 0, 0, 0 });
 		for (const auto& i : contacts) {
@@ -61,16 +101,17 @@ namespace {
 			forces[i->getId1()] = forces[i->getId1()] - force;
 			forces[i->getId2()] = forces[i->getId2()] + force;
 		}
-		for (size_t id = 0; id < forces.size(); ++id) {
-			const State& s = stateOf(scene, int(id));
-			const Vec3d push = contact_law::componentsOf(forces[id], ~s.blockedDOFs & 7);
-			forces[id] = toKernel(s.vel) - (dt / s.mass) * push;
+		std::vector<Vec3d> velocities;
+		for (size_t k = 0; k < grains.size(); ++k) {
+			const State& s = grains.stateOf(k);
+			const Vec3d push = contact_law::componentsOf(forces[grains.idOf(k)], ~s.blockedDOFs & 7);
+			velocities.push_back(toKernel(s.vel) - (dt / s.mass) * push);
 		}
-		return forces;
+		return velocities;
 	}
 }
 
-Inherited SceneContacts::take(Scene& scene, Real dt)
+Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt)
 {
 	Inherited inherited;
 	held.clear();
@@ -84,31 +125,47 @@ Inherited SceneContacts::take(Scene& scene, Real dt)
 		const auto& phys = static_cast<const JKRWadaPhys&>(*interaction->phys);
 		const int id1 = interaction->getId1(), id2 = interaction->getId2();
 		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
-		Inherited::One one { id1, id2,
-			{ { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap,
-			phys.dragForce, phys.bonded, phys.restDistance, phys.bonded ? phys.bond->neck : 0 };
 		if (phys.bondToCome)
 			refuseInEngine("the functors are about to sinter the contacts (sinter() was called since their last step): make a "
 			               "step first");
-		if (!phys.current) { // the bodies have turned since
-			inherited.stepBehind = true;
-			one.history.pointers.n1 = contact_law::turned(one.history.pointers.n1, -dt * toKernel(state1.angVel));
-			one.history.pointers.n2 = contact_law::turned(one.history.pointers.n2, -dt * toKernel(state2.angVel));
+		inherited.stepBehind = inherited.stepBehind || !phys.current;
+		const auto asOfHistory = [&](Vec3d& pointer, const State& state) { // the bodies have turned since
+			if (!phys.current) pointer = contact_law::turned(pointer, -dt * toKernel(state.angVel));
+		};
+		if (wallOf(scene, id1)) {
+			Inherited::OnPlane one = onPlane(phys, toKernel(static_cast<const ScGeom&>(*interaction->geom).normal), state2);
+			one.grain = grains.grainOf(id2), one.plane = grains.planes.planeOf(id1);
+			asOfHistory(one.contact.n1, state2);
+			inherited.onPlanes.push_back(one);
+			continue;
 		}
+		Inherited::One one { grains.grainOf(id1), grains.grainOf(id2),
+			{ { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap,
+			phys.dragForce, phys.bonded, phys.restDistance, phys.bonded ? phys.bond->neck : 0 };
+		asOfHistory(one.history.pointers.n1, state1);
+		asOfHistory(one.history.pointers.n2, state2);
 		inherited.contacts.push_back(one);
 	}
-	if (inherited.stepBehind) inherited.previous = velocitiesBefore(scene, held, dt);
+	if (inherited.stepBehind) inherited.previous = velocitiesBefore(scene, grains, held, dt);
 	return inherited;
 }
 
 std::vector<SceneContacts::Place> SceneContacts::placesOf(const contact_law::Dynamics& dynamics, const IsThere& isThere)
 {
 	std::vector<Place> places;
+	const auto add = [&](int one, int other, Place place) {
+		place.id1 = std::min(one, other), place.id2 = std::max(one, other);
+		places.push_back(place);
+	};
 	eachContact(dynamics, [&](const contact_law::ContactList& list, int slot, int first, int second) {
-		places.push_back({ std::min(first, second), std::max(first, second), &list, nullptr, slot });
+		add(dynamics.id(first), dynamics.id(second), { 0, 0, &list, nullptr, slot });
 	});
 	eachBond(dynamics, [&](const contact_law::BondList& list, int slot, int first, int second) {
-		places.push_back({ std::min(first, second), std::max(first, second), nullptr, &list, slot });
+		add(dynamics.id(first), dynamics.id(second), { 0, 0, nullptr, &list, slot });
+	});
+	eachPlaneContact(dynamics, [&](const contact_law::Domain& domain, const contact_law::PlaneContact& contact) {
+		add(dynamics.id(dynamics.given(contact.grain)), dynamics.state().planes[contact.plane].id,
+		        { 0, 0, nullptr, nullptr, 0, &domain.planes, &contact });
 	});
 	const auto ofGone = [&](const Place& place) { return !(isThere(place.id1) && isThere(place.id2)); };
 	if (isThere) places.erase(std::remove_if(places.begin(), places.end(), ofGone), places.end());
@@ -133,17 +190,33 @@ bool SceneContacts::inOrder(Scene& scene, const std::vector<Place>& places) cons
 	return true;
 }
 
-shared_ptr<Interaction> SceneContacts::made(const Scene& scene, const ContactNow& c, int id1, int id2)
+shared_ptr<Interaction> SceneContacts::made(const Scene& scene, const contact_law::Dynamics& dynamics, const Place& place)
 {
-	const shared_ptr<Interaction> interaction(new Interaction(id1, id2));
+	const bool wallSecond = wallOf(scene, place.id2);
+	const shared_ptr<Interaction> interaction(
+	        wallSecond ? new Interaction(place.id2, place.id1) : new Interaction(place.id1, place.id2));
 	const shared_ptr<JKRWadaPhys> phys(new JKRWadaPhys);
-	phys->setConstants(constants.of(c.constants));
-	if (c.bonded) phys->setBond(bonds.of(c.bond));
+	if (place.onPlane)
+		phys->setConstants(constants.of(place.onPlane->constants));
+	else {
+		const ContactNow c = inOrderOf(place.now(dynamics), dynamics, place.id1);
+		phys->setConstants(constants.of(c.constants));
+		if (c.bonded) phys->setBond(bonds.of(c.bond));
+	}
 	interaction->geom = shared_ptr<ScGeom>(new ScGeom);
 	interaction->phys = phys;
 	interaction->iterBorn = scene.iter;
 	interaction->iterMadeReal = scene.iter;
 	return interaction;
+}
+
+void SceneContacts::write(
+        const Scene& scene, const contact_law::Dynamics& dynamics, const Place& place, Stage stage, Interaction& interaction)
+{
+	if (place.onPlane)
+		writeContact(scene, *place.planes, *place.onPlane, stage, interaction);
+	else
+		writeContact(scene, inOrderOf(place.now(dynamics), dynamics, interaction.getId1()), stage, interaction);
 }
 
 void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
@@ -170,20 +243,16 @@ void SceneContacts::arrange(Scene& scene, const std::vector<Place>& places)
 void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, Stage stage, const IsThere& isThere)
 {
 	const std::vector<Place> places = placesOf(dynamics, isThere);
-	const auto now = [&](size_t k, int id1) {
-		const ContactNow c = places[k].now(dynamics);
-		return c.first == id1 ? c : contact_law::swapped(c);
-	};
 	if (!inOrder(scene, places)) {
 		arrange(scene, places);
 		for (size_t k = 0; k < places.size(); ++k) {
-			if (!held[k]) held[k] = made(scene, now(k, places[k].id1), places[k].id1, places[k].id2);
+			if (!held[k]) held[k] = made(scene, dynamics, places[k]);
 			scene.interactions->insert(held[k]);
 		}
 	}
 #pragma omp parallel for num_threads(dynamics.threadCount())
 	for (size_t k = 0; k < places.size(); ++k)
-		writeContact(scene, now(k, held[k]->getId1()), stage, *held[k]);
+		write(scene, dynamics, places[k], stage, *held[k]);
 }
 
 void SceneContacts::requireKept(const Scene& scene) const

@@ -2,6 +2,7 @@
 #pragma once
 #include "../engine/exchange.hpp"
 #include "JKRWada.hpp"
+#include "SceneGrains.hpp"
 #include <functional>
 
 namespace yade {
@@ -10,7 +11,7 @@ class SceneContacts {
 public:
 	/* The scene's contacts, for a run that starts: as the functors leave them after a step of length dt [s], or as write() does. Empty when there are none.
 	 * O.interactions are this object's afterwards. */
-	contact_law::Inherited take(Scene&, Real dt);
+	contact_law::Inherited take(Scene&, const SceneGrains&, Real dt);
 
 	/* OfPositions: everything is of the moment of the bodies' positions. AStepBehind: as the functors leave it, pointers with the orientations as they are
 	 * at this call. */
@@ -32,12 +33,15 @@ private:
 		const contact_law::ContactList* list; // null for a bond
 		const contact_law::BondList* bonds;
 		int slot;
+		const contact_law::PlaneContacts* planes = nullptr; // of a contact with a plane, which lies among these; otherwise null
+		const contact_law::PlaneContact* onPlane = nullptr;
 		contact_law::ContactNow now(const contact_law::Dynamics&) const;
 	};
 	static std::vector<Place> placesOf(const contact_law::Dynamics&, const IsThere&);
 	bool inOrder(Scene&, const std::vector<Place>&) const;
 	void arrange(Scene&, const std::vector<Place>&);
-	shared_ptr<Interaction> made(const Scene&, const contact_law::ContactNow&, int id1, int id2);
+	shared_ptr<Interaction> made(const Scene&, const contact_law::Dynamics&, const Place&);
+	static void write(const Scene&, const contact_law::Dynamics&, const Place&, Stage, Interaction&);
 
 	std::vector<shared_ptr<Interaction>> held; // in O.interactions, by this engine, sorted
 	SharedConstants constants;

@@ -58,7 +58,8 @@ SceneForces::Load SceneForces::notPermanent(Scene& scene, int id)
 	return all == kept ? Load { Vector3r::Zero(), Vector3r::Zero() } : Load { all.force - kept.force, all.torque - kept.torque };
 }
 
-void SceneForces::write(Scene& scene, const contact_law::Dynamics& dynamics, const std::vector<OutsideForce>& outside)
+void SceneForces::write(
+        Scene& scene, const SceneGrains& grains, const contact_law::Dynamics& dynamics, const std::vector<OutsideForce>& outside)
 {
 	withdraw(scene);
 	scene.forces.sync();
@@ -66,18 +67,19 @@ void SceneForces::write(Scene& scene, const contact_law::Dynamics& dynamics, con
 	// those of other engines are there until ForceResetter's turn; without it, only the permanent ones are
 	const bool there = hasForceResetter(scene);
 	for (const OutsideForce& held : outside) {
-		const OutsideForce shown = there ? held : permanentOn(scene, held.grain);
+		const OutsideForce shown = there ? held : permanentOn(scene, grains.idOf(held.grain));
 		OutsideForce& of = added[held.grain];
 		of.force = of.force - shown.force, of.torque = of.torque - shown.torque;
 	}
-	for (int id = 0; id < int(added.size()); ++id)
+	const int bodies = int(scene.bodies->size());
+	for (int id = 0; id < bodies; ++id)
 		before.push_back(notPermanent(scene, id));
 	for (const OutsideForce& f : added) {
-		scene.forces.addForce(f.grain, yadeVector(f.force));
-		scene.forces.addTorque(f.grain, yadeVector(f.torque));
+		scene.forces.addForce(grains.idOf(f.grain), yadeVector(f.force));
+		scene.forces.addTorque(grains.idOf(f.grain), yadeVector(f.torque));
 	}
 	scene.forces.sync();
-	for (int id = 0; id < int(added.size()); ++id)
+	for (int id = 0; id < bodies; ++id)
 		after.push_back(whole(scene, id));
 }
 
@@ -100,37 +102,39 @@ void SceneForces::withdraw(Scene& scene)
 	before.clear(), after.clear();
 }
 
-std::vector<OutsideForce> SceneForces::take(Scene& scene, std::size_t bodies, int threads)
+std::vector<OutsideForce> SceneForces::take(Scene& scene, const SceneGrains& grains, int threads)
 {
 	if (hasForceResetter(scene))
 		before.clear(), after.clear(); // they are gone
 	else
 		withdraw(scene);
-	return found(scene, bodies, threads);
+	return found(scene, grains, threads);
 }
 
-std::vector<OutsideForce> SceneForces::found(Scene& scene, std::size_t bodies, int threads)
+std::vector<OutsideForce> SceneForces::found(Scene& scene, const SceneGrains& grains, int threads)
 {
 	std::vector<OutsideForce> found;
-	if (!anyForce(scene, bodies, threads)) return found;
-	for (int id = 0; id < int(bodies); ++id) {
+	if (!anyForce(scene, scene.bodies->size(), threads)) return found;
+	for (int grain = 0; grain < int(grains.size()); ++grain) {
+		const int id = grains.idOf(grain);
 		const Vector3r &force = scene.forces.getForce(id), &torque = scene.forces.getTorque(id);
 		if (force.isZero(0) && torque.isZero(0)) continue;
 		if (!allFinite(force) || !allFinite(torque))
 			refuseInEngine("O.forces has a force or torque on " + bodyName(id) + " that is not a finite number");
-		found.push_back({ id, kernelVector(force), kernelVector(torque) });
+		found.push_back({ grain, kernelVector(force), kernelVector(torque) });
 	}
 	if (!hasForceResetter(scene)) scene.forces.reset(scene.iter);
 	return found;
 }
 
-void SceneForces::dropThoseOfOtherEngines(Scene& scene, std::size_t bodies, int threads, bool ofContacts)
+void SceneForces::dropThoseOfOtherEngines(Scene& scene, const SceneGrains& grains, int threads, bool ofContacts)
 {
 	if (scene.iter == 0 || hasForceResetter(scene)) return;
 	if (!ofContacts) {
-		for (const OutsideForce& f : found(scene, bodies, threads)) {
-			if (f == permanentOn(scene, f.grain)) continue;
-			refuseInEngine("O.forces has a force or torque on " + bodyName(f.grain)
+		for (const OutsideForce& f : found(scene, grains, threads)) {
+			const OutsideForce permanent = permanentOn(scene, grains.idOf(f.grain));
+			if (f == OutsideForce { f.grain, permanent.force, permanent.torque }) continue;
+			refuseInEngine("O.forces has a force or torque on " + bodyName(grains.idOf(f.grain))
 			        + " from before this engine's first step: it must be 0 or permanent (O.forces.reset() clears it, "
 			          "ForceResetter "
 			          "as the first engine does so in every step)");

@@ -6,13 +6,16 @@
 
 namespace yade {
 
+class SceneGrains;
+
 class SceneForces {
 public:
-	/* What write() added goes. Those in O.forces now, by rising id; none is no entry. Unless a ForceResetter does it, O.forces is emptied of what is not permanent:
-	 * forces are held over one O.step. Throws std::runtime_error, with one line, when one is not finite. */
-	std::vector<contact_law::OutsideForce> take(Scene&, std::size_t bodies, int threads);
+	/* What write() added goes. Those on grains in O.forces now, by rising grain; none is no entry (Walls keep their motion whatever pushes them).
+	 * Unless a ForceResetter does it, O.forces is emptied of what is not permanent: forces are held over one O.step. Throws std::runtime_error, with
+	 * one line, when one is not finite. */
+	std::vector<contact_law::OutsideForce> take(Scene&, const SceneGrains&, int threads);
 	// Before the first step: what the last step of other engines left is dropped, or refused where it may be someone's wish.
-	static void dropThoseOfOtherEngines(Scene&, std::size_t bodies, int threads, bool ofContacts);
+	static void dropThoseOfOtherEngines(Scene&, const SceneGrains&, int threads, bool ofContacts);
 
 	// Permanent forces (O.forces.setPermF, setPermT), which YADE does not save: a row of seven numbers a body that has one.
 	static std::vector<Real> permanent(Scene&);
@@ -20,7 +23,7 @@ public:
 
 	/* All that acts on each grain, for YADE's functions, until the next take() or withdraw(). outside: as taken last. With what a script has added
 	 * since. */
-	void write(Scene&, const contact_law::Dynamics&, const std::vector<contact_law::OutsideForce>& outside);
+	void write(Scene&, const SceneGrains&, const contact_law::Dynamics&, const std::vector<contact_law::OutsideForce>& outside);
 	void withdraw(Scene&);
 
 private:
@@ -28,7 +31,7 @@ private:
 		Vector3r force, torque;
 		bool operator==(const Load& other) const { return force == other.force && torque == other.torque; }
 	};
-	static std::vector<contact_law::OutsideForce> found(Scene&, std::size_t bodies, int threads);
+	static std::vector<contact_law::OutsideForce> found(Scene&, const SceneGrains&, int threads);
 	static Load notPermanent(Scene&, int id);
 	static Load whole(Scene&, int id);
 	std::vector<Load> before, after; // write(), of each body: not permanent; all

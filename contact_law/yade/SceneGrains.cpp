@@ -1,5 +1,6 @@
 #include "SceneGrains.hpp"
 #include "../engine/material_list.hpp"
+#include "SceneShapes.hpp"
 #include <algorithm>
 
 namespace yade {
@@ -15,6 +16,23 @@ namespace {
 	}
 	bool same(const Vector3r& x, const double (&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; }
 	Vector3r eigen(const double (&x)[3]) { return Vector3r(x[0], x[1], x[2]); }
+	shared_ptr<JKRMat> requireOfLaw(const Scene& scene, const shared_ptr<Body>& body, int id)
+	{
+		const std::string who = bodyName(id);
+		if (!body) refuseInEngine(who + " was erased: there must be a body of every id, make the scene without those erased");
+		const auto material = boost::dynamic_pointer_cast<JKRMat>(body->material);
+		if (!material) refuseInEngine(who + " must be a sphere or a Wall of JKRMat; this engine moves nothing else");
+		const std::string fault = faultOf(*body, scene);
+		if (!fault.empty()) refuseInEngine(fault);
+		const int first = (*scene.bodies)[0]->groupMask;
+		if (!body->isBounded() || body->groupMask == 0)
+			refuseInEngine(who + " must be bounded, with a mask other than 0: all bodies meet all others");
+		if (body->groupMask != first)
+			refuseInEngine(who + ": mask = " + text(body->groupMask) + ", must be " + text(first)
+			        + " as body 0's: all bodies meet all others");
+		return material;
+	}
+
 	bool isotropic(const Vector3r& inertia) { return inertia[0] == inertia[1] && inertia[1] == inertia[2]; }
 
 	void write(const GrainMotion& g, State& s, bool orientations)
@@ -58,8 +76,17 @@ bool finite(const GrainMotion& g)
 SceneGrains::SceneGrains(const Scene& scene)
 {
 	bodies.reserve(scene.bodies->size());
-	for (size_t id = 0; id < scene.bodies->size(); ++id)
-		bodies.push_back(read((*scene.bodies)[id], id));
+	grainOfId.assign(scene.bodies->size(), -1);
+	for (int id = 0; id < int(scene.bodies->size()); ++id) {
+		const shared_ptr<Body>& body = (*scene.bodies)[id];
+		const shared_ptr<JKRMat> material = requireOfLaw(scene, body, id);
+		if (wallOf(*body)) {
+			planes.add(body, kindOf(material));
+			continue;
+		}
+		grainOfId[id] = int(bodies.size());
+		bodies.push_back(read(body, kindOf(material)));
+	}
 	written = motions();
 }
 
@@ -72,25 +99,17 @@ int SceneGrains::kindOf(const shared_ptr<JKRMat>& material)
 	return int(kinds.size() - 1);
 }
 
-SceneGrains::Kept SceneGrains::read(const shared_ptr<Body>& body, std::size_t id)
+SceneGrains::Kept SceneGrains::read(const shared_ptr<Body>& body, int kind) const
 {
-	const std::string who = bodyName(id);
-	if (!body) refuseInEngine(who + " was erased: there must be a body of every id, make the scene without those erased");
-	const auto sphere = boost::dynamic_pointer_cast<Sphere>(body->shape);
-	const auto material = boost::dynamic_pointer_cast<JKRMat>(body->material);
-	if (!sphere || !material) refuseInEngine(who + " must be a sphere of JKRMat; this engine moves nothing else");
+	const std::string who = bodyName(body->getId());
+	const auto sphere = boost::static_pointer_cast<Sphere>(body->shape);
 	const State& state = *body->state;
 	if (!finite(motionOf(state))) refuseInEngine(who + " has a position or velocity that is not a finite number");
 	if (!(sphere->radius > 0 && state.mass > 0 && state.inertia.minCoeff() > 0))
 		refuseInEngine(who + ": radius, mass and moments of inertia must be > 0");
 	if (!isotropic(state.inertia)) refuseInEngine(who + ": its three moments of inertia must be the same, those of a sphere");
-	if (!body->isBounded() || body->groupMask == 0)
-		refuseInEngine(who + " must be bounded, with a mask other than 0: all bodies meet all others");
-	if (!bodies.empty() && body->groupMask != bodies[0].mask)
-		refuseInEngine(who + ": mask = " + text(body->groupMask) + ", must be " + text(bodies[0].mask)
-		        + " as body 0's: all bodies meet all others");
 	return { body, body->state, sphere, body->material.get(), sphere->radius, state.mass, state.inertia[0], body->groupMask,
-		body->flags, kindOf(material) };
+		body->flags, kind, int(body->getId()) };
 }
 
 std::vector<GrainInput> SceneGrains::grains() const
@@ -101,7 +120,7 @@ std::vector<GrainInput> SceneGrains::grains() const
 		GrainInput g {};
 		static_cast<GrainMotion&>(g) = motionOf(*kept.state);
 		g.radius = kept.radius, g.mass = kept.mass, g.inertia = kept.inertia;
-		g.kind = kept.kind;
+		g.kind = kept.kind, g.id = kept.id;
 		all.push_back(g);
 	}
 	return all;
@@ -134,7 +153,7 @@ void SceneGrains::write(std::vector<GrainMotion>& now, bool orientations, int th
 
 bool SceneGrains::hasMore(const Scene& scene) const
 {
-	if (scene.bodies->size() <= size()) return false;
+	if (scene.bodies->size() <= grainOfId.size()) return false;
 	requireSameMaterials();
 	requireKept(scene);
 	return true;
@@ -144,21 +163,22 @@ void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) co
 {
 	const auto read = [&](std::size_t k) {
 		const Kept& kept = bodies[k];
+		to.id[k] = kept.id;
 		copy(kept.state->pos, to.position + 3 * k);
 		copy(kept.state->vel, to.velocity + 3 * k);
 		copy(kept.state->angVel, to.angularVelocity + 3 * k);
 		to.radius[k] = kept.sphere->radius;
 		return isThere(scene, k) && kept.body->state == kept.state && kept.body->shape == kept.sphere;
 	};
-	if (scene.bodies->size() == size() && forAll(size(), threads, read)) return;
+	if (hasAllBodies(scene) && forAll(size(), threads, read)) return;
 	requireSame(scene);
 }
 
 void SceneGrains::requireSame(const Scene& scene) const
 {
 	const std::size_t there = scene.bodies->size();
-	if (there != size())
-		refuseInEngine("there are " + std::to_string(there) + " bodies, must be the " + std::to_string(size())
+	if (there != grainOfId.size())
+		refuseInEngine("there are " + std::to_string(there) + " bodies, must be the " + std::to_string(grainOfId.size())
 		        + " of the latest step: bodies were cleared");
 	requireKept(scene);
 }
@@ -167,10 +187,17 @@ void SceneGrains::requireKept(const Scene& scene) const
 {
 	for (std::size_t k = 0; k < size(); ++k)
 		if (!isThere(scene, k))
-			refuseInEngine(bodyName(k) + ((*scene.bodies)[k] ? " was replaced by another" : " was erased")
+			refuseInEngine(nameOf(k) + ((*scene.bodies)[idOf(k)] ? " was replaced by another" : " was erased")
 			        + " after the start: bodies must stay; make a new engine");
 	for (std::size_t k = 0; k < size(); ++k)
 		if (!sameBody(k)) refuseChange(k);
+	planes.requireKept(scene);
+}
+
+bool SceneGrains::hasBody(const Scene& scene, int id) const
+{
+	const int grain = grainOf(id);
+	return grain >= 0 ? isThere(scene, std::size_t(grain)) : planes.isThere(scene, planes.planeOf(id));
 }
 
 bool SceneGrains::sameBody(std::size_t k) const
@@ -188,25 +215,25 @@ void SceneGrains::refuseChange(std::size_t k) const
 	const Kept& kept = bodies[k];
 	const Body& body = *kept.body;
 	const auto replaced = [&](const char* what) {
-		refuseInEngine(bodyName(k) + " was given another " + what + " after the start: it must keep its own; make a new engine");
+		refuseInEngine(nameOf(k) + " was given another " + what + " after the start: it must keep its own; make a new engine");
 	};
 	if (body.state != kept.state) replaced("state");
 	if (body.shape != kept.sphere) replaced("shape");
 	if (body.material.get() != kept.material) replaced("material");
-	const std::string of = " of " + bodyName(k);
+	const std::string of = " of " + nameOf(k);
 	if (body.groupMask != kept.mask) refuseInEngine(changed("the mask" + of, kept.mask, body.groupMask));
 	if (kept.sphere->radius != kept.radius) refuseInEngine(changed("the radius" + of, kept.radius, kept.sphere->radius));
 	if (kept.state->mass != kept.mass) refuseInEngine(changed("the mass" + of, kept.mass, kept.state->mass));
 	for (int i = 0; i < 3; ++i)
 		if (kept.state->inertia[i] != kept.inertia)
 			refuseInEngine(changed("the moment of inertia" + of, kept.inertia, kept.state->inertia[i]));
-	refuseInEngine(bodyName(k) + ": bounded or aspherical was changed after the start: it must stay as it was; make a new engine");
+	refuseInEngine(nameOf(k) + ": bounded or aspherical was changed after the start: it must stay as it was; make a new engine");
 }
 
 std::string SceneGrains::firstBodyOf(int kind) const
 {
 	const auto first = std::find_if(bodies.begin(), bodies.end(), [kind](const Kept& kept) { return kept.kind == kind; });
-	return bodyName(first - bodies.begin());
+	return first == bodies.end() ? "a Wall" : bodyName(first->id);
 }
 
 void SceneGrains::requireSameMaterials() const

@@ -1,8 +1,9 @@
-// YADE's bodies as the fused engine's grains: read at the start, written after each step, and compared with what was written to find what scripts have changed.
+// YADE's bodies as the fused engine's grains and planes: read at the start, written after each step, and compared with what was written to find what scripts have changed.
 #pragma once
 #include "../engine/dynamics.hpp"
 #include "JKRWada.hpp"
 #include "Refusal.hpp"
+#include "ScenePlanes.hpp"
 #include <core/Body.hpp>
 #include <core/Scene.hpp>
 #include <core/State.hpp>
@@ -28,9 +29,10 @@ public:
 
 	// Whether bodies were added behind those that are as they were. Throws std::runtime_error where these were changed too.
 	bool hasMore(const Scene&) const;
-	bool isThere(const Scene& scene, std::size_t k) const { return k < scene.bodies->size() && (*scene.bodies)[k] == bodies[k].body; }
-	// What the bodies are now, with what a script has changed, row by row: vectors (size(), 3), radii (size()). Throws likewise.
+	bool hasBody(const Scene&, int id) const; // whether there is still the body of that id
+	// What the bodies are now, with what a script has changed, row by row: ids (size()), vectors (size(), 3), radii (size()). Throws likewise.
 	struct Columns {
+		int* id;
 		double *position, *velocity, *angularVelocity, *radius;
 	};
 	void readNow(const Scene&, int threads, const Columns&) const;
@@ -40,6 +42,10 @@ public:
 
 	const State& stateOf(std::size_t k) const { return *bodies[k].state; }
 	std::size_t size() const { return bodies.size(); }
+	int idOf(std::size_t k) const { return bodies[k].id; }
+	int grainOf(int id) const { return id < int(grainOfId.size()) ? grainOfId[id] : -1; } // -1: none
+
+	ScenePlanes planes;
 
 private:
 	struct Kept { // what a body must stay; pointers are the body's own
@@ -48,16 +54,22 @@ private:
 		shared_ptr<Sphere> sphere;
 		const Material* material;
 		Real radius, mass, inertia;
-		int mask, flags, kind;
+		int mask, flags, kind, id;
 	};
 	struct Kind {
 		shared_ptr<JKRMat> material;
 		contact_law::Material values;
 	};
 
-	Kept read(const shared_ptr<Body>&, std::size_t id);
+	Kept read(const shared_ptr<Body>&, int kind) const;
+	std::string nameOf(std::size_t k) const { return bodyName(idOf(k)); }
+	bool hasAllBodies(const Scene& scene) const { return int(scene.bodies->size()) == int(size()) + planes.size(); }
 	int kindOf(const shared_ptr<JKRMat>&);
 	std::string firstBodyOf(int kind) const;
+	bool isThere(const Scene& scene, std::size_t k) const
+	{
+		return std::size_t(idOf(k)) < scene.bodies->size() && (*scene.bodies)[idOf(k)] == bodies[k].body;
+	}
 	bool sameBody(std::size_t k) const;
 	void requireSame(const Scene&) const;
 	void requireKept(const Scene&) const; // of the bodies that there were
@@ -65,6 +77,7 @@ private:
 	void requireSameMaterials() const;
 
 	std::vector<Kept> bodies;
+	std::vector<int> grainOfId;
 	std::vector<Kind> kinds;
 	std::vector<contact_law::GrainMotion> written;
 };
@@ -88,7 +101,7 @@ template <class Changed> void SceneGrains::eachChange(const Scene& scene, bool o
 	requireSameMaterials();
 	const auto moved = [&](std::size_t k) { return !sameMotion(*bodies[k].state, written[k], orientations); };
 	const auto untouched = [&](std::size_t k) { return isThere(scene, k) && sameBody(k) && !moved(k); };
-	if (scene.bodies->size() == size() && forAll(size(), threads, untouched)) return;
+	if (hasAllBodies(scene) && forAll(size(), threads, untouched)) return;
 	requireSame(scene);
 	for (std::size_t k = 0; k < size(); ++k)
 		if (moved(k)) changed(k, motionOf(*bodies[k].state));

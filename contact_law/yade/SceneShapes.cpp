@@ -29,17 +29,9 @@ namespace {
 		anyPlane = false;
 		for (const auto& body : *scene.bodies) {
 			if (!body || !dynamic_cast<const JKRMat*>(body->material.get())) continue;
-			const std::string who = bodyName(body->getId());
-			if (body->isClumpMember())
-				return who + " is a member of clump " + text(body->clumpId) + ": grains of JKRMat must be single spheres";
-			if (dynamic_cast<const Sphere*>(body->shape.get())) continue;
-			const auto* wall = dynamic_cast<const Wall*>(body->shape.get());
-			if (!wall)
-				return who + " is a " + (body->shape ? body->shape->getClassName() : "body without shape")
-				        + ": bodies of JKRMat must be Spheres or Walls";
-			anyPlane = true;
-			const std::string fault = faultOf(*wall, *body->state, scene);
-			if (!fault.empty()) return who + ", a Wall: " + fault;
+			const std::string fault = yade::faultOf(*body, scene);
+			if (!fault.empty()) return fault;
+			anyPlane = anyPlane || wallOf(*body);
 		}
 		return "";
 	}
@@ -59,7 +51,21 @@ namespace {
 	}
 }
 
-const Wall* wallOf(const Scene& scene, int id) { return dynamic_cast<const Wall*>((*scene.bodies)[id]->shape.get()); }
+const Wall* wallOf(const Body& body) { return dynamic_cast<const Wall*>(body.shape.get()); }
+const Wall* wallOf(const Scene& scene, int id) { return wallOf(*(*scene.bodies)[id]); }
+
+std::string faultOf(const Body& body, const Scene& scene)
+{
+	const std::string who = bodyName(body.getId());
+	if (body.isClumpMember()) return who + " is a member of clump " + text(body.clumpId) + ": grains of JKRMat must be single spheres";
+	if (dynamic_cast<const Sphere*>(body.shape.get())) return "";
+	const Wall* wall = wallOf(body);
+	if (!wall)
+		return who + " is a " + (body.shape ? body.shape->getClassName() : "body without shape")
+		        + ": bodies of JKRMat must be Spheres or Walls";
+	const std::string fault = faultOf(*wall, *body.state, scene);
+	return fault.empty() ? "" : who + ", a Wall: " + fault;
+}
 
 void refuseInStep(Scene& scene, const std::string& what)
 {

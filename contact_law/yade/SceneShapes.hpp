@@ -1,4 +1,4 @@
-// What contacts the functors can make: those of spheres with each other and with planes (Wall). Everything else is refused.
+// What contacts can be made: those of spheres with each other and with planes (Wall). Everything else is refused, by functors and fused engine.
 #pragma once
 #include <core/Scene.hpp>
 #include <atomic>
@@ -6,10 +6,15 @@
 
 namespace yade {
 
+class Body;
 class Wall;
 
-// Of a body of an interaction, or null.
+// Of a body (of an interaction, by its id), or null.
+const Wall* wallOf(const Body&);
 const Wall* wallOf(const Scene&, int id);
+// What is wrong with a body of JKRMat, in one line, or empty.
+std::string faultOf(const Body&, const Scene&);
+constexpr const char* bondsOfPlanes = "neck: must be 0 in scenes with a Wall: there are no sintered bonds to planes";
 
 /* Refuses in the middle of a step, which threads make that could not pass an exception on: the run stops after this step, and Python's main
  * thread, which has made it, gets a RuntimeError. */

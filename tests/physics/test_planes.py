@@ -1,4 +1,4 @@
-"""Grains on planes (YADE's Wall) with the functors, against closed forms and an independent integration, and against a huge second sphere."""
+"""Grains on planes (YADE's Wall), with the functors and the fused engine, against closed forms and an independent integration, and against a huge second sphere."""
 
 import pytest
 from scenes import *
@@ -26,12 +26,15 @@ def lone_grain(
     plane_velocity=(0, 0, 0),
     other=None,
     material=None,
+    fused=False,
     **options,
 ):
     """A grain above the plane z = 0; O.dt is `step` t0."""
     new_scene(step * ICY.time_unit, **options)
     plane(other or material or ice(), velocity=plane_velocity)
     grain(position, R, material or ice(), velocity, spin, blocked)
+    if fused:
+        fused_engine()
 
 
 def test_equilibrium_and_pull_off():
@@ -57,27 +60,35 @@ def rebound(speed, step, gap, **scene):
     """Velocity with which a grain leaves the plane, 0 when it sticks."""
     lone_grain((0.3 * R, 0, R + gap), (0, 0, -speed), step=step, **scene)
     O.run(int((gap / speed + 60 * ICY.time_unit) / O.dt), True)
-    return O.bodies[1].state.vel[2] if O.interactions.countReal() == 0 else 0.0
+    fused = scene.get("fused")
+    touching = O.engines[0].statistics()["planeContacts"] if fused else O.interactions.countReal()
+    return 0.0 if touching else O.bodies[1].state.vel[2]
 
 
-def test_sticking_velocity():
+@pytest.mark.parametrize("fused", [False, True])
+def test_sticking_velocity(fused):
     """[2 (8/15 2^(2/3) + 4/45) F_c delta_c/m]^(1/2) (A22 eqs 9, 10 with R = r and m* = m)."""
     c = ICY
     closed = np.sqrt(2 * (8 / 15 * 2 ** (2 / 3) + 4 / 45) * c.pull_off_force * c.pull_off_overlap / c.reduced_mass)
     low, high = 0.9 * closed, 1.1 * closed
     while high - low > 2e-4 * low:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if rebound(middle, 0.02, 2e-9) > 0 else (middle, high)
+        low, high = (low, middle) if rebound(middle, 0.02, 2e-9, fused=fused) > 0 else (middle, high)
     assert 0.5 * (low + high) == pytest.approx(closed, rel=1e-3)
 
 
+@pytest.mark.parametrize("fused", [False, True])
 @pytest.mark.parametrize("kind", ["elastic", "viscous", "unlike"])
-def test_rebound_converges_with_second_order(kind):
+def test_rebound_converges_with_second_order(kind, fused):
     """Against an independent integration; root mean square over gaps, as of pairs (test_pairs.py)."""
     speed, time, other = dict(elastic=(9.0, 0, ICE), viscous=(40.0, 2e-12, ICE), unlike=(9.0, 0, SOFT))[kind]
     drag = dict(viscoelastic_time=time)
     pair = pair_constants(Material(**{**vars(ICE), **drag}), R, Material(**{**vars(other), **drag}), np.inf)
-    scene = dict(material=ice(viscoelasticTime=time), other=soft() if kind == "unlike" else ice(viscoelasticTime=time))
+    scene = dict(
+        fused=fused,
+        material=ice(viscoelasticTime=time),
+        other=soft() if kind == "unlike" else ice(viscoelasticTime=time),
+    )
     exact = collide_pair(speed, pair).rebound_velocity
 
     def error(step):
@@ -130,7 +141,16 @@ VELOCITY, SPIN = np.array([1.7, 0.6, -12.0]), np.array([1e8, -0.7e8, 2e8])
 
 
 def impact(
-    step=0.05, axis=2, side=1, radius2=None, plane_velocity=(0, 0, 0), gap=0.003, first=True, duration=20, **options
+    step=0.05,
+    axis=2,
+    side=1,
+    radius2=None,
+    plane_velocity=(0, 0, 0),
+    gap=0.003,
+    first=True,
+    duration=20,
+    fused=None,
+    **options,
 ):
     """(velocity, spin r) of a grain that has met a plane (appended before it or after) obliquely, and the closure after it over K(0).
     Vectors are given for a plane across z, below the grain, and turned with it."""
@@ -144,6 +164,8 @@ def impact(
         else grain(turn @ (0, 0, -radius2), radius2, ice(), blocked="xyzXYZ"),
     ]
     ids = [add() for add in (reversed(bodies) if first else bodies)]
+    if fused is not None:
+        fused_engine(**fused)
     O.step()
     sums = []
     for _ in range(int(duration / step)):
@@ -180,7 +202,15 @@ def test_a_plane_is_the_limit_of_a_huge_sphere(limit):
 
 @pytest.mark.parametrize(
     "options",
-    [dict(), dict(limit="cut"), dict(damping=0.02), dict(plane_velocity=(3.0, 1.0, 8.0)), dict(rolling=False)],
+    [
+        dict(),
+        dict(limit="cut"),
+        dict(damping=0.02),
+        dict(plane_velocity=(3.0, 1.0, 8.0)),
+        dict(rolling=False),
+        dict(fused=dict(linearDamping=0.02)),
+        dict(fused=dict(limit="cut"), plane_velocity=(3.0, 1.0, 8.0)),
+    ],
 )
 def test_ledger_of_an_oblique_impact_closes_with_second_order(options):
     gaps = 0.003 + 0.001 * np.arange(8) / 1.7  # root mean square, as of rebounds

@@ -1,0 +1,148 @@
+#include "plane_contacts.hpp"
+#include <algorithm>
+
+namespace contact_law {
+
+namespace {
+	double component(const Vec3<double>& v, int axis) { return (&v.x)[axis]; }
+
+	Vec3<double> normalOf(int axis, double side)
+	{
+		Vec3<double> normal { 0, 0, 0 };
+		(&normal.x)[axis] = side;
+		return normal;
+	}
+}
+
+PlaneContacts::PlaneContacts(SharedState& shared, Ledger& ledger_, int begin_, int end_)
+        : s(shared)
+        , ledger(ledger_)
+        , begin(begin_)
+        , end(end_)
+{
+	for (const PlaneInput& plane : s.planes)
+		positions.push_back(plane.position);
+	pushes = after = std::vector<Vec3<double>>(s.planes.size(), Vec3<double> { 0, 0, 0 });
+}
+
+double PlaneContacts::distance(int grain, int plane) const
+{
+	const int axis = s.planes[plane].axis;
+	return component(positionOf(s.grains[grain]), axis) - component(positions[plane], axis);
+}
+
+PlaneContact PlaneContacts::newContact(int grain, int plane) const
+{
+	return { grain, plane, distance(grain, plane) > 0 ? 1. : -1., {}, {}, {}, s.constantsOnPlane(grain, plane) };
+}
+
+void PlaneContacts::place(const PlaneContact& contact)
+{
+	if (owns(contact.grain)) contacts.insert(std::upper_bound(contacts.begin(), contacts.end(), contact), contact);
+}
+
+void PlaneContacts::inherit(const PlaneContact& contact, const Vec3<double>& force)
+{
+	place(contact);
+	if (owns(contact.grain)) after[contact.plane] = after[contact.plane] + 0.5 * force;
+}
+
+Plane PlaneContacts::planeOf(const PlaneContact& c) const
+{
+	const PlaneInput& plane = s.planes[c.plane];
+	return { positions[c.plane], normalOf(plane.axis, c.side), plane.velocity };
+}
+
+// Of the grain's centre, from the plane's position.
+Vec3<double> PlaneContacts::footOf(const PlaneContact& c) const
+{
+	return planeOf(c).across(positionOf(s.grains[c.grain]) - positions[c.plane]);
+}
+
+// Returns whether it touches afterwards.
+bool PlaneContacts::step(PlaneContact& c)
+{
+	const Plane plane = planeOf(c);
+	Grain& g = s.grains[c.grain];
+	const unsigned blocked = s.blocked[c.grain];
+	const ContactMotion m = motionPast(plane, positionOf(g), velocityOf(g), spinOf(g), s.dt,
+	        inverseMassAlong(plane.normal, s.inverseMass[c.grain], blocked), inverseInertiaOf(s.inverseInertia[c.grain], blocked));
+	const Vec3<double> foot = footOf(c);
+	PlaneHistory<double> history { { { turnedALittle(c.n1, s.dt * m.spin1), plane.normal }, c.point - foot }, c.before.twist };
+	const ContactStepResult r = planeStepWith[s.mechanisms](c.constants, s.limit, m, c.before, history);
+	addToGrain(g, r.force, r.torque1);
+	ledger.bookOnPlane(c.grain, g, r, s.dt);
+	ledger.counts.events += s.dt > 0 && (!c.before.touching || r.pointersMoved || !r.touching);
+	work -= s.dt * dot(r.forceBefore, plane.velocity);
+	after[c.plane] = after[c.plane] + (r.force - r.forceBefore);
+	pushes[c.plane] = pushes[c.plane] - r.force;
+	c.n1 = history.pointers.n1;
+	c.point = history.pointers.anchor + foot;
+	c.before = { r.touching, r.geometry.overlap, r.now.drag, r.now.slidingDisplacement, r.now.rollingDisplacement, history.twist,
+		m.velocity };
+	return r.touching;
+}
+
+void PlaneContacts::addForcesOfPlanes(const VelocityRange& velocities)
+{
+	double fastest = 0;
+	for (std::size_t p = 0; p < positions.size(); ++p) {
+		const PlaneInput& plane = s.planes[p];
+		work -= s.dt * dot(after[p], plane.velocity);
+		after[p] = pushes[p] = { 0, 0, 0 };
+		const double v = component(plane.velocity, plane.axis);
+		fastest = std::max({ fastest, velocities.most[plane.axis] - v, v - velocities.least[plane.axis] });
+	}
+	approach += s.dt * fastest;
+	if (approach > s.skin) findNear();
+	std::size_t kept = 0;
+	for (PlaneContact& c : contacts)
+		if (step(c)) contacts[kept++] = c;
+	contacts.resize(kept);
+	for (const Near& pair : near) {
+		if (std::abs(distance(pair.grain, pair.plane)) > s.radius[pair.grain]) continue;
+		PlaneContact contact = newContact(pair.grain, pair.plane);
+		if (!std::binary_search(contacts.begin(), contacts.end(), contact) && step(contact)) place(contact);
+	}
+}
+
+void PlaneContacts::findNear()
+{
+	near.clear();
+	for (int grain = begin; grain < end; ++grain)
+		for (int plane = 0; plane < int(positions.size()); ++plane)
+			if (std::abs(distance(grain, plane)) < s.radius[grain] + s.skin) near.push_back({ grain, plane });
+	approach = 0;
+}
+
+void PlaneContacts::takeVelocities()
+{
+	for (PlaneContact& c : contacts)
+		c.before.velocity = velocityOf(s.grains[c.grain]) - s.planes[c.plane].velocity;
+}
+
+ContactGeometry<double> PlaneContacts::geometryOf(const PlaneContact& c) const
+{
+	return { normalOf(s.planes[c.plane].axis, c.side), 0, s.radius[c.grain] - c.side * distance(c.grain, c.plane) };
+}
+
+ContactForces<double> PlaneContacts::forcesOf(const PlaneContact& c) const
+{
+	const ContactGeometry<double> g = geometryOf(c);
+	const PlaneHistory<double> history { { { c.n1, g.normal }, c.point - footOf(c) }, c.before.twist };
+	ContactForces<double> f = contactForces<AllSprings>(c.constants, g, history, c.before.velocity);
+	f.drag = c.before.drag;
+	if (!(s.mechanisms & Sliding)) f.sliding = f.slidingDisplacement = { 0, 0, 0 };
+	if (!(s.mechanisms & Rolling)) f.rollingDisplacement = { 0, 0, 0 };
+	return f;
+}
+
+StoredEnergy<double> PlaneContacts::energies() const
+{
+	StoredEnergy<double> total { 0, 0, 0, 0 };
+	for (const PlaneContact& c : contacts)
+		total += storedEnergy(c.constants, forcesOf(c), c.before.twist);
+	return total;
+}
+
+} // namespace contact_law

@@ -1,0 +1,105 @@
+"""Grains on planes (Walls) with JKRWadaEngine: against the functors (to rounding, step by step), in both directions of handing over, and against itself: threads,
+checkpoints, changes by a script."""
+
+import pytest
+from scenes import *
+
+pytestmark = pytest.mark.in_yade
+
+
+def start(kind="like", count=27, **options):
+    """Grains that fly together, through a plane at rest (the first body) and pushed by one of soft() (the last): (wall, wall)."""
+    new_scene(0.1 * unit, **options)
+    r, layers = max(KINDS[kind][1]), np.ceil(count ** (1 / 3))
+    rest = O.bodies.append(utils.wall(2.02 * r * (layers / 2 - 1) + 0.06 * r, axis=0, material=ice()))
+    converging(count, 1, *KINDS[kind])
+    for body in O.bodies:
+        if body.id != rest and body.state.pos[0] > 2.02 * r * (layers / 2 - 1):
+            body.state.pos += Vector3(0.12 * r, 0, 0)
+    piston = O.bodies.append(utils.wall(2.02 * r * layers / 2 + 0.06 * r, axis=2, material=soft()))
+    O.bodies[piston].state.vel = (0.5, 0, -5 * layers)
+    return rest, piston
+
+
+def on_planes():
+    fused = isinstance(O.engines[0], JKRWadaEngine)
+    if fused:
+        O.engines[0].writeInteractions()
+    return sum(isinstance(O.bodies[i.id1].shape, Wall) for i in O.interactions if i.isReal)
+
+
+@pytest.mark.parametrize("limit", ["held", "cut"])
+@pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
+def test_engine_and_functors_agree_step_by_step(kind, limit):
+    walls = start(kind, limit=limit)
+    functors = record(401, "constraintWork")
+    touching, forces = on_planes(), [np.array(O.forces.f(wall)) for wall in walls]
+    start(kind)
+    fused_engine(limit=limit)
+    engine = record(400, "constraintWork")
+    difference, energy = compared(functors, engine, [*CHANNELS, "constraintWork"])
+    assert difference[:100].max() < 1e-12 and difference.max() < 1e-9 and max(energy.values()) < 1e-9
+    assert abs(engine[1][-1]["constraintWork"]) > 1e-3 * engine[1][0]["kinetic"]
+    assert on_planes() == touching == O.engines[0].statistics()["planeContacts"] > 4
+    for wall, force in zip(walls, forces):
+        assert np.abs(np.array(O.forces.f(wall)) - force).max() < 1e-6 * constants(ice(), 1e-7)["pullOffForce"]
+
+
+@pytest.mark.parametrize("kind", ["like", "drag"])
+@pytest.mark.parametrize("first", ["functors", "engine"])
+def test_handed_over_in_the_middle(kind, first):
+    """150 steps with one, 150 with the other, as 300 with the functors; bodies and O.time come out where they belong."""
+    start(kind)
+    O.run(301, True)
+    straight, time = positions(), O.time
+    start(kind)
+    if first == "functors":
+        O.run(150, True)
+        fused_engine(orientations=True)
+        O.run(151, True)
+    else:
+        functors = O.engines
+        fused_engine(orientations=True)
+        O.run(150, True)
+        O.engines[0].handOver()
+        O.engines = functors
+        O.run(150, True)
+    assert on_planes() > 4 and O.time == pytest.approx(time)
+    assert np.abs(positions() - straight).max() < (1e-9 if kind == "like" else 1e-6) * 1e-7
+
+
+def test_same_bits_on_one_and_two_threads_and_from_a_checkpoint():
+    def end(threads, saved=False):
+        start(count=343)
+        fused_engine(threads=threads, subSteps=10)
+        O.dt *= 10
+        O.run(30, True)
+        if saved:
+            O.save("checkpoint.yade.gz")
+            O.reset()
+            O.load("checkpoint.yade.gz")
+        O.run(60, True)
+        assert O.engines[0].statistics()["planeContacts"] > 20
+        return positions().tolist(), energies("constraintWork")
+
+    straight = end(1)
+    assert end(2) == straight
+    x, energy = end(2, saved=True)
+    assert x == straight[0] and energy == pytest.approx(straight[1], rel=1e-12)
+
+
+def test_a_plane_moved_or_stopped_by_the_script():
+    """Obeyed from the next step on, as by the functors (which see the step before with the velocity set after it)."""
+    tracks = []
+    for fused in (False, True):
+        rest, piston = start()
+        if fused:
+            fused_engine()
+        O.run(100, True)
+        O.bodies[piston].state.vel = (0, 0, 3)
+        O.bodies[rest].state.pos += Vector3(-1e-9, 0, 0)
+        O.run(100, True)
+        tracks.append(positions())
+    assert (tracks[0][[rest, piston]] == tracks[1][[rest, piston]]).all() and np.abs(
+        tracks[0] - tracks[1]
+    ).max() < 3e-10
