@@ -56,13 +56,13 @@ def why_undecided(kind, counted, end, constants, touch, recent=()):
     mappings with time, position, velocity (N,3), radius, aggregate (N,), contact_pairs (M,2), contact_bonded (M,), SI. constants: a
     mapping with the derived CONSTANTS of run.json. touch: time [s] of the first touch (where the aggregates never met of no meaning).
     """
-    pieces = _Pieces(end, constants)
+    pieces = Pieces(end, constants)
     if kind == NEVER_MET:
         return "the aggregates may still meet" if pieces_can_meet(*pieces.flight, EVER) else None
     why = pieces.why_rebounding(end["time"] - touch) if kind == STICKING else _why_meeting(kind, pieces, counted)
     if why or kind not in (STICKING, BOUNCING):
         return why
-    of_all = (_why_breaking(kind, _Pieces(state, constants), counted) for state in chain([end], recent))
+    of_all = (_why_breaking(kind, Pieces(state, constants), counted) for state in chain([end], recent))
     return next(filter(None, of_all), None)
 
 
@@ -70,7 +70,7 @@ def has_come_to_rest(state, constants, touch, duration):
     """Whether no fragment of a state seems to change any more until the time `duration` [s]: no two pieces can meet, none is in
     motion within that breaks contacts (QUIET), no cut is loose, and the aggregates have had the time to rebound. Other arguments as
     why_undecided. To be sure of it, it must have been so at all recent times."""
-    pieces = _Pieces(state, constants)
+    pieces = Pieces(state, constants)
     return not (
         pieces.why_rebounding(state["time"] - touch)
         or pieces.are_moving_within()
@@ -79,7 +79,7 @@ def has_come_to_rest(state, constants, touch, duration):
     )
 
 
-class _Pieces:
+class Pieces:
     """Of a state: labels (N,), mass (N,) [kg], and what may become of them."""
 
     def __init__(self, state, constants):

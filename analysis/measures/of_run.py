@@ -8,6 +8,7 @@ from .compression import maximum_compression
 from .decided import CONSTANTS, is_recent, why_undecided
 from .fragments import belongs_to_an_aggregate
 from .outcome import collision_outcome
+from .plate import has_plate, plate_outcome, why_undecided_on_plate
 
 
 def maximum_of_run(run):
@@ -16,7 +17,7 @@ def maximum_of_run(run):
 
 
 def met(run):
-    """Whether the two aggregates of a RunFolder touched at any recorded time."""
+    """Whether the two aggregates of a RunFolder, or aggregate and plate, touched at any recorded time."""
     return bool(np.any(run.history["contacts_between"] > 0))
 
 
@@ -26,25 +27,27 @@ def outcome_of_run(run):
     start, end = run.start, run.last
     if start.aggregate.shape != end.aggregate.shape or np.any(start.aggregate != end.aggregate):
         raise RunFolderError(f"{run.path / STATES_FOLDER}: the first and the last state don't hold the same grains")
+    on_plate = has_plate(vars(start))
     try:
-        found = collision_outcome(
-            start.radius,
-            start.aggregate,
-            start.velocity,
-            start.contact_pairs,
-            end.velocity,
-            end.contact_pairs,
-            met(run),
-        )
+        found = plate_outcome(vars(start), vars(end), met(run)) if on_plate else _of_two(start, end, met(run))
     except ValueError as error:
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
     if not all(name in run.derived for name in CONSTANTS):
         return found
-    counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
     touch = run.derived.get("firstTouch", run.history["time"][np.argmax(run.history["contacts_between"] > 0)])
     before = np.flatnonzero(is_recent(run.states.times, end.time, touch))[:-1]
     recent = (vars(run.states[index]) for index in before)  # read only where they are needed
-    return found.if_decided(why_undecided(found.kind, counted, vars(end), run.derived, touch, recent))
+    if on_plate:
+        why = why_undecided_on_plate(found.kind, vars(start), vars(end), run.derived, touch, recent)
+    else:
+        counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
+        why = why_undecided(found.kind, counted, vars(end), run.derived, touch, recent)
+    return found.if_decided(why)
+
+
+def _of_two(start, end, met):
+    of_start = start.radius, start.aggregate, start.velocity, start.contact_pairs
+    return collision_outcome(*of_start, end.velocity, end.contact_pairs, met)
 
 
 def derived_constants(run, *names):

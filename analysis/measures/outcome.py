@@ -40,7 +40,8 @@ class Outcome:
     """kind (never met, sticking, bouncing, fragmentation, undecided), restitution (None where there is none, see the module),
     mass_fractions (f1, f2), largest_fragment [grains, all counted], growth_efficiency (A22 eq 28, all grains, the
     target being the aggregate with more grains), fragments (their number) and excluded_grains (not counted in the
-    fractions). Of an undecided one why_undecided, in a few words, and seen: the kind that it would be if nothing changed any more."""
+    fractions). Of an undecided one why_undecided, in a few words, and seen: the kind that it would be if nothing changed any more;
+    of a collision with a plate mass_on_plate, the fraction that sticks to it (plate.py)."""
 
     kind: str
     restitution: float
@@ -51,6 +52,7 @@ class Outcome:
     excluded_grains: int
     why_undecided: str = None
     seen: str = None
+    mass_on_plate: float = None
 
     def if_decided(self, why):
         """The same; undecided where there is a reason for it."""

@@ -56,7 +56,7 @@ SERIES = tuple(
 MEASURED = (*OUTCOME, *LARGEST, *COMPRESSION_KEYS, *ENERGIES, *SERIES)
 # What is said of a run in one line.
 SHORT = (
-    *("outcome", "largest_fraction", "fragments", "growth_efficiency", "restitution", "d_max"),
+    *("outcome", "largest_fraction", "fragments", "growth_efficiency", "mass_on_plate", "restitution", "d_max"),
     *("final_filling", "final_pressure", "energy_closure"),
 )
 

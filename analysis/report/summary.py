@@ -24,7 +24,8 @@ OUTCOME_KEYS = (
     Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O", gaps=True),
     Column("largest_fragment", "", "number of grains of the largest piece", gaps=True),
     Column("fragments", "", "number of pieces", gaps=True),
-    Column("growth_efficiency", "1", "(N_largest - N_target)/N_projectile (A22 eq 28)", gaps=True),
+    Column("growth_efficiency", "1", "(N_largest - N_target)/N_projectile (A22 eq 28); of a plate N_on/N", gaps=True),
+    Column("mass_on_plate", "1", "of the mass, what sticks to the plate", gaps=True),
 )
 ENERGY_KEYS = (
     Column(
@@ -125,6 +126,8 @@ def _collision_measures(run, numbers):
     grains, fragments = run.start.radius.size, numbers["fragments"]
     yield "largest fragment", f"{numbers['largest_fragment']} grains of {grains}, {fragments} fragments"
     yield "growth efficiency", f"{numbers['growth_efficiency']:.4g}"
+    if numbers["mass_on_plate"] is not None:
+        yield "on the plate", f"{numbers['mass_on_plate']:.2%} of the mass"
 
 
 def _no_restitution(numbers):

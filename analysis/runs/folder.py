@@ -185,10 +185,20 @@ def read_state(file, kind=COLLISION, file_format=READABLE[-1]):
             f"{file}: 'contact_pairs' names grain {pairs.max() if pairs.min() >= 0 else pairs.min()}, "
             f"there are grains 0 to {grains - 1}"
         )
+    _require_on_planes(file, arrays)
     if aggregate.min() < 0 or (kind.aggregates and aggregate.max() >= kind.aggregates):
         numbers = " or ".join(map(str, range(kind.aggregates))) if kind.aggregates else "0 or more"
         raise RunFolderError(f"{file}: 'aggregate' must be {numbers} for every grain")
     return State(**arrays)
+
+
+def _require_on_planes(file, arrays):
+    if "plane_contacts" not in arrays:
+        return
+    for column, (what, quantity) in enumerate((("grain", "radius"), ("plane", "plane_axis"))):
+        rows, there = arrays["plane_contacts"][:, column], len(arrays.get(quantity, ()))
+        if rows.size and (rows.min() < 0 or rows.max() >= there):
+            raise RunFolderError(f"{file}: 'plane_contacts' names a {what} that is not there, of {there}")
 
 
 def _read_record(file):

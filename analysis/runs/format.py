@@ -5,7 +5,7 @@ Scripts write what stands here and the analysis reads it. All quantities are in 
     run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached;
                         files: names of what the run writes into the folder, by which scripts know it as a run's
     history.npz         time series, arrays (T,)
-    states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts
+    states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts; P planes, K contacts with these
     ended               empty: the run came to its planned end
     checkpoint/         while the run is under way, or was stopped: not part of the format
     heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
@@ -72,7 +72,7 @@ COLOURS = {channel.name: channel.colour for channel in CHANNEL_TABLE}
 
 @dataclass(frozen=True)
 class Quantity:
-    """An array of a history or a state. shape: of "T", "N", "M" (samples, grains, contacts) and numbers; kind: numpy's
+    """An array of a history or a state. shape: of "T", "N", "M", "P", "K" (samples, grains, contacts, planes, contacts with these) and numbers; kind: numpy's
     letter of the type, "f", "i" or "b". `optional`: left out where the scene has none. `gaps`: may be NaN in places.
     `positive`: all values are > 0.
     `since`: the first format that has it; zeros stand for it in older folders."""
@@ -130,6 +130,10 @@ STATE = (
     Quantity("contact_bonded", ("M",), "", "whether a contact is a sintered bond", "b"),
     Quantity("contact_neck", ("M",), "1", "of a bond, the neck's radius over that of the grains; 0 of other contacts", optional=True),
     Quantity("bonds_broken", (4,), "", "sintered bonds broken since the start: by stretching (or pressing), sliding, rolling, twisting", "i", optional=True),
+    Quantity("plane_axis", ("P",), "", "of each plane, the axis across which it lies: 0, 1, 2", "i", optional=True),
+    Quantity("plane_position", ("P",), "m", "of each plane, where on that axis", optional=True),
+    Quantity("plane_contacts", ("K", 2), "", "rows of the grain and of the plane of a contact", "i", optional=True),
+    Quantity("plane_contact_normal_force", ("K",), "N", "as contact_normal_force", optional=True),
     Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True, positive=True),
 )
 
@@ -137,9 +141,9 @@ RESTING = "resting"
 COLLISION = RunKind(
     "collision",
     (
-        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11) of equal aggregates; NaN with all grains on one side", gaps=True),
+        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11) of equal aggregates; NaN with all grains on one side. On a plate: the aggregate's radius less its mean distance", gaps=True),
         Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13), positive while approaching", gaps=True),
-        Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates", "i"),
+        Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates, or with the plate", "i"),
         Quantity("formed", ("T",), "", "contacts formed since the start (A22 N_con)", "i", optional=True),
         Quantity("broken", ("T",), "", "contacts broken since the start (A22 N_cut)", "i", optional=True),
         Quantity(RESTING, ("T",), "", "1: no piece can change any more, 0: one may, NaN: not looked at; of runs that end early", optional=True, gaps=True),

@@ -120,6 +120,17 @@ int planeContactCount(const Dynamics& dynamics)
 	return total;
 }
 
+NormalForces normalForcesOnPlanes(const Dynamics& dynamics)
+{
+	NormalForces found;
+	eachPlaneContact(dynamics, [&](const Domain& domain, const PlaneContact& c) {
+		const ContactForces<double> f = domain.planes.forcesOf(c);
+		found.grains.insert(found.grains.end(), { dynamics.given(c.grain), c.plane });
+		found.forces.push_back(f.normalForce + f.drag);
+	});
+	return found;
+}
+
 int contactCount(const Dynamics& dynamics)
 {
 	int total = 0;

@@ -57,6 +57,8 @@ struct NormalForces {
 };
 // The contacts of each domain, then the bonds of each; by all threads.
 std::vector<NormalForces> normalForces(const Dynamics&);
+// Contacts with planes: grain and plane of each, normal forces [N]; no necks.
+NormalForces normalForcesOnPlanes(const Dynamics&);
 
 // visit(domain, contact), of every grain's with a plane
 template <class Visit> void eachPlaneContact(const Dynamics& dynamics, Visit&& visit)

@@ -248,6 +248,8 @@ void JKRWadaEngine::readBodies(const SceneGrains::Columns& to) const
 
 std::vector<contact_law::NormalForces> JKRWadaEngine::normalForces() const { return contact_law::normalForces(current->dynamics); }
 
+contact_law::NormalForces JKRWadaEngine::normalForcesOnPlanes() const { return contact_law::normalForcesOnPlanes(current->dynamics); }
+
 boost::python::dict JKRWadaEngine::statistics() const
 {
 	boost::python::dict result;

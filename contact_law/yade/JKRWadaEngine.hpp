@@ -65,6 +65,7 @@ public:
 	std::size_t bodyCount() const;
 	void readBodies(const SceneGrains::Columns&) const;
 	std::vector<contact_law::NormalForces> normalForces() const;
+	contact_law::NormalForces normalForcesOnPlanes() const; // planes: Walls by rising id
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
 	// clang-format off

@@ -2,6 +2,7 @@
 #include "JKRWada.hpp"
 #include "JKRWadaEngine.hpp"
 #include "RunningLoop.hpp"
+#include "SceneShapes.hpp"
 #include <core/Body.hpp>
 #include <core/Cell.hpp>
 #include <core/Omega.hpp>
@@ -93,6 +94,24 @@ namespace {
 		return grains;
 	}
 
+	struct Planes {
+		std::vector<int> axis, ofId; // ofId: by body id, -1 where the body is no Wall
+		std::vector<double> position;
+	};
+	Planes readPlanes(const Scene& scene, bool asItIs)
+	{
+		Planes planes;
+		planes.ofId.assign(scene.bodies->size(), -1);
+		for (const auto& body : *scene.bodies) {
+			const Wall* wall = body ? wallOf(*body) : nullptr;
+			if (!wall) continue;
+			planes.ofId[body->getId()] = int(planes.axis.size());
+			planes.axis.push_back(wall->axis);
+			planes.position.push_back((body->state->pos - (asItIs ? 0 : scene.dt) * body->state->vel)[wall->axis]);
+		}
+		return planes;
+	}
+
 	struct GrainColumns {
 		Column<int> ids;
 		Column<double> position, velocity, angularVelocity, radius;
@@ -133,6 +152,15 @@ namespace {
 		return all.bytes;
 	}
 
+	void putPlanes(boost::python::dict& result, const Planes& planes, const NormalForces& contacts)
+	{
+		if (planes.axis.empty()) return;
+		result["plane_axis"] = Column(planes.axis).bytes;
+		result["plane_position"] = Column(planes.position).bytes;
+		result["plane_contacts"] = Column(contacts.grains).bytes;
+		result["plane_contact_normal_force"] = Column(contacts.forces).bytes;
+	}
+
 	void putContacts(boost::python::dict& result, const std::vector<NormalForces>& parts)
 	{
 		result["contact_pairs"] = joined(parts, &NormalForces::grains);
@@ -140,21 +168,21 @@ namespace {
 		result["contact_neck"] = joined(parts, &NormalForces::necks);
 	}
 
-	NormalForces normalForces(const Scene& scene, const Grains& grains)
+	// Between grains, and of grains on planes.
+	void readContacts(const Scene& scene, const Grains& grains, const Planes& planes, NormalForces& between, NormalForces& onPlanes)
 	{
-		NormalForces found;
 		for (const auto& interaction : *scene.interactions) {
 			if (!interaction->isReal()) continue;
 			const auto* phys = dynamic_cast<const JKRWadaPhys*>(interaction->phys.get());
 			const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
 			if (!phys || !geometry || !phys->touching) continue;
-			if (grains.rowOf[interaction->getId1()] < 0 || grains.rowOf[interaction->getId2()] < 0) continue; // a plane's
-			found.grains.push_back(grains.rowOf[interaction->getId1()]);
-			found.grains.push_back(grains.rowOf[interaction->getId2()]);
+			const int id1 = interaction->getId1(), id2 = interaction->getId2(), plane = planes.ofId[id1];
+			NormalForces& found = plane < 0 ? between : onPlanes;
+			found.grains.push_back(grains.rowOf[plane < 0 ? id1 : id2]);
+			found.grains.push_back(plane < 0 ? grains.rowOf[id2] : plane);
 			found.forces.push_back(phys->normalForce.dot(geometry->normal));
 			found.necks.push_back(phys->bonded ? phys->bond->neck : 0);
 		}
-		return found;
 	}
 }
 
@@ -170,10 +198,15 @@ boost::python::dict JKRWadaSnapshot::read() const
 		if (fused->inStep()) result["time"] = scene.time + scene.dt; // within a step the engine is at its end already
 		putGrains(result, columnsOf(*fused));
 		putContacts(result, fused->normalForces());
+		putPlanes(result, readPlanes(scene, true), fused->normalForcesOnPlanes());
 	} else {
 		const Grains grains = readGrains(scene, fused);
+		const Planes planes = readPlanes(scene, fused);
+		NormalForces between, onPlanes;
+		readContacts(scene, grains, planes, between, onPlanes);
 		putGrains(result, columnsOf(grains));
-		putContacts(result, { normalForces(scene, grains) });
+		putContacts(result, { between });
+		putPlanes(result, planes, onPlanes);
 	}
 	if (scene.isPeriodic) {
 		std::vector<double> size;

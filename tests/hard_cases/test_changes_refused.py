@@ -115,7 +115,7 @@ SCENES = {
     "O.bodies[1].mask = 2": ["body 1: mask = 2, must be 1"],
     "O.bodies[1].bounded = False": ["body 1 must be bounded"],
     "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["body 1: its three moments of inertia must be the same"],
-    "O.bodies.clump([0, 1])": ["body 4 must be a sphere of JKRMat"],
+    "O.bodies.clump([0, 1])": ["body 0 is a member of clump 4: grains of JKRMat must be single spheres"],
     "O.bodies.erase(1)": ["body 1 was erased"],
 }  # fmt: skip
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
 from analysis.measures.decided import REBOUND_PER_RADIUS, rebound_time
+from analysis.measures.plate import has_plate
 from analysis.runs.format import COLLISION, RESTING
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments import ending, impact_step
@@ -16,7 +17,7 @@ from yade_scripts.packings.approach import first_touch
 from yade_scripts.packings.grain_sizes import EQUAL
 from yade_scripts.packings.offset_pair import START_GAP, offset_pair
 from yade_scripts.packings.packing import PackingError
-from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, parameter
+from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 from yade_scripts.stability import AUTO
@@ -24,6 +25,7 @@ from yade_scripts.stability import AUTO
 WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
 LARGEST_NECK = 0.7  # the largest of S17
 VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
+AGGREGATE, WALL = "aggregate", "wall"
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
@@ -32,6 +34,11 @@ class CollisionParameters(AggregateParameters, RunParameters):
     """The collision."""
 
     velocity: float = parameter(10**0.5, POSITIVE, "relative velocity of the aggregates", "m/s", usual=VELOCITY)
+    target: str = parameter(
+        AGGREGATE,
+        one_of([AGGREGATE, WALL]),
+        "what one aggregate meets: another one, or a plate of the grains' material at rest, which it meets at right angles",
+    )
     impact: float = parameter(
         0.0,
         between(0, 1),
@@ -81,6 +88,8 @@ class CollisionParameters(AggregateParameters, RunParameters):
             value = getattr(found, name)
             if value is not None and found.packing not in packings_with_it:
                 raise ParameterError(f"{name} = {value}: given with packing = {found.packing}; must be left out")
+        if found.target == WALL:
+            found.require_of_plate()
         impact_step.require_usable(found)
         if found.endWhenApart is None:
             found = found.changed(endWhenApart=int(found.duration is None))
@@ -94,16 +103,27 @@ class CollisionParameters(AggregateParameters, RunParameters):
             )
         return found
 
+    def require_of_plate(self):
+        """Raise ParameterError for what a collision with a plate doesn't have."""
+        why = {"projectileGrains": "the aggregate has grains", "projectileFile": "the aggregate is of file"}
+        why |= {"impact": "it meets the plate at right angles", "neck": "there are no sintered bonds to plates"}
+        for name, reason in why.items():
+            if getattr(self, name):
+                raise ParameterError(
+                    f"{name} = {getattr(self, name)}: given with target = {WALL}; must be left out: {reason}"
+                )
+
     def of_projectile(self):
         """The parameters from which the projectile is made."""
         return self.changed(grains=self.projectileGrains or self.grains, file=self.projectileFile or self.file)
 
     def title(self):
-        """collide-ice-f0.4-R20-v3.162-s1 or collide-ice-bcca-N1024-v3.162-s1, and the names of what is in it."""
+        """collide-ice-f0.4-R20-v3.162-s1, collide-ice-bcca-N1024-v3.162-s1 or collide-wall-ice-..., and the names of what is in it."""
         size = f"f{self.filling:g}-R{self.radius:.4g}" if self.packing == "cpe" else self.packing
         size += f"-N{self.grains}" if self.is_grown else ""
-        in_name = ("material", "packing", "filling", "radius", "grains", "velocity", "seed")
-        return f"collide-{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", in_name
+        target = f"{WALL}-" if self.target == WALL else ""
+        in_name = ("target", "material", "packing", "filling", "radius", "grains", "velocity", "seed")
+        return f"collide-{target}{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", in_name
 
 
 def complete(parameters, constants, threads):
@@ -158,7 +178,7 @@ def reason_of_step(parameters, constants):
     """How complete() came to parameters.stepFraction, in one line."""
     if parameters.tolerance is None:
         return "as given"
-    return step_choice.collision_reason(parameters, constants, step_limit(parameters, constants))
+    return step_choice.collision_reason(_measured(parameters), constants, step_limit(parameters, constants))
 
 
 def default_duration(parameters, radius, time_unit, touch):
@@ -190,7 +210,7 @@ def prepare(parameters, threads):
     parameters = complete(parameters, constants, threads)
     parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
     require_step_of_files(parameters, constants, pair)
-    touch = _time_of_touch(pair, velocities, constants["bond"])
+    touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
     parameters = with_duration(parameters, constants["timeUnit"], touch)
     aggregate_radius = parameters.radius * parameters.grainRadius
     controls, reason = [], reason_of_step(parameters, constants)
@@ -205,11 +225,11 @@ def prepare(parameters, threads):
         parameters=parameters,
         constants=constants,
         derived={
-            **_sizes(aggregate_radius, pair, parameters.packing == "file"),
+            **_sizes(aggregate_radius, pair, parameters),
             **({} if touch is None else {"firstTouch": touch}),
         },
         aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
-        build=lambda: yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar)),
+        build=lambda: _build(parameters, pair, velocities, material),
         series=lambda state: {
             **series(state, aggregate_radius),
             **({RESTING: np.nan} if parameters.endWhenApart else {}),
@@ -220,11 +240,26 @@ def prepare(parameters, threads):
     )
 
 
+def _build(parameters, pair, velocities, material):
+    from yade_scripts.run import scene as yade_scene
+
+    yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar))
+    if parameters.target == WALL:
+        yade_scene.add_plane(0, 0.0, material)
+
+
 def place(parameters, overlap):
-    """(parameters with the size of the aggregates, the two packings in their places, their velocities).
+    """(parameters with the size of the aggregates, the two packings in their places, their velocities; of a collision with a
+    plate, which is at x = 0, the one that comes along -x).
 
     overlap: of touching grains [m]. Radius and filling of other than CPE aggregates are of the larger of the two.
     """
+    if parameters.target == WALL:
+        packing = make(parameters, overlap, 0)
+        if parameters.packing != "cpe":
+            parameters = _with_size(parameters, [packing])
+        gap = START_GAP * packing.radius.max() - (packing.position[:, 0] - packing.radius).min()
+        return parameters, [packings.moved(packing, (gap, 0.0, 0.0))], [np.array([-parameters.velocity, 0.0, 0.0])]
     pair = [make(parameters, overlap, 0), make(parameters.of_projectile(), overlap, 1)]
     if parameters.packing == "cpe":
         where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
@@ -250,11 +285,12 @@ def _with_size(parameters, pair):
     return parameters.changed(radius=radius, filling=filling, grains=pair[0].grains)
 
 
-def _sizes(aggregate_radius, pair, from_file):
-    """What run.json tells of the two aggregates; from_file: also what their files say of how they were made."""
+def _sizes(aggregate_radius, pair, parameters):
+    """What run.json tells of the aggregates, with packing = file also what their files say of how they were made."""
     found = {"aggregateRadius": aggregate_radius, "grainsPerAggregate": pair[0].grains}
-    for name, packing in zip(("target", "projectile"), pair):
-        if from_file:
+    names = ("projectile",) if parameters.target == WALL else ("target", "projectile")
+    for name, packing in zip(names, pair):
+        if parameters.packing == "file":
             found[f"{name}Packing"] = {**packing.parameters, "seed": packing.seed}
         found[f"{name}Grains"] = packing.grains
         found[f"{name}GyrationRadius"] = packings.gyration_radius(packing)
@@ -278,6 +314,9 @@ def with_duration(parameters, time_unit, touch):
 
 def series(state, aggregate_radius):
     """{name: value} of a collision's own series; state: as contact_law.snapshot(), with `aggregate`; R_agg [m]."""
+    if has_plate(state):
+        d, v = aggregate_radius - state["position"][:, 0].mean(), -state["velocity"][:, 0].mean()
+        return {"d": d, "v": v, "contacts_between": len(state["plane_contacts"])}
     d, v = compression_and_velocity(state["position"][:, 0], state["velocity"][:, 0], aggregate_radius)
     sides = state["aggregate"][state["contact_pairs"]]
     return {"d": d, "v": v, "contacts_between": int(np.count_nonzero(sides[:, 0] != sides[:, 1]))}
@@ -330,8 +369,13 @@ def _require_sintered(neck, constants):
 
 
 def _longest_step(parameters, constants, limit):
-    step_choice.require_measured(parameters)
-    return step_choice.longest_step(step_choice.collision_errors(parameters, constants), parameters, limit)
+    step_choice.require_measured(_measured(parameters))
+    return step_choice.longest_step(step_choice.collision_errors(_measured(parameters), constants), parameters, limit)
+
+
+def _measured(parameters):
+    """The parameters as step_choice knows them, which was measured on pairs: half of a pair meets its image as an aggregate a plate."""
+    return parameters.changed(velocity=2 * parameters.velocity) if parameters.target == WALL else parameters
 
 
 def _step(parameters, constants):
@@ -344,21 +388,24 @@ def _step(parameters, constants):
         return step_choice.SHORTEST
 
 
-def _time_of_touch(pair, velocities, bond):
-    """Time [s] until grains of the two aggregates first touch, or None; grains that sintered have shrunk."""
+def _time_of_touch(parameters, pair, velocities, bond):
+    """Time [s] until grains of the two aggregates, or of one and the plate, first touch, or None; grains that sintered have shrunk."""
+    if parameters.target == WALL:
+        return float((pair[0].position[:, 0] - pair[0].radius).min() / parameters.velocity)
     if bond:
         pair = [replace(packing, radius=np.full(packing.grains, bond["shrunkRadius"])) for packing in pair]
     return first_touch(*pair, velocities[1] - velocities[0])
 
 
 def _grain_numbers(parameters):
-    """Grains of both aggregates; of files that can't be read, which the run will say, as if they held one each."""
+    """Grains of the aggregates; of files that can't be read, which the run will say, as if they held one each."""
+    of = (parameters,) if parameters.target == WALL else (parameters, parameters.of_projectile())
     if parameters.packing != "file":
-        return parameters.grains, parameters.of_projectile().grains
+        return tuple(p.grains for p in of)
     try:
-        return tuple(packings.load(p.file).grains for p in (parameters, parameters.of_projectile()))
+        return tuple(packings.load(p.file).grains for p in of)
     except PackingError:
-        return 1, 1
+        return len(of) * (1,)
 
 
 def _typical_radius(packing, grains, planar):
@@ -372,7 +419,7 @@ def _typical_radius(packing, grains, planar):
 
 def _typical_way(parameters):
     """Grain radii until the first touch: of spheres and 1.4 more, or the gap at which aggregates of any shape start."""
-    if parameters.packing != "cpe":
+    if parameters.packing != "cpe" or parameters.target == WALL:
         return START_GAP
     return 2 * (parameters.radius + 1) * (1 - sqrt(1 - parameters.impact**2)) + 1.4
 

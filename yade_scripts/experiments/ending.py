@@ -4,6 +4,7 @@ import numpy as np
 
 from analysis.measures.decided import RECENT, has_come_to_rest
 from analysis.measures.of_run import outcome_of_run
+from analysis.measures.plate import with_plate
 from analysis.runs.folder import open_run
 from analysis.runs.format import RESTING
 
@@ -20,7 +21,7 @@ def when_apart(parameters, constants, aggregate_radius, touch):
     def control(recorder, state):
         if not recorder.is_one_of(CHECKS):
             return False
-        recorder.note(RESTING, float(has_come_to_rest(state, known, begin, parameters.duration)))
+        recorder.note(RESTING, float(has_come_to_rest(with_plate(state), known, begin, parameters.duration)))
         recent = recorder.recent(RESTING, RECENT * (state["time"] - (touch or 0.0)))
         return bool(np.all(recent[np.isfinite(recent)]))
 

@@ -6,8 +6,10 @@ from math import pi
 from yade import utils
 from yade.wrapper import (
     Bo1_Sphere_Aabb,
+    Bo1_Wall_Aabb,
     ForceResetter,
     Ig2_Sphere_Sphere_ScGeom,
+    Ig2_Wall_Sphere_ScGeom,
     InsertionSortCollider,
     InteractionLoop,
     Ip2_JKRMat_JKRMat_JKRWadaPhys,
@@ -89,6 +91,13 @@ def add_bodies(packings, velocities, material, planar=False):
         omega.bodies.append(bodies)
 
 
+def add_plane(axis, position, material, velocity=0.0):
+    """A plane across an axis (0, 1, 2) at that coordinate [m], which moves along it [m/s]."""
+    plane = utils.wall(position, axis=axis, material=material)
+    plane.state.vel = [velocity if k == axis else 0.0 for k in range(3)]
+    return Omega().bodies.append(plane)
+
+
 def start(scene, schedule, recorder):
     """Build a run.kind.Scene and its engines: (O.steps to take, the sampling PyRunner, what to do first).
 
@@ -133,9 +142,9 @@ def functor_engines(grain_radius, runner, limit="held", **law):
     """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last, after a whole step."""
     return [
         ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=VERLET_DISTANCE * grain_radius),
+        InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=VERLET_DISTANCE * grain_radius),
         InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom()],
+            [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
             [Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
             [Law2_ScGeom_JKRWadaPhys_JKRWada(limit=limit)],
         ),

@@ -1,0 +1,154 @@
+"""Outcome of an aggregate's collision with a plate, as laboratories tell it: what sticks to the plate, and what leaves it.
+
+Counted are the grains that belong to the aggregate at the start (fragments.belongs_to_an_aggregate). With f_on the fraction of
+their mass that is connected with the plate at the end, and f_off that of the heaviest piece that is not:
+
+    never met      no contact with the plate at any time
+    sticking       f_on >= 0.9
+    bouncing       f_off >= 0.9, whatever small part it has left on the plate
+    fragmentation  everything else: what sticks then is the mass transfer of laboratories, f_on
+
+The coefficient of restitution is 0 for sticking; for bouncing minus the velocity of the centre of mass of the heaviest piece along that
+of the aggregate at the start, over the latter.
+
+The plate stands as one more grain among the others, of aggregate 1: a sphere so large that it is flat where the grains are. Pieces that
+may still meet it, and cuts between it and what lies on it, are then found as those of two aggregates (decided.py); motion along the plate
+counts as turning with it, which breaks nothing."""
+
+from itertools import chain
+
+import numpy as np
+
+from .decided import EVER, Pieces
+from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes
+from .free_flight import pieces_that_can_meet
+from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, STICKING, Outcome, mean_velocity, restitution
+
+FLAT = 1e3  # radius of the sphere that stands for the plate, over the largest distance of a grain from the plate's point below the grains
+
+
+def has_plate(state):
+    """Whether a state (a mapping with the names of runs.format.STATE) has a plate."""
+    return state.get("plane_contacts") is not None
+
+
+def with_plate(state):
+    """The state (a mapping), where it has a plate with that as its last grain, in contact with the grains on it."""
+    if not has_plate(state):
+        return state
+    axis, on_axis = int(state["plane_axis"][0]), float(state["plane_position"][0])
+    foot = state["position"].mean(axis=0)
+    side = 1.0 if foot[axis] >= on_axis else -1.0
+    foot[axis] = on_axis
+    size = FLAT * (np.linalg.norm(state["position"] - foot, axis=1) + state["radius"]).max()
+    centre = foot.copy()
+    centre[axis] -= side * size
+    grains, on_plate = len(state["radius"]), state["plane_contacts"][:, 0]
+    to_plate = np.stack([on_plate, np.full(len(on_plate), grains)], axis=1)
+    at_rest = np.zeros((1, 3))
+    return {
+        **state,
+        "position": np.concatenate([state["position"], centre[None]]),
+        "velocity": np.concatenate([state["velocity"], at_rest]),
+        "radius": np.append(state["radius"], size),
+        "aggregate": np.append(state["aggregate"], 1),
+        "contact_pairs": np.concatenate([state["contact_pairs"], to_plate]),
+        "contact_bonded": np.append(state["contact_bonded"], np.zeros(len(on_plate), dtype=bool)),
+    }
+
+
+def classify_on_plate(on, off):
+    """Name of the outcome for the mass fractions on the plate and in the heaviest piece off it: the rule at the module's head.
+
+    >>> classify_on_plate(0.95, 0.01), classify_on_plate(0.05, 0.95), classify_on_plate(0.5, 0.5)
+    ('sticking', 'bouncing', 'fragmentation')
+    """
+    return STICKING if on >= 0.9 else BOUNCING if off >= 0.9 else FRAGMENTATION
+
+
+def _counted(start):
+    """Mask (N + 1,) of the grains that count; the plate does not."""
+    alone = start["aggregate"] == 0, start["contact_pairs"], start["radius"] ** 3
+    return np.append(belongs_to_an_aggregate(np.zeros(len(alone[0]), dtype=int), *alone[1:]), False)
+
+
+def plate_outcome(start, end, met):
+    """outcome.Outcome from the states (mappings) at the start and at the end, of grains of one density; met: whether the aggregate touched
+    the plate at any time. mass_fractions, fragments and largest_fragment: what lies on the plate is one piece; growth_efficiency: the
+    plate's, the fraction of the grains that lie on it; mass_on_plate: f_on."""
+    counted, state = _counted(start), with_plate(end)
+    labels, mass = fragment_labels(len(counted), state["contact_pairs"]), state["radius"] ** 3
+    fractions = fragment_masses(labels, mass * counted) / mass[counted].sum()
+    sizes = fragment_sizes(labels)
+    sizes[labels[-1]] -= 1
+    on = float(fractions[labels[-1]])
+    off = np.where(np.arange(len(fractions)) == labels[-1], 0.0, fractions)
+    heaviest = int(np.argmax(off))
+    kind = classify_on_plate(on, off[heaviest]) if met else NEVER_MET
+    ratio = 0.0 if kind == STICKING else None
+    if kind == BOUNCING:
+        piece, own = (labels == heaviest) & counted, counted[:-1]
+        before = mean_velocity(start["velocity"], mass[:-1], own)
+        ratio = restitution(before, mean_velocity(state["velocity"], mass, piece))
+    f1, f2 = sorted([*map(float, fractions), 0.0], reverse=True)[:2]
+    return Outcome(
+        kind,
+        ratio,
+        (f1, f2),
+        int(sizes.max()),
+        float(sizes[labels[-1]] / (len(counted) - 1)),
+        int((sizes > 0).sum()),
+        int((~counted[:-1]).sum()),
+        mass_on_plate=on,
+    )
+
+
+def why_undecided_on_plate(kind, start, end, constants, touch, recent=()):
+    """As decided.why_undecided, of a plate: states are mappings with the names of runs.format.STATE."""
+    counted, pieces = _counted(start), Pieces(with_plate(end), constants)
+    shares, plate = pieces.shares(counted)[0], pieces.labels[-1]
+    near = _that_can_meet_it(plate, *pieces.flight)
+    if kind == NEVER_MET:
+        return "the aggregate may still meet the plate" if near.any() else None
+    if kind == STICKING and (why := pieces.why_rebounding(end["time"] - touch)):
+        return why
+    others = np.arange(len(shares)) != plate
+    left = shares[others & ~near].max(initial=0.0)
+    if classify_on_plate(shares[plate] + shares[near].sum(), left) != kind:
+        return f"pieces of {shares[near].sum():.0%} of the mass may still meet the plate"
+    of_all = (_why_breaking(kind, Pieces(with_plate(state), constants), counted) for state in chain([end], recent))
+    return next(filter(None, of_all), None)
+
+
+def _that_can_meet_it(plate, position, velocity, radius, labels):
+    """Which pieces (K,) may touch the piece of the plate: those whose spheres do, unless they leave faster than any of their grains moves in
+    the piece, so that none comes back however it turns."""
+    mass = radius**3
+    centre, motion = (
+        np.stack([np.bincount(labels, weights=mass * c) for c in values.T], 1)
+        / np.bincount(labels, weights=mass)[:, None]
+        for values in (position, velocity)
+    )
+    within = np.zeros(len(centre))
+    np.maximum.at(within, labels, np.linalg.norm(velocity - motion[labels], axis=1))
+    away = centre - centre[plate]
+    with np.errstate(invalid="ignore"):
+        leaving = np.einsum("ij,ij->i", motion, away) / np.linalg.norm(away, axis=1)
+    return pieces_that_can_meet(plate, position, velocity, radius, labels, EVER) & ~(leaving > within)
+
+
+def _why_breaking(kind, pieces, counted):
+    """For an outcome that the loss of a side of what lies on the plate, or of the heaviest piece off it, makes another one."""
+    shares, plate = pieces.shares(counted)[0], pieces.labels[-1]
+    off = np.where(np.arange(len(shares)) == plate, 0.0, shares)
+    cut, side = pieces.loose_cuts()
+    own = pieces.mass[counted].sum()
+    for piece in {plate, int(np.argmax(off))}:
+        lost = side[cut == piece].max(initial=0.0) / own
+        if piece == plate:
+            after = classify_on_plate(shares[plate] - lost, max(off.max(), lost))
+        else:
+            after = classify_on_plate(shares[plate], off.max() - lost)
+        if classify_on_plate(shares[plate], off.max()) == kind != after:
+            return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
+    return None
