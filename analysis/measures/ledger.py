@@ -39,10 +39,15 @@ def closure(history):
     return None if error is None else float(np.abs(error).max())
 
 
+def work_on_boundaries(history):
+    """Work (T,) [J] of the grains on what compresses them: the boundaries of a periodic cell, or plates."""
+    return history["boundaryWork"] + history["constraintWork"]
+
+
 def work_closure(history):
     """max over t of |E(t) - E(0)| over the largest work of the boundaries, of a cell that starts almost at rest; None
     where they did none."""
-    total, work = total_energy(history), float(np.abs(history["boundaryWork"]).max())
+    total, work = total_energy(history), float(np.abs(work_on_boundaries(history)).max())
     return float(np.abs(total - total[0]).max()) / work if work > 0 else None
 
 

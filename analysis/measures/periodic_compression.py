@@ -1,10 +1,12 @@
 """A compression in a periodic cell (Kataoka et al. 2013, K13) from its history: pressure and tension, and when a filling factor is reached. SI units.
 
 The pressure is the work of the grains on the boundaries over the change of volume. Between two samples that is the mean of the virial's
-pressure (K13 eq 21, damping forces included) over all steps between them, as K13 averages; the virial's own series is of the moment of
+pressure (K13 eq 21, damping forces included), or that on the piston, over all steps between them, as K13 averages; the virial's own series is of the moment of
 each sample, which misses oscillations faster than samples."""
 
 import numpy as np
+
+from .ledger import work_on_boundaries
 
 AVERAGED = 1000.0  # t0 over which K13 averages the pressure (section 2.4)
 
@@ -33,7 +35,7 @@ def pressures(history):
     """(filling factors (K,), pressures (K,) [Pa]) between the samples while the cell shrinks, the fillings half-way."""
     part = compressing(history)
     filling, size = history["filling"][part], volume(history)[part]
-    return np.sqrt(filling[1:] * filling[:-1]), np.diff(history["boundaryWork"][part]) / np.diff(size)
+    return np.sqrt(filling[1:] * filling[:-1]), np.diff(work_on_boundaries(history)[part]) / np.diff(size)
 
 
 def pressure_over(history, width):
@@ -53,7 +55,7 @@ def tension(history, width):
 
 
 def _work_over_volume(history, part, width):
-    time, work, filling = (history[name][part] for name in ("time", "boundaryWork", "filling"))
+    time, work, filling = history["time"][part], work_on_boundaries(history)[part], history["filling"][part]
     size = volume(history)[part]
     # From the first sample of a window to that of the next.
     edges = [(a, min(b, len(time) - 1)) for a, b in windows(time, width) if a < len(time) - 1]

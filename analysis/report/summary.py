@@ -2,7 +2,7 @@
 
 import textwrap
 
-from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure
+from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure, work_on_boundaries
 from ..measures.of_run import maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, LABELS
@@ -100,7 +100,7 @@ def _measures(run, numbers):
 def _energy_unit(run, numbers):
     """(energy [J], its name) that changes of energy are told in."""
     if run.kind is COMPRESSION:
-        return float(abs(run.history["boundaryWork"]).max()), "W"
+        return float(abs(work_on_boundaries(run.history)).max()), "W"
     return numbers["initial_kinetic_energy"], "K(0)"
 
 

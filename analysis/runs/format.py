@@ -154,11 +154,12 @@ COLLISION = RunKind(
 COMPRESSION = RunKind(
     "compression",
     (
-        Quantity("filling", ("T",), "1", "volume filling factor of the cell (K13 eq 22)"),
-        Quantity("pressure", ("T",), "Pa", "pressure by the virial (K13 eq 21), at that moment"),
-        Quantity("kinetic_pressure", ("T",), "Pa", "the part of it that is kinetic, 2 K/(3 V)"),
+        Quantity("filling", ("T",), "1", "volume filling factor of the cell (K13 eq 22), or between the plates"),
+        Quantity("pressure", ("T",), "Pa", "pressure by the virial (K13 eq 21), or mean force on the two plates over their area, at that moment"),
+        Quantity("kinetic_pressure", ("T",), "Pa", "the part of it that is kinetic, 2 K/(3 V); 0 between plates"),
+        Quantity("piston_pressure", ("T",), "Pa", "between plates: that on the moving one", optional=True),
         Quantity("coordination", ("T",), "1", "mean number of contacts of a grain"),
-        *(Quantity(f"edge_{axis}", ("T",), "m", f"edge of the cell along {axis}") for axis in "xyz"),
+        *(Quantity(f"edge_{axis}", ("T",), "m", f"edge of the cell along {axis}; between plates their distance") for axis in "xyz"),
     ),
     aggregates=1,
 )

@@ -22,7 +22,7 @@ namespace {
 		if (!body) refuseInEngine(who + " was erased: there must be a body of every id, make the scene without those erased");
 		const auto material = boost::dynamic_pointer_cast<JKRMat>(body->material);
 		if (!material) refuseInEngine(who + " must be a sphere or a Wall of JKRMat; this engine moves nothing else");
-		const std::string fault = faultOf(*body, scene);
+		const std::string fault = faultOf(*body, scene, InPeriodic::AtRest);
 		if (!fault.empty()) refuseInEngine(fault);
 		const int first = (*scene.bodies)[0]->groupMask;
 		if (!body->isBounded() || body->groupMask == 0)

@@ -55,7 +55,7 @@ void ScenePlanes::takeChanges(const Scene& scene, contact_law::Dynamics& dynamic
 	requireKept(scene);
 	for (int p = 0; p < size(); ++p) {
 		Kept& k = kept[p];
-		const std::string fault = faultOf(*k.body, scene);
+		const std::string fault = faultOf(*k.body, scene, InPeriodic::AtRest);
 		if (!fault.empty()) refuseInEngine(fault);
 		if (k.state->pos == k.position && k.state->vel == k.velocity) continue;
 		k.position = k.state->pos, k.velocity = k.state->vel;

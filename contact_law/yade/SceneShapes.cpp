@@ -4,6 +4,7 @@
 #include "Refusal.hpp"
 #include <core/Body.hpp>
 #include <core/BodyContainer.hpp>
+#include <core/Cell.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/common/Wall.hpp>
 #include <mutex>
@@ -13,13 +14,16 @@ namespace yade {
 
 namespace {
 	// What is wrong with a plane, or empty.
-	std::string faultOf(const Wall& wall, const State& state, const Scene& scene)
+	std::string faultOf(const Wall& wall, const State& state, const Scene& scene, InPeriodic inPeriodic)
 	{
 		if (wall.sense != 0) return "sense = " + text(wall.sense) + ", must be 0: planes hold grains on both sides";
 		if (state.blockedDOFs != State::DOF_ALL)
 			return "blockedDOFs must be 'xyzXYZ': planes rest or move at the velocity that they are given";
 		if (!state.angVel.isZero()) return "angVel must be zero: planes do not turn";
-		if (scene.isPeriodic) return "O.periodic must be False: there are no planes in periodic cells";
+		if (scene.isPeriodic && inPeriodic == InPeriodic::Refused)
+			return "O.periodic must be False: planes in periodic cells are JKRWadaEngine's only";
+		if (scene.isPeriodic && !(scene.cell->velGrad.isZero() && scene.cell->nextVelGrad.isZero()))
+			return "O.cell.velGrad must be zero: planes do not move with a cell";
 		return "";
 	}
 
@@ -29,7 +33,7 @@ namespace {
 		anyPlane = false;
 		for (const auto& body : *scene.bodies) {
 			if (!body || !dynamic_cast<const JKRMat*>(body->material.get())) continue;
-			const std::string fault = yade::faultOf(*body, scene);
+			const std::string fault = yade::faultOf(*body, scene, InPeriodic::Refused);
 			if (!fault.empty()) return fault;
 			anyPlane = anyPlane || wallOf(*body);
 		}
@@ -54,7 +58,7 @@ namespace {
 const Wall* wallOf(const Body& body) { return dynamic_cast<const Wall*>(body.shape.get()); }
 const Wall* wallOf(const Scene& scene, int id) { return wallOf(*(*scene.bodies)[id]); }
 
-std::string faultOf(const Body& body, const Scene& scene)
+std::string faultOf(const Body& body, const Scene& scene, InPeriodic inPeriodic)
 {
 	const std::string who = bodyName(body.getId());
 	if (body.isClumpMember()) return who + " is a member of clump " + text(body.clumpId) + ": grains of JKRMat must be single spheres";
@@ -63,7 +67,7 @@ std::string faultOf(const Body& body, const Scene& scene)
 	if (!wall)
 		return who + " is a " + (body.shape ? body.shape->getClassName() : "body without shape")
 		        + ": bodies of JKRMat must be Spheres or Walls";
-	const std::string fault = faultOf(*wall, *body.state, scene);
+	const std::string fault = faultOf(*wall, *body.state, scene, inPeriodic);
 	return fault.empty() ? "" : who + ", a Wall: " + fault;
 }
 

@@ -12,8 +12,9 @@ class Wall;
 // Of a body (of an interaction, by its id), or null.
 const Wall* wallOf(const Body&);
 const Wall* wallOf(const Scene&, int id);
-// What is wrong with a body of JKRMat, in one line, or empty.
-std::string faultOf(const Body&, const Scene&);
+// What is wrong with a body of JKRMat, in one line, or empty. Planes in a periodic cell at rest are the fused engine's only.
+enum class InPeriodic { Refused, AtRest };
+std::string faultOf(const Body&, const Scene&, InPeriodic);
 constexpr const char* bondsOfPlanes = "neck: must be 0 in scenes with a Wall: there are no sintered bonds to planes";
 
 /* Refuses in the middle of a step, which threads make that could not pass an exception on: the run stops after this step, and Python's main

@@ -1,5 +1,5 @@
-"""Static compression of a BCCA cluster in a shrinking periodic cell, and its loosening: parameters, scene, series,
-estimate (K13 section 2)."""
+"""Static compression of a BCCA cluster in a shrinking periodic cell, and its loosening (K13 section 2), or of a layer under a piston:
+parameters, scene, series, estimate."""
 
 from dataclasses import dataclass
 from math import log, pi
@@ -9,6 +9,7 @@ import numpy as np
 from analysis.measures.virial import contact_pressure, filling_factor, kinetic_pressure
 from analysis.runs.format import COMPRESSION
 from yade_scripts import packings, stability, step_choice
+from yade_scripts.experiments import piston
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
@@ -27,6 +28,8 @@ AVERAGED = 1000.0  # t0 over which K13 averages the pressure
 STATES = 60
 FASTEST = 1e-3  # 1/t0: beyond, boundaries pass a grain within a few oscillations of a contact
 EXTENT, EXTENT_EXPONENT = 2.45, 0.55  # edge of the first cell, in grain radii, against the number of grains: a fit
+PERIODIC, WALLS = "periodic", "walls"
+PACKING = {PERIODIC: "bcca", WALLS: "rbd"}
 AXES = {"no": (), "x": (0,), "xyz": (0, 1, 2)}
 
 
@@ -34,20 +37,32 @@ AXES = {"no": (), "x": (0,), "xyz": (0, 1, 2)}
 class CompressionParameters(GrainParameters, RunParameters):
     """The cell."""
 
-    grains: int = parameter(1024, between(2, MOST_GROWN["bcca"]), "grains of the cluster")
-    packing: str = parameter("bcca", one_of(["bcca"]), "how it is made: cluster-cluster aggregation")
-    seed: int = parameter(1, NOT_NEGATIVE, "of the cluster")
+    boundary: str = parameter(
+        PERIODIC,
+        one_of(list(PACKING)),
+        "what compresses: a periodic cell whose edges shrink; or two plates of the grains' material, of which the lower one "
+        "rests and the upper one comes down, with periodic sides that stay",
+    )
+    grains: int = parameter(1024, between(2, MOST_GROWN["bcca"]), "grains of the cluster or layer")
+    packing: str | None = parameter(
+        None,
+        one_of(list(PACKING.values())),
+        "how it is made: with boundary = periodic by cluster-cluster aggregation (bcca), between walls by ballistic deposition "
+        "on the lower one, as high as wide (rbd)",
+    )
+    seed: int = parameter(1, NOT_NEGATIVE, "of the cluster or layer")
     strainRate: float = parameter(
         3e-7,
         Check(f"> 0 and <= {FASTEST:g}", lambda x: 0 < x <= FASTEST),
-        "C_v: the edges follow L = L0 exp(-2 C_v t/t0) (K13 eq 7)",
+        "C_v: the edges, or the distance of the walls, follow L = L0 exp(-2 C_v t/t0) (K13 eq 7)",
         "1/t0",
     )
     linearDamping: float = parameter(0.01, NOT_NEGATIVE, "k_n of the damping of the normal motion (K13 eq 4)", "1")
     initialFilling: float | None = parameter(
         None,
         Check("> 0, and such that the cluster does not touch its images", lambda x: x > 0),
-        "volume filling factor of the cell at the start (the cluster's extent in x, y or z is the edge)",
+        "volume filling factor of the cell at the start (the cluster's extent in x, y or z is the edge; that of the layer between "
+        "walls, where it cannot be given)",
         "1",
     )
     finalFilling: float | None = parameter(
@@ -77,15 +92,37 @@ class CompressionParameters(GrainParameters, RunParameters):
     )
 
     def title(self):
-        """compress-ice-N1024-Cv3e-07-s1, and the names of what is in it."""
-        name = f"compress-{self.material}-N{self.grains}-Cv{self.strainRate:g}-s{self.seed}"
-        return name, ("material", "grains", "strainRate", "seed")
+        """compress-ice-N1024-Cv3e-07-s1 or compress-walls-ice-..., and the names of what is in it."""
+        walls = f"{WALLS}-" if self.boundary == WALLS else ""
+        name = f"compress-{walls}{self.material}-N{self.grains}-Cv{self.strainRate:g}-s{self.seed}"
+        return name, ("boundary", "material", "grains", "strainRate", "seed")
 
     def filled_in(self):
         """Refuses an end of a stretching that is not wanted."""
         if self.stretchFilling is not None and self.stretch == "no":
             raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: given with stretch = no; must be left out")
-        return super().filled_in()
+        packing = PACKING[self.boundary]
+        if self.packing not in (None, packing):
+            raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
+        if self.boundary == WALLS:
+            self._require_of_walls()
+        return super(CompressionParameters, self.changed(packing=packing)).filled_in()
+
+    def _require_of_walls(self):
+        for name, must, why in (
+            ("engine", "fused", "only that has plates in periodic cells"),
+            ("stretch", "no", "walls only come together"),
+            ("initialFilling", None, "it is that of the layer"),
+        ):
+            if getattr(self, name) != must:
+                raise ParameterError(
+                    f"{name} = {getattr(self, name)}: given with boundary = {WALLS}; must be {must or 'left out'}: {why}"
+                )
+
+    @property
+    def axes(self):
+        """Number of axes along which the compression goes."""
+        return 1 if self.boundary == WALLS else 3
 
 
 def densest(constants):
@@ -129,6 +166,8 @@ def _with_ends(parameters, constants):
             f"finalFilling = {final:g}: beyond random close packing; must be at most {limit:.3f} for these grains"
         )
     fewest = final * SMALLEST_EDGE**3 / (4 / 3 * pi)
+    if parameters.boundary == WALLS:  # the plates that far apart
+        fewest *= (final / piston.DEPOSITED) ** 2
     if parameters.grains < fewest:
         raise ParameterError(
             f"grains = {parameters.grains}: the cell would be too small at a filling of {final:.3g}; must be at least "
@@ -146,6 +185,8 @@ def prepare(parameters, threads):
 
     constants = yade_scene.pair_constants(parameters, linearDamping=parameters.linearDamping)
     parameters = complete(parameters, constants, threads)
+    if parameters.boundary == WALLS:
+        return _between_walls(parameters, constants)
     cluster = packings.bcca(parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed)
     edge = _first_edge(parameters, cluster)
     parameters = parameters.changed(initialFilling=filling_factor(cluster.radius, np.full(3, edge)))
@@ -165,6 +206,38 @@ def prepare(parameters, threads):
         law={"linearDamping": parameters.linearDamping},
         energy_is_conserved=parameters.engine == "fused",
         control=Ending(parameters, constants["timeUnit"], rate),
+        interval=_interval(parameters),
+        step_choice=reason_of_step(parameters, constants),
+    )
+
+
+def _between_walls(parameters, constants):
+    from yade_scripts.run import scene as yade_scene
+
+    material = yade_scene.material_of(parameters)
+    on_plate = yade_scene.plane_constants(parameters, linearDamping=parameters.linearDamping)
+    layer, edge, height = piston.layer(parameters, constants, on_plate)
+    first = filling_factor(layer.radius, [edge, edge, height])
+    parameters = parameters.changed(initialFilling=first)
+    _require_order(parameters)
+    if parameters.duration is None:
+        parameters = _with_duration(parameters, constants["timeUnit"])
+    rate = 2 * parameters.strainRate / constants["timeUnit"]
+    end = Ending(parameters, constants["timeUnit"], rate)
+
+    def control(recorder, state):
+        piston.move(rate)
+        return end.is_pressed(recorder)
+
+    return Scene(
+        parameters=parameters,
+        constants=constants,
+        derived={"initialEdge": edge, "initialHeight": height, "rollingEnergy": 6 * pi**2 * _rolling(parameters)},
+        aggregate=np.zeros(layer.grains, dtype=int),
+        build=lambda: piston.build(layer, edge, height, rate * height, material),
+        series=series_between_walls,
+        law={"linearDamping": parameters.linearDamping},
+        control=control,
         interval=_interval(parameters),
         step_choice=reason_of_step(parameters, constants),
     )
@@ -220,7 +293,7 @@ def longest_duration(parameters, time_unit):
     """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth more,
     before which Ending ends the run."""
     rate = 2 * parameters.strainRate / time_unit
-    time = log(parameters.finalFilling / parameters.initialFilling) / (3 * rate)
+    time = log(parameters.finalFilling / parameters.initialFilling) / (parameters.axes * rate)
     axes = len(AXES[parameters.stretch])
     if axes:
         loose = parameters.stretchFilling or LOOSE * parameters.finalFilling
@@ -274,6 +347,20 @@ def series(state, mass):
     }
 
 
+def series_between_walls(state):
+    """As series(), between two plates: edges, filling and pressure are of the space between them."""
+    edges, of_plates = piston.edges(state), piston.pressures(state)
+    contacts = 2 * len(state["contact_pairs"]) + len(state["plane_contacts"])
+    return {
+        "filling": filling_factor(state["radius"], edges),
+        "pressure": of_plates.mean(),
+        "kinetic_pressure": 0.0,
+        "piston_pressure": of_plates[1],
+        "coordination": contacts / len(state["radius"]),
+        **{f"edge_{axis}": edge for axis, edge in zip("xyz", edges)},
+    }
+
+
 class Ending:
     """Turns the compression into the stretching, and ends the run: Scene.control. time_unit: t0 [s]; rate [1/s]."""
 
@@ -287,7 +374,7 @@ class Ending:
             if self._loose is None:
                 self._loose = LOOSE * recorder.recent("filling", np.inf).max()
             return filling <= self._loose
-        if not (filling >= self.parameters.finalFilling or self._pressed(recorder)):
+        if not self.is_pressed(recorder):
             return False
         axes = AXES[self.parameters.stretch]
         if not axes:
@@ -300,6 +387,10 @@ class Ending:
             return True
         _deform([self.rate * (axis in axes) for axis in range(3)])
         return False
+
+    def is_pressed(self, recorder):
+        """Whether the final filling or the final pressure is reached."""
+        return recorder.recent("filling")[-1] >= self.parameters.finalFilling or self._pressed(recorder)
 
     def _pressed(self, recorder):
         limit, window = self.parameters.finalPressure, AVERAGED * self.time_unit
@@ -318,7 +409,8 @@ def estimate(parameters):
     except ParameterError:  # the run will say what is wrong
         ends = parameters.changed(finalFilling=FINAL_FILLING, stretch="no")
     step = _step(ends, constants)
-    first = ends.initialFilling or typical_first_filling(ends.grains)
+    typical = piston.DEPOSITED if parameters.boundary == WALLS else typical_first_filling(ends.grains)
+    first = ends.initialFilling or typical
     ends = ends.changed(initialFilling=min(first, 0.9 * ends.finalFilling))
     duration = parameters.duration or longest_duration(ends, constants["timeUnit"])
     fillings = np.exp(np.linspace(log(ends.initialFilling), log(ends.finalFilling), 50))

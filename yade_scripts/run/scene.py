@@ -1,7 +1,7 @@
 """From packings and parameters to YADE's bodies and engines."""
 
 import sys
-from math import pi
+from math import inf, pi
 
 from yade import utils
 from yade.wrapper import (
@@ -73,6 +73,15 @@ def pair_constants(grains, neck=0.0, linearDamping=0.0):
             "shrunkRadius": sintered.pairConstants(*two)["radius1"],
         }
     return constants
+
+
+def plane_constants(grains, linearDamping=0.0):
+    """The same of a contact between a grain of the run and a plane of its material; no bond."""
+    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(
+        linearDamping=linearDamping, slidingStiffnessFactor=grains.slidingStiffnessFactor
+    )
+    material = material_of(grains)
+    return functor.pairConstants(material, grains.grainRadius, material, inf)
 
 
 def add_bodies(packings, velocities, material, planar=False):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...measures.ledger import work_on_boundaries
 from ...measures.periodic_compression import AVERAGED, pressure_over
 from ...runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, COMPRESSION, LABELS, WORK
 from ...theory.aggregates import bcca_coordination
@@ -49,7 +50,8 @@ def _draw_pressure(axes, history, derived):
 
 def _draw_channels(axes, filling, history, part):
     work = {channel.name for channel in CHANNEL_TABLE if channel.kind == WORK}
-    done = -(history["boundaryWork"][part] - history["boundaryWork"][0])
+    total = work_on_boundaries(history)
+    done = -(total[part] - total[0])
     shown = done > 1e-4 * done.max() if done.max() > 0 else np.zeros(len(done), bool)
     for name in CHANNELS:
         change = history[name][part][shown] - history[name][0]
