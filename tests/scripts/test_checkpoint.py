@@ -19,6 +19,8 @@ KINDS = {
     "a step that the run chooses": (COLLIDE, "radius=10 velocity=10 duration=300e-9 threads=1 stepFraction=auto", 0.0),
     # one that is compressed or stretched, with an end that follows from the history
     "compression": (COMPRESS, "grains=64 strainRate=2e-5 threads=1 finalFilling=0.2 stretch=x", 0.5),
+    "plate": (COLLIDE, "target=wall radius=8 velocity=10 duration=300e-9 threads=1", 0.0),
+    "piston": (COMPRESS, "boundary=walls grains=300 strainRate=1e-4 threads=1 finalFilling=0.3", 0.5),
     "a user's own": (SHRINK, "duration=200e-9 rate=3e-5 threads=1", 0.0),
 }  # fmt: skip
 

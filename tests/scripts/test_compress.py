@@ -110,6 +110,28 @@ def test_stretching(tmp_path, axes, grows):
     assert worst_closure(history) < 1e-3
 
 
+def test_a_piston_between_plates(tmp_path):
+    """Its distance follows eq 7; both plates feel the same pressure, which is the piston's work per volume; the ledger closes."""
+    about, history = completed(
+        tmp_path, "boundary=walls", "grains=300", "strainRate=1e-4", "finalFilling=0.4", "threads=1"
+    )
+    derived, height = about["derived"], history["edge_z"]
+    assert height == pytest.approx(
+        derived["initialHeight"] * np.exp(-2e-4 * history["time"] / derived["timeUnit"]), rel=3e-3
+    )
+    assert np.ptp(history["edge_x"]) == 0 and history["edge_x"][0] == derived["initialEdge"]
+    assert history["filling"] == pytest.approx(300 * 4 / 3 * np.pi * 1e-21 / volume(history), rel=1e-9)
+    assert 0.1 < history["filling"][0] < 0.15 and 0.4 <= history["filling"][-1] < 0.401
+    late = history["filling"] > 0.25
+    assert history["piston_pressure"][late].mean() == pytest.approx(history["pressure"][late].mean(), rel=0.03)
+    size, work = volume(history)[late], history["constraintWork"][late]
+    assert np.trapz(history["pressure"][late], size) == pytest.approx(work[-1] - work[0], rel=0.06)
+    total = sum(history[name] for name in CHANNELS)
+    assert np.abs(total - total[0]).max() < 1e-4 * -work[-1]
+    last = read_arrays(tmp_path, "run", "states", sorted(os.listdir(tmp_path / "run" / "states"))[-1])
+    assert last["plane_position"] == pytest.approx([0, height[-1]], rel=1e-9) and len(last["plane_contacts"]) > 10
+
+
 def test_functors_give_the_same_pressure(tmp_path):
     """YADE's own loop on the same cell: the same curve while the first contacts form."""
     _, fused = completed(tmp_path, *SMALL, "finalFilling=0.05")
@@ -130,8 +152,11 @@ WRONG = {
     "stepFraction=0.4": "stepFraction = 0.4: unstable at this final filling and damping; must be at most 0.368 [t0]",
     "stepFraction=auto finalPressure=1e4": "stepFraction = auto: not measured with finalPressure",
     "strainRate=0": "strainRate = 0: must be > 0 and <= 0.001 [1/t0]",
-    "packing=cpe": "packing = cpe: must be bcca",
-    "velocity=3": "velocity: unknown parameter; must be one of grains",
+    "packing=cpe": "packing = cpe: must be bcca or rbd",
+    "packing=rbd": "packing = rbd: given with boundary = periodic; must be bcca",
+    "boundary=walls stretch=x": "stretch = x: given with boundary = walls; must be no: walls only come together",
+    "boundary=walls engine=functors": "engine = functors: given with boundary = walls; must be fused",
+    "velocity=3": "velocity: unknown parameter; must be one of boundary, grains",
 }  # fmt: skip
 
 
