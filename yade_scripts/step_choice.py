@@ -64,6 +64,8 @@ def require_measured(parameters):
 def require_measured_compression(parameters, constants):
     """Raise ParameterError for a compression of which nothing was measured."""
     _require_usual_sliding(parameters)
+    if parameters.boundary != "periodic":
+        _refuse(f"boundary = {parameters.boundary}")
     if parameters.finalPressure is not None:
         _refuse("finalPressure, which may end a run at any filling")
     if not FILLINGS[0] <= parameters.finalFilling <= FILLINGS[1]:

@@ -70,7 +70,7 @@ public:
 	virtual ~JKRWadaEngine() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(JKRWadaEngine, GlobalEngine,
-		"Moves spheres of :yref:`JKRMat` under the contact law of :yref:`Law2_ScGeom_JKRWadaPhys_JKRWada`, much faster than YADE's loop: it replaces ForceResetter, collider, "
+		"Moves spheres of :yref:`JKRMat` under the contact law of :yref:`Law2_ScGeom_JKRWadaPhys_JKRWada`, between each other and with planes (Wall), much faster than YADE's loop: it replaces ForceResetter, collider, "
 		"InteractionLoop and NewtonIntegrator. Each O.step makes subSteps steps of O.dt/subSteps; after it O.bodies are current (positions and velocities of one and the same moment), "
 		"and so is O.energy when O.trackEnergy. "
 		"contact_law/SCRIPTS.md says what it does with forces, blocked degrees of freedom, periodic cells and contacts of other engines, and which changes by scripts it obeys. "

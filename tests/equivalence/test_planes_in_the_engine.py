@@ -103,3 +103,20 @@ def test_a_plane_moved_or_stopped_by_the_script():
     assert (tracks[0][[rest, piston]] == tracks[1][[rest, piston]]).all() and np.abs(
         tracks[0] - tracks[1]
     ).max() < 3e-10
+
+
+def test_in_a_wide_periodic_cell_as_in_the_open():
+    def end(periodic):
+        start()
+        if periodic:
+            O.periodic = True
+            O.cell.setBox(1e-5, 1e-5, 1e-5)
+        fused_engine()
+        O.run(150, True)
+        assert O.engines[0].statistics()["planeContacts"] > 4
+        return positions()
+
+    assert np.abs(end(True) - end(False)).max() < 1e-12 * 1e-7
+    end(True)
+    O.cell.velGrad = Matrix3(-1e3, 0, 0, 0, 0, 0, 0, 0, 0)
+    assert "a Wall: O.cell.velGrad must be zero: planes do not move with a cell" in refusal()
