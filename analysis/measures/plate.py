@@ -68,8 +68,8 @@ def classify_on_plate(on, off):
 
 def _counted(start):
     """Mask (N + 1,) of the grains that count; the plate does not."""
-    alone = start["aggregate"] == 0, start["contact_pairs"], start["radius"] ** 3
-    return np.append(belongs_to_an_aggregate(np.zeros(len(alone[0]), dtype=int), *alone[1:]), False)
+    one = np.zeros(len(start["radius"]), dtype=int)
+    return np.append(belongs_to_an_aggregate(one, start["contact_pairs"], start["radius"] ** 3), False)
 
 
 def plate_outcome(start, end, met):
@@ -77,7 +77,8 @@ def plate_outcome(start, end, met):
     the plate at any time. mass_fractions, fragments and largest_fragment: what lies on the plate is one piece; growth_efficiency: the
     plate's, the fraction of the grains that lie on it; mass_on_plate: f_on."""
     counted, state = _counted(start), with_plate(end)
-    labels, mass = fragment_labels(len(counted), state["contact_pairs"]), state["radius"] ** 3
+    labels = fragment_labels(len(counted), state["contact_pairs"])
+    mass = (state["radius"] / state["radius"][:-1].max()) ** 3  # so that equal grains add up without rounding
     fractions = fragment_masses(labels, mass * counted) / mass[counted].sum()
     sizes = fragment_sizes(labels)
     sizes[labels[-1]] -= 1

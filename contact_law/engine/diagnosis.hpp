@@ -8,8 +8,7 @@ class Dynamics;
 // A grain, and what it touches, another or a plane; both as their owner calls them, -1: none.
 struct Diagnosis {
 	int grain = -1, other = -1;
-	double speed = 0, overlap = 0,
-	       force = 0; // of the grain [m/s]; over the smaller radius (of a plane: the grain's); along the normal [N]
+	double speed = 0, overlap = 0, force = 0; // of the grain [m/s]; over the smaller radius; along the normal [N]
 };
 
 enum { FastestGrain = -1 };

@@ -117,9 +117,7 @@ void Dynamics::setPlane(int plane, const Vec3<double>& position, const Vec3<doub
 {
 	shared.planes[plane].velocity = velocity;
 	for (auto& domain : domains)
-		domain->planes.positions[plane] = position;
-	velocitiesSet = true;
-	outdateLists();
+		domain->planes.moved(plane, position);
 }
 
 void Dynamics::setOutsideForces(const std::vector<OutsideForce>& given_, Onset onset)

@@ -58,7 +58,7 @@ public:
 		int domains = 0, threads = 1;        // domains = 0: by the number of grains
 		std::string instructions;            // "avx512", "avx2", "portable"; empty: the best this machine has
 		bool orientations = false;           // whether to follow the grains' orientations
-		std::vector<PlaneInput> planes;      // in open space
+		std::vector<PlaneInput> planes;      // in a periodic cell: one at rest
 		PeriodicCell cell {};                // at the start's moment; off: open space
 		Vec3<double> convective { 0, 0, 0 }; // see setMeanField
 	};

@@ -39,8 +39,14 @@ public:
 	{
 		if (!positions.empty()) addForcesOfPlanes(velocities);
 	}
-	void outdate() { approach = 1e300; } // grains or planes have been moved otherwise than by steps
-	void place(const PlaneContact&);     // if its grain is owned
+	void outdate() { approach = 1e300; }          // grains or planes have been moved otherwise than by steps
+	void moved(int plane, const Vec3<double>& to) // by its owner, which may have given it another velocity
+	{
+		positions[plane] = to;
+		outdate();
+		takeVelocities();
+	}
+	void place(const PlaneContact&); // if its grain is owned
 	// One that another owner of the grains has carried to a step before the positions, with the force on the grain then.
 	void inherit(const PlaneContact&, const Vec3<double>& force);
 	void takeVelocities(); // as they are now, for drag in the next step
