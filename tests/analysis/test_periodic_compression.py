@@ -23,6 +23,7 @@ def compression(power=3.0, low=0.004, high=0.5, samples=20_001):
         **{f"edge_{axis}": edge for axis in "xyz"},
         # dW = P dV, of a volume of 1/phi
         "boundaryWork": -SCALE * filling ** (power - 1.0) / (power - 1.0),
+        "constraintWork": np.zeros_like(filling),
     }
 
 
@@ -93,6 +94,7 @@ def test_tension_of_a_stretched_cell():
         "edge_y": np.full(500, history["edge_y"][-1]),
         "edge_z": np.full(500, history["edge_z"][-1]),
         "boundaryWork": history["boundaryWork"][-1] - 50.0 * np.minimum(grown - 1.0, 0.5) * volume,
+        "constraintWork": np.zeros_like(grown),
     }
     both = {name: np.concatenate([history[name], more[name]]) for name in more}
     fillings, stress = tension(both, 5e4)

@@ -152,5 +152,5 @@ def test_a_checkpoint_of_another_format_is_refused():
 
     assert loaded(items) == ""
     assert "is of format 99, which another version wrote: it must be 7" in loaded(with_number(1, 99))
-    assert "is of format 1, which another version wrote: it must be 6" in loaded(with_number(0, 4))
+    assert "is of format 1, which another version wrote: it must be 7" in loaded(with_number(0, 4))
     assert "cut off" in loaded(items[:-1]) and "too long" in loaded([*items, items[-1]])

@@ -154,7 +154,7 @@ WRONG = {
     "strainRate=0": "strainRate = 0: must be > 0 and <= 0.001 [1/t0]",
     "packing=cpe": "packing = cpe: must be bcca or rbd",
     "packing=rbd": "packing = rbd: given with boundary = periodic; must be bcca",
-    "boundary=walls stepFraction=auto": "stepFraction = auto: not measured with boundary = walls",
+    "stepFraction=auto boundary=walls finalFilling=0.2": "stepFraction = auto: not measured with boundary = walls",
     "boundary=walls stretch=x": "stretch = x: given with boundary = walls; must be no: walls only come together",
     "boundary=walls engine=functors": "engine = functors: given with boundary = walls; must be fused",
     "velocity=3": "velocity: unknown parameter; must be one of boundary, grains",
