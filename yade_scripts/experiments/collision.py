@@ -10,7 +10,8 @@ from analysis.measures.decided import REBOUND_PER_RADIUS, rebound_time
 from analysis.measures.plate import has_plate
 from analysis.runs.format import COLLISION, RESTING
 from yade_scripts import packings, stability, step_choice
-from yade_scripts.experiments import ending, impact_step
+from yade_scripts.experiments import ending, impact_step, plate
+from yade_scripts.experiments.plate import AGGREGATE, WALL
 from yade_scripts.materials import pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.approach import first_touch
@@ -25,7 +26,6 @@ from yade_scripts.stability import AUTO
 WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
 LARGEST_NECK = 0.7  # the largest of S17
 VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
-AGGREGATE, WALL = "aggregate", "wall"
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
@@ -89,7 +89,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
             if value is not None and found.packing not in packings_with_it:
                 raise ParameterError(f"{name} = {value}: given with packing = {found.packing}; must be left out")
         if found.target == WALL:
-            found.require_of_plate()
+            plate.require_usable(found)
         impact_step.require_usable(found)
         if found.endWhenApart is None:
             found = found.changed(endWhenApart=int(found.duration is None))
@@ -102,16 +102,6 @@ class CollisionParameters(AggregateParameters, RunParameters):
                 f"initialOverlap = {found.initialOverlap:g}: given with neck = {found.neck:g}; must be 1, bonds start at rest"
             )
         return found
-
-    def require_of_plate(self):
-        """Raise ParameterError for what a collision with a plate doesn't have."""
-        why = {"projectileGrains": "the aggregate has grains", "projectileFile": "the aggregate is of file"}
-        why |= {"impact": "it meets the plate at right angles", "neck": "there are no sintered bonds to plates"}
-        for name, reason in why.items():
-            if getattr(self, name):
-                raise ParameterError(
-                    f"{name} = {getattr(self, name)}: given with target = {WALL}; must be left out: {reason}"
-                )
 
     def of_projectile(self):
         """The parameters from which the projectile is made."""
@@ -178,7 +168,7 @@ def reason_of_step(parameters, constants):
     """How complete() came to parameters.stepFraction, in one line."""
     if parameters.tolerance is None:
         return "as given"
-    return step_choice.collision_reason(_measured(parameters), constants, step_limit(parameters, constants))
+    return step_choice.collision_reason(plate.as_pair(parameters), constants, step_limit(parameters, constants))
 
 
 def default_duration(parameters, radius, time_unit, touch):
@@ -245,7 +235,7 @@ def _build(parameters, pair, velocities, material):
 
     yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar))
     if parameters.target == WALL:
-        yade_scene.add_plane(0, 0.0, material)
+        yade_scene.add_plane(plate.AXIS, 0.0, material)
 
 
 def place(parameters, overlap):
@@ -258,8 +248,7 @@ def place(parameters, overlap):
         packing = make(parameters, overlap, 0)
         if parameters.packing != "cpe":
             parameters = _with_size(parameters, [packing])
-        gap = START_GAP * packing.radius.max() - (packing.position[:, 0] - packing.radius).min()
-        return parameters, [packings.moved(packing, (gap, 0.0, 0.0))], [np.array([-parameters.velocity, 0.0, 0.0])]
+        return parameters, *plate.placed(packing, parameters.velocity)
     pair = [make(parameters, overlap, 0), make(parameters.of_projectile(), overlap, 1)]
     if parameters.packing == "cpe":
         where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
@@ -315,8 +304,7 @@ def with_duration(parameters, time_unit, touch):
 def series(state, aggregate_radius):
     """{name: value} of a collision's own series; state: as contact_law.snapshot(), with `aggregate`; R_agg [m]."""
     if has_plate(state):
-        d, v = aggregate_radius - state["position"][:, 0].mean(), -state["velocity"][:, 0].mean()
-        return {"d": d, "v": v, "contacts_between": len(state["plane_contacts"])}
+        return plate.series(state, aggregate_radius)
     d, v = compression_and_velocity(state["position"][:, 0], state["velocity"][:, 0], aggregate_radius)
     sides = state["aggregate"][state["contact_pairs"]]
     return {"d": d, "v": v, "contacts_between": int(np.count_nonzero(sides[:, 0] != sides[:, 1]))}
@@ -369,13 +357,10 @@ def _require_sintered(neck, constants):
 
 
 def _longest_step(parameters, constants, limit):
-    step_choice.require_measured(_measured(parameters))
-    return step_choice.longest_step(step_choice.collision_errors(_measured(parameters), constants), parameters, limit)
-
-
-def _measured(parameters):
-    """The parameters as step_choice knows them, which was measured on pairs: half of a pair meets its image as an aggregate a plate."""
-    return parameters.changed(velocity=2 * parameters.velocity) if parameters.target == WALL else parameters
+    step_choice.require_measured(plate.as_pair(parameters))
+    return step_choice.longest_step(
+        step_choice.collision_errors(plate.as_pair(parameters), constants), parameters, limit
+    )
 
 
 def _step(parameters, constants):
@@ -391,7 +376,7 @@ def _step(parameters, constants):
 def _time_of_touch(parameters, pair, velocities, bond):
     """Time [s] until grains of the two aggregates, or of one and the plate, first touch, or None; grains that sintered have shrunk."""
     if parameters.target == WALL:
-        return float((pair[0].position[:, 0] - pair[0].radius).min() / parameters.velocity)
+        return plate.time_of_touch(pair[0], parameters.velocity)
     if bond:
         pair = [replace(packing, radius=np.full(packing.grains, bond["shrunkRadius"])) for packing in pair]
     return first_touch(*pair, velocities[1] - velocities[0])

@@ -10,27 +10,24 @@ from analysis.measures.virial import contact_pressure, filling_factor, kinetic_p
 from analysis.runs.format import COMPRESSION
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments import piston
+from yade_scripts.experiments.compression_end import AVERAGED, AXES, LOOSE, Ending, deform, rates
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
-from yade_scripts.parameters.errors import tell
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 
 RANDOM_CLOSE_PACKING = 0.64  # of spheres that do not overlap
 FINAL_FILLING = 0.5
-LOOSE = 0.3  # filling at which stretching ends, over that at which it begins; stress is largest at about 0.5 (T19)
 SMALLEST_EDGE = 5.7  # grain radii: below, a grain could meet two images of another (the engine stops at 5.6)
 BETWEEN_SAMPLES = 40.0  # t0; a sample takes as long as 20 steps
 FINEST_FILLING = 0.005  # by this fraction the filling factor grows between samples, at most
-AVERAGED = 1000.0  # t0 over which K13 averages the pressure
 STATES = 60
 FASTEST = 1e-3  # 1/t0: beyond, boundaries pass a grain within a few oscillations of a contact
 EXTENT, EXTENT_EXPONENT = 2.45, 0.55  # edge of the first cell, in grain radii, against the number of grains: a fit
 PERIODIC, WALLS = "periodic", "walls"
 PACKING = {PERIODIC: "bcca", WALLS: "rbd"}
-AXES = {"no": (), "x": (0,), "xyz": (0, 1, 2)}
 
 
 @dataclass(frozen=True)
@@ -235,7 +232,7 @@ def _between_walls(parameters, constants):
         derived={"initialEdge": edge, "initialHeight": height, "rollingEnergy": 6 * pi**2 * _rolling(parameters)},
         aggregate=np.zeros(layer.grains, dtype=int),
         build=lambda: piston.build(layer, edge, height, rate * height, material),
-        series=series_between_walls,
+        series=piston.series,
         law={"linearDamping": parameters.linearDamping},
         control=control,
         interval=_interval(parameters),
@@ -313,31 +310,14 @@ def _build(cluster, edge, rate, material):
     omega.cell.setBox(edge, edge, edge)
     omega.cell.homoDeform = 1
     yade_scene.add_bodies([cluster], [(0, 0, 0)], material)
-    _deform(3 * (-rate,))
-
-
-def _deform(rates):
-    """Have the edges along x, y, z follow dL/dt = rate L from now on."""
-    from yade.minieigenHP import Matrix3
-    from yade.wrapper import Omega
-
-    x, y, z = rates
-    Omega().cell.velGrad = Matrix3(x, 0, 0, 0, y, 0, 0, 0, z)
-
-
-def _rates():
-    """Present rates (3,) [1/s] of the edges' logarithms."""
-    from yade.wrapper import Omega
-
-    gradient = Omega().cell.velGrad
-    return np.array([gradient[axis, axis] for axis in range(3)])
+    deform(3 * (-rate,))
 
 
 def series(state, mass):
     """{name: value} of a compression's own series; state: as contact_law.snapshot(); mass (N,) [kg]."""
     position, edges = state["position"], state["cell_size"]
     contacts = contact_pressure(position, state["contact_pairs"], state["contact_normal_force"], edges)
-    kinetic = kinetic_pressure(mass, position, state["velocity"], edges, _rates())
+    kinetic = kinetic_pressure(mass, position, state["velocity"], edges, rates())
     return {
         "filling": filling_factor(state["radius"], edges),
         "pressure": contacts + kinetic,
@@ -345,58 +325,6 @@ def series(state, mass):
         "coordination": 2 * len(state["contact_pairs"]) / len(mass),
         **{f"edge_{axis}": edge for axis, edge in zip("xyz", edges)},
     }
-
-
-def series_between_walls(state):
-    """As series(), between two plates: edges, filling and pressure are of the space between them."""
-    edges, of_plates = piston.edges(state), piston.pressures(state)
-    contacts = 2 * len(state["contact_pairs"]) + len(state["plane_contacts"])
-    return {
-        "filling": filling_factor(state["radius"], edges),
-        "pressure": of_plates.mean(),
-        "kinetic_pressure": 0.0,
-        "piston_pressure": of_plates[1],
-        "coordination": contacts / len(state["radius"]),
-        **{f"edge_{axis}": edge for axis, edge in zip("xyz", edges)},
-    }
-
-
-class Ending:
-    """Turns the compression into the stretching, and ends the run: Scene.control. time_unit: t0 [s]; rate [1/s]."""
-
-    def __init__(self, parameters, time_unit, rate):
-        self.parameters, self.time_unit, self.rate = parameters, time_unit, rate
-        self._loose = parameters.stretchFilling
-
-    def __call__(self, recorder, state):
-        filling = recorder.recent("filling")[-1]
-        if _rates().max() > 0:
-            if self._loose is None:
-                self._loose = LOOSE * recorder.recent("filling", np.inf).max()
-            return filling <= self._loose
-        if not self.is_pressed(recorder):
-            return False
-        axes = AXES[self.parameters.stretch]
-        if not axes:
-            return True
-        if self._loose is not None and filling <= self._loose:
-            tell(
-                f"stretchFilling = {self._loose:g}: the pressure was reached at a filling of {filling:.3g}; "
-                "the cell is not stretched"
-            )
-            return True
-        _deform([self.rate * (axis in axes) for axis in range(3)])
-        return False
-
-    def is_pressed(self, recorder):
-        """Whether the final filling or the final pressure is reached."""
-        return recorder.recent("filling")[-1] >= self.parameters.finalFilling or self._pressed(recorder)
-
-    def _pressed(self, recorder):
-        limit, window = self.parameters.finalPressure, AVERAGED * self.time_unit
-        if limit is None or recorder.recent("time")[-1] < window:
-            return False
-        return recorder.recent("pressure", window).mean() >= limit
 
 
 def estimate(parameters):

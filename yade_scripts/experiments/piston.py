@@ -5,6 +5,7 @@ across the plates. The filling factor is that between the plates, the pressure t
 
 import numpy as np
 
+from analysis.measures.virial import filling_factor
 from yade_scripts.packings.rbd import rbd, square_for
 
 DEPOSITED = 0.15  # filling of a deep layer, which sets the square on which it is grown
@@ -54,13 +55,27 @@ def _piston():
     return Omega().bodies[-1].state
 
 
-def edges(state):
+def _edges(state):
     """Edges (3,) [m] of the space between the plates."""
     return np.array([*state["cell_size"][:AXIS], np.ptp(state["plane_position"])])
 
 
-def pressures(state):
+def _pressures(state):
     """Pressure [Pa] on each of the two plates."""
     area = np.prod(state["cell_size"][:AXIS])
     plane, force = state["plane_contacts"][:, 1], state["plane_contact_normal_force"]
     return np.bincount(plane, weights=force, minlength=2) / area
+
+
+def series(state):
+    """{name: value} of a compression's own series; edges, filling and pressure are of the space between the plates."""
+    edges, of_plates = _edges(state), _pressures(state)
+    contacts = 2 * len(state["contact_pairs"]) + len(state["plane_contacts"])
+    return {
+        "filling": filling_factor(state["radius"], edges),
+        "pressure": of_plates.mean(),
+        "kinetic_pressure": 0.0,
+        "piston_pressure": of_plates[1],
+        "coordination": contacts / len(state["radius"]),
+        **{f"edge_{axis}": edge for axis, edge in zip("xyz", edges)},
+    }
