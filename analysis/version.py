@@ -1,24 +1,26 @@
-"""Version and commit of this suite: contact_law/VERSION, and git in a checkout or contact_law/COMMIT where it is
-installed (make install)."""
+"""Version and commit of this suite: VERSION beside this file, and git in a checkout or COMMIT where it is installed (make install).
+
+With pip the commit is "unknown"."""
 
 import subprocess
 from functools import cache
 from pathlib import Path
 
-_TOP = Path(__file__).resolve().parents[1]
+_HERE = Path(__file__).resolve().parent
+_TOP = _HERE.parent
 _PARTS = ("contact_law", "analysis", "yade_scripts", "Makefile")
 
 
 @cache
 def version():
     """The version, such as "0.2.0"."""
-    return (_TOP / "contact_law" / "VERSION").read_text(encoding="utf-8").strip()
+    return (_HERE / "VERSION").read_text(encoding="utf-8").strip()
 
 
 @cache
 def commit():
     """The commit of the sources, with "-changed" where they differ from it; "unknown" without git."""
-    installed = _TOP / "contact_law" / "COMMIT"
+    installed = _HERE / "COMMIT"
     if installed.exists():
         return installed.read_text(encoding="utf-8").strip()
     if not (_TOP / ".git").exists():

@@ -17,7 +17,7 @@ from .sintering import sinter  # noqa: F401
 from .yade_functions import give_way, show_contacts
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-with open(os.path.join(TOP, "contact_law/VERSION")) as _file:
+with open(os.path.join(TOP, "analysis/VERSION")) as _file:
     __version__ = _file.read().strip()
 LIBRARY = os.path.join(TOP, "build/lib/x86_64-linux-gnu/yade-double/libcontact_law.so")
 

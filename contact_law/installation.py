@@ -30,9 +30,10 @@ from analysis.version import commit, version_text
 
 FOLDER, LIST, PATH_FILE = "lib/contact_law", "installed.json", "contact_law.pth"
 COPIED = {
-    "contact_law": ("*.py", "VERSION"),
+    "contact_law": ("*.py",),
     "analysis": (
         "**/*.py",
+        "VERSION",
         "studies/*.html",
         "studies/*/*.toml",
         "studies/*/*.csv",
@@ -208,7 +209,7 @@ def _copy_all(new):
         _copy(TOP / "build" / file, new / "build" / file)
     for part in ("lib", "bin"):  # links to YADE's own files, and the plugin
         shutil.copytree(TOP / "build" / part, new / "build" / part, symlinks=True)
-    write_text(new / "contact_law/COMMIT", commit() + "\n")
+    write_text(new / "analysis/COMMIT", commit() + "\n")
 
 
 def _copy(file, target):

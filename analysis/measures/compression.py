@@ -70,8 +70,8 @@ def maximum_compression(time, d, v):
     ValueError for unequal shapes.
 
     >>> top = maximum_compression([0.0, 1.0, 2.0], [0.0, 1.0, 0.0], [2.0, 0.0, -2.0])
-    >>> top.length, top.time, top.inside
-    (1.0, 1.0, True)
+    >>> print(top.length, top.time, top.inside)
+    1.0 1.0 True
     """
     time, d, v = (np.asarray(a, dtype=float) for a in (time, d, v))
     if not (time.ndim == 1 and time.shape == d.shape == v.shape and time.size):

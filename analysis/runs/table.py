@@ -17,6 +17,8 @@ from .folder import open_run
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
 ENDING = ".csv"
+# Options of pandas.read_csv that give numbers the bits that were written: from 3.1 on it does so by itself, and warns when it is told.
+EXACTLY = {} if tuple(map(int, pandas.__version__.split(".")[:2])) >= (3, 1) else {"float_precision": "round_trip"}
 
 
 @dataclass(frozen=True)
@@ -91,9 +93,9 @@ def read_table(file, columns):
         table = pandas.read_csv(
             io.StringIO("\n".join(body)),
             dtype={RUN: str},
-            float_precision="round_trip",
             keep_default_na=False,
             na_values=[""],
+            **EXACTLY,
         )
     except OSError as error:
         raise TableError(f"{file}: cannot be read: {error.strerror}") from None
@@ -104,7 +106,8 @@ def read_table(file, columns):
     lacking = [c.name for c in columns if c.name not in table and c.absent is None]
     if RUN not in table or lacking:
         raise TableError(f"{file}: lacks the column " + ", ".join(lacking or [RUN]))
-    table = table.assign(**{c.name: c.absent for c in columns if c.name not in table}, **{FOLDER: None})
+    absent = {c.name: c.absent for c in columns if c.name not in table} | {FOLDER: None}
+    table = pandas.concat([table, pandas.DataFrame(absent, index=table.index)], axis=1)
     for column in columns:
         _check(file, column, table[column.name])
     return table, head

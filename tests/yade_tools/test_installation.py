@@ -49,7 +49,7 @@ def test_any_python_imports_the_analysis_and_commands_tell_its_version_and_commi
     ask = "import analysis; print(analysis.__file__, analysis.__version__, analysis.commit)"
     file, version, commit = call("/usr/bin/python3", "-c", ask).stdout.rsplit(maxsplit=2)
     assert file == f"{prefix}/lib/contact_law/analysis/__init__.py"
-    assert version == (TOP / "contact_law/VERSION").read_text().strip() and commit
+    assert version == (TOP / "analysis/VERSION").read_text().strip() and commit
     told = set()
     for command in COMMANDS:
         done = call(command, "--version")

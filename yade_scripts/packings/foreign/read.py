@@ -4,6 +4,7 @@ import os
 
 import pandas
 
+from analysis.runs.table import EXACTLY
 from yade_scripts.packings.foreign.arrays import of_npz, of_vtk, of_yaml
 from yade_scripts.packings.foreign.spheres import FORMATS, IGNORED, require_axes, roles, spheres_of
 from yade_scripts.packings.foreign.text import find_table
@@ -68,10 +69,10 @@ def _read(path, table, most):
             nrows=most + 1 if table.rows is None else table.rows,
             comment="#",
             skipinitialspace=True,
-            float_precision="round_trip",
             encoding="utf-8-sig",
             encoding_errors="replace",
             low_memory=False,
+            **EXACTLY,
         )
     except pandas.errors.EmptyDataError:
         raise PackingError(f"{path}: no rows of numbers; must have 2 or more") from None
