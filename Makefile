@@ -16,6 +16,8 @@
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
+# make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest;
+#             NEWEST=python3.13: the newest that this Python takes
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
@@ -208,6 +210,16 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+# The analysis as pip installs it, and its tests, in an environment of its own.
+NEWEST ?= $(PYTHON)
+.PHONY: test-newest
+test-newest:
+	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv ffmpeg"
+	@$(NEWEST) -m venv --clear build/newest
+	@build/newest/bin/python -m pip -q install --disable-pip-version-check . pytest
+	@build/newest/bin/python -m pip list --disable-pip-version-check | grep -E "^(numpy|pandas|matplotlib|scipy) "
+	@build/newest/bin/python -m pytest -q -p no:cacheprovider tests/analysis
 
 # Results in tests/mutations/results.
 test-mutations: all

@@ -18,6 +18,8 @@ from .printable import printable  # noqa: E402
 def main(arguments=None):
     """Run a command; returns the exit status: 0, or 2 when a run could not be analysed (each gets one line on
     stderr)."""
+    if arguments is None:
+        end_quietly(*ENDING)
     options = _parser().parse_args(arguments)
     try:
         return options.command(options)

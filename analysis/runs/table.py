@@ -107,7 +107,8 @@ def read_table(file, columns):
     if RUN not in table or lacking:
         raise TableError(f"{file}: lacks the column " + ", ".join(lacking or [RUN]))
     absent = {c.name: c.absent for c in columns if c.name not in table} | {FOLDER: None}
-    table = pandas.concat([table, pandas.DataFrame(absent, index=table.index)], axis=1)
+    # .copy(): pandas 3 warns of a table that is made of many pieces.
+    table = pandas.concat([table, pandas.DataFrame(absent, index=table.index)], axis=1).copy()
     for column in columns:
         _check(file, column, table[column.name])
     return table, head
