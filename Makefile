@@ -21,6 +21,8 @@
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
+# make docs   builds the site of all documents, build/docs/index.html, and runs its notebooks (installs Sphinx from Debian; a few minutes)
+# make test-docs  the same, without a warning, and runs what the pages say
 # make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
@@ -307,6 +309,18 @@ bench bench-papers: all
 bench-peers:
 	@for package in lammps liggghts openmpi-bin; do \
 		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make bench-peers: make bench will go without $$package" >&2; done
+
+# ---- documents ----
+
+DOCS_PACKAGES := python3-sphinx python3-myst-parser python3-nbsphinx python3-ipykernel furo pandoc
+
+# Inside YADE, whose classes are described too. Sphinx makes again what has changed; notebooks run each time.
+.PHONY: docs test-docs
+docs test-docs: all
+	@$(MAKE) --no-print-directory deps PACKAGES="$(DOCS_PACKAGES)"
+	@PYTHONPATH=$(CURDIR) yade -n -x docs/build.py -q $(if $(filter test-docs,$@),-E -W --keep-going) -c docs . build/docs
+	@echo '<meta http-equiv="refresh" content="0; url=docs/index.html">' > build/docs/index.html
+	@echo build/docs/index.html
 
 # ---- formatting ----
 

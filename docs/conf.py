@@ -1,0 +1,85 @@
+"""The site that make docs builds: Sphinx with MyST, inside YADE, whose Python alone has the plugin's classes.
+
+The source folder is the repository's top, so that the documents are pages where they stand.
+"""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+from docutils import nodes
+from docutils.parsers.rst import Directive
+
+TOP = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TOP))
+
+import analysis
+import contact_law  # noqa: F401 (JKRMat and the others, for autodoc)
+
+project, release, copyright = "Cohesive dust aggregates in YADE", analysis.__version__, "GPL-2.0-or-later"
+extensions = ["myst_parser", "nbsphinx", "sphinx.ext.autodoc", "IPython.sphinxext.ipython_console_highlighting"]
+root_doc = "docs/index"
+include_patterns = [
+    "docs/*",
+    "CHANGELOG.md",
+    "*/*.md",
+    "analysis/gallery/*/*.md",
+    "contact_law/engine/*.md",
+    "tests/*/*.md",
+    "tests/*/results/*.md",
+]
+exclude_patterns = [
+    "build",
+    "runs",
+    "tests/*/results/*/*",
+    "tests/benchmarks/results/compression_step.md",
+]  # without a title
+myst_heading_anchors = 3
+html_theme = "furo"
+html_title = project
+templates_path, html_show_sphinx = [], False
+nbsphinx_execute = "always"
+nbsphinx_timeout = 600  # s, of a cell: runs take longer on a busy machine
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+suppress_warnings = ["myst.header"]
+YADES_ROLES = {"yref": r"``\1``", "ydefault": r"Default: \1;", "yattrtype": r"type: \1."}
+YADES_GREETING = re.compile(r"(Welcome to|Using python|XMLRPC|TCP python|Running script).*\n")
+
+
+class Help(Directive):
+    """What a command prints with --help, word by word."""
+
+    required_arguments, final_argument_whitespace = 1, True
+
+    def run(self):
+        command = shlex.split(self.arguments[0]) + ["--help"]
+        done = subprocess.run(command, cwd=TOP, capture_output=True, text=True, check=True)
+        text = YADES_GREETING.sub("", done.stdout).strip()
+        return [nodes.literal_block(text, text, language="none")]
+
+
+def readable(app, what, name, thing, options, lines):
+    """Docstrings of Python are plain text with examples; those of YADE's classes have roles of YADE's own documents."""
+    text = "\n".join(lines)
+    if name.startswith(("analysis", "yade_scripts")):
+        text = text.partition("\nParameters, as name=value")[0]  # of a script: in its --help
+        text = "\n\n".join(map(_paragraph, text.split("\n\n")))
+    for role, found in YADES_ROLES.items():
+        text = re.sub(f":{role}:`([^`]*)`", found, text)
+    lines[:] = [*text.split("\n"), ""]
+
+
+def _paragraph(text):
+    if text.startswith(">>>"):
+        return text
+    if text.startswith("    "):
+        return "::\n\n" + text
+    return re.sub(r"([\\*`|_])", r"\\\1", text)
+
+
+def setup(app):
+    app.add_directive("help", Help)
+    app.connect("autodoc-process-docstring", readable)
