@@ -16,7 +16,7 @@
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make test   builds what is needed and passes the tests
-# make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest;
+# make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest, and CITATION.cff;
 #             NEWEST=python3.13: the newest that this Python takes
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
@@ -219,7 +219,8 @@ NEWEST ?= $(PYTHON)
 test-newest:
 	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv ffmpeg"
 	@$(NEWEST) -m venv --clear build/newest
-	@build/newest/bin/python -m pip -q install --disable-pip-version-check . pytest
+	@build/newest/bin/python -m pip -q install --disable-pip-version-check . pytest cffconvert
+	@build/newest/bin/cffconvert --validate -i CITATION.cff
 	@build/newest/bin/python -m pip list --disable-pip-version-check | grep -E "^(numpy|pandas|matplotlib|scipy) "
 	@build/newest/bin/python -m pytest -q -p no:cacheprovider tests/analysis
 
@@ -318,7 +319,7 @@ DOCS_PACKAGES := python3-sphinx python3-myst-parser python3-nbsphinx python3-ipy
 .PHONY: docs test-docs
 docs test-docs: all
 	@$(MAKE) --no-print-directory deps PACKAGES="$(DOCS_PACKAGES)"
-	@PYTHONPATH=$(CURDIR) yade -n -x docs/build.py -q $(if $(filter test-docs,$@),-E -W --keep-going) -c docs . build/docs
+	@PYTHONPATH=$(CURDIR) PYDEVD_DISABLE_FILE_VALIDATION=1 yade -n -x docs/build.py -q $(if $(filter test-docs,$@),-E -W --keep-going) -c docs . build/docs
 	@echo '<meta http-equiv="refresh" content="0; url=docs/index.html">' > build/docs/index.html
 	@echo build/docs/index.html
 

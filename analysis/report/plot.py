@@ -16,6 +16,7 @@ from ..studies.runs import Runs, each
 from .rows import at_end, table, varied
 
 SEED, CHANNEL, LARGEST = "seed", "channel", "largest_fraction"
+APART = 5.0  # points between curves
 
 
 class CannotPlot(ValueError):
@@ -105,6 +106,7 @@ def _curves(what, found, x, by, logarithmic):
         y_label=labels.get(what) or _with_unit(found, what),
         limits=(-0.03, 1.03) if what in ("sticking", "largest") else None,
         line="-" if x in found.attrs.get("parameters", ()) else "",
+        apart=APART,
     )
 
 

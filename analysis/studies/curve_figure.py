@@ -6,6 +6,7 @@ from typing import Callable
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.transforms import offset_copy
 
 from ..figures.panels import legend, letter, panels
 from ..figures.style import styled
@@ -15,7 +16,7 @@ from .runs import alike, select
 
 # None of them the paper's (figures.panels.PAPER).
 _COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
-MARKERS = "osD^vP"
+MARKERS, LINES = "osD^vP", ("-", "--", "-.", ":")
 WIDEST = 3  # panels beside each other
 
 
@@ -30,15 +31,17 @@ def palette(results, name):
     return dict(zip(sorted(values), colormaps["plasma"](np.linspace(0.0, 0.85, len(values))) if many else _COLOURS))
 
 
-def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1.0):
-    """Estimates or Fractions at x (K,), with bars: standard errors, or intervals of fractions; open where the error is not known."""
+def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1.0, aside=0.0):
+    """Estimates or Fractions at x (K,), with bars: standard errors, or intervals of fractions; open where the error is not known.
+    aside: drawn so far to the right of x [points]."""
     value = np.array([estimate.value for estimate in estimates]) / scale
     errors = [_bar(estimate) for estimate in estimates]
     known = np.array([error is not None for error in errors], dtype=bool)
     bars = np.array([error or (0.0, 0.0) for error in errors]).T / scale
-    axes.plot(x, value, linestyle=line or "none", color=colour, lw=1.2)
-    axes.errorbar(x, value, bars, fmt=marker, color=colour, capsize=3, markersize=5, mfc="white", label=label)
-    axes.plot(np.asarray(x)[known], value[known], marker, color=colour, markersize=5, zorder=3)
+    place = {"transform": offset_copy(axes.transData, axes.figure, aside, units="points"), "color": colour}
+    axes.plot(x, value, linestyle=line or "none", lw=1.2, **place)
+    axes.errorbar(x, value, bars, fmt=marker, capsize=3, markersize=5, mfc="white", label=label, **place)
+    axes.plot(np.asarray(x)[known], value[known], marker, markersize=5, zorder=3, **place)
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,7 @@ class CurveFigure:
     """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis (words as `where` lists them); colour,
     panel: levels that tell curves and panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn;
     logarithmic: of 'x', 'y', 'xy', ''; y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are
-    joined, '' where not; paper: (axes, {level: value} of the panel) -> None draws what the paper prints."""
+    joined, '' where not; apart: between curves [points], whose dashes differ then, so that none hides an equal one; paper: (axes, {level: value} of the panel) -> None draws what the paper prints."""
 
     name: str
     caption: str
@@ -60,6 +63,7 @@ class CurveFigure:
     limits: tuple = None
     level_line: float = None
     line: str = "-"
+    apart: float = 0.0
     paper: Callable = None
     vector = True  # as in StudyFigure
 
@@ -118,7 +122,7 @@ def _share_y(places, limits):
 def _curves(axes, figure, quantity, series, results):
     """The curves of one panel."""
     if not figure.colour:
-        return _curve(axes, figure, quantity, series, _COLOURS[-1], None, MARKERS[0])
+        return _curve(axes, figure, quantity, series, _COLOURS[-1])
     values = sorted(set(series.index.get_level_values(figure.colour)))
     curves = {value: select(series, **{figure.colour: value}) for value in values}
     numbers = {value: pairs_text(own, results.independent) for value, own in curves.items()}
@@ -126,10 +130,11 @@ def _curves(axes, figure, quantity, series, results):
     colour_of = palette(results, figure.colour)
     for k, (value, own) in enumerate(curves.items()):
         label = level(figure.colour).label(value) + ("" if said else f", {numbers[value]}")
-        _curve(axes, figure, quantity, own, colour_of[value], label, MARKERS[k % len(MARKERS)])
+        aside = figure.apart * (k - (len(curves) - 1) / 2)
+        _curve(axes, figure, quantity, own, colour_of[value], label, k, aside)
 
 
-def _curve(axes, figure, quantity, series, colour, label, marker):
+def _curve(axes, figure, quantity, series, colour, label=None, k=0, aside=0.0):
     series = series.sort_index()
     if "y" in figure.logarithmic:
         series = series[[estimate.value > 0 for estimate in series]]
@@ -140,7 +145,8 @@ def _curve(axes, figure, quantity, series, colour, label, marker):
         x = [words.index(word) for word in x]
     else:
         x = level(figure.x).of(x.to_numpy(dtype=float))
-    points(axes, x, series.to_list(), colour, label, marker, figure.line, quantity.scale)
+    line = LINES[k % len(LINES)] if figure.line and figure.apart else figure.line
+    points(axes, x, series.to_list(), colour, label, MARKERS[k % len(MARKERS)], line, quantity.scale, aside)
 
 
 def _dress(axes, figure, value, series, independent):

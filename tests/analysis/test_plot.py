@@ -44,6 +44,16 @@ def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs)
         assert words in said
 
 
+def test_equal_curves_stand_beside_each_other(runs):
+    both = pandas.concat([runs.assign(impact=impact, run=runs.run + str(impact)) for impact in (0.0, 0.5)])
+    both.attrs = runs.attrs
+    (axes,) = plot("sticking", both, by="impact").axes
+    joined, others = (next(line for line in axes.lines if line.get_linestyle() == style) for style in ("-", "--"))
+    assert joined.get_xydata().tolist() == others.get_xydata().tolist()
+    shift = others.get_transform().transform((1.0, 0.5)) - joined.get_transform().transform((1.0, 0.5))
+    assert shift.tolist() == pytest.approx([5.0 * axes.figure.dpi / 72, 0.0], abs=1e-6)
+
+
 def test_a_mean_has_the_error_of_its_pairs(runs):
     points, bars, _ = drawn(plot("largest", runs))
     assert points == [(1.0, pytest.approx(0.6, rel=1e-12)), (3.0, pytest.approx(0.2, rel=1e-12))]

@@ -123,7 +123,9 @@ def _wait(study, said, folders):
     """Show how far the runs are until study.py has ended; its estimate comes first."""
     ended, told = {folder for folder in folders if os.path.exists(os.path.join(folder, ENDED_FILE))}, 0
     with bar(len(folders), "runs", len(ended)) as shown:
-        while study.poll() is None:
+        over = False
+        while not over:
+            over = study.poll() is not None  # asked first, so that what has ended meanwhile is shown
             text = os.pread(said, 10_000, told).decode()
             if told == 0 and "\n" in text:
                 told = len(text.encode())
@@ -133,4 +135,4 @@ def _wait(study, said, folders):
             reached = len(ended) + sum(found.progress for folder, found in states.items() if folder not in ended)
             if reached > shown.n:
                 shown.update(reached - shown.n)
-            time.sleep(POLL)
+            time.sleep(0.0 if over else POLL)
