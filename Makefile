@@ -321,6 +321,7 @@ docs test-docs: all
 	@$(MAKE) --no-print-directory deps PACKAGES="$(DOCS_PACKAGES)"
 	@PYTHONPATH=$(CURDIR) PYDEVD_DISABLE_FILE_VALIDATION=1 yade -n -x docs/build.py -q $(if $(filter test-docs,$@),-E -W --keep-going) -c docs . build/docs
 	@echo '<meta http-equiv="refresh" content="0; url=docs/index.html">' > build/docs/index.html
+	$(if $(filter test-docs,$@),@$(PYTHON) -m pytest -q -p no:cacheprovider tests/drivers/documented_commands.py)
 	@echo build/docs/index.html
 
 # ---- formatting ----

@@ -1,0 +1,35 @@
+"""Runs the commands of README.md and docs/ as written, in a folder of its own: what make test-docs calls after it has built the site.
+
+Left out are those with a name in capitals, which stands for the reader's own. A few minutes."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).resolve().parents[2]
+PAGES = [TOP / "README.md", *sorted((TOP / "docs").glob("*.md")), *sorted((TOP / "docs").glob("*.ipynb"))]
+COMMAND = r"(?:^    |`)((?:yade -n -x|/usr/bin/python3|python3) [^`\n\\]*)"
+LINES = dict.fromkeys(line.strip() for page in PAGES for line in re.findall(COMMAND, page.read_text(), re.M))
+WRITTEN = [line for line in LINES if not re.search(r"\b[A-Z]{2,}\b", line.partition("#")[0])]
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory):
+    """A folder with links to the checkout's, in which the demo has run."""
+    folder = tmp_path_factory.mktemp("checkout")
+    for name in ("analysis", "contact_law", "yade_scripts", "build"):
+        (folder / name).symlink_to(TOP / name)
+    run(folder, "yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:4 out=runs/demo")
+    return folder
+
+
+def run(folder, line):
+    done = subprocess.run(["bash", "-c", line], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0 and "Traceback" not in done.stderr, f"{line}\n{done.stdout}{done.stderr}"
+
+
+@pytest.mark.parametrize("line", WRITTEN)
+def test_it_runs(checkout, line):
+    run(checkout, re.sub(r"^python3", "/usr/bin/python3", line))
