@@ -18,28 +18,18 @@ sys.path.insert(0, str(TOP))
 import analysis
 import contact_law  # noqa: F401 (JKRMat and the others, for autodoc)
 
-project, release, copyright = "Cohesive dust aggregates in YADE", analysis.__version__, "GPL-2.0-or-later"
+project, release = "Cohesive dust aggregates in YADE", analysis.__version__
 extensions = ["myst_parser", "nbsphinx", "sphinx.ext.autodoc", "IPython.sphinxext.ipython_console_highlighting"]
 root_doc = "docs/index"
-include_patterns = [
-    "docs/*",
-    "CHANGELOG.md",
-    "*/*.md",
-    "analysis/gallery/*/*.md",
-    "contact_law/engine/*.md",
-    "tests/*/*.md",
-    "tests/*/results/*.md",
-]
-exclude_patterns = [
-    "build",
-    "runs",
-    "tests/*/results/*/*",
-    "tests/benchmarks/results/compression_step.md",
-]  # without a title
+include_patterns = ["docs/*", "CHANGELOG.md", "*/*.md", "analysis/gallery/*/*.md", "contact_law/engine/*.md"]
+include_patterns += ["tests/*/*.md", "tests/*/results/*.md"]
+untitled = "tests/benchmarks/results/compression_step.md"
+exclude_patterns = ["build", "runs", "tests/*/results/*/*", untitled]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = project
-templates_path, html_show_sphinx = [], False
+html_static_path, html_css_files = ["site.css"], ["site.css"]
+html_show_sphinx = html_show_copyright = False
 nbsphinx_execute = "always"
 nbsphinx_timeout = 600  # s, of a cell: runs take longer on a busy machine
 autodoc_member_order = "bysource"
