@@ -40,15 +40,28 @@ YADES_GREETING = re.compile(r"(Welcome to|Using python|XMLRPC|TCP python|Running
 
 
 class Help(Directive):
-    """What a command prints with --help, word by word."""
+    """What a command prints with --help, word by word, and a section for each of its own commands."""
 
     required_arguments, final_argument_whitespace = 1, True
 
     def run(self):
-        command = shlex.split(self.arguments[0]) + ["--help"]
-        done = subprocess.run(command, cwd=TOP, capture_output=True, text=True, check=True)
-        text = YADES_GREETING.sub("", done.stdout).strip()
-        return [nodes.literal_block(text, text, language="none")]
+        command = shlex.split(self.arguments[0])
+        text = help_of(command)
+        own = re.findall(r"^    (\w+)  ", text.partition("\n  command\n")[2], re.M)
+        return [block(text), *(section(f"{command[-1]} {name}", help_of([*command, name])) for name in own)]
+
+
+def help_of(command):
+    done = subprocess.run([*command, "--help"], cwd=TOP, capture_output=True, text=True, check=True)
+    return YADES_GREETING.sub("", done.stdout).strip()
+
+
+def section(title, text):
+    return nodes.section("", nodes.title(text=title), block(text), ids=[nodes.make_id(title)])
+
+
+def block(text):
+    return nodes.literal_block(text, text, language="none")
 
 
 def readable(app, what, name, thing, options, lines):

@@ -49,7 +49,8 @@ class CurveFigure:
     """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis (words as `where` lists them); colour,
     panel: levels that tell curves and panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn;
     logarithmic: of 'x', 'y', 'xy', ''; y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are
-    joined, '' where not; apart: between curves [points], whose dashes differ then, so that none hides an equal one; paper: (axes, {level: value} of the panel) -> None draws what the paper prints."""
+    joined, '' where not; apart: between curves [points], whose dashes differ then, so that none hides an equal one; paper: (axes, {level: value}
+    of the panel) -> None draws what the paper prints."""
 
     name: str
     caption: str

@@ -17,18 +17,9 @@ STUDIED = TOP / "analysis/gallery/compressed/runs.csv"
 def call(tmp_path_factory):
     """call(*command) runs in an empty folder with the installed package beside this Python's libraries: what it prints."""
     target, elsewhere = tmp_path_factory.mktemp("pip"), tmp_path_factory.mktemp("elsewhere")
-    pip = [
-        sys.executable,
-        "-m",
-        "pip",
-        "--retries=0",
-        "--timeout=5",
-        "-q",
-        "install",
-        "--no-deps",
-        f"--target={target}",
-    ]
-    done = subprocess.run([*pip, str(TOP)], capture_output=True, text=True)
+    pip = [sys.executable, "-m", "pip", "-q", "install", "--no-deps", f"--target={target}", str(TOP)]
+    patience = {"PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "15"}
+    done = subprocess.run(pip, capture_output=True, text=True, env=os.environ | patience)
     if "No module named pip" in done.stderr or "No matching distribution found for hatchling" in done.stderr:
         pytest.skip("pip is missing, or has no network")
     assert done.returncode == 0, done.stderr
