@@ -106,7 +106,7 @@ def _curves(what, found, x, by, logarithmic):
         y_label=labels.get(what) or _with_unit(found, what),
         limits=(-0.03, 1.03) if what in ("sticking", "largest") else None,
         line="-" if x in found.attrs.get("parameters", ()) else "",
-        apart=APART,
+        apart=0.0 if what == "energy" else APART,
     )
 
 
@@ -141,4 +141,4 @@ def _about(found, what):
     """How many runs there are, and how many of them have no outcome that counts."""
     undecided = int(_undecided(found).sum())
     text = f"{len(found)} runs" + (f", {undecided} of them undecided or not ended" if undecided else "")
-    return text + (" (in the bars, counted either way)" if undecided and what == "sticking" else "")
+    return text + ("\n(in the bars, counted either way)" if undecided and what == "sticking" else "")

@@ -18,6 +18,7 @@ from .runs import alike, select
 _COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
 MARKERS, LINES = "osD^vP", ("-", "--", "-.", ":")
 WIDEST = 3  # panels beside each other
+MOST_ASIDE = 20.0  # points between the first curve and the last: within the margin of the axes
 
 
 def palette(results, name):
@@ -49,7 +50,7 @@ class CurveFigure:
     """name, caption (as definition.StudyFigure); y: name of the quantity; x: the level on the axis (words as `where` lists them); colour,
     panel: levels that tell curves and panels apart (''); where: values of other levels, or a tuple of those of a level that are drawn;
     logarithmic: of 'x', 'y', 'xy', ''; y_label; limits: of y; level_line: where to draw a thin line (0.0, say); line: '-' where points are
-    joined, '' where not; apart: between curves [points], whose dashes differ then, so that none hides an equal one; paper: (axes, {level: value}
+    joined, '' where not; apart: between curves, at most [points], whose dashes differ then, so that none hides an equal one; paper: (axes, {level: value}
     of the panel) -> None draws what the paper prints."""
 
     name: str
@@ -131,7 +132,7 @@ def _curves(axes, figure, quantity, series, results):
     colour_of = palette(results, figure.colour)
     for k, (value, own) in enumerate(curves.items()):
         label = level(figure.colour).label(value) + ("" if said else f", {numbers[value]}")
-        aside = figure.apart * (k - (len(curves) - 1) / 2)
+        aside = min(figure.apart, MOST_ASIDE / len(curves)) * (k - (len(curves) - 1) / 2)
         _curve(axes, figure, quantity, own, colour_of[value], label, k, aside)
 
 

@@ -28,7 +28,11 @@ def drawn(figure):
     (axes,) = figure.axes
     bars = axes.collections[0].get_segments()
     texts = [figure._suptitle.get_text(), axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
-    return list(zip(*axes.lines[0].get_data())), [tuple(bar[:, 1]) for bar in bars], " | ".join(texts)
+    return (
+        list(zip(*axes.lines[0].get_data())),
+        [tuple(bar[:, 1]) for bar in bars],
+        " | ".join(texts).replace("\n", " "),
+    )
 
 
 def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs):
