@@ -34,7 +34,8 @@ COPIED = {
     "analysis": (
         "**/*.py",
         "VERSION",
-        "studies/*.html",
+        "**/*.html",
+        "**/*.js",
         "studies/*/*.toml",
         "studies/*/*.csv",
         "gallery/*/*.json",

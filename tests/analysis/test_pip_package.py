@@ -1,6 +1,7 @@
 """What pip installs of the repository works by itself: the command, its data files, a study."""
 
 import os
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,10 @@ import pytest
 import analysis
 
 TOP = Path(__file__).resolve().parents[2]
+COPIED = runpy.run_path(str(TOP / "contact_law/installation.py"))["COPIED"]
+LISTED = """import analysis, pathlib
+top = pathlib.Path(analysis.__file__).parent
+print(*(p.relative_to(top.parent) for p in top.rglob("*") if p.is_file() and p.suffix != ".pyc"), sep="\\n")"""
 STUDIED = TOP / "analysis/gallery/compressed/runs.csv"
 
 
@@ -37,6 +42,13 @@ def test_the_package_needs_no_checkout(call, cluster_folder):
     assert call(sys.executable, "-c", "import analysis; print(analysis.__file__)") == "TARGET/analysis/__init__.py\n"
     assert call("dust-analysis", "--version") == f"analysis {analysis.__version__}, commit unknown\n"
     assert "sticking" in call("dust-analysis", "summary", str(cluster_folder))
+
+
+def test_both_ways_of_installing_copy_the_same(call):
+    """pip and make install."""
+    found = call(sys.executable, "-c", LISTED)
+    ours = {file for pattern in COPIED["analysis"] for file in (TOP / "analysis").glob(pattern)}
+    assert set(found.split("\n")) - {""} == {str(file.relative_to(TOP)) for file in ours}
 
 
 def test_a_study_of_the_package_is_that_of_the_checkout(call):
