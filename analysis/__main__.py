@@ -1,8 +1,10 @@
-"""Command line: python3 -m analysis summary RUNS..., plot WHAT RUNS..., figures RUN, view RUN, film RUN, export RUN, status RUNS..., study [NAME RUNS...]."""
+"""Command line: python3 -m analysis summary RUNS..., plot WHAT RUNS..., figures RUN, view RUN, film RUN, export RUN, status RUNS...,
+verify RUNS..., study [NAME RUNS...]."""
 
 import argparse
 import os
 import sys
+import warnings
 
 from .libraries import require_libraries
 from .signals import ENDING, end_quietly
@@ -11,8 +13,9 @@ if __name__ == "__main__":
     end_quietly(*ENDING)
     require_libraries()
 
-from .commands import export, figures, film, plot, status, study, summary, view  # noqa: E402
+from .commands import complain, export, figures, film, plot, status, study, summary, verify, view  # noqa: E402
 from .printable import printable  # noqa: E402
+from .runs.seal import Unsealed  # noqa: E402
 
 
 def main(arguments=None):
@@ -22,7 +25,12 @@ def main(arguments=None):
         end_quietly(*ENDING)
     options = _parser().parse_args(arguments)
     try:
-        return options.command(options)
+        with warnings.catch_warnings():
+            shown = warnings.showwarning
+            warnings.showwarning = (
+                lambda text, kind, *more: complain(text) if kind is Unsealed else shown(text, kind, *more)
+            )
+            return options.command(options)
     except BrokenPipeError:
         # The reader (head, less) has gone: nothing is left to say, not even at the interpreter's exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -38,7 +46,7 @@ def _parser():
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for command in (summary, plot, figures, view, film, export, status, study):
+    for command in (summary, plot, figures, view, film, export, status, verify, study):
         command.add_parser(commands)
     return parser
 

@@ -63,24 +63,25 @@ def array_names(file):
         return list(archive.files)
 
 
-def read_arrays(file, names, optional=(), require=lambda headers: None):
-    """The named arrays of an .npz file by name, read-only; those of `optional` where the file has them.
+def read_arrays(file, names, optional=(), require=lambda headers: None, texts=()):
+    """The named arrays of an .npz file by name, read-only; those of `optional` where the file has them; those of `texts` as str.
 
     require({name: Header}): called before any array is read. RunFolderError when the file or an array is missing or damaged, or
-    an array does not hold numbers."""
+    an array does not hold numbers, or a text."""
     with _opened(file) as archive:
-        absent = [name for name in names if name not in archive.files]
+        absent = [name for name in (*names, *texts) if name not in archive.files]
         if absent:
             raise RunFolderError(f"{file}: lacks the array " + ", ".join(f"'{name}'" for name in absent))
-        headers = read_headers(file, archive, [name for name in (*names, *optional) if name in archive.files])
+        headers = read_headers(file, archive, [name for name in (*names, *optional, *texts) if name in archive.files])
         for name, header in headers.items():
-            if header.dtype.kind not in "biuf":
-                raise RunFolderError(f"{file}: '{name}' must hold numbers, it holds {header.dtype}")
+            if header.dtype.kind not in ("U" if name in texts else "biuf") or (name in texts and header.shape):
+                what = "a text" if name in texts else "numbers"
+                raise RunFolderError(f"{file}: '{name}' must hold {what}, it holds {header.dtype}")
         require(headers)
         arrays = {name: archive[name] for name in headers}
     for array in arrays.values():
         array.flags.writeable = False
-    return arrays
+    return {name: str(array) if name in texts else array for name, array in arrays.items()}
 
 
 def read_headers(file, archive, names):

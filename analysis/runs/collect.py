@@ -109,10 +109,12 @@ def run_folders(paths):
 
 
 def _inside(path):
-    """Run folders at a path: itself, or those below it, sorted."""
-    if (path / RUN_FILE).exists():
+    """Run folders at a path: itself, or those below it, sorted; one that has ended is one without its run.json, too."""
+    marks = (RUN_FILE, ENDED_FILE)
+    if any((path / mark).is_file() for mark in marks):
         return [path]
-    return sorted(file.parent for level in range(1, LEVELS + 1) for file in path.glob("*/" * level + RUN_FILE))
+    levels = ("*/" * level for level in range(1, LEVELS + 1))
+    return sorted({file.parent for level in levels for mark in marks for file in path.glob(level + mark)})
 
 
 def _nothing(path):

@@ -5,6 +5,7 @@ Whatever is missing, damaged or foreign raises RunFolderError: one line that nam
 
 import json
 import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +13,9 @@ from typing import Mapping
 
 import numpy as np
 
-from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_regular, require_values
+from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_values
 from .format import (
     COLLISION,
-    ENDED_FILE,
     HISTORY_FILE,
     POSITIVE_CONSTANTS,
     READABLE,
@@ -27,6 +27,7 @@ from .format import (
     RunKind,
 )
 from .named import Named, protect, unknown
+from .seal import NO_SUMS, Seal, read_seal, read_text, require_sealed
 
 _STATE_NAME = re.compile(r"\d{6}\.npz")
 
@@ -67,10 +68,10 @@ class State:
 
 class StateSequence(Sequence):
     """The states of a run, oldest first, each read from its file when it is asked for (RunFolderError if it is
-    damaged)."""
+    damaged, or not that of which the Seal has a sum)."""
 
-    def __init__(self, files, kind=COLLISION, file_format=READABLE[-1]):
-        self.files, self.kind, self.file_format = tuple(files), kind, file_format
+    def __init__(self, files, kind=COLLISION, file_format=READABLE[-1], seal=None):
+        self.files, self.kind, self.file_format, self.seal = tuple(files), kind, file_format, seal
         self._times = None
 
     def __len__(self):
@@ -78,8 +79,8 @@ class StateSequence(Sequence):
 
     def __getitem__(self, index):
         if isinstance(index, slice):
-            return StateSequence(self.files[index], self.kind, self.file_format)
-        return read_state(self.files[index], self.kind, self.file_format)
+            return StateSequence(self.files[index], self.kind, self.file_format, self.seal)
+        return read_state(self._checked(self.files[index]), self.kind, self.file_format)
 
     def __repr__(self):
         return f"{len(self)} states of a {self.kind.name}"
@@ -89,7 +90,8 @@ class StateSequence(Sequence):
         """Time [s] (number of states,) of every state, read without the grains."""
         if self._times is None:
             quantity = [q for q in STATE if q.name == "time"]
-            times = [float(read_quantities(f, quantity, self.file_format)["time"].reshape(())) for f in self.files]
+            files = map(self._checked, self.files)
+            times = [float(read_quantities(f, quantity, self.file_format)["time"].reshape(())) for f in files]
             self._times = np.array(times)
             self._times.flags.writeable = False
         return self._times
@@ -100,10 +102,15 @@ class StateSequence(Sequence):
 
     def arrays(self, index, names):
         """Some arrays of a state by name, without reading the others; their values are checked, not their shapes."""
-        arrays = read_arrays(self.files[index], names)
+        arrays = read_arrays(self._checked(self.files[index]), names)
         for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
             require_values(self.files[index], quantity, arrays[quantity.name])
         return arrays
+
+    def _checked(self, file):
+        if self.seal:
+            self.seal.require(f"{STATES_FOLDER}/{file.name}")
+        return file
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -156,10 +163,15 @@ def open_run(path):
     path = Path(path)
     if not path.is_dir():
         raise RunFolderError(f"{path}: " + ("is not a folder" if path.exists() else "no such run folder"))
-    record = _read_record(path / RUN_FILE)
+    record, seal = read_record(path)
+    _require_record(path / RUN_FILE, record)
     file_format, history = record["format"], path / HISTORY_FILE
     if not history.exists():
         raise RunFolderError(f"{history}: missing: the run has recorded no history yet")
+    if seal:
+        seal.require(HISTORY_FILE)
+        if not seal.files:
+            warnings.warn(NO_SUMS, stacklevel=1)
     name = record.get("kind", COLLISION.name)
     kind = RUN_KINDS[name] if name in RUN_KINDS else _kind_of_its_own(name, history)
     return RunFolder(
@@ -169,9 +181,21 @@ def open_run(path):
         derived=Named(f"derived constants of {path}", record["derived"]),
         record=Named(f"{path / RUN_FILE}", record),
         history=Named(f"history of {path}", _read_history(history, kind, file_format)),
-        states=StateSequence(_state_files(path / STATES_FOLDER), kind, file_format),
-        ended=(path / ENDED_FILE).is_file(),
+        states=StateSequence(state_files(path, seal), kind, file_format, seal),
+        ended=seal is not None,
     )
+
+
+def read_record(path):
+    """(what run.json of a folder holds, Seal or None where the run has not ended); RunFolderError when it is missing, damaged, or not that of
+    which the Seal has a sum."""
+    seal = read_seal(path)
+    if seal:
+        seal.require(RUN_FILE)
+    record = read_json(Path(path) / RUN_FILE)
+    if isinstance(record, dict) and record.get("format") in READABLE:
+        require_sealed(seal, record["format"])
+    return record, seal
 
 
 def read_state(file, kind=COLLISION, file_format=READABLE[-1]):
@@ -201,8 +225,21 @@ def _require_on_planes(file, arrays):
             raise RunFolderError(f"{file}: 'plane_contacts' names a {what} that is not there, of {there}")
 
 
-def _read_record(file):
-    record = read_json(file)
+def state_files(path, seal):
+    """The files of a run's states: with sums those that it has left, and RunFolderError where there is another one."""
+    folder = path / STATES_FOLDER
+    found = sorted(f for f in folder.iterdir() if _STATE_NAME.fullmatch(f.name)) if folder.is_dir() else []
+    if not (seal and seal.files):
+        return found
+    files = [path / name for name in seal.states]
+    for file in found:
+        if file not in files:
+            seal.require(f"{STATES_FOLDER}/{file.name}")
+    return files
+
+
+def _require_record(file, record):
+    """Raise RunFolderError unless run.json is the record of a run that can be read."""
     if not isinstance(record, dict) or "format" not in record:
         raise RunFolderError(
             f"{file}: not the record of a run: no 'format' (another program's file, or a run that has only just begun)"
@@ -219,7 +256,6 @@ def _read_record(file):
         value = record["derived"].get(key)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
             raise RunFolderError(f"{file}: derived '{key}' must be a positive number, it is {value!r}")
-    return record
 
 
 def _kind_of_its_own(name, history):
@@ -232,14 +268,11 @@ def _kind_of_its_own(name, history):
 def read_json(file):
     """What a JSON file holds; RunFolderError when it is missing, is no regular file, or no JSON (NaN and Infinity are
     none)."""
-    file = Path(file)
-    require_regular(file)
+    text = read_text(file)
+    if text is None:
+        raise RunFolderError(f"{file}: missing, so this is not a run folder")
     try:
-        return json.loads(file.read_text(encoding="utf-8-sig"), parse_constant=_refuse_constant)
-    except FileNotFoundError:
-        raise RunFolderError(f"{file}: missing, so this is not a run folder") from None
-    except OSError as error:
-        raise RunFolderError(f"{file}: cannot be read: {error.strerror}") from None
+        return json.loads(text, parse_constant=_refuse_constant)
     except RecursionError:
         raise RunFolderError(f"{file}: not valid JSON: nested too deeply") from None
     except ValueError as error:
@@ -259,9 +292,3 @@ def _read_history(file, kind, file_format):
     if falls.any():
         raise RunFolderError(f"{file}: 'time' does not increase everywhere, first at index {int(np.argmax(falls)) + 1}")
     return history
-
-
-def _state_files(folder):
-    if not folder.is_dir():
-        return []
-    return sorted(f for f in folder.iterdir() if _STATE_NAME.fullmatch(f.name))

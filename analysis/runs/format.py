@@ -6,19 +6,29 @@ Scripts write what stands here and the analysis reads it. All quantities are in 
                         files: names of what the run writes into the folder, by which scripts know it as a run's
     history.npz         time series, arrays (T,)
     states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts; P planes, K contacts with these
-    ended               empty: the run came to its planned end
+    ended               the run came to its planned end; the SHA-256 of each of the files above, as sha256sum has them
     checkpoint/         while the run is under way, or was stopped: not part of the format
     heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
 
+`ended` is written last, when all the rest is on the disk, so that there is none without sums. `sha256sum -c ended` checks them. Files
+that others put into the folder have none. The first line has the SHA-256 of `ended` itself, with 64 zeros in its place; each archive's
+end, where it lists its arrays with their CRC-32, has a sum of its own (seal.py):
+
+    # {"sha256": "...", "check": "sha256sum -c ended"}
+    (64 digits)  history.npz
+    # (64 digits)  history.npz from byte 52310 on
+
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
-and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Versions before 0.5.0 wrote no `files`:
+and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Until then
+`ended` was empty; format 4 has the sums. Versions before 0.5.0 wrote no `files`:
 their runs are read, but neither resumed nor replaced.
 """
 
 from dataclasses import dataclass
 
-FORMAT = 3
-READABLE = (1, 2, 3)
+FORMAT = 4
+READABLE = (1, 2, 3, 4)
+SEALED = 4  # the first that has sums
 
 RUN_FILE, HISTORY_FILE, ENDED_FILE = "run.json", "history.npz", "ended"
 STATES_FOLDER, CHECKPOINT_FOLDER = "states", "checkpoint"

@@ -6,10 +6,9 @@ for running as long as it writes its history, every ten seconds or so; the clock
 import os
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
 from .arrays import RunFolderError, read_arrays
-from .folder import read_json
+from .folder import read_record
 from .format import CHECKPOINT_FOLDER, ENDED_FILE, HEARTBEAT_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
 from .running import place
 
@@ -43,7 +42,7 @@ def state(folder, now=None):
     outcome = str(run.get("outcome", ""))
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
         if not run:
-            return State(FAILED, note=f"ended, but its {RUN_FILE} cannot be read")
+            return State(FAILED, note=f"ended, but {damage(folder)}")
         return State(DONE, 1.0, _spent(folder, run))
     if where:
         return running(folder, run, where, now)
@@ -87,12 +86,21 @@ def end_time(run):
 
 
 def run_of(folder):
-    """A run folder's run.json, or {} when there is none."""
+    """A run folder's run.json, or {} when there is none that can be read."""
     try:
-        run = read_json(Path(folder) / RUN_FILE)
+        run, _ = read_record(folder)
     except RunFolderError:
         return {}
     return run if isinstance(run, dict) else {}
+
+
+def damage(folder):
+    """What is wrong with a run folder's run.json, for which run_of() gives {}; one line."""
+    try:
+        read_record(folder)
+    except RunFolderError as error:
+        return str(error)
+    return f"{os.path.join(folder, RUN_FILE)}: not the record of a run"
 
 
 def newest_write(folder):

@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pandas
 
+from .arrays import RunFolderError
 from .folder import open_run
+from .seal import SUM, UNSUMMED, read_summed, summed
 
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
@@ -70,24 +72,25 @@ def run_folder(row):
 
 
 def table_text(table, columns, head):
-    """The CSV file (str) of a table; head: a dict that JSON can hold."""
-    lines = [json.dumps(head, allow_nan=False)]
+    """The CSV file (str) of a table, with its sum; head: a dict that JSON can hold."""
+    lines = [json.dumps({**UNSUMMED, **head}, allow_nan=False)]
     lines += columns_text(columns).splitlines()
     out = io.StringIO()
     out.writelines(f"# {line}\n" for line in lines)
     names = [RUN, *(column.name for column in columns)]
     table.to_csv(out, columns=names, index=False, quoting=csv.QUOTE_MINIMAL, lineterminator="\n")
-    return out.getvalue()
+    return summed(out.getvalue())
 
 
 def read_table(file, columns):
-    """(DataFrame, head) of a CSV file; TableError where it is not one with these columns."""
+    """(DataFrame, head) of a CSV file; TableError where it is not one with these columns, or not as it was written."""
     try:
-        text = Path(file).read_text(encoding="utf-8-sig")
+        text = read_summed(file)
         comments = [line for line in text.splitlines() if line.startswith("# ")]
         head = json.loads(comments[0][2:]) if comments else None
         if not isinstance(head, dict):
             raise ValueError("its first line is not '# ' with a JSON object")
+        head.pop(SUM, None)
         body = text.splitlines()[len(comments) :]
         _require_once(next(csv.reader(body), []))
         table = pandas.read_csv(
@@ -97,8 +100,8 @@ def read_table(file, columns):
             na_values=[""],
             **EXACTLY,
         )
-    except OSError as error:
-        raise TableError(f"{file}: cannot be read: {error.strerror}") from None
+    except RunFolderError as error:
+        raise TableError(str(error)) from None
     except RecursionError:
         raise TableError(f"{file}: not a table of runs: its first line is nested too deeply") from None
     except ValueError as error:  # pandas's and json's errors are ValueErrors too

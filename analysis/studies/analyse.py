@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..progress import progress
+from ..runs.seal import UNSUMMED, read_summed, summed
 from ..runs.table import NoRunFolder, table_text
 from ..runs.write import replacing, write_text
 from .columns import CLOSURE
@@ -86,6 +87,7 @@ class Analysis:
     def json(self):
         """Everything as a JSON file (str), in SI units but for the paper's claims, which are in the unit named."""
         content = {
+            **UNSUMMED,
             "study": self.study.name,
             "provenance": self.found.provenance,
             "notes": self.notes,
@@ -96,14 +98,17 @@ class Analysis:
                 for q in self.results.quantities.values()
             },
         }
-        return _json_text(_plain(content)) + "\n"
+        return summed(_json_text(_plain(content)) + "\n")
 
     def is_gallerys(self):
-        """Whether the runs are those of the gallery, which the words of paper.toml are of."""
+        """Whether the runs are those of the gallery, which the words of paper.toml are of; RunFolderError where its file is damaged."""
+        file = GALLERY / self.study.name / DATA_FILE
+        if not file.exists():
+            return False
         try:
-            kept = json.loads((GALLERY / self.study.name / DATA_FILE).read_text(encoding="utf-8"))
+            kept = json.loads(read_summed(file))
             return kept["provenance"] == _plain(self.found.provenance)
-        except (OSError, ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError):
             return False
 
     def write(self, folder, table=True, commands=()):

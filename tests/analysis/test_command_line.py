@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from written_runs import seal
 
 from analysis.runs.format import CHANNELS
 
@@ -71,6 +72,7 @@ def set_to_zero(run, names):
         with np.load(file) as archive:
             arrays = dict(archive)
         np.savez(file, **{name: np.zeros_like(own) if name in names else own for name, own in arrays.items()})
+    seal(run)
 
 
 def test_an_unfinished_run_says_so(run):

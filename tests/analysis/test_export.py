@@ -230,4 +230,4 @@ def test_what_cannot_be_exported_gets_one_line(run, tmp_path, capsys):
     refused("damaged")
     for state in (run.path / "states").iterdir():
         state.unlink()
-    refused("holds no state", "--format", "xyz")
+    refused("000000.npz: missing", "--format", "xyz")

@@ -9,7 +9,7 @@ import zipfile
 import numpy as np
 import pytest
 from refused import refused
-from written_runs import state_arrays
+from written_runs import state_arrays, unseal
 
 from analysis import summarise
 from analysis.figures.draw import figures_of
@@ -21,7 +21,8 @@ from analysis.runs.format import CHANNELS, COLLISION
 
 @pytest.fixture
 def folder(pair_folder, tmp_path):
-    return shutil.copytree(pair_folder[0], tmp_path / "run")
+    """One without sums: what its files themselves tell of damage."""
+    return unseal(shutil.copytree(pair_folder[0], tmp_path / "run"))
 
 
 def _change_record(folder, change):
@@ -154,7 +155,7 @@ DAMAGE = {
     "a file": (lambda f: (shutil.rmtree(f), f.write_text("")), "is not a folder"),
     "no record": (lambda f: (f / "run.json").unlink(), "run.json: missing, so this is not a run folder"),
     "half a record": (lambda f: _halve(f / "run.json"), "run.json: not valid JSON"),
-    "binary record": (lambda f: (f / "run.json").write_bytes(b"\xff\xfe\x00"), "run.json: not valid JSON"),
+    "binary record": (lambda f: (f / "run.json").write_bytes(b"\xff\xfe\x00"), "run.json: damaged: 'utf-8' codec"),
     "foreign record": (lambda f: (f / "run.json").write_text("{}"), "run.json: not the record of a run: no 'format'"),
     "nested record": (lambda f: (f / "run.json").write_text("[" * 100_000), "run.json: not valid JSON: nested too deeply"),
     "a pipe as record": (lambda f: _as_pipe(f / "run.json"), "run.json: is no regular file; must be one"),
@@ -163,7 +164,7 @@ DAMAGE = {
     "infinite radius": (values("derived", grainRadius=float("inf")), "run.json: not valid JSON: Infinity is no number of JSON"),
     "time is no number": (history(time=np.r_[np.nan, np.arange(200.0)]), "'time' holds a value that is not finite, first at index 0"),
     "a list": (lambda f: (f / "run.json").write_text("[1]"), "run.json: not the record of a run"),
-    "later format": (values(format=4), "format is 4, this analysis reads formats 1, 2 and 3"),
+    "later format": (values(format=5), "format is 5, this analysis reads formats 1, 2, 3 and 4"),
     "no kind at all": (values(kind=[]), "kind is []: must be a name"),
     "no derived": (lambda f: _change_record(f, lambda r: r.pop("derived")), "'derived' is missing"),
     "zero radius": (values("derived", grainRadius=0), "'grainRadius' must be a positive number, it is 0"),

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from written_runs import RADIUS, two_pairs
+from written_runs import RADIUS, seal, two_pairs
 
 from analysis.__main__ import main
 
@@ -16,6 +16,7 @@ def collision(path, seed, compressed=False, **derived):
     record = json.loads((path / "run.json").read_text())
     record["derived"].update({**(about if compressed else {}), **derived})
     (path / "run.json").write_text(json.dumps(record))
+    seal(path)
 
 
 def test_both_kinds_from_the_first_touch_on(tmp_path, capsys):

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from made_compressions import SILICATE_GRAINS, made_compression
+from written_runs import seal
 
 from analysis.__main__ import main
 from analysis.studies.compression.strength import exponent, level
@@ -109,6 +110,7 @@ def test_twins_and_runs_without_a_bin_are_left_out(tmp_path, capsys):
     made_compression(tmp_path / "short", 7, power(), states=False)
     with np.load(tmp_path / "short" / "history.npz") as file:
         np.savez(tmp_path / "short" / "history.npz", **{name: array[:30] for name, array in file.items()})
+    seal(tmp_path / "short")
     made_compression(tmp_path / "drag", 8, power(), states=False, viscoelasticTime=1e-12)
     found, err = analysed(capsys, tmp_path)
     assert len(err.splitlines()) == 3 and "covers no bin of the filling factor" in err

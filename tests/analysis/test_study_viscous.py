@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from written_runs import MASS, PAIR, RADIUS, chain, losing, record, state_arrays, write_run
+from written_runs import MASS, PAIR, RADIUS, chain, losing, record, seal, state_arrays, write_run
 
 from analysis import theory
 from analysis.__main__ import main
@@ -118,6 +118,7 @@ def test_runs_of_other_scenes_grains_or_law_are_left_out(tmp_path, capsys):
         about = json.loads((path / "run.json").read_text())
         about["derived"][name] = value
         (path / "run.json").write_text(json.dumps(about))
+        seal(path)
     assert main(["study", "viscous", str(tmp_path), "--json"]) == 0
     said = capsys.readouterr()
     assert json.loads(said.out)["provenance"]["runs"] == 4

@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 
 from analysis.runs.format import CHANNELS, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
+from analysis.runs.seal import seal_text
 from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair_constants, pair_motion
 from yade_scripts import packings
 
@@ -59,7 +60,21 @@ def write_run(path, run_record, history, states, ended=True):
     for number, state in enumerate(states):
         np.savez(path / STATES_FOLDER / state_file(number), **state)
     if ended:
-        (path / ENDED_FILE).touch()
+        seal(path)
+    return path
+
+
+def seal(path):
+    """Write the sums of a folder's files, as they are now."""
+    names = [file.relative_to(path).as_posix() for file in path.glob("**/*") if file.suffix in (".json", ".npz")]
+    (path / ENDED_FILE).write_text(seal_text(path, names))
+
+
+def unseal(path):
+    """Make a folder one that has ended without sums, of format 3."""
+    text = (path / RUN_FILE).read_text()
+    (path / RUN_FILE).write_text(text.replace(f'"format": {FORMAT}', '"format": 3'))
+    (path / ENDED_FILE).write_text("")
     return path
 
 

@@ -9,6 +9,7 @@ import pytest
 from running import TINY, collide, completed, messages, read_arrays, read_json, refusal, stop_midway
 
 from analysis.runs.format import CHANNELS, COLLISION
+from analysis.runs.verify import verify_run
 from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 
@@ -32,10 +33,10 @@ targetGrains targetGyrationRadius targetCharacteristicRadius projectileGrains pr
 
 def test_run_folder_is_complete(run):
     assert sorted(os.listdir(run)) == ["checkpoint", "ended", "history.npz", "run.json", "states"]  # undecided so early
-    assert os.path.getsize(run / "ended") == 0
+    assert verify_run(run)[0] == []
     about = read_json(run, "run.json")
     assert set(about) == set(ABOUT.split()) and set(about["derived"]) == set(DERIVED.split())
-    assert (about["format"], about["kind"]) == (3, "collision")
+    assert (about["format"], about["kind"]) == (4, "collision")
     assert list(about["parameters"]) == list(CollisionParameters.columns())
     assert [name for name, value in about["parameters"].items() if value is None] == NOT_GIVEN.split()
     assert about["derived"]["stepChoice"] == "as given"

@@ -35,7 +35,7 @@ def test_files_are_whole_and_a_write_that_fails_leaves_them_as_they_were(tmp_pat
     found = {os.path.relpath(os.path.join(at, name), tmp_path) for at, _, names in os.walk(tmp_path) for name in names}
     assert found == {"a/b/run.json", "a/b/history.npz", "a/b/ended", "a/b/states/000000.npz"}
     run = json.loads((tmp_path / "a" / "b" / "run.json").read_text())
-    assert {name: run[name] for name in ("format", "outcome")} == {"format": 3, "outcome": "completed"}
+    assert {name: run[name] for name in ("format", "outcome")} == {"format": 4, "outcome": "completed"}
     assert {f"a/b/{name}" for name in run["files"]} > found - {"a/b/run.json"}
     folder = RunFolder(str(tmp_path / "run"))
     folder.write_run({"outcome": "running"})

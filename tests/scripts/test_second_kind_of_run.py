@@ -28,7 +28,7 @@ def run(tmp_path_factory):
 def test_its_folder_has_its_series_its_states_the_cell_and_its_ledger_the_work_of_the_boundaries(run):
     """Without that work the run would have been stopped: it is many times the energy of the start."""
     about, history = read_json(run, "run.json"), read_arrays(run, "history.npz")
-    assert (about["format"], about["kind"], about["outcome"]) == (3, "shrink", "completed")
+    assert (about["format"], about["kind"], about["outcome"]) == (4, "shrink", "completed")
     assert list(about["parameters"])[:2] == ["rate", "duration"] and about["derived"]["spacing"] > 1.98e-7
     assert list(history) == ["time", *CHANNELS, "contacts", "filling"]
     strain = 3e-4 * history["time"] / about["derived"]["timeUnit"]

@@ -6,7 +6,6 @@ motion of the grains that gives every contact its equilibrium overlap, so that t
 starts from contacts that have neither slid, rolled nor twisted.
 """
 
-import json
 import os
 from dataclasses import dataclass, field
 
@@ -14,8 +13,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from analysis.runs.arrays import RunFolderError, array_names
-from analysis.runs.folder import read_state
-from analysis.runs.format import COMPRESSION, FORMAT, RUN_FILE
+from analysis.runs.folder import read_record, read_state
+from analysis.runs.format import COMPRESSION, FORMAT
 from yade_scripts.packings.largest_piece import largest_cluster
 from yade_scripts.packings.packing import Packing, PackingError, random_stream
 from yade_scripts.packings.rest import at_rest
@@ -57,10 +56,11 @@ def is_periodic_state(path):
 
 def read_periodic_state(path):
     """PeriodicState of RUN/states/NNNNNN.npz; raises PackingError when it is none."""
-    run = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(path))), RUN_FILE)
+    run = os.path.dirname(os.path.dirname(os.path.abspath(path)))
     try:
-        with open(run) as file:
-            record = json.load(file)
+        record, seal = read_record(run)
+        if seal:
+            seal.require(os.path.relpath(path, run))
         state = read_state(path, COMPRESSION, record.get("format", FORMAT))
         derived = record["derived"]
         overlap = float(derived["equilibriumOverlap"])

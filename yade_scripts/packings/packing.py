@@ -9,9 +9,12 @@ from math import sqrt
 import numpy as np
 from scipy.spatial import cKDTree
 
-from analysis.runs.arrays import UNREADABLE, npz
+from analysis.runs.arrays import RunFolderError, npz, read_arrays, read_quantities
+from analysis.runs.format import FORMAT, STATE
 from analysis.runs.write import write_bytes
 from yade_scripts.parameters.errors import InputError
+
+SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
 
 
 class PackingError(InputError, ValueError):
@@ -111,8 +114,8 @@ def save(path, packing):
 def load(path):
     """Read a packing that save() wrote.
 
-    Raises PackingError when the file is missing or isn't one, an array has another shape or holds what is no finite
-    number, a radius is not positive, or a grain reaches the centre of another one.
+    Raises PackingError when the file is missing or isn't one, its arrays are not those of SPHERES, or a grain reaches the centre
+    of another one.
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise PackingError(f"{path}: is no regular file; must be an .npz")
@@ -122,31 +125,20 @@ def load(path):
             "make_packing.py a.npz from=FILE unit=um"
         )
     try:
-        with np.load(path) as file:
-            parameters = json.loads(str(file["parameters"]))
-            if not isinstance(parameters, dict):
-                raise ValueError("parameters is no JSON object")
-            packing = Packing(file["position"], file["radius"], int(file["seed"]), parameters)
-    except UNREADABLE as error:
-        reason = " ".join(str(error).split())
+        spheres, about = read_quantities(path, SPHERES, FORMAT), read_arrays(path, ("seed",), texts=("parameters",))
+        parameters = json.loads(about["parameters"])
+        if not isinstance(parameters, dict):
+            raise ValueError("parameters is no JSON object")
+        if not len(spheres["radius"]):
+            raise ValueError("holds no grain")
+        packing = Packing(**spheres, seed=int(about["seed"]), parameters=parameters)
+    except (RunFolderError, ValueError, TypeError, OverflowError, RecursionError) as error:
+        reason = " ".join(str(error).removeprefix(f"{path}: ").split())
         raise PackingError(
             f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"
         ) from None
-    _require_arrays(path, packing.position, packing.radius)
     _require_apart(path, packing)
     return packing
-
-
-def _require_arrays(path, position, radius):
-    if radius.ndim != 1 or not len(radius) or position.shape != (len(radius), 3):
-        raise PackingError(
-            f"{path}: position has the shape {position.shape}, radius {radius.shape}; must be (N, 3) and (N,), N >= 1"
-        )
-    for name, array in (("position", position), ("radius", radius)):
-        if array.dtype.kind not in "fiu" or not np.all(np.isfinite(array)):
-            raise PackingError(f"{path}: {name} holds what is no finite number; must be finite [m]")
-    if radius.min() <= 0:
-        raise PackingError(f"{path}: radius of grain {radius.argmin()} is {radius.min():g}; must be > 0 [m]")
 
 
 def _require_apart(path, packing):

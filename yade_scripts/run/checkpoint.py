@@ -14,9 +14,10 @@ import os
 
 import numpy as np
 
-from analysis.runs.arrays import UNREADABLE, RunFolderError, read_headers, require_regular
-from analysis.runs.folder import read_state
+from analysis.runs.arrays import UNREADABLE, RunFolderError, read_arrays, require_regular
+from analysis.runs.folder import read_record, read_state
 from analysis.runs.format import CHECKPOINT_FOLDER, STATES_FOLDER, state_file
+from analysis.runs.seal import sum_of
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.agreement import difference
 
@@ -44,10 +45,8 @@ class Checkpoint:
         self.run_folder = run_folder
         self.folder = os.path.join(run_folder, CHECKPOINT_FOLDER)
         try:
-            require_regular(os.path.join(self.folder, RECORDER))
-            with np.load(os.path.join(self.folder, RECORDER)) as file:
-                read_headers(os.path.join(self.folder, RECORDER), file, ["rows", "about"])
-                self.rows, about = file["rows"], json.loads(str(file["about"]))
+            found = read_arrays(os.path.join(self.folder, RECORDER), ["rows"], texts=["about"])
+            self.rows, about = found["rows"], json.loads(found["about"])
             self.run, self.wallTime = about["run"], about["wallTime"]
             self.columns = about.get("columns", [])
             self.scene = os.path.join(self.folder, about["scene"])
@@ -103,7 +102,7 @@ class Checkpoint:
                 file = RECORDER if name == "rows" else os.path.basename(self.scene)
                 self._damaged(f"{file}: {_text(found)}", f"{_text(written)}, as written")
         for number in range(self.states):
-            self._require_state(kind_format, os.path.join(self.run_folder, STATES_FOLDER, state_file(number)))
+            self._require_state(kind_format, f"{STATES_FOLDER}/{state_file(number)}")
 
     def load_scene(self):
         """Put the saved scene in the place of YADE's present one."""
@@ -111,8 +110,12 @@ class Checkpoint:
 
         Omega().load(self.scene)
 
-    def _require_state(self, kind_format, file):
+    def _require_state(self, kind_format, name):
+        file = os.path.join(self.run_folder, name)
         try:
+            _, seal = read_record(self.run_folder)
+            if seal:
+                seal.require(name)
             time = read_state(file, kind_format).time
         except RunFolderError as error:
             raise CheckpointError(f"{error}; must be in order to resume, or {self.folder} removed") from None
@@ -133,8 +136,7 @@ def sums(content):
 
 
 def _sums_of_file(path):
-    with open(path, "rb") as file:
-        return [os.fstat(file.fileno()).st_size, hashlib.file_digest(file, "sha256").hexdigest()]
+    return [os.path.getsize(path), sum_of(path)]
 
 
 def _text(found):

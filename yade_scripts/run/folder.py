@@ -7,6 +7,7 @@ from contextlib import suppress
 
 from analysis.runs.arrays import npz
 from analysis.runs.format import CHECKPOINT_FOLDER, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER
+from analysis.runs.seal import seal_text
 from analysis.runs.write import is_unfinished, remove_unfinished, require_file, sync, write_bytes, write_text
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
@@ -124,10 +125,10 @@ class RunFolder:
         self._unsynced.clear()
 
     def write_ended(self):
-        """The mark that the run came to its planned end: written last, when all the rest is on the disk."""
+        """The mark that the run came to its planned end, with the sums of its files: written last, when all the rest is on the disk."""
         try:
             self.sync()
-            self.write(ENDED_FILE, b"", lasting=True)
+            self.write(ENDED_FILE, seal_text(self.path, self._written.results()).encode(), lasting=True)
         except OSError:
             with suppress(OSError):
                 os.unlink(self._file(ENDED_FILE))

@@ -65,6 +65,10 @@ class Written:
         self.names |= new
         return bool(new)
 
+    def results(self):
+        """The files that are there of what a run leaves: run.json, history and states."""
+        return [RUN_FILE, *(name for name in self._there(self.names) if name == HISTORY_FILE or _STATE.fullmatch(name))]
+
     def require_files(self):
         """Raise OSError where a link, or something else than a file, has taken the place of a file or folder of the list."""
         for name in (STATES_FOLDER, CHECKPOINT_FOLDER):

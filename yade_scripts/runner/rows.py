@@ -8,7 +8,7 @@ from functools import cached_property
 
 from analysis.runs.format import ENDED_FILE, RUN_FILE
 from analysis.runs.running import place
-from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, end_time, run_of  # noqa: F401
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, damage, end_time, run_of  # noqa: F401
 from analysis.runs.status import running as running_state
 from yade_scripts.parameters import ParameterError, UnknownParameter
 from yade_scripts.run import checkpoint, table
@@ -133,7 +133,7 @@ def state(row, log, before=types.MappingProxyType({})):
 
 def _ended(row, run):
     if not run:
-        return State(FAILED, note=f"{row.out}: holds an ended run without a readable {RUN_FILE}; must be removed")
+        return State(FAILED, note=f"{damage(row.out)}; must be restored, or {row.out} removed to run the row")
     differs = row.kind and difference(row.kind, row.parameters, run)
     if differs:
         note = f"{row.out}: holds an ended run with {differs}; must be the same, or removed to run the row"
