@@ -231,11 +231,11 @@ def state_files(path, seal):
     found = sorted(f for f in folder.iterdir() if _STATE_NAME.fullmatch(f.name)) if folder.is_dir() else []
     if not (seal and seal.files):
         return found
-    files = [path / name for name in seal.states]
-    for file in found:
-        if file not in files:
-            seal.require(f"{STATES_FOLDER}/{file.name}")
-    return files
+    names = [f"{STATES_FOLDER}/{file.name}" for file in found]
+    for name in names:
+        if name not in seal.files:
+            seal.require(name)
+    return found if names == seal.states else [path / name for name in seal.states]
 
 
 def _require_record(file, record):

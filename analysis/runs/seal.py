@@ -6,7 +6,9 @@ archive lists its arrays, each with its CRC-32, and zipfile compares an array wi
 import errno
 import hashlib
 import json
+import os
 import re
+import stat
 import warnings
 import zipfile
 from dataclasses import dataclass, field
@@ -20,8 +22,6 @@ SUM = "sha256"
 UNSUMMED = {SUM: "0" * 64}
 _OWN_SUM = re.compile(r'(?:# )?\{\s*"sha256": "([0-9a-f]{64})"')
 _WITHOUT = re.compile(r'(?:# )?\{\s*"study"')  # a text of a version before 0.5.0
-_LINE = re.compile(r"([0-9a-f]{64})  ([\w./]+)")
-_END = re.compile(r"# ([0-9a-f]{64})  ([\w./]+) from byte (\d+) on")
 
 
 class Unsealed(UserWarning):
@@ -59,8 +59,7 @@ class Seal:
         self._compare(name, 0, self.files[name])
 
     def _compare(self, name, start, written):
-        file = self.folder / name
-        require_regular(file)
+        file = os.path.join(self.folder, name)
         try:
             found = sum_of(file, start)
         except FileNotFoundError:
@@ -93,9 +92,12 @@ def read_seal(folder):
     if not text:
         return None if text is None else Seal(Path(folder))
     _require_own_sum(file, text)
-    found = {form: [form.fullmatch(line) for line in text.splitlines()] for form in (_LINE, _END)}
-    files = {line[2]: line[1] for line in found[_LINE] if line}
-    return Seal(Path(folder), files, {line[2]: (int(line[3]), line[1]) for line in found[_END] if line})
+    lines = [line.split() for line in text.splitlines()[1:]]
+    try:
+        files = {name: written for written, name in (line for line in lines if line[0] != "#")}
+        return Seal(Path(folder), files, {line[2]: (int(line[5]), line[1]) for line in lines if line[0] == "#"})
+    except (ValueError, IndexError):
+        raise RunFolderError(f"{file}: damaged: holds other lines than sums") from None
 
 
 def require_sealed(seal, file_format):
@@ -144,12 +146,17 @@ def read_text(file):
 
 
 def sum_of(file, start=0):
-    """SHA-256 (str) of a file from a byte on; OSError where it cannot be read."""
-    found = hashlib.sha256()
-    with open(file, "rb") as content:
-        content.seek(start)
-        while part := content.read(2**20):
+    """SHA-256 (str) of a file from a byte on; OSError where it cannot be read, or is none."""
+    found, handle = hashlib.sha256(), os.open(file, os.O_RDONLY | os.O_NONBLOCK)  # which does not wait for a pipe's writer
+    try:
+        about = os.fstat(handle)
+        if not stat.S_ISREG(about.st_mode):
+            raise OSError(errno.EINVAL, "is no regular file; must be one", os.fspath(file))
+        while part := os.pread(handle, max(0, min(about.st_size - start, 2**20)), start):
             found.update(part)
+            start += len(part)
+    finally:
+        os.close(handle)
     return found.hexdigest()
 
 
