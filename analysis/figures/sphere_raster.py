@@ -3,6 +3,7 @@ not objects."""
 
 import numpy as np
 
+_SMALL = 4.0  # pixels: smaller spheres are painted together, one pixel of each at a time
 _LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
 
 
@@ -24,19 +25,30 @@ def paint_spheres(position, radius, colour, window, pixel, background=(1.0, 1.0,
 
 
 def _covered(position, radius, origin, size, pixel):
-    """For every offset from a sphere's central pixel: the spheres (rows), their pixels there and the
-    surface's z."""
+    """Spheres (rows), pixels of the image that they cover, and the surface's z there, in parts: those of all small spheres at one offset
+    from their central pixel, and each larger sphere by itself."""
     column, row = ((position[:, k] - origin[k]) / pixel for k in (0, 1))
-    central = np.floor(column).astype(np.intp), np.floor(row).astype(np.intp)
     # At least one pixel each: a grain smaller than a pixel must not vanish.
-    squared = np.maximum(radius, 0.75 * pixel) ** 2
-    reach = int(np.ceil(np.sqrt(squared.max()) / pixel))
+    pixels = np.maximum(radius / pixel, 0.75)
+
+    def covered(rows, c, r):
+        left = pixels[rows] ** 2 - (c + 0.5 - column[rows]) ** 2 - (r + 0.5 - row[rows]) ** 2
+        seen = (left > 0) & (c >= 0) & (c < size[0]) & (r >= 0) & (r < size[1])
+        rows, c, r = rows[seen], c[seen], r[seen]
+        return rows, r * size[0] + c, position[rows, 2] + pixel * np.sqrt(left[seen])
+
+    inside = (column > -pixels) & (column < size[0] + pixels) & (row > -pixels) & (row < size[1] + pixels)
+    small = np.flatnonzero(inside & (pixels <= _SMALL))
+    central = np.floor(column[small]).astype(np.intp), np.floor(row[small]).astype(np.intp)
+    reach = int(np.ceil(pixels[small].max(initial=0.0)))
     for j in range(-reach, reach + 1):
         for i in range(-reach, reach + 1):
-            c, r = central[0] + i, central[1] + j
-            left = squared - ((c + 0.5 - column) ** 2 + (r + 0.5 - row) ** 2) * pixel**2
-            rows = np.flatnonzero((left > 0) & (c >= 0) & (c < size[0]) & (r >= 0) & (r < size[1]))
-            yield rows, r[rows] * size[0] + c[rows], position[rows, 2] + np.sqrt(left[rows])
+            yield covered(small, central[0] + i, central[1] + j)
+    for sphere in np.flatnonzero(inside & (pixels > _SMALL)):
+        low, high = (np.array([column[sphere], row[sphere]]) + sign * (pixels[sphere] + 1) for sign in (-1, 1))
+        columns, rows = (np.arange(int(max(0, a)), int(min(n, b))) for a, b, n in zip(low, high, size))
+        c, r = np.tile(columns, rows.size), np.repeat(rows, columns.size)
+        yield covered(np.full(c.size, sphere), c, r)
 
 
 def _depth_and_owner(position, radius, origin, size, pixel):

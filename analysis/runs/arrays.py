@@ -116,7 +116,7 @@ def _opened(file):
     """The archive; whatever goes wrong while it is read is a RunFolderError."""
     require_regular(file)
     try:
-        archive = np.load(file, allow_pickle=False)
+        archive = np.load(file, mmap_mode="r", allow_pickle=False)  # of a single array nothing is read
         if isinstance(archive, np.ndarray):
             raise RunFolderError(f"{file}: damaged, or not an .npz file: it holds a single array")
         with archive:

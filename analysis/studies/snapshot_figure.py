@@ -9,6 +9,7 @@ from ..figures.collision_view import draw_view, reach
 from ..figures.panels import panels
 from ..figures.style import styled
 from ..measures.fragments import fragment_labels
+from ..runs.arrays import read_arrays
 from ..runs.table import NoRunFolder, run_folder
 
 HELD = 0.99  # of the grains: what flies farther than all but the last hundredth leaves a panel
@@ -93,14 +94,11 @@ def write_snapshots(file, snapshots):
 
 
 def read_snapshots(file):
-    """[Snapshot] that write_snapshots wrote."""
-    with np.load(file, allow_pickle=False) as kept:
-        positions = kept["position"] * float(kept["unit"])
-        parts = zip(kept["time"], positions, kept["piece"])
-        return [
-            Snapshot(float(t), p, kept["radius"].astype(float), kept["aggregate"].astype(int), n.astype(int))
-            for t, p, n in parts
-        ]
+    """[Snapshot] that write_snapshots wrote; RunFolderError where the file is damaged."""
+    kept = read_arrays(file, ("time", "unit", "position", "radius", "aggregate", "piece"))
+    radius, aggregate = kept["radius"].astype(float), kept["aggregate"].astype(int)
+    parts = zip(kept["time"], kept["position"] * float(kept["unit"]), kept["piece"])
+    return [Snapshot(float(time), place, radius, aggregate, piece.astype(int)) for time, place, piece in parts]
 
 
 def _scale_bar(axes, half):

@@ -32,6 +32,7 @@ class Check:
 POSITIVE = Check("> 0", lambda x: x > 0)
 NOT_NEGATIVE = Check(">= 0", lambda x: x >= 0)
 SWITCH = Check("0 or 1", lambda x: x in (0, 1))
+MEANT = 1e9  # times that a value may lie outside of what is usual, if it is meant
 
 
 @dataclass(frozen=True)
@@ -85,13 +86,16 @@ class Column:
             raise ParameterError(f"{self.name} = {_shortened(text)}: {self.must}")
         return value
 
-    def require_usual(self, value):
-        """Raise ParameterError where a number other than 0 lies outside of the usual range."""
-        if self.usual and value and not self.usual.low <= value <= self.usual.high:
-            raise ParameterError(
-                f"{self.name} = {value:g} {self.unit}: must be {self.usual.low:g} to {self.usual.high:g} {self.unit} "
-                f"({self.usual.source}), or unusual=1 be given if it is meant"
-            )
+    def require_usual(self, value, meant):
+        """Raise ParameterError where a number other than 0 lies outside of the usual range; of a value that is meant (unusual=1) where
+        it lies so far outside that the constants derived from it would not be numbers."""
+        if not self.usual or not value:
+            return
+        factor = MEANT if meant else 1.0
+        low, high = self.usual.low / factor, self.usual.high * factor
+        if not low <= value <= high:
+            why = "also with unusual=1" if meant else f"({self.usual.source}), or unusual=1 be given if it is meant"
+            raise ParameterError(f"{self.name} = {value:g} {self.unit}: must be {low:g} to {high:g} {self.unit} {why}")
 
     @property
     def must(self):
@@ -146,9 +150,8 @@ class Parameters:
                     f"{_shortened(name)}: unknown parameter{suggested(name, columns, '; must be one that --help lists')}"
                 )
             values[name] = columns[name].value(text)
-        if not values.get("unusual"):
-            for name, value in values.items():
-                columns[name].require_usual(value)
+        for name, value in values.items():
+            columns[name].require_usual(value, values.get("unusual"))
         return cls(**values).filled_in()
 
     @classmethod
