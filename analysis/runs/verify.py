@@ -7,6 +7,7 @@ from .folder import read_record, state_files
 from .format import CHECKPOINT_FOLDER, ENDED_FILE, HEARTBEAT_FILE
 from .seal import NO_SUMS, read_seal, read_summed
 from .status import run_of
+from .write import is_unfinished
 
 _WITHOUT_SUMS = (ENDED_FILE, HEARTBEAT_FILE, f"{CHECKPOINT_FOLDER}/", ".heartbeat-")  # files of runs
 NAMED = 3  # files that a line names
@@ -53,4 +54,5 @@ def _wrong(check, *of):
 def _others(folder, seal):
     """Names of the files in a folder that are not the run's, sorted."""
     found = (path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir())
-    return sorted(name for name in found if name not in seal.files and not name.startswith(_WITHOUT_SUMS))
+    theirs = (name for name in found if name not in seal.files and not name.startswith(_WITHOUT_SUMS))
+    return sorted(name for name in theirs if not is_unfinished(Path(name).name))

@@ -162,6 +162,7 @@ WRONG = [
     ("x,y,z\n", UM, "no rows of numbers; must have 2 or more"),
     ("x,y,z\n0,0,0\n", UM, "holds 1 grains; must be 2 to 5000000"),
     *((LINE.replace("0.2", cell), UM, "x of grain 1 is no finite number; must be one") for cell in ("nan", "inf", "1e999", "wide")),
+    (LINE.replace("0.2", "1e300"), UM, "x of grain 1 is 1e+300; must be less than 1e+100"),
     (LINE.replace("0.2,0,0", "0.2,0"), UM, "z of grain 1 is no finite number; must be one"),
     (LINE + "1,2,3,4\n", UM, "must have the same columns in all rows"),
     ("x,y\n0,0\n0.2,0\n", UM, "no z among its columns x, y; must be there, or names=x,y,z,radius must name"),

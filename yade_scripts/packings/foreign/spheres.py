@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.runs.arrays import LARGEST
 from yade_scripts.packings.packing import PackingError
 
 FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
@@ -66,11 +67,17 @@ def _of_axis(axis, number):
 def spheres_of(path, kind, arrays, unit=None):
     """Spheres from arrays {x, y, z, and radius or diameter if there are: (N,)} of numbers, checked.
 
-    Raises PackingError when one holds what is no finite number or a radius is not positive."""
+    Raises PackingError when one holds what is no finite number, or one beyond LARGEST, or a radius is not positive."""
     for name, array in arrays.items():
-        if array.dtype.kind not in "fiu" or not np.isfinite(array).all():
-            where = "" if array.dtype.kind not in "fiu" else f" of grain {int(np.isfinite(array).argmin())}"
-            raise PackingError(f"{path}: {name}{where} is no finite number; must be one")
+        if array.dtype.kind not in "fiu":
+            raise PackingError(f"{path}: {name} is no finite number; must be one")
+        sound = np.abs(array) < LARGEST
+        if not sound.all():
+            value, where = array[sound.argmin()], f"{name} of grain {sound.argmin()} is"
+            what = (
+                f"{value:g}; must be less than {LARGEST:g}" if np.isfinite(value) else "no finite number; must be one"
+            )
+            raise PackingError(f"{path}: {where} {what}")
     position = np.stack([arrays[axis] for axis in "xyz"], axis=1)
     radius = arrays.get("radius")
     if radius is None and "diameter" in arrays:
