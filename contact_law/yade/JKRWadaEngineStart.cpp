@@ -36,6 +36,8 @@ void JKRWadaEngine::requireInRange() const
 		if (value < 1) refuseInEngine(std::string(name) + " = " + text(value) + ": must be >= 1");
 	};
 	atLeastOne("subSteps", subSteps), atLeastOne("threads", threads);
+	constexpr int mostSubSteps = 1000000; // of a pair some seconds; nothing stops an O.step that has begun
+	if (subSteps > mostSubSteps) refuseInEngine("subSteps = " + text(subSteps) + ": must be <= " + text(mostSubSteps));
 	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
 	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
 		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");

@@ -103,6 +103,7 @@ OUT_OF_RANGE = {
     "slidingStiffnessFactor=0.0": ["slidingStiffnessFactor = 0: must be > 0"],
     "slidingStiffnessFactor=float('nan')": ["slidingStiffnessFactor = nan: must be > 0"],
     **{f"{name}={value}": [f"{name} = {value}: must be >= 1"] for name in ("subSteps", "threads") for value in (0, -3)},
+    "subSteps=2**31 - 1": ["subSteps = 2147483647: must be <= 1000000"],
     "domains=-3": ["domains = -3: must be >= 1, or 0 (by the number of bodies)"],
 }  # fmt: skip
 
