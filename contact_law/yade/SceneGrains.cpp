@@ -70,7 +70,8 @@ bool sameMotion(const State& s, const GrainMotion& g, bool orientations)
 bool finite(const GrainMotion& g)
 {
 	const auto all = [](const double(&x)[3]) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); };
-	return all(g.position) && all(g.velocity) && all(g.angularVelocity);
+	const contact_law::Orientation& q = g.orientation;
+	return all(g.position) && all(g.velocity) && all(g.angularVelocity) && std::isfinite(q.w + q.x + q.y + q.z);
 }
 
 SceneGrains::SceneGrains(const Scene& scene)
@@ -104,7 +105,7 @@ SceneGrains::Kept SceneGrains::read(const shared_ptr<Body>& body, int kind) cons
 	const std::string who = bodyName(body->getId());
 	const auto sphere = boost::static_pointer_cast<Sphere>(body->shape);
 	const State& state = *body->state;
-	if (!finite(motionOf(state))) refuseInEngine(who + " has a position or velocity that is not a finite number");
+	if (!finite(motionOf(state))) refuseInEngine(who + " has a position, orientation or velocity that is not a finite number");
 	if (!(sphere->radius > 0 && state.mass > 0 && state.inertia.minCoeff() > 0))
 		refuseInEngine(who + ": radius, mass and moments of inertia must be > 0");
 	if (!isotropic(state.inertia)) refuseInEngine(who + ": its three moments of inertia must be the same, those of a sphere");

@@ -123,7 +123,7 @@ def test_a_body_moved_by_the_script_is_noticed():
     [
         (
             "O.bodies[2].state.vel = Vector3(float('nan'), 0, 0)",
-            "body 2 has a position or velocity that is not a finite",
+            "body 2 has a position, orientation or velocity that is not a finite",
         ),
         ("O.engines += [NewtonIntegrator()]", "NewtonIntegrator is among O.engines too; this engine replaces it"),
         ("O.engines[0].subSteps = 0", "subSteps = 0: must be >= 1"),

@@ -39,7 +39,7 @@ CHANGES = {
     "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=ice())); O.bodies[2].state.mass *= 2": ["the mass of body 2 was changed"],
     "O.bodies.clear()": ["there are 0 bodies, must be the 4 of the latest step"],
     "O.bodies.clump([0, 1])": ["body 0 is a member of clump 4"],
-    "O.bodies[1].state.vel = Vector3(float('nan'), 0, 0)": ["body 1 was given a position or velocity that is not a finite number"],
+    "O.bodies[1].state.vel = Vector3(float('nan'), 0, 0)": ["body 1 was given a position, orientation or velocity that is not a finite number"],
     "O.engines += [NewtonIntegrator()]": ["NewtonIntegrator is among O.engines too"],
     "O.engines = [engine(), engine()]": ["O.engines has 2 JKRWadaEngines: there must be one"],
     "O.engines += [JKRWadaEngine()]": ["O.engines has 2 JKRWadaEngines: there must be one"],
@@ -115,6 +115,7 @@ def test_attributes_out_of_range_are_refused():
 SCENES = {
     "O.bodies[1].mask = 2": ["body 1: mask = 2, must be 1"],
     "O.bodies[1].bounded = False": ["body 1 must be bounded"],
+    "O.bodies[1].state.ori = Quaternion(float('nan'), 0, 0, 1)": ["body 1 has a position, orientation or velocity that is not"],
     "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["body 1: its three moments of inertia must be the same"],
     "O.bodies.clump([0, 1])": ["body 0 is a member of clump 4: grains of JKRMat must be single spheres"],
     "O.bodies.erase(1)": ["body 1 was erased"],
