@@ -111,7 +111,7 @@ def run_folders(paths):
 def _inside(path):
     """Run folders at a path: itself, or those below it, sorted; one that has ended is one without its run.json, too."""
     marks = (RUN_FILE, ENDED_FILE)
-    if any((path / mark).is_file() for mark in marks):
+    if any((path / mark).exists() for mark in marks):
         return [path]
     levels = ("*/" * level for level in range(1, LEVELS + 1))
     return sorted({file.parent for level in levels for mark in marks for file in path.glob(level + mark)})

@@ -91,6 +91,9 @@ def test_painted_spheres():
     assert np.sum(image[..., 1] == 0.0) * 0.02**2 == pytest.approx(np.pi, rel=0.01)
     image = paint_spheres(np.zeros((1, 3)), np.full(1, 0.01), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.5)
     assert np.any(image[..., 1] == 0.0)
+    position = np.array([[0, 0, 0.0], [2, 0, -1e4], [1e99, 0, 0]])  # one ten thousand times larger, one far away
+    image = paint_spheres(position, np.array([1, 1e4, 1]), np.eye(3), (-2.0, 2.0, -2.0, 2.0), 0.02)
+    assert np.argmax(image[100, 100]) == 0 and np.argmax(image[100, 10]) == 1
 
 
 def test_colours_of_what_is_drawn_are_kept_in_a_small_picture(tmp_path):
