@@ -227,7 +227,7 @@ def test_what_cannot_be_exported_gets_one_line(run, tmp_path, capsys):
     refused("file", "--out", str(tmp_path / "file" / "x"))
     file = sorted((run.path / "states").iterdir())[1]
     file.write_bytes(file.read_bytes()[:100])
-    refused("damaged")
+    refused("not as the run has left it")
     for state in (run.path / "states").iterdir():
         state.unlink()
     refused("000000.npz: missing", "--format", "xyz")
