@@ -20,7 +20,8 @@ void JKRWadaEngine::takeChanges(Moment moment)
 	if (current->grains.hasMore(*scene)) startAgain(moment);
 	const auto set = [this](std::size_t k, const GrainMotion& motion) {
 		if (!finite(motion))
-			refuseInEngine(bodyName(current->grains.idOf(k)) + " was given a position, orientation or velocity that is not a finite number");
+			refuseInEngine(bodyName(current->grains.idOf(k))
+			        + " was given a position, orientation or velocity that is not a finite number");
 		current->dynamics.set(int(k), motion);
 		current->watch.motionsChanged();
 	};
