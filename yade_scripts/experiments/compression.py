@@ -191,7 +191,7 @@ def prepare(parameters, threads):
     if parameters.duration is None:
         parameters = _with_duration(parameters, constants["timeUnit"])
     mass = cluster.radius**3 * (4 / 3 * pi * parameters.density)
-    rate = 2 * parameters.strainRate / constants["timeUnit"]
+    rate = shrinking_rate(parameters, constants["timeUnit"])
     material = yade_scene.material_of(parameters)
     return Scene(
         parameters=parameters,
@@ -219,7 +219,7 @@ def _between_walls(parameters, constants):
     _require_order(parameters)
     if parameters.duration is None:
         parameters = _with_duration(parameters, constants["timeUnit"])
-    rate = 2 * parameters.strainRate / constants["timeUnit"]
+    rate = shrinking_rate(parameters, constants["timeUnit"])
     end = Ending(parameters, constants["timeUnit"], rate)
 
     def control(recorder, state):
@@ -286,10 +286,15 @@ def _with_duration(parameters, time_unit):
     return parameters.changed(duration=duration)
 
 
+def shrinking_rate(parameters, time_unit):
+    """Of lengths L = L0 exp(-rate t) [1/s] (K13 eq 7)."""
+    return 2 * parameters.strainRate / time_unit
+
+
 def longest_duration(parameters, time_unit):
     """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth more,
     before which Ending ends the run."""
-    rate = 2 * parameters.strainRate / time_unit
+    rate = shrinking_rate(parameters, time_unit)
     time = log(parameters.finalFilling / parameters.initialFilling) / (parameters.axes * rate)
     axes = len(AXES[parameters.stretch])
     if axes:

@@ -19,7 +19,7 @@
     if (!unpacked[number]) {
       const packed = data.states[number];
       unpacked[number] = {
-        time: packed.time, cell: packed.cell, position: floats(packed.position), colours: packed.colours,
+        time: packed.time, cell: packed.cell, planes: packed.planes, position: floats(packed.position), colours: packed.colours,
         first: whole(packed.first), between: floats(packed.between), bonded: bytes(packed.bonded),
       };
     }
@@ -93,6 +93,9 @@
   contacts.visible = false;
   scene.add(contacts);
   const CONTACT = [0.25, 0.25, 0.25];
+  const glass = new THREE.MeshBasicMaterial({ color: 0x888888, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false });
+  const planes = new THREE.Group();
+  scene.add(planes);
   let box = null;
 
   // ---- showing a state ----
@@ -123,6 +126,16 @@
     contacts.geometry.setAttribute("position", new THREE.BufferAttribute(ends, 3));
     contacts.geometry.setAttribute("color", new THREE.BufferAttribute(tints, 3));
   }
+  function showPlanes(s) {
+    planes.remove(...planes.children);
+    for (const [axis, place] of s.planes) {
+      const plane = new THREE.Mesh(new THREE.PlaneBufferGeometry(2 * reach, 2 * reach), glass);
+      plane.position.setComponent(axis, place);
+      if (axis === 0) plane.rotation.y = Math.PI / 2;
+      if (axis === 1) plane.rotation.x = Math.PI / 2;
+      planes.add(plane);
+    }
+  }
   function showBox(s) {
     if (box) scene.remove(box);
     if (!s.cell) return;
@@ -140,6 +153,7 @@
     showColours(s);
     if (contacts.visible) showContacts(s);
     showBox(s);
+    showPlanes(s);
     byId("time").textContent = `t = ${(1e9 * s.time).toFixed(1)} ns`;
     draw();
   }

@@ -64,7 +64,18 @@ def _window(states, unit):
     reach = [np.abs(s.position[:, :2]).max(axis=0) / unit for s in states]
     half_y = min(max(r[1] for r in reach) + 2.0, _LARGEST_VIEW * across)
     half_x = min(max(r[0] for r in reach) + 2.0, _LARGEST_VIEW * (np.abs(start[:, 0]).max() + 2.0))
+    plates = [x for state in states for x in _planes(state, unit, 0)]
+    if plates:  # nothing is behind a plate
+        every = np.concatenate([plates, *(state.position[:, 0] / unit for state in states)])
+        return max(every.min() - 2.0, -half_x), min(every.max() + 2.0, half_x), -half_y, half_y
     return -half_x, half_x, -half_y, half_y
+
+
+def _planes(state, unit, axis):
+    """Where planes across an axis lie, in grain radii."""
+    if state.plane_axis is None:
+        return np.zeros(0)
+    return state.plane_position[state.plane_axis == axis] / unit
 
 
 def _draw(axes, state, unit, window, pixel):
@@ -73,4 +84,7 @@ def _draw(axes, state, unit, window, pixel):
     colour = np.array(AGGREGATE_COLOURS)[state.aggregate[behind]]
     image = paint_spheres(position, state.radius[behind] / unit, colour, window, pixel)
     axes.imshow(image, extent=window, origin="lower", interpolation="antialiased")
+    for draw, axis in ((axes.axvline, 0), (axes.axhline, 1)):
+        for place in _planes(state, unit, axis):
+            draw(place, color="0.3")
     axes.set_title(f"$t$ = {state.time * NANO:.1f} ns", loc="left")
