@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from ...measures.outcome import BOUNCING, STICKING, UNDECIDED
+from ...measures.outcome import BOUNCING, UNDECIDED
 from ...runs.collect import Scene
 from ...runs.format import BROKEN_BONDS
-from ...theory import ICE, interaction_energies, pair_constants
 from ..collisions import outcome_quantities
 from ..definition import Quantity, Study
 from ..runs import Runs, alike, along, differences, ratios, select, together
@@ -33,7 +32,6 @@ def quantities(table):
         broken=broken,
         necks=broken / table.grains,
         over_line=broken / table.grains / papers_necks(table.energy_ratio),
-        outcome=table.outcome.mask(_may_part(table), UNDECIDED),
         largest_fraction=table.largest,
         lost=sum(table[f"part_{name}"] for name in LOST),
         left=table.part_kinetic + table.part_elastic,
@@ -59,14 +57,6 @@ def _setup(row):
         f"{row.grains / 2:g} grains": not row.growth_velocity and row.grains != GRAINS,
     }
     return ", ".join(name for name, is_so in special.items() if is_so) or PLAIN
-
-
-def _may_part(table):
-    """Runs that were ended early in one piece, while their halves moved against each other with more energy than their contacts can hold."""
-    hold = [interaction_energies(pair_constants(ICE, radius))["break"] for radius in table.grain_radius]
-    mass = 4 / 3 * np.pi * ICE.density * table.grain_radius**3
-    halves = table.bulk * table.grains * mass * table.velocity**2 / 8
-    return (table.outcome == STICKING) & table.ended_by & (halves > table.touching * hold)
 
 
 def _sizes(runs):
