@@ -48,14 +48,12 @@ namespace {
 	}
 }
 
-SceneForces::Load SceneForces::whole(Scene& scene, int id) { return { scene.forces.getForce(id), scene.forces.getTorque(id) }; }
-
 SceneForces::Load SceneForces::notPermanent(Scene& scene, int id)
 {
-	const Load all = whole(scene, id);
+	const Load all { scene.forces.getForce(id), scene.forces.getTorque(id) };
 	if (!scene.forces.getPermForceUsed()) return all;
 	const Load kept { scene.forces.getPermForce(id), scene.forces.getPermTorque(id) };
-	return all == kept ? Load { Vector3r::Zero(), Vector3r::Zero() } : Load { all.force - kept.force, all.torque - kept.torque };
+	return all - kept;
 }
 
 void SceneForces::write(
@@ -80,20 +78,22 @@ void SceneForces::write(
 	}
 	scene.forces.sync();
 	for (int id = 0; id < bodies; ++id)
-		after.push_back(whole(scene, id));
+		after.push_back(notPermanent(scene, id));
 }
 
 void SceneForces::withdraw(Scene& scene)
 {
 	if (after.empty()) return;
 	scene.forces.sync();
-	std::vector<Load> left = before;
-	for (int id = 0; id < int(left.size()); ++id) {
-		const Load now = whole(scene, id);
-		if (now == after[id]) continue;
-		left[id].force += now.force - after[id].force;
-		left[id].torque += now.torque - after[id].torque;
-	}
+	std::vector<Load> left;
+	bool emptied = false; // by a script's O.forces.reset(): nothing that stands there is of write()
+	for (int id = 0; id < int(scene.bodies->size()); ++id)
+		left.push_back(notPermanent(scene, id));
+	const std::size_t written = std::min(left.size(), after.size()); // there may be more bodies since, or none
+	for (std::size_t id = 0; id < written; ++id)
+		emptied = emptied || (left[id].isZero() && !(after[id] == before[id]));
+	for (std::size_t id = 0; id < written && !emptied; ++id)
+		left[id] = left[id] == after[id] ? before[id] : before[id] + (left[id] - after[id]);
 	scene.forces.reset(scene.iter);
 	for (int id = 0; id < int(left.size()); ++id) {
 		if (!left[id].force.isZero(0)) scene.forces.addForce(id, left[id].force);

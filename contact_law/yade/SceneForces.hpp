@@ -30,11 +30,13 @@ private:
 	struct Load {
 		Vector3r force, torque;
 		bool operator==(const Load& other) const { return force == other.force && torque == other.torque; }
+		Load operator+(const Load& other) const { return { force + other.force, torque + other.torque }; }
+		Load operator-(const Load& other) const { return { force - other.force, torque - other.torque }; }
+		bool isZero() const { return force.isZero(0) && torque.isZero(0); }
 	};
 	static std::vector<contact_law::OutsideForce> found(Scene&, const SceneGrains&, int threads);
 	static Load notPermanent(Scene&, int id);
-	static Load whole(Scene&, int id);
-	std::vector<Load> before, after; // write(), of each body: not permanent; all
+	std::vector<Load> before, after; // write(), of each body: what is not permanent
 };
 
 } // namespace yade

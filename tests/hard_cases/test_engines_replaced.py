@@ -40,6 +40,7 @@ REPLACED = {
     "label_it(); engine().writeInteractions(); O.engines = [JKRWadaEngine(subSteps=5)]": {},
     "O.engines = [JKRWadaEngine(subSteps=5)] ": dict(exportInteractions=True),
     "O.engines = [JKRWadaEngine(subSteps=5)]  ": dict(periodic=True),
+    "O.forces.reset(False)": dict(exportInteractions=True),
     "O.bodies.append(utils.sphere((9e-7, 9e-7, 9e-7), 1e-7, material=ice()))": {},
     "O.bodies.append(utils.sphere((9e-7, 9e-7, 9e-7), 1e-7, material=ice())) ": dict(periodic=True, exportInteractions=True),
 }  # fmt: skip
@@ -169,6 +170,8 @@ def test_forces_that_were_written_are_not_taken_for_outside_ones():
             if look == "call":
                 utils.unbalancedForce()
             O.forces.addF(2, (0, 1e-10 * (k % 3), 0))
+            if k == 20:
+                O.forces.setPermF(1, (0, 1e-10, 0))
             O.step()
         return positions()
 
