@@ -168,6 +168,7 @@ void JKRWadaEngine::handOver()
 	requireOwnScene();
 	if (inStep()) refuseInEngine("handOver() within an O.step: call it between two");
 	enter(Moment::BetweenSteps);
+	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::AStepBehind); // with the orientations that go with it
 	for (std::size_t k = 0; k < current->now.size(); ++k)
 		current->now[k].orientation = motionOf(current->grains.stateOf(k)).orientation;
