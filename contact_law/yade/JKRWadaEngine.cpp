@@ -75,9 +75,22 @@ std::unique_lock<std::mutex> JKRWadaEngine::atRest(const char* call) const
 	return std::unique_lock<std::mutex>(busy);
 }
 
+// YADE would resume a step that was refused without its beginning, or begin it again with the cell deformed already.
 void JKRWadaEngine::action()
 {
 	const std::lock_guard<std::mutex> acting(busy);
+	const SceneCell::Before before(*scene);
+	try {
+		makeStep();
+	} catch (...) {
+		before.restore(*scene);
+		scene->subStep = -1;
+		throw;
+	}
+}
+
+void JKRWadaEngine::makeStep()
+{
 	requireAlone(*scene);
 	enter(Moment::WithinStep);
 	takeForces();

@@ -41,6 +41,7 @@ class JKRWadaEngine : public GlobalEngine {
 	void enter(Moment);
 	void takeChanges(Moment);
 	void takeStep();
+	void makeStep();
 	void takeForces();
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();

@@ -89,6 +89,22 @@ std::string SceneCell::wrong(const Scene& scene, const Dynamics& dynamics, int s
 	return tooSmall(cell, dynamics);
 }
 
+SceneCell::Before::Before(const Scene& scene)
+{
+	if (!scene.isPeriodic) return;
+	const Cell& cell = *scene.cell;
+	size = cell.prevHSize;
+	transformation = (Matrix3r::Identity() + scene.dt * cell.velGrad).inverse() * cell.trsf;
+}
+
+void SceneCell::Before::restore(Scene& scene) const
+{
+	if (!scene.isPeriodic) return;
+	scene.cell->hSize = size;
+	scene.cell->trsf = transformation;
+	scene.cell->integrateAndUpdate(0); // what is derived from them
+}
+
 void SceneCell::takeVelocityGradient(Scene& scene, Dynamics& dynamics)
 {
 	if (!scene.isPeriodic) return;

@@ -26,6 +26,16 @@ public:
 	// Before that, the velocity gradient that a script wants becomes the present one, as NewtonIntegrator does it.
 	static void takeVelocityGradient(Scene&, contact_law::Dynamics&);
 
+	// Takes back, for a step that is refused, how the Scene has deformed the cell at its beginning.
+	class Before {
+	public:
+		explicit Before(const Scene&);
+		void restore(Scene&) const;
+
+	private:
+		Matrix3r size, transformation;
+	};
+
 	static contact_law::Vec3<double> now(const Scene&);
 	// Diagonal of the gradient whose convective acceleration grains have [1/s].
 	static contact_law::Vec3<double> convective(const Scene&);

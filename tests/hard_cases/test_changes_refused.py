@@ -65,6 +65,35 @@ def test_changes_in_the_middle_of_a_run_are_refused():
     require_refused(CHANGES, attempt)
 
 
+UNDONE = {
+    "O.bodies[2].mask = 2": "O.bodies[2].mask = 1",
+    "O.periodic = False": "O.periodic = True",
+    "O.engines += [NewtonIntegrator()]": "O.engines = O.engines[:-1]",
+    "engine().limit = 'cut'": "O.engines = [JKRWadaEngine()]",
+}
+
+
+def test_a_refused_step_leaves_the_cell_and_goes_on_when_the_change_is_undone():
+    def end(change=""):
+        chain()
+        O.periodic = True
+        O.cell.setBox(1.5e-6, 1.5e-6, 1.5e-6)
+        O.cell.velGrad = Matrix3(-1e5, 0, 0, 0, 0, 0, 0, 0, 0)
+        steps(20)
+        size, stretch = Matrix3(O.cell.hSize), Matrix3(O.cell.trsf)
+        if change:
+            run(change)
+            assert said(O.step) and said(O.step)
+            run(UNDONE[change])
+            assert O.cell.hSize == size and (O.cell.trsf - stretch).norm() < 1e-14
+        steps(20)
+        return positions()
+
+    straight = end()
+    for change in UNDONE:
+        assert np.abs(end(change) - straight).max() < 1e-7 * 1e-7, change
+
+
 CHANGES_AFTER_LOADING = {
     "O.bodies[2].shape.radius = 2e-7": ["the radius of body 2 is another than in the checkpoint: it must be 1e-07"],
     "O.bodies[2].state.mass *= 2": ["the mass of body 2 is another than in the checkpoint"],
