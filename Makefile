@@ -19,6 +19,7 @@
 # make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest, and CITATION.cff;
 #             NEWEST=python3.13: the newest that this Python takes
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
+# make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
 # make docs   builds the site of all documents, build/docs/index.html, and runs its notebooks (installs Sphinx from Debian; a few minutes)
@@ -199,7 +200,7 @@ uninstall:
 
 # ---- running it ----
 
-.PHONY: demo test test-mutations test-faults test-slurm
+.PHONY: demo test test-edits test-mutations test-faults test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary --long runs/demo
@@ -212,6 +213,10 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # A file's tests stay in one process: they share what they have run.
 test: all
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+
+EDITS ?= 1000
+test-edits: all
+	@EDITS=$(EDITS) $(PYTHON) -m pytest -q -p no:cacheprovider tests/hard_cases/test_random_edits.py
 
 # The analysis as pip installs it, and its tests, in an environment of its own.
 NEWEST ?= $(PYTHON)

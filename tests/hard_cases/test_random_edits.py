@@ -1,0 +1,384 @@
+"""Random edits of a running scene by a script: obeyed with the ledger closed, or refused in one line; none is silent.
+
+`make test-edits` runs a thousand sequences. A failure says the scene and the shortest list of edits that shows it.
+"""
+
+import copy  # noqa: F401 (for the texts)
+import os
+import random
+
+import pytest
+from changes import *
+
+pytestmark = pytest.mark.in_yade
+BATCH = 50
+SEQUENCES = int(os.environ.get("EDITS", BATCH))
+SMALL_STEP = 0.05 * unit if "yade" in sys.modules else 0
+STEPS = 12  # between two edits
+CLOSED = 5e-3  # of the energies in a step; integration's error, of second order, has been 2.8e-3
+BOOKED = ("constraintWork", "externalWork", "boundaryWork")
+
+
+# ---- scenes ----
+
+
+def colliding(**options):
+    new_scene(SMALL_STEP)
+    converging(27, 1, [ice()], [1e-7])
+    fused_engine(subSteps=10, **options)
+
+
+def dragged():
+    new_scene(SMALL_STEP)
+    converging(27, 1, [ice(viscoelasticTime=1e-12), soft()], [1e-7, 1.2e-7])
+    fused_engine(subSteps=10)
+
+
+def touching(finer=1, **options):
+    new_scene(SMALL_STEP / finer)
+    cluster(12, 3, [ice()], [1e-7], 0.3, 3e6)
+    fused_engine(subSteps=10, **options)
+
+
+def on_walls():
+    touching()
+    low, high = (getattr(positions()[:, 2], end)() for end in ("min", "max"))
+    for z, speed in ((low - 0.99e-7, 0.05), (high + 1.05e-7, -0.05)):
+        wall = O.bodies[O.bodies.append(utils.wall(float(z), axis=2, material=O.bodies[0].material))]
+        wall.state.vel = (0, 0, speed)
+
+
+def shrinking():
+    colliding()
+    O.periodic = True
+    O.cell.setBox(3e-6, 3e-6, 3e-6)
+    O.cell.velGrad = Matrix3(-1e5, 0, 0, 0, 0, 0, 0, 0, 0)
+
+
+SCENES = {
+    "colliding": colliding,
+    "cut": lambda: colliding(limit="cut", linearDamping=0.01),
+    "dragged": dragged,
+    "touching": touching,
+    "bonded": lambda: touching(3, neck=0.4),  # bonds are stiff
+    "walls": on_walls,
+    "periodic": shrinking,
+    "orientations": lambda: touching(orientations=True),
+}
+
+
+# ---- edits: texts of a script; {i}, {j}: two grains, {x}, {y}, {z}: numbers from -1 to 1 ----
+
+SETTINGS = "subSteps threads domains instructions linearDamping slidingStiffnessFactor neck sliding rolling twisting limit orientations exportInteractions".split()
+
+
+def same(**other):
+    """An engine with the settings of the present one, but for these."""
+    return JKRWadaEngine(**{**{name: getattr(engine(), name) for name in SETTINGS}, **other})
+
+
+def free_place(y):
+    """Where nothing is: beside the grains, as high as the first."""
+    return 1.2e-6 + 2.1e-7 * (len(O.bodies) % 5), 1e-6 * y, O.bodies[0].state.pos[2]
+
+
+def dead_for_a_step():
+    engine().dead = True
+    O.step()
+    engine().dead = False
+
+
+def no_engine_for_a_step(new):
+    O.engines = []
+    O.step()
+    O.engines = [new]
+
+
+def by_functors_and_back():
+    """handOver() makes one small step, and the functors all others of two O.steps of the engine."""
+    new, dt, O.trackEnergy = same(), O.dt, True  # the functors book nothing without
+    engine().handOver()
+    sub_steps = round(dt / O.dt)
+    O.engines = functor_engines(new.linearDamping, 0, new.neck, new.slidingStiffnessFactor, limit=new.limit)
+    O.engines[2].loopOnSortedInteractions = True
+    for _ in range(2 * sub_steps - 1):
+        O.step()
+    O.engines = [new]
+    O.dt = dt
+
+
+# The run is the same with and without them.
+NEUTRAL = """
+O.engines = [same()]
+O.engines = [copy.deepcopy(engine())]
+O.save("a.yade"); O.engines = [copy.deepcopy(engine())]
+old = engine(); O.engines = [same()]; O.engines = [old]
+old = engine(); O.engines = [same()]; engine().prepare(); O.engines = [old]
+O.engines = O.engines
+engine().label = "mover"; O.engines = O.engines
+O.save("a.yade")
+O.save("a.xml.bz2"); O.load("a.xml.bz2")
+saved_and_loaded()
+saved_and_loaded(); saved_and_loaded("other.yade")
+O.save("a.yade"); O.load("a.yade"); O.engines = [same()]
+O.save("a.yade"); O.step(); O.load("a.yade")
+dead_for_a_step()
+no_engine_for_a_step(same())
+engine().dead = True; O.save("a.yade"); O.load("a.yade"); engine().dead = False
+engine().dead = True; O.engines = O.engines; engine().dead = False
+engine().prepare()
+engine().writeInteractions()
+utils.unbalancedForce()
+utils.getStress(1e-18)
+contact_law.snapshot()
+engine().statistics()
+O.pause()
+engine().threads = 2
+engine().threads = 1
+engine().exportInteractions = True
+engine().exportInteractions = False
+O.trackEnergy = False
+O.trackEnergy = True
+O.forces.reset(False)
+engine().giveWay()
+O.bodies[{i}].state.vel *= 2; O.bodies[{i}].state.vel /= 2
+""".strip().splitlines()
+NOT_IN_CELLS = "for_a_step"  # a cell changes while nothing moves the grains, which the engine refuses
+# Kinetic energy changes by what is given; otherwise the ledger is closed.
+BOOKED_EDITS = """
+O.bodies[{i}].state.vel += Vector3({x}, {y}, {z})
+O.bodies[{i}].state.angVel += 1e7 * Vector3({x}, {y}, {z})
+O.bodies[{i}].state.vel = Vector3.Zero
+O.bodies[{i}].state.blockedDOFs = "xyzXYZ"
+O.bodies[{i}].state.blockedDOFs = "xZ"
+O.bodies[{i}].state.blockedDOFs = ""
+O.dt *= 0.5
+O.dt *= 1.25
+engine().subSteps += 2
+engine().subSteps = 8
+O.forces.setPermF({i}, 1e-9 * Vector3({x}, {y}, {z}))
+O.forces.setPermT({i}, 1e-17 * Vector3({x}, {y}, {z}))
+O.forces.setPermF({i}, Vector3.Zero)
+O.forces.addF({i}, 3e-9 * Vector3({x}, {y}, {z}))
+O.engines = [ForceResetter()] + O.engines; O.engines = O.engines[1:]
+grain(free_place({y}), 1e-7, O.bodies[0].material)
+grain(free_place({y}), 1e-7, ice(), (-3, {z}, 0))
+O.engines = [same(limit="cut")]
+O.engines = [same(linearDamping=0.02)]
+contact_law.sinter(0.3)
+by_functors_and_back()
+""".strip().splitlines()
+# What they do to the energies isn't known beforehand.
+UNKNOWN = """
+O.bodies[{i}].state.pos += 3e-9 * Vector3({x}, {y}, {z})
+O.bodies[{i}].state.pos += Vector3(8e-7, {y} * 1e-6, 8e-7)
+O.engines = [same(slidingStiffnessFactor=1.5)]
+O.engines = [same(rolling=False)]
+O.engines = [same(sliding=False)]
+O.bodies[0].material.surfaceEnergy *= 1.05; O.engines = [same()]
+O.bodies[0].material.viscoelasticTime = 2e-12; O.engines = [same()]
+O.bodies[{i}].material = soft(); O.engines = [same()]
+O.bodies[{i}].state.mass *= 1.5; O.engines = [same()]
+O.bodies[{i}].shape.radius *= 0.999; O.engines = [same()]
+old = same(); engine().handOver(); O.engines = functor_engines(old.linearDamping, 0, old.neck); O.trackEnergy = True; O.step(); O.engines = [old]
+old = same(); O.engines = functor_engines(old.linearDamping, 0, old.neck); O.trackEnergy = True; O.step(); O.engines = [old]
+""".strip().splitlines()
+IN_CELLS = """
+O.cell.velGrad = Matrix3({x} * 1e5, 0, 0, 0, {y} * 1e5, 0, 0, 0, 0)
+O.cell.velGrad = Matrix3({x} * 1e5, 0, 0, 0, {y} * 1e5, 0, 0, 0, 0); engine().prepare()
+O.cell.velGrad = Matrix3.Zero
+""".strip().splitlines()
+WITH_WALLS = """
+O.bodies.append(utils.wall(-1.3e-6, axis=0, material=O.bodies[0].material))
+wall = O.bodies[O.bodies.append(utils.wall(-1.3e-6, axis=1, material=O.bodies[0].material))]; wall.state.vel = (0, 3, 0)
+O.bodies[12].state.vel = (0, 0, {z} / 5)
+""".strip().splitlines()
+# Refused at the next step (what, how it is undone), after which the run is as without.
+REFUSED = """
+O.bodies[{i}].shape.radius *= 2 | O.bodies[{i}].shape.radius /= 2
+O.bodies[{i}].state.mass *= 2 | O.bodies[{i}].state.mass /= 2
+O.bodies[{i}].mask = 2 | O.bodies[{i}].mask = 1
+O.bodies[{i}].bounded = False | O.bodies[{i}].bounded = True
+kept = O.bodies[{i}].material; O.bodies[{i}].material = soft() | O.bodies[{i}].material = kept
+kept = O.bodies[{i}].shape; O.bodies[{i}].shape = Sphere(radius=kept.radius) | O.bodies[{i}].shape = kept
+kept = O.bodies[{i}].state; O.bodies[{i}].state = State() | O.bodies[{i}].state = kept
+O.bodies[0].material.surfaceEnergy *= 2 | O.bodies[0].material.surfaceEnergy /= 2
+O.bodies[0].material.young *= -1 | O.bodies[0].material.young *= -1
+engine().rolling = not engine().rolling | engine().rolling = not engine().rolling
+kept = engine().neck; engine().neck = 0.55 | engine().neck = kept
+kept = engine().linearDamping; engine().linearDamping = 0.5 | engine().linearDamping = kept
+engine().slidingStiffnessFactor *= 2 | engine().slidingStiffnessFactor /= 2
+engine().subSteps *= -1 | engine().subSteps *= -1
+engine().threads *= -1 | engine().threads *= -1
+O.dt *= 1024 | O.dt /= 1024
+O.periodic = not O.periodic | O.periodic = not O.periodic
+kept = O.bodies[{i}]; O.bodies.erase({i}) | O.bodies.insertAtId(kept, {i}); engine().exportInteractions = False
+kept = O.bodies[{i}]; O.bodies.erase({i}); O.bodies.insertAtId(utils.sphere((9e-7, 0, 0), 1e-7, material=ice()), {i}) | O.bodies.erase({i}); O.bodies.insertAtId(kept, {i}); engine().exportInteractions = False
+O.engines += [NewtonIntegrator()] | O.engines = O.engines[:-1]
+O.engines += [JKRWadaEngine()] | O.engines = O.engines[:-1]
+kept = Vector3(O.bodies[{i}].state.vel); O.bodies[{i}].state.vel = Vector3(float("nan"), 0, 0) | O.bodies[{i}].state.vel = kept
+kept = Vector3(O.bodies[{i}].state.pos); O.bodies[{i}].state.pos = Vector3(float("inf"), 0, 0) | O.bodies[{i}].state.pos = kept
+O.forces.addF({i}, Vector3(float("nan"), 0, 0)) | O.forces.reset(False)
+""".strip().splitlines()
+
+
+def edits_of(rng, scene):
+    """(kind, text) each of a few edits."""
+    kinds = {"neutral": NEUTRAL, "booked": BOOKED_EDITS, "unknown": UNKNOWN, "refused": REFUSED}
+    if scene == "periodic":
+        kinds["cell"] = IN_CELLS
+    if scene in ("walls", "touching", "colliding"):
+        kinds["wall"] = WITH_WALLS[: 2 + (scene == "walls")]
+    sequence = []
+    for _ in range(rng.randint(1, 6)):
+        kind = rng.choices(list(kinds), [5, 4, 1, 2, 2][: len(kinds)])[0]
+        numbers = {name: round(rng.uniform(-1, 1), 3) for name in "xyz"}
+        texts = [text for text in kinds[kind] if scene != "periodic" or NOT_IN_CELLS not in text]
+        sequence.append((kind, rng.choice(texts).format(i=rng.randrange(12), **numbers)))
+    return sequence
+
+
+# ---- what must hold ----
+
+
+class Broken(Exception):
+    """What a sequence has broken."""
+
+
+def kinetic():
+    """Of the grains as they are now [J]."""
+    states = [b.state for b in O.bodies if b and isinstance(b.shape, Sphere)]
+    return sum(0.5 * s.mass * s.vel.squaredNorm() + 0.5 * s.inertia[0] * s.angVel.squaredNorm() for s in states)
+
+
+def obeyed_or_refused(call):
+    """What a call is refused with, in one line, or ''."""
+    try:
+        call()
+    except (RuntimeError, ValueError) as error:
+        if len(str(error).splitlines()) != 1:
+            raise Broken(f"refused with {str(error)!r}") from None
+        return str(error)
+    except Exception as error:
+        raise Broken(f"raised {error!r}") from error
+    return ""
+
+
+class Ledger:
+    """Sum of all channels, from step to step."""
+
+    def __init__(self):
+        self.reference = None
+
+    def total(self):
+        e = energies(*BOOKED)
+        return sum(e.values()), e["kinetic"] + e["connection"] + abs(e["externalWork"])
+
+    def step(self, given):
+        """After a step; given: kinetic energy that an edit before it gave, or None (unknown)."""
+        if given is None:
+            self.reference = None
+        elif self.reference is not None:
+            self.reference += given
+        if not O.trackEnergy:
+            return
+        now, scale = self.total()
+        if not np.isfinite(now):
+            raise Broken("the energies are not finite")
+        if self.reference is not None and abs(now - self.reference) > CLOSED * scale:
+            raise Broken(f"the ledger changed by {(now - self.reference) / scale:.2g} of its scale")
+        self.reference = now
+
+
+def edited(scene, sequence):
+    """Play a sequence; (positions, energies, contact pairs, refusal that ended it or '')."""
+    SCENES[scene]()
+    O.dt *= 10
+    steps(60)
+    ledger, names = Ledger(), {}
+    ledger.step(None)
+    for kind, text in sequence:
+        before, change = kinetic(), text.split(" | ")[0]
+        refused = obeyed_or_refused(lambda: run_in(change, names))
+        if kind == "refused":
+            time, refused = O.time, obeyed_or_refused(O.step)
+            if not refused or O.time != time:
+                raise Broken(f"{change}: was not refused")
+            run_in(text.split(" | ")[1], names)
+        given = None if kind in ("unknown", "cell") or "wall" in text or "functors" in text else kinetic() - before
+        if kind in ("neutral", "refused"):
+            given = 0
+        for k in range(STEPS):
+            refused = obeyed_or_refused(O.step)
+            if refused:
+                if kind in ("neutral", "refused"):
+                    raise Broken(f"{text}: then {refused}")
+                return None, None, None, refused
+            ledger.step(given if k == 0 else 0)
+        if not np.isfinite(positions()).all():
+            raise Broken("positions are not finite")
+    O.trackEnergy = True
+    O.step()
+    ledger.step(0)
+    return positions(), energies(*BOOKED), sorted(map(sorted, contact_law.snapshot()["contact_pairs"].tolist())), ""
+
+
+def run_in(text, names):
+    exec(text, globals(), names)
+
+
+def require(scene, sequence):
+    """Broken, if the sequence is; a twin run without what must not matter ends in the same state."""
+    x, e, pairs, end = edited(scene, sequence)
+    without = [("neutral", "pass") if kind in ("neutral", "refused") else (kind, text) for kind, text in sequence]
+    y, f, others, same_end = edited(scene, without)
+    if end != same_end:
+        raise Broken(f"{end!r}, without neutral ones {same_end!r}")
+    if end:
+        return end
+    off = np.abs(x - y).max() / 1e-7
+    if pairs != others:
+        raise Broken("contacts differ from a run without neutral ones")
+    if off > 1e-5:
+        raise Broken(f"positions differ by {off:.2g} r from a run without neutral ones")
+    scale = e["kinetic"] + e["connection"]
+    wrong = {name: (e[name] - f[name]) / scale for name in e if abs(e[name] - f[name]) > 1e-5 * scale}
+    if wrong:
+        raise Broken(f"energies differ from a run without neutral ones: {wrong}")
+    return ""
+
+
+def broken(scene, sequence):
+    """What a sequence breaks, or ''."""
+    try:
+        require(scene, sequence)
+    except Broken as what:
+        return str(what)
+    return ""
+
+
+def shortest(scene, sequence):
+    """The fewest edits of a sequence that are still broken."""
+    k = 0
+    while k < len(sequence):
+        less = sequence[:k] + sequence[k + 1 :]
+        if broken(scene, less):
+            sequence = less
+        else:
+            k += 1
+    return sequence
+
+
+@pytest.mark.parametrize("batch", range(-(-SEQUENCES // BATCH)))
+def test_no_edit_is_silent(batch):
+    failures = []
+    for seed in range(BATCH * batch, BATCH * (batch + 1)):
+        rng = random.Random(seed)
+        scene = rng.choice(list(SCENES))
+        sequence = edits_of(rng, scene)
+        print(f"{seed}: {scene}, {sequence}", flush=True)  # seen when YADE crashes
+        if broken(scene, sequence):
+            sequence = shortest(scene, sequence)
+            texts = "".join(f"\n    {text}" for _, text in sequence)
+            failures.append(f"{seed}: {scene}: {broken(scene, sequence)}{texts}")
+    assert not failures, "\n".join(failures)
