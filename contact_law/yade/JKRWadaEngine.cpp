@@ -181,7 +181,7 @@ void JKRWadaEngine::handOver()
 	requireOwnScene();
 	if (inStep()) refuseInEngine("handOver() within an O.step: call it between two");
 	enter(Moment::BetweenSteps);
-	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
+	if (wereAsked(*scene)) writeEnergies(current->dynamics.energies());
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::AStepBehind); // with the orientations that go with it
 	for (std::size_t k = 0; k < current->now.size(); ++k)
 		current->now[k].orientation = motionOf(current->grains.stateOf(k)).orientation;
@@ -199,7 +199,7 @@ void JKRWadaEngine::handOver()
 // Contacts go to O.interactions, where whatever moves the grains from here on finds them, in the state of the bodies as this engine left them.
 void JKRWadaEngine::leave()
 {
-	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
+	if (wereAsked(*scene)) writeEnergies(current->dynamics.energies());
 	const auto isThere = [this](int id) { return current->grains.hasBody(*scene, id); };
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions, isThere);
 	current->forces.withdraw(*scene);

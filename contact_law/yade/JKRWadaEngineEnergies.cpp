@@ -14,11 +14,14 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 }
 
 // Whether O.energy has the energies of this run still: a script may have cleared it.
-bool JKRWadaEngine::isInOEnergy() const
+bool JKRWadaEngine::isInOEnergy() const { return booked && wereAsked(*scene); }
+
+// Whether O.energy has energies, of any run.
+bool JKRWadaEngine::wereAsked(const Scene& scene)
 {
 	int kinetic = -1;
-	scene->energy->findId("kinetic", kinetic, false, false);
-	return booked && kinetic >= 0;
+	scene.energy->findId("kinetic", kinetic, false, false);
+	return kinetic >= 0;
 }
 
 // O.energy holds what this run has booked before it was saved.

@@ -61,6 +61,19 @@ def test_contacts_are_handed_over(change):
     assert {name: f[name] for name in e if abs(f[name] - e[name]) > 1e-5 * scale} == {}
 
 
+def test_losses_of_engines_that_never_tracked_are_booked():
+    strained()
+    before = sum(energies().values())
+    O.trackEnergy = False
+    for _ in range(2):
+        O.engines = [JKRWadaEngine(subSteps=5)]
+        steps(STEPS)
+    O.engines = [JKRWadaEngine(subSteps=5)]
+    O.trackEnergy = True
+    steps(1)
+    assert sum(energies().values()) == pytest.approx(before, rel=1e-2)
+
+
 def test_the_functors_take_over_without_a_call():
     """Velocities are of the positions' moment, where the functors want those of half a step before: the difference is of first order."""
     differences = []
