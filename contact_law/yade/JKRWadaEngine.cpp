@@ -226,9 +226,9 @@ void JKRWadaEngine::startAgain(Moment moment)
 {
 	const SceneGrains all(*scene); // refuses bodies that cannot be moved, while nothing is changed
 	const contact_law::Booked before = contact_law::booked(current->dynamics);
-	const bool wasBooked = booked;
 	const EnergyChannels::WorkOn workOn = current->workOn;
 	leave();
+	const bool wasBooked = booked;
 	start(moment, true);
 	current->dynamics.continueFrom(before);
 	booked = wasBooked;
