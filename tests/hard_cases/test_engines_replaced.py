@@ -103,7 +103,7 @@ HELD = ["the contacts of these grains are in another JKRWadaEngine", "handOver()
 REFUSED = {
     "O.engines[0].dead = True; O.engines += functor_engines(); O.engines[0].dead = False; O.step()": ["is among O.engines too"],
     "set_behind_the_back([JKRWadaEngine()]); O.step()": HELD,
-    "set_behind_the_back(functor_engines()); O.run(2, True)": HELD,
+    "set_behind_the_back(functor_engines()); steps(3)": HELD,
     "O.save('s.yade'); O.load('s.yade'); set_behind_the_back([JKRWadaEngine()]); O.step()": HELD,
     "kept = engine(); kept.writeInteractions(); set_behind_the_back([JKRWadaEngine()]); O.step(); kept.prepare()": ["other engines have moved"],
 }  # fmt: skip
