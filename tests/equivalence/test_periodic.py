@@ -160,3 +160,23 @@ def test_a_look_at_the_contacts_does_not_move_the_cell(homo):
         return positions().tolist(), O.cell.hSize[0, 0], energies(WORK)
 
     assert end() == end("first") == end("loaded")
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_grains_touch_across_the_longest_side(axis):
+    """Their nearest images follow from that side's own length."""
+    new_scene(0.1 * unit)
+    size, across = np.full(3, 6e-7), np.eye(3)[axis]
+    size[axis] *= 3
+    O.periodic = True
+    O.cell.setBox(*map(float, size))
+    half = 1e-7 - constants(ice(), 1e-7)["equilibriumOverlap"] / 2
+    for sign in (1, -1):
+        grain(
+            size / 2 * (1 - across) + (sign * half) % size * across,
+            1e-7,
+            O.bodies[0].material if len(O.bodies) else ice(),
+        )
+    fused_engine()
+    O.step()
+    assert O.engines[0].statistics()["contacts"] == 1
