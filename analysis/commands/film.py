@@ -1,11 +1,9 @@
 """python3 -m analysis film RUN [--out FILE] [--rate FRAMES] [--along AXIS] [--colour BY] [--width PIXELS]"""
 
 import argparse
-from pathlib import Path
 
 from ..figures.grain_colours import COLOURINGS
-from ..printable import printable
-from . import FAILED, complain
+from . import write_of_run
 
 
 def add_parser(commands):
@@ -43,17 +41,6 @@ def _rate(text):
 def run(options):
     """Exit status: 0, or 2 when the run could not be read or the film not be written."""
     from ..export.film import NoFilm, write_film
-    from ..runs.arrays import RunFolderError
-    from ..runs.folder import open_run
 
-    try:
-        folder = open_run(options.run)
-        file = Path(options.out) if options.out else folder.path / "film.mp4"
-        print(printable(write_film(folder, file, options.rate, options.width, options.along, options.colour)))
-    except (RunFolderError, NoFilm) as error:
-        complain(error)
-        return FAILED
-    except OSError as error:
-        complain(f"{error.filename or options.run}: {error.strerror}")
-        return FAILED
-    return 0
+    write = lambda folder, file: write_film(folder, file, options.rate, options.width, options.along, options.colour)
+    return write_of_run(options, "film.mp4", write, NoFilm)

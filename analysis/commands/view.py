@@ -1,9 +1,6 @@
 """python3 -m analysis view RUN [--out FILE] [--three FOLDER]"""
 
-from pathlib import Path
-
-from ..printable import printable
-from . import FAILED, complain
+from . import write_of_run
 
 
 def add_parser(commands):
@@ -23,17 +20,7 @@ def add_parser(commands):
 def run(options):
     """Exit status: 0, or 2 when the run could not be read or the page not be written."""
     from ..export.viewer import THREE, NoThree, write_view
-    from ..runs.arrays import RunFolderError
-    from ..runs.folder import open_run
 
-    try:
-        folder = open_run(options.run)
-        file = Path(options.out) if options.out else folder.path / "view.html"
-        print(printable(write_view(folder, file, options.three or THREE)))
-    except (RunFolderError, NoThree) as error:
-        complain(error)
-        return FAILED
-    except OSError as error:
-        complain(f"{error.filename or options.run}: {error.strerror}")
-        return FAILED
-    return 0
+    return write_of_run(
+        options, "view.html", lambda folder, file: write_view(folder, file, options.three or THREE), NoThree
+    )

@@ -29,6 +29,11 @@ class Exported:
             between -= state.cell_size * np.round(between / state.cell_size)
         self.first, self.second, self.between = first, second, between  # (M,), (M,), (M, 3) [m]
 
+    def inside(self):
+        """Positions (N, 3) [m]: in a periodic cell the images inside it."""
+        state = self.state
+        return state.position if state.cell_size is None else state.position % state.cell_size
+
     def distance(self):
         """(M,) [m], of the grains' centres."""
         return np.linalg.norm(self.between, axis=1)

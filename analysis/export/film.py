@@ -14,7 +14,7 @@ from ..figures.style import NANO
 from ..progress import progress
 from ..runs.write import replacing, require_file
 from ..signals import held
-from .fields import Exported
+from .fields import exported_states
 
 FRAMES_PER_SECOND = 10
 WIDTH = 960  # pixels
@@ -46,21 +46,14 @@ def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, alon
     pixel = max((view[1] - view[0]) / width, (view[3] - view[2]) / _TALLEST)
     more = max(0.0, min(width, _NARROWEST) * pixel - (view[1] - view[0])) / 2
     view = (view[0] - more, view[1] + more, *view[2:])
-    of = Range.of(progress(run.states, "finding the scales"))
-    way = COLOURINGS[colour]
+    of, way = Range(run), COLOURINGS[colour]
     frames = (
-        _frame(state, axes, way.colours(Exported(state, None), of), way.legend(of), view, pixel)
-        for state in progress(run.states, "drawing frames")
+        _frame(exported, axes, way.colours(exported, of), way.legend(of), view, pixel)
+        for exported in progress(exported_states(run), "drawing frames", len(run.states))
     )
     with replacing(file, ending=file.suffix) as part:
         _encode(frames, os.path.abspath(part.name), frames_per_second)
     return file
-
-
-def _drawn(state, axes):
-    """Positions (N, 3) [m] to the right, up, towards the viewer: in a periodic cell the images inside it."""
-    position = state.position if state.cell_size is None else state.position % state.cell_size
-    return position[:, axes] * (1, 1, -1 if axes[2] == 1 else 1)
 
 
 def _view(run, axes):
@@ -78,9 +71,10 @@ def _view(run, axes):
     return middle[0] - half[0], middle[0] + half[0], middle[1] - half[1], middle[1] + half[1]
 
 
-def _frame(state, axes, colours, legend, view, pixel):
+def _frame(exported, axes, colours, legend, view, pixel):
     """RGB bytes (H, W, 3) of a state, H and W even, as the encoder wants them."""
-    position = _drawn(state, axes)
+    state = exported.state
+    position = exported.inside()[:, axes] * (1, 1, -1 if axes[2] == 1 else 1)  # to the right, up, towards the viewer
     fading = max(4.0, np.ptp(position[:, 2]) / state.radius.max())  # from front to back
     image = paint_spheres(position, state.radius, colours, view, pixel, fading=fading)[::-1]
     image = np.pad(image, [(0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)], mode="edge")

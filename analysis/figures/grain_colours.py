@@ -1,9 +1,12 @@
 """Colours of grains in films and on the page that `analysis view` writes: by what, and what each colour means."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Callable
 
 import numpy as np
+
+from ..progress import progress
 
 AGGREGATE_COLOURS = ((0.92, 0.60, 0.18), (0.24, 0.52, 0.82))
 GREY, BONDED = (0.75, 0.75, 0.75), (0.80, 0.25, 0.25)
@@ -55,21 +58,18 @@ class Colouring:
     legend: Callable
 
 
-@dataclass(frozen=True)
 class Range:
-    """What colours are relative to in all states of a run: number of aggregates, and the largest speed [m/s] on the scale."""
+    """What colours are relative to in all states of a RunFolder."""
 
-    aggregates: int
-    fastest: float
+    def __init__(self, run):
+        self._states = run.states
+        self.aggregates = int(run.start.aggregate.max()) + 1  # their number
 
-    @classmethod
-    def of(cls, states):
-        """Of any iterable of states."""
-        aggregates, speeds = 0, [np.zeros(1)]
-        for state in states:
-            aggregates = max(aggregates, int(state.aggregate.max()) + 1)
-            speeds.append(_speed(state))
-        return cls(aggregates, float(np.percentile(np.concatenate(speeds), _FAST)) or 1.0)
+    @cached_property
+    def fastest(self):
+        """The largest speed [m/s] on the scale; all states are read for it."""
+        speeds = [_speed(state) for state in progress(self._states, "finding the scale")]
+        return float(np.percentile(np.concatenate(speeds), _FAST)) or 1.0
 
 
 def _speed(state):

@@ -53,7 +53,7 @@ def _data(run):
     first = run.start
     unit, cell = float(first.radius.max()), first.cell_size
     origin = (first.position.min(axis=0) + first.position.max(axis=0)) / 2 if cell is None else cell / 2
-    of = Range.of(progress(run.states, "finding the scales"))
+    of = Range(run)
     states = progress(exported_states(run), "reading states", len(run.states))
     return {
         "title": run_title(run),
@@ -68,10 +68,9 @@ def _data(run):
 
 def _state(exported, of, origin, unit):
     state = exported.state
-    position = state.position if state.cell_size is None else state.position % state.cell_size
     return {
         "time": state.time,
-        "position": _packed((position - origin) / unit, "<f4"),
+        "position": _packed((exported.inside() - origin) / unit, "<f4"),
         "colours": {name: _packed(np.round(255 * way.colours(exported, of)), "u1") for name, way in COLOURINGS.items()},
         "first": _packed(exported.first, "<u4"),
         "between": _packed(exported.between / unit, "<f4"),
