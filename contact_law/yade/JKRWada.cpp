@@ -1,6 +1,7 @@
 #include "JKRWada.hpp"
 #include "../kernel/bond_step.hpp"
 #include "../kernel/blocked.hpp"
+#include "KernelVectors.hpp"
 #include "RunningLoop.hpp"
 #include <core/Body.hpp>
 #include <core/Cell.hpp>
@@ -22,9 +23,6 @@ CREATE_LOGGER(Ip2_JKRMat_JKRMat_JKRWadaPhys);
 CREATE_LOGGER(Law2_ScGeom_JKRWadaPhys_JKRWada);
 
 namespace {
-	Vec3d toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
-	Vector3r fromKernel(const Vec3d& v) { return Vector3r(v.x, v.y, v.z); }
-
 	// One line: what, its value, and what it must be. ValueError in Python.
 	void require(bool fine, const std::string& what, Real value, const char* must)
 	{

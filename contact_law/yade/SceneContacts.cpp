@@ -1,5 +1,6 @@
 #include "SceneContacts.hpp"
 #include "../kernel/turning.hpp"
+#include "KernelVectors.hpp"
 #include "Refusal.hpp"
 #include "SceneShapes.hpp"
 #include <core/Body.hpp>
@@ -15,9 +16,6 @@ using contact_law::PlaneContact;
 using Vec3d = contact_law::Vec3<double>;
 
 namespace {
-	Vec3d toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
-	Vector3r fromKernel(const Vec3d& v) { return Vector3r(v.x, v.y, v.z); }
-
 	struct Ids {
 		int low, high;
 		explicit Ids(const Interaction& i)

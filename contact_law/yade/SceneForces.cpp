@@ -1,5 +1,6 @@
 #include "SceneForces.hpp"
 #include "../engine/contacts.hpp"
+#include "KernelVectors.hpp"
 #include "Refusal.hpp"
 #include "SceneGrains.hpp"
 #include <core/GlobalEngine.hpp>
@@ -13,8 +14,6 @@ using contact_law::OutsideForce;
 namespace {
 	constexpr std::size_t numbersSaved = 7; // id, force, torque
 
-	Vector3r yadeVector(const contact_law::Vec3<double>& v) { return Vector3r(v.x, v.y, v.z); }
-	contact_law::Vec3<double> kernelVector(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 	bool allFinite(const Vector3r& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 	// Those of all bodies, without a call for each where they stand in a row, as they do once a force was added.
@@ -37,7 +36,7 @@ namespace {
 	OutsideForce permanentOn(Scene& scene, int id)
 	{
 		if (!scene.forces.getPermForceUsed()) return { id, { 0, 0, 0 }, { 0, 0, 0 } };
-		return { id, kernelVector(scene.forces.getPermForce(id)), kernelVector(scene.forces.getPermTorque(id)) };
+		return { id, toKernel(scene.forces.getPermForce(id)), toKernel(scene.forces.getPermTorque(id)) };
 	}
 
 	bool hasForceResetter(const Scene& scene)
@@ -73,8 +72,8 @@ void SceneForces::write(
 	for (int id = 0; id < bodies; ++id)
 		before.push_back(notPermanent(scene, id));
 	for (const OutsideForce& f : added) {
-		scene.forces.addForce(grains.idOf(f.grain), yadeVector(f.force));
-		scene.forces.addTorque(grains.idOf(f.grain), yadeVector(f.torque));
+		scene.forces.addForce(grains.idOf(f.grain), fromKernel(f.force));
+		scene.forces.addTorque(grains.idOf(f.grain), fromKernel(f.torque));
 	}
 	scene.forces.sync();
 	for (int id = 0; id < bodies; ++id)
@@ -121,7 +120,7 @@ std::vector<OutsideForce> SceneForces::found(Scene& scene, const SceneGrains& gr
 		if (force.isZero(0) && torque.isZero(0)) continue;
 		if (!allFinite(force) || !allFinite(torque))
 			refuseInEngine("O.forces has a force or torque on " + bodyName(id) + " that is not a finite number");
-		found.push_back({ grain, kernelVector(force), kernelVector(torque) });
+		found.push_back({ grain, toKernel(force), toKernel(torque) });
 	}
 	if (!hasForceResetter(scene)) scene.forces.reset(scene.iter);
 	return found;

@@ -1,14 +1,10 @@
 #include "ScenePlanes.hpp"
 #include "../engine/contacts.hpp"
+#include "KernelVectors.hpp"
 #include "Refusal.hpp"
 #include "SceneShapes.hpp"
 
 namespace yade {
-
-namespace {
-	contact_law::Vec3<double> toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
-	Vector3r fromKernel(const contact_law::Vec3<double>& v) { return Vector3r(v.x, v.y, v.z); }
-}
 
 void ScenePlanes::add(const shared_ptr<Body>& body, int kind)
 {
