@@ -12,6 +12,7 @@
 # make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
 # make study-compressed  collisions of compressed aggregates beside CPE ones
 # make study-status STUDY=viscous  how far a study is, from another shell
+# make gallery  makes the page above all studies and the paper again, analysis/gallery/README.md and paper.md, and build/paper.pdf
 # make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
@@ -303,6 +304,11 @@ study-status:
 $(STUDIES:%=gallery-%): gallery-%:
 	@mkdir -p build && cp analysis/gallery/$*/runs.csv build/$*-runs.csv
 	@$(PYTHON) -m analysis study $* build/$*-runs.csv $(wildcard $(call runs,$*)) --figures analysis/gallery/$*
+	@$(MAKE) --no-print-directory gallery
+
+.PHONY: gallery
+gallery:
+	@$(PYTHON) -m analysis.studies.documents build/paper.pdf
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
 # The papers' scenes: an hour the first time, when they are made. Stopped at any time, it resumes. SCENE=a22,k13: these only.

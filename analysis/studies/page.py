@@ -1,5 +1,7 @@
 """The pages of a study in Markdown: one screen that answers, and the details behind it. All studies have the same."""
 
+from functools import partial
+
 import pandas
 
 from ..measures.outcome import UNDECIDED
@@ -85,17 +87,20 @@ def filled(text, analysis):
     # slow to load, and the numbers do without it
     from jinja2 import Environment, StrictUndefined, TemplateError
 
-    def say(name, **where):
-        quantity = analysis.results[name]
-        estimate = quantity.at(**where)
-        return "not run" if estimate is None else f"{quantity.shown(estimate)!r} {quantity.unit}".rstrip()
-
+    say = partial(number, analysis.results)
     try:
         return Environment(undefined=StrictUndefined).from_string(text.strip()).render(say=say)
     except (TemplateError, KeyError, ValueError) as error:
         raise PaperError(
             f"{analysis.study.name}: paper.toml: [page]: {error.args[0] if error.args else error}"
         ) from None
+
+
+def number(results, name, **where):
+    """'54.0 ± 1.0 m/s' (str): a quantity of a definition.Results there, or 'not run'. KeyError for a name that there is not."""
+    quantity = results[name]
+    estimate = quantity.at(**where)
+    return "not run" if estimate is None else f"{quantity.shown(estimate)!r} {quantity.unit}".rstrip()
 
 
 def _joined(parts):

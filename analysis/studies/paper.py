@@ -4,6 +4,7 @@
 paper = "Arakawa, Tanaka & Kokubo (2022)"     # written out: it heads the page
 figure = "fig03_mean_growth"                   # the one figure on it
 runs = 5                                       # of every claim that doesn't say otherwise
+sentence                                       # what was found, in one sentence that can be quoted: on the page above all studies
 verdict, differs, new, missing                 # Markdown; {{ say("quantity", column = value) }} stands for "54.0 ± 1.0 m/s"
 
 [[claim]]
@@ -65,12 +66,13 @@ class Claim:
 
 @dataclass(frozen=True)
 class Page:
-    """Words of a page: paper (its name, written out), figure (name of the figure on the first screen), verdict, differs, new, missing
+    """Words of a page: paper (its name, written out), figure (name of the figure on the first screen), sentence, verdict, differs, new, missing
     (Markdown with numbers by say()); runs: Claim.runs of claims that don't say it."""
 
     paper: str = ""
     figure: str = ""
     runs: int = 1
+    sentence: str = ""
     verdict: str = ""
     differs: str = ""
     new: str = ""

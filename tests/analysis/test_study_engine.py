@@ -16,7 +16,7 @@ from written_runs import two_pairs
 from analysis.__main__ import main
 from analysis.report import pdf
 from analysis.runs.folder import open_run
-from analysis.studies import find
+from analysis.studies import documents, find
 from analysis.studies.analyse import analyse
 from analysis.studies.paper import read_paper
 from analysis.studies.snapshot_figure import SnapshotFigure, read_snapshots, write_snapshots
@@ -173,3 +173,9 @@ def test_every_gallery_is_one_screen_and_follows_from_its_runs(name, capsys):
         rows = (found["quantities"][quantity]["rows"] for found in (again, kept))
         ours, theirs = (np.array([row["value"] for row in own], dtype=float) for own in rows)
         assert ours == pytest.approx(theirs, rel=1e-6, abs=1e-12, nan_ok=True)
+
+
+def test_the_documents_above_the_studies_follow_from_the_runs():
+    """gallery/README.md and paper.md are what `make gallery` writes."""
+    for name, text in documents.texts().items():
+        assert (TOP / "analysis" / "gallery" / name).read_text() == text
