@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""What all adapters share: every scene at every step, measured, into a results file."""
+
+import json
+import sys
+from pathlib import Path
+
+ROOM = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOM))
+from measure import NotModelled, measured
+
+SUITE = json.loads((ROOM / "cases.json").read_text())
+MATERIALS = SUITE["materials"]
+
+
+def answer(case, series_of, coarsen=1):
+    """A case's entry of a results file. series_of(scene, materials, steps): a series (measure.py), or raises NotModelled."""
+    scenes, counts = case["scenes"], list(next(iter(case["scenes"].values()))["steps"])
+    values = {question["name"]: [] for question in case["asked"]}
+    try:
+        for level in range(len(counts)):
+            series = {
+                name: series_of(scene, MATERIALS, scene["steps"][level] // coarsen) for name, scene in scenes.items()
+            }
+            for question in case["asked"]:
+                values[question["name"]].append(measured(question, series, scenes))
+    except NotModelled as reason:
+        return {"not modelled": str(reason)}
+    duration = next(iter(scenes.values()))["duration"]
+    reported = {name: found if None not in found else None for name, found in values.items()}
+    return {"steps": [duration * coarsen / n for n in counts], "values": reported}
+
+
+def main(code, version, series_of, path, names=()):
+    """Writes the results file of a code; names: of cases, or all."""
+    chosen = [case for case in SUITE["cases"] if not names or case["id"] in names]
+    cases = {case["id"]: answer(case, series_of) for case in chosen}
+    text = json.dumps({"code": code, "version": version, "suite": SUITE["version"], "cases": cases}, indent=1)
+    Path(path).write_text(text.replace("NaN", "null") + "\n")
