@@ -89,12 +89,14 @@ def cubic_at_zero(x, y, k):
 
 
 def least(what, series, scene):
-    """Of a quantity, at the bottom of the quartic through five rows."""
+    """Of a quantity, at the bottom of the quartic through five rows, or at its end before a jump."""
     inside = window(what, series)
     x, y = quantity(series, scene, what["least"])[inside], quantity(series, scene, what["of"])[inside]
     k = int(np.argmin(x))
     if not 2 <= k < len(x) - 2:
         return nan
+    if abs(np.diff(x[k : k + 3])).max() > 10 * abs(x[k - 1] - x[k - 2]):  # it ends there
+        return float(y[k])
     t, rows = np.arange(-2, 3), slice(k - 2, k + 3)
     bottom = np.roots(np.polyder(np.polyfit(t, x[rows] / np.abs(x[rows]).max(), 4)))
     real = bottom[np.abs(bottom.imag) < 1e-6].real

@@ -13,22 +13,20 @@ SUITE = json.loads((ROOM / "cases.json").read_text())
 MATERIALS = SUITE["materials"]
 
 
-def answer(case, series_of, coarsen=1):
-    """A case's entry of a results file. series_of(scene, materials, steps): a series (measure.py), or raises NotModelled."""
-    scenes, counts = case["scenes"], list(next(iter(case["scenes"].values()))["steps"])
-    values = {question["name"]: [] for question in case["asked"]}
+def answer(case, series_of, levels=3):
+    """A case's entry of a results file, with so many of its steps. series_of(scene, materials, steps): a series (measure.py), or
+    raises NotModelled."""
+    scenes, values = case["scenes"], {question["name"]: [] for question in case["asked"]}
     try:
-        for level in range(len(counts)):
-            series = {
-                name: series_of(scene, MATERIALS, scene["steps"][level] // coarsen) for name, scene in scenes.items()
-            }
+        for level in range(levels):
+            series = {name: series_of(scene, MATERIALS, scene["steps"][level]) for name, scene in scenes.items()}
             for question in case["asked"]:
                 values[question["name"]].append(measured(question, series, scenes))
     except NotModelled as reason:
         return {"not modelled": str(reason)}
-    duration = next(iter(scenes.values()))["duration"]
+    first = next(iter(scenes.values()))
     reported = {name: found if None not in found else None for name, found in values.items()}
-    return {"steps": [duration * coarsen / n for n in counts], "values": reported}
+    return {"steps": [first["duration"] / n for n in first["steps"][:levels]], "values": reported}
 
 
 def main(code, version, series_of, path, names=()):

@@ -2,7 +2,7 @@
 """Sintered bonds of two grains (S17)."""
 
 from law import asin, bond, contact, cos, exact, mp, mpf, pi, rounded, sin, sqrt
-from scenes import along_x, asked, at, case, pair, segment
+from questions import along_x, asked, at, case, pair, segment
 
 BETA, DURATION, STEPS = 0.4, 1e-8, [500, 1000, 2000]
 ICE = contact("ice", 1e-7, "ice", 1e-7)

@@ -6,6 +6,7 @@
 
 import json
 import re
+import sys
 from pathlib import Path
 
 from bond_cases import bond_bending, bond_break, bond_shear, bond_tension, bond_torsion
@@ -25,10 +26,12 @@ MAKERS = (
 def cases(names=()):
     """Those of these names, or all, as they stand in the file."""
     made = (maker() for maker in MAKERS if not names or maker.__name__.replace("_", "-") in names)
-    return json.loads(json.dumps(list(made)))
+    return list(made)
 
 
-if __name__ == "__main__":
+if sys.argv[1:]:
+    print(json.dumps(cases(sys.argv[1:])))
+else:
     text = json.dumps({**HEAD, "materials": MATERIALS, "cases": cases()}, indent=1)
     vectors_in_a_line = re.sub(r"\[\s+([-+\d.e,\s]+?)\s+\]", lambda m: "[" + " ".join(m[1].split()) + "]", text)
     FILE.write_text(vectors_in_a_line + "\n")

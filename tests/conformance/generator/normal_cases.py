@@ -17,7 +17,7 @@ from law import (
     rounded,
     sqrt,
 )
-from scenes import REST, along_x, asked, at, case, grain, pair, segment, when
+from questions import REST, along_x, asked, at, case, grain, pair, segment, when
 
 ICE, GAP = contact("ice", 1e-7, "ice", 1e-7), 2.13e-9
 LEAST = (mpf(1) / 2) ** (mpf(1) / 3)  # u of the largest pull

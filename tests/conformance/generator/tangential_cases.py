@@ -21,7 +21,7 @@ from law import (
     turned,
 )
 from normal_cases import ICE, pulled
-from scenes import asked, at, case, grain, pair, segment, to_and_fro
+from questions import asked, at, case, grain, pair, segment, to_and_fro
 
 X, AWAY, AXES = [mpf(1), mpf(0), mpf(0)], [mpf(-1), mpf(0), mpf(0)], "xyz"
 QUARTER, STEPS = 2e-9, [500, 1000, 2000]  # of a cycle of prescribed spins

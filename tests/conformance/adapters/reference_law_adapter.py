@@ -1,4 +1,4 @@
-"""tests/reference_law.py:  /usr/bin/python3 adapters/reference_law.py RESULTS.json [CASE ...]"""
+"""tests/reference_law.py:  /usr/bin/python3 adapters/reference_law_adapter.py RESULTS.json [CASE ...]"""
 
 import importlib.util
 import sys
