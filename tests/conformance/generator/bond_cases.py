@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Sintered bonds of two grains (S17)."""
 
-from law import asin, bond, contact, cos, exact, mp, mpf, pi, rounded, sin, sqrt
+from law import *
 from questions import along_x, asked, at, case, pair, segment
 
 BETA, DURATION, STEPS = 0.4, 1e-8, [500, 1000, 2000]

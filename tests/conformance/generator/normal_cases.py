@@ -2,22 +2,8 @@
 """Normal motion of two grains, and of a grain and a plane."""
 
 from integration import integrate
-from law import (
-    U_BIRTH,
-    U_BREAK,
-    contact,
-    energy,
-    exact,
-    force,
-    force_at,
-    inf,
-    mp,
-    mpf,
-    overlap,
-    rounded,
-    sqrt,
-)
-from questions import REST, along_x, asked, at, case, grain, pair, segment, when
+from law import *
+from questions import REST, along_x, asked, at, case, constants, grain, pair, segment, when
 
 ICE, GAP = contact("ice", 1e-7, "ice", 1e-7), 2.13e-9
 LEAST = (mpf(1) / 2) ** (mpf(1) / 3)  # u of the largest pull
@@ -233,11 +219,17 @@ def viscous_drag():
 def plane():
     c, speed, end = contact("ice", 1e-7, "ice", inf), 8.0, 3e-9
     wall = dict(material="ice", normal=[1.0, 0.0, 0.0], position=[0.0, 0.0, 0.0])
-    made = dict(grains=[grain("ice", 1e-7, c.r1 + exact(GAP), along_x(-exact(speed)))], plane=wall, duration=end, steps=[6000, 12000, 24000])  # fmt: skip
+    made = dict(grains=[grain("ice", 1e-7, c.r1 + exact(GAP), along_x(-exact(speed)))], plane=wall, contact=constants(c), duration=end, steps=[6000, 12000, 24000])  # fmt: skip
     questions = collision_questions(c, speed, end)
     turning, duration = rounded(c.slide / c.r1 / 2, 3), 1e-8
     rate = rounded(exact(turning) / exact(duration))
-    rolled = dict(grains=[grain("ice", 1e-7, c.r1 - c.d0)], plane=wall, duration=duration, steps=[500, 1000, 2000])
+    rolled = dict(
+        grains=[grain("ice", 1e-7, c.r1 - c.d0)],
+        plane=wall,
+        contact=constants(c),
+        duration=duration,
+        steps=[500, 1000, 2000],
+    )
     rolled["prescribed"] = [segment(duration, spin1=[0.0, 0.0, rate])]
     rolled["prescribed"][0]["velocity"], rolled["prescribed"][0]["spin"] = [REST], [[0.0, 0.0, rate]]
     angle = exact(rate) * exact(duration)

@@ -5,6 +5,11 @@ from law import exact, mp, rounded
 
 REST = [0.0, 0.0, 0.0]
 DIGITS = 12  # of a reference value
+CONSTANTS = dict(reduced_young="E", reduced_radius="R", reduced_mass="m", surface_energy="gamma", time_unit="t0")
+CONSTANTS.update(equilibrium_contact_radius="a0", equilibrium_overlap="d0", pull_off_overlap="dc", pull_off_force="Fc")
+CONSTANTS.update(sliding_stiffness="ks", rolling_stiffness="kr", twisting_stiffness="kt")
+CONSTANTS.update(critical_sliding="slide", critical_rolling="roll", critical_twisting="twist")
+CONSTANTS.update(linear_drag="drag", viscous_drag_per_contact_radius="viscous")
 
 
 def grain(material, radius, x=0.0, velocity=REST, spin=REST):
@@ -17,7 +22,12 @@ def grain(material, radius, x=0.0, velocity=REST, spin=REST):
 def pair(c, delta, materials=("ice", "ice"), velocity2=REST, **more):
     """Two grains of contact constants c with an overlap, the first at the origin, the second on the positive x axis."""
     first, second = grain(materials[0], float(c.r1)), grain(materials[1], float(c.r2), c.r1 + c.r2 - delta, velocity2)
-    return dict(grains=[first, second], **more)
+    return dict(grains=[first, second], contact=constants(c), **more)
+
+
+def constants(c):
+    """Those of a contact as they stand in the file, SI; for codes that take stiffnesses, and to be compared first."""
+    return {name: float(mp.nstr(getattr(c, of), DIGITS)) for name, of in CONSTANTS.items()}
 
 
 def along_x(v):

@@ -2,26 +2,9 @@
 """Sliding, rolling and twisting of two grains in contact, prescribed (closed forms) and free (integration)."""
 
 from integration import integrate
-from law import (
-    asin,
-    combined,
-    contact,
-    cos,
-    cross,
-    displacements,
-    dot,
-    exact,
-    force_at,
-    mp,
-    mpf,
-    rounded,
-    sin,
-    springs,
-    sqrt,
-    turned,
-)
+from law import *
 from normal_cases import ICE, pulled
-from questions import asked, at, case, grain, pair, segment, to_and_fro
+from questions import asked, at, case, constants, grain, pair, segment, to_and_fro
 
 X, AWAY, AXES = [mpf(1), mpf(0), mpf(0)], [mpf(-1), mpf(0), mpf(0)], "xyz"
 QUARTER, STEPS = 2e-9, [500, 1000, 2000]  # of a cycle of prescribed spins
@@ -196,7 +179,7 @@ def free_rotation():
     c, end, speed = ICE, 4e-9, 15.0
     spins = [[2.5e6, 1.2e7, 1.58e8], [-4e6, 5e6, 1.46e8]]
     first, second = grain("ice", 1e-7, 0, [0.0, -speed, 1.0], spins[0]), grain("ice", 1e-7, c.r1 + c.r2 - c.d0, [0.0, speed, -1.0], spins[1])  # fmt: skip
-    made = dict(grains=[first, second], duration=end, steps=[4000, 8000, 16000])
+    made = dict(grains=[first, second], contact=constants(c), duration=end, steps=[4000, 8000, 16000])
     x, v = [-exact(second["position"][0]), mpf(0), mpf(0)], [mpf(0), -2 * exact(speed), mpf(2)]
     w1, w2 = ([exact(w) for w in spin] for spin in spins)
     y, step = [*x, *v, *w1, *w2, *X, *AWAY, mpf(0)], exact(end) / 40

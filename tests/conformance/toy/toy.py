@@ -11,49 +11,27 @@ import math
 import sys
 
 
-def constants(m1, m2, r1, r2, k_n):
-    R, E = r1 * r2 / (r1 + r2), 1 / sum((1 - m["poisson"] ** 2) / m["young"] for m in (m1, m2))
-    gamma = math.sqrt(m1["surface_energy"] * m2["surface_energy"])
-    masses = [4 / 3 * math.pi * m["density"] * r**3 for m, r in ((m1, r1), (m2, r2))]
-    a0, mass = (9 * math.pi * gamma * R**2 / E) ** (1 / 3), masses[0] * masses[1] / sum(masses)
-    t0 = (
-        0.95
-        * math.sqrt(2 * mass / (4 / 3 * math.pi * (2 * R) ** 3))
-        * (2 * R) ** (7 / 6)
-        / (E ** (1 / 3) * gamma ** (1 / 6))
-    )
-    d0 = a0**2 / (3 * R)
-    return dict(d0=d0, Fc=3 * math.pi * gamma * R, dc=(9 / 16) ** (1 / 3) * d0, mass=mass, drag=k_n * 2 * mass / t0)
-
-
 def jkr(c, overlap, u):
-    """Force at an overlap, and u = (a/a0)^(1/2) by Newton's method from the one of the step before."""
+    """Force at an overlap of a contact with constants c, and u = (a/a0)^(1/2) by Newton's method from the one of the step before."""
     for _ in range(60):
-        change = (3 * u**4 - 2 * u - overlap / c["d0"]) / (12 * u**3 - 2)
+        change = (3 * u**4 - 2 * u - overlap / c["equilibrium_overlap"]) / (12 * u**3 - 2)
         u = max(u - change, 6 ** (-1 / 3) * 1.0000001)
         if abs(change) < 1e-15:
             break
-    return 4 * c["Fc"] * (u**6 - u**3), u
+    return 4 * c["pull_off_force"] * (u**6 - u**3), u
 
 
-def run(scene, materials, steps):
+def run(scene, steps):
     """Rows of (time, overlap, speed of approach, push)."""
-    first, second = scene["grains"]
-    c = constants(
-        materials[first["material"]],
-        materials[second["material"]],
-        first["radius"],
-        second["radius"],
-        scene.get("linear_damping", 0.0),
-    )
+    c, (first, second) = scene["contact"], scene["grains"]
     h, touch = scene["duration"] / steps, first["radius"] + second["radius"]
     x, v = second["position"][0] - first["position"][0], second["velocity"][0] - first["velocity"][0]
     segments, rows, touching, u = scene.get("prescribed"), [], touch > second["position"][0], 1.5
 
     def force(x, v, touching, u):
-        touching = touch - x > (-c["dc"] if touching else 0)
+        touching = touch - x > (-c["pull_off_overlap"] if touching else 0)
         elastic, u = jkr(c, touch - x, u) if touching else (0.0, 1.5)
-        return elastic - c["drag"] * v * touching, touching, u
+        return elastic - c["linear_drag"] * v * touching, touching, u
 
     F, touching, u = force(x, v, touching, u)
     for k in range(steps + 1):
@@ -63,10 +41,12 @@ def run(scene, materials, steps):
             x += h * v
             F, touching, u = force(x, v, touching, u)
         else:
-            v += h / 2 * F / c["mass"]
+            v += h / 2 * F / c["reduced_mass"]
             x += h * v
-            F, touching, u = force(x, v + h / 2 * F / c["mass"], touching, u)  # drag at a velocity that is foreseen
-            v += h / 2 * F / c["mass"]
+            F, touching, u = force(
+                x, v + h / 2 * F / c["reduced_mass"], touching, u
+            )  # drag at a velocity that is foreseen
+            v += h / 2 * F / c["reduced_mass"]
     return rows
 
 
@@ -129,7 +109,7 @@ def main(path, results):
             continue
         scenes, values, steps = case["scenes"], {q["name"]: [] for q in case["asked"]}, []
         for level in range(3):
-            rows_of = {name: run(scene, suite["materials"], scene["steps"][level]) for name, scene in scenes.items()}
+            rows_of = {name: run(scene, scene["steps"][level]) for name, scene in scenes.items()}
             steps.append(next(iter(rows_of.values()))[1][0])
             for q in case["asked"]:
                 values[q["name"]].append(measured(q["measure"], rows_of, scenes))
