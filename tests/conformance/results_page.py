@@ -8,55 +8,50 @@ from check import CASES, verdicts
 
 ROOM = Path(__file__).resolve().parent
 CODES = ("engine", "functors", "reference_law", "lammps-newest", "lammps", "liggghts", "stock", "toy")
+HEAD = """# {suite}, version {version}: results
+
+Made by `make conformance`; [README.md](README.md) says how.
+*Agrees*: every value that a case asks for is within {tolerance:.0e} of the reference when it is extrapolated in the time step with order two.
+In brackets stand the largest difference, and the median of the orders with which errors fall (*exact*: the step leaves none).
+Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled.
+"""
 
 
 def cell(found):
     if "difference" not in found:
         return "–" if found["said"] == "not modelled" else found["said"]
-    size = f"{found['difference']:.0e}" if math.isfinite(found["difference"]) else "all of it"
+    size = f"{found['difference']:.0e}" if math.isfinite(found["difference"]) else "does not occur"
     order = "exact" if found["order"] is None else f"order {found['order']:.1f}"
-    return f"{found['said']} ({size}, {order})" if found["said"] == "agrees" else f"**{size}**"
+    return f"agrees ({size}, {order})" if found["said"] == "agrees" else f"**{size}**"
+
+
+def explained(name, found, why):
+    """Lines on the cases in which a code differs. `as`: the code that it is like, but for the reasons of its own."""
+    own = why.get(name, {})
+    lines = ["", f"## Why {name} differs", "", own["in short"], ""] if "in short" in own else []
+    for case, one in found.items():
+        like = case not in own and case in why.get(own.get("as"), {})
+        if one["said"] == "differs" and not like:
+            lines.append(f"- **{case}** ({cell(one).strip('*')}, {one['worst']}): {own.get(case, 'not explained')}.")
+    missing = [(case, one["why"]) for case, one in found.items() if one["said"] == "not modelled"]
+    for reason in dict.fromkeys(reason for _, reason in missing if lines):
+        lines.append(f"- Not modelled, {', '.join(case for case, its in missing if its == reason)}: {reason}.")
+    return lines
 
 
 def page():
     """The text of results.md."""
-    cases, why = json.loads(CASES.read_text()), json.loads((ROOM / "differences.json").read_text())
-    of = {
-        name: json.loads((ROOM / f"results/{name}.json").read_text())
-        for name in CODES
-        if (ROOM / f"results/{name}.json").exists()
-    }
-    found = {name: verdicts(results, cases) for name, results in of.items()}
-    lines = [
-        f"# {cases['suite']}, version {cases['version']}: results",
-        "",
-        "Made by `make conformance`; [README.md](README.md) says how.",
-        f"*agrees*: every value that a case asks for is within {cases['tolerance']:.0e} of the reference when it is extrapolated in the",
-        "time step with order two; in brackets the largest difference, and the median of the orders with which errors fall (*exact*: no",
-        "error of the step). Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled.",
-        "",
-        "| case | " + " | ".join(of) + " |",
-        "|---|" + "---|" * len(of),
-    ]
-    for case in cases["cases"]:
-        lines.append(f"| {case['id']} | " + " | ".join(cell(found[name][case["id"]]) for name in of) + " |")
-    lines += [
-        "",
-        "| code | version |",
-        "|---|---|",
-        *(f"| {name} | {r['code']}, {r['version']} |" for name, r in of.items()),
-    ]
-    lines += ["", "## The cases", "", *(f"- **{case['id']}**: {case['title']}." for case in cases["cases"])]
-    for name in of:
-        reasons, its = why.get(name, {}), found[name]
-        told = [c for c, one in its.items() if one["said"] in ("differs", "not modelled")]
-        if told:
-            lines += ["", f"## Why {name} differs", "", *([reasons["in short"], ""] if "in short" in reasons else [])]
-        for c in told:
-            one = its[c]
-            size = "not modelled" if "why" in one else f"{one['difference']:.1e}, {one['worst']}"
-            lines.append(f"- **{c}** ({size}): {reasons.get(c, one.get('why', 'not explained'))}.")
-    return "\n".join(lines) + "\n"
+    suite, why = json.loads(CASES.read_text()), json.loads((ROOM / "differences.json").read_text())
+    files = {name: ROOM / f"results/{name}.json" for name in CODES}
+    of = {name: json.loads(path.read_text()) for name, path in files.items() if path.exists()}
+    found = {name: verdicts(results, suite) for name, results in of.items()}
+    lines = [HEAD.format(**suite), "| case | " + " | ".join(of) + " |", "|---|" + "---|" * len(of)]
+    for case in suite["cases"]:
+        lines.append(f"| {case['id']} | " + " | ".join(cell(its[case["id"]]) for its in found.values()) + " |")
+    lines += ["", "| column | code |", "|---|---|"]
+    lines += [f"| {name} | {results['code']}, {results['version']} |" for name, results in of.items()]
+    lines += ["", "## The cases", "", *(f"- **{case['id']}**: {case['title']}." for case in suite["cases"])]
+    return "\n".join(lines + [line for name in of for line in explained(name, found[name], why)]) + "\n"
 
 
 if __name__ == "__main__":
