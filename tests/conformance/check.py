@@ -11,10 +11,9 @@ from pathlib import Path
 
 CASES = Path(__file__).with_name("cases.json")
 ROUNDING = 1e-9  # below it an error has no order
-FORMAL = 2  # order by which values are extrapolated
 
 
-def checked(question, steps, values, tolerance):
+def checked(question, steps, values, suite):
     """{difference (relative), order (None: not seen), said} of a question's values at some steps, the longest first."""
     if values is None:
         return dict(difference=None, order=None, said="not reported")
@@ -27,20 +26,20 @@ def checked(question, steps, values, tolerance):
         return dict(difference=math.inf, order=None, said="does not occur")
     limit = errors[-1]
     if len(steps) > 1:
-        limit += (errors[-1] - errors[-2]) / ((steps[-2] / steps[-1]) ** FORMAL - 1)
+        limit += (errors[-1] - errors[-2]) / ((steps[-2] / steps[-1]) ** suite["order"] - 1)
     order = None
     if min(abs(errors[0]), abs(errors[-1])) > ROUNDING and len(steps) > 1:
         order = math.log(abs(errors[0] / errors[-1])) / math.log(steps[0] / steps[-1])
-    return dict(difference=abs(limit), order=order, said="agrees" if abs(limit) <= tolerance else "differs")
+    return dict(difference=abs(limit), order=order, said="agrees" if abs(limit) <= suite["tolerance"] else "differs")
 
 
-def verdict(case, answer, tolerance):
+def verdict(case, answer, suite):
     """{said, difference, order, worst} of a case: of its worst question; questions: all of them."""
     if answer is None:
         return dict(said="not run")
     if "not modelled" in answer:
         return dict(said="not modelled", why=answer["not modelled"])
-    found = {q["name"]: checked(q, answer["steps"], answer["values"].get(q["name"]), tolerance) for q in case["asked"]}
+    found = {q["name"]: checked(q, answer["steps"], answer["values"].get(q["name"]), suite) for q in case["asked"]}
     known = {name: one for name, one in found.items() if one["difference"] is not None}
     if not known:
         return dict(said="not run")
@@ -55,7 +54,7 @@ def verdicts(results, cases=None):
     cases = cases or json.loads(CASES.read_text())
     if results.get("suite") != cases["version"]:
         sys.exit(f"check.py: results are of version {results.get('suite')} of the suite: must be {cases['version']}")
-    return {c["id"]: verdict(c, results["cases"].get(c["id"]), cases["tolerance"]) for c in cases["cases"]}
+    return {c["id"]: verdict(c, results["cases"].get(c["id"]), cases) for c in cases["cases"]}
 
 
 def in_words(found):
