@@ -24,16 +24,18 @@ def quantity(series, scene, name):
         last[:, 1:] = first[:, 1:]
     distance = np.linalg.norm(first - last, axis=1)
     normal = (first - last) / distance[:, None]
-    if name in ("time", "overlap", "approach", "push"):
-        return {
-            "time": lambda: series["time"],
-            "overlap": lambda: radii - distance,
-            "approach": lambda: -((speeds[:, 0] - speeds[:, -1]) * normal).sum(axis=1),
-            "push": lambda: (series["force"] * normal).sum(axis=1),
-        }[name]()
+    if name == "time":
+        return series["time"]
+    if name == "overlap":
+        return radii - distance
+    if name == "approach":
+        return -((speeds[:, 0] - speeds[:, -1]) * normal).sum(axis=1)
+    if name == "push":
+        return (series["force"] * normal).sum(axis=1)
     of, axis = name.split(".")
-    vector = angular_momentum(series, scene) if of == "angular_momentum" else None
-    if vector is None:
+    if of == "angular_momentum":
+        vector = angular_momentum(series, scene)
+    else:
         vector = series["force"] if of == "force1" else series[of[:-1]][:, int(of[-1]) - 1]
     return vector[:, "xyz".index(axis)]
 
@@ -50,10 +52,10 @@ def measured(question, series_of, scenes):
     """The value that a question asks for; nan where it does not occur, None where the code keeps no such ledger."""
     what = question["measure"]
     if what["kind"] == "sticking":  # v'^2 is linear in v^2: its zero
-        squares = [(quantity(series_of[name], scenes[name], "approach")[-1]) ** 2 for name in what["scenes"]]
-        (v1, v2), slope = (v**2 for v in what["speeds"]), 0.0
-        slope = (squares[1] - squares[0]) / (v2 - v1)
-        return float(np.sqrt(v1 - squares[0] / slope)) if slope > 0 and v1 > squares[0] / slope else nan
+        w1, w2 = (quantity(series_of[name], scenes[name], "approach")[-1] ** 2 for name in what["scenes"])
+        v1, v2 = (v**2 for v in what["speeds"])
+        square = v1 - w1 * (v2 - v1) / (w2 - w1)
+        return float(np.sqrt(square)) if square > 0 else nan
     series, scene = series_of[what["scene"]], scenes[what["scene"]]
     return KINDS[what["kind"]](what, series, scene)
 

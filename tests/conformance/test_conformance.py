@@ -20,9 +20,7 @@ LEVELS = 2  # of three
 def sampled(series_of):
     """Cases of the sample that differ, in words."""
     found = {
-        c["id"]: check.verdict(c, answer(c, series_of, LEVELS), SUITE)
-        for c in SUITE["cases"]
-        if c["id"] in SAMPLE
+        c["id"]: check.verdict(c, answer(c, series_of, LEVELS), SUITE) for c in SUITE["cases"] if c["id"] in SAMPLE
     }
     return {name: check.in_words(one) for name, one in found.items() if one["said"] != "agrees"}
 

@@ -15,7 +15,9 @@ from normal_cases import collision, equilibrium, hysteresis, linear_drag, oscill
 from tangential_cases import free_rotation, rolling, sliding, twisting, two_at_once, unlike_materials, unlike_radii
 
 FILE = Path(__file__).resolve().parents[1] / "cases.json"
-HEAD = dict(suite="JKR-Wada conformance: two grains", version="1.0.0", licence="CC0-1.0", units="SI", tolerance=1e-6, order=2)
+HEAD = dict(
+    suite="JKR-Wada conformance: two grains", version="1.0.0", licence="CC0-1.0", units="SI", tolerance=1e-6, order=2
+)
 MAKERS = (
     *(equilibrium, hysteresis, collision, sticking, oscillation, linear_drag, viscous_drag),
     *(sliding, rolling, twisting, two_at_once, unlike_radii, unlike_materials),
