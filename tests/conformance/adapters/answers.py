@@ -33,5 +33,8 @@ def main(code, version, series_of, path, names=()):
     """Writes the results file of a code; names: of cases, or all."""
     chosen = [case for case in SUITE["cases"] if not names or case["id"] in names]
     cases = {case["id"]: answer(case, series_of) for case in chosen}
-    text = json.dumps({"code": code, "version": version, "suite": SUITE["version"], "cases": cases}, indent=1)
-    Path(path).write_text(text.replace("NaN", "null") + "\n")
+    lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(found)}" for name, found in cases.items()).replace(
+        "NaN", "null"
+    )
+    head = json.dumps({"code": code, "version": version, "suite": SUITE["version"], "cases": {}})
+    Path(path).write_text(f"{head[:-2]}\n{lines}\n}}}}\n")
