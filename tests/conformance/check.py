@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""Compares a code's results with cases.json:  python3 check.py RESULTS.json [--long]
+
+Python alone, no packages. Ends with status 1 where a case differs. README.md describes both files.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+CASES = Path(__file__).with_name("cases.json")
+ROUNDING = 1e-9  # below it an error has no order
+
+
+def checked(question, steps, values, suite):
+    """{difference (relative), order (None: not seen), said} of a question's values at some steps, the longest first."""
+    if values is None:
+        return dict(difference=None, order=None, said="not reported")
+    exact = float(question["value"])
+    scale = question.get("scale", abs(exact))
+    if len(values) != len(steps) or not all(isinstance(v, (int, float)) for v in values):
+        return dict(difference=math.inf, order=None, said="does not occur")
+    errors = [(v - exact) / scale for v in values]
+    if not all(map(math.isfinite, errors)):
+        return dict(difference=math.inf, order=None, said="does not occur")
+    limit = errors[-1]
+    if len(steps) > 1:
+        limit += (errors[-1] - errors[-2]) / ((steps[-2] / steps[-1]) ** suite["order"] - 1)
+    order = None
+    if min(abs(errors[0]), abs(errors[-1])) > ROUNDING and len(steps) > 1:
+        order = math.log(abs(errors[0] / errors[-1])) / math.log(steps[0] / steps[-1])
+    return dict(difference=abs(limit), order=order, said="agrees" if abs(limit) <= suite["tolerance"] else "differs")
+
+
+def verdict(case, answer, suite):
+    """{said, difference, order, worst} of a case: of its worst question; questions: all of them."""
+    if answer is None:
+        return dict(said="not run")
+    if "not modelled" in answer:
+        return dict(said="not modelled", why=answer["not modelled"])
+    found = {q["name"]: checked(q, answer["steps"], answer["values"].get(q["name"]), suite) for q in case["asked"]}
+    known = {name: one for name, one in found.items() if one["difference"] is not None}
+    if not known:
+        return dict(said="not run")
+    worst = max(known, key=lambda name: known[name]["difference"])
+    orders = [one["order"] for one in known.values() if one["order"] is not None]
+    said = "agrees" if all(one["said"] == "agrees" for one in known.values()) else "differs"
+    order = sorted(orders)[len(orders) // 2] if orders else None
+    return dict(said=said, difference=known[worst]["difference"], order=order, worst=worst, questions=found)
+
+
+def verdicts(results, cases=None):
+    cases = cases or json.loads(CASES.read_text())
+    if results.get("suite") != cases["version"]:
+        sys.exit(f"check.py: results are of version {results.get('suite')} of the suite: must be {cases['version']}")
+    return {c["id"]: verdict(c, results["cases"].get(c["id"]), cases) for c in cases["cases"]}
+
+
+def in_words(found):
+    if "difference" not in found:
+        return found["said"] + (f": {found['why']}" if "why" in found else "")
+    order = "" if found["order"] is None else f", order {found['order']:.1f}"
+    by = "something does not occur" if math.isinf(found["difference"]) else f"{found['difference']:.1e}"
+    return f"{found['said']} ({by}{order}; worst: {found['worst']})"
+
+
+def main(path, *options):
+    try:
+        results = json.loads(Path(path).read_text())
+        found = verdicts(results)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        sys.exit(f"check.py: {path}: {error!r}: must be a results file (README.md)")
+    for name, one in found.items():
+        print(f"{name:18}{in_words(one)}")
+        if "--long" in options:
+            for question, its in one.get("questions", {}).items():
+                size = "" if its["difference"] is None else f" {its['difference']:.1e}"
+                order = "" if its["order"] is None else f", order {its['order']:.2f}"
+                print(f"    {its['said']:16}{question}{size}{order}")
+    return 1 if any(one["said"] == "differs" for one in found.values()) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]) if len(sys.argv) > 1 else __doc__)
