@@ -10,11 +10,11 @@ Rows whose run folder has ended are skipped, provided that its parameters are th
 resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
 ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
 a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
-Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be the name of
+Logs are in runs/logs/NAME of the table. TABLE may also be the name of
 a table in yade_scripts/studies: elastoplastic-desk. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are
 obeyed, others refused.
 
-With --slurm each row that is left is one task, by the same rules, of as many processors as it has threads. A minute
+With --slurm each row that is left is one task, or short ones share one, by the same rules, of as many processors as a row has threads. A minute
 before its time limit a task writes its checkpoint and is queued again; rows that are in the queue already are not
 submitted. --dry-run prints the scripts, and submits nothing.
 
@@ -37,13 +37,12 @@ from analysis.signals import end_quietly
 end_quietly(signal.SIGINT)
 require_libraries()
 from analysis.printable import printable
-from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import rows, slurm, view
-from yade_scripts.runner.batch import LEFT, LOGS, Batch, StudyBusy, StudyFolder
+from yade_scripts.runner.batch import LOGS, Batch, StudyBusy, StudyFolder
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
 
@@ -102,7 +101,6 @@ class Study:
         self.name = os.path.splitext(os.path.basename(table))[0]
         self.rows, self.jobs = rows.read(table, run_scripts), jobs
         self.folder = StudyFolder(self.name)
-        require_file(self.folder.file(LEFT), inputs=[table])
         self._before = {}
         self._final = {}  # states that can't change any more
 
@@ -171,8 +169,8 @@ def submit(study, at_once, sbatch, dry_run):
     if dry_run:
         print("\n".join(slurm.scripts(study.folder, left, at_once, sbatch)), end="")
         return int(bool(failures))
-    for job, group in slurm.submit(study.folder, left, at_once, sbatch):
-        print(f"Slurm job {job}: {len(group)} tasks, {group[0].threads} threads each", flush=True)
+    for job, group, tasks in slurm.submit(study.folder, left, at_once, sbatch):
+        print(f"Slurm job {job}: {len(group)} rows in {tasks} tasks, {group[0].threads} threads each", flush=True)
     others = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, FAILED)]
     waiting = sum(state.kind == WAITING for state in states) - len(left)
     print(
@@ -204,7 +202,7 @@ def run(study, stop):
 def _run_batch(study, left, screen, stop):
     with Batch(study.folder, left, study.jobs) as batch:
         while batch.running() and not stop.received:
-            _wait(study, screen, stop, batch.running)
+            batch.wait(0.1)
         if stop.received:
             screen.close()
             print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)

@@ -8,6 +8,7 @@ from statistics import median
 # at 6,400, 51,200 and 409,600 grains.
 CACHE_EXPONENT = 0.07
 SIMILAR = 1.3  # ratio of sizes up to which ended runs count as equals, their median the estimate
+TYPICAL = 3e7  # contact updates a second
 TELLING = 10.0  # s that an ended run must have taken to tell of others: shorter ones mostly start up
 
 
@@ -51,6 +52,11 @@ class Cost:
 def contact_updates(row):
     """Steps times contacts of a row's run, as its kind estimates them."""
     return row.estimate.contacts * row.estimate.steps
+
+
+def typical_seconds(row):
+    """Seconds that the run of a row takes on a usual processor, where nothing is known of it but the row."""
+    return contact_updates(row) / TYPICAL
 
 
 def run_size(row):
