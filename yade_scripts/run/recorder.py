@@ -2,6 +2,7 @@
 
 import time
 from contextlib import suppress
+from math import isfinite
 
 import numpy as np
 from yade.wrapper import JKRWadaEngine, Omega
@@ -142,11 +143,11 @@ class Recorder:
         """Raise RunFailed when a number is not finite, or the ledger of all channels is off by a tenth."""
         when = f'at {state["time"]:.4g} s'
         for channel, energy in energies.items():
-            if not np.isfinite(energy):
+            if not isfinite(energy):
                 raise RunFailed(f"energy {channel} is {energy} {when}")
-        finite = np.isfinite(state["position"]).all(axis=1)
+        finite = np.isfinite(state["position"])
         if not finite.all():
-            raise RunFailed(f'body {state["ids"][~finite][0]} has no finite position {when}')
+            raise RunFailed(f'body {state["ids"][~finite.all(axis=1)][0]} has no finite position {when}')
         if self.scene.energy_is_conserved:
             self._require_conserved(state, energies, when)
 

@@ -8,6 +8,7 @@ be stopped, and (its process id, its exit status).
 """
 
 import ctypes
+import gc
 import importlib
 import os
 import signal
@@ -25,7 +26,10 @@ LOADED = (
     "yade_scripts.run.checkpoint_writer",
     "yade_scripts.run.recorder",
     "yade_scripts.run.report",
+    "yade_scripts.run.scene",
+    "yade_scripts.run.schedule",
     "yade_scripts.run.script",
+    "multiprocessing.synchronize",
 )
 SIGNAL_OF_PARENTS_DEATH = 1  # PR_SET_PDEATHSIG of prctl(2)
 
@@ -37,6 +41,7 @@ def serve(connection):
     with suppress(ImportError):  # a plugin that isn't built: each run says so itself
         for name in LOADED:
             importlib.import_module(name)
+    gc.freeze()  # what is loaded is not garbage, and memory that isn't looked at stays shared with the runs
     with suppress(EOFError):
         while True:
             row = connection.recv()
