@@ -71,16 +71,22 @@ def _become(connection, script, arguments, threads, log):
             exec(compile(file.read(), script, "exec"), vars(sys.modules["__main__"]))
         status = 0
     except SystemExit as end:
-        status = end.code
+        status = _status(end.code)
     except BaseException:
         traceback.print_exc()
     finally:
         with suppress(OSError):
             sys.stdout.flush()
             libc.fflush(None)
-        os._exit(
-            status if isinstance(status, int) else int(status is not None)
-        )  # not by the exits of another process's threads
+        os._exit(status)  # not by what the process that was forked does at its end
+
+
+def _status(code):
+    """The exit status of a SystemExit; a text is told, as Python does."""
+    if code is None or isinstance(code, int):
+        return code or 0
+    print(code, file=sys.stderr)
+    return 1
 
 
 def _use_threads(number):

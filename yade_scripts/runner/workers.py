@@ -18,7 +18,7 @@ class Worker:
     """
 
     def __init__(self, log, options=(), pass_fds=(), **process):
-        self.row, self.run, self._stopped = None, None, False
+        self.row = self.run = None
         self.connection, theirs = multiprocessing.Pipe()
         with open(log, "a") as output, theirs:
             self.process = subprocess.Popen(
@@ -37,7 +37,7 @@ class Worker:
 
     def begin(self, row, log):
         """Have it run a row (rows.StudyRow), whose output goes to the end of the file log."""
-        self.row, self.run, self._log = row, None, log
+        self.row, self.run, self._log, self._stopped = row, None, log, False
         arguments = [f"{name}={text}" for name, text in row.arguments.items()]
         task = dict(
             script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=os.path.abspath(log)
