@@ -2,6 +2,7 @@
 
 import time
 from contextlib import suppress
+from functools import cached_property
 from math import isfinite
 
 import numpy as np
@@ -151,11 +152,13 @@ class Recorder:
         if self.scene.energy_is_conserved:
             self._require_conserved(state, energies, when)
 
+    @cached_property
+    def _energies_at_start(self):
+        first = self.columns.index(CHANNELS[0])
+        return dict(zip(CHANNELS, self._rows[0][first : first + len(CHANNELS)]))
+
     def _require_conserved(self, state, energies, when):
-        start = energies
-        if self._rows:
-            first = self.columns.index(CHANNELS[0])
-            start = dict(zip(CHANNELS, self._rows[0][first : first + len(CHANNELS)]))
+        start = self._energies_at_start if self._rows else energies
         more = sum(energies.values()) - sum(start.values())
         scale = sum(map(abs, start.values())) + sum(abs(energies[name] - start[name]) for name in WORK_CHANNELS)
         if abs(more) > LARGEST_LEDGER_ERROR * scale:
