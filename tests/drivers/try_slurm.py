@@ -2,7 +2,7 @@
 
     python3 tests/drivers/try_slurm.py [--out FILE]      root; some five minutes on two cores
 
-One row fails, one is killed, one is requeued and one meets its time limit while it runs. Exit status: 0 when all was as it must be,
+One row fails, one is killed, and the task of all is requeued and meets its time limit. Exit status: 0 when all was as it must be,
 otherwise 1, with one line on stderr for each that was not.
 """
 
@@ -28,9 +28,10 @@ ENDING = (*LONG, *SHORT)
 PATIENCE = 300  # s
 HEAD = """# Slurm
 
-A table of twelve collisions, short enough to share one task, is submitted by `study.py --slurm` to Slurm {slurm} of Debian (slurmctld, slurmd and munged on loopback,
-one node), and run by `study.py` in another folder. Of the three long rows one is requeued (`scontrol requeue`), one gets the signal
-that Slurm sends before a time limit, the run of one is killed (SIGKILL), each after its first checkpoint. One row fails, eight end.
+A table of twelve collisions, short enough to share one task, is submitted by `study.py --slurm` to Slurm {slurm} of Debian (slurmctld,
+slurmd and munged on loopback, one node), and run by `study.py` in another folder. While the first of the three long rows runs, the task is
+requeued (`scontrol requeue`); during the second one it gets the signal that Slurm sends before a time limit; the run of the third is
+killed (SIGKILL); each after its first checkpoint. One row fails, eight end.
 "Elsewhere" is a process in a namespace of its own, with another host name, that sees none of this machine's locks.
 
 `make test-slurm`, commit {commit}, {cpu}, {cores} cores, {minutes:.1f} minutes.

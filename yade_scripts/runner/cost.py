@@ -11,7 +11,7 @@ import numpy as np
 CACHE_EXPONENT = 0.07
 SIMILAR = 1.3  # ratio of sizes up to which ended runs count as equals, their median the estimate
 TYPICAL = 3e7  # contact updates a second
-TELLING = 10.0  # s that an ended run must have taken to tell of others: shorter ones mostly start up
+TELLING = 2.0  # s that an ended run must have taken to tell of others: shorter ones mostly make packings and files
 
 
 @dataclass
