@@ -54,9 +54,7 @@ def compression_and_velocity(x, x_velocity, aggregate_radius):
     right, left = (x > 0).nonzero()[0], (x < 0).nonzero()[0]
     if not (right.size and left.size):
         return float("nan"), float("nan")
-    mean = (
-        lambda values, side: np.add.reduce(values[side]) / side.size
-    )  # at half the time of .mean(), in each sample of a run
+    mean = lambda values, side: np.add.reduce(values[side]) / side.size  # at half the time of values[side].mean()
     d = 2.0 * aggregate_radius - (mean(x, right) - mean(x, left))
     return float(d), float(-(mean(x_velocity, right) - mean(x_velocity, left)))
 
