@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from multiprocessing.connection import wait
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
@@ -70,6 +71,8 @@ class Task:
         return status or int(after.kind != DONE)
 
     def _run(self, row, log):
+        with suppress(FileNotFoundError):
+            os.remove(log)  # of a run before the task was queued again
         if not self._worker or not self._worker.is_alive():
             self._worker = Worker(log)
         self._worker.begin(row, log)

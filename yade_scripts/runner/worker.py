@@ -38,11 +38,11 @@ def serve(connection):
     """Run what comes, until the other end is closed."""
     for number in (signal.SIGINT, signal.SIGTERM):  # these are for the run, if they are sent to all processes
         signal.signal(number, signal.SIG_IGN)
-    with suppress(ImportError):  # a plugin that isn't built: each run says so itself
+    with suppress(Exception):  # a plugin that isn't built: each run says so itself
         for name in LOADED:
             importlib.import_module(name)
     gc.freeze()  # what is loaded is not garbage, and memory that isn't looked at stays shared with the runs
-    with suppress(EOFError):
+    with suppress(EOFError, ConnectionError):
         while True:
             row = connection.recv()
             sys.stdout.flush()
@@ -75,10 +75,10 @@ def _become(connection, script, arguments, threads, log):
     except BaseException:
         traceback.print_exc()
     finally:
-        with suppress(OSError):
+        with suppress(Exception):
             sys.stdout.flush()
             libc.fflush(None)
-        os._exit(status)  # not by what the process that was forked does at its end
+        os._exit(status & 0xFF)  # not by what the process that was forked does at its end
 
 
 def _status(code):
