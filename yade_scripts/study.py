@@ -10,11 +10,11 @@ Rows whose run folder has ended are skipped, provided that its parameters are th
 resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
 ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
 a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
-Logs, and the table of the rows that were left, are in runs/logs/NAME of the table. TABLE may also be the name of
+Logs are in runs/logs/NAME of the table. TABLE may also be the name of
 a table in yade_scripts/studies: elastoplastic-desk. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are
 obeyed, others refused.
 
-With --slurm each row that is left is one task, by the same rules, of as many processors as it has threads. A minute
+With --slurm each row that is left is one task, or short ones share one, by the same rules, of as many processors as a row has threads. A minute
 before its time limit a task writes its checkpoint and is queued again; rows that are in the queue already are not
 submitted. --dry-run prints the scripts, and submits nothing.
 
@@ -37,19 +37,19 @@ from analysis.signals import end_quietly
 end_quietly(signal.SIGINT)
 require_libraries()
 from analysis.printable import printable
-from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import rows, slurm, view
-from yade_scripts.runner.batch import LEFT, LOGS, Batch, StudyBusy, StudyFolder
+from yade_scripts.runner.batch import LOGS, Batch, StudyBusy, StudyFolder
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
 
 SCRIPT = os.path.basename(__file__)
 STUDIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "studies")
-POLL = 1.0  # s
+POLL = 1.0  # s, for what runs elsewhere
+HEAR_SIGNALS = 0.1  # s
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -102,9 +102,8 @@ class Study:
         self.name = os.path.splitext(os.path.basename(table))[0]
         self.rows, self.jobs = rows.read(table, run_scripts), jobs
         self.folder = StudyFolder(self.name)
-        require_file(self.folder.file(LEFT), inputs=[table])
         self._before = {}
-        self._final = {}  # states that can't change any more
+        self._states = {}
 
     def forget_failures(self):
         """From now on only those that follow count."""
@@ -112,18 +111,17 @@ class Study:
             file: when for row in self.rows for file, when in rows.traces(row, self.folder.log(row)).items()
         }
 
-    def states(self):
-        found = []
+    def states(self, changed=None):
+        """[State of each row]; looked at only for the rows that may have `changed` (names; None: any) since they were last."""
         for row in self.rows:
-            state = self._final.get(row.name) or rows.state(row, self.folder.log(row), self._before)
-            if state.kind == DONE:
-                self._final[row.name] = state
-            found.append(state)
-        return found
+            before = self._states.get(row.name)
+            if before is None or before.kind != DONE and (changed is None or row.name in changed):
+                self._states[row.name] = rows.state(row, self.folder.log(row), self._before)
+        return [self._states[row.name] for row in self.rows]
 
-    def states_with_queue(self):
-        """The same, with a note where a row is a task of Slurm's queue; [whether it is one, ...]."""
-        states, queued = self.states(), slurm.queued(self.folder)
+    def states_with_queue(self, changed=None):
+        """states(), with a note where a row is a task of Slurm's queue; [whether it is one, ...]."""
+        states, queued = self.states(changed), slurm.queued(self.folder)
         for number, (row, state) in enumerate(zip(self.rows, states)):
             if state.kind == WAITING and row.name in queued:
                 task, of_slurm = queued[row.name]
@@ -131,8 +129,8 @@ class Study:
                 states[number] = replace(state, note=note)
         return states, [row.name in queued for row in self.rows]
 
-    def text(self, drawn_as):
-        states, _ = self.states_with_queue()
+    def text(self, drawn_as, changed=None):
+        states, _ = self.states_with_queue(changed)
         return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
 
     def announce(self):
@@ -171,8 +169,8 @@ def submit(study, at_once, sbatch, dry_run):
     if dry_run:
         print("\n".join(slurm.scripts(study.folder, left, at_once, sbatch)), end="")
         return int(bool(failures))
-    for job, group in slurm.submit(study.folder, left, at_once, sbatch):
-        print(f"Slurm job {job}: {len(group)} tasks, {group[0].threads} threads each", flush=True)
+    for job, group, tasks in slurm.submit(study.folder, left, at_once, sbatch):
+        print(f"Slurm job {job}: {len(group)} rows in {tasks} tasks, {group[0].threads} threads each", flush=True)
     others = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, FAILED)]
     waiting = sum(state.kind == WAITING for state in states) - len(left)
     print(
@@ -183,19 +181,23 @@ def submit(study, at_once, sbatch, dry_run):
 
 def run(study, stop):
     """Run all rows that are left; returns when all have come to an end, or stop.received."""
-    tried, screen = set(), Screen()
+    tried, screen, changed = set(), Screen(), None
     while not stop.received:
-        states = study.states()
+        states = study.states(changed)
         left = [
             row
             for row, state in zip(study.rows, states)
             if state.kind not in (DONE, FAILED, RUNNING) and row.name not in tried
         ]
+        elsewhere = {row.name for row, state in zip(study.rows, states) if state.kind == RUNNING}
         if left:
             tried |= {row.name for row in left}
             _run_batch(study, left, screen, stop)
-        elif any(state.kind == RUNNING for state in states):  # by another process
-            _wait(study, screen, stop)
+            changed = None
+        elif elsewhere:
+            screen.draw_if_due(lambda: study.text(view.live_table, elsewhere))
+            _wait(stop)
+            changed = elsewhere
         else:
             break
     screen.close()
@@ -203,20 +205,22 @@ def run(study, stop):
 
 def _run_batch(study, left, screen, stop):
     with Batch(study.folder, left, study.jobs) as batch:
-        while batch.running() and not stop.received:
-            _wait(study, screen, stop, batch.running)
+        changed = set()
+        while (at_work := {row.name for row in batch.running()}) and not stop.received:
+            changed |= at_work
+            if screen.draw_if_due(lambda: study.text(view.live_table, changed)):
+                changed = at_work
+            batch.wait(HEAR_SIGNALS)
         if stop.received:
             screen.close()
             print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
             batch.stop()
 
 
-def _wait(study, screen, stop, busy=lambda: True):
-    if screen.shown:
-        screen.draw(study.text(view.live_table))
+def _wait(stop):
     until = time.monotonic() + POLL
-    while time.monotonic() < until and busy() and not stop.received:
-        time.sleep(0.1)
+    while time.monotonic() < until and not stop.received:
+        time.sleep(HEAR_SIGNALS)
 
 
 def close(study, stop):

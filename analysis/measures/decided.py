@@ -9,6 +9,7 @@ plane, with necks; 0.3 to 20 m/s; judged at 60 times each): none became another 
 grains are decided within 1 to 4 rebound times, sintered ones that ring after up to 30.
 """
 
+from functools import cached_property
 from itertools import chain
 
 import numpy as np
@@ -85,9 +86,16 @@ class Pieces:
     def __init__(self, state, constants):
         self.state, self.constants = state, constants
         self.mass = 4 / 3 * np.pi * constants["density"] * state["radius"] ** 3
-        self.labels = fragment_labels(len(self.mass), state["contact_pairs"])
         self._motion = state["position"], state["velocity"], self.mass
-        self.flight = state["position"], state["velocity"], state["radius"], self.labels  # of free_flight
+
+    @cached_property  # not needed as long as the aggregates may rebound
+    def labels(self):
+        return fragment_labels(len(self.mass), self.state["contact_pairs"])
+
+    @property
+    def flight(self):
+        """Arguments of free_flight."""
+        return self.state["position"], self.state["velocity"], self.state["radius"], self.labels
 
     def why_rebounding(self, since_touch):
         needed = rebound_time(

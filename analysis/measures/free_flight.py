@@ -1,7 +1,6 @@
 """Whether the pieces of a collision can still meet or break: grains that fly apart on straight lines."""
 
 import numpy as np
-from scipy.sparse import coo_matrix
 
 _CHUNK = 4_000_000  # pairs of pieces compared at once
 
@@ -77,6 +76,5 @@ def motion_in_pieces(position, velocity, mass, labels):
 
 def _means(values, labels, mass):
     """Mass-weighted means (K,3) over pieces of values (N,3)."""
-    rows = np.arange(len(labels))
-    sums = coo_matrix((mass, (labels, rows)), shape=(labels.max() + 1, len(labels))).tocsr()
-    return (sums @ values) / np.bincount(labels, weights=mass)[:, None]
+    sums = [np.bincount(labels, weights=mass * component) for component in values.T]
+    return np.stack(sums, 1) / np.bincount(labels, weights=mass)[:, None]

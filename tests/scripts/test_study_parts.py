@@ -1,7 +1,6 @@
 """Tables, estimates and texts of a study, without running one."""
 
 import os
-import time
 from io import StringIO
 
 import numpy as np
@@ -15,7 +14,7 @@ from yade_scripts.packings.approach import first_touch
 from yade_scripts.run import agreement, table
 from yade_scripts.run.closing_line import closing_line, outcome_told
 from yade_scripts.runner import cost, rows, view
-from yade_scripts.runner.batch import Batch, StudyFolder
+from yade_scripts.runner.batch import StudyFolder
 from yade_scripts.runner.screen import Screen
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
@@ -188,21 +187,6 @@ def test_runs_of_format_1_agree_with_rows_that_give_no_duration():
     assert difference(duration=1e-9) == "duration = 5.168e-07, not 1e-09"
     given["duration"] *= 1.1
     assert difference() == "duration = 5.6848e-07, not 5.168e-07"
-
-
-def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path, program):
-    """One that takes more than there are runs alone."""
-    program("yade", f"echo begin $2 >> {tmp_path}/told; sleep 0.5; echo end $2 >> {tmp_path}/told")
-    lines = "".join(f"{threads} runs/{k}\n" for k, threads in enumerate((3, 1, 1, 2)))
-    (tmp_path / "rows.table").write_text("threads out\n" + lines)
-    folder = StudyFolder("any")
-    folder.path, folder.held = str(tmp_path), os.open(tmp_path, os.O_RDONLY)
-    with Batch(folder, rows.read(tmp_path / "rows.table"), 2) as batch:
-        while batch.running():
-            time.sleep(0.01)
-    os.close(folder.held)
-    told = (tmp_path / "told").read_text().replace("--threads=", "").splitlines()
-    assert told == ["begin 3", "end 3", "begin 1", "begin 1", "end 1", "end 1", "begin 2", "end 2"]
 
 
 @pytest.mark.parametrize("outcome", ["completed", "interrupted", "failed: energy (1 J): (a) b"])

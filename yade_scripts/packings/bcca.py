@@ -62,9 +62,10 @@ def _met(target, projectile, target_radii, projectile_radii, touching, stream, p
         if np.linalg.norm(offset) > limit:
             continue
         moved = projectile + offset
-        near = tree.sparse_distance_matrix(cKDTree(moved[:, across]), reach, output_type="coo_matrix")
-        square = touching(target_radii[near.row], projectile_radii[near.col]) ** 2 - near.data**2
+        near = tree.sparse_distance_matrix(cKDTree(moved[:, across]), reach, output_type="ndarray")
+        first, second = near["i"], near["j"]
+        square = touching(target_radii[first], projectile_radii[second]) ** 2 - near["v"] ** 2
         meets = square >= 0
         if meets.any():
-            stops = target[near.row, 0] - moved[near.col, 0] + np.sqrt(np.maximum(square, 0.0))
+            stops = target[first, 0] - moved[second, 0] + np.sqrt(np.maximum(square, 0.0))
             return moved + (stops[meets].max(), 0, 0)

@@ -5,6 +5,7 @@ Defaults, types, checks and the help text follow from the fields; each is made b
 
 import typing
 from dataclasses import dataclass, field, fields, replace
+from functools import cache
 from textwrap import fill
 from typing import Any, Callable
 
@@ -130,8 +131,9 @@ class Parameters:
     """Base of all parameters. The first line of a class's docstring is the heading of its fields in the help text."""
 
     @classmethod
+    @cache
     def columns(cls):
-        """{name: Column} of every field, a class's own before those of its bases."""
+        """{name: Column} of every field, a class's own before those of its bases; not to be changed."""
         by_name = {f.name: f for f in fields(cls)}
         order = [name for owner in cls.__mro__ for name in owner.__dict__.get("__annotations__", {})]
         return {name: _column(by_name[name]) for name in dict.fromkeys(order)}

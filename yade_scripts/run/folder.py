@@ -160,8 +160,9 @@ class RunFolder:
         moments."""
         own = Written.of_run(self.path, states)
         self._written.claim(own.names)
-        self._written.remove(lambda name: name == ENDED_FILE)
-        sync(self.path)  # before what it vouches for is gone
+        if self.has_ended():
+            self._written.remove(lambda name: name == ENDED_FILE)
+            sync(self.path)  # before what it vouches for is gone
         self._run = {}
         self._write_run(lasting=True)
         self.remove_checkpoint()

@@ -95,7 +95,7 @@ class Beating:
 
     def _write(self, **changed):
         now = replace(self.now, **changed)
-        write_bytes(self._file(HEARTBEAT_FILE), _text(now))
+        write_bytes(self._file(HEARTBEAT_FILE), _text(now), lasting=False)  # of a run that a power loss ends, too
         self.now = now
 
     def _own(self):

@@ -2,6 +2,8 @@
 
 import time
 from contextlib import suppress
+from functools import cached_property
+from math import isfinite
 
 import numpy as np
 from yade.wrapper import JKRWadaEngine, Omega
@@ -142,19 +144,21 @@ class Recorder:
         """Raise RunFailed when a number is not finite, or the ledger of all channels is off by a tenth."""
         when = f'at {state["time"]:.4g} s'
         for channel, energy in energies.items():
-            if not np.isfinite(energy):
+            if not isfinite(energy):
                 raise RunFailed(f"energy {channel} is {energy} {when}")
-        finite = np.isfinite(state["position"]).all(axis=1)
+        finite = np.isfinite(state["position"])
         if not finite.all():
-            raise RunFailed(f'body {state["ids"][~finite][0]} has no finite position {when}')
+            raise RunFailed(f'body {state["ids"][~finite.all(axis=1)][0]} has no finite position {when}')
         if self.scene.energy_is_conserved:
             self._require_conserved(state, energies, when)
 
+    @cached_property
+    def _energies_at_start(self):
+        first = self.columns.index(CHANNELS[0])
+        return dict(zip(CHANNELS, self._rows[0][first : first + len(CHANNELS)]))
+
     def _require_conserved(self, state, energies, when):
-        start = energies
-        if self._rows:
-            first = self.columns.index(CHANNELS[0])
-            start = dict(zip(CHANNELS, self._rows[0][first : first + len(CHANNELS)]))
+        start = self._energies_at_start if self._rows else energies
         more = sum(energies.values()) - sum(start.values())
         scale = sum(map(abs, start.values())) + sum(abs(energies[name] - start[name]) for name in WORK_CHANNELS)
         if abs(more) > LARGEST_LEDGER_ERROR * scale:

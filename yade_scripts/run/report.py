@@ -90,7 +90,7 @@ class Report:
 
 def hardware():
     """{'cpu': model, 'cores': number} of this machine."""
-    model = platform.processor() or platform.machine()
+    model = platform.machine()
     try:
         with open("/proc/cpuinfo") as lines:
             names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))

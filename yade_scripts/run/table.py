@@ -48,7 +48,7 @@ def read(path):
         raise TableError(f"{path}: line {used[0][0]} has commas; names and values must be parted by blanks")
     _require_once(path, [name.rstrip("!") for name in header])
     marked = [name for name in header if name.endswith("!")] or header
-    rows, above = [], {}
+    rows, above, descriptions = [], {}, set()
     for number, cells in used[1:]:
         if len(cells) != len(header):
             raise TableError(f"{path}: line {number} has {len(cells)} cells; must be {len(header)}, one for each name")
@@ -59,8 +59,9 @@ def read(path):
         description = plain.pop("description", None) or ",".join(
             f'{name.rstrip("!")}={above[name]}' for name in marked
         ).replace("'", "").replace('"', "")
-        if "description" not in header and any(row.description == description for row in rows):
+        if "description" not in header and description in descriptions:
             description += f"__line={number}__"
+        descriptions.add(description)
         rows.append(Row(number, description, plain))
     return rows
 

@@ -5,19 +5,19 @@ import json
 import os
 import subprocess
 from contextlib import suppress
+from multiprocessing.connection import wait
 
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import read_json
 from yade_scripts.run.folder import write_json
 from yade_scripts.runner.cost import TELLING, Cost
-from yade_scripts.runner.job import Job
-from yade_scripts.runner.rows import DONE, write
+from yade_scripts.runner.rows import DONE
+from yade_scripts.runner.workers import Worker
 
 LOGS = os.path.join("runs", "logs")
 MEASURING = 300  # s, at most
 MEASURE_SPEED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "measure_speed.py")
 NICE = 10  # as yade-batch runs its jobs
-LEFT = "left.table"  # the rows that are run
 
 
 class StudyBusy(RuntimeError):
@@ -25,7 +25,7 @@ class StudyBusy(RuntimeError):
 
 
 class StudyFolder:
-    """runs/logs/NAME: a log for each row, the table of what was left, the measured speed."""
+    """runs/logs/NAME: a log for each row, the measured speed."""
 
     def __init__(self, name):
         self.path = os.path.join(LOGS, name)
@@ -99,12 +99,11 @@ class StudyFolder:
 
 
 class Batch:
-    """Rows at work, as many at once as `threads` allows, in sessions of their own: Ctrl-C reaches this process alone."""
+    """Rows at work, as many at once as `threads` allows, by workers in sessions of their own: Ctrl-C reaches this process alone."""
 
     def __init__(self, folder, rows, threads):
-        self._folder, self._threads, self._jobs = folder, threads, []
-        left = folder.file(LEFT)
-        self._waiting = list(zip(rows, write(left, rows)))
+        self._folder, self._threads = folder, threads
+        self._waiting, self._workers = list(rows), []
         folder.remove_logs(rows)
 
     def __enter__(self):
@@ -112,27 +111,45 @@ class Batch:
 
     def __exit__(self, *_):
         self.stop()
+        for worker in self._workers:
+            worker.close()
 
     def running(self):
-        """Start what there is room for; whether there is something that has not come to its end."""
-        self._jobs = [job for job in self._jobs if job.poll() is None]
-        for row, batch_row in list(self._waiting):
-            busy = sum(job.row.threads for job in self._jobs)
-            if not busy or busy + row.threads <= self._threads:
-                self._waiting.remove((row, batch_row))
-                self._jobs.append(self._start(row, batch_row))
-        return bool(self._jobs)
+        """Start what there is room for; the rows that have not come to their end."""
+        for worker in self._busy():
+            worker.poll()
+        busy = sum(worker.row.threads for worker in self._busy())
+        fits = lambda row: not busy or busy + row.threads <= self._threads
+        while busy < self._threads and (row := next(filter(fits, self._waiting), None)):
+            self._waiting.remove(row)
+            log = self._folder.log(row)
+            self._idle(log).begin(row, log)
+            busy += row.threads
+        return [worker.row for worker in self._busy()]
+
+    def wait(self, seconds):
+        """Return when something has happened to a row, or after so many seconds."""
+        wait([worker.connection for worker in self._busy()], seconds)
 
     def stop(self):
         """Have the runs write their checkpoints; returns when they have. No other row is started."""
         self._waiting = []
-        for job in self._jobs:
-            job.process.terminate()
-        for job in self._jobs:
-            job.process.wait()
-            job.poll()
+        for worker in self._busy():
+            worker.stop()
+        while busy := self._busy():
+            wait([worker.connection for worker in busy])
+            for worker in busy:
+                worker.poll()
 
-    def _start(self, row, batch_row):
-        # Jobs inherit the study's lock: it is free again when the last of them has ended, even if this process is killed.
-        of_process = dict(start_new_session=True, pass_fds=[self._folder.held])
-        return Job(row, batch_row, self._folder.log(row), [f"--nice={NICE}"], **of_process)
+    def _busy(self):
+        return [worker for worker in self._workers if worker.row]
+
+    def _idle(self, log):
+        """A worker without a row: one that there is, or a new one, which tells the log how it starts."""
+        free = [worker for worker in self._workers if not worker.row and worker.is_alive()]
+        if not free:
+            # Workers inherit the study's lock: it is free again when the last of them has ended, even if this process is killed.
+            of_process = dict(start_new_session=True, pass_fds=[self._folder.held])
+            free.append(Worker(log, [f"--nice={NICE}"], **of_process))
+            self._workers += free
+        return free[0]

@@ -2,13 +2,16 @@
 
 import heapq
 from dataclasses import dataclass, field
-from statistics import median
+from functools import cached_property
+
+import numpy as np
 
 # Cost of a contact update grows with this power of the number of grains: 37, 34 and 28 million updates a second
 # at 6,400, 51,200 and 409,600 grains.
 CACHE_EXPONENT = 0.07
 SIMILAR = 1.3  # ratio of sizes up to which ended runs count as equals, their median the estimate
-TELLING = 10.0  # s that an ended run must have taken to tell of others: shorter ones mostly start up
+TYPICAL = 3e7  # contact updates a second
+TELLING = 2.0  # s that an ended run must have taken to tell of others: shorter ones mostly make packings and files
 
 
 @dataclass
@@ -22,23 +25,26 @@ class Cost:
     measured: tuple = None
     ended: list = field(default_factory=list)
 
+    @cached_property
+    def _ended(self):
+        """{(name of the kind, engine): (sizes, times [s])} of what has ended."""
+        by_kind = {}
+        for row, time in self.ended:
+            by_kind.setdefault((row.kind.name, row.parameters.engine), []).append((run_size(row), time))
+        return {key: np.array(found).T for key, found in by_kind.items()}
+
     def seconds(self, wanted):
         """Estimated wall time [s] of a row's run, or None when too little is known."""
         if wanted.kind is None:
             return None
         size = run_size(wanted)
-        similar = [
-            (run_size(row), time)
-            for row, time in self.ended
-            if (row.kind, row.parameters.engine) == (wanted.kind, wanted.parameters.engine)
-            and (time >= TELLING or 1 / SIMILAR < run_size(row) / size < SIMILAR)
-        ]
-        if not similar:
+        sizes, times = self._ended.get((wanted.kind.name, wanted.parameters.engine), np.empty((2, 0)))
+        ratios = np.maximum(sizes / size, size / sizes)
+        similar = (times >= TELLING) | (ratios < SIMILAR)
+        if not similar.any():
             return self._from_measured(wanted)
-        ratios = [max(other / size, size / other) for other, _ in similar]
-        nearest = min(ratios)
-        rates = [time / other for (other, time), ratio in zip(similar, ratios) if ratio <= SIMILAR * nearest]
-        return size * median(rates)
+        near = similar & (ratios <= SIMILAR * ratios[similar].min())
+        return float(size * np.median(times[near] / sizes[near]))
 
     def _from_measured(self, wanted):
         if self.measured is None:
@@ -51,6 +57,11 @@ class Cost:
 def contact_updates(row):
     """Steps times contacts of a row's run, as its kind estimates them."""
     return row.estimate.contacts * row.estimate.steps
+
+
+def typical_seconds(row):
+    """Seconds that the run of a row takes on a usual processor, where nothing is known of it but the row."""
+    return contact_updates(row) / TYPICAL
 
 
 def run_size(row):

@@ -48,6 +48,12 @@ class StudyRow:
         """Processors that the run takes."""
         return self.threads_of_yade or self.parameters.threads or 1
 
+    @property
+    def arguments(self):
+        """{name: text} that its script is given: the row's, in the run folder, which resumes if it was stopped."""
+        own = {name: text for name, text in self.cells.items() if name[0] != "!"}
+        return {**own, "out": self.out, "resume": 1}
+
     @cached_property
     def estimate(self):
         """run.kind.Estimate of its run."""

@@ -2,6 +2,10 @@
 
 import shutil
 import sys
+import time
+
+EVERY = 1.0  # s
+SHARE = 0.05  # of the time, at most, that goes into making texts
 
 
 class Screen:
@@ -10,6 +14,17 @@ class Screen:
     def __init__(self, stream=sys.stderr):
         self.stream, self.shown = stream, stream.isatty()
         self._lines = 0
+        self._next = 0.0
+
+    def draw_if_due(self, text):
+        """draw(text()), unless that was done a moment ago; whether it was."""
+        begun = time.monotonic()
+        if not self.shown or begun < self._next:
+            return False
+        self.draw(text())
+        took = time.monotonic() - begun
+        self._next = begun + max(EVERY, took / SHARE)
+        return True
 
     def draw(self, text):
         if not self.shown:

@@ -1,10 +1,10 @@
-"""One task of a study's job array: the run of one row, by the rules of study.py. Called by Slurm (slurm.py).
+"""One task of a study's job array: the runs of some rows, one after another, by the rules of study.py. Called by Slurm (slurm.py).
 
-    python3 slurm_task.py ROWS.table NUMBER       the row of that number, counted from 1
+    python3 slurm_task.py ROWS.table NUMBER TASKS      every row of that number, counted from 1, then each TASKS further on
 
 A run that has ended is not run again, one with other parameters is refused, one that was stopped resumes. SIGUSR1, which Slurm sends
-before the time limit, has the run write its checkpoint; if it has come further in this task, the task is put into the queue
-again. Exit status: that of the run; 0 when it had ended, 1 when it can't be run, 128 and more when it was stopped.
+before the time limit, has the run write its checkpoint; if a run has come further in this task, the task is put into the queue
+again. Exit status: 0 when all runs have ended, that of the last one that failed, 1 when one can't be run, 128 and more when it was stopped.
 """
 
 import os
@@ -12,74 +12,89 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
+from multiprocessing.connection import wait
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 from analysis.printable import printable
 from analysis.runs.running import this_job
 from yade_scripts.parameters.errors import one_line_errors, tell
-from yade_scripts.run import table
 from yade_scripts.runner import rows
-from yade_scripts.runner.job import Job
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
+from yade_scripts.runner.workers import Worker
 
 POLL = 0.1  # s
 ALL_SIGNALLED = 2.0  # s in which Slurm's SIGTERM to all processes of a job has reached the run
 
 
 def main(arguments):
-    path, number = arguments[0], int(arguments[1]) - 1
+    path, number, tasks = arguments[0], int(arguments[1]), int(arguments[2])
     with one_line_errors("slurm_task.py"):
-        row, line = rows.read(path)[number], table.read(path)[number].line
-    log = os.path.join(os.path.dirname(os.path.dirname(path)), f"{row.name}.log")
-    before = rows.state(row, log, rows.traces(row, log))
-    if before.kind == DONE:
-        print(f"{row.name}: has ended before", flush=True)
-        return 0
-    if before.kind == RUNNING:
-        return _refuse(row, f"is running on {before.host}")
-    if before.kind == FAILED:
-        return _refuse(row, before.note)
-    run = Run(row, f"{path}:{line}", log)
-    status = run.wait()
-    after = rows.state(row, log)
-    if after.kind == WAITING and run.limit_is_near and after.progress > before.progress:
+        own = rows.read(path)[number - 1 :: tasks]
+    logs, task = os.path.dirname(os.path.dirname(path)), Task()
+    status = 0
+    for row in own:
+        status = task.run(row, os.path.join(logs, f"{row.name}.log")) or status
+    if task.limit_is_near and task.came_further and task.left:
         _queue_again()
-    if after.kind == FAILED:
-        return _refuse(row, after.note, status)
-    print(printable(f"{row.name}: {after.kind} {after.note}".rstrip()), flush=True)
-    return status or int(after.kind != DONE)
+    return status
 
 
-class Run(Job):
-    """yade at work on a row, and the signals that this process has had."""
+class Task:
+    """Runs rows; notes the signals that this process has had, whether there is something .left, and whether it .came_further."""
 
-    def __init__(self, *arguments):
-        self.limit_is_near, self._stopped = False, None
+    def __init__(self):
+        self.limit_is_near = self.came_further = self.left = False
+        self._worker = self._since = None
         for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._note)
-        super().__init__(*arguments)
 
-    def wait(self):
-        """Its exit status, as a shell has it."""
-        while (status := self.poll()) is None:
-            time.sleep(POLL)
+    def run(self, row, log):
+        """Run a row unless it has ended, must not be run, or a signal has come; the exit status."""
+        if self._since is not None:
+            self.left = True
+            return 0
+        before = rows.state(row, log, rows.traces(row, log))
+        if before.kind == DONE:
+            print(f"{row.name}: has ended before", flush=True)
+            return 0
+        if before.kind == RUNNING:
+            return _refuse(row, f"is running on {before.host}")
+        if before.kind == FAILED:
+            return _refuse(row, before.note)
+        status, after = self._run(row, log), rows.state(row, log)
+        self.came_further |= after.progress > before.progress
+        self.left |= after.kind == WAITING
+        if after.kind == FAILED:
+            return _refuse(row, after.note, status)
+        print(printable(f"{row.name}: {after.kind} {after.note}".rstrip()), flush=True)
+        return status or int(after.kind != DONE)
+
+    def _run(self, row, log):
+        with suppress(FileNotFoundError):
+            os.remove(log)  # of a run before the task was queued again
+        if not self._worker or not self._worker.is_alive():
+            self._worker = Worker(log)
+        self._worker.begin(row, log)
+        while (status := self._worker.poll()) is None:
+            wait([self._worker.connection], POLL)
             self._pass_on()
         return status
 
     def _note(self, number, _frame):
         self.limit_is_near |= number == signal.SIGUSR1
-        self._stopped = self._stopped or time.monotonic()
+        self._since = self._since or time.monotonic()
 
     def _pass_on(self):
         """SIGTERM to the run, once: a second one would end it without its checkpoint. SIGUSR1 comes to this process alone,
         others as a rule to all of the job: then the run handles them no more."""
-        wait = 0.0 if self.limit_is_near else ALL_SIGNALLED
-        if self._stopped and time.monotonic() > self._stopped + wait:
-            handles = _handles(self.process.pid, signal.SIGTERM)
+        delay = 0.0 if self.limit_is_near else ALL_SIGNALLED
+        if self._since is not None and time.monotonic() > self._since + delay:
+            handles = _handles(self._worker.run, signal.SIGTERM)
             if handles:
-                self.process.terminate()
+                self._worker.stop()
             if handles or not self.limit_is_near:  # otherwise it hasn't begun to handle them
-                self._stopped = float("inf")
+                self._since = float("inf")
 
 
 def _handles(pid, number):

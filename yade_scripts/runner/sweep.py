@@ -1,6 +1,6 @@
 """Runs from Python: one call makes the rows of a sweep, has study.py run what is missing, and returns their table.
 
-Needs yade and yade-batch on PATH, not to be called within YADE."""
+Needs yade on PATH, not to be called within YADE."""
 
 import hashlib
 import os
