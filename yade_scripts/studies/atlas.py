@@ -255,7 +255,7 @@ def write_size(size, first, last):
 
 
 def main(arguments):
-    size, *rest = [*arguments, ""]
+    size = arguments[0] if arguments else ""
     if arguments == ["tables"]:
         write_tables(HERE)
     elif "--help" in arguments:
