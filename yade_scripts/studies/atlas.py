@@ -16,6 +16,7 @@ Ballistic aggregates, BCCA and BPCA, have the filling that they have. Close-pack
 spheres cut out of BCCA clusters that were compressed in a periodic cell (as in Oshiro et al. 2025), a pair of one cell, in two places
 and orientations. Every row has packings of its own; rows with one cell share its grains.
 
+Pairs that would never touch fly past each other: they have a duration, others end when nothing can happen any more (endWhenApart).
 The time step is the longest for a ledger that closes to TOLERANCE of K(0) in 95 % of runs (yade_scripts/step_choice.py), at most LONGEST.
 """
 
@@ -33,10 +34,11 @@ from scipy.stats import qmc
 from analysis.progress import progress
 from analysis.theory import ICE, SILICATE, interaction_energies, pair_constants
 from yade_scripts import packings, step_choice
-from yade_scripts.experiments.collision import CollisionParameters
+from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import equilibrium_overlap
 from yade_scripts.materials import pair_constants as contact_constants
 from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.packings.approach import first_touch
 from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.run import table
@@ -156,6 +158,16 @@ def row(scene):
     }
 
 
+def with_duration(cells):
+    """A row's cells; with a duration if its aggregates, whose packings must be there, never touch: until they have passed each other."""
+    parameters = CollisionParameters.parse({name: str(value) for name, value in cells.items() if name != "description"})
+    _, pair, (target, projectile) = place(parameters, equilibrium_overlap(parameters))
+    if first_touch(*pair, projectile - target) is not None:
+        return cells
+    way = 2 * sum(map(packings.extent, pair)) + np.abs(pair[0].position[:, 0].mean() - pair[1].position[:, 0].mean())
+    return {**cells, "duration": f"{way / parameters.velocity:.3g}", "endWhenApart": 1}
+
+
 def step(scene):
     """Time step [t0], as if aggregates were of fluffy ones' larger error where they are not CPE."""
     of = {"packing": "cpe", "filling": 0.4} if scene.structure == "cpe" else {"packing": "bcca"}
@@ -246,12 +258,13 @@ def write_size(size, first, last):
     """Write runs/atlas-SIZE.table, with the rows from first to before last, and make their packings. Raises PackingError."""
     chosen = scenes(SIZES[size])[first:last]
     os.makedirs(PACKINGS, exist_ok=True)
-    for scene in progress([scene for scene in chosen if scene.from_file], "making packings"):
-        make_packings(scene)
+    found = []
+    for scene in progress(chosen, "making packings"):
+        if scene.from_file:
+            make_packings(scene)
+        found.append(with_duration(row(scene)))
     head = "The collisions of the atlas.\nUnits: velocity: m/s; impact: r_c,tar + r_c,pro; grainRadius: m; stepFraction: t0. "
-    table.write(
-        f"runs/atlas-{size}.table", [row(scene) for scene in chosen], head + "Written by yade_scripts/studies/atlas.py."
-    )
+    table.write(f"runs/atlas-{size}.table", found, head + "Written by yade_scripts/studies/atlas.py.")
 
 
 def main(arguments):
