@@ -22,6 +22,7 @@ The time step is the longest for a ledger that closes to TOLERANCE of K(0) in 95
 
 import os
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +55,7 @@ FILLINGS = {"cpe": (0.25, 0.55), "compressed": (0.1, 0.5)}  # N (r/R)^3; CPE agg
 GRAIN_RADIUS = 1e-7  # m
 TOLERANCE, LONGEST = 0.01, 0.2  # of K(0); t0
 STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
+KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
 BLOCK = 10  # rows of which one is held out and one of silicate
 CELL_SEEDS = {
     1_024: range(1, 11),
@@ -210,7 +212,7 @@ def _cpe(scene, index):
 
 
 def _compressed(scene, index):
-    """A sphere of the state of the cell whose filling is nearest."""
+    """A sphere of the state of the cell whose filling is nearest: the first of the places in which KEPT of the grains hang together."""
     folder = os.path.join(f"{CELLS}/s{scene.cell}", "states")
     try:
         states = sorted(os.listdir(folder))
@@ -219,8 +221,14 @@ def _compressed(scene, index):
     wanted = np.interp(scene.filling, *_fillings(folder, states))
     state = read_periodic_state(os.path.join(folder, states[round(wanted)]))
     radius = (scene.grains[index] / _filling(state)) ** (1 / 3)
-    found = cut(state, CutParameters(radius=radius, seed=scene.seed), index)
-    return Packing(found.position, found.radius, found.seed, {**found.parameters, "cell": scene.cell})
+    for place in range(PLACES):
+        with suppress(PackingError):  # an empty place
+            found = cut(state, CutParameters(radius=radius, seed=PLACES * scene.seed + place), index)
+            if found.grains >= KEPT * scene.grains[index]:
+                return Packing(found.position, found.radius, found.seed, {**found.parameters, "cell": scene.cell})
+    raise PackingError(
+        f"{folder}: no {scene.grains[index]} grains hang together in {PLACES} places; must be another cell"
+    )
 
 
 def _filling(state):
