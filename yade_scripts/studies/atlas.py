@@ -221,9 +221,9 @@ def _compressed(scene, index):
     wanted = np.interp(scene.filling, *_fillings(folder, states))
     state = read_periodic_state(os.path.join(folder, states[round(wanted)]))
     radius = (scene.grains[index] / _filling(state)) ** (1 / 3)
-    for place in range(PLACES):
+    for number in range(PLACES):
         with suppress(PackingError):  # an empty place
-            found = cut(state, CutParameters(radius=radius, seed=PLACES * scene.seed + place), index)
+            found = cut(state, CutParameters(radius=radius, seed=PLACES * scene.seed + number), index)
             if found.grains >= KEPT * scene.grains[index]:
                 return Packing(found.position, found.radius, found.seed, {**found.parameters, "cell": scene.cell})
     raise PackingError(
