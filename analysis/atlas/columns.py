@@ -144,20 +144,30 @@ def _outcome(run, row):
         return (NEVER_MET,)
     kind = outcome(row)
     touch = float(run.derived["firstTouch"])
-    recent = np.flatnonzero(is_recent(run.states.times, run.last.time, touch))
-    pieces = [Pieces(vars(run.states[k]), run.derived) for k in recent]
-    rebounding = kind == STICKING and pieces[-1].why_rebounding(run.last.time - touch)
-    return (UNDECIDED if rebounding or any(_may_change(kind, row, own) for own in pieces) else kind,)
+    recent = [
+        Pieces(vars(run.states[k]), run.derived)
+        for k in np.flatnonzero(is_recent(run.states.times, run.last.time, touch))
+    ]
+    open_still = (
+        (kind == STICKING and recent[-1].why_rebounding(run.last.time - touch))
+        or _may_meet(kind, row, recent[-1])
+        or any(_may_break(kind, row, pieces) for pieces in recent)
+    )
+    return (UNDECIDED if open_still else kind,)
 
 
-def _may_change(kind, row, pieces):
-    """Whether what may break off the largest piece, or meet it again, would make another outcome (measures.decided)."""
+def _may_meet(kind, row, pieces):
+    """Whether pieces that may meet the largest again would make another outcome (measures.decided)."""
     shares = np.bincount(pieces.labels) / len(pieces.labels)
+    more = shares[pieces_that_can_meet(0, *pieces.flight, np.inf)].sum()
+    return outcome({**row, "largest": row["largest"] + more}) != kind
+
+
+def _may_break(kind, row, pieces):
+    """Whether what may break off the largest piece would make another outcome."""
     cut, side = pieces.loose_cuts()
     lost = side[cut == 0].max(initial=0.0) / pieces.mass.sum()
-    met_again = shares[pieces_that_can_meet(0, *pieces.flight, np.inf)].sum()
-    broken = {"largest": row["largest"] - lost, "second": max(row["second"], lost)}
-    return any(outcome({**row, **other}) != kind for other in (broken, {"largest": row["largest"] + met_again}))
+    return outcome({**row, "largest": row["largest"] - lost, "second": max(row["second"], lost)}) != kind
 
 
 def _energies(run, row):

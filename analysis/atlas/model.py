@@ -1,0 +1,185 @@
+"""A model of the outcomes, fitted to the table of runs: scikit-learn's, in variables without dimensions.
+
+Probabilities: logistic regression on polynomials of second order of FEATURES, its regularisation chosen by cross-validation; errors
+from fits with random weights of the runs (the Bayesian bootstrap, Rubin 1981). What is left (LEFT): the runs that share leaves of a random
+forest with a query are its distribution (quantile regression forests, Meinshausen 2006), of which the mean and quantiles are told.
+
+Fitted are runs whose aggregates touched and whose outcome is decided, but for the held-out ones; runs of all materials together."""
+
+from functools import cached_property
+
+import numpy as np
+import pandas
+
+require_learning = lambda: None
+from ..measures.outcome import NEVER_MET, UNDECIDED
+from .columns import FIT
+from .rules import KINDS
+
+FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
+LEFT = ("largest", "second", "fragment_index", "filling_after")
+MEMBERS, TREES, LEAF = 40, 200, 5  # fits with random weights; of the forest, and runs in a leaf of it
+STRENGTHS = 0.03, 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation, tried
+FOLDS = 5
+LEVEL = 0.9  # of all intervals
+NEAREST = 5  # runs whose mean distance tells whether a query is within the data
+SEED = 1
+
+
+def variables(table):
+    """DataFrame (n rows) of FEATURES, the dimensionless coordinates that the model takes, of a table of runs: velocity over v_break, grains of
+    the larger aggregate, mass ratio, filling (mean by mass of both), square of the impact parameter."""
+    share = 1 / (1 + table.mass_ratio)
+    return pandas.DataFrame(
+        {
+            "velocity": table.velocity / table.v_break,
+            "grains": table.grains_target,
+            "mass_ratio": table.mass_ratio,
+            "filling": share * table.filling_target + (1 - share) * table.filling_projectile,
+            "impact_square": table.impact**2,
+        }
+    )
+
+
+def decided(table):
+    """The rows that a model may be judged by: aggregates that touched, with a decided outcome."""
+    return table[~table.outcome.isin([NEVER_MET, UNDECIDED])]
+
+
+def left(table):
+    """DataFrame of LEFT of a table of runs."""
+    renamed = table.rename(columns={"filling_largest": "filling_after"})
+    return renamed[list(LEFT)]
+
+
+def scaled(points):
+    """Coordinates (n, 5) of variables() in which the model works: logarithms but for the impact parameter."""
+    points = points[list(FEATURES)].to_numpy(dtype=float)
+    return np.column_stack([np.log(points[:, :-1]), points[:, -1]])
+
+
+class Model:
+    """Fitted to a table of runs (DataFrame with the columns of atlas.columns): its decided rows, but for those held out."""
+
+    def __init__(self, table, members=MEMBERS):
+        require_learning()
+        self.runs = decided(table)
+        self.runs = self.runs[self.runs.split == FIT].reset_index(drop=True)
+        self.points, self.members = scaled(variables(self.runs)), members
+
+    @cached_property
+    def _classifiers(self):
+        strength = _best_strength(self.points, self.runs.outcome)
+        draws = np.random.default_rng(SEED).exponential(size=(self.members, len(self.runs)))
+        weights = [np.ones(len(self.runs)), *draws]
+        return [_classifier(strength).fit(self.points, self.runs.outcome, fit__sample_weight=w) for w in weights]
+
+    def probabilities(self, points, averaged=False):
+        """(probabilities (n, 5) of rules.KINDS, half widths (n, 5) of their intervals of LEVEL) of variables() points; averaged: over impact
+        parameters, uniform in b^2, whatever the points have."""
+        fits = np.stack([self._of_each(fit, points, averaged) for fit in self._classifiers])
+        low, high = np.quantile(fits[1:], (0.5 - LEVEL / 2, 0.5 + LEVEL / 2), axis=0)
+        return fits[0], (high - low) / 2
+
+    def _of_each(self, fit, points, averaged):
+        found = np.zeros((len(points), len(KINDS)))
+        for coordinates in _offsets(scaled(points), averaged):
+            found[:, [KINDS.index(kind) for kind in fit.classes_]] += fit.predict_proba(coordinates)
+        return found / found.sum(axis=1, keepdims=True)
+
+    @cached_property
+    def _forest(self):
+        from sklearn.ensemble import RandomForestRegressor
+
+        values = left(self.runs).drop(columns="fragment_index").fillna(0.0)
+        forest = RandomForestRegressor(TREES, min_samples_leaf=LEAF, random_state=SEED).fit(
+            self.points, values / values.std()
+        )
+        return forest, forest.apply(self.points)
+
+    def _weights(self, points, averaged=False):
+        """Weights (n, runs) of the runs in what is said of each point."""
+        forest, of_runs = self._forest
+        found = np.zeros((len(points), len(self.runs)))
+        for coordinates in _offsets(scaled(points), averaged):
+            of_points = forest.apply(coordinates)
+            for tree in range(of_runs.shape[1]):
+                shared = of_points[:, tree, None] == of_runs[:, tree]
+                found += shared / shared.sum(axis=1, keepdims=True)
+        return found / found.sum(axis=1, keepdims=True)
+
+    def left(self, points, averaged=False):
+        """DataFrame of LEFT: means, and in NAME_low and NAME_high the ends of the interval that LEVEL of such runs are in."""
+        weights, values = self._weights(points, averaged), left(self.runs)
+        found = {}
+        for name in LEFT:
+            known = values[name].notna().to_numpy()
+            own = weights[:, known] + 1e-12  # where no run has one, of all alike
+            own = own / own.sum(axis=1, keepdims=True)
+            y = values[name].to_numpy()[known]
+            order = np.argsort(y)
+            sums = np.cumsum(own[:, order], axis=1)
+            found[name] = own @ y
+            for end, part in (("low", 0.5 - LEVEL / 2), ("high", 0.5 + LEVEL / 2)):
+                found[f"{name}_{end}"] = y[order][np.argmax(sums >= part - 1e-9, axis=1)]
+        return pandas.DataFrame(found)
+
+    @cached_property
+    def _neighbours(self):
+        """(tree of the runs' coordinates in units of their scatter, that scatter, distance within which 95 % of the runs have others);
+        without the impact parameter."""
+        from sklearn.neighbors import NearestNeighbors
+
+        scatter = self.points.std(axis=0)
+        tree = NearestNeighbors(n_neighbors=NEAREST).fit((self.points / scatter)[:, :-1])
+        own = tree.kneighbors()[0].mean(axis=1)
+        return tree, scatter, float(np.quantile(own, 0.95))
+
+    def nearest(self, points):
+        """(rows (n, NEAREST) of self.runs that are nearest, beyond (n,)): the mean distance to them over that of runs themselves, of which 95 %
+        are below 1; above, a query is an extrapolation."""
+        tree, scatter, usual = self._neighbours
+        distance, rows = tree.kneighbors((scaled(points) / scatter)[:, :-1])
+        return rows, distance.mean(axis=1) / usual
+
+    def within(self, points):
+        """Number (n,) of runs nearer to a point than `usual` (as nearest())."""
+        tree, scatter, usual = self._neighbours
+        return np.array([len(own) for own in tree.radius_neighbors((scaled(points) / scatter)[:, :-1], usual)[1]])
+
+
+OFFSETS = (np.arange(8) + 0.5) / 8  # b^2, of averages
+
+
+def _offsets(coordinates, averaged):
+    """The coordinates at each impact parameter that counts."""
+    if not averaged:
+        return [coordinates]
+    return [np.column_stack([coordinates[:, :-1], np.full(len(coordinates), square)]) for square in OFFSETS]
+
+
+def _classifier(strength):
+    from sklearn.linear_model import LogisticRegression
+    from sklearn.pipeline import Pipeline
+    from sklearn.preprocessing import PolynomialFeatures, StandardScaler
+
+    steps = [("scale", StandardScaler()), ("square", PolynomialFeatures(2, include_bias=False))]
+    return Pipeline([*steps, ("fit", LogisticRegression(C=strength, max_iter=2000))])
+
+
+def _best_strength(points, outcome):
+    """The one of STRENGTHS with the least cross-validated log loss."""
+    losses = [cross_validated(lambda: _classifier(strength), points, outcome)[1] for strength in STRENGTHS]
+    return STRENGTHS[int(np.argmin(losses))]
+
+
+def cross_validated(make, points, outcome):
+    """(probabilities (n, 5) of KINDS, mean log loss) of a classifier, make(), each point's from a fit without its fold."""
+    from sklearn.model_selection import KFold
+
+    outcome, found = np.asarray(outcome), np.zeros((len(points), len(KINDS)))
+    for others, own in KFold(FOLDS, shuffle=True, random_state=SEED).split(points):
+        fit = make().fit(points[others], outcome[others])
+        found[np.ix_(own, [KINDS.index(kind) for kind in fit.classes_])] = fit.predict_proba(points[own])
+    truth = found[np.arange(len(points)), [KINDS.index(kind) for kind in outcome]]
+    return found, float(-np.log(np.maximum(truth, 1e-3)).mean())
