@@ -11,51 +11,17 @@ from functools import cached_property
 import numpy as np
 import pandas
 
-require_learning = lambda: None
-from ..measures.outcome import NEVER_MET, UNDECIDED
+from ..libraries import require_learning
 from .columns import FIT
 from .rules import KINDS
+from .variables import LEFT, decided, left, scaled, variables
 
-FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
-LEFT = ("largest", "second", "fragment_index", "filling_after")
 MEMBERS, TREES, LEAF = 40, 200, 5  # fits with random weights; of the forest, and runs in a leaf of it
 STRENGTHS = 0.03, 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation, tried
 FOLDS = 5
 LEVEL = 0.9  # of all intervals
 NEAREST = 5  # runs whose mean distance tells whether a query is within the data
 SEED = 1
-
-
-def variables(table):
-    """DataFrame (n rows) of FEATURES, the dimensionless coordinates that the model takes, of a table of runs: velocity over v_break, grains of
-    the larger aggregate, mass ratio, filling (mean by mass of both), square of the impact parameter."""
-    share = 1 / (1 + table.mass_ratio)
-    return pandas.DataFrame(
-        {
-            "velocity": table.velocity / table.v_break,
-            "grains": table.grains_target,
-            "mass_ratio": table.mass_ratio,
-            "filling": share * table.filling_target + (1 - share) * table.filling_projectile,
-            "impact_square": table.impact**2,
-        }
-    )
-
-
-def decided(table):
-    """The rows that a model may be judged by: aggregates that touched, with a decided outcome."""
-    return table[~table.outcome.isin([NEVER_MET, UNDECIDED])]
-
-
-def left(table):
-    """DataFrame of LEFT of a table of runs."""
-    renamed = table.rename(columns={"filling_largest": "filling_after"})
-    return renamed[list(LEFT)]
-
-
-def scaled(points):
-    """Coordinates (n, 5) of variables() in which the model works: logarithms but for the impact parameter."""
-    points = points[list(FEATURES)].to_numpy(dtype=float)
-    return np.column_stack([np.log(points[:, :-1]), points[:, -1]])
 
 
 class Model:
