@@ -24,7 +24,7 @@ AXES = (
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
 COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
-Made by the contact-law suite, version {version}, from {runs} runs; licence: CC0 1.0. To cite: CITATION.cff of the repository.
+Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff of the repository.
 Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of the larger aggregate,
 mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of both).
 Columns: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the aggregates touch, averaged over

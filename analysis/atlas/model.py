@@ -7,11 +7,11 @@ forest with a query are its distribution (quantile regression forests, Meinshaus
 Fitted are runs whose aggregates touched and whose outcome is decided, but for the held-out ones; runs of all materials together."""
 
 from functools import cached_property
+from importlib.util import find_spec
 
 import numpy as np
 import pandas
 
-from ..libraries import require_learning
 from .columns import FIT
 from .rules import KINDS
 from .variables import LEFT, decided, left, scaled, variables
@@ -24,11 +24,22 @@ NEAREST = 5  # runs whose mean distance tells whether a query is within the data
 SEED = 1
 
 
+class NoLearning(Exception):
+    """scikit-learn is missing; the message is one line."""
+
+
+def _require_learning():
+    if find_spec("sklearn") is None:
+        raise NoLearning(
+            "scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])"
+        )
+
+
 class Model:
     """Fitted to a table of runs (DataFrame with the columns of atlas.columns): its decided rows, but for those held out."""
 
     def __init__(self, table, members=MEMBERS):
-        require_learning()
+        _require_learning()
         self.runs = decided(table)
         self.runs = self.runs[self.runs.split == FIT].reset_index(drop=True)
         self.points, self.members = scaled(variables(self.runs)), members
@@ -42,8 +53,10 @@ class Model:
 
     def probabilities(self, points, averaged=False):
         """(probabilities (n, 5) of rules.KINDS, half widths (n, 5) of their intervals of LEVEL) of variables() points; averaged: over impact
-        parameters, uniform in b^2, whatever the points have."""
+        parameters, uniform in b^2, whatever the points have. No half widths without members."""
         fits = np.stack([self._of_each(fit, points, averaged) for fit in self._classifiers])
+        if len(fits) == 1:
+            return fits[0], None
         low, high = np.quantile(fits[1:], (0.5 - LEVEL / 2, 0.5 + LEVEL / 2), axis=0)
         return fits[0], (high - low) / 2
 
@@ -135,17 +148,22 @@ def _classifier(strength):
 
 def _best_strength(points, outcome):
     """The one of STRENGTHS with the least cross-validated log loss."""
-    losses = [cross_validated(lambda: _classifier(strength), points, outcome)[1] for strength in STRENGTHS]
+    losses = [_loss(strength, points, outcome) for strength in STRENGTHS]
     return STRENGTHS[int(np.argmin(losses))]
 
 
-def cross_validated(make, points, outcome):
-    """(probabilities (n, 5) of KINDS, mean log loss) of a classifier, make(), each point's from a fit without its fold."""
-    from sklearn.model_selection import KFold
+def folds(number):
+    """[(rows of the others, rows)] of FOLDS parts of so many rows, drawn at random."""
+    parts = np.array_split(np.random.default_rng(SEED).permutation(number), FOLDS)
+    return [(np.concatenate([part for part in parts if part is not own]), own) for own in parts]
 
-    outcome, found = np.asarray(outcome), np.zeros((len(points), len(KINDS)))
-    for others, own in KFold(FOLDS, shuffle=True, random_state=SEED).split(points):
-        fit = make().fit(points[others], outcome[others])
-        found[np.ix_(own, [KINDS.index(kind) for kind in fit.classes_])] = fit.predict_proba(points[own])
-    truth = found[np.arange(len(points)), [KINDS.index(kind) for kind in outcome]]
-    return found, float(-np.log(np.maximum(truth, 1e-3)).mean())
+
+def _loss(strength, points, outcome):
+    """Cross-validated mean log loss."""
+    outcome, found = np.asarray(outcome), np.full(len(points), 1e-3)
+    for others, own in folds(len(points)):
+        fit = _classifier(strength).fit(points[others], outcome[others])
+        p = fit.predict_proba(points[own])
+        for column, kind in enumerate(fit.classes_):
+            found[own] = np.where(outcome[own] == kind, np.maximum(p[:, column], 1e-3), found[own])
+    return float(-np.log(found).mean())
