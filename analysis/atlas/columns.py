@@ -11,7 +11,7 @@ from ..measures.decided import Pieces, is_recent
 from ..measures.fragments import fragment_labels, fragment_sizes
 from ..measures.free_flight import pieces_that_can_meet
 from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
-from ..measures.of_run import met
+from ..measures.of_run import met, time_of_touch
 from ..measures.outcome import NEVER_MET, UNDECIDED, mean_velocity, restitution
 from ..measures.structure import filling_factor, gyration_radius
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
@@ -143,7 +143,7 @@ def _outcome(run, row):
     if not met(run):
         return (NEVER_MET,)
     kind = outcome(row)
-    touch = float(run.derived["firstTouch"])
+    touch = time_of_touch(run)
     recent = [
         Pieces(vars(run.states[k]), run.derived)
         for k in np.flatnonzero(is_recent(run.states.times, run.last.time, touch))

@@ -8,6 +8,7 @@ import pandas
 
 from ..theory import ICE, SILICATE
 from .columns import breaking_velocity
+from .neighbours import Neighbours
 from .outcome_table import Axis, OutcomeTable, read_outcomes
 from .rules import KINDS
 
@@ -37,8 +38,8 @@ Not in it: spins before the collision, sintering, drag, charges, grains of unlik
 
 def outcome_grid(model, version):
     """OutcomeTable of a model.Model."""
-    points = _nodes()
-    _, beyond = model.nearest(points)
+    points, near = _nodes(), Neighbours(model.runs)
+    _, beyond = near.nearest(points)
     inside, p = beyond <= 1.0, np.zeros((len(points), len(COLUMNS)))
     if not inside.any():
         raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
@@ -53,7 +54,7 @@ def outcome_grid(model, version):
     for name, value in values.items():
         p[inside, COLUMNS.index(name)] = value
     p[~inside] = p[inside][_nearest(points[~inside], own)]
-    p[:, COLUMNS.index("inside")], p[:, COLUMNS.index("runs")] = inside, model.within(points)
+    p[:, COLUMNS.index("inside")], p[:, COLUMNS.index("runs")] = inside, near.within(points)
     about = ABOUT.format(version=version, runs=len(model.runs), ice=breaking_velocity(ICE, GRAIN_RADIUS))
     return OutcomeTable(AXES, COLUMNS, p.reshape(*(len(a.nodes) for a in AXES), -1), tuple(about.splitlines()))
 

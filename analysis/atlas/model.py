@@ -20,7 +20,6 @@ MEMBERS, TREES, LEAF = 40, 200, 5  # fits with random weights; of the forest, an
 STRENGTHS = 0.03, 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation, tried
 FOLDS = 5
 LEVEL = 0.9  # of all intervals
-NEAREST = 5  # runs whose mean distance tells whether a query is within the data
 SEED = 1
 
 
@@ -72,7 +71,7 @@ class Model:
 
         values = left(self.runs).drop(columns="fragment_index").fillna(0.0)
         forest = RandomForestRegressor(TREES, min_samples_leaf=LEAF, random_state=SEED).fit(
-            self.points, values / values.std()
+            self.points, values / values.std().replace(0.0, 1.0)
         )
         return forest, forest.apply(self.points)
 
@@ -102,29 +101,6 @@ class Model:
             for end, part in (("low", 0.5 - LEVEL / 2), ("high", 0.5 + LEVEL / 2)):
                 found[f"{name}_{end}"] = y[order][np.argmax(sums >= part - 1e-9, axis=1)]
         return pandas.DataFrame(found)
-
-    @cached_property
-    def _neighbours(self):
-        """(tree of the runs' coordinates in units of their scatter, that scatter, distance within which 95 % of the runs have others);
-        without the impact parameter."""
-        from sklearn.neighbors import NearestNeighbors
-
-        scatter = self.points.std(axis=0)
-        tree = NearestNeighbors(n_neighbors=NEAREST).fit((self.points / scatter)[:, :-1])
-        own = tree.kneighbors()[0].mean(axis=1)
-        return tree, scatter, float(np.quantile(own, 0.95))
-
-    def nearest(self, points):
-        """(rows (n, NEAREST) of self.runs that are nearest, beyond (n,)): the mean distance to them over that of runs themselves, of which 95 %
-        are below 1; above, a query is an extrapolation."""
-        tree, scatter, usual = self._neighbours
-        distance, rows = tree.kneighbors((scaled(points) / scatter)[:, :-1])
-        return rows, distance.mean(axis=1) / usual
-
-    def within(self, points):
-        """Number (n,) of runs nearer to a point than `usual` (as nearest())."""
-        tree, scatter, usual = self._neighbours
-        return np.array([len(own) for own in tree.radius_neighbors((scaled(points) / scatter)[:, :-1], usual)[1]])
 
 
 OFFSETS = (np.arange(8) + 0.5) / 8  # b^2, of averages
