@@ -164,10 +164,12 @@ def _may_meet(kind, row, pieces):
 
 
 def _may_break(kind, row, pieces):
-    """Whether what may break off the largest piece would make another outcome."""
+    """Whether what may break off the largest piece would make another outcome; not told of pieces that are no such outcome yet."""
     cut, side = pieces.loose_cuts()
+    largest, second = [*np.bincount(pieces.labels) / len(pieces.labels), 0.0][:2]
     lost = side[cut == 0].max(initial=0.0) / pieces.mass.sum()
-    return outcome({**row, "largest": row["largest"] - lost, "second": max(row["second"], lost)}) != kind
+    seen = outcome({**row, "largest": largest, "second": second})
+    return seen == kind != outcome({**row, "largest": largest - lost, "second": max(second, lost)})
 
 
 def _energies(run, row):

@@ -62,7 +62,7 @@ def test_index_of_fragments_of_a_power_law(index):
 def test_columns_of_a_run_and_a_round_trip(tmp_path):
     rows = []
     for name, sticks in (("00003", True), ("00004-held", False)):
-        run = analysis.open_run(two_pairs(tmp_path / name, 3.0, 1, sticks=sticks))
+        run = analysis.open_run(two_pairs(tmp_path / name, 30.0, 1, sticks=sticks))
         rows.append((run.path, row_of(MEASURED, run)))
     table = make_table(rows)
     assert table.outcome.tolist() == ["sticking", "bouncing"] and table.split.tolist() == ["fit", "held_out"]
