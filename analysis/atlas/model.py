@@ -45,10 +45,10 @@ class Model:
 
     @cached_property
     def _classifiers(self):
-        strength = _best_strength(self.points, self.runs.outcome)
+        strength = best_strength(self.points, self.runs.outcome)
         draws = np.random.default_rng(SEED).exponential(size=(self.members, len(self.runs)))
         weights = [np.ones(len(self.runs)), *draws]
-        return [_classifier(strength).fit(self.points, self.runs.outcome, fit__sample_weight=w) for w in weights]
+        return [classifier(strength).fit(self.points, self.runs.outcome, fit__sample_weight=w) for w in weights]
 
     def probabilities(self, points, averaged=False):
         """(probabilities (n, 5) of rules.KINDS, half widths (n, 5) of their intervals of LEVEL) of variables() points; averaged: over impact
@@ -113,7 +113,8 @@ def _offsets(coordinates, averaged):
     return [np.column_stack([coordinates[:, :-1], np.full(len(coordinates), square)]) for square in OFFSETS]
 
 
-def _classifier(strength):
+def classifier(strength):
+    """scikit-learn's, unfitted."""
     from sklearn.linear_model import LogisticRegression
     from sklearn.pipeline import Pipeline
     from sklearn.preprocessing import PolynomialFeatures, StandardScaler
@@ -122,7 +123,7 @@ def _classifier(strength):
     return Pipeline([*steps, ("fit", LogisticRegression(C=strength, max_iter=2000))])
 
 
-def _best_strength(points, outcome):
+def best_strength(points, outcome):
     """The one of STRENGTHS with the least cross-validated log loss."""
     losses = [_loss(strength, points, outcome) for strength in STRENGTHS]
     return STRENGTHS[int(np.argmin(losses))]
@@ -138,7 +139,7 @@ def _loss(strength, points, outcome):
     """Cross-validated mean log loss."""
     outcome, found = np.asarray(outcome), np.full(len(points), 1e-3)
     for others, own in folds(len(points)):
-        fit = _classifier(strength).fit(points[others], outcome[others])
+        fit = classifier(strength).fit(points[others], outcome[others])
         p = fit.predict_proba(points[own])
         for column, kind in enumerate(fit.classes_):
             found[own] = np.where(outcome[own] == kind, np.maximum(p[:, column], 1e-3), found[own])

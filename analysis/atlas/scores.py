@@ -3,11 +3,12 @@
 import numpy as np
 import pandas
 
-from .model import Model, folds
+from .model import Model, best_strength, classifier, folds
 from .rules import KINDS
 from .variables import decided, left, scaled, variables
 
 NEIGHBOURS, BINS = 5, 10
+STRUCTURES = np.array(["bcca", "bpca", "cpe", "compressed"])
 CONSTANT = 1.0  # counts shared out among the kinds, so that what was not seen is not impossible
 
 
@@ -37,8 +38,24 @@ def of_energy(train, test):
     return _of_threshold(train, test, lambda at: at.velocity**2 * at.mass_ratio / (1 + at.mass_ratio) ** 2), None
 
 
+def of_more(more):
+    """The atlas's classifier with more(table) -> (n, k) beside the coordinates."""
+
+    def of(train, test):
+        points, others = (np.column_stack([scaled(variables(table)), more(table)]) for table in (train, test))
+        fit = classifier(best_strength(points, train.outcome)).fit(points, train.outcome)
+        found = np.zeros((len(test), len(KINDS)))
+        found[:, [KINDS.index(kind) for kind in fit.classes_]] = fit.predict_proba(others)
+        return found, None
+
+    return of
+
+
 PREDICTORS = {
     "the atlas": of_atlas,
+    "with contacts a grain": of_more(lambda t: t[["coordination_target", "coordination_projectile"]]),
+    "with the structure": of_more(lambda t: t.structure.to_numpy()[:, None] == STRUCTURES),
+    "with the material": of_more(lambda t: t.material == "silicate"),
     f"nearest {NEIGHBOURS} runs": of_nearest,
     "one velocity": of_velocity,
     "one impact energy a grain (Wada et al.)": of_energy,

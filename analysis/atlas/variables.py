@@ -25,9 +25,9 @@ def variables(table):
 
 
 def scaled(points):
-    """Coordinates (n, 5) of variables() in which the model works: logarithms but for the impact parameter."""
+    """Coordinates (n, 5) of variables() in which the model works: logarithms of the first three."""
     points = points[list(FEATURES)].to_numpy(dtype=float)
-    return np.column_stack([np.log(points[:, :-1]), points[:, -1]])
+    return np.column_stack([np.log(points[:, :3]), points[:, 3:]])
 
 
 def touching(table):

@@ -18,7 +18,7 @@ SPEEDS = np.geomspace(0.078, 26.2, 9)  # v_break: limits of bands
 FILLINGS = (0.0, 0.04, 0.12, 0.2, 0.3, 0.4, 0.6)
 SLOW = 5.0  # v_break, 19 m/s for ice: faster aggregates break, or pass each other
 MANY_CONTACTS, COMPACT = 6.0, 0.4
-HEAD_ON, EQUAL, GENTLE = 0.5, 0.5, 3.0  # impact parameter at most, mass ratio at least, velocity over v_break at most
+HEAD_ON, EQUAL = 0.7, 0.25  # impact parameter at most, mass ratio at least
 BY_BAND, BY_GROUP = ("filling", "speed"), ("group",)
 
 
@@ -37,12 +37,12 @@ def quantities(table):
         meaning = f"{kind.replace('_', ' ')}, of decided runs, by filling (mean of a band) and velocity over v_break"
         yield Quantity(f"{kind}_at", meaning, runs.fractions(is_kind(kind), BY_BAND))
     yield from _bouncing(runs)
-    head_on = (runs.table.impact < HEAD_ON) & (runs.table.mass_ratio > EQUAL) & (at.velocity[runs.table.index] < GENTLE)
+    head_on = (runs.table.impact < HEAD_ON) & (runs.table.mass_ratio > EQUAL) & (at.velocity[runs.table.index] < SLOW)
     compressed = (runs.table.structure == "compressed") & (at.filling[runs.table.index] > 0.35)
     lost = _grouped(runs, {"compressed of filling 0.35 to 0.5": head_on & compressed}).estimates(
         "lost_in_compression", BY_GROUP
     )
-    meaning = f"dissipated until the largest compression, of K(0); b < {HEAD_ON:g}, mass ratio > {EQUAL:g}, below {GENTLE:g} v_break"
+    meaning = f"dissipated until the largest compression, of K(0); b < {HEAD_ON:g}, mass ratio > {EQUAL:g}, below {SLOW:g} v_break"
     yield Quantity("lost_in_compression", meaning, lost)
     yield _silicate(runs)
     broken = runs.of(runs.table[runs.table.outcome.isin(BREAKING)])
