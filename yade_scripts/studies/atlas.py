@@ -4,6 +4,7 @@
     python3 yade_scripts/studies/atlas.py pilot [FIRST LAST]      runs/atlas-pilot.table, and the packings of its rows; also desk, full;
                                                                   FIRST to LAST: the table has these rows alone
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
+    python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long
     python3 yade_scripts/studies/atlas.py tables                  writes atlas-cells.table, and atlas-cells-full.table, which full needs too
 
 make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 10,000 rows long: a larger size goes on
@@ -32,7 +33,14 @@ TOP = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, TOP)
 from scipy.stats import qmc
 
+from analysis.atlas.columns import MEASURED
+from analysis.measures.outcome import UNDECIDED
 from analysis.progress import progress
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.folder import read_json
+from analysis.runs.format import RUN_FILE
+from analysis.runs.table import TableError, read_table
+from analysis.studies.columns import flat
 from analysis.theory import ICE, SILICATE, interaction_energies, pair_constants
 from yade_scripts import packings, step_choice
 from yade_scripts.experiments.collision import CollisionParameters, place
@@ -54,6 +62,7 @@ VELOCITIES = (0.3, 100.0)  # m/s, of ice
 FILLINGS = {"cpe": (0.25, 0.55), "compressed": (0.1, 0.5)}  # N (r/R)^3; CPE aggregates that are fluffier fall apart
 GRAIN_RADIUS = 1e-7  # m
 TOLERANCE, LONGEST = 0.01, 0.2  # of K(0); t0
+LONGER = 5  # times the duration, of runs that are undecided
 STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
 KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
 BLOCK = 10  # rows of which one is held out and one of silicate
@@ -283,10 +292,33 @@ def write_size(size, first, last):
     table.write(f"runs/atlas-{size}.table", found, head + "Written by yade_scripts/studies/atlas.py.")
 
 
+def write_longer(file):
+    """Write runs/atlas-longer.table for a table of runs. Raises TableError, and RunFolderError where a run's folder is not at hand."""
+    runs, known = read_table(file, flat(MEASURED))[0], scenes(SIZES["full"])
+    found = []
+    for number in runs[runs.outcome == UNDECIDED].number:
+        cells = row(known[number])
+        duration = read_json(os.path.join(cells["out"], RUN_FILE))["parameters"]["duration"]
+        out = f"{RUNS}-longer/{known[number].name}"
+        found.append({**cells, "out": out, "duration": f"{LONGER * duration:.3g}", "endWhenApart": 1})
+    table.write(
+        f"{RUNS}-longer.table",
+        found,
+        "Runs of the atlas that were undecided. Written by yade_scripts/studies/atlas.py.",
+    )
+
+
 def main(arguments):
     size = arguments[0] if arguments else ""
     if arguments == ["tables"]:
         write_tables(HERE)
+    elif size == "longer" and len(arguments) == 2:
+        file = os.path.abspath(arguments[1])
+        os.chdir(TOP)
+        try:
+            write_longer(file)
+        except (TableError, RunFolderError) as error:
+            sys.exit(f"atlas.py: {error}")
     elif "--help" in arguments:
         print(__doc__)
     elif size in SIZES and len(arguments) in (1, 3) and all(part.isdecimal() for part in arguments[1:]):
@@ -296,7 +328,7 @@ def main(arguments):
         except PackingError as error:
             sys.exit(f"atlas.py: {error}")
     else:
-        print(f"atlas.py: must be called with tables, {', '.join(SIZES)}; --help says more", file=sys.stderr)
+        print(f"atlas.py: must be called with tables, longer, {', '.join(SIZES)}; --help says more", file=sys.stderr)
         sys.exit(2)
 
 
