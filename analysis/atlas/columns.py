@@ -141,7 +141,7 @@ def _compression(run):
 def _outcome(run, row):
     """By the rules of this table, where it is decided."""
     if not met(run):
-        return (NEVER_MET,)
+        return (UNDECIDED if "firstTouch" in run.derived else NEVER_MET,)
     kind = outcome(row)
     touch = time_of_touch(run)
     recent = [
@@ -237,7 +237,15 @@ MEASURED = (
         Column("own", "", "of these two, the least part of a piece's mass that is of its own aggregate"),
     ),
     one("lost_in_compression", "K(0)", "dissipated until the first largest compression", _compression, gaps=True),
-    group(_outcome, Column("outcome", "", "by analysis/atlas/rules.py; never met, undecided", "O")),
+    group(
+        _outcome,
+        Column(
+            "outcome",
+            "",
+            "by analysis/atlas/rules.py; undecided; never met: on straight ways they never touch, and the run was cut short",
+            "O",
+        ),
+    ),
     group(
         _energies,
         *(

@@ -17,7 +17,7 @@ Ballistic aggregates, BCCA and BPCA, have the filling that they have. Close-pack
 spheres cut out of BCCA clusters that were compressed in a periodic cell (as in Oshiro et al. 2025), a pair of one cell, in two places
 and orientations. Every row has packings of its own; rows with one cell share its grains.
 
-Pairs that would never touch fly past each other: they have a duration, others end when nothing can happen any more (endWhenApart).
+Pairs that would never touch, by their straight ways, have a duration of MISSED; others end when nothing can happen any more (endWhenApart).
 The time step is the longest for a ledger that closes to TOLERANCE of K(0) in 95 % of runs (yade_scripts/step_choice.py), at most LONGEST.
 """
 
@@ -62,6 +62,7 @@ VELOCITIES = (0.3, 100.0)  # m/s, of ice
 FILLINGS = {"cpe": (0.25, 0.55), "compressed": (0.1, 0.5)}  # N (r/R)^3; CPE aggregates that are fluffier fall apart
 GRAIN_RADIUS = 1e-7  # m
 TOLERANCE, LONGEST = 0.01, 0.2  # of K(0); t0
+MISSED = "1e-9"  # s
 LONGER = 5  # times the duration, of runs that are undecided
 STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
 KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
@@ -170,13 +171,11 @@ def row(scene):
 
 
 def with_duration(cells):
-    """A row's cells; with a duration if its aggregates, whose packings must be there, never touch: until they have passed each other."""
+    """A row's cells; with a short duration if its aggregates, whose packings must be there, never touch."""
     parameters = CollisionParameters.parse({name: str(value) for name, value in cells.items() if name != "description"})
     _, pair, (target, projectile) = place(parameters, equilibrium_overlap(parameters))
-    if first_touch(*pair, projectile - target) is not None:
-        return cells
-    way = 2 * sum(map(packings.extent, pair)) + np.abs(pair[0].position[:, 0].mean() - pair[1].position[:, 0].mean())
-    return {**cells, "duration": f"{way / parameters.velocity:.3g}", "endWhenApart": 1}
+    missed = first_touch(*pair, projectile - target) is None
+    return {**cells, "duration": MISSED} if missed else cells
 
 
 def step(scene):
