@@ -14,7 +14,7 @@ def power_law_index(sizes, most=None):
     Clauset, Shalizi & Newman (2009), eq 3.7 with an upper end: mass is conserved, so that the index may be below 1.
 
     >>> round(power_law_index([1] * 64 + [2] * 16 + [4] * 4 + [8])[0], 1)
-    2.6
+    2.7
     """
     sizes = np.asarray(sizes)
     if len(sizes) < FEWEST:

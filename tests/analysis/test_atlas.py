@@ -118,7 +118,7 @@ def test_model_of_made_runs(made, tmp_path):
 def test_a_query_beyond_the_runs_is_an_extrapolation(made):
     near = Neighbours(made)
     assert near.nearest(point())[1][0] < 1 and near.within(point())[0] > 5
-    for beyond in ({"velocity": 1e4}, {"grains_target": 1e6}, {"filling_target": 1e-4, "filling_projectile": 1e-4}):
+    for beyond in ({"velocity": 1e4}, {"grains_target": 1e6}, {"filling_target": 0.9, "filling_projectile": 0.9}):
         assert near.nearest(point(**beyond))[1][0] > 1.5, beyond
 
 
