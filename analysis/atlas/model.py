@@ -63,7 +63,17 @@ class Model:
         found = np.zeros((len(points), len(KINDS)))
         for coordinates in _offsets(scaled(points), averaged):
             found[:, [KINDS.index(kind) for kind in fit.classes_]] += fit.predict_proba(coordinates)
-        return found / found.sum(axis=1, keepdims=True)
+        found /= found.sum(axis=1, keepdims=True)
+        found[:, 1:] *= np.clip(1 + np.log2(points.velocity.to_numpy() / self.slowest), 0.0, 1.0)[:, None]
+        found[:, 0] = 1 - found[:, 1:].sum(axis=1)
+        return found
+
+    @cached_property
+    def slowest(self):
+        """Velocity over v_break of the slowest run that did not stick; infinite where all stuck. Below, other outcomes fade out, to none at half of it:
+        what a regression leaves there is no run's, and disks have many slow collisions."""
+        other = variables(self.runs).velocity[self.runs.outcome != KINDS[0]]
+        return other.min() if len(other) else np.inf
 
     @cached_property
     def _forest(self):
