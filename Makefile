@@ -12,6 +12,8 @@
 # make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full
 # make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
 # make study-compressed  collisions of compressed aggregates beside CPE ones
+# make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 10,000)
+# make gallery-atlas  makes its page, model and table of outcomes again
 # make study-status STUDY=viscous  how far a study is, from another shell
 # make gallery  makes the page above all studies and the paper again, analysis/gallery/README.md and paper.md, and build/paper.pdf
 # make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
@@ -61,7 +63,7 @@ YADE_VERSION := $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/
 endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
-            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-markdown python3-pytest python3-pytest-xdist \
+            python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-sklearn python3-tqdm python3-yaml python3-jinja2 python3-markdown python3-pytest python3-pytest-xdist \
             python3-vtk9 ffmpeg libjs-three
 
 # ---- flags ----
@@ -226,9 +228,9 @@ NEWEST ?= $(PYTHON)
 test-newest:
 	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv ffmpeg"
 	@$(NEWEST) -m venv --clear build/newest
-	@build/newest/bin/python -m pip -q install --disable-pip-version-check . pytest cffconvert
+	@build/newest/bin/python -m pip -q install --disable-pip-version-check .[atlas] pytest cffconvert
 	@build/newest/bin/cffconvert --validate -i CITATION.cff
-	@build/newest/bin/python -m pip list --disable-pip-version-check | grep -E "^(numpy|pandas|matplotlib|scipy) "
+	@build/newest/bin/python -m pip list --disable-pip-version-check | grep -E "^(numpy|pandas|matplotlib|scipy|scikit-learn) "
 	@build/newest/bin/python -m pytest -q -p no:cacheprovider tests/analysis
 
 # Results in tests/mutations/results.
@@ -276,8 +278,8 @@ SIZE  ?= desk
 JOBS  ?= $(shell nproc)
 STUDIES := $(patsubst analysis/studies/%/study.py,%,$(wildcard analysis/studies/*/study.py))
 STUDY ?= elastoplastic
-table = yade_scripts/studies/$1-$(SIZE).table
-runs  = runs/$1$(filter-out -desk,-$(SIZE))
+table = $(if $(filter atlas,$1),runs/atlas,yade_scripts/studies/$1)-$(SIZE).table
+runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk,-$(SIZE)))
 
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status
 $(STUDIES:%=study-%): study-%: all
@@ -297,6 +299,14 @@ compressed-packings: all
 	@$(PYTHON) yade_scripts/study.py yade_scripts/studies/compressed-cells.table -j $(JOBS)
 	@$(PYTHON) yade_scripts/studies/compressed.py cut
 
+# A script writes the atlas's table, and makes the packings of its rows; compressed ones are cut out of cells.
+study-atlas: atlas-table
+.PHONY: atlas-table
+atlas-table: all
+	@$(PYTHON) yade_scripts/study.py yade_scripts/studies/atlas-cells.table -j $(JOBS)
+	$(if $(filter full,$(SIZE)),@$(PYTHON) yade_scripts/study.py yade_scripts/studies/atlas-cells-full.table -j $(JOBS))
+	@$(PYTHON) yade_scripts/studies/atlas.py $(SIZE)
+
 # of STUDY
 study-status:
 	@$(PYTHON) yade_scripts/study.py $(call table,$(STUDY)) -j $(JOBS) --status
@@ -305,6 +315,7 @@ study-status:
 $(STUDIES:%=gallery-%): gallery-%:
 	@mkdir -p build && cp analysis/gallery/$*/runs.csv build/$*-runs.csv
 	@$(PYTHON) -m analysis study $* build/$*-runs.csv $(wildcard $(call runs,$*)) --figures analysis/gallery/$*
+	$(if $(filter atlas,$*),@$(PYTHON) -m analysis.atlas.make && $(PYTHON) -m analysis study $* analysis/gallery/$*/runs.csv --figures analysis/gallery/$*)
 	@$(MAKE) --no-print-directory gallery
 
 .PHONY: gallery

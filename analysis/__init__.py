@@ -21,6 +21,7 @@ _PUBLIC = {
     ".report.rows": ("table",),
     ".report.plot": ("plot",),
     ".report.summary": ("summarise",),
+    ".atlas.grid": ("outcome",),
     ".measures.probability": ("wilson",),
     ".measures.pieces": ("fragments",),
     ".measures.fragments": (

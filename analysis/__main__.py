@@ -1,5 +1,5 @@
 """Command line: python3 -m analysis summary RUNS..., plot WHAT RUNS..., figures RUN, view RUN, film RUN, export RUN, status RUNS...,
-verify RUNS..., study [NAME RUNS...]."""
+verify RUNS..., study [NAME RUNS...], outcome --velocity V ...."""
 
 import argparse
 import os
@@ -13,7 +13,7 @@ if __name__ == "__main__":
     end_quietly(*ENDING)
     require_libraries()
 
-from .commands import complain, export, figures, film, plot, status, study, summary, verify, view  # noqa: E402
+from .commands import complain, export, figures, film, outcome, plot, status, study, summary, verify, view  # noqa: E402
 from .printable import printable  # noqa: E402
 from .runs.seal import Unsealed  # noqa: E402
 
@@ -46,7 +46,7 @@ def _parser():
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for command in (summary, plot, figures, view, film, export, status, verify, study):
+    for command in (summary, plot, figures, view, film, export, status, verify, study, outcome):
         command.add_parser(commands)
     return parser
 

@@ -39,6 +39,7 @@ COPIED = {
         "studies/*/*.toml",
         "studies/*/*.csv",
         "gallery/*/*.json",
+        "gallery/atlas/outcomes.txt",
         "gallery/*/snapshots/*",
     ),
     "yade_scripts": ("**/*.py", "**/*.table"),

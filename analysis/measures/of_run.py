@@ -21,6 +21,12 @@ def met(run):
     return bool(np.any(run.history["contacts_between"] > 0))
 
 
+def time_of_touch(run):
+    """Time [s] of the first touch of a RunFolder's aggregates: that of the run, or of the first sample with contacts between them; of no meaning
+    where they never met."""
+    return run.derived.get("firstTouch", run.history["time"][np.argmax(run.history["contacts_between"] > 0)])
+
+
 def outcome_of_run(run):
     """outcome.Outcome of a RunFolder from its first and last state, undecided where it may still become another one
     (decided.why_undecided; not told of runs without the constants that this takes). RunFolderError where the states don't make one."""
@@ -34,7 +40,7 @@ def outcome_of_run(run):
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
     if not all(name in run.derived for name in CONSTANTS):
         return found
-    touch = run.derived.get("firstTouch", run.history["time"][np.argmax(run.history["contacts_between"] > 0)])
+    touch = time_of_touch(run)
     before = np.flatnonzero(is_recent(run.states.times, end.time, touch))[:-1]
     recent = (vars(run.states[index]) for index in before)  # read only where they are needed
     if on_plate:

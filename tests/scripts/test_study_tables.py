@@ -13,7 +13,7 @@ from yade_scripts.experiments.compression import KIND as COMPRESSION
 from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.run import table
 from yade_scripts.runner import rows
-from yade_scripts.studies import compressed, compression, elastoplastic, sintered, table_script, viscous
+from yade_scripts.studies import atlas, compressed, compression, elastoplastic, sintered, table_script, viscous
 
 TABLES = sorted(name for name in os.listdir(STUDIES) if name.endswith(".table"))
 PATHS = [os.path.join(STUDIES, name) for name in TABLES]
@@ -24,6 +24,7 @@ WRITTEN = {
     compression: ("compression-desk", "compression-full"),
     sintered: ("sintered-beyond", "sintered-desk", "sintered-full"),
     compressed: ("compressed-cells", "compressed-desk"),
+    atlas: ("atlas-cells-full", "atlas-cells"),
 }
 VELOCITIES = {10 ** (0.1 * i) for i in range(8)}
 
@@ -188,3 +189,18 @@ def test_sintered_beyond_stands_beside_the_desks_runs():
             assert ("space" in p.file, "held" in p.file) == (not p.planar, p.limit == "held")
     core_hours = {size: sintered.core_hours(size) for size in sintered.TABLES}
     assert core_hours == pytest.approx({"desk": 9.9, "full": 38.6, "beyond": 6.7}, rel=0.02)  # those of STUDIES.md
+
+
+def test_rows_of_the_atlas_are_the_same_in_every_size():
+    """A tenth is held out and a tenth of silicate, of every structure a quarter; sizes, mass ratios and steps are within their limits."""
+    scenes = atlas.scenes(3000)
+    assert scenes[:500] == atlas.scenes(500) and len({scene.seed for scene in scenes}) == 3000
+    assert sum(scene.held for scene in scenes) == 300 and sum(scene.material == "silicate" for scene in scenes) == 300
+    assert not any(scene.material == "silicate" and scene.structure == "compressed" for scene in scenes)
+    numbers = [sum(scene.structure == name for scene in scenes[:2000]) for name in atlas.STRUCTURES]
+    assert numbers == pytest.approx([500] * 4, abs=2)
+    for number, scene in enumerate(scenes):
+        large, small = scene.grains
+        assert 64 <= large + small <= (1024 if number < 2000 else 4096) and large >= small >= 4 and large <= 73 * small
+    rows_, cell = [atlas.row(scene) for scene in scenes[:50]], scenes[1].cell
+    assert all(0.01 < row["stepFraction"] <= 0.2 for row in rows_) and cell in atlas.CELL_SEEDS[1024]

@@ -1,0 +1,108 @@
+"""The outcomes on a grid, made from the model, and their fast look-up."""
+
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pandas
+
+from ..theory import ICE, SILICATE
+from .columns import breaking_velocity
+from .neighbours import Neighbours
+from .outcome_table import Axis, OutcomeTable, read_outcomes
+from .rules import KINDS
+
+FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
+FILE, RUNS_FILE = FOLDER / "outcomes.txt", FOLDER / "runs.csv"
+MATERIALS = {"ice": ICE, "silicate": SILICATE}
+GRAIN_RADIUS = 1e-7  # m
+AXES = (
+    Axis("velocity", "log10", np.geomspace(0.08, 26.0, 20)),
+    Axis("grains", "log10", np.geomspace(64, 4096, 7)),
+    Axis("mass_ratio", "log10", np.geomspace(1 / 64, 1.0, 4)),
+    Axis("filling", "linear", np.array([0.02, 0.1, 0.2, 0.3, 0.4, 0.5])),
+)
+PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
+COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
+ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
+Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff of the repository.
+Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of the larger aggregate,
+mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of both).
+Columns: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the aggregates touch, averaged over
+impact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2, and over orientations; error: 90 % half width of the most uncertain
+of them; largest, second: mass of the two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest;
+filling_after: of the largest piece; inside: 1 within the data, 0 beyond, where values are those of the nearest node within;
+runs: number of runs near the node. Between nodes: multilinear in the scaled coordinates; the last axis is the fastest.
+Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
+
+
+def outcome_grid(model, version):
+    """OutcomeTable of a model.Model."""
+    points, near = _nodes(), Neighbours(model.runs)
+    _, beyond = near.nearest(points)
+    inside, p = beyond <= 1.0, np.zeros((len(points), len(COLUMNS)))
+    if not inside.any():
+        raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
+    own = points[inside]
+    chances, widths = model.probabilities(own, averaged=True)
+    left = model.left(own, averaged=True)
+    values = {
+        **dict(zip(PROBABILITIES, chances.T)),
+        "error": widths.max(axis=1),
+        **{name: left[name] for name in COLUMNS if name in left},
+    }
+    for name, value in values.items():
+        p[inside, COLUMNS.index(name)] = value
+    p[~inside] = p[inside][_nearest(points[~inside], own)]
+    p[:, COLUMNS.index("inside")], p[:, COLUMNS.index("runs")] = inside, near.within(points)
+    about = ABOUT.format(version=version, runs=len(model.runs), ice=breaking_velocity(ICE, GRAIN_RADIUS))
+    return OutcomeTable(AXES, COLUMNS, p.reshape(*(len(a.nodes) for a in AXES), -1), tuple(about.splitlines()))
+
+
+def _nodes():
+    """DataFrame of variables() of all nodes, the last axis fastest."""
+    mesh = np.meshgrid(*(axis.nodes for axis in AXES), indexing="ij")
+    return pandas.DataFrame({a.name: values.ravel() for a, values in zip(AXES, mesh)}).assign(impact_square=0.5)
+
+
+def _nearest(points, others):
+    """Row (n,) of the nearest of others, in steps of the grid."""
+    from scipy.spatial import cKDTree
+
+    place = lambda own: np.column_stack([axis.position(own[axis.name]) for axis in AXES])
+    return cKDTree(place(others)).query(place(points))[1]
+
+
+@lru_cache
+def _table(file, maxwell):
+    table = read_outcomes(file)
+    return table.maxwell() if maxwell else table
+
+
+def outcome(
+    velocity,
+    projectile,
+    target,
+    filling,
+    material="ice",
+    grain_radius=GRAIN_RADIUS,
+    maxwell=False,
+    columns=None,
+    file=FILE,
+):
+    """{column: array} of what becomes of collisions of two aggregates, from the atlas's table (analysis/gallery/atlas/outcomes.txt, or another
+    file); its head says what the columns are.
+
+    velocity [m/s] (maxwell: root mean square of a Maxwell distribution of speeds), projectile and target: numbers of grains, filling: volume
+    filling factor; arrays that broadcast. material: ice or silicate, grain_radius [m]: v_break follows from these. columns: only these.
+    `inside` is 1 within the data, and less where the answer is an extrapolation. ValueError for what cannot be, one line."""
+    if material not in MATERIALS:
+        raise ValueError(f"material = {material}: must be {' or '.join(MATERIALS)}")
+    projectile, target = np.broadcast_arrays(np.asarray(projectile, dtype=float), np.asarray(target, dtype=float))
+    if not (np.all(projectile >= 1) and np.all(target >= 1)):
+        raise ValueError("projectile and target: numbers of grains; must be 1 or more")
+    large, small = np.maximum(projectile, target), np.minimum(projectile, target)
+    speed = np.asarray(velocity, dtype=float) / breaking_velocity(MATERIALS[material], grain_radius)
+    return _table(file, maxwell).lookup(
+        columns, velocity=speed, grains=large, mass_ratio=small / large, filling=filling
+    )

@@ -1,0 +1,73 @@
+"""Fit the model to the atlas's table of runs, and write what follows from it:
+
+    python3 -m analysis.atlas.make [FOLDER]
+
+outcomes.txt, the table of outcomes on a grid, and model.md, how good the model is, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
+
+import sys
+from pathlib import Path
+
+from ..commands import complain
+from ..runs.table import TableError, read_table
+from ..runs.write import write_text
+from ..studies.columns import flat
+from ..studies.tables import markdown_table
+from ..version import version
+from .columns import MEASURED
+from .grid import FILE, FOLDER, RUNS_FILE, outcome_grid
+from .model import LEVEL, Model, NoLearning
+from .outcome_table import write_outcomes
+from .scores import of_atlas, reliability, scores
+from .variables import decided
+
+HEAD = """# How good the model of the atlas is
+
+Fitted to {fit} decided runs; {held} more were held out, drawn before any run was made. Cross-validated: each of the fitted runs foretold from the others.
+Brier score: mean over runs of the sum over the five outcomes of (p - observed)^2, 0 at best. Miss: mean of |p - observed| over bins of p a
+tenth wide, each with its number of values. Within: fraction of the runs whose largest piece, and its filling, lie in the {level:.0%} intervals.
+"""
+
+
+def read_runs(file=RUNS_FILE):
+    """The table of runs (DataFrame); TableError, OSError."""
+    return read_table(file, flat(MEASURED))[0]
+
+
+def report(table):
+    """model.md (str) of a table of runs."""
+    found = scores(table)
+    numbers = found.groupby("runs").number.first()
+    head = HEAD.format(fit=numbers["cross-validated"], held=numbers["held out"], level=LEVEL)
+    shown = found.drop(columns="number").round(3).astype(str).replace("nan", "")
+    shown.columns = [name.replace("mean_miss", "miss").replace("_", " ") for name in shown.columns]
+    own = decided(table)
+    fit, held = (own[(own.split == "fit") == is_fit] for is_fit in (True, False))
+    bins = reliability(of_atlas(fit, held)[0], held.outcome).round(3)
+    parts = [
+        head,
+        markdown_table(shown),
+        "\nHeld-out runs, in bins of probability of all outcomes together:\n",
+        markdown_table(bins),
+    ]
+    return "\n".join(parts) + "\n"
+
+
+def main(arguments):
+    """Exit status: 0, or 2 with one line on stderr."""
+    folder = Path(arguments[0]) if arguments else FOLDER
+    try:
+        table = read_runs(folder / RUNS_FILE.name)
+        write_outcomes(folder / FILE.name, outcome_grid(Model(table), version()))
+        write_text(folder / "model.md", report(table))
+    except OSError as error:
+        complain(f"{error.filename or folder}: {error.strerror}")
+        return 2
+    except (TableError, NoLearning, ValueError) as error:
+        complain(error)
+        return 2
+    print(folder / FILE.name)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,96 @@
+"""An answer of the atlas in words, for python3 -m analysis outcome."""
+
+import numpy as np
+import pandas
+
+from ..runs.table import read_table
+from ..studies.columns import flat
+from .columns import MEASURED, breaking_velocity
+from .grid import MATERIALS, PROBABILITIES, RUNS_FILE, outcome
+from .model import Model
+from .neighbours import Neighbours
+from .rules import KINDS
+from .variables import FEATURES, variables
+
+LABELS = {
+    "largest": "largest piece, of the mass",
+    "second": "second largest",
+    "fragment_index": "n of dN/dm ~ m^-n of all but the largest",
+    "filling_after": "filling of the largest piece",
+}
+COMMAND = "python3 yade_scripts/studies/atlas.py full {} {} && python3 yade_scripts/study.py runs/atlas-full.table"
+
+
+def text(options):
+    """Lines (str) for the options of commands.outcome. ValueError for what cannot be, model.NoLearning, OSError where the atlas is not at hand."""
+    if options.maxwell and options.impact != "averaged":
+        raise ValueError(
+            f"--impact {options.impact:g}: given with --maxwell, whose collisions are averaged; must be left out"
+        )
+    about = (options.material, options.grain_radius)
+    answer = outcome(options.velocity, options.projectile, options.target, options.filling, *about, options.maxwell)
+    answer = {name: float(value) for name, value in answer.items()}
+    widths, ranges = dict.fromkeys(PROBABILITIES, answer["error"]), {}
+    point = _point(options)
+    table = read_table(RUNS_FILE, flat(MEASURED))[0] if RUNS_FILE.exists() or options.impact != "averaged" else None
+    if options.impact != "averaged":
+        model = Model(table)
+        chances, width = model.probabilities(point)
+        left = model.left(point).iloc[0].to_dict()
+        answer |= {**dict(zip(PROBABILITIES, chances[0])), **{name: left[name] for name in LABELS}}
+        widths = dict(zip(PROBABILITIES, width[0]))
+        ranges = {name: f" ({left[name + '_low']:.3g} to {left[name + '_high']:.3g} in 90 %)" for name in LABELS}
+    lines = [_title(options, point)]
+    for name, kind in zip(PROBABILITIES, KINDS):
+        low, high = np.clip([answer[name] - widths[name], answer[name] + widths[name]], 0, 1)
+        lines.append(f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}  ({low:.2f} to {high:.2f})")
+    lines += [f"  {label:<42} {answer[name]:.3g}{ranges.get(name, '')}" for name, label in LABELS.items()]
+    return "\n".join([*lines, *_nearest(table, point, answer["inside"])])
+
+
+def _point(options):
+    """The query as a row of variables()."""
+    large, small = max(options.projectile, options.target), min(options.projectile, options.target)
+    speed = options.velocity / breaking_velocity(MATERIALS[options.material], options.grain_radius)
+    square = 0.5 if options.impact == "averaged" else options.impact**2
+    values = {"velocity": speed, "grains": large, "mass_ratio": small / large, "filling": options.filling}
+    return pandas.DataFrame([{**values, "impact_square": square}])
+
+
+def _title(options, point):
+    impact = "averaged over impact parameters" if options.impact == "averaged" else f"b = {options.impact:g}"
+    speeds = ", rms of a Maxwell distribution" if options.maxwell else ""
+    return (
+        f"{options.projectile:g} and {options.target:g} grains of {options.material}, filling {options.filling:g}, {options.velocity:g} m/s "
+        f"({point.velocity[0]:.3g} v_break{speeds}), {impact}:"
+    )
+
+
+def _outside(runs, point):
+    """', velocity 79 beyond 0.08 to 26', of the coordinates that lie beyond those of all runs."""
+    of_runs = variables(runs)[list(FEATURES[:-1])]
+    found = zip(FEATURES, point.iloc[0], of_runs.min(), of_runs.max())
+    return "".join(
+        f", {name} {own:.3g} beyond {low:.2g} to {high:.3g}" for name, own, low, high in found if not low <= own <= high
+    )
+
+
+def _nearest(table, point, inside):
+    """Lines on the nearest runs, and whether the answer is an extrapolation."""
+    if table is None:  # installed without the repository's tables
+        yield "  EXTRAPOLATION" if inside < 1 else "  within the data"
+        return
+    near = Neighbours(table)
+    rows, beyond = near.nearest(point)
+    outside = _outside(near.runs, point)
+    if beyond[0] > 1 or outside:
+        yield f"  EXTRAPOLATION: the nearest runs are {beyond[0]:.2g} times as far as runs are from each other{outside}"
+    elif inside < 1:
+        yield f"  at the edge of the data: inside = {inside:.2g} in the table of outcomes"
+    yield "nearest runs:"
+    for run in near.runs.iloc[rows[0]].itertuples():
+        yield (
+            f"  {run.run}: {run.structure}, {run.material}, {run.grains_projectile} and {run.grains_target} grains, filling {run.filling_target:.2g}, "
+            f"{run.velocity / run.v_break:.3g} v_break, b = {run.impact:.2g}: {run.outcome.replace('_', ' ')}, largest {run.largest:.2g}"
+        )
+        yield f"    {COMMAND.format(run.number, run.number + 1)}"

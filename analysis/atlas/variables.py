@@ -1,0 +1,45 @@
+"""The coordinates without dimensions of a table of runs, and which of its rows count."""
+
+import numpy as np
+import pandas
+
+from ..measures.outcome import NEVER_MET, UNDECIDED
+
+FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
+LEFT = ("largest", "second", "fragment_index", "filling_after")
+
+
+def variables(table):
+    """DataFrame (n rows) of FEATURES of a table of runs: velocity over v_break, grains of the larger aggregate, mass ratio, filling (mean by
+    mass of both), square of the impact parameter."""
+    share = 1 / (1 + table.mass_ratio)
+    return pandas.DataFrame(
+        {
+            "velocity": table.velocity / table.v_break,
+            "grains": table.grains_target,
+            "mass_ratio": table.mass_ratio,
+            "filling": share * table.filling_target + (1 - share) * table.filling_projectile,
+            "impact_square": table.impact**2,
+        }
+    )
+
+
+def scaled(points):
+    """Coordinates (n, 5) of variables() in which the model works: logarithms of the first three."""
+    points = points[list(FEATURES)].to_numpy(dtype=float)
+    return np.column_stack([np.log(points[:, :3]), points[:, 3:]])
+
+
+def touching(table):
+    """The rows whose aggregates touched."""
+    return table[table.outcome != NEVER_MET]
+
+
+def decided(table):
+    """The rows that anything may be fitted to or judged by: aggregates that touched, with a decided outcome."""
+    return table[~table.outcome.isin([NEVER_MET, UNDECIDED])]
+
+
+def left(table):
+    """DataFrame of LEFT of a table of runs."""
+    return table.rename(columns={"filling_largest": "filling_after"})[list(LEFT)]

@@ -1,0 +1,122 @@
+"""What the runs of the atlas say by themselves; the model fitted to them is analysis.atlas.model."""
+
+import numpy as np
+import pandas
+from scipy.spatial import cKDTree
+
+from ...atlas.columns import MEASURED
+from ...atlas.rules import KINDS
+from ...atlas.variables import decided, scaled, touching, variables
+from ...measures.outcome import NEVER_MET, UNDECIDED
+from ...runs.collect import Scene
+from ..definition import Quantity, Study
+from ..runs import Runs, select
+from .bouncing import threshold_exponent
+
+STICKING, BOUNCING, *BREAKING = KINDS
+SPEEDS = np.geomspace(0.078, 26.2, 9)  # v_break: limits of bands
+FILLINGS = (0.0, 0.04, 0.12, 0.2, 0.3, 0.4, 0.6)
+SLOW = 5.0  # v_break, 19 m/s for ice: faster aggregates break, or pass each other
+MANY_CONTACTS, COMPACT = 6.0, 0.4
+HEAD_ON, EQUAL = 0.7, 0.25  # impact parameter at most, mass ratio at least
+BY_BAND, BY_GROUP = ("filling", "speed"), ("group",)
+
+
+def quantities(table):
+    """Quantities of a table of runs (atlas.columns.MEASURED)."""
+    at = variables(table)
+    table = table.assign(filling=_middle(at.filling, FILLINGS), speed=_middle(at.velocity, SPEEDS))
+    all_runs, runs = Runs(table, "number"), Runs(decided(table), "number")
+    is_kind = lambda kind: lambda t: t.outcome == kind
+    yield Quantity(
+        "missed", "runs whose aggregates never touch", all_runs.fractions(is_kind(NEVER_MET), ("structure",))
+    )
+    still_open = all_runs.of(touching(table)).fractions(is_kind(UNDECIDED), ("structure",))
+    yield Quantity("undecided", "runs whose outcome is undecided, of those that touch", still_open)
+    for kind in KINDS:
+        meaning = f"{kind.replace('_', ' ')}, of decided runs, by filling (mean of a band) and velocity over v_break"
+        yield Quantity(f"{kind}_at", meaning, runs.fractions(is_kind(kind), BY_BAND))
+    yield from _bouncing(runs)
+    head_on = (runs.table.impact < HEAD_ON) & (runs.table.mass_ratio > EQUAL) & (at.velocity[runs.table.index] < SLOW)
+    compressed = (runs.table.structure == "compressed") & (at.filling[runs.table.index] > 0.35)
+    lost = _grouped(runs, {"compressed of filling 0.35 to 0.5": head_on & compressed}).estimates(
+        "lost_in_compression", BY_GROUP
+    )
+    meaning = f"dissipated until the largest compression, of K(0); b < {HEAD_ON:g}, mass ratio > {EQUAL:g}, below {SLOW:g} v_break"
+    yield Quantity("lost_in_compression", meaning, lost)
+    yield _silicate(runs)
+    broken = runs.of(runs.table[runs.table.outcome.isin(BREAKING)])
+    index = broken.estimates("fragment_index", ("outcome",))
+    yield Quantity("fragment_index", "n of dN/dm ~ m^-n of all pieces but the largest", index)
+    change = runs.estimates(lambda t: t.filling_largest / t.filling_target, ("structure", "outcome"))
+    yield Quantity("compaction", "filling of the largest piece over that of the larger aggregate before", change)
+    yield Quantity(
+        "energy_closure", "largest error of the ledger, of K(0)", runs.estimates("energy_closure", ("structure",))
+    )
+
+
+def _middle(values, limits):
+    """Mean of the values in each band of limits, for each of them."""
+    band = pandas.Series(np.digitize(values, limits[1:-1]), values.index)
+    return values.groupby(band).transform("mean")
+
+
+def _grouped(runs, groups):
+    """Runs with a row for each group, {name: mask (runs,)}, that a run is in, the name in the column `group`."""
+    parts = [runs.table[own].assign(group=name) for name, own in groups.items()]
+    return runs.of(pandas.concat(parts, ignore_index=True))
+
+
+def _bouncing(runs):
+    """Where aggregates bounce, of decided runs below SLOW, and differences of it."""
+    at = variables(runs.table)
+    slow = runs.of(runs.table[at.velocity < SLOW].assign(bounced=lambda t: (t.outcome == BOUNCING).astype(float)))
+    table, at = slow.table, at.loc[slow.table.index]
+    contacts = table[["coordination_target", "coordination_projectile"]].max(axis=1)
+    compact, narrow = at.filling > COMPACT, at.filling.between(0.4, 0.5)
+    large = compact & (at.grains > at.grains[compact].median())
+    groups = {
+        "compressed of filling 0.35 to 0.45": (table.structure == "compressed") & at.filling.between(0.35, 0.45),
+        "fewer than 6 contacts": contacts < MANY_CONTACTS,
+        "6 contacts or more": contacts >= MANY_CONTACTS,
+        **{f"structure {name}": table.structure == name for name in sorted(set(table.structure))},
+    }
+    found = _grouped(slow, groups).fractions("bounced", BY_GROUP)
+    yield Quantity(BOUNCING, f"runs that bounce, of decided ones below {SLOW:g} v_break", found)
+    pairs = {
+        "larger than smaller": (large, compact & ~large),
+        "CPE than compressed": (narrow & (table.structure == "cpe"), narrow & (table.structure == "compressed")),
+    }
+    mean = lambda name, own: _grouped(slow, {name: own}).estimates("bounced", BY_GROUP)
+    more = [mean(name, one) - mean(name, other) for name, (one, other) in pairs.items()]
+    yield Quantity(
+        "bouncing_more", "fraction that bounces, of one kind of aggregates less that of another", pandas.concat(more)
+    )
+    law = _grouped(slow, {"filling above 0.4": compact}).fit(threshold_exponent, ("exponent",), BY_GROUP)
+    meaning = (
+        "a of N ~ v^a, the grains from which on more than half of the runs bounce: logistic regression on ln N and ln v"
+    )
+    yield Quantity("bouncing_exponent", meaning, select(law, number="exponent"))
+
+
+def _silicate(runs):
+    """Largest piece of each run of silicate less that of the nearest one of ice."""
+    points, of_ice = scaled(variables(runs.table)), (runs.table.material == "ice").to_numpy()
+    scatter = points.std(axis=0)
+    _, nearest = cKDTree(points[of_ice] / scatter).query(points[~of_ice] / scatter)
+    more = runs.table[~of_ice].largest.to_numpy() - runs.table[of_ice].largest.to_numpy()[nearest]
+    found = runs.of(runs.table[~of_ice].assign(more=more, group="silicate than ice")).estimates("more", BY_GROUP)
+    meaning = "mass of the largest piece over the total, less that of the run of ice nearest in v/v_break, size, mass ratio, filling and b^2"
+    return Quantity("largest_more", meaning, found)
+
+
+STUDY = Study(
+    title="The collision atlas",
+    question="What do two aggregates do when they meet: where in size, filling, velocity and mass ratio do they stick, bounce, erode and break?",
+    scene=Scene(
+        "the atlas", {"neck": 0.0, "viscoelasticTime": 0.0, "planar": 0}, ("velocity", "impact"), measured=("number",)
+    ),
+    measured=MEASURED,
+    quantities=quantities,
+    independent="runs",
+)

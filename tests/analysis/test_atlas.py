@@ -1,0 +1,151 @@
+"""The collision atlas: rules of outcomes, columns, the model and what it says of queries beyond its runs, the command."""
+
+import numpy as np
+import pandas
+import pytest
+from written_runs import two_pairs
+
+import analysis
+from analysis.__main__ import main
+from analysis.atlas import rules
+from analysis.atlas.columns import MEASURED
+from analysis.atlas.grid import COLUMNS, PROBABILITIES, outcome_grid
+from analysis.atlas.neighbours import Neighbours
+from analysis.atlas.outcome_table import read_outcomes, write_outcomes
+from analysis.atlas.power_law import power_law_index
+from analysis.atlas.variables import variables
+from analysis.runs.table import make_table, read_table, table_text
+from analysis.studies.columns import flat, row_of
+from analysis.studies.definition import NotMeasured
+
+# mass ratio, largest, second, own -> outcome
+RULED = [
+    (1.0, 0.91, 0.02, 0.0, "sticking"),  # equal masses: as measures.outcome, from 0.9 on
+    (1.0, 0.89, 0.02, 0.0, "mass_transfer"),
+    (1.0, 0.5, 0.5, 1.0, "bouncing"),
+    (1.0, 0.52, 0.48, 0.5, "mass_transfer"),  # a merged body that broke in two
+    (1.0, 0.5, 0.2, 1.0, "erosion"),
+    (1.0, 0.2, 0.1, 1.0, "fragmentation"),
+    (0.25, 0.97, 0.0, 0.0, "sticking"),
+    (0.25, 0.95, 0.0, 0.0, "mass_transfer"),  # three quarters of the projectile stay
+    (0.25, 0.8, 0.2, 1.0, "bouncing"),
+    (0.25, 0.79, 0.05, 1.0, "erosion"),
+    (0.25, 0.39, 0.2, 1.0, "fragmentation"),
+]
+
+
+@pytest.mark.parametrize("mass_ratio, largest, second, own, expected", RULED)
+def test_rules(mass_ratio, largest, second, own, expected):
+    row = {"mass_ratio": mass_ratio, "largest": largest, "second": second, "own": own}
+    assert rules.outcome(row) == expected
+
+
+def test_one_rule_holds_for_every_run():
+    random = np.random.default_rng(1)
+    largest = random.uniform(size=5000)
+    row = {"mass_ratio": random.uniform(0.01, 1, 5000), "largest": largest, "own": random.uniform(0.5, 1, 5000)}
+    row["second"] = random.uniform(size=5000) * np.minimum(largest, 1 - largest)
+    assert np.all(sum(getattr(rules, kind)(row).astype(int) for kind in rules.KINDS) == 1)
+
+
+@pytest.mark.parametrize("index", [0.5, 1.8, 3.0])
+def test_index_of_fragments_of_a_power_law(index):
+    """Within its error, over forty draws; the error is their scatter."""
+    random, sizes = np.random.default_rng(3), np.arange(1, 201)
+    weights = sizes**-index / (sizes**-index).sum()
+    found = np.array([power_law_index(random.choice(sizes, 50, p=weights), most=200) for _ in range(40)])
+    assert found[:, 0].mean() == pytest.approx(index, abs=4 * found[0, 1] / 40**0.5 + 0.03)
+    assert found[:, 0].std() == pytest.approx(found[:, 1].mean(), rel=0.4)
+    assert np.isnan(power_law_index([1, 1, 1, 1])).all()
+
+
+def test_columns_of_a_run_and_a_round_trip(tmp_path):
+    rows = []
+    for name, sticks in (("00003", True), ("00004-held", False)):
+        run = analysis.open_run(two_pairs(tmp_path / name, 30.0, 1, sticks=sticks))
+        rows.append((run.path, row_of(MEASURED, run)))
+    table = make_table(rows)
+    assert table.outcome.tolist() == ["sticking", "bouncing"] and table.split.tolist() == ["fit", "held_out"]
+    assert table.restitution.tolist() == pytest.approx([0.0, 0.5]) and table.largest.tolist() == [1.0, 0.5]
+    assert table.v_break[0] == pytest.approx(3.823, rel=1e-3) and table.slidingDissipation_at_end[0] == 1.0
+    file = tmp_path / "runs.csv"
+    file.write_text(table_text(table, flat(MEASURED), {"study": "atlas"}))
+    again, _ = read_table(file, flat(MEASURED))
+    pandas.testing.assert_frame_equal(again[table.columns].drop(columns="folder"), table.drop(columns="folder"))
+    with pytest.raises(NotMeasured, match="no run of the atlas"):
+        row_of(MEASURED, analysis.open_run(two_pairs(tmp_path / "mine", 3.0, 1)))
+
+
+@pytest.fixture(scope="module")
+def made():
+    """A table of made runs whose chance to stick is a known function of velocity: 1/(1 + (v/5 v_break)^3)."""
+    random, number = np.random.default_rng(5), 600
+    speed, grains = 10 ** random.uniform(-1, 1.4, number), 10 ** random.uniform(1.8, 3, number)
+    stuck = random.uniform(size=number) < 1 / (1 + (speed / 5) ** 3)
+    filling, impact = random.uniform(0.05, 0.5, number), random.uniform(size=number) ** 0.5
+    columns = {"velocity": speed, "v_break": 1.0, "grains_target": grains, "impact": impact, "split": "fit"}
+    columns |= {
+        "mass_ratio": 10 ** -random.uniform(0, 1.8, number),
+        "filling_target": filling,
+        "filling_projectile": filling,
+    }
+    columns |= {"outcome": np.where(stuck, "sticking", "erosion"), "largest": np.where(stuck, 1.0, 0.5), "second": 0.0}
+    return pandas.DataFrame({**columns, "filling_largest": filling, "fragment_index": np.where(stuck, np.nan, 2.0)})
+
+
+def point(**own):
+    row = {"velocity": 5.0, "v_break": 1.0, "grains_target": 300, "mass_ratio": 0.2, "impact": 0.5}
+    return variables(pandas.DataFrame([{**row, "filling_target": 0.2, "filling_projectile": 0.2, **own}]))
+
+
+def test_model_of_made_runs(made, tmp_path):
+    model = pytest.importorskip("analysis.atlas.model")
+    pytest.importorskip("sklearn")
+    fitted = model.Model(made, members=10)
+    p, width = fitted.probabilities(variables(made))
+    assert np.abs(p[:, 0] - 1 / (1 + (made.velocity / 5) ** 3)).mean() < 0.05 and p.sum(axis=1) == pytest.approx(1)
+    assert 0.005 < width[:, 0].mean() < 0.2
+    left = fitted.left(point(velocity=0.2)).iloc[0]
+    assert left.largest > 0.97 and left.largest_low >= 0.5 and left.fragment_index == pytest.approx(2.0)
+    file = tmp_path / "outcomes.txt"
+    write_outcomes(file, outcome_grid(fitted, "0"))
+    found = analysis.outcome(5 * 3.8231, 60, [300, 3e6], 0.2, file=file)
+    assert sum(found[name] for name in PROBABILITIES) == pytest.approx(1, abs=1e-4)
+    assert found["p_sticking"][0] == pytest.approx(0.5, abs=0.2) and found["inside"].tolist() == [1.0, 0.0]
+    assert read_outcomes(file).columns == COLUMNS
+
+
+def test_a_query_beyond_the_runs_is_an_extrapolation(made):
+    near = Neighbours(made)
+    assert near.nearest(point())[1][0] < 1 and near.within(point())[0] > 5
+    for beyond in ({"velocity": 1e4}, {"grains_target": 1e6}, {"filling_target": 0.9, "filling_projectile": 0.9}):
+        assert near.nearest(point(**beyond))[1][0] > 1.5, beyond
+
+
+WRONG = {
+    "--impact 3": "argument --impact: 3: must be 0 to 1, or averaged",
+    "--velocity fast": "argument --velocity: fast: must be a number > 0",
+    "--material lead": "analysis: material = lead: must be ice or silicate",
+    "--impact 0.5 --maxwell": "analysis: --impact 0.5: given with --maxwell, whose collisions are averaged; must be left out",
+}
+
+
+@pytest.mark.parametrize("options", WRONG)
+def test_errors_of_the_command_are_one_line(options, capsys):
+    query = "outcome --velocity 5 --projectile 200 --target 300 --filling 0.15 " + options
+    try:
+        status = main(query.split())
+    except SystemExit as end:
+        status = end.code
+    assert status == 2 and capsys.readouterr().err.strip().splitlines()[-1].endswith(WRONG[options])
+
+
+def test_command_with_the_gallerys_atlas(capsys):
+    pytest.importorskip("sklearn")
+    for options in ("", "--impact 0.3", "--maxwell"):
+        assert main(f"outcome --velocity 1 --projectile 200 --target 300 --filling 0.3 {options}".split()) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert float(lines[1].split()[1]) > 0.8 and lines[1].split()[0] == "sticking"
+        assert any("study.py runs/atlas-full.table" in line for line in lines) and "EXTRAPOLATION" not in "".join(lines)
+    assert main("outcome --velocity 300 --projectile 200 --target 300 --filling 0.3".split()) == 0
+    assert "EXTRAPOLATION" in capsys.readouterr().out

@@ -1,0 +1,335 @@
+"""The collisions of the atlas: a Sobol sequence over structure, size, mass ratio, velocity, impact parameter and filling.
+
+    python3 yade_scripts/study.py yade_scripts/studies/atlas-cells.table -j 2    the cells that compressed aggregates are cut out of
+    python3 yade_scripts/studies/atlas.py pilot [FIRST LAST]      runs/atlas-pilot.table, and the packings of its rows; also desk, full;
+                                                                  FIRST to LAST: the table has these rows alone
+    python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
+    python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long
+    python3 yade_scripts/studies/atlas.py tables                  writes atlas-cells.table, and atlas-cells-full.table, which full needs too
+
+make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 10,000 rows long: a larger size goes on
+from a smaller one. Aggregates hold 64 to 1,024 grains together in the first 2,000 rows, and up to 4,096 in the others.
+
+Of every ten rows one, drawn at random, is held out (its name ends in -held): no model may be fitted to it. Of every ten one is of silicate,
+at velocities that are the same over v_break = (E_break/m0)^(1/2); compressed aggregates are of ice alone, whose cells they are cut out of.
+
+Ballistic aggregates, BCCA and BPCA, have the filling that they have. Close-packed (CPE) ones are without loose grains; compressed ones are
+spheres cut out of BCCA clusters that were compressed in a periodic cell (as in Oshiro et al. 2025), a pair of one cell, in two places
+and orientations. Every row has packings of its own; rows with one cell share its grains.
+
+Pairs that would never touch, by their straight ways, have a duration of MISSED; others end when nothing can happen any more (endWhenApart).
+The time step is the longest for a ledger that closes to TOLERANCE of K(0) in 95 % of runs (yade_scripts/step_choice.py), at most LONGEST.
+"""
+
+import os
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TOP = os.path.dirname(os.path.dirname(HERE))
+sys.path.insert(0, TOP)
+from scipy.stats import qmc
+
+from analysis.atlas.columns import MEASURED
+from analysis.measures.outcome import UNDECIDED
+from analysis.progress import progress
+from analysis.runs.arrays import RunFolderError
+from analysis.runs.folder import read_json
+from analysis.runs.format import RUN_FILE
+from analysis.runs.table import TableError, read_table
+from analysis.studies.columns import flat
+from analysis.theory import ICE, SILICATE, interaction_energies, pair_constants
+from yade_scripts import packings, step_choice
+from yade_scripts.experiments.collision import CollisionParameters, place
+from yade_scripts.materials import equilibrium_overlap
+from yade_scripts.materials import pair_constants as contact_constants
+from yade_scripts.packings.aggregate import AggregateParameters, make
+from yade_scripts.packings.approach import first_touch
+from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
+from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.run import table
+
+SIZES = {"pilot": 500, "desk": 2_000, "full": 10_000}
+RUNS, PACKINGS, CELLS = "runs/atlas", "runs/atlas-packings", "runs/atlas-cells"
+SEED = 20260
+STRUCTURES = ("bcca", "bpca", "cpe", "compressed")
+FEWEST, MOST = 64, {2_000: 1_024, 10_000: 4_096}  # grains of both; the most up to that row
+LEAST, MOST_UNEQUAL = 4, 64  # grains of the smaller one; mass ratio
+VELOCITIES = (0.3, 100.0)  # m/s, of ice
+FILLINGS = {"cpe": (0.25, 0.55), "compressed": (0.1, 0.5)}  # N (r/R)^3; CPE aggregates that are fluffier fall apart
+GRAIN_RADIUS = 1e-7  # m
+TOLERANCE, LONGEST = 0.01, 0.2  # of K(0); t0
+MISSED = "1e-9"  # s
+LONGER = 5  # times the duration, of runs that are undecided
+STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
+KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
+BLOCK = 10  # rows of which one is held out and one of silicate
+CELL_SEEDS = {
+    1_024: range(1, 11),
+    4_096: range(11, 31),
+}  # of cells for pairs of up to so many grains, which have twice as many
+CELL_STATES, RATE, CELL_STEP = 60, "1e-5", 0.3  # number; 1/t0; t0
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A row: number, structure, material, grains of target and projectile, velocity [m/s], impact parameter, filling that a CPE or
+    compressed aggregate is to have, largest number of grains of its part of the table, held (out)."""
+
+    number: int
+    structure: str
+    material: str
+    grains: tuple
+    velocity: float
+    impact: float
+    filling: float
+    most: int
+    held: bool
+
+    @property
+    def name(self):
+        return f"{self.number:05d}" + ("-held" if self.held else "")
+
+    @property
+    def seed(self):
+        """Of the row's packings, and of no other row's."""
+        return SEED + self.number
+
+    @property
+    def cell(self):
+        """Seed of the cell that a compressed pair is cut out of."""
+        seeds = CELL_SEEDS[self.most]
+        return seeds[self.number % len(seeds)]
+
+    @property
+    def from_file(self):
+        return self.structure in FILLINGS
+
+
+def v_break(material):
+    """(E_break/m0)^(1/2) [m/s] of grains of GRAIN_RADIUS."""
+    constants = pair_constants(material, GRAIN_RADIUS)
+    return (interaction_energies(constants)["break"] / (2 * constants.reduced_mass)) ** 0.5
+
+
+def scenes(rows):
+    """[Scene] of the first rows."""
+    # Not scrambled by scipy, whose versions may do it differently, but shifted: the first point would be a corner.
+    shift = np.random.default_rng(SEED).uniform(size=6)
+    points = (qmc.Sobol(6, scramble=False).random_base2(int(np.ceil(np.log2(rows)))) + shift) % 1.0
+    structures = [STRUCTURES[int(len(STRUCTURES) * u)] for u in points[:, 0]]
+    held, silicate = set(), set()
+    for first in range(0, rows, BLOCK):
+        draw = np.random.default_rng([SEED, first])
+        block = range(first, first + BLOCK)
+        held.add(int(draw.choice(block)))
+        silicate.add(int(draw.choice([i for i in block if i < len(structures) and structures[i] != "compressed"])))
+    return [_scene(i, structures[i], i in silicate, i in held, points[i, 1:]) for i in range(rows)]
+
+
+def _scene(number, structure, silicate, held, point):
+    between = lambda u, low, high: low * (high / low) ** u
+    most = next(most for rows, most in MOST.items() if number < rows)
+    total = between(point[0], FEWEST, most)
+    ratio = between(point[1], 1.0, min(MOST_UNEQUAL, total / LEAST - 1))
+    projectile = round(total / (1 + ratio))
+    scale = v_break(SILICATE) / v_break(ICE) if silicate else 1.0
+    low, high = FILLINGS.get(structure, (0.0, 0.0))
+    return Scene(
+        number,
+        structure,
+        "silicate" if silicate else "ice",
+        (round(total) - projectile, projectile),
+        scale * between(point[2], *VELOCITIES),
+        point[3] ** 0.5,
+        low + (high - low) * point[4],
+        most,
+        held,
+    )
+
+
+def row(scene):
+    """{column: value} of a Scene in the table of runs."""
+    grown = {"packing": scene.structure, "grains": scene.grains[0], "projectileGrains": scene.grains[1]}
+    files = {"packing": "file", "file": packing_file(scene, 0), "projectileFile": packing_file(scene, 1)}
+    return {
+        "description": scene.name,
+        **(files if scene.from_file else grown),
+        "velocity": f"{scene.velocity:.6g}",
+        "impact": f"{scene.impact:.6g}",
+        "material": scene.material,
+        "grainRadius": GRAIN_RADIUS,
+        **({} if scene.from_file else {"seed": scene.seed}),
+        "stepFraction": step(scene),
+        "threads": 1,
+        "states": STATES,
+        "out": f"{RUNS}/{scene.name}",
+    }
+
+
+def with_duration(cells):
+    """A row's cells; with a short duration if its aggregates, whose packings must be there, never touch."""
+    parameters = CollisionParameters.parse({name: str(value) for name, value in cells.items() if name != "description"})
+    _, pair, (target, projectile) = place(parameters, equilibrium_overlap(parameters))
+    missed = first_touch(*pair, projectile - target) is None
+    return {**cells, "duration": MISSED} if missed else cells
+
+
+def step(scene):
+    """Time step [t0], as if aggregates were of fluffy ones' larger error where they are not CPE."""
+    of = {"packing": "cpe", "filling": 0.4} if scene.structure == "cpe" else {"packing": "bcca"}
+    given = {**of, "grains": scene.grains[0], "velocity": scene.velocity, "material": scene.material}
+    texts = {**given, "grainRadius": GRAIN_RADIUS, "tolerance": TOLERANCE, "stepFraction": "auto"}
+    both = CollisionParameters.parse({name: str(value) for name, value in texts.items()})
+    kinetic, of_grain = _energies(scene, contact_constants(both))
+    error = step_choice.scene_factor(both) * sum(step_choice.ledger_errors(kinetic, of_grain))
+    return min(LONGEST, float(f"{(TOLERANCE / error) ** 0.5:.2g}"))
+
+
+def _energies(scene, constants):
+    """K(0), and K(0) for a grain, over F_c delta_c."""
+    target, projectile = scene.grains
+    mass = 2 * constants["reducedMass"] * target * projectile / (target + projectile)
+    kinetic = mass * scene.velocity**2 / 2 / (constants["pullOffForce"] * constants["pullOffOverlap"])
+    return kinetic, kinetic / (target + projectile)
+
+
+def packing_file(scene, index):
+    """Path of the packing of target (0) or projectile (1)."""
+    return f"{PACKINGS}/{scene.number:05d}{('', '-b')[index]}.npz"
+
+
+def make_packings(scene):
+    """Make both aggregates of a Scene that come from files, where they are missing. Raises PackingError."""
+    files = [packing_file(scene, index) for index in (0, 1)]
+    if all(map(os.path.exists, files)):
+        return
+    maker = _cpe if scene.structure == "cpe" else _compressed
+    for index, file in enumerate(files):
+        packings.save(file, maker(scene, index))
+
+
+def _cpe(scene, index):
+    """The first that is more than one grain: of few grains most may be loose."""
+    texts = {"packing": "cpe", "filling": scene.filling, "grains": scene.grains[index], "removeLooseGrains": 1}
+    texts |= {"material": scene.material, "grainRadius": GRAIN_RADIUS}
+    for number in range(PLACES):
+        own = {**texts, "seed": scene.seed + number * SIZES["full"]}
+        parameters = AggregateParameters.parse({name: str(value) for name, value in own.items()})
+        found = make(parameters, equilibrium_overlap(parameters), index)
+        if found.grains > 1:
+            return found
+    raise PackingError(
+        f"row {scene.number}: no {scene.grains[index]} close-packed grains hang together in {PLACES} draws"
+    )
+
+
+def _compressed(scene, index):
+    """A sphere of the state of the cell whose filling is nearest: the first of the places in which KEPT of the grains hang together."""
+    folder = os.path.join(f"{CELLS}/s{scene.cell}", "states")
+    try:
+        states = sorted(os.listdir(folder))
+    except OSError:
+        raise PackingError(f"{folder}: no states; must be those of a cell: run atlas-cells.table first") from None
+    wanted = np.interp(scene.filling, *_fillings(folder, states))
+    state = read_periodic_state(os.path.join(folder, states[round(wanted)]))
+    radius = (scene.grains[index] / _filling(state)) ** (1 / 3)
+    for number in range(PLACES):
+        with suppress(PackingError):  # an empty place
+            found = cut(state, CutParameters(radius=radius, seed=PLACES * scene.seed + number), index)
+            if found.grains >= KEPT * scene.grains[index]:
+                return Packing(found.position, found.radius, found.seed, {**found.parameters, "cell": scene.cell})
+    raise PackingError(
+        f"{folder}: no {scene.grains[index]} grains hang together in {PLACES} places; must be another cell"
+    )
+
+
+def _filling(state):
+    """N (r/R)^3 of spheres out of a periodic state."""
+    return 4 / 3 * np.pi * (state.radius**3).sum() / np.prod(state.cell_size)
+
+
+_known = {}
+
+
+def _fillings(folder, states):
+    """(fillings of a cell's states, their numbers)."""
+    if folder not in _known:
+        read = [read_periodic_state(os.path.join(folder, name)) for name in states]
+        _known[folder] = [_filling(state) for state in read], range(len(states))
+    return _known[folder]
+
+
+def cell_rows(most):
+    """Rows of the table of cells for pairs of up to so many grains."""
+    row = {"!SCRIPT": "yade_scripts/compress.py", "grains": 2 * most, "strainRate": RATE, "finalFilling": 0.5}
+    row |= {"stepFraction": CELL_STEP, "states": CELL_STATES, "threads": 1}
+    return [{"description": f"s{n}", **row, "seed": n, "out": f"{CELLS}/s{n}"} for n in CELL_SEEDS[most]]
+
+
+def write_tables(folder):
+    """Write atlas-cells.table and atlas-cells-full.table into a folder."""
+    head = "Cells that are compressed, out of which the atlas's compressed aggregates are cut.\n"
+    head += "Units: strainRate: 1/t0; stepFraction: t0. Written by yade_scripts/studies/atlas.py."
+    for most, name in zip(CELL_SEEDS, ("atlas-cells", "atlas-cells-full")):
+        table.write(os.path.join(folder, f"{name}.table"), cell_rows(most), head)
+
+
+def write_size(size, first, last):
+    """Write runs/atlas-SIZE.table, with the rows from first to before last, and make their packings. Raises PackingError."""
+    chosen = scenes(SIZES[size])[first:last]
+    os.makedirs(PACKINGS, exist_ok=True)
+    found = []
+    for scene in progress(chosen, "making packings"):
+        if scene.from_file:
+            make_packings(scene)
+        found.append(with_duration(row(scene)))
+    head = "The collisions of the atlas.\nUnits: velocity: m/s; impact: r_c,tar + r_c,pro; grainRadius: m; stepFraction: t0. "
+    table.write(f"runs/atlas-{size}.table", found, head + "Written by yade_scripts/studies/atlas.py.")
+
+
+def write_longer(file):
+    """Write runs/atlas-longer.table for a table of runs. Raises TableError, and RunFolderError where a run's folder is not at hand."""
+    runs, known = read_table(file, flat(MEASURED))[0], scenes(SIZES["full"])
+    found = []
+    for number in runs[runs.outcome == UNDECIDED].number:
+        cells = row(known[number])
+        duration = read_json(os.path.join(cells["out"], RUN_FILE))["parameters"]["duration"]
+        out = f"{RUNS}-longer/{known[number].name}"
+        found.append({**cells, "out": out, "duration": f"{LONGER * duration:.3g}", "endWhenApart": 1})
+    table.write(
+        f"{RUNS}-longer.table",
+        found,
+        "Runs of the atlas that were undecided. Written by yade_scripts/studies/atlas.py.",
+    )
+
+
+def main(arguments):
+    size = arguments[0] if arguments else ""
+    if arguments == ["tables"]:
+        write_tables(HERE)
+    elif size == "longer" and len(arguments) == 2:
+        file = os.path.abspath(arguments[1])
+        os.chdir(TOP)
+        try:
+            write_longer(file)
+        except (TableError, RunFolderError) as error:
+            sys.exit(f"atlas.py: {error}")
+    elif "--help" in arguments:
+        print(__doc__)
+    elif size in SIZES and len(arguments) in (1, 3) and all(part.isdecimal() for part in arguments[1:]):
+        os.chdir(TOP)
+        try:
+            write_size(size, *(map(int, arguments[1:]) if len(arguments) == 3 else (0, None)))
+        except PackingError as error:
+            sys.exit(f"atlas.py: {error}")
+    else:
+        print(f"atlas.py: must be called with tables, longer, {', '.join(SIZES)}; --help says more", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
