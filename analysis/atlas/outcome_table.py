@@ -1,0 +1,161 @@
+"""The table of outcomes on a grid, outcomes.txt: read, written, looked up. Its own comments say what the axes and columns are.
+
+from analysis.atlas.outcome_table import read_outcomes
+table = read_outcomes("analysis/gallery/atlas/outcomes.txt")
+table.lookup(velocity=[1, 10], grains=500, mass_ratio=1, filling=0.15)["p_sticking"]"""
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from ..runs.write import write_text
+
+SCALES = {"log10": np.log10, "linear": np.asarray}
+INSIDE = "inside"  # the column that is 1 within the data and 0 outside
+ROUNDING = 1e-9  # of the sum of a query's weights
+CHUNK = 20_000  # queries at once: what they need stays in the processor's cache
+
+
+class OutcomeTableError(ValueError):
+    """A table of outcomes that cannot be used; the message is one line: file, what is wrong, what it must be."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """name, scale ("log10" or "linear") and nodes (n,), increasing, n >= 2, of an axis of the table."""
+
+    name: str
+    scale: str
+    nodes: np.ndarray
+
+    def position(self, value):
+        """Where values stand on the axis: 0 at the first node and beyond, n - 1 at the last and beyond, linear in the scaled
+        value between nodes; ValueError for NaN and what has no logarithm."""
+        value = np.asarray(value, dtype=float)
+        if not np.all(value >= 0.0):
+            raise ValueError(f"{self.name} = {np.min(value):g}: must be 0 or more")
+        with np.errstate(divide="ignore"):
+            scaled = SCALES[self.scale](value)
+        return np.interp(scaled, SCALES[self.scale](self.nodes), np.arange(len(self.nodes)))
+
+    def beyond(self, value):
+        """-1 below the first node, 1 above the last, 0 between, for each value."""
+        return (np.asarray(value) > self.nodes[-1]).astype(int) - (np.asarray(value) < self.nodes[0])
+
+
+@dataclass(frozen=True)
+class OutcomeTable:
+    """axes: [Axis]; columns: their names; values (nodes of the first axis, of the second, ..., columns); comments: lines."""
+
+    axes: tuple
+    columns: tuple
+    values: np.ndarray
+    comments: tuple = ()
+
+    def lookup(self, columns=None, **query):
+        """{column: array} between the nodes: multilinear in the scaled coordinates, at the nearest edge beyond them.
+
+        query: a value of every axis by its name, numbers or arrays that broadcast. columns: names, all by default; `inside` always
+        comes too, and is below 1 where the answer is an extrapolation: beyond an edge (0), or next to a node without data.
+        ValueError for a name that is no axis or column, and for NaN or negative values.
+        """
+        names = [axis.name for axis in self.axes]
+        if sorted(query) != sorted(names):
+            raise ValueError(f"lookup of {', '.join(sorted(query))}: must be of {', '.join(names)}")
+        wanted = tuple(dict.fromkeys((*(self.columns if columns is None else columns), INSIDE)))
+        if unknown := [name for name in wanted if name not in self.columns]:
+            raise ValueError(f"{', '.join(unknown)}: no column of the table; it has {', '.join(self.columns)}")
+        given = np.broadcast_arrays(*(np.asarray(query[name], dtype=float) for name in names))
+        found = self._interpolated(
+            [axis.position(value).ravel() for axis, value in zip(self.axes, given)],
+            self.values[..., [self.columns.index(name) for name in wanted]],
+        )
+        beyond = np.any([axis.beyond(value) != 0 for axis, value in zip(self.axes, given)], axis=0)
+        inside = found[:, wanted.index(INSIDE)]
+        inside[beyond.ravel()] = 0.0
+        inside[inside > 1.0 - ROUNDING] = 1.0
+        return {name: found[:, k].reshape(beyond.shape) for k, name in enumerate(wanted)}
+
+    def _interpolated(self, positions, values):
+        """(queries, columns): half the time of scipy.ndimage.map_coordinates, which takes a column at a time."""
+        shape, flat = values.shape[:-1], np.ascontiguousarray(values.reshape(-1, values.shape[-1]))
+        strides = [int(np.prod(shape[k + 1 :])) for k in range(len(shape))]
+        found = np.zeros((len(positions[0]), flat.shape[1]))
+        for start in range(0, len(found), CHUNK):
+            chunk = slice(start, start + CHUNK)
+            below = [np.minimum(p[chunk].astype(np.intp), n - 2) for p, n in zip(positions, shape)]
+            above = [p[chunk] - k for p, k in zip(positions, below)]
+            first = sum(k * stride for k, stride in zip(below, strides))
+            for corner in product((0, 1), repeat=len(shape)):
+                weight = np.prod([w if up else 1.0 - w for w, up in zip(above, corner)], axis=0)
+                found[chunk] += weight[:, None] * flat[first + np.dot(corner, strides)]
+        return found
+
+    def maxwell(self):
+        """The same table for collisions of Maxwell-distributed speeds, its first axis being their root mean square.
+
+        Of collisions, not of pairs: v^3 exp(-3 v^2 / 2 <v^2>), as faster ones meet more often; with a threshold it gives the
+        probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of the collisions that are inside.
+        """
+        speed, x = self.axes[0], np.geomspace(1e-2, 5.0, 2000)
+        density = x**4 * np.exp(-1.5 * x**2)  # per logarithm of x
+        density /= density.sum()
+        shares = np.zeros((2, len(speed.nodes), len(speed.nodes)))  # all, and those between the edges
+        for row, velocity in enumerate(speed.nodes):
+            position = speed.position(velocity * x)
+            below = np.minimum(position.astype(int), len(speed.nodes) - 2)
+            for kind, part in enumerate((density, density * (speed.beyond(velocity * x) == 0))):
+                np.add.at(shares[kind, row], below, part * (1.0 - position + below))
+                np.add.at(shares[kind, row], below + 1, part * (position - below))
+        values = np.tensordot(shares[0], self.values, 1)
+        inside = self.columns.index(INSIDE)
+        values[..., inside] = np.tensordot(shares[1], self.values[..., inside], 1)
+        return replace(self, values=values, comments=(*self.comments, "velocity: rms of a Maxwell distribution"))
+
+
+def read_outcomes(path):
+    """The OutcomeTable of a file as write_outcomes() makes it. OutcomeTableError for another one, OSError where there is none."""
+    with open(path, encoding="ascii", errors="replace") as file:
+        lines = [line.rstrip("\n") for line in file]
+    comments = tuple(line[1:].strip() for line in lines if line.startswith("#"))
+    rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
+    try:
+        axes = tuple(_axis(next(rows)) for _ in range(int(next(rows)[0])))
+        columns = _columns(rows)
+        values = np.array([[float(word) for word in row] for row in rows])
+        values = values.reshape(*(len(axis.nodes) for axis in axes), len(columns))
+    except (StopIteration, IndexError, ValueError) as error:
+        raise OutcomeTableError(f"{path}: {error or 'ends too early'}; must be a table of outcomes") from None
+    if INSIDE not in columns or not np.isfinite(values).all():
+        raise OutcomeTableError(f"{path}: must have a column `{INSIDE}`, and numbers everywhere")
+    return OutcomeTable(axes, columns, values, comments)
+
+
+def _axis(words):
+    name, number, scale = words[0], int(words[1]), words[2]
+    nodes = np.array([float(word) for word in words[3 : 3 + number]])
+    if scale not in SCALES or len(nodes) != number or number < 2 or np.any(np.diff(nodes) <= 0.0) or nodes[0] < 0.0:
+        raise ValueError(
+            f"axis {name}: {scale}, {len(nodes)} of {number} nodes; must be 2 or more, increasing, log10 or linear"
+        )
+    return Axis(name, scale, nodes)
+
+
+def _columns(rows):
+    number = int(next(rows)[0])
+    columns = tuple(next(rows))
+    if len(columns) != number:
+        raise ValueError(f"{len(columns)} names of columns; must be {number}")
+    return columns
+
+
+def write_outcomes(path, table):
+    """Write an OutcomeTable: comments (#), number of axes, an axis a line (name, nodes, scale, their values), number of columns,
+    their names, and a row a node, the last axis fastest. Fortran's list-directed reads take it, but for the comments."""
+    lines = [f"# {comment}".rstrip() for comment in table.comments]
+    lines += [f"{len(table.axes)} number of axes: name, number of nodes, scale, nodes"]
+    lines += [" ".join([a.name, str(len(a.nodes)), a.scale, *(f"{node:.9g}" for node in a.nodes)]) for a in table.axes]
+    lines += [f"{len(table.columns)} number of columns", " ".join(table.columns)]
+    lines += [" ".join(f"{value:.6g}" for value in row) for row in table.values.reshape(-1, len(table.columns))]
+    write_text(path, "\n".join(lines) + "\n")

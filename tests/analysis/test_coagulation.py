@@ -1,0 +1,114 @@
+"""The atlas's table of outcomes in Python and Fortran, and in DustPy."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analysis.atlas.outcome_table import Axis, OutcomeTable, OutcomeTableError, read_outcomes, write_outcomes
+
+ROOT = Path(__file__).parents[2]
+AXES = (
+    Axis("velocity", "log10", np.geomspace(0.1, 30, 9)),
+    Axis("grains", "log10", np.array([60.0, 500.0, 4000.0])),
+    Axis("mass_ratio", "log10", np.array([0.02, 0.2, 1.0])),
+    Axis("filling", "linear", np.array([0.03, 0.1, 0.3, 0.55])),
+)
+
+
+@pytest.fixture
+def table():
+    """Of random values; `product` is linear in every scaled coordinate."""
+    v, n, q, f = np.meshgrid(*(axis.nodes for axis in AXES), indexing="ij")
+    linear = (1 + np.log10(v)) * np.log10(n) * (2 + np.log10(q)) * (1 - f)
+    values = np.stack([np.random.default_rng(1).random(v.shape), linear, (v > 3).astype(float), (n < 1000) * 1.0], -1)
+    return OutcomeTable(AXES, ("p_sticking", "product", "threshold", "inside"), values, ("of a test",))
+
+
+def queries(number, margin):
+    """{axis: values} up to a factor `margin` beyond the edges."""
+    draw = np.random.default_rng(2).uniform
+    return {a.name: np.exp(draw(*np.log([a.nodes[0] / margin, a.nodes[-1] * margin]), number)) for a in AXES}
+
+
+def test_lookup(table, tmp_path):
+    write_outcomes(tmp_path / "outcomes.txt", table)
+    read = read_outcomes(tmp_path / "outcomes.txt")
+    assert read.columns == table.columns and read.comments == table.comments
+    within = queries(1000, 1.0)
+    v, n, q, f = within.values()
+    found = table.lookup(**within)
+    np.testing.assert_allclose(
+        found["product"], (1 + np.log10(v)) * np.log10(n) * (2 + np.log10(q)) * (1 - f), rtol=1e-12
+    )
+    assert np.all((found["inside"] == 1) == (n <= 500))
+    edge = {
+        name: np.clip(x, *next(a.nodes[[0, -1]] for a in AXES if a.name == name))
+        for name, x in queries(1000, 3.0).items()
+    }
+    beyond = table.lookup(**queries(1000, 3.0))
+    np.testing.assert_array_equal(beyond["p_sticking"], table.lookup(**edge)["p_sticking"])
+    assert 0 < np.mean(beyond["inside"] == 0) < 1
+    with pytest.raises(ValueError, match="velocity = nan: must be 0 or more"):
+        table.lookup(**{**within, "velocity": np.nan})
+
+
+def test_maxwell(table):
+    """A threshold between two nodes gives the closed form of collisions above it, to the distance of the nodes."""
+    fine = Axis("velocity", "log10", np.geomspace(0.01, 100, 400))
+    step = np.broadcast_to((fine.nodes > 3)[:, None, None, None, None], (400, 3, 3, 4, 1)).astype(float)
+    rms = OutcomeTable((fine, *AXES[1:]), ("inside",), step).maxwell()
+    d = (3 / fine.nodes) ** 2
+    np.testing.assert_allclose(rms.values[:350, 0, 0, 0, 0], ((1.5 * d + 1) * np.exp(-1.5 * d))[:350], atol=0.02)
+
+
+@pytest.mark.parametrize(
+    "change, says",
+    [
+        (("log10 0.1", "log10 0.9"), "axis velocity: log10, 9 of 9 nodes; must be 2 or more, increasing"),
+        (("4 number of columns", "5 number of columns"), "4 names of columns; must be 5"),
+        (("4 number of axes", "3 number of axes"), "invalid literal"),
+        (("inside", "outside"), "must have a column `inside`"),
+    ],
+)
+def test_wrong_tables(table, tmp_path, change, says):
+    file = tmp_path / "outcomes.txt"
+    write_outcomes(file, table)
+    file.write_text(file.read_text().replace(*change, 1))
+    with pytest.raises(OutcomeTableError, match=f"^{file}: .*{says}"):
+        read_outcomes(file)
+
+
+PROGRAM = """program ask
+   use dust_outcomes
+   use iso_fortran_env, only: real64
+   real(real64) :: query(4), values(4), inside
+   integer :: status
+   call read_outcomes('outcomes.txt')
+   do
+      read(*, *, iostat=status) query
+      if (status /= 0) exit
+      call look_up(query, values, inside)
+      write(*, '(5es25.16)') values, inside
+   end do
+end program
+"""
+
+
+@pytest.mark.skipif(not shutil.which("gfortran"), reason="gfortran is not installed")
+@pytest.mark.parametrize("flag", ["-O2", "-fdefault-real-8"])  # mcdust compiles with the second
+def test_fortran_reader(table, tmp_path, flag):
+    write_outcomes(tmp_path / "outcomes.txt", table)
+    (tmp_path / "ask.f90").write_text(PROGRAM)
+    reader = ROOT / "analysis/atlas/adapters/dust_outcomes.f90"
+    subprocess.run(["gfortran", flag, "-Wall", "-fcheck=all", reader, "ask.f90", "-o", "ask"], cwd=tmp_path, check=True)
+    asked = queries(2000, 2.0)
+    lines = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(asked.values())).tolist())
+    answer = subprocess.run(["./ask"], input=lines, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    theirs = np.array(answer.split(), dtype=float).reshape(-1, 5)
+    ours = read_outcomes(tmp_path / "outcomes.txt").lookup(**asked)
+    inside = ours.pop("inside")
+    np.testing.assert_allclose(theirs[:, 4], inside, atol=1e-12)
+    np.testing.assert_allclose(theirs[:, :3], np.column_stack(list(ours.values())), rtol=1e-12, atol=1e-12)
