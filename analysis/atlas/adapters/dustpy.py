@@ -15,8 +15,7 @@ from ...theory import ICE, SILICATE, interaction_energies, pair_constants
 from ..outcome_table import INSIDE, OutcomeTable, read_outcomes
 
 MATERIALS = {"ice": ICE, "silicate": SILICATE}
-OUTSIDE = ("clamp", "dustpy")
-SPEEDS = ("maxwell", "rms")
+ONE_OF = {"outside": ("clamp", "dustpy"), "speeds": ("maxwell", "rms"), "material": tuple(MATERIALS)}
 PER_NODE = 2  # speeds between two nodes of the table at which a pair's probabilities are kept
 # By the atlas's rules the target gains 0 to 0.8 of the projectile's mass, say 0.4; in DustPy it gains 1 where they stick, and -1 where
 # it is eroded (excavatedMass = 1).
@@ -33,18 +32,14 @@ def use_atlas(
     outcomes: a file (outcomes.txt) or an OutcomeTable. outside: beyond the data "clamp" takes the probabilities at the nearest
     edge of the data, "dustpy" DustPy's own (sim.dust.v.frag). speeds: sim.dust.v.rel.tot is the rms of "maxwell" distributed
     collisions, as DustPy itself has it, or every collision's ("rms"). material ("ice" or "silicate") and grain_radius [m] of the
-    grains make E_break; their density is sim.dust.rhos, the filling factor of the aggregates sim.dust.fill, of the larger one of
-    two. fragment_index: also gives sim.dust.coagulation.phi the atlas's mean power law of fragments.
+    grains make E_break; their density is sim.dust.rhos, the filling factor of the aggregates sim.dust.fill. fragment_index: also
+    gives sim.dust.coagulation.phi the atlas's mean power law of fragments.
 
     ValueError for what is none of these, or a simulation that is not initialised; OutcomeTableError for a wrong table.
     """
-    for name, value, values in (
-        ("outside", outside, OUTSIDE),
-        ("speeds", speeds, SPEEDS),
-        ("material", material, MATERIALS),
-    ):
-        if value not in values:
-            raise ValueError(f"use_atlas: {name} = {value!r}: must be one of {', '.join(values)}")
+    for name, value in (("outside", outside), ("speeds", speeds), ("material", material)):
+        if value not in ONE_OF[name]:
+            raise ValueError(f"use_atlas: {name} = {value!r}: must be one of {', '.join(ONE_OF[name])}")
     if not grain_radius > 0.0:
         raise ValueError(f"use_atlas: grain_radius = {grain_radius!r}: must be a length in m")
     if sim.dust.p.frag is None:
@@ -54,7 +49,7 @@ def use_atlas(
     sim.dust.p.frag.updater = atlas.breaking
     sim.dust.p.stick.updater = atlas.sticking
     if fragment_index:
-        sim.dust.coagulation.phi = fragments_of(sim.grid.m, mean_fragment_index(table))
+        sim.dust.coagulation.phi[...] = fragments_of(sim.grid.m, mean_fragment_index(table))
     sim.update()
     return atlas
 
@@ -159,14 +154,16 @@ class AtlasInDustPy:
         return np.asarray(sim.dust.v.rel.tot)[1:-1, self.smaller, self.larger]
 
     def _query(self, sim):
-        """{axis: (Nr - 2, pairs)} of the table; density and filling are those of the larger aggregate."""
+        """{axis: (Nr - 2, pairs)} of the table; filling is the mean by mass of both, the grains are those of the larger aggregate."""
         grain = np.asarray(sim.dust.rhos)[1:-1, self.larger] / GRAM_PER_CM3 * self.grain_volume  # kg
-        mass = np.broadcast_to(self.mass, grain.shape[:1] + self.mass.shape)
+        filled = np.asarray(sim.dust.fill)[1:-1] * self.mass
+        mass = np.broadcast_to(self.mass, filled.shape)
+        small, large = mass[:, self.smaller], mass[:, self.larger]
         return {
             "velocity": self._speeds(sim) / CM / np.sqrt(self.break_energy / grain),
-            "grains": mass[:, self.larger] / GRAM / grain,
-            "mass_ratio": mass[:, self.smaller] / mass[:, self.larger],
-            "filling": np.asarray(sim.dust.fill)[1:-1, self.larger],
+            "grains": large / GRAM / grain,
+            "mass_ratio": small / large,
+            "filling": (filled[:, self.smaller] + filled[:, self.larger]) / (small + large),
         }
 
     def _probabilities(self, sim):
