@@ -22,6 +22,8 @@
 # make test   builds what is needed and passes the tests
 # make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest, and CITATION.cff;
 #             NEWEST=python3.13: the newest that this Python takes
+# make test-dustpy  tests the atlas in DustPy, and its reader in Fortran, in an environment of its own, build/dustpy (PyPI)
+# make disk   a disk in DustPy with and without the atlas, drawn: analysis/gallery/atlas/disk.png (its runs: some minutes)
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
@@ -232,6 +234,19 @@ test-newest:
 	@build/newest/bin/cffconvert --validate -i CITATION.cff
 	@build/newest/bin/python -m pip list --disable-pip-version-check | grep -E "^(numpy|pandas|matplotlib|scipy|scikit-learn) "
 	@build/newest/bin/python -m pytest -q -p no:cacheprovider tests/analysis
+
+# The atlas in DustPy, in an environment of its own; disk: the figure of a disk with and without it, drawn again where its runs are
+# at hand (analysis/gallery/atlas/disk.npz).
+.PHONY: test-dustpy disk
+test-dustpy: build/dustpy/installed
+	@build/dustpy/bin/python -m pytest -q -p no:cacheprovider tests/analysis/test_coagulation.py tests/analysis/test_in_dustpy.py
+disk: build/dustpy/installed
+	@build/dustpy/bin/python -m analysis.atlas.adapters.disk analysis/gallery/atlas
+build/dustpy/installed: Makefile
+	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv gfortran"
+	@$(PYTHON) -m venv build/dustpy
+	@build/dustpy/bin/python -m pip -q install --disable-pip-version-check dustpy==1.0.9 pytest pandas pillow tqdm
+	@touch $@
 
 # Results in tests/mutations/results.
 test-mutations: all

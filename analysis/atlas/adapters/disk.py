@@ -1,0 +1,124 @@
+"""A disk in DustPy with and without the atlas, and its figure.
+
+    python3 -m analysis.atlas.adapters.disk analysis/gallery/atlas     # or make disk
+
+runs DustPy with the folder's outcomes.txt and leaves disk.npz there, or takes the disk.npz that is there (which takes no DustPy),
+and draws disk.png. A disk.npz of another table than outcomes.txt is refused.
+
+DustPy's defaults but for: 30 radial cells from 5 to 300 au (100 from 1 to 1000); ice grains (rhoMonomer 1 g/cm^3, not 1.67) with a
+filling factor of FILLING (1), as compact ones are no aggregates; masses from 1e-14 g (1e-12), which is two grains of 0.1 um."""
+
+import hashlib
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ...figures.save import save_small
+from ...figures.style import new_figure, styled
+from ...progress import progress
+from ...runs.write import replacing
+from .dustpy import use_atlas
+
+YEARS = 1e5
+FILLING = 0.3
+# Name: how the atlas is used, and the title.
+RUNS = {
+    "dustpy": (None, "DustPy: breaks above 1 m/s"),
+    "clamp": ({"outside": "clamp"}, "the atlas, beyond its data the nearest of it"),
+    "mixed": ({"outside": "dustpy"}, "the atlas, beyond its data DustPy"),
+}
+HATCHED = 0.5  # of the collisions of a mass bin are outside of the data
+
+
+def make_disk():
+    """An initialised dustpy.Simulation of this module's disk. ImportError without DustPy."""
+    from dustpy import Simulation, constants, std
+
+    sim = Simulation(verbosity=0)
+    sim.ini.grid.Nr, sim.ini.grid.rmin, sim.ini.grid.rmax = 30, 5 * constants.au, 300 * constants.au
+    sim.ini.grid.mmin, sim.ini.dust.rhoMonomer = 1e-14, 1.0
+    sim.initialize()
+    sim.writer = None
+    sim.dust.fill[...] = FILLING
+    sim.update()
+    sim.dust.Sigma[...] = std.dust.MRN_distribution(sim)  # its largest size follows from the filling
+    sim.update()
+    sim.t.snapshots = np.array([YEARS]) * constants.year
+    return sim
+
+
+def run(outcomes, how):
+    """{sigma (Nr, Nm) [g/cm^2 per ln a], outside (Nr, Nm), size (Nr, Nm) [cm], radius (Nr,) [au], report} after YEARS.
+
+    how: options of use_atlas(), or None for DustPy alone. Without the atlas `outside` and `report` are what it would say.
+    """
+    from dustpy import constants
+
+    sim = make_disk()
+    atlas = None if how is None else use_atlas(sim, outcomes, **how)
+    sim.run()
+    mass = float((sim.dust.Sigma * sim.grid.A[:, None]).sum() / constants.M_earth)
+    atlas = atlas or use_atlas(sim, outcomes)
+    spacing = float(np.log(sim.grid.m[1] / sim.grid.m[0])) / 3.0
+    return {
+        "sigma": np.asarray(sim.dust.Sigma) / spacing,
+        "outside": atlas.outside_of_bins(sim),
+        "size": np.asarray(sim.dust.a),
+        "radius": np.asarray(sim.grid.r) / constants.au,
+        "report": json.dumps({"dust in Earth masses": mass, **atlas.report(sim)}),
+    }
+
+
+@styled
+def figure(runs):
+    """Figure of {name: run()}: surface density over distance and size, hatched where most collisions are outside of the data."""
+    drawing = new_figure(4.6 * len(runs), 5.0, layout="constrained")
+    panels = drawing.subplots(1, len(runs), sharey=True, squeeze=False)[0]
+    top = max(np.max(run["sigma"]) for run in runs.values())
+    levels = np.arange(-6, np.ceil(np.log10(top)) + 0.5, 0.5)
+    for panel, (name, run) in zip(panels, runs.items()):
+        radius, size = np.broadcast_to(run["radius"][:, None], run["size"].shape), run["size"]
+        with np.errstate(divide="ignore"):
+            filled = panel.contourf(radius, size, np.log10(run["sigma"]), levels=levels, cmap="viridis", extend="min")
+        if name != "dustpy":
+            mostly = np.where(run["outside"] > HATCHED, 1.0, 0.0)
+            panel.contourf(radius, size, mostly, levels=[0.5, 1.5], colors="none", hatches=["///"])
+        panel.set(xscale="log", yscale="log", xlabel="distance from the star [au]", title=RUNS[name][1])
+        panel.set_ylim(size.min(), 1e2)
+    panels[0].set_ylabel("radius of the aggregates [cm]")
+    drawing.colorbar(filled, ax=panels, label="log surface density [g/cm$^2$ per ln a]", shrink=0.9)
+    return drawing
+
+
+def main(folder):
+    """Exit status; see the module."""
+    folder = Path(folder)
+    outcomes, kept = folder / "outcomes.txt", folder / "disk.npz"
+    table = hashlib.sha256(outcomes.read_bytes()).hexdigest()
+    if not kept.exists():
+        runs = {name: run(outcomes, how) for name, (how, _) in progress(RUNS.items(), "disk")}
+        arrays = {f"{name} {key}": _small(value) for name, values in runs.items() for key, value in values.items()}
+        with replacing(kept) as file:
+            np.savez_compressed(file, table=table, **arrays)
+    with np.load(kept) as arrays:
+        if str(arrays["table"]) != table:
+            print(f"{kept}: of another table than {outcomes}; must be removed to be made again", file=sys.stderr)
+            return 2
+        runs = {
+            name: {key: arrays[f"{name} {key}"] for key in ("sigma", "outside", "size", "radius", "report")}
+            for name in RUNS
+        }
+    for name, values in runs.items():
+        print(name, values["report"])
+    save_small(figure(runs), folder / "disk.png")
+    return 0
+
+
+def _small(value):
+    return value if isinstance(value, str) else np.asarray(value, dtype=np.float32)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
