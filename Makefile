@@ -297,7 +297,7 @@ test-faults: all
 
 # Results in tests/drivers/results.
 test-sanitizers: all
-	@$(MAKE) --no-print-directory deps PACKAGES="clang-14 libomp-14-dev llvm-14"
+	@$(MAKE) --no-print-directory deps PACKAGES="clang-14 libclang-rt-14-dev libomp-14-dev llvm-14"
 	@$(PYTHON) tests/drivers/sanitizers.py
 
 # Results in tests/drivers/results.

@@ -49,19 +49,18 @@ class Trial:
 
     sanitize: str  # as -fsanitize has it
     compiler: str
-    goals: tuple
 
     @property
     def clone(self):
         return FOLDER / self.sanitize
 
-    def make(self):
-        """Clone the last commit, or bring the clone to it, and compile."""
+    def make(self, goal):
+        """Clone the last commit, or bring the clone to it, and compile what make calls `goal`."""
         if not self.clone.exists():
             run(["git", "clone", "-q", TOP, self.clone])
         run(["git", "fetch", "-q", TOP, "HEAD"], cwd=self.clone)
         run(["git", "checkout", "-q", "--detach", "FETCH_HEAD"], cwd=self.clone)
-        run(["make", f"SANITIZE={self.sanitize}", f"CXX={self.compiler}", *self.goals], cwd=self.clone)
+        run(["make", f"-j{os.cpu_count()}", f"SANITIZE={self.sanitize}", f"CXX={self.compiler}", goal], cwd=self.clone)
 
     def row(self, what, command, **more):
         """A line of the table for a command, and whether it passed with nothing found."""
@@ -89,7 +88,8 @@ class Trial:
         return row, count == 0 and done.returncode == 0
 
     def harness(self, scenes):
-        """A row for each scene: on one to four threads by turns, eight domains, each instruction set of this machine."""
+        """A row for each scene: on one to four threads by turns, eight domains, without vectors and with the best that this machine has."""
+        self.make("build/harness")
         for name, path in scenes:
             for instructions in ("portable", ""):
                 command = [
@@ -104,6 +104,7 @@ class Trial:
 
     def tests(self):
         """Rows for the kernel's probe and for files of tests inside YADE, with the sanitizer's library in front of all others."""
+        self.make("build")
         library = run([self.compiler, "-print-file-name=libasan.so"]).stdout.strip()
         pytest = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
         probe = f"-fsanitize={self.sanitize} -g1"
@@ -112,8 +113,8 @@ class Trial:
             yield self.row(f"in YADE: {path}", [*pytest, path], LD_PRELOAD=library)
 
 
-MEMORY = Trial("address,undefined", "g++", ("build", "build/harness"))
-THREADS = Trial("thread", "clang++-14", ("build/harness",))
+MEMORY = Trial("address,undefined", "g++")
+THREADS = Trial("thread", "clang++-14")
 
 
 def scenes_in(folder):
@@ -133,12 +134,10 @@ def main(arguments):
     text, good = HEAD.format(versions=versions, **machine()), True
     try:
         scenes = scenes_in(FOLDER)
-        for trial in (THREADS, MEMORY):
-            trial.make()
-            for rows in (trial.harness(scenes), trial.tests() if trial is MEMORY else ()):
-                for row, passed in rows:
-                    text, good = f"{text}{row}\n", good and passed
-                    options.out.write_text(text)
+        for rows in (THREADS.harness(scenes), MEMORY.harness(scenes), MEMORY.tests()):
+            for row, passed in rows:
+                text, good = f"{text}{row}\n", good and passed
+                options.out.write_text(text)
     except CannotBegin as error:
         print(f"sanitizers.py: {error}", file=sys.stderr)
         return 1
