@@ -212,10 +212,9 @@ install: all
 uninstall:
 	@$(PYTHON) contact_law/installation.py uninstall "$$PREFIX"
 
-# Of Debian's packages and the last commit. The compilers stay behind.
+# Of Debian's packages and the last commit. (Debian 12's yade needs python3-dev and its compiler: they stay.)
 IMAGE := build/image/contact_law
 IMAGE_SYSTEM ?= trixie
-COMPILERS := g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev
 .PHONY: image
 image:
 	@$(MAKE) --no-print-directory deps PACKAGES="mmdebstrap squashfs-tools git"
@@ -224,7 +223,6 @@ image:
 	@mmdebstrap --quiet --variant=minbase --include="$(PACKAGES)" --dpkgopt=force-unsafe-io \
 		--customize-hook='tar-in $(IMAGE).source.tar /root' \
 		--customize-hook='chroot "$$1" make -C /root/source COMMIT=$(COMMIT) PREFIX=/usr/local install' \
-		--customize-hook='chroot "$$1" apt-get -q -y purge --autoremove $(filter-out make,$(COMPILERS))' \
 		--customize-hook='rm -rf "$$1/root/source"' $(IMAGE_SYSTEM) $(IMAGE).tar
 	@sqfstar -quiet -no-progress $(IMAGE).squashfs < $(IMAGE).tar
 	@ls -sh $(IMAGE).tar $(IMAGE).squashfs
