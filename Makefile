@@ -19,6 +19,8 @@
 # make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
+# make image  one file system with YADE, the plugin and the commands dust-..., for machines without Debian or root (root; a quarter of an hour):
+#             build/image/contact_law.tar (podman import, docker import) and contact_law.squashfs (apptainer exec)
 # make test   builds what is needed and passes the tests
 # make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest, and CITATION.cff;
 #             NEWEST=python3.13: the newest that this Python takes
@@ -26,6 +28,8 @@
 # make disk   a disk in DustPy with and without the atlas, drawn: analysis/gallery/atlas/disk.png (its runs: some minutes)
 # make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
 # make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
+# make test-sanitizers  runs engine, kernel, functors and checkpoints with the sanitizers of addresses, undefined behaviour and threads (an hour on
+#             two cores; installs clang from Debian): tests/drivers/results/sanitizers.md
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
 # make docs   builds the site of all documents, build/docs/index.html, and runs its notebooks (installs Sphinx from Debian; a few minutes)
@@ -55,7 +59,7 @@ PLUGIN         := $(OVERLAY)/libcontact_law.so
 OBJECTS_FOLDER := build/objects
 
 # The versions of YADE that contact_law/yade_interface has been tried with (make test-debian). Another one is refused.
-YADE_DESCRIBED := 2023.02a 2025.2.0
+YADE_DESCRIBED := 2023.02a 2025.2.0 2026.1.0
 
 # Found out. Empty on a system that lacks the packages; they are installed before anything is compiled, by a make of its own.
 PYTHON := /usr/bin/python3
@@ -98,8 +102,18 @@ AVX512_FLAGS := -mavx512f -mavx512cd -mavx512dq -mavx512vl -mfma -ffp-contract=f
 $(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := $(AVX2_FLAGS)
 $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 
+# For tests/drivers/sanitizers.py, in a clone: SANITIZE=address,undefined or thread. YADE's classes are declared here and made there: no vptr.
+ifdef SANITIZE
+SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1
+FLAGS += $(SANITIZED)
+ENGINE_FLAGS += $(SANITIZED) -O1
+endif
+
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
 LINK := -shared -fopenmp -Wl,-z,defs -Wl,-rpath,$(YADE_LIBRARIES) -L$(YADE_LIBRARIES)
+ifdef SANITIZE
+LINK += $(SANITIZED) -Wl,-z,undefs
+endif
 LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python$(subst .,,$(PYTHON_VERSION)) -lboost_serialization -lpython$(PYTHON_VERSION) -ldl
 
 # ---- what is built ----
@@ -133,23 +147,23 @@ endif
 # $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
 $(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
 	@echo "link    $@"
-	@g++ $(LINK) $(OBJECTS) $(LIBRARIES) -o $@.new && mv $@.new $@
+	@$(CXX) $(LINK) $(OBJECTS) $(LIBRARIES) -o $@.new && mv $@.new $@
 
 $(YADE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp $(PRECOMPILED).gch build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
-	@g++ $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
+	@$(CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
 
 $(ENGINE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
-	@g++ $(ENGINE_FLAGS) $(INSTRUCTIONS) -c $< -o $@
+	@$(CXX) $(ENGINE_FLAGS) $(INSTRUCTIONS) -c $< -o $@
 
 $(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
 	@cp $< $(PRECOMPILED)
-	@g++ $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
+	@$(CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
 
 # The commit goes into one object.
 $(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: build/commit.list
@@ -186,12 +200,12 @@ HARNESS_OBJECTS := $(patsubst tests/benchmarks/harness/%.cpp,$(OBJECTS_FOLDER)/h
 
 build/harness: $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) build/objects.list
 	@echo "link    $@"
-	@g++ -fopenmp $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) -o $@.new && mv $@.new $@
+	@$(CXX) -fopenmp $(SANITIZED) $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) -o $@.new && mv $@.new $@
 
 $(HARNESS_OBJECTS): $(OBJECTS_FOLDER)/harness/%.o: tests/benchmarks/harness/%.cpp build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
-	@g++ $(ENGINE_FLAGS) -c $< -o $@
+	@$(CXX) $(ENGINE_FLAGS) -c $< -o $@
 
 # For scripts of any folder: contact_law/installation.py says what goes where. PREFIX is a name and nothing else, for make and the shell.
 PREFIX ?= ~/.local
@@ -204,9 +218,24 @@ install: all
 uninstall:
 	@$(PYTHON) contact_law/installation.py uninstall "$$PREFIX"
 
+# Of Debian's packages and the last commit. (Debian 12's yade needs python3-dev and its compiler: they stay.)
+IMAGE := build/image/contact_law
+IMAGE_SYSTEM ?= trixie
+.PHONY: image
+image:
+	@$(MAKE) --no-print-directory deps PACKAGES="mmdebstrap squashfs-tools git"
+	@mkdir -p $(dir $(IMAGE))
+	@git archive --prefix=source/ --add-virtual-file=source/analysis/COMMIT:$(COMMIT) -o $(IMAGE).source.tar HEAD
+	@mmdebstrap --quiet --variant=minbase --include="$(PACKAGES)" --dpkgopt=force-unsafe-io \
+		--customize-hook='tar-in $(IMAGE).source.tar /root' \
+		--customize-hook='chroot "$$1" make -C /root/source COMMIT=$(COMMIT) PREFIX=/usr/local install' \
+		--customize-hook='rm -rf "$$1/root/source"' $(IMAGE_SYSTEM) $(IMAGE).tar
+	@sqfstar -quiet -no-progress $(IMAGE).squashfs < $(IMAGE).tar
+	@ls -sh $(IMAGE).tar $(IMAGE).squashfs
+
 # ---- running it ----
 
-.PHONY: demo test test-edits test-mutations test-faults test-slurm
+.PHONY: demo test test-edits test-mutations test-faults test-sanitizers test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary --long runs/demo
@@ -282,6 +311,11 @@ yade-tree: all
 # Results in tests/persistence/results.
 test-faults: all
 	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
+
+# Results in tests/drivers/results.
+test-sanitizers: all
+	@$(MAKE) --no-print-directory deps PACKAGES="clang-14 libclang-rt-14-dev libomp-14-dev llvm-14"
+	@$(PYTHON) tests/drivers/sanitizers.py
 
 # Results in tests/drivers/results.
 test-slurm: all

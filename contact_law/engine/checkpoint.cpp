@@ -8,8 +8,8 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber =
-	        7; // 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes
+	// 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes; 8: with a sum at the end
+	constexpr int formatNumber = 8;
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const SharedState& shared)
 	{
@@ -156,9 +156,8 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	}
 	original.resize(count);
 	for (int k = 0; k < count; ++k) {
+		archive.same(id(k), [&] { return "the id of body " + std::to_string(id(k)); });
 		archive.number(original[k]);
-		if (original[k] < 0 || original[k] >= count)
-			throw std::invalid_argument("the checkpoint of the grains is damaged: their order must be of 0 to N - 1");
 		indexHere[original[k]] = k;
 	}
 }
@@ -194,7 +193,7 @@ std::vector<double> Dynamics::save()
 	SavingArchive to;
 	transferLayout(to);
 	transferState(to);
-	return std::move(to.numbers);
+	return sealed(std::move(to.numbers));
 }
 
 Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_, const std::vector<double>& saved)
@@ -206,7 +205,6 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 	loadGrains(grains);
 	makeDomains();
 	transferState(from);
-	if (!from.atEnd()) throw std::invalid_argument("the checkpoint of the grains is too long: it must be as O.save wrote it");
 	for (auto& domain : domains)
 		domain->touching.findCompleted();
 	std::vector<long> searches;

@@ -1,14 +1,39 @@
 /* The two directions of a checkpoint: one list of numbers, taken through either archive, is saved or restored (as in Boost.Serialization).
- * Numbers are doubles in a row, whole ones (below 2^53) and flags among them. */
+ * Numbers are doubles in a row, whole ones (below 2^53) and flags among them; the last is a sum of all others' bits. */
 #pragma once
 #include "arrays.hpp"
 #include "number_text.hpp"
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace contact_law {
+
+// Of the bits of all numbers before the last (FNV-1a, by words); whole, and below 2^53.
+inline double sumOfBits(const std::vector<double>& numbers, std::size_t count)
+{
+	std::uint64_t sum = 14695981039346656037u;
+	for (std::size_t k = 0; k < count; ++k) {
+		std::uint64_t bits;
+		std::memcpy(&bits, &numbers[k], sizeof bits);
+		sum = (sum ^ bits) * 1099511628211u;
+	}
+	return double(sum >> 11);
+}
+inline std::vector<double> sealed(std::vector<double> numbers)
+{
+	numbers.push_back(sumOfBits(numbers, numbers.size()));
+	return numbers;
+}
+// Before any of the numbers is an index.
+inline void requireSealed(const std::vector<double>& numbers)
+{
+	if (numbers.empty() || numbers.back() != sumOfBits(numbers, numbers.size() - 1))
+		throw std::invalid_argument("the checkpoint of the grains is damaged: it must be as O.save wrote it");
+}
 
 class SavingArchive {
 public:
@@ -36,6 +61,7 @@ public:
 		if (saved != format)
 			throw std::invalid_argument("the checkpoint of the grains is of format " + textOf(saved)
 			        + ", which another version wrote: it must be " + textOf(format));
+		requireSealed(from);
 	}
 	template <class T> void number(T& value) { value = T(next()); }
 	template <class T, class What> void same(const T& value, What&& what)
@@ -44,7 +70,6 @@ public:
 		if (saved != double(value))
 			throw std::invalid_argument(what() + " is another than in the checkpoint: it must be " + textOf(saved));
 	}
-	bool atEnd() const { return at == from.size(); }
 
 private:
 	double next()

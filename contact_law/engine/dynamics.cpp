@@ -109,6 +109,8 @@ void Dynamics::set(int index, const GrainMotion& now)
 	copyMotion(now, p);
 	shared.displace(k, positionOf(p) - from);
 	kick(shared, p, k, -0.5 * shared.dt);
+	for (const EarlyKick& early : domainOf(k).ledger.earlyKicks())
+		if (early.grain == k) contact_law::kickEarly(shared, early, p, -shared.dt);
 	velocitiesSet = true;
 	outdateLists();
 }
@@ -141,11 +143,11 @@ void Dynamics::changeForce(Domain& domain, int k, Vec3<double> force, Vec3<doubl
 {
 	Grain& p = shared.grains[k];
 	const double before = domain.kineticEnergyOf(k);
-	if (onset == Onset::Now) kick(shared, p, k, 0.5 * shared.dt);
+	if (onset != Onset::AStepAgo) kick(shared, p, k, 0.5 * shared.dt);
 	domain.constraints.push(k, force, torque);
 	addToGrain(p, force, torque);
-	if (onset == Onset::Now) kick(shared, p, k, -0.5 * shared.dt);
-	domain.outside.work += before - domain.kineticEnergyOf(k);
+	if (onset != Onset::AStepAgo) kick(shared, p, k, -0.5 * shared.dt);
+	if (onset != Onset::Before) domain.outside.work += before - domain.kineticEnergyOf(k);
 }
 
 void kick(const SharedState& shared, Grain& p, int k, double time)
@@ -330,6 +332,14 @@ void Dynamics::read(std::vector<GrainMotion>& grains) const
 		g.blocked = shared.blocked[k];
 		if (options.orientations) g.orientation = shared.orientation[k];
 	}
+	for (const auto& domain : domains)
+		for (const EarlyKick& early : domain->ledger.earlyKicks()) {
+			Grain change {};
+			contact_law::kickEarly(shared, early, change, shared.dt);
+			GrainMotion& g = grains[original[early.grain]];
+			g.velocity[0] += change.vx, g.velocity[1] += change.vy, g.velocity[2] += change.vz;
+			g.angularVelocity[0] += change.wx, g.angularVelocity[1] += change.wy, g.angularVelocity[2] += change.wz;
+		}
 }
 
 // Domains side by side, then added up in their order: the same bits on any number of threads.

@@ -30,6 +30,8 @@ void copyMotion(const GrainMotion&, Grain&); // all but orientation and blocked 
 void copyMotion(const Grain&, GrainMotion&);
 // A grain's velocities through the given time [s] with the forces as they are; back in time, it undoes what it does.
 void kick(const SharedState&, Grain&, int index, double time);
+// Likewise by what its kick has before this moment beyond the half, because of events.
+void kickEarly(const SharedState&, const EarlyKick&, Grain&, double time);
 
 // How long ago the neighbour lists were checked.
 struct ListAge {
@@ -91,8 +93,9 @@ public:
 	// A plane that something else has moved, or given another velocity.
 	void setPlane(int plane, const Vec3<double>& position, const Vec3<double>& velocity);
 	/* All outside forces from now on, by rising grain (those not given have none). Onset::Now: positions and velocities of this moment stay, and the force acts from here
-	 * on. Onset::AStepAgo: it has acted already in the kick that the velocities of half a step ago came from, as other owners of the grains leave them. */
-	enum class Onset { Now, AStepAgo };
+	 * on. Onset::Before: likewise, but it has acted until now too, on grains of another run, whose ledger has its work. Onset::AStepAgo: it has acted already in
+	 * the kick that the velocities of half a step ago came from, as YADE's functors leave them. */
+	enum class Onset { Now, Before, AStepAgo };
 	void setOutsideForces(const std::vector<OutsideForce>& given, Onset);
 	/* A periodic cell's mean velocity field x gradient: what is added to it now is added to every grain (by its unwrapped position), and from now on
 	 * `convective` (diagonal, 1/s) times their velocity accelerates grains. */
@@ -139,7 +142,7 @@ private:
 	void shrinkGrains();
 	void bringVelocitiesToPositions();
 	void kickAll(double time);   // kick() of every grain [s]
-	void kickEarly(double time); // what kicks of this moment have beyond a half before it, through that time [s]
+	void kickEarly(double time); // kickEarly() of every grain that has one [s]
 	void makeDomains();
 	void inherit(const Inherited&);
 	void completeInheritedStep();

@@ -3,18 +3,21 @@
 
 namespace contact_law {
 
+void kickEarly(const SharedState& shared, const EarlyKick& early, Grain& g, double time)
+{
+	const unsigned blocked = shared.blocked[early.grain];
+	const double m = time * shared.inverseMass[early.grain], i = time * shared.inverseInertia[early.grain];
+	const Vec3<double> push = m * (early.force - blockedForce(early.force, blocked));
+	const Vec3<double> turn = i * (early.torque - blockedTorque(early.torque, blocked));
+	g.vx += push.x, g.vy += push.y, g.vz += push.z;
+	g.wx += turn.x, g.wy += turn.y, g.wz += turn.z;
+}
+
 void Dynamics::kickEarly(double time)
 {
 	for (auto& domain : domains)
-		for (const EarlyKick& early : domain->ledger.earlyKicks()) {
-			Grain& g = shared.grains[early.grain];
-			const unsigned blocked = shared.blocked[early.grain];
-			const double m = time * shared.inverseMass[early.grain], i = time * shared.inverseInertia[early.grain];
-			const Vec3<double> push = m * (early.force - blockedForce(early.force, blocked));
-			const Vec3<double> turn = i * (early.torque - blockedTorque(early.torque, blocked));
-			g.vx += push.x, g.vy += push.y, g.vz += push.z;
-			g.wx += turn.x, g.wy += turn.y, g.wz += turn.z;
-		}
+		for (const EarlyKick& early : domain->ledger.earlyKicks())
+			contact_law::kickEarly(shared, early, shared.grains[early.grain], time);
 }
 
 /* The part of this moment's kicks that belongs before it was meant for the step that has been, the rest for the one to come (MODEL.md, "Steps of changing

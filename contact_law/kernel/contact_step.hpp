@@ -89,7 +89,8 @@ inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule li
 }
 
 /* A contact that breaks inside the step. Its last kicks (a step ago) covered half a step; what is missing to the fraction follows now.
- * The springs' forces are those of this instant, not of the breaking, so that forces and torques balance where the grains are. */
+ * The springs' forces are those of this instant, not of the breaking, so that forces and torques balance where the grains are. Where a script has torn the
+ * grains apart, which opens the contact by more than their motion does, the sliding spring is let go as it was, and no steps led to the breaking. */
 template <unsigned mechanisms, class History>
 inline ContactStepResult brokenContact(const PairConstants<double>& c, const ContactMotion& m, const ContactGeometry<double>& g,
         const ContactBefore& before, const History& h)
@@ -97,8 +98,12 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	ContactStepResult r;
 	const double opening = before.overlap - g.overlap, fraction = events::fractionUntilPullOff(c, before.overlap, opening);
 	const normal::Breaking breaking = normal::forceUntilBreaking(c, before.overlap, opening, fraction);
-	const double push = breaking.force + (fraction - 0.5) * before.drag - breaking.missed;
-	const ContactForces<double> f = contactForces<mechanisms & AllSprings>(c, g, h, m.velocity);
+	constexpr unsigned springs = mechanisms & AllSprings;
+	const bool torn = opening * opening > 4 * m.dt * m.dt * dot(m.velocity, m.velocity);
+	const double push = breaking.force + (fraction - 0.5) * before.drag - (torn ? 0. : breaking.missed);
+	ContactForces<double> f =
+	        torn ? contactForces<springs & ~Sliding>(c, g, h, m.velocity) : contactForces<springs>(c, g, h, m.velocity);
+	if (torn) f.slidingDisplacement = before.sliding;
 
 	r.force = push * g.normal + (fraction - 0.5) * f.sliding;
 	r.torque1 = (fraction - 0.5) * f.torque1;

@@ -47,9 +47,7 @@ public:
 	// The channels' values at present. known: O.energy holds them already, from a checkpoint.
 	void set(Scene& scene, const contact_law::Energies& energies, bool known, WorkOn there)
 	{
-		int kinetic = -1;
-		scene.energy->findId(nameOf(0), kinetic, false, false);
-		if (kinetic < 0) last.fill(0); // O.energy is new, or was cleared
+		if (!areIn(scene)) last.fill(0); // O.energy is new, or was cleared
 		preparedAt = -2;
 		prepare(scene);
 		const auto values = contact_law::byChannel(energies);
@@ -64,19 +62,19 @@ public:
 	// from now on.
 	void takeOver(Scene& scene)
 	{
-		for (int channel = 0; channel < count; ++channel) {
-			int id = -1;
-			if (perStep(channel)) scene.energy->findId(nameOf(channel), id, true, false);
-			if (id >= 0) scene.energy->setItem_py(nameOf(channel), 0);
-		}
+		for (int channel = 0; channel < count; ++channel)
+			if (perStep(channel) && has(scene, nameOf(channel))) scene.energy->setItem_py(nameOf(channel), 0);
 		last.fill(0);
 	}
+	// Whether O.energy has any.
+	static bool areIn(const Scene& scene) { return has(scene, nameOf(0)); }
 
 private:
 	static constexpr int count = contact_law::channelCount, boundaryWork = contact_law::channelNumber("boundaryWork"),
 	                     externalWork = contact_law::channelNumber("externalWork"),
 	                     constraintWork = contact_law::channelNumber("constraintWork");
 
+	static bool has(const Scene& scene, const char* name) { return scene.energy->names.count(name) > 0; }
 	static const char* nameOf(int channel) { return contact_law::channels[channel].name; }
 	// Whether O.energy has a channel anew each step: energies held now are, losses and works add up. (YADE's ForceResetter is what
 	// empties those.)

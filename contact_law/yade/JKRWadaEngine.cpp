@@ -46,8 +46,8 @@ void JKRWadaEngine::takeStep()
 void JKRWadaEngine::takeForces()
 {
 	std::vector<contact_law::OutsideForce> now = current->forces.take(*scene, current->grains, current->dynamics.threadCount());
-	const auto onset = current->stepBehind ? Dynamics::Onset::AStepAgo : Dynamics::Onset::Now;
-	current->stepBehind = false;
+	const auto onset = current->onset;
+	current->onset = Dynamics::Onset::Now;
 	if (now == current->outside) return;
 	current->dynamics.setOutsideForces(now, onset);
 	current->outside = std::move(now);
@@ -181,7 +181,7 @@ void JKRWadaEngine::handOver()
 	requireOwnScene();
 	if (inStep()) refuseInEngine("handOver() within an O.step: call it between two");
 	enter(Moment::BetweenSteps);
-	if (wereAsked(*scene)) writeEnergies(current->dynamics.energies());
+	if (EnergyChannels::areIn(*scene)) writeEnergies(current->dynamics.energies());
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::AStepBehind); // with the orientations that go with it
 	for (std::size_t k = 0; k < current->now.size(); ++k)
 		current->now[k].orientation = motionOf(current->grains.stateOf(k)).orientation;
@@ -199,7 +199,7 @@ void JKRWadaEngine::handOver()
 // Contacts go to O.interactions, where whatever moves the grains from here on finds them, in the state of the bodies as this engine left them.
 void JKRWadaEngine::leave()
 {
-	if (wereAsked(*scene)) writeEnergies(current->dynamics.energies());
+	if (EnergyChannels::areIn(*scene)) writeEnergies(current->dynamics.energies());
 	const auto isThere = [this](int id) { return current->grains.hasBody(*scene, id); };
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions, isThere);
 	current->forces.withdraw(*scene);
@@ -231,6 +231,7 @@ void JKRWadaEngine::startAgain(Moment moment)
 	const bool wasBooked = booked;
 	start(moment, true);
 	current->dynamics.continueFrom(before);
+	current->watch.motionsChanged(); // what was lost before may be below zero: grains torn apart by a script, sinter()
 	booked = wasBooked;
 	current->workOn = workOn;
 }

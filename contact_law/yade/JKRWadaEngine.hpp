@@ -35,7 +35,6 @@ class JKRWadaEngine : public GlobalEngine {
 	void continueBooking();
 	void forgetSaved();
 	bool isInOEnergy() const;
-	static bool wereAsked(const Scene&);
 	static void requireSound(const Run&);
 	static void requireStable(const contact_law::Dynamics&, Real step);
 	static void requireAlone(const Scene&);

@@ -14,15 +14,7 @@ void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking book
 }
 
 // Whether O.energy has the energies of this run still: a script may have cleared it.
-bool JKRWadaEngine::isInOEnergy() const { return booked && wereAsked(*scene); }
-
-// Whether O.energy has energies, of any run.
-bool JKRWadaEngine::wereAsked(const Scene& scene)
-{
-	int kinetic = -1;
-	scene.energy->findId("kinetic", kinetic, false, false);
-	return kinetic >= 0;
-}
+bool JKRWadaEngine::isInOEnergy() const { return booked && EnergyChannels::areIn(*scene); }
 
 // O.energy holds what this run has booked before it was saved.
 void JKRWadaEngine::continueBooking()

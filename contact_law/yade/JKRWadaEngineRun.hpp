@@ -12,8 +12,8 @@ struct JKRWadaEngine::Run {
 	SceneGrains grains;
 	SceneContacts contacts;
 	SceneCell cell;
-	EngineSettings settings; // at the start
-	bool stepBehind;         // until the first step: velocities came from the functors
+	EngineSettings settings;            // at the start
+	contact_law::Dynamics::Onset onset; // of the outside forces at the first step
 	contact_law::Dynamics dynamics;
 	boost::weak_ptr<Scene> scene; // whose grains these are
 	std::string name;             // of this run, as ContactsHolder

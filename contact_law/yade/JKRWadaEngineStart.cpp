@@ -105,8 +105,9 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool ag
 	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);
 	options.planes = grains.planes.planes();
+	const auto onset = stepBehind ? Dynamics::Onset::AStepAgo : inherits ? Dynamics::Onset::Before : Dynamics::Onset::Now;
 	const auto started = [&](auto&&... from) {
-		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), stepBehind,
+		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), onset,
 		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene(), nextName() });
 	};
 	return continued ? started(savedState) : inherits ? started(inherited) : started();
@@ -116,9 +117,9 @@ void JKRWadaEngine::start(Moment moment, bool again)
 {
 	requireAlone(*scene);
 	const bool continued = !savedState.empty();
-	SceneForces::restorePermanent(*scene, savedForces);
 	std::shared_ptr<Run> run;
 	try {
+		SceneForces::restorePermanent(*scene, savedForces);
 		run = newRun(moment, again);
 	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
 		refuseInEngine(refusal.what());

@@ -1,4 +1,5 @@
 #include "SceneForces.hpp"
+#include "../engine/checkpoint_archive.hpp"
 #include "../engine/contacts.hpp"
 #include "KernelVectors.hpp"
 #include "Refusal.hpp"
@@ -153,12 +154,13 @@ std::vector<Real> SceneForces::permanent(Scene& scene)
 		if (std::any_of(row + 1, row + numbersSaved, [](Real x) { return x != 0; }))
 			rows.insert(rows.end(), row, row + numbersSaved);
 	}
-	return rows;
+	return contact_law::sealed(std::move(rows));
 }
 
 void SceneForces::restorePermanent(Scene& scene, const std::vector<Real>& rows)
 {
-	if (scene.forces.getPermForceUsed()) return;
+	if (rows.empty() || scene.forces.getPermForceUsed()) return;
+	contact_law::requireSealed(rows);
 	for (std::size_t k = 0; k + numbersSaved <= rows.size(); k += numbersSaved) {
 		const Real* row = &rows[k];
 		scene.forces.setPermForce(int(row[0]), Vector3r(row[1], row[2], row[3]));

@@ -16,20 +16,18 @@ namespace {
 	}
 	bool same(const Vector3r& x, const double (&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; }
 	Vector3r eigen(const double (&x)[3]) { return Vector3r(x[0], x[1], x[2]); }
-	shared_ptr<JKRMat> requireOfLaw(const Scene& scene, const shared_ptr<Body>& body, int id)
+	shared_ptr<JKRMat> requireOfLaw(const Scene& scene, const shared_ptr<Body>& body, const Body& first)
 	{
-		const std::string who = bodyName(id);
-		if (!body) refuseInEngine(who + " was erased: there must be a body of every id, make the scene without those erased");
+		const std::string who = bodyName(body->getId());
 		const auto material = boost::dynamic_pointer_cast<JKRMat>(body->material);
 		if (!material) refuseInEngine(who + " must be a sphere or a Wall of JKRMat; this engine moves nothing else");
 		const std::string fault = faultOf(*body, scene, InPeriodic::AtRest);
 		if (!fault.empty()) refuseInEngine(fault);
-		const int first = (*scene.bodies)[0]->groupMask;
 		if (!body->isBounded() || body->groupMask == 0)
 			refuseInEngine(who + " must be bounded, with a mask other than 0: all bodies meet all others");
-		if (body->groupMask != first)
-			refuseInEngine(who + ": mask = " + text(body->groupMask) + ", must be " + text(first)
-			        + " as body 0's: all bodies meet all others");
+		if (body->groupMask != first.groupMask)
+			refuseInEngine(who + ": mask = " + text(body->groupMask) + ", must be " + text(first.groupMask) + " as "
+			        + bodyName(first.getId()) + "'s: all bodies meet all others");
 		return material;
 	}
 
@@ -74,13 +72,28 @@ bool finite(const GrainMotion& g)
 	return all(g.position) && all(g.velocity) && all(g.angularVelocity) && std::isfinite(q.w + q.x + q.y + q.z);
 }
 
+std::size_t SceneGrains::endOfIds(const Scene& scene)
+{
+	std::size_t end = scene.bodies->size();
+	while (end > 0 && !(*scene.bodies)[int(end) - 1])
+		--end;
+	return end;
+}
+
 SceneGrains::SceneGrains(const Scene& scene)
 {
-	bodies.reserve(scene.bodies->size());
-	grainOfId.assign(scene.bodies->size(), -1);
-	for (int id = 0; id < int(scene.bodies->size()); ++id) {
+	const int end = int(endOfIds(scene));
+	bodies.reserve(end);
+	grainOfId.assign(end, -1);
+	const Body* first = nullptr;
+	for (int id = 0; id < end; ++id) {
 		const shared_ptr<Body>& body = (*scene.bodies)[id];
-		const shared_ptr<JKRMat> material = requireOfLaw(scene, body, id);
+		if (!body) {
+			erased.push_back(id);
+			continue;
+		}
+		if (!first) first = body.get();
+		const shared_ptr<JKRMat> material = requireOfLaw(scene, body, *first);
 		if (wallOf(*body)) {
 			planes.add(body, kindOf(material));
 			continue;
@@ -152,9 +165,15 @@ void SceneGrains::write(std::vector<GrainMotion>& now, bool orientations, int th
 	written.swap(now);
 }
 
+bool SceneGrains::hasMoreIds(const Scene& scene) const
+{
+	const auto isThere = [&](int id) { return id < int(scene.bodies->size()) && (*scene.bodies)[id]; };
+	return endOfIds(scene) > grainOfId.size() || std::any_of(erased.begin(), erased.end(), isThere);
+}
+
 bool SceneGrains::hasMore(const Scene& scene) const
 {
-	if (scene.bodies->size() <= grainOfId.size()) return false;
+	if (!hasMoreIds(scene)) return false;
 	requireSameMaterials();
 	requireKept(scene);
 	return true;
@@ -177,9 +196,8 @@ void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) co
 
 void SceneGrains::requireSame(const Scene& scene) const
 {
-	const std::size_t there = scene.bodies->size();
-	if (there != grainOfId.size())
-		refuseInEngine("there are " + std::to_string(there) + " bodies, must be the " + std::to_string(grainOfId.size())
+	if (scene.bodies->size() < grainOfId.size() || hasMoreIds(scene))
+		refuseInEngine("there are " + std::to_string(endOfIds(scene)) + " bodies, must be the " + std::to_string(grainOfId.size())
 		        + " of the latest step: bodies were cleared");
 	requireKept(scene);
 }

@@ -63,7 +63,9 @@ private:
 
 	Kept read(const shared_ptr<Body>&, int kind) const;
 	std::string nameOf(std::size_t k) const { return bodyName(idOf(k)); }
-	bool hasAllBodies(const Scene& scene) const { return int(scene.bodies->size()) == int(size()) + planes.size(); }
+	static std::size_t endOfIds(const Scene&); // behind the last body; those that were erased behind it count no more
+	bool hasMoreIds(const Scene&) const;
+	bool hasAllBodies(const Scene& scene) const { return endOfIds(scene) == grainOfId.size() && !hasMoreIds(scene); }
 	int kindOf(const shared_ptr<JKRMat>&);
 	std::string firstBodyOf(int kind) const;
 	bool isThere(const Scene& scene, std::size_t k) const
@@ -77,7 +79,7 @@ private:
 	void requireSameMaterials() const;
 
 	std::vector<Kept> bodies;
-	std::vector<int> grainOfId;
+	std::vector<int> grainOfId, erased; // erased: ids without a body when this was made
 	std::vector<Kind> kinds;
 	std::vector<contact_law::GrainMotion> written;
 };

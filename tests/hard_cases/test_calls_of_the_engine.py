@@ -1,5 +1,6 @@
 """Calls of JKRWadaEngine that find another scene, a running loop or a damaged checkpoint."""
 
+import os
 import re
 import time
 
@@ -7,6 +8,7 @@ import pytest
 from changes import *
 
 pytestmark = pytest.mark.in_yade
+DAMAGED_NUMBERS = int(os.environ.get("DAMAGED_NUMBERS", 20))  # of a checkpoint, each in three ways
 CALLS = ["e.writeInteractions()", "e.handOver()", "e.prepare()", "contact_law.snapshot()"]
 
 
@@ -127,8 +129,8 @@ def test_a_pyrunner_may_call_the_engine_while_the_loop_runs():
     assert len(found) >= 3 and set(found) == {(3, 3, 3)}
 
 
-def test_a_checkpoint_of_another_format_is_refused():
-    """Of as many numbers, but another header; and one that is cut off, or too long."""
+def test_a_checkpoint_of_another_format_or_damaged_is_refused():
+    """Of as many numbers, but another header; one that is cut off, or too long, or has another number somewhere: indices too."""
     chain()
     steps(20)
     O.save("saved.xml")
@@ -151,6 +153,12 @@ def test_a_checkpoint_of_another_format_is_refused():
         return [*items[:k], f"<item>{value}</item>", *items[k + 1 :]]
 
     assert loaded(items) == ""
-    assert "is of format 99, which another version wrote: it must be 7" in loaded(with_number(1, 99))
-    assert "is of format 1, which another version wrote: it must be 7" in loaded(with_number(0, 4))
-    assert "cut off" in loaded(items[:-1]) and "too long" in loaded([*items, items[-1]])
+    assert "is of format 99, which another version wrote: it must be 8" in loaded(with_number(1, 99))
+    assert "is of format 1, which another version wrote: it must be 8" in loaded(with_number(0, 4))
+    damaged = [items[:-1], [*items, items[-1]]]
+    for k in range(2, len(items), len(items) // DAMAGED_NUMBERS):
+        number = float(items[k][6:-7])
+        damaged += [with_number(k, value) for value in (number + 1, -number - 1, 1e300)]
+    assert {loaded(changed).partition(": ")[2] for changed in damaged} == {
+        "the checkpoint of the grains is damaged: it must be as O.save wrote it"
+    }

@@ -107,7 +107,8 @@ CHANGES_AFTER_LOADING = {
     "engine().limit = 'cut'": ["limit (0: held, 1: cut) is another than in the checkpoint: it must be 0"],
     "engine().domains = 3": ["domains is another than in the checkpoint: it must be 2"],
     "O.periodic = True": ["O.periodic is another than in the checkpoint: it must be 0"],
-    "O.bodies.erase(1)": ["body 1 was erased"],
+    "O.bodies.erase(1)": ["the number of bodies is another than in the checkpoint: it must be 4"],
+    "O.bodies.erase(1); grain((9e-7, 0, 0), 1e-7, O.bodies[0].material)": ["the id of body 2 is another than in the checkpoint: it must be 1"],
     "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=O.bodies[0].material))": ["the number of bodies is another than in the checkpoint: it must be 4"],
     "O.dt *= 10": ["the small step O.dt/subSteps is", "must be above 0 and below"],
 }  # fmt: skip
@@ -147,7 +148,6 @@ SCENES = {
     "O.bodies[1].state.ori = Quaternion(float('nan'), 0, 0, 1)": ["body 1 has a position, orientation or velocity that is not"],
     "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["body 1: its three moments of inertia must be the same"],
     "O.bodies.clump([0, 1])": ["body 0 is a member of clump 4: grains of JKRMat must be single spheres"],
-    "O.bodies.erase(1)": ["body 1 was erased"],
 }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Builds the kernel's probe once and wraps it with numpy."""
 
 import ctypes
+import os
 import subprocess
 from pathlib import Path
 from types import SimpleNamespace
@@ -111,6 +112,7 @@ def kernel(tmp_path_factory):
             "-Werror",
             "-fPIC",
             "-shared",
+            *os.environ.get("PROBE_FLAGS", "").split(),  # tests/drivers/sanitizers.py
             str(HERE / "kernel_probe.cpp"),
             "-o",
             str(library),

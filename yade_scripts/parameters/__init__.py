@@ -3,6 +3,7 @@
 Defaults, types, checks and the help text follow from the fields; each is made by parameter().
 """
 
+import inspect
 import typing
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
@@ -135,7 +136,7 @@ class Parameters:
     def columns(cls):
         """{name: Column} of every field, a class's own before those of its bases; not to be changed."""
         by_name = {f.name: f for f in fields(cls)}
-        order = [name for owner in cls.__mro__ for name in owner.__dict__.get("__annotations__", {})]
+        order = [name for owner in cls.__mro__ for name in inspect.get_annotations(owner)]
         return {name: _column(by_name[name]) for name in dict.fromkeys(order)}
 
     @classmethod
@@ -161,7 +162,7 @@ class Parameters:
         """The parameters but these under the headings of their classes."""
         columns, lines = {name: each for name, each in cls.columns().items() if name not in without}, []
         for owner in cls.__mro__:
-            own = [name for name in owner.__dict__.get("__annotations__", {}) if name in columns]
+            own = [name for name in inspect.get_annotations(owner) if name in columns]
             if own:
                 lines += ["", owner.__doc__.splitlines()[0].rstrip(".") + ":"]
                 lines += [columns.pop(name).help() for name in own]

@@ -48,8 +48,8 @@ namespace proof {
 				return notThere("materials", offsetof(Scene, materials));
 			if (py::len(omega.attr("bodies")) != long(scene.bodies->size())) return notThere("bodies", offsetof(Scene, bodies));
 			const py::object engine = make("Engine"); // a new engine belongs to the running scene
-			const Engine& inside = py::extract<const Engine&>(engine)();
-			if (fits(&inside, sizeof inside) && inside.scene != &scene)
+			const Engine* inside = &py::extract<const Engine&>(engine)();
+			if (fits(inside, sizeof *inside) && inside->scene != &scene)
 				return refusal(
 				        "Engine.scene isn't where this plugin has it", "byte " + std::to_string(offsetof(Engine, scene)));
 			return "";
@@ -108,6 +108,28 @@ namespace proof {
 			return "";
 		}
 
+		// Names, of which there is one: nothing of the map is followed before it is known to be the map.
+		bool holdsOneName(const EnergyTracker& energies, const std::string& name, int id)
+		{
+			struct Node {
+				size_t colour;
+				const char *parent, *left, *right;
+				char name[sizeof(std::string)];
+				int id;
+			} node;
+			struct {
+				size_t compare, colour;
+				const char *parent, *left, *right;
+				size_t count;
+			} map;
+			const char* start = reinterpret_cast<const char*>(&energies.names);
+			static_assert(sizeof map == sizeof energies.names, "std::map of the library that YADE is built with");
+			if (!fits(&energies, sizeof energies) || !readSafely(start, &map, sizeof map)) return false;
+			if (map.count != 1 || map.left != map.parent || map.right != map.parent) return false;
+			if (!readSafely(map.parent, &node, sizeof node) || node.parent != start + sizeof map.compare) return false;
+			return node.id == id && equalsAt(map.parent + offsetof(Node, name), name);
+		}
+
 		std::string differenceInEnergies()
 		{
 			py::object tracker = make("EnergyTracker");
@@ -116,6 +138,9 @@ namespace proof {
 			energies.add(3.25, "proof", id, false);
 			if (double(py::extract<double>(tracker["proof"])) != 3.25)
 				return refusal("EnergyTracker doesn't hold what was added", "EnergyTracker::add");
+			if (!holdsOneName(energies, "proof", id))
+				return refusal("EnergyTracker.names isn't where this plugin has it",
+				        "byte " + std::to_string(offsetof(EnergyTracker, names)));
 			energies.setItem_py("proof", 4.5);
 			if (double(py::extract<double>(tracker["proof"])) != 4.5)
 				return refusal("EnergyTracker doesn't hold what was set", "EnergyTracker::setItem_py");

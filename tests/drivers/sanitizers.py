@@ -1,0 +1,148 @@
+"""The sanitizers of addresses, undefined behaviour and threads on the engine, the kernel, the functors and checkpoints. Run by `make test-sanitizers`.
+
+    python3 tests/drivers/sanitizers.py [--out FILE]      an hour on two cores
+
+The last commit is cloned into build/sanitizers and compiled there once for each trial. Scenes of the harness are made with the ordinary build.
+Threads are looked at in the harness alone, compiled by clang, whose OpenMP tells the sanitizer when a parallel region begins and ends (Archer);
+YADE's does not, and every region would be a finding. Exit status: 0 when nothing was found and all passed, otherwise 1.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks"), str(HERE.parent)]
+import moments
+from debian_systems import CannotBegin, run
+from measured_on import TOP, machine
+from test_harness import SMALL
+
+FOLDER = TOP / "build/sanitizers"
+FINDINGS = ("ERROR: AddressSanitizer", "runtime error: ", "WARNING: ThreadSanitizer")
+IN_YADE = (
+    "tests/physics/test_pairs.py",
+    "tests/persistence/test_save_load.py",
+    "tests/persistence/test_damaged_checkpoints.py",
+    "tests/persistence/test_periodic_checkpoint.py",
+    "tests/equivalence",
+    "tests/hard_cases",
+)
+HEAD = """# Sanitizers
+
+`make test-sanitizers`, commit {commit}, {cpu}, {cores} cores. {versions}.
+YADE itself is Debian's and not instrumented: what it does with memory that the plugin gave it is seen only where it calls malloc, free or memcpy.
+
+| sanitizers | what ran | result | findings | time [s] |
+|---|---|---|---:|---:|
+"""
+
+
+@dataclass
+class Trial:
+    """A clone compiled with sanitizers, in a folder of its name."""
+
+    sanitize: str  # as -fsanitize has it
+    compiler: str
+
+    @property
+    def clone(self):
+        return FOLDER / self.sanitize
+
+    def make(self, goal):
+        """Clone the last commit, or bring the clone to it, and compile what make calls `goal`."""
+        if not self.clone.exists():
+            run(["git", "clone", "-q", TOP, self.clone])
+        run(["git", "fetch", "-q", TOP, "HEAD"], cwd=self.clone)
+        run(["git", "checkout", "-q", "--detach", "FETCH_HEAD"], cwd=self.clone)
+        run(["make", f"-j{os.cpu_count()}", f"SANITIZE={self.sanitize}", f"CXX={self.compiler}", goal], cwd=self.clone)
+
+    def row(self, what, command, **more):
+        """A line of the table for a command, and whether it passed with nothing found."""
+        with tempfile.TemporaryDirectory() as folder:
+            log = f"log_path={folder}/found"
+            own = {
+                "ASAN_OPTIONS": f"{log}:detect_leaks=0:detect_odr_violation=0",
+                "UBSAN_OPTIONS": f"{log}:print_stacktrace=1",
+                "TSAN_OPTIONS": f"{log}:ignore_noninstrumented_modules=1",
+            }
+            begun = time.monotonic()
+            done = subprocess.run(
+                command, cwd=self.clone, env={**os.environ, **own, **more}, capture_output=True, text=True
+            )
+            found = "".join(file.read_text(errors="replace") for file in sorted(Path(folder).iterdir()))
+        count = sum(found.count(words) for words in FINDINGS)
+        lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        result = (lines[-1].strip("= ") if lines else "ended") if "pytest" in command else "ended"
+        if done.returncode:
+            result = f"failed: {result}"
+            print("\n".join(lines[-40:]), flush=True)
+        print(found[:8000], end="", flush=True)
+        print(f"{self.sanitize}: {what}: {result}, {count} findings", flush=True)
+        row = f"| {self.sanitize} ({self.compiler}) | {what} | {result} | {count} | {time.monotonic() - begun:.0f} |"
+        return row, count == 0 and done.returncode == 0
+
+    def harness(self, scenes):
+        """A row for each scene: on one to four threads by turns, eight domains, without vectors and with the best that this machine has."""
+        self.make("build/harness")
+        for name, path in scenes:
+            for instructions in ("portable", ""):
+                command = [
+                    "build/harness",
+                    str(path),
+                    "steps=200",
+                    "threads=1,2,4",
+                    "domains=8",
+                    f"instructions={instructions}",
+                ]
+                yield self.row(f"harness, {name}, {instructions or 'the best instruction set'}", command)
+
+    def tests(self):
+        """Rows for the kernel's probe and for files of tests inside YADE, with the sanitizer's library in front of all others."""
+        self.make("build")
+        library = run([self.compiler, "-print-file-name=libasan.so"]).stdout.strip()
+        pytest = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+        probe = f"-fsanitize={self.sanitize} -g1"
+        yield self.row("kernel (tests/kernel)", [*pytest, "tests/kernel"], LD_PRELOAD=library, PROBE_FLAGS=probe)
+        for path in IN_YADE:
+            yield self.row(f"in YADE: {path}", [*pytest, path], LD_PRELOAD=library)
+
+
+MEMORY = Trial("address,undefined", "g++")
+THREADS = Trial("thread", "clang++-14")
+
+
+def scenes_in(folder):
+    """[(name and moment, file)] of small scenes: drag, a periodic cell, bonds that break."""
+    run(["make", "build/harness"], cwd=TOP)
+    for name, scene in SMALL.items():
+        moments.make(name, scene, folder, say=lambda *_, **__: None)
+    return [(f"{n}, {m}", moments.path_of(n, m, scene, folder)) for n, scene in SMALL.items() for m in scene.moments]
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=HERE / "results" / "sanitizers.md", help="default: %(default)s")
+    options = parser.parse_args(arguments)
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    versions = ", ".join(run([trial.compiler, "--version"]).stdout.splitlines()[0] for trial in (MEMORY, THREADS))
+    text, good = HEAD.format(versions=versions, **machine()), True
+    try:
+        scenes = scenes_in(FOLDER)
+        for rows in (THREADS.harness(scenes), MEMORY.harness(scenes), MEMORY.tests()):
+            for row, passed in rows:
+                text, good = f"{text}{row}\n", good and passed
+                options.out.write_text(text)
+    except CannotBegin as error:
+        print(f"sanitizers.py: {error}", file=sys.stderr)
+        return 1
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
