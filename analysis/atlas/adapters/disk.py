@@ -27,7 +27,6 @@ FILLING = 0.3
 RUNS = {
     "dustpy": (None, "DustPy: breaks above 1 m/s"),
     "clamp": ({"outside": "clamp"}, "the atlas, beyond its data the nearest of it"),
-    "mixed": ({"outside": "dustpy"}, "the atlas, beyond its data DustPy"),
 }
 HATCHED = 0.5  # of the collisions of a mass bin are outside of the data
 
