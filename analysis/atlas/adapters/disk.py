@@ -6,7 +6,8 @@ runs DustPy with the folder's outcomes.txt and leaves disk.npz there, or takes t
 and draws disk.png. A disk.npz of another table than outcomes.txt is refused.
 
 DustPy's defaults but for: 30 radial cells from 5 to 300 au (100 from 1 to 1000); ice grains (rhoMonomer 1 g/cm^3, not 1.67) with a
-filling factor of FILLING (1), as compact ones are no aggregates; masses from 1e-14 g (1e-12), which is two grains of 0.1 um."""
+filling factor of FILLING (1), as compact ones are no aggregates; masses from 1e-14 g (1e-12), which is two grains of 0.1 um.
+With the atlas aggregates in the inner disk grow to the largest mass of DustPy's grid, 1e5 g; there their size is the grid's."""
 
 import hashlib
 import json
