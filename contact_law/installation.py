@@ -40,6 +40,7 @@ COPIED = {
         "studies/*/*.csv",
         "gallery/*/*.json",
         "gallery/atlas/outcomes.txt",
+        "atlas/adapters/*.f90",
         "gallery/*/snapshots/*",
     ),
     "yade_scripts": ("**/*.py", "**/*.table"),

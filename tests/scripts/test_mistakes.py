@@ -37,7 +37,7 @@ MISTAKES = {
     "analysis plot sticking empty": "empty: no run folder (run.json) there",
     "analysis plot sticking nowhere": "nowhere: no such folder",
     "analysis status nowhere": "nowhere: no such folder",
-    "analysis study viscos empty": "no study viscos (did you mean viscous?); must be one of compressed, ",
+    "analysis study viscos empty": "no study viscos (did you mean viscous?); must be one of atlas, ",
     "analysis study viscous empty": "empty: no run folder (run.json) there",
     "analysis study own.py empty": "own.py",
     "analysis summry empty": "invalid choice: 'summry' (choose from 'summary', ",
