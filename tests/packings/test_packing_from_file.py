@@ -9,7 +9,8 @@ from of_ice import ICE, OVERLAP, PAIR, RADIUS
 from refused import refused
 
 from yade_scripts import packings
-from yade_scripts.experiments.collision import KIND, CollisionParameters, place, require_step_of_files, step_limit
+from yade_scripts.experiments.collision import KIND, CollisionParameters, place
+from yade_scripts.experiments.collision_step import require_step_of_files, step_limit
 from yade_scripts.materials import equilibrium_overlap, pair_constants
 from yade_scripts.packings.aggregate import make
 from yade_scripts.packings.from_file import packing_from_file

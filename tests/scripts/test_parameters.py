@@ -8,7 +8,7 @@ import pytest
 from refused import refused
 
 from yade_scripts import stability
-from yade_scripts.experiments import collision
+from yade_scripts.experiments import collision, collision_step
 from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.experiments.compression import CompressionParameters
 from yade_scripts.materials import MATERIALS, pair_constants
@@ -26,7 +26,7 @@ def with_drag(time):
 
 
 def complete(texts, constants=ICE_PAIR, threads=1):
-    return collision.complete(parse(texts), constants, threads)
+    return collision_step.complete(parse(texts), constants, threads)
 
 
 def test_defaults_are_the_scene_of_the_demo_and_stay():

@@ -12,7 +12,7 @@ from step_choice import COLLISIONS, COMPRESSIONS, FILLINGS, met
 
 from yade_scripts import stability
 from yade_scripts import step_choice as rule
-from yade_scripts.experiments import collision, compression
+from yade_scripts.experiments import collision, collision_step, compression
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import ParameterError
@@ -31,7 +31,7 @@ def chosen(**given):
         limit = stability.step_limit(constants, parameters.finalFilling or compression.FINAL_FILLING)
     else:
         constants = {"bond": None, **pair_constants(parameters, neck=parameters.neck)}
-        limit = collision.step_limit(parameters, constants)
+        limit = collision_step.step_limit(parameters, constants)
     return kind.complete(parameters, constants, 1), constants, limit
 
 
@@ -99,7 +99,7 @@ REASONS = {
 @pytest.mark.parametrize("part", REASONS)
 def test_it_says_why(part):
     found, constants, _ = chosen(**REASONS[part])
-    text = collision.reason_of_step(found, constants)
+    text = collision_step.reason_of_step(found, constants)
     assert text.startswith(f"{found.stepFraction:.3g} t0 for a ledger error of at most ") and part in text
 
 

@@ -9,10 +9,17 @@ from analysis.measures.compression import compression_and_velocity
 from analysis.measures.decided import REBOUND_PER_RADIUS, rebound_time
 from analysis.measures.plate import has_plate
 from analysis.runs.format import COLLISION, RESTING
-from yade_scripts import packings, stability, step_choice
+from yade_scripts import packings, stability
 from yade_scripts.experiments import ending, impact_step, plate
+from yade_scripts.experiments.collision_step import (
+    LARGEST_NECK,
+    complete,
+    expected_step,
+    reason_of_step,
+    require_step_of_files,
+)
 from yade_scripts.experiments.plate import AGGREGATE, WALL
-from yade_scripts.materials import pair_constants, require_small_contacts
+from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.approach import first_touch
 from yade_scripts.packings.grain_sizes import EQUAL
@@ -21,10 +28,8 @@ from yade_scripts.packings.packing import PackingError
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
-from yade_scripts.stability import AUTO
 
 WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
-LARGEST_NECK = 0.7  # the largest of S17
 VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
@@ -114,61 +119,6 @@ class CollisionParameters(AggregateParameters, RunParameters):
         target = f"{WALL}-" if self.target == WALL else ""
         in_name = ("target", "material", "packing", "filling", "radius", "grains", "velocity", "seed")
         return f"collide-{target}{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", in_name
-
-
-def complete(parameters, constants, threads):
-    """The parameters with what depends on the contact and on YADE's threads: stepFraction and threads.
-
-    constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
-    """
-    require_small_contacts(constants)
-    if parameters.sizes != EQUAL:
-        smallest = parameters.radius_range()[0]
-        require_small_contacts(pair_constants(parameters, (smallest, smallest)))
-    _require_sintered(parameters.neck, constants)
-    limit = step_limit(parameters, constants)
-    if parameters.stepFraction == AUTO:
-        parameters = parameters.changed(stepFraction=_longest_step(parameters, constants, limit))
-    sintered = "neck, filling and drag" if parameters.neck else "filling and drag"
-    stability.require_stable(parameters.stepFraction, limit, sintered)
-    if parameters.duration is not None:
-        stability.require_countable(parameters.duration, parameters.stepFraction, constants["timeUnit"])
-    return parameters.with_threads(threads)
-
-
-def step_limit(parameters, constants):
-    """Largest stable stepFraction [t0] of a collision."""
-    filling = stability.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
-    limit = stability.step_limit(constants, filling)
-    if parameters.sizes == EQUAL:
-        return limit
-    return min(limit, stability.limit_of_unlike(parameters, constants, parameters.radius_range()))
-
-
-def require_step_of_files(parameters, constants, pair):
-    """Raise ParameterError when the step is unstable for the smallest grain of packings from files, whose radii are known
-    only now, or contacts of such grains are too large.
-
-    parameters: complete; constants: as for complete(); pair: of Packing.
-    """
-    radii = np.concatenate([packing.radius for packing in pair])
-    smallest, largest = float(radii.min()), float(radii.max())
-    if parameters.packing != "file" or smallest == largest:
-        return
-    require_small_contacts(pair_constants(parameters, (smallest, smallest)))
-    unlike = stability.limit_of_unlike(parameters, constants, (smallest, largest), parameters.packing)
-    stability.require_stable(
-        parameters.stepFraction,
-        min(step_limit(parameters, constants), unlike),
-        "filling and drag, with the radii of the files",
-    )
-
-
-def reason_of_step(parameters, constants):
-    """How complete() came to parameters.stepFraction, in one line."""
-    if parameters.tolerance is None:
-        return "as given"
-    return step_choice.collision_reason(plate.as_pair(parameters), constants, step_limit(parameters, constants))
 
 
 def default_duration(parameters, radius, time_unit, touch):
@@ -327,7 +277,7 @@ def estimate(parameters):
     touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
     if duration is None:
         duration = default_duration(parameters, radius, constants["timeUnit"], touch)
-    steps = duration / constants["timeUnit"] / _step(parameters, constants)
+    steps = duration / constants["timeUnit"] / expected_step(parameters, constants)
     if parameters.impactStepFraction is not None:
         steps += impact_step.more_steps(parameters.changed(radius=radius), touch, duration, constants["timeUnit"])
     return Estimate(sum(grains), sum(grains) * neighbours / 2, steps)
@@ -345,32 +295,6 @@ def expected(parameters, run):
     if parameters.duration is None and None not in (touch, held.get("radius"), derived.get("timeUnit")):
         found["duration"] = default_duration(parameters, held["radius"], derived["timeUnit"], touch)
     return found
-
-
-def _require_sintered(neck, constants):
-    unsintered = constants["equilibriumContactRadius"] / (2 * constants["reducedRadius"])
-    if 0 < neck <= unsintered:
-        raise ParameterError(
-            f"neck = {neck:g}: no thicker than a contact that is not sintered; must be 0 (not sintered), or above "
-            f"{unsintered:.4g} and at most {LARGEST_NECK}"
-        )
-
-
-def _longest_step(parameters, constants, limit):
-    step_choice.require_measured(plate.as_pair(parameters))
-    return step_choice.longest_step(
-        step_choice.collision_errors(plate.as_pair(parameters), constants), parameters, limit
-    )
-
-
-def _step(parameters, constants):
-    """stepFraction as a run will have it."""
-    if parameters.stepFraction != AUTO:
-        return parameters.stepFraction
-    try:
-        return _longest_step(parameters, constants, step_limit(parameters, constants))
-    except ParameterError:  # the run will say what is wrong
-        return step_choice.SHORTEST
 
 
 def _time_of_touch(parameters, pair, velocities, bond):
