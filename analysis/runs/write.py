@@ -14,6 +14,8 @@ import stat
 from contextlib import contextmanager, suppress
 from fcntl import LOCK_EX, LOCK_NB, flock
 
+from ..signals import held
+
 _UNFINISHED = re.compile(r"\..+\.\w+\.unfinished(\.\w+)?")
 _NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK)
 _KINDS = {stat.S_IFDIR: "folder", stat.S_IFIFO: "FIFO", stat.S_IFSOCK: "socket"}
@@ -97,22 +99,33 @@ def make_new(path, content):
 @contextmanager
 def unfinished(path, ending=""):
     """A temporary file beside a path, open for writing, and locked; it goes when the block ends, unless it has been renamed."""
+    file = None
+    try:
+        with held():  # a file that nobody knows would stay
+            file = _locked_beside(path, ending)
+        yield file
+    finally:
+        if file:
+            _drop(file)
+
+
+def _drop(file):
+    if os.path.exists(file.name):
+        with suppress(OSError):
+            os.unlink(file.name)
+    with suppress(OSError):  # what it has still to write is not wanted any more
+        file.close()
+
+
+def _locked_beside(path, ending):
     folder, name = os.path.split(path)
     while True:
         file = open(os.path.join(folder, f".{name}.{secrets.token_hex(4)}.unfinished{ending}"), "xb")
         with suppress(OSError):  # of a file system without locks
             flock(file, LOCK_EX)
         if os.fstat(file.fileno()).st_nlink:
-            break
+            return file
         file.close()  # another process has taken it for one that was left
-    try:
-        yield file
-    finally:
-        if os.path.exists(file.name):
-            with suppress(OSError):
-                os.unlink(file.name)
-        with suppress(OSError):  # what it has still to write is not wanted any more
-            file.close()
 
 
 def remove_unfinished(folder):
