@@ -1,6 +1,5 @@
 """Which runs are nearest to a query, and whether it is among them at all."""
 
-import numpy as np
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from .variables import decided, scaled, variables
@@ -22,7 +21,9 @@ class Neighbours:
         try:
             self.faces = ConvexHull(self.tree.data).equations
         except (QhullError, ValueError):
-            raise ValueError(f"{len(points)} runs: fill no region in {points.shape[1]} variables; must be more") from None
+            raise ValueError(
+                f"{len(points)} runs: fill no region in {points.shape[1]} variables; must be more"
+            ) from None
 
     def nearest(self, points):
         """Rows (n, NEAREST) of `runs` that are nearest to variables() points."""
