@@ -129,13 +129,14 @@ def _spin(run, members):
 
 
 def _compression(run):
-    """Of K(0); NaN where the halves never turned around."""
+    """Dissipated over K(0) and the potential energy released until then; NaN where the halves never turned around."""
     history = run.history
     maximum, _ = first_compression(history["time"], history["d"], history["v"])
     if maximum is None or not maximum.inside or not met(run):
         return np.nan
     parts = fractions_at(history, maximum.time)
-    return sum(parts[name] for name in LOST_CHANNELS)
+    lost = sum(parts[name] for name in LOST_CHANNELS)
+    return lost / (lost + parts["kinetic"])
 
 
 def _outcome(run, row):
@@ -236,7 +237,13 @@ MEASURED = (
         Column("pieces", "", "their number", "i"),
         Column("own", "", "of these two, the least part of a piece's mass that is of its own aggregate"),
     ),
-    one("lost_in_compression", "K(0)", "dissipated until the first largest compression", _compression, gaps=True),
+    one(
+        "lost_in_compression",
+        "",
+        "dissipated until the first largest compression, over K(0) and the potential energy released until then",
+        _compression,
+        gaps=True,
+    ),
     group(
         _outcome,
         Column(

@@ -8,7 +8,7 @@ import pandas
 
 from ..theory import ICE, SILICATE
 from .columns import breaking_velocity
-from .neighbours import Neighbours
+from .neighbours import MARGIN, NEAR, Neighbours
 from .outcome_table import Axis, OutcomeTable, read_outcomes
 from .rules import KINDS
 
@@ -31,16 +31,16 @@ mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)
 Columns: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the aggregates touch, averaged over
 impact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2, and over orientations; error: 90 % half width of the most uncertain
 of them; largest, second: mass of the two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest;
-filling_after: of the largest piece; inside: 1 within the data, 0 beyond, where values are those of the nearest node within;
-runs: number of runs near the node. Between nodes: multilinear in the scaled coordinates; the last axis is the fastest.
+filling_after: of the largest piece; inside: 1 within the convex hull of the runs
+in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther beyond, where values are those of the
+nearest node within; runs: number of runs within {near:g} of the scatter. Between nodes: multilinear in the scaled coordinates; the last axis is the fastest.
 Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
 
 
 def outcome_grid(model, version):
     """OutcomeTable of a model.Model."""
     points, near = _nodes(), Neighbours(model.runs)
-    _, beyond = near.nearest(points)
-    inside, p = beyond <= 1.0, np.zeros((len(points), len(COLUMNS)))
+    inside, p = near.beyond(points) <= MARGIN, np.zeros((len(points), len(COLUMNS)))
     if not inside.any():
         raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
     own = points[inside]
@@ -55,7 +55,9 @@ def outcome_grid(model, version):
         p[inside, COLUMNS.index(name)] = value
     p[~inside] = p[inside][_nearest(points[~inside], own)]
     p[:, COLUMNS.index("inside")], p[:, COLUMNS.index("runs")] = inside, near.within(points)
-    about = ABOUT.format(version=version, runs=len(model.runs), ice=breaking_velocity(ICE, GRAIN_RADIUS))
+    about = ABOUT.format(
+        version=version, runs=len(model.runs), ice=breaking_velocity(ICE, GRAIN_RADIUS), margin=MARGIN, near=NEAR
+    )
     return OutcomeTable(AXES, COLUMNS, p.reshape(*(len(a.nodes) for a in AXES), -1), tuple(about.splitlines()))
 
 

@@ -8,7 +8,7 @@ from ..studies.columns import flat
 from .columns import MEASURED, breaking_velocity
 from .grid import MATERIALS, PROBABILITIES, RUNS_FILE, outcome
 from .model import Model
-from .neighbours import Neighbours
+from .neighbours import MARGIN, Neighbours
 from .rules import KINDS
 from .variables import FEATURES, variables
 
@@ -81,14 +81,14 @@ def _nearest(table, point, inside):
         yield "  EXTRAPOLATION" if inside < 1 else "  within the data"
         return
     near = Neighbours(table)
-    rows, beyond = near.nearest(point)
+    beyond = near.beyond(point)[0]
     outside = _outside(near.runs, point)
-    if beyond[0] > 1 or outside:
-        yield f"  EXTRAPOLATION: the nearest runs are {beyond[0]:.2g} times as far as runs are from each other{outside}"
+    if beyond > MARGIN:
+        yield f"  EXTRAPOLATION: {beyond:.2g} times the scatter of the runs beyond the region that they fill{outside}"
     elif inside < 1:
         yield f"  at the edge of the data: inside = {inside:.2g} in the table of outcomes"
     yield "nearest runs:"
-    for run in near.runs.iloc[rows[0]].itertuples():
+    for run in near.runs.iloc[near.nearest(point)[0]].itertuples():
         yield (
             f"  {run.run}: {run.structure}, {run.material}, {run.grains_projectile} and {run.grains_target} grains, filling {run.filling_target:.2g}, "
             f"{run.velocity / run.v_break:.3g} v_break, b = {run.impact:.2g}: {run.outcome.replace('_', ' ')}, largest {run.largest:.2g}"

@@ -10,7 +10,7 @@ from analysis.__main__ import main
 from analysis.atlas import rules
 from analysis.atlas.columns import MEASURED
 from analysis.atlas.grid import COLUMNS, PROBABILITIES, outcome_grid
-from analysis.atlas.neighbours import Neighbours
+from analysis.atlas.neighbours import MARGIN, Neighbours
 from analysis.atlas.outcome_table import read_outcomes, write_outcomes
 from analysis.atlas.power_law import power_law_index
 from analysis.atlas.variables import variables
@@ -116,10 +116,12 @@ def test_model_of_made_runs(made, tmp_path):
 
 
 def test_a_query_beyond_the_runs_is_an_extrapolation(made):
-    near = Neighbours(made)
-    assert near.nearest(point())[1][0] < 1 and near.within(point())[0] > 5
+    near, of_half = Neighbours(made), Neighbours(made[::2])
+    assert near.beyond(point())[0] < 0 and near.within(point())[0] > 1
+    at = variables(made[1::2])
+    assert np.mean(of_half.beyond(at) <= MARGIN) > 0.9  # of 300 runs; corners of their box are beyond
     for beyond in ({"velocity": 1e4}, {"grains_target": 1e6}, {"filling_target": 0.9, "filling_projectile": 0.9}):
-        assert near.nearest(point(**beyond))[1][0] > 1.5, beyond
+        assert near.beyond(point(**beyond))[0] > 4 * MARGIN, beyond
 
 
 WRONG = {

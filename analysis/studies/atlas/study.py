@@ -42,7 +42,7 @@ def quantities(table):
     lost = _grouped(runs, {"compressed of filling 0.35 to 0.5": head_on & compressed}).estimates(
         "lost_in_compression", BY_GROUP
     )
-    meaning = f"dissipated until the largest compression, of K(0); b < {HEAD_ON:g}, mass ratio > {EQUAL:g}, below {SLOW:g} v_break"
+    meaning = f"dissipated until the largest compression, of K(0) and the potential energy released until then; b < {HEAD_ON:g}, mass ratio > {EQUAL:g}, below {SLOW:g} v_break"
     yield Quantity("lost_in_compression", meaning, lost)
     yield _silicate(runs)
     broken = runs.of(runs.table[runs.table.outcome.isin(BREAKING)])
