@@ -19,7 +19,7 @@
 # make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
-# make image  one file system with YADE, the plugin and the commands dust-..., for machines without Debian or root (root; a quarter of an hour):
+# make image  one file system with YADE, the plugin and the commands dust-..., for machines without Debian or root (root; half an hour):
 #             build/image/contact_law.tar (podman import, docker import) and contact_law.squashfs (apptainer exec)
 # make test   builds what is needed and passes the tests
 # make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest, and CITATION.cff;
@@ -220,7 +220,7 @@ uninstall:
 
 # Of Debian's packages and the last commit. (Debian 12's yade needs python3-dev and its compiler: they stay.)
 IMAGE := build/image/contact_law
-IMAGE_SYSTEM ?= trixie
+IMAGE_SYSTEM ?= bookworm
 .PHONY: image
 image:
 	@$(MAKE) --no-print-directory deps PACKAGES="mmdebstrap squashfs-tools git"
