@@ -21,7 +21,14 @@ import contact_law  # noqa: F401 (JKRMat and the others, for autodoc)
 project, release = "Cohesive dust aggregates in YADE", analysis.__version__
 extensions = ["myst_parser", "nbsphinx", "sphinx.ext.autodoc", "IPython.sphinxext.ipython_console_highlighting"]
 root_doc = "docs/index"
-include_patterns = ["docs/*", "CHANGELOG.md", "*/*.md", "analysis/gallery/*.md", "analysis/gallery/*/*.md", "contact_law/engine/*.md"]
+include_patterns = [
+    "docs/*",
+    "CHANGELOG.md",
+    "*/*.md",
+    "analysis/gallery/*.md",
+    "analysis/gallery/*/*.md",
+    "contact_law/engine/*.md",
+]
 include_patterns += ["tests/*/*.md", "tests/*/results/*.md"]
 untitled = "tests/benchmarks/results/compression_step.md"
 exclude_patterns = ["build", "runs", "tests/*/results/*/*", untitled]
