@@ -27,6 +27,7 @@ include_patterns = [
     "*/*.md",
     "analysis/gallery/*.md",
     "analysis/gallery/*/*.md",
+    "analysis/atlas/adapters/*.md",
     "contact_law/engine/*.md",
 ]
 include_patterns += ["tests/*/*.md", "tests/*/results/*.md"]
