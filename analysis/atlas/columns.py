@@ -12,7 +12,7 @@ from ..measures.fragments import fragment_labels, fragment_sizes
 from ..measures.free_flight import pieces_that_can_meet
 from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
 from ..measures.of_run import met, time_of_touch
-from ..measures.outcome import NEVER_MET, UNDECIDED, mean_velocity, restitution
+from ..measures.outcome import NEVER_MET, UNDECIDED, restitution_of_pieces
 from ..measures.structure import filling_factor, gyration_radius
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
 from ..runs.table import Column
@@ -21,9 +21,9 @@ from ..studies.definition import NotMeasured
 from ..theory import Material, interaction_energies, pair_constants
 from .power_law import power_law_index
 from .rules import KINDS, outcome
+from .variables import FIT, HELD_OUT
 
 NAME = re.compile(r"(\d+)(-held)?")
-FIT, HELD_OUT = "fit", "held_out"
 BODIES = ("target", "projectile")
 STICKING = KINDS[0]
 AT_END = "{}_at_end"
@@ -109,10 +109,8 @@ def _restitution(run, members):
     start, end, mass = run.start, run.last, np.ones(len(run.last.radius))
     if not members[1].any():
         return 0.0
-    before = [mean_velocity(start.velocity, mass, start.aggregate == k) for k in (0, 1)]
-    first, second = sorted(members, key=lambda own: end.aggregate[own].mean())
-    after = [mean_velocity(end.velocity, mass, own) for own in (first, second)]
-    found = restitution(before[1] - before[0], after[1] - after[0])
+    pieces = sorted(members, key=lambda own: end.aggregate[own].mean())
+    found = restitution_of_pieces(start.aggregate, mass, mass > 0, pieces, start.velocity, end.velocity)
     return np.nan if found is None else found
 
 

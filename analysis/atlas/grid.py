@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pandas
+from scipy.spatial import cKDTree
 
-from ..theory import ICE, SILICATE
+from ..theory import ICE, MATERIALS
 from .columns import breaking_velocity
 from .neighbours import MARGIN, NEAR, Neighbours
 from .outcome_table import Axis, OutcomeTable, read_outcomes
@@ -14,7 +15,6 @@ from .rules import KINDS
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 FILE, RUNS_FILE = FOLDER / "outcomes.txt", FOLDER / "runs.csv"
-MATERIALS = {"ice": ICE, "silicate": SILICATE}
 GRAIN_RADIUS = 1e-7  # m
 AXES = (
     Axis("velocity", "log10", np.geomspace(0.08, 26.0, 20)),
@@ -69,8 +69,6 @@ def _nodes():
 
 def _nearest(points, others):
     """Row (n,) of the nearest of others, in steps of the grid."""
-    from scipy.spatial import cKDTree
-
     place = lambda own: np.column_stack([axis.position(own[axis.name]) for axis in AXES])
     return cKDTree(place(others)).query(place(points))[1]
 

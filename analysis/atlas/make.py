@@ -18,7 +18,7 @@ from .grid import FILE, FOLDER, RUNS_FILE, outcome_grid
 from .model import LEVEL, Model, NoLearning
 from .outcome_table import write_outcomes
 from .scores import of_atlas, reliability, scores
-from .variables import decided
+from .variables import fit_and_held_out
 
 HEAD = """# How good the model of the atlas is
 
@@ -40,8 +40,7 @@ def report(table):
     head = HEAD.format(fit=numbers["cross-validated"], held=numbers["held out"], level=LEVEL)
     shown = found.drop(columns="number").round(3).astype(str).replace("nan", "")
     shown.columns = [name.replace("mean_miss", "miss").replace("_", " ") for name in shown.columns]
-    own = decided(table)
-    fit, held = (own[(own.split == "fit") == is_fit] for is_fit in (True, False))
+    fit, held = fit_and_held_out(table)
     bins = reliability(of_atlas(fit, held)[0], held.outcome).round(3)
     parts = [
         head,

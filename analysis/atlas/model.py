@@ -12,9 +12,8 @@ from importlib.util import find_spec
 import numpy as np
 import pandas
 
-from .columns import FIT
 from .rules import KINDS
-from .variables import LEFT, decided, left, scaled, variables
+from .variables import LEFT, fit_and_held_out, left, scaled, variables
 
 MEMBERS, TREES, LEAF = 40, 200, 5  # fits with random weights; of the forest, and runs in a leaf of it
 STRENGTHS = 0.03, 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation, tried
@@ -39,8 +38,7 @@ class Model:
 
     def __init__(self, table, members=MEMBERS):
         _require_learning()
-        self.runs = decided(table)
-        self.runs = self.runs[self.runs.split == FIT].reset_index(drop=True)
+        self.runs, _ = fit_and_held_out(table)
         self.points, self.members = scaled(variables(self.runs)), members
 
     @cached_property
@@ -62,7 +60,7 @@ class Model:
     def _of_each(self, fit, points, averaged):
         found = np.zeros((len(points), len(KINDS)))
         for coordinates in _offsets(scaled(points), averaged):
-            found[:, [KINDS.index(kind) for kind in fit.classes_]] += fit.predict_proba(coordinates)
+            found += chances(fit, coordinates)
         found /= found.sum(axis=1, keepdims=True)
         found[:, 1:] *= np.clip(1 + np.log2(points.velocity.to_numpy() / self.slowest), 0.0, 1.0)[:, None]
         found[:, 0] = 1 - found[:, 1:].sum(axis=1)
@@ -133,6 +131,18 @@ def classifier(strength):
     return Pipeline([*steps, ("fit", LogisticRegression(C=strength, max_iter=2000))])
 
 
+def chances(fit, coordinates):
+    """Probabilities (n, 5) of KINDS by a fitted classifier(); 0 for those that it has not seen."""
+    found = np.zeros((len(coordinates), len(KINDS)))
+    found[:, [KINDS.index(kind) for kind in fit.classes_]] = fit.predict_proba(coordinates)
+    return found
+
+
+def is_kind(outcome):
+    """(n, 5): whether it was that one of KINDS."""
+    return np.asarray(outcome)[:, None] == np.array(KINDS)
+
+
 def best_strength(points, outcome):
     """The one of STRENGTHS with the least cross-validated log loss."""
     losses = [_loss(strength, points, outcome) for strength in STRENGTHS]
@@ -147,10 +157,8 @@ def folds(number):
 
 def _loss(strength, points, outcome):
     """Cross-validated mean log loss."""
-    outcome, found = np.asarray(outcome), np.full(len(points), 1e-3)
+    outcome, found = np.asarray(outcome), np.zeros(len(points))
     for others, own in folds(len(points)):
         fit = classifier(strength).fit(points[others], outcome[others])
-        p = fit.predict_proba(points[own])
-        for column, kind in enumerate(fit.classes_):
-            found[own] = np.where(outcome[own] == kind, np.maximum(p[:, column], 1e-3), found[own])
-    return float(-np.log(found).mean())
+        found[own] = chances(fit, points[own])[is_kind(outcome[own])]
+    return float(-np.log(np.maximum(found, 1e-3)).mean())

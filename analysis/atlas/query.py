@@ -5,8 +5,9 @@ import pandas
 
 from ..runs.table import read_table
 from ..studies.columns import flat
+from ..theory import MATERIALS
 from .columns import MEASURED, breaking_velocity
-from .grid import MATERIALS, PROBABILITIES, RUNS_FILE, outcome
+from .grid import PROBABILITIES, RUNS_FILE, outcome
 from .model import Model
 from .neighbours import MARGIN, Neighbours
 from .rules import KINDS

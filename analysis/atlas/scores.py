@@ -2,10 +2,11 @@
 
 import numpy as np
 import pandas
+from scipy.spatial import cKDTree
 
-from .model import Model, best_strength, classifier, folds
+from .model import Model, best_strength, chances, classifier, folds, is_kind
 from .rules import KINDS
-from .variables import decided, left, scaled, variables
+from .variables import fit_and_held_out, left, scaled, variables
 
 NEIGHBOURS, BINS = 5, 10
 STRUCTURES = np.array(["bcca", "bpca", "cpe", "compressed"])
@@ -20,8 +21,6 @@ def of_atlas(train, test):
 
 def of_nearest(train, test):
     """Fractions among the nearest runs."""
-    from scipy.spatial import cKDTree
-
     points = scaled(variables(train))
     scatter = points.std(axis=0)
     _, rows = cKDTree(points / scatter).query(scaled(variables(test)) / scatter, k=NEIGHBOURS)
@@ -44,9 +43,7 @@ def of_more(more):
     def of(train, test):
         points, others = (np.column_stack([scaled(variables(table)), more(table)]) for table in (train, test))
         fit = classifier(best_strength(points, train.outcome)).fit(points, train.outcome)
-        found = np.zeros((len(test), len(KINDS)))
-        found[:, [KINDS.index(kind) for kind in fit.classes_]] = fit.predict_proba(others)
-        return found, None
+        return chances(fit, others), None
 
     return of
 
@@ -78,11 +75,6 @@ def _fractions(outcome):
     return counts / counts.sum()
 
 
-def is_kind(outcome):
-    """(n, 5): 1 for the kind that it was."""
-    return (np.asarray(outcome)[:, None] == np.array(KINDS)).astype(float)
-
-
 def brier(p, outcome):
     """Brier score: mean over runs of the sum over kinds of (p - observed)^2, 0 to 2."""
     return float(((p - is_kind(outcome)) ** 2).sum(axis=1).mean())
@@ -94,7 +86,7 @@ def reliability(p, outcome):
     >>> reliability(np.array([[1.0, 0, 0, 0, 0]]), ["sticking"]).observed.tolist()
     [0.0, 1.0]
     """
-    p, hit = p.ravel(), is_kind(outcome).ravel()
+    p, hit = p.ravel(), is_kind(outcome).ravel().astype(float)
     bins = np.minimum((p * BINS).astype(int), BINS - 1)
     return (
         pandas.DataFrame({"p": p, "observed": hit, "number": 1})
@@ -112,8 +104,7 @@ def mean_miss(p, outcome):
 def scores(table):
     """DataFrame (a row a predictor and set of runs): number, brier, mean_miss, and of the atlas the fractions of the runs within the intervals
     of LEFT. table: of runs; sets: held out (fitted to all others), and cross-validated (of the others)."""
-    own = decided(table).reset_index(drop=True)
-    fit, held = own[own.split == "fit"].reset_index(drop=True), own[own.split != "fit"]
+    fit, held = fit_and_held_out(table)
     found = []
     for name, of in PREDICTORS.items():
         p = [of(fit.iloc[others], fit.iloc[kept]) for others, kept in folds(len(fit))]

@@ -6,6 +6,7 @@ import pandas
 from ..measures.outcome import NEVER_MET, UNDECIDED
 
 FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
+FIT, HELD_OUT = "fit", "held_out"  # of the column `split`
 LEFT = ("largest", "second", "fragment_index", "filling_after")
 
 
@@ -38,6 +39,12 @@ def touching(table):
 def decided(table):
     """The rows that anything may be fitted to or judged by: aggregates that touched, with a decided outcome."""
     return table[~table.outcome.isin([NEVER_MET, UNDECIDED])]
+
+
+def fit_and_held_out(table):
+    """The decided() rows that a model may be fitted to, and those held out."""
+    own = decided(table)
+    return (own[(own.split == FIT) == is_fit].reset_index(drop=True) for is_fit in (True, False))
 
 
 def left(table):

@@ -1,5 +1,6 @@
 """The commands of python3 -m analysis, one a module: add_parser(commands) and what they run."""
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -11,6 +12,21 @@ FAILED = 2
 def complain(message):
     """One line on stderr."""
     print(printable(f"analysis: {message}"), file=sys.stderr, flush=True)
+
+
+def number(is_right, must_be):
+    """A type of argparse's: a number for which is_right(number) holds, refused with what it must be."""
+
+    def of(text):
+        try:
+            value = float(text)
+        except ValueError:
+            value = float("nan")
+        if not is_right(value):
+            raise argparse.ArgumentTypeError(f"{text}: must be {must_be}")
+        return value
+
+    return of
 
 
 def write_of_run(options, name, write, *refusals):

@@ -3,7 +3,7 @@
 import argparse
 
 from ..figures.grain_colours import COLOURINGS
-from . import write_of_run
+from . import number, write_of_run
 
 
 def add_parser(commands):
@@ -15,7 +15,13 @@ def add_parser(commands):
     )
     parser.add_argument("run", metavar="RUN", help="run folder")
     parser.add_argument("--out", metavar="FILE", help="where to (default: RUN/film.mp4); .gif: repeats")
-    parser.add_argument("--rate", metavar="FRAMES", type=_rate, default=10.0, help="states a second (default: 10)")
+    parser.add_argument(
+        "--rate",
+        metavar="FRAMES",
+        type=number(lambda rate: 0.1 <= rate <= 120, "from 0.1 to 120"),
+        default=10.0,
+        help="states a second (default: 10)",
+    )
     parser.add_argument("--along", choices="xyz", default="z", help="axis along which it is seen (default: z)")
     parser.add_argument("--colour", choices=COLOURINGS, default="aggregate", help="of the grains (default: aggregate)")
     parser.add_argument("--width", metavar="PIXELS", type=_width, default=960, help="from 160 to 3840 (default: 960)")
@@ -26,16 +32,6 @@ def _width(text):
     if not text.isascii() or not text.isdigit() or not 160 <= int(text) <= 3840:
         raise argparse.ArgumentTypeError(f"{text}: must be a whole number from 160 to 3840")
     return int(text)
-
-
-def _rate(text):
-    try:
-        rate = float(text)
-    except ValueError:
-        rate = 0.0
-    if not 0.1 <= rate <= 120:
-        raise argparse.ArgumentTypeError(f"{text}: must be from 0.1 to 120")
-    return rate
 
 
 def run(options):

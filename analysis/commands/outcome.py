@@ -1,9 +1,7 @@
 """python3 -m analysis outcome --velocity V --projectile N --target N --filling F [--impact B | averaged] [--maxwell] [--material M]"""
 
-import argparse
-
 from ..printable import printable_lines
-from . import FAILED, complain
+from . import FAILED, complain, number
 
 
 def add_parser(commands):
@@ -14,12 +12,12 @@ def add_parser(commands):
         description="Probabilities of the outcomes of a collision of two aggregates, and what is left, from the collision atlas (analysis/gallery/atlas): "
         "from its table of outcomes; with an impact parameter from its model, which takes scikit-learn. Intervals are of 90 %%.",
     )
-    number = {"type": _positive, "required": True, "metavar": "X"}
-    parser.add_argument("--velocity", help="relative velocity [m/s]", **number)
-    parser.add_argument("--projectile", help="grains of one aggregate", **number)
-    parser.add_argument("--target", help="grains of the other", **number)
+    of_number = {"type": _positive, "required": True, "metavar": "X"}
+    parser.add_argument("--velocity", help="relative velocity [m/s]", **of_number)
+    parser.add_argument("--projectile", help="grains of one aggregate", **of_number)
+    parser.add_argument("--target", help="grains of the other", **of_number)
     parser.add_argument(
-        "--filling", help="volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g", **number
+        "--filling", help="volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g", **of_number
     )
     parser.add_argument(
         "--impact",
@@ -36,26 +34,11 @@ def add_parser(commands):
     parser.set_defaults(command=run)
 
 
-def _positive(text):
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text}: must be a number > 0")
-    return value
+_positive = number(lambda value: 0 < value < float("inf"), "a number > 0")
 
 
 def _impact(text):
-    if text == "averaged":
-        return text
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value <= 1:
-        raise argparse.ArgumentTypeError(f"{text}: must be 0 to 1, or averaged")
-    return value
+    return text if text == "averaged" else number(lambda b: 0 <= b <= 1, "0 to 1, or averaged")(text)
 
 
 def run(options):

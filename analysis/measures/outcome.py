@@ -126,8 +126,8 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
     kind = classify(f1, f2, have_parted(shares)) if met else NEVER_MET
     ratio = 0.0 if kind == STICKING else None
     if kind == BOUNCING:
-        first, second = (pieces[k] for k in np.argsort(shares))
-        ratio = _restitution(aggregate, mass, counted, first, second, start_velocity, end_velocity)
+        by_aggregate = [pieces[k] for k in np.argsort(shares)]
+        ratio = restitution_of_pieces(aggregate, mass, counted, by_aggregate, start_velocity, end_velocity)
     largest = int(fragment_sizes(labels).max())
     return Outcome(
         kind,
@@ -140,8 +140,9 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
     )
 
 
-def _restitution(aggregate, mass, counted, first, second, start_velocity, end_velocity):
-    # first: the piece of aggregate 0, second: that of aggregate 1.
+def restitution_of_pieces(aggregate, mass, counted, pieces, start_velocity, end_velocity):
+    """restitution() of two pieces, masks (N,) of that of aggregate 0 and that of aggregate 1, as collision_outcome() has the rest;
+    counted: mask (N,) of the grains that belong to an aggregate at the start."""
     before = [mean_velocity(start_velocity, mass, counted & (aggregate == k)) for k in (0, 1)]
-    after = [mean_velocity(end_velocity, mass, piece) for piece in (first, second)]
+    after = [mean_velocity(end_velocity, mass, piece) for piece in pieces]
     return restitution(before[1] - before[0], after[1] - after[0])

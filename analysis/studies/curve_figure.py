@@ -15,7 +15,7 @@ from .levels import level
 from .runs import alike, select
 
 # None of them the paper's (figures.panels.PAPER).
-_COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
+COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
 MARKERS, LINES = "osD^vP", ("-", "--", "-.", ":")
 WIDEST = 3  # panels beside each other
 MOST_ASIDE = 20.0  # points between the first curve and the last: within the margin of the axes
@@ -28,8 +28,8 @@ def palette(results, name):
     values = {value for index in indices if name in index.names for value in index.get_level_values(name)}
     if values <= set(CHANNEL_COLOURS):
         return {value: CHANNEL_COLOURS[value] for value in values}
-    many = len(values) > len(_COLOURS)
-    return dict(zip(sorted(values), colormaps["plasma"](np.linspace(0.0, 0.85, len(values))) if many else _COLOURS))
+    many = len(values) > len(COLOURS)
+    return dict(zip(sorted(values), colormaps["plasma"](np.linspace(0.0, 0.85, len(values))) if many else COLOURS))
 
 
 def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1.0, aside=0.0):
@@ -124,7 +124,7 @@ def _share_y(places, limits):
 def _curves(axes, figure, quantity, series, results):
     """The curves of one panel."""
     if not figure.colour:
-        return _curve(axes, figure, quantity, series, _COLOURS[-1])
+        return _curve(axes, figure, quantity, series, COLOURS[-1])
     values = sorted(set(series.index.get_level_values(figure.colour)))
     curves = {value: select(series, **{figure.colour: value}) for value in values}
     numbers = {value: pairs_text(own, results.independent) for value, own in curves.items()}

@@ -18,6 +18,7 @@ from .jkr import (
 )
 from .pair_constants import (
     ICE,
+    MATERIALS,
     SILICATE,
     Material,
     PairConstants,
@@ -42,6 +43,7 @@ __all__ = [
     "normal_energy",
     "normal_force",
     "ICE",
+    "MATERIALS",
     "SILICATE",
     "Material",
     "PairConstants",

@@ -33,15 +33,16 @@ TOP = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, TOP)
 from scipy.stats import qmc
 
-from analysis.atlas.columns import MEASURED
+from analysis.atlas.columns import MEASURED, breaking_velocity
 from analysis.measures.outcome import UNDECIDED
+from analysis.measures.virial import filling_factor
 from analysis.progress import progress
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import read_json
 from analysis.runs.format import RUN_FILE
 from analysis.runs.table import TableError, read_table
 from analysis.studies.columns import flat
-from analysis.theory import ICE, SILICATE, interaction_energies, pair_constants
+from analysis.theory import ICE, SILICATE
 from yade_scripts import packings, step_choice
 from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import equilibrium_overlap
@@ -109,12 +110,6 @@ class Scene:
         return self.structure in FILLINGS
 
 
-def v_break(material):
-    """(E_break/m0)^(1/2) [m/s] of grains of GRAIN_RADIUS."""
-    constants = pair_constants(material, GRAIN_RADIUS)
-    return (interaction_energies(constants)["break"] / (2 * constants.reduced_mass)) ** 0.5
-
-
 def scenes(rows):
     """[Scene] of the first rows."""
     # Not scrambled by scipy, whose versions may do it differently, but shifted: the first point would be a corner.
@@ -136,7 +131,9 @@ def _scene(number, structure, silicate, held, point):
     total = between(point[0], FEWEST, most)
     ratio = between(point[1], 1.0, min(MOST_UNEQUAL, total / LEAST - 1))
     projectile = round(total / (1 + ratio))
-    scale = v_break(SILICATE) / v_break(ICE) if silicate else 1.0
+    scale = 1.0
+    if silicate:
+        scale = breaking_velocity(SILICATE, GRAIN_RADIUS) / breaking_velocity(ICE, GRAIN_RADIUS)
     low, high = FILLINGS.get(structure, (0.0, 0.0))
     return Scene(
         number,
@@ -236,7 +233,7 @@ def _compressed(scene, index):
         raise PackingError(f"{folder}: no states; must be those of a cell: run atlas-cells.table first") from None
     wanted = np.interp(scene.filling, *_fillings(folder, states))
     state = read_periodic_state(os.path.join(folder, states[round(wanted)]))
-    radius = (scene.grains[index] / _filling(state)) ** (1 / 3)
+    radius = (scene.grains[index] / filling_factor(state.radius, state.cell_size)) ** (1 / 3)
     for number in range(PLACES):
         with suppress(PackingError):  # an empty place
             found = cut(state, CutParameters(radius=radius, seed=PLACES * scene.seed + number), index)
@@ -247,11 +244,6 @@ def _compressed(scene, index):
     )
 
 
-def _filling(state):
-    """N (r/R)^3 of spheres out of a periodic state."""
-    return 4 / 3 * np.pi * (state.radius**3).sum() / np.prod(state.cell_size)
-
-
 _known = {}
 
 
@@ -259,7 +251,7 @@ def _fillings(folder, states):
     """(fillings of a cell's states, their numbers)."""
     if folder not in _known:
         read = [read_periodic_state(os.path.join(folder, name)) for name in states]
-        _known[folder] = [_filling(state) for state in read], range(len(states))
+        _known[folder] = [filling_factor(state.radius, state.cell_size) for state in read], range(len(states))
     return _known[folder]
 
 

@@ -7,7 +7,7 @@ from ...atlas.outcome_table import read_outcomes
 from ...atlas.variables import decided, variables
 from ...figures.panels import letter, panels
 from ...figures.style import styled
-from ..curve_figure import _COLOURS, plain_ticks, points
+from ..curve_figure import COLOURS, plain_ticks, points
 from ..definition import StudyFigure
 from ..runs import select
 from .study import BOUNCING, STICKING
@@ -24,7 +24,7 @@ def sticking(results):
     table, (figure, axes) = read_outcomes(FILE), panels(2, 3, 3.4, 2.9)
     velocity = np.geomspace(table.axes[0].nodes[0], table.axes[0].nodes[-1], 100)
     runs = results[f"{STICKING}_at"].values
-    for filling, place, colour in zip(sorted(set(runs.index.get_level_values("filling"))), axes.ravel(), _COLOURS):
+    for filling, place, colour in zip(sorted(set(runs.index.get_level_values("filling"))), axes.ravel(), COLOURS):
         found = table.lookup(velocity=velocity, grains=GRAINS, mass_ratio=RATIO, filling=filling)
         p, error, inside = found["p_sticking"], found["error"], found["inside"] == 1
         place.fill_between(velocity, np.clip(p - error, 0, 1), np.clip(p + error, 0, 1), color=colour, alpha=0.2, lw=0)
