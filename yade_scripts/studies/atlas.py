@@ -70,7 +70,7 @@ KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have;
 BLOCK = 10  # rows of which one is held out and one of silicate
 CELL_SEEDS = {
     1_024: range(1, 11),
-    4_096: range(11, 31),
+    4_096: range(11, 21),
 }  # of cells for pairs of up to so many grains, which have twice as many
 CELL_STATES, RATE, CELL_STEP = 60, "1e-5", 0.3  # number; 1/t0; t0
 
