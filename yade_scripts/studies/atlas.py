@@ -5,12 +5,14 @@
                                                                   FIRST to LAST: the table has these rows alone
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
     python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long
+    python3 yade_scripts/studies/atlas.py choose RUNS.csv LAST    chooses the rows to before LAST by a model of the runs that ended: atlas-chosen.txt
     python3 yade_scripts/studies/atlas.py tables                  writes atlas-cells.table, and atlas-cells-full.table, which full needs too
 
 make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 10,000 rows long: a larger size goes on
 from a smaller one. Aggregates hold 64 to 1,024 grains together in the first 2,000 rows, and up to 4,096 in the others.
+From row 3,000 on a row is the one of some candidates, drawn at random, whose outcome was the least sure by the model when it was chosen.
 
-Of every ten rows one, drawn at random, is held out (its name ends in -held): no model may be fitted to it. Of every ten one is of silicate,
+Of every ten rows one, drawn at random, is held out (its name ends in -held): no model may be fitted to it, and it is not chosen. Of every ten one is of silicate,
 at velocities that are the same over v_break = (E_break/m0)^(1/2); compressed aggregates are of ice alone, whose cells they are cut out of.
 
 Ballistic aggregates, BCCA and BPCA, have the filling that they have. Close-packed (CPE) ones are without loose grains; compressed ones are
@@ -52,10 +54,11 @@ from yade_scripts.packings.approach import first_touch
 from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.run import table
+from yade_scripts.studies import atlas_choice
 
 SIZES = {"pilot": 500, "desk": 2_000, "full": 10_000}
 RUNS, PACKINGS, CELLS = "runs/atlas", "runs/atlas-packings", "runs/atlas-cells"
-SEED = 20260
+SEED, DIMENSIONS = 20260, 6
 STRUCTURES = ("bcca", "bpca", "cpe", "compressed")
 FEWEST, MOST = 64, {2_000: 1_024, 10_000: 4_096}  # grains of both; the most up to that row
 LEAST, MOST_UNEQUAL = 4, 64  # grains of the smaller one; mass ratio
@@ -111,25 +114,53 @@ class Scene:
 
 
 def scenes(rows):
-    """[Scene] of the first rows."""
-    # Not scrambled by scipy, whose versions may do it differently, but shifted: the first point would be a corner.
-    shift = np.random.default_rng(SEED).uniform(size=6)
-    points = (qmc.Sobol(6, scramble=False).random_base2(int(np.ceil(np.log2(rows)))) + shift) % 1.0
-    structures = [STRUCTURES[int(len(STRUCTURES) * u)] for u in points[:, 0]]
-    held, silicate = set(), set()
-    for first in range(0, rows, BLOCK):
-        draw = np.random.default_rng([SEED, first])
+    """[Scene] of the first rows. Raises PackingError where they have not been chosen yet."""
+    blocks = -(-rows // BLOCK)
+    points = _points(blocks * BLOCK)
+    found = []
+    for first in range(0, len(points), BLOCK):
         block = range(first, first + BLOCK)
-        held.add(int(draw.choice(block)))
-        silicate.add(int(draw.choice([i for i in block if i < len(structures) and structures[i] != "compressed"])))
-    return [_scene(i, structures[i], i in silicate, i in held, points[i, 1:]) for i in range(rows)]
+        held, draw = _held_out(first)
+        silicate = draw.choice([i for i in block if _structure(points[i]) != "compressed"])
+        found += [_scene(i, points[i], i == silicate, i == held) for i in block]
+    return found[:rows]
 
 
-def _scene(number, structure, silicate, held, point):
+def _points(rows):
+    """Points (rows, DIMENSIONS) in the unit cube: of a Sobol sequence, and then those chosen."""
+    sobol = min(rows, atlas_choice.FIRST)
+    # Not scrambled by scipy, whose versions may do it differently, but shifted: the first point would be a corner.
+    shift = np.random.default_rng(SEED).uniform(size=DIMENSIONS)
+    points = (qmc.Sobol(DIMENSIONS, scramble=False).random_base2(int(np.ceil(np.log2(sobol)))) + shift) % 1.0
+    chosen = atlas_choice.chosen()
+    if rows - sobol > len(chosen):
+        raise PackingError(f"row {sobol + len(chosen)} is not chosen yet; must be, by atlas.py choose RUNS.csv {rows}")
+    own = [candidates(sobol + k)[chosen[k]] for k in range(rows - sobol)]
+    return [*points[:sobol], *own]
+
+
+def candidates(number):
+    """Points (CANDIDATES, DIMENSIONS) of which a row from atlas_choice.FIRST on is one."""
+    size = (atlas_choice.CANDIDATES, DIMENSIONS)
+    return np.random.default_rng([SEED, number, *size]).uniform(size=size)
+
+
+def _held_out(first):
+    """(row of the block from first on that is held out, generator of what else is drawn in it)."""
+    draw = np.random.default_rng([SEED, first])
+    return draw.choice(range(first, first + BLOCK)), draw
+
+
+def _structure(point):
+    return STRUCTURES[int(len(STRUCTURES) * point[0])]
+
+
+def _scene(number, point, silicate=False, held=False):
     between = lambda u, low, high: low * (high / low) ** u
+    structure = _structure(point)
     most = next(most for rows, most in MOST.items() if number < rows)
-    total = between(point[0], FEWEST, most)
-    ratio = between(point[1], 1.0, min(MOST_UNEQUAL, total / LEAST - 1))
+    total = between(point[1], FEWEST, most)
+    ratio = between(point[2], 1.0, min(MOST_UNEQUAL, total / LEAST - 1))
     projectile = round(total / (1 + ratio))
     scale = 1.0
     if silicate:
@@ -140,9 +171,9 @@ def _scene(number, structure, silicate, held, point):
         structure,
         "silicate" if silicate else "ice",
         (round(total) - projectile, projectile),
-        scale * between(point[2], *VELOCITIES),
-        point[3] ** 0.5,
-        low + (high - low) * point[4],
+        scale * between(point[3], *VELOCITIES),
+        point[4] ** 0.5,
+        low + (high - low) * point[5],
         most,
         held,
     )
@@ -283,6 +314,15 @@ def write_size(size, first, last):
     table.write(f"runs/atlas-{size}.table", found, head + "Written by yade_scripts/studies/atlas.py.")
 
 
+def choose(file, last):
+    """Choose the rows that are not chosen yet up to before last, by a table of runs. Raises TableError."""
+    runs, first = read_table(file, flat(MEASURED))[0], atlas_choice.FIRST + len(atlas_choice.chosen())
+    rows = range(first, last)
+    found = atlas_choice.least_sure([[_scene(i, point) for point in candidates(i)] for i in rows], runs, GRAIN_RADIUS)
+    held = [_held_out(i // BLOCK * BLOCK)[0] == i for i in rows]
+    atlas_choice.append(np.where(held, 0, found))
+
+
 def write_longer(file):
     """Write runs/atlas-longer.table for a table of runs. Raises TableError, and RunFolderError where a run's folder is not at hand."""
     runs, known = read_table(file, flat(MEASURED))[0], scenes(SIZES["full"])
@@ -310,6 +350,11 @@ def main(arguments):
             write_longer(file)
         except (TableError, RunFolderError) as error:
             sys.exit(f"atlas.py: {error}")
+    elif size == "choose" and len(arguments) == 3 and arguments[2].isdecimal():
+        try:
+            choose(arguments[1], int(arguments[2]))
+        except TableError as error:
+            sys.exit(f"atlas.py: {error}")
     elif "--help" in arguments:
         print(__doc__)
     elif size in SIZES and len(arguments) in (1, 3) and all(part.isdecimal() for part in arguments[1:]):
@@ -319,7 +364,10 @@ def main(arguments):
         except PackingError as error:
             sys.exit(f"atlas.py: {error}")
     else:
-        print(f"atlas.py: must be called with tables, longer, {', '.join(SIZES)}; --help says more", file=sys.stderr)
+        print(
+            f"atlas.py: must be called with tables, longer, choose, {', '.join(SIZES)}; --help says more",
+            file=sys.stderr,
+        )
         sys.exit(2)
 
 
