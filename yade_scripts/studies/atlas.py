@@ -303,7 +303,7 @@ def write_tables(folder):
 
 def write_size(size, first, last):
     """Write runs/atlas-SIZE.table, with the rows from first to before last, and make their packings. Raises PackingError."""
-    chosen = scenes(SIZES[size])[first:last]
+    chosen = scenes(min(last, SIZES[size]))[first:]
     os.makedirs(PACKINGS, exist_ok=True)
     found = []
     for scene in progress(chosen, "making packings"):
@@ -360,7 +360,7 @@ def main(arguments):
     elif size in SIZES and len(arguments) in (1, 3) and all(part.isdecimal() for part in arguments[1:]):
         os.chdir(TOP)
         try:
-            write_size(size, *(map(int, arguments[1:]) if len(arguments) == 3 else (0, None)))
+            write_size(size, *(map(int, arguments[1:]) if len(arguments) == 3 else (0, SIZES[size])))
         except PackingError as error:
             sys.exit(f"atlas.py: {error}")
     else:
