@@ -1,13 +1,14 @@
-// The pass over sintered bonds, for one pack type: included by each instruction set's file after force_pass.hpp. One sweep, since a linear
+// The pass over sintered bonds, for one pack type: included by each instruction set's file. One sweep, since a linear
 // bond needs little room.
 #pragma once
+#include "../kernel/turning.hpp"
 #include "bond_list.hpp"
-#include "force_pass.hpp"
+#include "pass_access.hpp"
 
 namespace contact_law {
 
 template <class Pack> struct BondPasses {
-	using P = Passes<Pack>;
+	using P = PassAccess<Pack>;
 	static constexpr int width = Pack::width;
 
 	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at)
