@@ -41,15 +41,15 @@ dissipates, aggregates cannot part, and are inside at any size and filling (erro
 Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
 
 
-def outcome_grid(model, version):
-    """OutcomeTable of a model.Model."""
+def outcome_grid(model, version, upto=1.0):
+    """OutcomeTable of a model.Model, averaged over impact parameters uniform in b^2 up to `upto`."""
     points, near = _nodes(), Neighbours(model.runs)
     inside, p = near.beyond(points) <= MARGIN, np.zeros((len(points), len(COLUMNS)))
     if not inside.any():
         raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
     own = points[inside]
-    chances, widths = model.probabilities(own, averaged=True)
-    left = model.remains.means(own, averaged=True)
+    chances, widths = model.probabilities(own, upto)
+    left = model.left(own, upto)
     values = {
         **dict(zip(PROBABILITIES, chances.T)),
         "error": widths.max(axis=1),

@@ -2,7 +2,7 @@
 
     python3 -m analysis.atlas.make [FOLDER]
 
-outcomes.txt, the table of outcomes on a grid, and model.md, how good the model is, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
+outcomes.txt, the table of outcomes on a grid, and model.md, how good the model is and where it lets aggregates bounce, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
 
 import sys
 from pathlib import Path
@@ -13,6 +13,7 @@ from ..runs.write import write_text
 from ..studies.columns import flat
 from ..studies.tables import markdown_table
 from ..version import version
+from .barrier import barrier_text
 from .columns import MEASURED
 from .grid import FILE, FOLDER, RUNS_FILE, outcome_grid
 from .model import Model, NoLearning
@@ -22,6 +23,8 @@ from .remains import LEVEL
 from .scores import CROSSED, HELD, of_atlas, reliability, scores
 from .variables import fit_and_held_out
 
+ALL = "of all collisions"
+UPTO = {ALL: 1.0, "of collisions with b < 1/2": 0.25}  # b^2
 HEAD = """# How good the model of the atlas is
 
 Fitted to {fit} decided runs; {held} more were held out, drawn before any run was made. Cross-validated: each of the fitted runs foretold from the others.
@@ -40,8 +43,8 @@ def read_runs(file=RUNS_FILE):
     return read_table(file, flat(MEASURED))[0]
 
 
-def report(table):
-    """model.md (str) of a table of runs."""
+def report(table, grids):
+    """model.md (str) of a table of runs, and {of which impact parameters: OutcomeTable made from it}."""
     found = scores(table)
     numbers = found.groupby("runs").number.first()
     fit, held = fit_and_held_out(table)
@@ -64,6 +67,8 @@ def report(table):
         markdown_table(shown),
         "\nHeld-out runs, in bins of probability of all outcomes together:\n",
         markdown_table(bins),
+        "\n## Where aggregates bounce\n",
+        *(line for name, grid in grids.items() for line in barrier_text(name, grid)),
     ]
     return "\n".join(parts) + "\n"
 
@@ -73,8 +78,10 @@ def main(arguments):
     folder = Path(arguments[0]) if arguments else FOLDER
     try:
         table = read_runs(folder / RUNS_FILE.name)
-        write_outcomes(folder / FILE.name, outcome_grid(Model(table), version()))
-        write_text(folder / "model.md", report(table))
+        model = Model(table)
+        grids = {name: outcome_grid(model, version(), upto) for name, upto in UPTO.items()}
+        write_outcomes(folder / FILE.name, grids[ALL])
+        write_text(folder / "model.md", report(table, grids))
     except OSError as error:
         complain(f"{error.filename or folder}: {error.strerror}")
         return 2

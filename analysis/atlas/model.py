@@ -47,10 +47,10 @@ class Model:
         weights = [np.ones(len(self.runs)), *draws]
         return [clone(fit).fit(self.points, self.runs.outcome, fit__sample_weight=w) for w in weights]
 
-    def probabilities(self, points, averaged=False):
-        """(probabilities (n, 5) of rules.KINDS, half widths (n, 5) of their intervals of LEVEL) of variables() points; averaged: over impact
-        parameters, uniform in b^2, whatever the points have. No half widths without members."""
-        fits = np.stack([self._of_each(fit, points, averaged) for fit in self._classifiers])
+    def probabilities(self, points, upto=None):
+        """(probabilities (n, 5) of rules.KINDS, half widths (n, 5) of their intervals of LEVEL) of variables() points; upto: averaged over
+        impact parameters, uniform in b^2 up to this, whatever the points have. No half widths without members."""
+        fits = np.stack([self._of_each(fit, points, upto) for fit in self._classifiers])
         if len(fits) == 1:
             return fits[0], None
         low, high = np.quantile(fits[1:], (0.5 - LEVEL / 2, 0.5 + LEVEL / 2), axis=0)
@@ -58,13 +58,20 @@ class Model:
         unseen = np.where((own >= ONE_CONTACT) & (own < self.slow.energy), self.slow.most, 0.0)
         return fits[0], np.maximum((high - low) / 2, unseen[:, None])
 
-    def _of_each(self, fit, points, averaged):
-        coordinates = scaled(points)
-        found = np.mean([chances(fit, at) for at in (offsets(coordinates) if averaged else [coordinates])], axis=0)
-        fade = np.clip(1 + np.log2(energy(points).to_numpy() / self.slow.energy), 0.0, 1.0)
-        found[:, 1:] *= fade[:, None]
+    def _of_each(self, fit, points, upto):
+        found = np.mean([chances(fit, at) for at in (offsets(scaled(points), upto))], axis=0)
+        found[:, 1:] *= self._fade(points)[:, None]
         found[:, 0] = 1 - found[:, 1:].sum(axis=1)
         return found
+
+    def _fade(self, points):
+        """Factor (n,) of whatever is not sticking: 1 from the energy of slow() on, 0 at half of it and below."""
+        return np.clip(1 + np.log2(energy(points).to_numpy() / self.slow.energy), 0.0, 1.0)
+
+    def left(self, points, upto=None):
+        """DataFrame of LEFT: means of remains.Remains; one piece where all stick."""
+        fade, found = self._fade(points), self.remains.means(points, upto)
+        return found.assign(largest=1 - fade * (1 - found.largest), second=fade * found.second)
 
     @cached_property
     def slow(self):

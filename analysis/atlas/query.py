@@ -39,7 +39,7 @@ def text(options):
     if options.impact != "averaged":
         model = Model(table)
         chances, width = model.probabilities(point)
-        answer |= {**dict(zip(PROBABILITIES, chances[0])), **model.remains.means(point).iloc[0].to_dict()}
+        answer |= {**dict(zip(PROBABILITIES, chances[0])), **model.left(point).iloc[0].to_dict()}
         widths = dict(zip(PROBABILITIES, width[0]))
         ends = model.remains.intervals(point).iloc[0]
         ranges = {

@@ -44,9 +44,9 @@ class Remains:
     def _trees(self):
         return _Trees(self.points, self.own[list(GROWN)])
 
-    def means(self, points, averaged=False):
-        """DataFrame of LEFT, means at variables() points; averaged: over impact parameters, whatever the points have."""
-        return self._told(points, averaged, lambda name, weights, own: weights @ own, self.own.notna())
+    def means(self, points, upto=None):
+        """DataFrame of LEFT, means at variables() points; upto: as Model.probabilities has it."""
+        return self._told(points, upto, lambda name, weights, own: weights @ own, self.own.notna())
 
     def intervals(self, points):
         """DataFrame of NAME_low and NAME_high for LEFT: ends of the intervals that hold LEVEL of such runs."""
@@ -54,15 +54,15 @@ class Remains:
         for end, sign in (("low", -1), ("high", 1)):
             reach = lambda name: self.reach["largest" if name in SIDES else name]
             at = lambda name, weights, own: _quantiles(weights, own, 0.5 + sign * reach(name))
-            found.append(self._told(points, False, at, self.known).add_suffix(f"_{end}"))
+            found.append(self._told(points, None, at, self.known).add_suffix(f"_{end}"))
         return pandas.concat(found, axis=1)
 
-    def _told(self, points, averaged, tell, known):
+    def _told(self, points, upto, tell, known):
         """DataFrame of tell(name, weights (n, k) of the known runs, their numbers (k,)) for LEFT, in the units of the table."""
         parts = []
         for start in range(0, len(points), CHUNK):
             here = points.iloc[start : start + CHUNK]
-            weights = self._trees.weights(offsets(scaled(here)) if averaged else [scaled(here)])
+            weights = self._trees.weights(offsets(scaled(here), upto))
             found = {}
             for name in (*SIDES, *LEFT[1:]):
                 rows = known[name].to_numpy()

@@ -7,7 +7,7 @@ from ..measures.outcome import NEVER_MET, UNDECIDED
 
 FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
 FIT, HELD_OUT = "fit", "held_out"  # of the column `split`
-OFFSETS = (np.arange(8) + 0.5) / 8  # b^2, of averages over impact parameters
+OFFSETS = (np.arange(8) + 0.5) / 8  # b^2 over its largest, of averages
 FOLDS, SEED = 5, 1  # of cross-validation
 LEFT = ("largest", "second", "fragment_index", "filling_after")
 
@@ -33,9 +33,11 @@ def scaled(points):
     return np.column_stack([np.log(points[:, :3]), points[:, 3:]])
 
 
-def offsets(coordinates):
-    """[coordinates (n, 5)]: those of scaled() at each impact parameter of an average, whatever they have."""
-    return [np.column_stack([coordinates[:, :-1], np.full(len(coordinates), square)]) for square in OFFSETS]
+def offsets(coordinates, upto=None):
+    """[coordinates (n, 5)] of scaled() at each impact parameter of an average uniform in b^2 up to `upto`; None: as they are."""
+    if upto is None:
+        return [coordinates]
+    return [np.column_stack([coordinates[:, :-1], np.full(len(coordinates), square)]) for square in upto * OFFSETS]
 
 
 def energy(points):

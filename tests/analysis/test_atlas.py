@@ -105,7 +105,7 @@ def test_model_of_made_runs(made, tmp_path):
     p, width = fitted.probabilities(variables(made))
     assert np.abs(p[:, 0] - 1 / (1 + (made.velocity / 5) ** 3)).mean() < 0.05 and p.sum(axis=1) == pytest.approx(1)
     assert 0.005 < width[:, 0].mean() < 0.2
-    left = fitted.remains.means(point(velocity=0.2)).iloc[0]
+    left = fitted.left(point(velocity=0.2)).iloc[0]
     assert left.largest > 0.97 and left.fragment_index == pytest.approx(2.0)
     file = tmp_path / "outcomes.txt"
     write_outcomes(file, outcome_grid(fitted, "0"))
