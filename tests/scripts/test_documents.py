@@ -81,9 +81,16 @@ def test_values_in_the_text_are_parameters():
         assert names == {"continue"} or any(names <= set(kind.columns()) for kind in kinds), words
 
 
-def test_the_first_tutorial(tmp_path):
-    """As its notebook has it, in plain Python."""
-    cells = json.loads((TOP / "docs/first_collision.ipynb").read_text())["cells"]
+@pytest.mark.parametrize(
+    "notebook, ask, answer",
+    [
+        ("first_collision", "runs.outcome[0]", "sticking"),
+        ("atlas", "runs.outcome[bands.cat.codes == 0].unique()", "['sticking']"),
+    ],
+)
+def test_notebooks(tmp_path, notebook, ask, answer):
+    """In plain Python."""
+    cells = json.loads((TOP / f"docs/{notebook}.ipynb").read_text())["cells"]
     code = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
-    done = call(tmp_path, PYTHON, "-c", code + "\nprint(runs.outcome[0])", PYTHONPATH=str(TOP), MPLBACKEND="agg")
-    assert done.returncode == 0 and done.stdout.splitlines()[-1] == "sticking", done.stderr
+    done = call(tmp_path, PYTHON, "-c", f"{code}\nprint({ask})", PYTHONPATH=str(TOP), MPLBACKEND="agg")
+    assert done.returncode == 0 and done.stdout.splitlines()[-1] == answer, done.stderr
