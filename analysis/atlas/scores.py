@@ -86,13 +86,13 @@ PREDICTORS = {
 
 def _of_threshold(train, test, of):
     x, own, outcome = of(variables(train)).to_numpy(), of(variables(test)).to_numpy(), train.outcome.to_numpy()
-    best = None
+    least = None
     for limit in np.quantile(x, np.linspace(0.05, 0.95, 37)):
         sides = np.array([_fractions(outcome[x <= limit]), _fractions(outcome[x > limit])])
         score = ((sides[(x > limit).astype(int)] - is_kind(outcome)) ** 2).sum()
-        if best is None or score < best[0]:
-            best = score, limit, sides
-    return best[2][(own > best[1]).astype(int)]
+        if least is None or score < least[0]:
+            least = score, limit, sides
+    return least[2][(own > least[1]).astype(int)]
 
 
 def _fractions(outcome):
