@@ -60,7 +60,12 @@ def groups(how):
     """{name of a group: names of scenes, and of the errors' scenes}"""
     collision, pair, *compressions, ringing, meeting = errors.scenes(how)
     own = [*measured_scenes.bench(how), collision, pair]
-    return {"bench": own, "papers": [*measured_scenes.PAPERS], "compressions": compressions, "peers": ["peers", ringing, meeting]}
+    return {
+        "bench": own,
+        "papers": [*measured_scenes.PAPERS],
+        "compressions": compressions,
+        "peers": ["peers", ringing, meeting],
+    }
 
 
 def measure_speed(scenes, how, results, again):

@@ -64,7 +64,7 @@ def scenes(settings):
         "compression": ErrorScene("compression, k_n 0.01", {**cell, "linearDamping": 0.01}, *of_cell),
         "compression-undamped": ErrorScene("compression, k_n 0", {**cell, "linearDamping": 0.0}, *of_cell),
         "ringing": ErrorScene("an aggregate that rings", {**CPE, "radius": radius}, small_steps, moments),
-        "meeting": ErrorScene(f"{PAIRS} pairs that meet and part", None, small_steps, moments),
+        "meeting": ErrorScene(f"{PAIRS} pairs that meet and part", None, settings.met, moments),
     }
 
 

@@ -10,7 +10,7 @@ from measured_scenes import all_scenes
 from moments import FAST_STRAIN, RELAXED
 from results import weights
 
-LEFT = {"scene", "scenes", "set", "moment", "code", "weights", "version; best settings", "ledger"}
+LEFT = {"scene", "scenes", "set", "moment", "code", "weights", "version; skin, newton"}
 TWO = {"one": 1, "two": 2}  # cores
 HEAD = f"""A contact update is one step of one touching contact; rates are in million a second. Two CPE aggregates are of ice
 (r = 0.1 um, filling 0.4) at 3.16 m/s, with steps of 0.1 t0, unless said. The engine runs in YADE (with what an O.step adds to
@@ -113,10 +113,10 @@ def with_worst(ms):
     return None if isnan(best) else f"{best:.3g}" + f" +{100 * (worst / best - 1):.0f} %" * (len(ms) > 1)
 
 
-def of_codes(results):
+def of_codes(results, shown=CODES):
     """What the codes are, and where they were not measured."""
     notes = []
-    for code, about in CODES.items():
+    for code, about in ((code, CODES[code]) for code in shown):
         versions = results.speed[results.speed.code == code].version.dropna().unique()
         notes.append(f"- {about.name}{f' ({versions[0]})' if len(versions) else ''}: {about.physics}")
     for (code, note), rows in results.speed[results.speed.note.notna()].groupby(["code", "note"]):

@@ -16,12 +16,17 @@ def stock_material(given, radius):
     pull; no limit of sliding."""
     c = pair_constants(given, radius)
     kn, ks = 6 * c.pull_off_force / (5 * c.equilibrium_overlap), c.sliding_stiffness
-    springs = {"young": kn / radius, "poisson": ks / kn, "alphaKr": c.rolling_stiffness / 4 / ks, "etaRoll": -1, "etaTwist": -1}
+    springs = {
+        "young": kn / radius,
+        "poisson": ks / kn,
+        "alphaKr": c.rolling_stiffness / 4 / ks,
+        "etaRoll": -1,
+        "etaTwist": -1,
+    }
     springs |= {"alphaKtw": c.twisting_stiffness / (ks * radius**2), "momentRotationLaw": True, "frictionAngle": 0.5}
     pull = c.pull_off_force / radius**2
     cohesion = {"isCohesive": True, "normalCohesion": pull, "shearCohesion": 1e3 * pull}
     return wrapper.CohFrictMat(density=given.density, **springs, **cohesion)
-
 
 
 def start_engine(scene, sub_steps, threads=1, instructions=""):
@@ -69,7 +74,10 @@ def _settle(grains):
     omega = wrapper.Omega()
 
     def place(sign):
-        columns = (grains["position"].tolist(), *((sign * grains[name]).tolist() for name in ("velocity", "angularVelocity")))
+        columns = (
+            grains["position"].tolist(),
+            *((sign * grains[name]).tolist() for name in ("velocity", "angularVelocity")),
+        )
         for body, now in zip(omega.bodies, zip(*columns)):
             body.state.pos, body.state.vel, body.state.angVel = now
 
