@@ -3,7 +3,7 @@
 # make bench  measures speed beside other codes, and error against the time step (BENCH=--quick: less)
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
-# make bench-peers  the page of throughput, tests/benchmarks/results/throughput: this law beside YADE's, LAMMPS and LIGGGHTS, which
+# make bench-peers  the page of throughput, tests/benchmarks/results/throughput.md: this law beside YADE's, LAMMPS and LIGGGHTS, which
 #             it installs, and which make bench measures too where they are
 # make conformance  holds this law, LAMMPS and LIGGGHTS against twenty cases of two grains (tests/conformance/results.md)
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a

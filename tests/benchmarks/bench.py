@@ -3,7 +3,7 @@
     /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report] [--again]
 
 --scene: names, or groups of them: bench (sizes, unlike grains, moments of collisions, and the error against the step:
-collision and pair), papers (moments of the papers' runs), compressions (error against the step of a compression), peers (all
+a collision), papers (moments of the papers' runs), compressions (error against the step of a compression), peers (all
 codes, on a collision and an aggregate that rings: throughput.py makes their page).
 Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
 100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
@@ -58,8 +58,8 @@ def arguments(words=None):
 
 def groups(how):
     """{name of a group: names of scenes, and of the errors' scenes}"""
-    collision, pair, *compressions, ringing, meeting = errors.scenes(how)
-    own = [*measured_scenes.bench(how), collision, pair]
+    collision, *compressions, ringing, meeting = errors.scenes(how)
+    own = [*measured_scenes.bench(how), collision]
     return {
         "bench": own,
         "papers": [*measured_scenes.PAPERS],

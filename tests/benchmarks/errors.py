@@ -1,12 +1,12 @@
-"""Error and cost against the time step, of collisions, compressions and a bounce of two grains: error.csv, a row a run.
+"""Error and cost against the time step, of collisions, compressions, and scenes that all codes run: error.csv, a row a run.
 
 ledger: largest error of the sum of all channels, over K(0) (collision) or over the boundaries' work until then (compression;
 ledgerThin: up to a filling of 0.1). d_max: of a collision, in grain radii. workThin, work: of a compression's boundaries [J]
 from a filling of 0.05 to 0.1, and from there to the end: the pressure. These three are compared with those of the finest
-step and the same seed (sample). rebound: relative error of the rebound speed of two grains against the closed
-form v^2 - v_stick^2, for initial gaps (samples) that spread the moment of contact over a step. kinetic: of an aggregate that
-rings, and of pairs that meet, by any code: root mean square difference of K(t) from that of the code's own finest step, over K(0), and ledger the
-same way. seconds: of the run, one thread; of ringing the processor's, by its share of the finest run. A step that is refused or blows up is recorded as that, in its own words.
+step and the same seed (sample). kinetic: of an aggregate that rings and of pairs that meet, by any code: root mean square
+difference of K(t) from that of the code's own finest step, over K(0); ledger as far as the code has one. seconds: of the run,
+one thread; of ringing and meeting the processor's, by the share of the finest run. A step that is refused or blows up is
+recorded as that, in its own words.
 """
 
 import json
@@ -28,11 +28,10 @@ from yade_server import YadeServer
 from analysis import open_run
 from analysis.measures import ledger
 from analysis.measures.compression import maximum_compression
-from analysis.theory import ICE, pair_constants, sticking_velocity_without_drag
+from analysis.theory import ICE, pair_constants
 from yade_scripts.experiments.collision import CollisionParameters
 
 PAIR_SPEED, GRAIN_RADIUS = 9.0, 1e-7  # m/s, m
-BOUNCE = 100  # t0, after which two grains are apart
 FOLLOWED, INTERVAL = ("ringing", "meeting"), 0.5e-9  # by all codes; s, from a moment to the next
 RINGING_RATE = 2e5  # 1/s: 0.4 m/s at the surface; no contact is made, broken or slips
 FIRST_GAP, PAIRS = 2e-9, 100
@@ -43,8 +42,8 @@ FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
 
 @dataclass(frozen=True)
 class ErrorScene:
-    """title; parameters as collide.py or compress.py has them (None: two grains); steps [t0], or small steps between moments
-    of ringing; number of samples: seeds from 1 on, gaps from 0 on, or moments."""
+    """title; parameters as collide.py or compress.py has them (None: pairs of grains); steps [t0], or small steps between
+    moments; number of samples: seeds from 1 on, or moments."""
 
     title: str
     parameters: dict
@@ -60,7 +59,6 @@ def scenes(settings):
     radius, moments, small_steps = settings.rung
     return {
         "collision": ErrorScene("collision", collision, settings.error_steps, settings.seeds),
-        "pair": ErrorScene("pair", None, settings.error_steps, settings.gaps),
         "compression": ErrorScene("compression, k_n 0.01", {**cell, "linearDamping": 0.01}, *of_cell),
         "compression-undamped": ErrorScene("compression, k_n 0", {**cell, "linearDamping": 0.0}, *of_cell),
         "ringing": ErrorScene("an aggregate that rings", {**CPE, "radius": radius}, small_steps, moments),
@@ -71,7 +69,7 @@ def scenes(settings):
 def measure(name, settings):
     """Rows of error.csv of an ErrorScene."""
     scene = scenes(settings)[name]
-    found = followed(name, scene, settings) if name in FOLLOWED else runs(scene) if scene.parameters else bounces(scene)
+    found = followed(name, scene, settings) if name in FOLLOWED else runs(scene)
     return [{"scene": name, "code": "engine", **row} for row in found]
 
 
@@ -122,32 +120,6 @@ def _of_run(place):
             by_filling[filling] = [error[end] / work[end], work[end]]
     thin = by_filling.get(THIN, [None])[0]
     return {"ledger": error[-1] / work[-1], "ledgerThin": thin, "byFilling": by_filling, "seconds": seconds}
-
-
-def bounces(scene):
-    """A row for each step and gap; all pairs of a step in one run of the engine without YADE."""
-    constants, gaps = pair_constants(ICE, GRAIN_RADIUS), FIRST_GAP + 1e-10 * np.arange(scene.samples) / 1.7
-    exact = np.sqrt(PAIR_SPEED**2 - sticking_velocity_without_drag(constants) ** 2)
-    for step in scene.steps:
-        made = starts.pairs(gaps, PAIR_SPEED, CollisionParameters.parse({}), step * constants.time_unit)
-        try:
-            rebound, refused = _rebound(made, int(BOUNCE / step)) / exact - 1, None
-        except codes.CodeFailed as error:
-            rebound, refused = np.full(len(gaps), np.nan), str(error)
-        for sample, one in enumerate(rebound):
-            yield {"step": step, "sample": sample, "rebound": one, "refused": refused}
-
-
-def _rebound(scene, steps):
-    """Speed of separation (n,) [m/s] of each of the pairs of a SceneFile after so many steps. Raises codes.CodeFailed."""
-    with tempfile.TemporaryDirectory() as folder:
-        begin, end = Path(folder) / "begin.scene", Path(folder) / "end.scene"
-        scene_file.save(begin, scene)
-        codes.harness(begin, steps=steps, out=end)
-        after = scene_file.load(end)
-    if len(after.contacts):
-        raise codes.CodeFailed(f"{len(after.contacts)} pairs still touch after {BOUNCE} t0")
-    return np.diff(after.grains["velocity"][:, 0].reshape(-1, 2), axis=1)[:, 0]
 
 
 def followed(name, scene, settings):

@@ -39,7 +39,7 @@ OPEN_MPI = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 PHYSICS = {
     "lammps": "pair_style granular: JKR, springs of sliding, rolling and twisting. No drag. A contact breaks at the "
     "largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
-    "lammps-newest": "As that.",
+    "lammps-newest": "As LAMMPS.",
     "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), "
     "tangential history, rolling epsd2; no twisting, no energy ledger.",
 }

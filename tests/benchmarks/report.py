@@ -162,7 +162,6 @@ def solution(results, scenes):
 QUANTITIES = {
     "ledger": "ledger",
     "d_max": "d_max [r]",
-    "rebound": "rebound speed",
     "ledgerThin": "ledger, filling < 0.1",
     "workThin": "ln of the work, filling 0.05 - 0.1",
     "work": "ln of the work, to the end",

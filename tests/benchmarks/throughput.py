@@ -2,7 +2,7 @@
 
     /usr/bin/python3 tests/benchmarks/throughput.py    make bench-peers measures, and makes the page
 
-Writes results/throughput/README.md and cost.png from the tables there (results.py).
+Writes results/throughput.md and results/throughput/cost.png from the tables there (results.py).
 """
 
 import sys
@@ -80,9 +80,9 @@ def text(results):
     scene, start = all_scenes(FULL)["peers"], results.moments.iloc[0]
     return f"""# Throughput of cohesive contacts, and what an error of energy costs
 
-All codes that Debian and PyPI have, on the same grains of ice (r = 0.1 um). Made by `make bench-peers`, which installs them, in ten minutes of two quiet cores.
+All codes that Debian and PyPI have, on the same grains of ice (r = 0.1 um). Made by `make bench-peers`, which installs them, in some ten minutes.
 
-![Error of the kinetic energy against time to solution](cost.png)
+![Error of the kinetic energy against time to solution](throughput/cost.png)
 
 {markdown(table(results))}
 
@@ -91,9 +91,10 @@ All codes that Debian and PyPI have, on the same grains of ice (r = 0.1 um). Mad
 **Left, springs**: an aggregate of R = {FULL.rung[0]:g} r is stretched at {RINGING_RATE:g}/s and rings for {1e9 * INTERVAL * FULL.rung[1]:g} ns; no contact is made, broken or slips, so every code does the same physics with its own springs. Error: root mean square of K(t) at {FULL.rung[1]} moments against the same code with a fine step ({of(results, "ringing", "engine").step.iloc[0]:g} t0), over K(0); time: the processor's, of the steps alone. All codes are leapfrogs of second order with like errors for like steps, so the faster one is faster for any error.
 
 **Right, contacts that are born and break**: {PAIRS} pairs meet at {PAIR_SPEED:g} m/s, at times that differ by parts of a step; the same error (fine step: {of(results, "meeting", "engine").step.iloc[0]:g} t0) against the time that as many steps of the aggregate take. A force that begins or ends with a jump at a whole step leaves errors of first order, which scatter: LAMMPS's at both ends, the stock law's as it breaks. This law takes the moment within the step; LIGGGHTS's force has no jump.
-s, ringing and s, meeting: seconds for an error of {WANTED:g} of K(0).
 
-What is compared is not one law: [the suite of two grains](../../../conformance/results.md) says where each code differs. Only this law keeps an energy ledger; in a whole collision the energy error of the others cannot be told from their output. K and springs do not add up in LAMMPS even without events: its speed of sliding takes levers r, its torque r − δ/2 (`granular_model.cpp`), so that what sliding springs take and give differs by δ/2r, 0.5 % here, at any step.
+**s, ringing** and **s, meeting**: seconds for an error of {WANTED:g} of K(0) in the two.
+
+What is compared is not one law: [the suite of two grains](../../conformance/results.md) says where each code differs. Only this law keeps an energy ledger; in a whole collision the energy error of the others cannot be told from their output. K and springs do not add up in LAMMPS even without events: its speed of sliding takes levers r, its torque r − δ/2 (`granular_model.cpp`), so that what sliding springs take and give differs by δ/2r, 0.5 % here, at any step.
 
 {of_codes(results, EVERY)}
 {measured_on(results)}
@@ -103,8 +104,8 @@ What is compared is not one law: [the suite of two grains](../../../conformance/
 def main():
     results = Results(FOLDER)
     draw(results, FOLDER / "cost.png")
-    (FOLDER / "README.md").write_text(text(results))
-    print(FOLDER / "README.md")
+    FOLDER.with_suffix(".md").write_text(text(results))
+    print(FOLDER.with_suffix(".md"))
 
 
 if __name__ == "__main__":
