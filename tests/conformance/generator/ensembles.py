@@ -38,7 +38,7 @@ def of_cpe(filling):
     runs = pd.read_csv(TOP / "analysis/gallery/elastoplastic/runs.csv", comment="#")
     wanted = {"filling": filling, "radius": CPE_RADIUS * GRAIN, "velocity": 10**0.5}
     wanted |= {"removeLooseGrains": 0, "initialOverlap": 1, "viscoelasticTime": 0}
-    chosen = np.all([np.isclose(runs[name], value) for name, value in wanted.items()], axis=0)
+    chosen = np.all([np.isclose(runs[name], value, atol=0) for name, value in wanted.items()], axis=0)
     return (runs[chosen].d_max / GRAIN).tolist()
 
 
@@ -55,7 +55,7 @@ def pressures(folder):
 def distributions(runs):
     bpca = collide(velocity=[50, 100], seed=range(1, 25), packing="bpca", grains=250, folder=runs / "bpca", **MASS_OF)
     bcca = collide(velocity=30, seed=range(1, 61), packing="bcca", grains=128, folder=runs / "bcca30", **MASS_OF)
-    cells = compress(seed=range(1, 17), folder=runs / "comp", **CLUSTER)
+    cells = compress(seed=range(1, 13), folder=runs / "comp", **CLUSTER)
     pressed = np.array([pressures(folder) for folder in cells.folder]).T
     for filling in (0.4, 0.3):
         yield f"cpe-{filling}", COLLISION + f"head on at 10^(1/2) m/s. {CPE}filling {filling}.", D_MAX, of_cpe(filling)
