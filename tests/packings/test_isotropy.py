@@ -2,7 +2,7 @@
 
 import numpy as np
 from of_ice import OVERLAP, RADIUS, SPACING
-from scipy.stats import kstest, norm
+from scipy.stats import kstest
 
 from yade_scripts import packings
 from yade_scripts.packings import lattice
@@ -41,32 +41,6 @@ def _angle_around(axis, direction):
     east = np.cross((0, 0, 1), axis)
     east /= np.linalg.norm(east)
     return np.arctan2(direction @ np.cross(axis, east), direction @ east)
-
-
-def test_cubic_axes_point_everywhere_equally():
-    """x^4 + y^4 + z^4 of a fixed direction in the lattice's own frame is 3/5 on average, with variance
-    16/525.
-
-    That is the lowest moment that sees the orientation of a cubic lattice whichever of its 24 equal
-    orientations is counted. From the six directions of contacts, u = (1, +/-1, 0)/sqrt 2 and so on: the sum
-    of (u.e)^4 is (3 - that)/2.
-    """
-    seeds = 1500
-    moments = 3 - 2 * np.mean([(_bond_directions(seed) ** 4).sum(axis=0) for seed in range(seeds)], axis=0)
-    assert np.abs(moments - 3 / 5).max() < norm.isf((1 - CONFIDENCE) / 6) * np.sqrt(16 / 525 / seeds)
-
-
-def _bond_directions(seed):
-    """The six directions (6,3) along which grains touch."""
-    packing = packings.cpe(0.5, 5 * RADIUS, RADIUS, OVERLAP, seed, 0)
-    pairs = packings.contacts(packing)
-    directions = (packing.position[pairs[:, 1]] - packing.position[pairs[:, 0]]) / SPACING
-    distinct = []
-    for direction in directions:
-        if all(abs(direction @ other) < 0.9 for other in distinct):
-            distinct.append(direction)
-    assert len(distinct) == 6
-    return np.array(distinct)
 
 
 def test_centre_is_uniform_in_the_unit_cell():

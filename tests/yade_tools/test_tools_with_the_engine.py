@@ -10,8 +10,7 @@ def start(**options):
     """27 grains that fly together under the fused engine, 20 small steps each O.step."""
     new_scene(0.1 * unit)
     converging(27, 1, [ice()], [1e-7])
-    fused_engine(subSteps=20, **options)
-    O.dt *= 20
+    engine_of_sub_steps(20, **options)
 
 
 def test_vtk_recorder_and_stresses_see_the_contacts(tmp_path):
