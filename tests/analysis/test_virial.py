@@ -1,4 +1,4 @@
-"""Virial pressure and stress against closed forms: crystals of springs, and what does not depend on the choice of images."""
+"""Virial pressure and stress against closed forms: springs along one axis, and what does not depend on the choice of images."""
 
 import numpy as np
 import pytest
