@@ -112,25 +112,17 @@ def test_a_body_moved_by_the_script_is_noticed():
     assert (positions()[3] - before) / O.dt == pytest.approx([1, 2, 3], rel=0.3)
 
 
-@pytest.mark.parametrize(
-    "change,message",
-    [
-        (
-            "O.bodies[2].state.vel = Vector3(float('nan'), 0, 0)",
-            "body 2 has a position, orientation or velocity that is not a finite",
-        ),
-        ("O.engines += [NewtonIntegrator()]", "NewtonIntegrator is among O.engines too; this engine replaces it"),
-        ("O.engines[0].subSteps = 0", "subSteps = 0: must be >= 1"),
-        ("O.engines[0].instructions = 'sse9'", "instructions = 'sse9': must be here"),
-        (
-            "O.periodic = True; O.cell.hSize = Matrix3(1, 0.1, 0, 0, 1, 0, 0, 0, 1)",
-            "O.cell.hSize has the element (0, 1) = 0.1",
-        ),
-    ],
-)
-def test_what_cannot_be_done_is_refused_in_one_line(change, message):
+REFUSED = {  # at the first step; tests/hard_cases has later changes
+    "O.bodies[2].state.vel = Vector3(float('nan'), 0, 0)": "body 2 has a position, orientation or velocity that is not a finite",
+    "O.engines[0].subSteps = 0": "subSteps = 0: must be >= 1",
+    "O.engines[0].instructions = 'sse9'": "instructions = 'sse9': must be here",
+}
+
+
+@pytest.mark.parametrize("change", REFUSED)
+def test_what_cannot_be_done_is_refused_in_one_line(change):
     start("like", count=8)
     fused_engine()
     exec(change)
-    refused = refusal()
-    assert message in refused and "\n" not in refused
+    message = refusal()
+    assert REFUSED[change] in message and "\n" not in message
