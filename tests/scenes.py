@@ -141,6 +141,14 @@ def set_free(packing, material):
     return before, contact_law.snapshot(), max(kinetic)
 
 
+def threshold(is_above, low, high):
+    """The number between two others from which on is_above(number) is true, to 2e-4 of it."""
+    while high - low > 2e-4 * low:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if is_above(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
 def said(call):
     """What a call is refused with, or ''."""
     try:
