@@ -87,14 +87,6 @@ def test_its_table_is_read_again(own, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-@pytest.mark.parametrize("words", [["none", "runs"], ["none.py", "runs"], ["viscous"], ["viscous", "nowhere"]])
-def test_what_cannot_be_analysed_is_one_line(own, words, capsys, monkeypatch):
-    monkeypatch.chdir(own)
-    assert main(["study", *words]) == 2
-    said = capsys.readouterr()
-    assert said.err.startswith("analysis: ") and said.err.count("\n") == 1 and not said.out
-
-
 def test_everything_is_inside_the_page(own, capsys, monkeypatch):
     monkeypatch.setattr(pdf, "_CONVERTERS", ())
     assert run(own, "--page", own / "out" / "page.html") == 0

@@ -151,6 +151,7 @@ WRONG = {
     "stretchFilling=0.1": "stretchFilling = 0.1: given with stretch = no; must be left out",
     "stepFraction=0.4": "stepFraction = 0.4: unstable at this final filling and damping; must be at most 0.368 [t0]",
     "stepFraction=auto finalPressure=1e4": "stepFraction = auto: not measured with finalPressure",
+    "limit=slack": "limit = slack: must be held or cut",
     "strainRate=0": "strainRate = 0: must be > 0 and <= 0.001 [1/t0]",
     "packing=cpe": "packing = cpe: must be bcca or rbd",
     "packing=rbd": "packing = rbd: given with boundary = periodic; must be bcca",

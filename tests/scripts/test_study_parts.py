@@ -39,13 +39,6 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
         assert [row.cells for row in back] == [{"radius": "4", "!THREADS": "1"}, {"velocity": "10**0.5"}]
 
 
-@pytest.mark.parametrize("names", ["radius velocity radius", "radius! velocity radius"])
-def test_a_column_that_is_there_twice_is_refused(tmp_path, names):
-    (tmp_path / "rows.table").write_text(f"{names}\n4 10 5\n")
-    with pytest.raises(table.TableError, match="rows.table: has the column radius 2 times; must be once"):
-        table.read(tmp_path / "rows.table")
-
-
 def test_names_of_any_length_are_names_of_files(tmp_path):
     """Two descriptions of 400 characters that differ in the last one."""
     for letter in ("x", "\u00e9"):
