@@ -103,10 +103,12 @@ $(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := $(AVX2_FLAGS)
 $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 
 # For tests/drivers/sanitizers.py, in a clone: SANITIZE=address,undefined or thread. YADE's classes are declared here and made there: no vptr.
+# YADE_CXX compiles what sees YADE's types, which another compiler than YADE's own lays out otherwise (clang: State).
+YADE_CXX ?= $(CXX)
 ifdef SANITIZE
-SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1
+SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1 -O1
 FLAGS += $(SANITIZED)
-ENGINE_FLAGS += $(SANITIZED) -O1
+ENGINE_FLAGS += $(SANITIZED)
 endif
 
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
@@ -152,7 +154,7 @@ $(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
 $(YADE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp $(PRECOMPILED).gch build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
-	@$(CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
+	@$(YADE_CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
 
 $(ENGINE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp build/flags.list
 	@echo "compile $<"
@@ -163,7 +165,7 @@ $(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
 	@cp $< $(PRECOMPILED)
-	@$(CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
+	@$(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
 
 # The commit goes into one object.
 $(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: build/commit.list

@@ -3,8 +3,9 @@
     python3 tests/drivers/sanitizers.py [--out FILE]      an hour on two cores
 
 The last commit is cloned into build/sanitizers and compiled there once for each trial. Scenes of the harness are made with the ordinary build.
-All of it by clang: g++ takes more than ten times as long for the engine's passes with them. Threads are looked at in the harness alone, where clang's OpenMP
-tells the sanitizer when a parallel region begins and ends (Archer); YADE's does not, and every region would be a finding.
+Compiled by clang, as g++ takes more than ten times as long for the engine's passes; what sees YADE's types by g++, as YADE was. Threads are looked at in
+the harness alone, where clang's OpenMP tells the sanitizer when a parallel region begins and ends (Archer); YADE's does not, and every region would be
+a finding.
 Exit status: 0 when nothing was found and all passed, otherwise 1.
 """
 
@@ -61,7 +62,8 @@ class Trial:
             run(["git", "clone", "-q", TOP, self.clone])
         run(["git", "fetch", "-q", TOP, "HEAD"], cwd=self.clone)
         run(["git", "checkout", "-q", "--detach", "FETCH_HEAD"], cwd=self.clone)
-        run(["make", f"-j{os.cpu_count()}", f"SANITIZE={self.sanitize}", f"CXX={COMPILER}", goal], cwd=self.clone)
+        how = [f"SANITIZE={self.sanitize}", f"CXX={COMPILER}", "YADE_CXX=g++"]
+        run(["make", f"-j{os.cpu_count()}", *how, goal], cwd=self.clone)
 
     def row(self, what, command, **more):
         """A line of the table for a command, and whether it passed with nothing found."""
