@@ -154,7 +154,15 @@ def table(systems, others):
     about = f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
     about += f"{' and '.join(BASE)} added; the first command installs all other packages."
     head = "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |"
-    lines = ["# Fresh Debian systems", "", about, "", head, "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|", *others]
+    lines = [
+        "# Fresh Debian systems",
+        "",
+        about,
+        "",
+        head,
+        "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|",
+        *others,
+    ]
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
