@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from faults.forks import COUNT, DISK_FULL, END_BEFORE, END_HALFWAY
 
-
 # Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.
 RUN = ("radius=2", "velocity=30", "impact=1", "duration=1e-10", "states=4", "threads=1", "checkpointInterval=1e-9")
 OTHER = ("seed=2",)  # of a run that was in the folder before
