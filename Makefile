@@ -26,7 +26,7 @@
 #             NEWEST=python3.13: the newest that this Python takes
 # make test-dustpy  tests the atlas in DustPy, and its reader in Fortran, in an environment of its own, build/dustpy (PyPI)
 # make disk   a disk in DustPy with and without the atlas, drawn: analysis/gallery/atlas/disk.png (its runs: some minutes)
-# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
+# make test-faults  ends every command that writes files, or has it find the disk full, at its file-system calls (an hour)
 # make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
 # make test-sanitizers  runs engine, kernel, functors and checkpoints with the sanitizers of addresses, undefined behaviour and threads (an hour on
 #             two cores; installs clang from Debian): tests/drivers/results/sanitizers.md

@@ -1,6 +1,6 @@
 """Tries faults at the file-system calls of every command that writes files (faults/), and writes results/faults.md.
 
-    python3 tests/persistence/enumerate_faults.py [NAME ...] [-j JOBS] [--out FILE]      half an hour on two cores
+    python3 tests/persistence/enumerate_faults.py [NAME ...] [-j JOBS] [--out FILE]      an hour on two cores
 
 NAME: lines of the table, by default all; the others stay as they are. Exit status: 0 when all was right, otherwise 1, with
 one line on stderr for each case.
