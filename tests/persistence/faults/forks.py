@@ -49,6 +49,7 @@ class Forks:
                 **environment,
                 "LD_PRELOAD": f"{os.environ.get('LD_PRELOAD', '')} {library}",
                 "OPENBLAS_NUM_THREADS": "1",
+                "SOURCE_DATE_EPOCH": "0",  # which PDF files hold
             },
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
