@@ -141,7 +141,8 @@ class Trial:
         shutil.copytree(self._kept, self._out, symlinks=True)
         done = self._call(self.command.arguments, call.number, ACTIONS[fault])
         found, wrong = self.command.content(self._out), []
-        wrong += [f"half of {path}" for path in found if found[path] not in [each.get(path) for each in self._whole]]
+        half = [path for path in found if found[path] not in [each.get(path) for each in self._whole]]
+        wrong += [f"half of {len(half)} files, such as {half[0]}"] if half else []
         if ACTIONS[fault] == DISK_FULL:
             wrong += wrong_on_a_full_disk(done)
         elif done.status != -9:
