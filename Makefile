@@ -27,7 +27,7 @@
 #             NEWEST=python3.13: the newest that this Python takes
 # make test-dustpy  tests the atlas in DustPy, and its reader in Fortran, in an environment of its own, build/dustpy (PyPI)
 # make disk   a disk in DustPy with and without the atlas, drawn: analysis/gallery/atlas/disk.png (its runs: some minutes)
-# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
+# make test-faults  ends every command that writes files, or has it find the disk full, at its file-system calls (an hour)
 # make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
 # make test-sanitizers  runs engine, kernel, functors and checkpoints with the sanitizers of addresses, undefined behaviour and threads (an hour on
 #             two cores; installs clang from Debian): tests/drivers/results/sanitizers.md
@@ -104,10 +104,12 @@ $(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := $(AVX2_FLAGS)
 $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 
 # For tests/drivers/sanitizers.py, in a clone: SANITIZE=address,undefined or thread. YADE's classes are declared here and made there: no vptr.
+# YADE_CXX compiles what sees YADE's types, which another compiler than YADE's own lays out otherwise (clang: State).
+YADE_CXX ?= $(CXX)
 ifdef SANITIZE
-SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1
+SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1 -O1
 FLAGS += $(SANITIZED)
-ENGINE_FLAGS += $(SANITIZED) -O1
+ENGINE_FLAGS += $(SANITIZED)
 endif
 
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
@@ -153,7 +155,7 @@ $(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
 $(YADE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp $(PRECOMPILED).gch build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
-	@$(CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
+	@$(YADE_CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
 
 $(ENGINE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp build/flags.list
 	@echo "compile $<"
@@ -164,7 +166,7 @@ $(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
 	@cp $< $(PRECOMPILED)
-	@$(CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
+	@$(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
 
 # The commit goes into one object.
 $(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: build/commit.list

@@ -58,7 +58,7 @@ template <class Pack> struct BondPasses {
 	template <bool periodic> [[gnu::flatten]] static void forces(const BondPass& pass)
 	{
 		Crossing<Pack, periodic> crossing(pass.cell);
-		int dummies[lanes];
+		alignas(64) int dummies[lanes]; // loaded as a block's indices are
 		for (int& dummy : dummies)
 			dummy = pass.dummy;
 		for (int index = 0; index < pass.endBlock; ++index) {

@@ -182,7 +182,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		const PairConstants<Pack> same = spread(*pass.uniform);
 		DissipationOf<Pack> lost;
 		Crossing<Pack, periodic> crossing(pass.cell);
-		int dummies[lanes];
+		alignas(64) int dummies[lanes]; // loaded as a block's indices are
 		for (int& dummy : dummies)
 			dummy = pass.dummy;
 
