@@ -14,11 +14,12 @@ from itertools import product
 
 from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
-from analysis.runs.format import ENDED_FILE
-from analysis.runs.status import DONE, state
+from analysis.report.status import duration_text
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import table
+from yade_scripts.runner.screen import SHARE
+from yade_scripts.runner.study import Study
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 STUDY = os.path.join(TOP, "study.py")
@@ -64,7 +65,7 @@ def _sweep(kind, script, parameters, folder, jobs):
     file = os.path.join(folder, f"{kind.name}-{name}.table")
     os.makedirs(folder, exist_ok=True)
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    _run(file, [row["out"] for row in rows], jobs or os.cpu_count())
+    _run(file, jobs or os.cpu_count())
     return table_of_runs([row["out"] for row in rows])
 
 
@@ -100,14 +101,16 @@ def _text(name, value):
     return text
 
 
-def _run(file, folders, jobs):
+def _run(file, jobs):
     """Have study.py run a table; RunsFailed unless all its runs have ended."""
     command = [sys.executable, STUDY, file, "-j", str(jobs)]
+    of_table = Study(file, jobs, run_scripts=True)
+    of_table.forget_failures()
     with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as errors:
         # In a session of its own, so that Ctrl-C reaches it once, and by us.
         study = subprocess.Popen(command, stdout=said, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True)
         try:
-            _wait(study, said.fileno(), folders)
+            _wait(study, said.fileno(), of_table)
         except BaseException:
             study.send_signal(signal.SIGINT)
             study.wait()
@@ -119,20 +122,19 @@ def _run(file, folders, jobs):
         raise RunsFailed("; ".join(lines[:TOLD]) + more or f"{file}: study.py ended with status {study.returncode}")
 
 
-def _wait(study, said, folders):
+def _wait(process, said, study):
     """Show how far the runs are until study.py has ended; its estimate comes first."""
-    ended, told = {folder for folder in folders if os.path.exists(os.path.join(folder, ENDED_FILE))}, 0
-    with bar(len(folders), "runs", len(ended)) as shown:
+    told = 0
+    with bar(len(study.rows), "runs") as shown:
         over = False
         while not over:
-            over = study.poll() is not None  # asked first, so that what has ended meanwhile is shown
+            begun = time.monotonic()
+            over = process.poll() is not None  # asked first, so that what has ended meanwhile is shown
             text = os.pread(said, 10_000, told).decode()
             if told == 0 and "\n" in text:
                 told = len(text.encode())
                 shown.write(text.rstrip("\n"))
-            states = {folder: state(folder) for folder in folders if folder not in ended and os.path.isdir(folder)}
-            ended |= {folder for folder, found in states.items() if found.kind == DONE}
-            reached = len(ended) + sum(found.progress for folder, found in states.items() if folder not in ended)
-            if reached > shown.n:
-                shown.update(reached - shown.n)
-            time.sleep(0.0 if over else POLL)
+            left = study.left()
+            shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
+            shown.update(sum(state.progress for state in study.states()) - shown.n)
+            time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))
