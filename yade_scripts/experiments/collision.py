@@ -31,9 +31,9 @@ from yade_scripts.run.parameters import RunParameters
 
 WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
 VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
-# Of 1,900 runs of the atlas with endWhenApart: below RESTFUL (1 - B_off)^2 breaking energies a grain most stick and end REST times
-# rebound_time() after the touch; well above, most take all of their duration.
-RESTFUL, REST = 0.15, 2.0
+# Of 1,900 runs of the atlas with endWhenApart: below RESTFUL breaking energies a grain most stick and end REST times rebound_time()
+# after the touch; from ten times that on most take all of their duration.
+RESTFUL, REST = 0.05, 2.0
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
