@@ -8,8 +8,8 @@ def add_parser(commands):
     parser = commands.add_parser(
         "figures",
         help="draw a run's figures",
-        description="Write motion.png (d and v against time), energy.png (the channels), grains.png (cut through the "
-        "aggregates) and forces.png (contact forces).",
+        description="Write motion.png (d and v against time), energy.png (the channels), grains.png (the grains, dense aggregates cut through the "
+        "middle) and forces.png (contact forces).",
     )
     parser.add_argument("run", metavar="RUN", help="run folder")
     parser.add_argument("--out", metavar="FOLDER", help="where to (default: RUN/figures), made if it is missing")
