@@ -19,7 +19,7 @@ before its time limit a task writes its checkpoint and is queued again; rows tha
 submitted. --dry-run prints the scripts, and submits nothing.
 
 Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the
-others have run), 2 for a table that can't be used, 128 and the signal's number when stopped.
+others have run) or the table was edited meanwhile, 2 for a table that can't be used, 128 and the signal's number when stopped.
 """
 
 import argparse
@@ -170,6 +170,9 @@ def close(study, stop):
     stopped = [row for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
     for row in () if stop.received else stopped:
         tell(f"{row.name}: was stopped; another call resumes it", SCRIPT)
+    edited = study.has_been_edited()
+    if edited:
+        tell(f"{study.table}: was edited since its rows were read; another call runs what is new", SCRIPT)
     done = sum(state.kind == DONE for state in states)
     print(
         f"{printable(study.name)}: {len(states)} rows, {done} done, {len(failures)} failed"
@@ -177,7 +180,7 @@ def close(study, stop):
     )
     if stop.received:
         return 128 + stop.received
-    return 0 if done == len(states) else 1
+    return 0 if done == len(states) and not edited else 1
 
 
 def main(arguments):

@@ -28,7 +28,10 @@ def run(options):
         folder = open_run(options.run)
         for file in draw_all(folder, options.out or folder.path / "figures"):
             line_beside_bars(file)
-    except (RunFolderError, OSError) as error:
+    except RunFolderError as error:
         complain(error)
+        return FAILED
+    except OSError as error:
+        complain(f"{error.filename or options.run}: {error.strerror}")
         return FAILED
     return 0

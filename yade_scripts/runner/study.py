@@ -2,6 +2,7 @@
 
 import os
 from dataclasses import replace
+from pathlib import Path
 
 from analysis.printable import printable
 from yade_scripts.runner import rows, slurm, view
@@ -15,6 +16,7 @@ class Study:
 
     def __init__(self, table, jobs, run_scripts):
         self.name = os.path.splitext(os.path.basename(table))[0]
+        self.table, self._text = table, _bytes_of(table)
         self.rows, self.jobs = rows.read(table, run_scripts), jobs
         self.folder = StudyFolder(self.name)
         self._before = {}
@@ -48,6 +50,10 @@ class Study:
         states, _ = self.states_with_queue(changed)
         return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
 
+    def has_been_edited(self):
+        """Whether the table is another one than that which was read."""
+        return _bytes_of(self.table) != self._text
+
     def left(self):
         """Seconds until every row is done or has failed, or None."""
         states = self.states()
@@ -72,6 +78,14 @@ class Study:
             f'{self.jobs} at once ({self.folder.basis(self.rows, states)})',
             flush=True,
         )
+
+
+def _bytes_of(path):
+    """A file's bytes, or None."""
+    try:
+        return Path(path).read_bytes() if os.path.isfile(path) else None
+    except OSError:
+        return None
 
 
 def _counted(states, *kinds):

@@ -43,7 +43,9 @@ def grains_figure(run, times=None):
     for column in range(columns):
         [p for p in axes[:, column] if p.figure][-1].set_xlabel("$x$  [grain radii]")
     figure.get_layout_engine().set(w_pad=0.1)
-    figure.suptitle(run_title(run, "all grains" if whole else "grains behind the plane $z$ = 0"), fontsize=10, color="0.3")
+    figure.suptitle(
+        run_title(run, "all grains" if whole else "grains behind the plane $z$ = 0"), fontsize=10, color="0.3"
+    )
     return figure
 
 
