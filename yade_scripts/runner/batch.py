@@ -109,7 +109,7 @@ class StudyFolder:
         return (
             "nothing could be measured"
             if cost.piece is None
-            else "from a piece of the first, at the machine's present pace"
+            else "measured: a piece of the first run, at the machine's present pace"
         )
 
 
