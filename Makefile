@@ -243,6 +243,7 @@ demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary --long runs/demo
 	@$(PYTHON) -m analysis figures runs/demo
+	@$(PYTHON) -m analysis view runs/demo
 
 # made again when the plugin or the scripts are newer
 runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yade_scripts/studies/demo.table

@@ -55,7 +55,7 @@ def test_every_state_is_a_frame_with_the_grains_in_their_places(run):
 def test_what_cannot_be_encoded_leaves_no_file(run, capsys):
     assert main(["film", str(run), "--out", str(run / "film.nonsense")]) == 2
     message = capsys.readouterr().err
-    assert "ffmpeg" in message and message.count("\n") == 1
+    assert "film.nonsense: must end in .mp4 or .gif" in message and message.count("\n") == 1
     assert not [path for path in run.iterdir() if "film" in path.name]
 
 

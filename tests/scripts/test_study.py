@@ -44,7 +44,7 @@ def test_failures_fail_the_study_after_all_others_have_run_and_status_tells_it_m
     folder, (status, output, errors), midway = first_call
     assert status == 1 and output.splitlines()[-1] == "tiny: 4 rows, 1 done, 3 failed"
     first = output.splitlines()[0]  # the estimate
-    assert first.startswith("tiny: 4 rows, 1 failed, 3 to run; estimated time 00:")
+    assert first.startswith("tiny: 4 rows, 1 failed, 3 to run; estimated time ")
     assert "with 2 at once (measured: " in first
     refused, killed, fails = errors.splitlines()
     assert killed.startswith("study.py: killed: killed by signal 9 (checkpoint at ")
