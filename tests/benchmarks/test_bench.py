@@ -67,7 +67,7 @@ def test_measures_everything_and_says_what_it_goes_without(tiny):
 
 def test_half_a_time_unit_is_shown_as_refused(tiny):
     found = tiny[2].error.set_index(["scene", "step"]).sort_index()
-    assert "must be > 0 and <= 0.4" in found.refused["collision", 0.5].iloc[0]
+    assert "must be > 0 and <= 0.4" in found.refused["collision", 0.5]
     assert "- 0.5 t0, collision: collide.py: stepFraction = 0.5" in (tiny[1] / "bench.md").read_text()
 
 
