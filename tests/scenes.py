@@ -121,6 +121,34 @@ def fused_engine(**options):
     O.engines = [JKRWadaEngine(**options)]
 
 
+def engine_of_sub_steps(number, **options):
+    """The engine in O.steps of so many small steps of O.dt."""
+    fused_engine(subSteps=number, **options)
+    O.dt *= number
+
+
+def set_free(packing, material):
+    """contact_law.snapshot() of a packing's grains at their start and 2000 t0 later, and their largest kinetic energy meanwhile [J]."""
+    new_scene(0.1 * constants(material, packing.radius.min())["timeUnit"])
+    for x, r in zip(packing.position, packing.radius):
+        grain(x, r, material)
+    engine_of_sub_steps(100)
+    O.engines[0].prepare()
+    before, kinetic = contact_law.snapshot(), []
+    for _ in range(20):
+        O.run(10, True)
+        kinetic.append(energies()["kinetic"])
+    return before, contact_law.snapshot(), max(kinetic)
+
+
+def threshold(is_above, low, high):
+    """The number between two others from which on is_above(number) is true, to 2e-4 of it."""
+    while high - low > 2e-4 * low:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if is_above(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
 def said(call):
     """What a call is refused with, or ''."""
     try:

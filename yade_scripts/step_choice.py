@@ -20,13 +20,18 @@ in their centre of mass; N: their number):
 
 The first two are those of CPE aggregates in space. In a plane, and for BCCA and BPCA aggregates, which have fewer contacts
 to share an impact and come to rest less soon, they are FLUFFY times as large; where springs are cut at their limits
-(limit = cut), each cut an event more, CUT times.
+(limit = cut), each cut an event more, CUT times. An aggregate that meets a plate counts as one of a pair at twice its velocity,
+PLATE times: of 112 such runs (CPE, BCCA and BPCA of 60 to 700 grains, ice and silicate, 0.3 to 30 m/s, steps of 0.1 and 0.2 t0) 98 %
+are below; without PLATE 90 %, and most of the others are of ice, at up to 3 m/s. A contact with a plate (R* = r, not r/2) has 2^(4/3) the energy
+and 2^(7/6) the time of one of two grains: its events leave more, its curvature less.
 
 In a compression nothing has a speed of its own. What counts is the error over the work of the boundaries until the end.
 Both grow with the contacts that have formed, the work faster: FINAL s^2 exp(-DENSER phi), phi the filling at the end.
 Grains that nothing damps vibrate on: UNDAMPED times. The work goes with the rolling energy: where that is less than ice's
 of K13, which is ROLLING_OF_ICE e, errors are larger by the ratio to the power of 2/3. The rate, which was 3e-7 to 1e-4 of 1/t0, and the
-number of grains matter little. Dense silicate and springs that are cut leave much larger errors: refused.
+number of grains matter little. Dense silicate and springs that are cut leave much larger errors: refused. Under a piston the errors are
+no larger: 41 of 42 layers of 64 to 1000 grains are below, half of them below 0.22 (final fillings of 0.2 to 0.5, rates of 1e-5 to 3e-4/t0,
+steps of 0.1 to 0.3 t0).
 
 The constants are such that 95 % of runs stay below the sum. They were fitted to the 98 % level of grids of runs and
 judged by runs drawn at random (tests/benchmarks/step_choice.py measures and fits, results/step_choice.md has fit and scatter,
@@ -42,7 +47,7 @@ from yade_scripts.stability import AUTO, bond_step
 
 SHORTEST = 0.01  # t0: below, rather another tolerance
 EVENTS, DECAY, SPEED = 0.056, 0.36, 0.0101
-FLUFFY, CUT = 3.0, 6.0
+FLUFFY, CUT, PLATE = 3.0, 6.0, 1.6
 BREAKING, BREAKING_FLUFFY, FEW = 0.12, 0.037, 0.15
 FINAL, DENSER, UNDAMPED = 0.05, 7.75, 3.0
 DAMPED = 0.01  # the least linearDamping that was measured to be as good as more
@@ -64,8 +69,6 @@ def require_measured(parameters):
 def require_measured_compression(parameters, constants):
     """Raise ParameterError for a compression of which nothing was measured."""
     _require_usual_sliding(parameters)
-    if parameters.boundary != "periodic":
-        _refuse(f"boundary = {parameters.boundary}")
     if parameters.finalPressure is not None:
         _refuse("finalPressure, which may end a run at any filling")
     if not FILLINGS[0] <= parameters.finalFilling <= FILLINGS[1]:
@@ -134,9 +137,10 @@ def energies(parameters, constants):
 
 def scene_factor(parameters):
     """Errors over those of CPE aggregates in space whose springs are held at their limits."""
+    plate = PLATE if parameters.target == "wall" else 1.0
     if parameters.limit == "cut":
-        return CUT
-    return FLUFFY if parameters.planar or parameters.packing != "cpe" else 1.0
+        return CUT * plate
+    return (FLUFFY if parameters.planar or parameters.packing != "cpe" else 1.0) * plate
 
 
 def ledger_errors(kinetic, of_grain, events=EVENTS, decay=DECAY, speed=SPEED):

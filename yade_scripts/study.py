@@ -19,7 +19,7 @@ before its time limit a task writes its checkpoint and is queued again; rows tha
 submitted. --dry-run prints the scripts, and submits nothing.
 
 Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the
-others have run), 2 for a table that can't be used, 128 and the signal's number when stopped.
+others have run) or the table was edited meanwhile, 2 for a table that can't be used, 128 and the signal's number when stopped.
 """
 
 import argparse
@@ -27,7 +27,6 @@ import os
 import signal
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -41,10 +40,11 @@ from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
-from yade_scripts.runner import rows, slurm, view
-from yade_scripts.runner.batch import LOGS, Batch, StudyBusy, StudyFolder
+from yade_scripts.runner import slurm, view
+from yade_scripts.runner.batch import LOGS, Batch, StudyBusy
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
+from yade_scripts.runner.study import Study
 
 SCRIPT = os.path.basename(__file__)
 STUDIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "studies")
@@ -93,69 +93,6 @@ def place_of(table):
     """The folder in which a table has been run: the one that one stands in, or else the nearest above the table."""
     places = [Path.cwd(), *Path(table).absolute().parents]
     return next((place for place in places if (place / LOGS / Path(table).stem).is_dir()), places[0])
-
-
-class Study:
-    """The rows of a table, their states, and the estimate of what is left."""
-
-    def __init__(self, table, jobs, run_scripts):
-        self.name = os.path.splitext(os.path.basename(table))[0]
-        self.rows, self.jobs = rows.read(table, run_scripts), jobs
-        self.folder = StudyFolder(self.name)
-        self._before = {}
-        self._states = {}
-
-    def forget_failures(self):
-        """From now on only those that follow count."""
-        self._before = {
-            file: when for row in self.rows for file, when in rows.traces(row, self.folder.log(row)).items()
-        }
-
-    def states(self, changed=None):
-        """[State of each row]; looked at only for the rows that may have `changed` (names; None: any) since they were last."""
-        for row in self.rows:
-            before = self._states.get(row.name)
-            if before is None or before.kind != DONE and (changed is None or row.name in changed):
-                self._states[row.name] = rows.state(row, self.folder.log(row), self._before)
-        return [self._states[row.name] for row in self.rows]
-
-    def states_with_queue(self, changed=None):
-        """states(), with a note where a row is a task of Slurm's queue; [whether it is one, ...]."""
-        states, queued = self.states(changed), slurm.queued(self.folder)
-        for number, (row, state) in enumerate(zip(self.rows, states)):
-            if state.kind == WAITING and row.name in queued:
-                task, of_slurm = queued[row.name]
-                note = f"Slurm job {task} {of_slurm.lower()}" + (f", {state.note}" if state.note else "")
-                states[number] = replace(state, note=note)
-        return states, [row.name in queued for row in self.rows]
-
-    def text(self, drawn_as, changed=None):
-        states, _ = self.states_with_queue(changed)
-        return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
-
-    def announce(self):
-        """Print how much there is to do, and the estimate; measures a piece of a run unless runs have ended."""
-        states = self.states()
-        left = [row for row, state in zip(self.rows, states) if state.kind not in (DONE, FAILED)]
-        if not left:
-            return
-        self.folder.measure(left[0], self.rows, states, self.jobs)
-        cost = self.folder.cost(self.rows, states)
-        seconds = view.total_left(states, cost, self.rows, self.jobs)
-        again = sum(state.progress > 0 for state in states if state.kind not in (DONE, FAILED))
-        estimate = "unknown" if seconds is None else view.duration_text(seconds)
-        print(
-            f'{printable(self.name)}: {len(self.rows)} rows, {_counted(states, DONE, FAILED)}{len(left)} to run'
-            f'{f", {again} of them from checkpoints" if again else ""}; estimated time {estimate} with '
-            f'{self.jobs} at once ({self.folder.basis(self.rows, states)})',
-            flush=True,
-        )
-
-
-def _counted(states, *kinds):
-    """'3 done, 1 failed, ', of those that there are."""
-    counts = [(sum(state.kind == kind for state in states), kind) for kind in kinds]
-    return "".join(f"{count} {kind}, " for count, kind in counts if count)
 
 
 def submit(study, at_once, sbatch, dry_run):
@@ -233,6 +170,9 @@ def close(study, stop):
     stopped = [row for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
     for row in () if stop.received else stopped:
         tell(f"{row.name}: was stopped; another call resumes it", SCRIPT)
+    edited = study.has_been_edited()
+    if edited:
+        tell(f"{study.table}: was edited since its rows were read; another call runs what is new", SCRIPT)
     done = sum(state.kind == DONE for state in states)
     print(
         f"{printable(study.name)}: {len(states)} rows, {done} done, {len(failures)} failed"
@@ -240,7 +180,7 @@ def close(study, stop):
     )
     if stop.received:
         return 128 + stop.received
-    return 0 if done == len(states) else 1
+    return 0 if done == len(states) and not edited else 1
 
 
 def main(arguments):
@@ -271,7 +211,7 @@ def main(arguments):
     for row in wrong:
         tell(f"{row.name}: {row.error}{'; the other rows are run' if len(wrong) < len(study.rows) else ''}", SCRIPT)
     try:
-        study.announce()
+        study.announce(stop)
         run(study, stop)
     except OSError as error:  # yade is missing, the disk is full
         tell(f"{error.filename or study.folder.path}: {error.strerror}", SCRIPT)

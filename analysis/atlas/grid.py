@@ -9,17 +9,18 @@ from scipy.spatial import cKDTree
 
 from ..theory import ICE, MATERIALS
 from .columns import breaking_velocity
-from .neighbours import MARGIN, NEAR, Neighbours
+from .neighbours import MARGIN, NEAR, ONE_CONTACT, Neighbours
 from .outcome_table import Axis, OutcomeTable, read_outcomes
 from .rules import KINDS
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 FILE, RUNS_FILE = FOLDER / "outcomes.txt", FOLDER / "runs.csv"
 GRAIN_RADIUS = 1e-7  # m
+# Beyond the runs only what is slow is known: the nodes there are few.
 AXES = (
-    Axis("velocity", "log10", np.geomspace(0.08, 26.0, 20)),
-    Axis("grains", "log10", np.geomspace(64, 4096, 7)),
-    Axis("mass_ratio", "log10", np.geomspace(1 / 64, 1.0, 4)),
+    Axis("velocity", "log10", np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.0, 20))),
+    Axis("grains", "log10", np.array([1, 8, *np.geomspace(64, 4096, 7), *(8.0 ** np.arange(5, 9))])),
+    Axis("mass_ratio", "log10", np.append(64.0 ** np.arange(-4, -1), np.geomspace(1 / 64, 1.0, 4))),
     Axis("filling", "linear", np.array([0.02, 0.1, 0.2, 0.3, 0.4, 0.5])),
 )
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
@@ -34,18 +35,21 @@ of them; largest, second: mass of the two largest pieces over the total; fragmen
 filling_after: of the largest piece; inside: 1 within the convex hull of the runs
 in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther beyond, where values are those of the
 nearest node within; runs: number of runs within {near:g} of the scatter. Between nodes: multilinear in the scaled coordinates; the last axis is the fastest.
+Slow collisions: all {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck; anything else has a chance of {most:.2g} there at most (95 %).
+Slower ones than any run are inside where they would be with that energy; below {contact:.2g} E_break, what making and breaking one contact
+dissipates, aggregates cannot part, and are inside at any size and filling (error 0; filling_after is then a guess where runs is 0).
 Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
 
 
-def outcome_grid(model, version):
-    """OutcomeTable of a model.Model."""
+def outcome_grid(model, version, upto=1.0):
+    """OutcomeTable of a model.Model, averaged over impact parameters uniform in b^2 up to `upto`."""
     points, near = _nodes(), Neighbours(model.runs)
     inside, p = near.beyond(points) <= MARGIN, np.zeros((len(points), len(COLUMNS)))
     if not inside.any():
         raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
     own = points[inside]
-    chances, widths = model.probabilities(own, averaged=True)
-    left = model.left(own, averaged=True)
+    chances, widths = model.probabilities(own, upto)
+    left = model.left(own, upto)
     values = {
         **dict(zip(PROBABILITIES, chances.T)),
         "error": widths.max(axis=1),
@@ -56,7 +60,15 @@ def outcome_grid(model, version):
     p[~inside] = p[inside][_nearest(points[~inside], own)]
     p[:, COLUMNS.index("inside")], p[:, COLUMNS.index("runs")] = inside, near.within(points)
     about = ABOUT.format(
-        version=version, runs=len(model.runs), ice=breaking_velocity(ICE, GRAIN_RADIUS), margin=MARGIN, near=NEAR
+        version=version,
+        runs=len(model.runs),
+        ice=breaking_velocity(ICE, GRAIN_RADIUS),
+        margin=MARGIN,
+        near=NEAR,
+        sure=model.slow.number,
+        energy=model.slow.energy,
+        most=model.slow.most,
+        contact=ONE_CONTACT,
     )
     return OutcomeTable(AXES, COLUMNS, p.reshape(*(len(a.nodes) for a in AXES), -1), tuple(about.splitlines()))
 

@@ -2,7 +2,7 @@
 
     python3 -m analysis.atlas.make [FOLDER]
 
-outcomes.txt, the table of outcomes on a grid, and model.md, how good the model is, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
+outcomes.txt, the table of outcomes on a grid, and model.md, how good the model is and where it lets aggregates bounce, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
 
 import sys
 from pathlib import Path
@@ -13,18 +13,28 @@ from ..runs.write import write_text
 from ..studies.columns import flat
 from ..studies.tables import markdown_table
 from ..version import version
+from .barrier import barrier_text
 from .columns import MEASURED
 from .grid import FILE, FOLDER, RUNS_FILE, outcome_grid
-from .model import LEVEL, Model, NoLearning
+from .model import Model, NoLearning
+from .neighbours import slow
 from .outcome_table import write_outcomes
-from .scores import of_atlas, reliability, scores
+from .remains import LEVEL
+from .scores import CROSSED, HELD, of_atlas, reliability, scores
 from .variables import fit_and_held_out
 
+ALL = "of all collisions"
+UPTO = {ALL: 1.0, "of collisions with b < 1/2": 0.25}  # b^2
 HEAD = """# How good the model of the atlas is
 
 Fitted to {fit} decided runs; {held} more were held out, drawn before any run was made. Cross-validated: each of the fitted runs foretold from the others.
-Brier score: mean over runs of the sum over the five outcomes of (p - observed)^2, 0 at best. Miss: mean of |p - observed| over bins of p a
-tenth wide, each with its number of values. Within: fraction of the runs whose largest piece, and its filling, lie in the {level:.0%} intervals.
+Brier score: mean over runs of the sum over the five outcomes of (p - observed)^2, 0 at best; more: than the atlas's, with the standard error of
+that, runs paired. Log loss: mean of -ln p of what was observed. Miss: mean of |p - observed| over bins of p a tenth wide, each with its number of
+values. Within: fraction of the runs in the {level:.0%} intervals of the largest piece and of its filling. Of the largest piece these are of runs that
+leave more than one piece: {whole:.0%} of the fitted leave one, and no interval that ends there can hold a chosen fraction.
+
+All {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck: the chance of anything else is {most:.2g} there at most (95 %).
+Paszun & Dominik (2009): their tables (as extended by Ormel et al. 2009: CDS, J/A+A/502/845) could not be had for this comparison.
 """
 
 
@@ -33,20 +43,32 @@ def read_runs(file=RUNS_FILE):
     return read_table(file, flat(MEASURED))[0]
 
 
-def report(table):
-    """model.md (str) of a table of runs."""
+def report(table, grids):
+    """model.md (str) of a table of runs, and {of which impact parameters: OutcomeTable made from it}."""
     found = scores(table)
     numbers = found.groupby("runs").number.first()
-    head = HEAD.format(fit=numbers["cross-validated"], held=numbers["held out"], level=LEVEL)
-    shown = found.drop(columns="number").round(3).astype(str).replace("nan", "")
-    shown.columns = [name.replace("mean_miss", "miss").replace("_", " ") for name in shown.columns]
     fit, held = fit_and_held_out(table)
+    known = slow(fit)
+    head = HEAD.format(
+        fit=numbers[CROSSED],
+        held=numbers[HELD],
+        level=LEVEL,
+        whole=(fit.pieces == 1).mean(),
+        sure=known.number,
+        energy=known.energy,
+        most=known.most,
+    )
+    shown = found.drop(columns="number").round(3).astype(str).replace("nan", "")
+    shown["more"] = [f"{more} ± {error}" if more else "" for more, error in zip(shown.more, shown.pop("error"))]
+    shown.columns = [name.replace("mean_miss", "miss").replace("_", " ") for name in shown.columns]
     bins = reliability(of_atlas(fit, held)[0], held.outcome).round(3)
     parts = [
         head,
         markdown_table(shown),
         "\nHeld-out runs, in bins of probability of all outcomes together:\n",
         markdown_table(bins),
+        "\n## Where aggregates bounce\n",
+        *(line for name, grid in grids.items() for line in barrier_text(name, grid)),
     ]
     return "\n".join(parts) + "\n"
 
@@ -56,8 +78,10 @@ def main(arguments):
     folder = Path(arguments[0]) if arguments else FOLDER
     try:
         table = read_runs(folder / RUNS_FILE.name)
-        write_outcomes(folder / FILE.name, outcome_grid(Model(table), version()))
-        write_text(folder / "model.md", report(table))
+        model = Model(table)
+        grids = {name: outcome_grid(model, version(), upto) for name, upto in UPTO.items()}
+        write_outcomes(folder / FILE.name, grids[ALL])
+        write_text(folder / "model.md", report(table, grids))
     except OSError as error:
         complain(f"{error.filename or folder}: {error.strerror}")
         return 2

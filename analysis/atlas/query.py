@@ -19,6 +19,8 @@ LABELS = {
     "fragment_index": "n of dN/dm ~ m^-n of all but the largest",
     "filling_after": "filling of the largest piece",
 }
+# What the intervals are of, where it is not all collisions.
+WHERE = {**dict.fromkeys(LABELS, ""), "largest": "where there are more: ", "second": "where there is one: "}
 COMMAND = "python3 yade_scripts/studies/atlas.py full {} {} && python3 yade_scripts/study.py runs/atlas-full.table"
 
 
@@ -37,10 +39,13 @@ def text(options):
     if options.impact != "averaged":
         model = Model(table)
         chances, width = model.probabilities(point)
-        left = model.left(point).iloc[0].to_dict()
-        answer |= {**dict(zip(PROBABILITIES, chances[0])), **{name: left[name] for name in LABELS}}
+        answer |= {**dict(zip(PROBABILITIES, chances[0])), **model.left(point).iloc[0].to_dict()}
         widths = dict(zip(PROBABILITIES, width[0]))
-        ranges = {name: f" ({left[name + '_low']:.3g} to {left[name + '_high']:.3g} in 90 %)" for name in LABELS}
+        ends = model.remains.intervals(point).iloc[0]
+        ranges = {
+            name: f" ({where}{ends[f'{name}_low']:.3g} to {ends[f'{name}_high']:.3g} in 90 %)"
+            for name, where in WHERE.items()
+        }
     lines = [_title(options, point)]
     for name, kind in zip(PROBABILITIES, KINDS):
         low, high = np.clip([answer[name] - widths[name], answer[name] + widths[name]], 0, 1)

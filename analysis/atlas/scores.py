@@ -1,22 +1,26 @@
 """How good the model is, beside simpler ones: on the held-out runs, and by cross-validation on the others."""
 
+from functools import partial
+
 import numpy as np
 import pandas
 from scipy.spatial import cKDTree
 
-from .model import Model, best_strength, chances, classifier, folds, is_kind
+from .model import Model, best, chances, is_kind
 from .rules import KINDS
-from .variables import fit_and_held_out, left, scaled, variables
+from .variables import SEED, fit_and_held_out, folds, left, scaled, variables
 
 NEIGHBOURS, BINS = 5, 10
 STRUCTURES = np.array(["bcca", "bpca", "cpe", "compressed"])
+ATLAS, CROSSED, HELD = "the atlas", "cross-validated", "held out"
+SEEN = 1e-3  # least probability in log losses
 CONSTANT = 1.0  # counts shared out among the kinds, so that what was not seen is not impossible
 
 
 def of_atlas(train, test):
-    """(probabilities (n, 5) of KINDS, LEFT with intervals) of Model for the rows of test."""
+    """(probabilities (n, 5) of KINDS, intervals of LEFT) of Model for the rows of test."""
     model, points = Model(train, members=0), variables(test)
-    return model.probabilities(points)[0], model.left(points)
+    return model.probabilities(points)[0], model.remains.intervals(points)
 
 
 def of_nearest(train, test):
@@ -37,22 +41,43 @@ def of_energy(train, test):
     return _of_threshold(train, test, lambda at: at.velocity**2 * at.mass_ratio / (1 + at.mass_ratio) ** 2), None
 
 
-def of_more(more):
-    """The atlas's classifier with more(table) -> (n, k) beside the coordinates."""
+def of_learning(make, more=lambda table: np.empty((len(table), 0))):
+    """make(points, outcomes) -> a classifier of scikit-learn, for the coordinates and more(table) -> (n, k) beside them."""
 
     def of(train, test):
         points, others = (np.column_stack([scaled(variables(table)), more(table)]) for table in (train, test))
-        fit = classifier(best_strength(points, train.outcome)).fit(points, train.outcome)
-        return chances(fit, others), None
+        return chances(make(points, train.outcome).fit(points, train.outcome), others), None
 
     return of
 
 
+def _boosted(points, outcomes):
+    from sklearn.ensemble import HistGradientBoostingClassifier
+
+    return HistGradientBoostingClassifier(
+        learning_rate=0.03,
+        max_iter=150,
+        max_leaf_nodes=4,
+        min_samples_leaf=10,
+        l2_regularization=1.0,
+        random_state=SEED,
+    )
+
+
+def _forest(points, outcomes):
+    from sklearn.ensemble import RandomForestClassifier
+
+    return RandomForestClassifier(100, min_samples_leaf=2, random_state=SEED)
+
+
 PREDICTORS = {
-    "the atlas": of_atlas,
-    "with contacts a grain": of_more(lambda t: t[["coordination_target", "coordination_projectile"]]),
-    "with the structure": of_more(lambda t: t.structure.to_numpy()[:, None] == STRUCTURES),
-    "with the material": of_more(lambda t: t.material == "silicate"),
+    ATLAS: of_atlas,
+    "with contacts a grain": of_learning(best, lambda t: t[["coordination_target", "coordination_projectile"]]),
+    "with the structure": of_learning(best, lambda t: t.structure.to_numpy()[:, None] == STRUCTURES),
+    "with the material": of_learning(best, lambda t: t.material == "silicate"),
+    "third order": of_learning(partial(best, order=3)),
+    "gradient boosting": of_learning(_boosted),
+    "random forest": of_learning(_forest),
     f"nearest {NEIGHBOURS} runs": of_nearest,
     "one velocity": of_velocity,
     "one impact energy a grain (Wada et al.)": of_energy,
@@ -61,23 +86,18 @@ PREDICTORS = {
 
 def _of_threshold(train, test, of):
     x, own, outcome = of(variables(train)).to_numpy(), of(variables(test)).to_numpy(), train.outcome.to_numpy()
-    best = None
+    least = None
     for limit in np.quantile(x, np.linspace(0.05, 0.95, 37)):
         sides = np.array([_fractions(outcome[x <= limit]), _fractions(outcome[x > limit])])
-        score = brier(sides[(x > limit).astype(int)], outcome)
-        if best is None or score < best[0]:
-            best = score, limit, sides
-    return best[2][(own > best[1]).astype(int)]
+        score = ((sides[(x > limit).astype(int)] - is_kind(outcome)) ** 2).sum()
+        if least is None or score < least[0]:
+            least = score, limit, sides
+    return least[2][(own > least[1]).astype(int)]
 
 
 def _fractions(outcome):
     counts = np.array([np.count_nonzero(outcome == kind) for kind in KINDS]) + CONSTANT / len(KINDS)
     return counts / counts.sum()
-
-
-def brier(p, outcome):
-    """Brier score: mean over runs of the sum over kinds of (p - observed)^2, 0 to 2."""
-    return float(((p - is_kind(outcome)) ** 2).sum(axis=1).mean())
 
 
 def reliability(p, outcome):
@@ -102,33 +122,39 @@ def mean_miss(p, outcome):
 
 
 def scores(table):
-    """DataFrame (a row a predictor and set of runs): number, brier, mean_miss, and of the atlas the fractions of the runs within the intervals
-    of LEFT. table: of runs; sets: held out (fitted to all others), and cross-validated (of the others)."""
+    """DataFrame (a row a predictor and set of runs): number, brier, its difference to the atlas's and the error of that, log_loss, mean_miss, and of
+    the atlas the fractions of the runs within the intervals of LEFT (of_largest: of those that leave more than one piece). table: of runs; sets:
+    held out (fitted to all others), and cross-validated (of the others)."""
     fit, held = fit_and_held_out(table)
-    found = []
+    parts, order = folds(len(fit)), np.concatenate([own for _, own in folds(len(fit))])
+    found, reference = [], {}
     for name, of in PREDICTORS.items():
-        p = [of(fit.iloc[others], fit.iloc[kept]) for others, kept in folds(len(fit))]
-        order = np.concatenate([kept for _, kept in folds(len(fit))])
-        found.append(
-            _scored(name, "cross-validated", [part for part, _ in p], [rest for _, rest in p], fit.iloc[order])
-        )
-        found.append(_scored(name, "held out", *([part] for part in of(fit, held)), held))
+        crossed = [of(fit.iloc[others], fit.iloc[own]) for others, own in parts]
+        for runs, told, rows in ((CROSSED, crossed, fit.iloc[order]), (HELD, [of(fit, held)], held)):
+            p = np.concatenate([part for part, _ in told])
+            squares = ((p - is_kind(rows.outcome)) ** 2).sum(axis=1)
+            more = squares - reference.setdefault(runs, squares)
+            row = {"predictor": name, "runs": runs, "number": len(rows), "brier": squares.mean()}
+            row |= {"more": more.mean(), "error": more.std() / len(more) ** 0.5} if name != ATLAS else {}
+            row |= {"log_loss": log_loss(p, rows.outcome), "mean_miss": mean_miss(p, rows.outcome)}
+            if told[0][1] is not None:
+                row |= within(pandas.concat([rest for _, rest in told], ignore_index=True), rows)
+            found.append(row)
     return pandas.DataFrame(found).sort_values("runs", kind="stable")
 
 
-def _scored(name, of, p, rest, table):
-    p = np.concatenate(p)
-    found = {
-        "predictor": name,
-        "runs": of,
-        "number": len(table),
-        "brier": brier(p, table.outcome),
-        "mean_miss": mean_miss(p, table.outcome),
-    }
-    if rest[0] is not None:
-        rest, truth = pandas.concat(rest, ignore_index=True), left(table).reset_index(drop=True)
-        for column in ("largest", "filling_after"):
-            known = truth[column].notna()
-            inside = truth[column].between(rest[f"{column}_low"] - 1e-9, rest[f"{column}_high"] + 1e-9)
-            found[f"within_{column}"] = float(inside[known].mean())
+def log_loss(p, outcome):
+    """Mean over runs of -ln of the probability of what was observed, which counts as SEEN at least."""
+    return float(-np.log(np.maximum(p[is_kind(outcome)], SEEN)).mean())
+
+
+def within(intervals, table):
+    """{within_NAME: fraction of the runs in the intervals (Remains.intervals) of the largest piece, where there is more than one, and of its
+    filling}."""
+    truth = left(table).reset_index(drop=True)
+    counts = {"largest": truth.second > 0, "filling_after": truth.filling_after.notna()}
+    found = {}
+    for name, known in counts.items():
+        inside = truth[name].between(intervals[f"{name}_low"] - 1e-9, intervals[f"{name}_high"] + 1e-9)
+        found[f"within_{name}"] = float(inside[known].mean())
     return found

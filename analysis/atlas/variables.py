@@ -7,6 +7,8 @@ from ..measures.outcome import NEVER_MET, UNDECIDED
 
 FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
 FIT, HELD_OUT = "fit", "held_out"  # of the column `split`
+OFFSETS = (np.arange(8) + 0.5) / 8  # b^2 over its largest, of averages
+FOLDS, SEED = 5, 1  # of cross-validation
 LEFT = ("largest", "second", "fragment_index", "filling_after")
 
 
@@ -29,6 +31,28 @@ def scaled(points):
     """Coordinates (n, 5) of variables() in which the model works: logarithms of the first three."""
     points = points[list(FEATURES)].to_numpy(dtype=float)
     return np.column_stack([np.log(points[:, :3]), points[:, 3:]])
+
+
+def offsets(coordinates, upto=None):
+    """[coordinates (n, 5)] of scaled() at each impact parameter of an average uniform in b^2 up to `upto`; None: as they are."""
+    if upto is None:
+        return [coordinates]
+    return [np.column_stack([coordinates[:, :-1], np.full(len(coordinates), square)]) for square in upto * OFFSETS]
+
+
+def energy(points):
+    """Kinetic energy of the impact over E_break (n,) of variables() points.
+
+    >>> energy(pandas.DataFrame({"velocity": [2.0], "grains": [100], "mass_ratio": [1.0]})).tolist()
+    [100.0]
+    """
+    return points.grains * points.mass_ratio / (1 + points.mass_ratio) * points.velocity**2 / 2
+
+
+def folds(number):
+    """[(rows of the others, rows)] of FOLDS parts of so many rows, drawn at random."""
+    parts = np.array_split(np.random.default_rng(SEED).permutation(number), FOLDS)
+    return [(np.concatenate([part for part in parts if part is not own]), own) for own in parts]
 
 
 def touching(table):

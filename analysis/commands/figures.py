@@ -8,8 +8,8 @@ def add_parser(commands):
     parser = commands.add_parser(
         "figures",
         help="draw a run's figures",
-        description="Write motion.png (d and v against time), energy.png (the channels), grains.png (cut through the "
-        "aggregates) and forces.png (contact forces).",
+        description="Write motion.png (d and v against time), energy.png (the channels), grains.png (the grains, dense aggregates cut through the "
+        "middle) and forces.png (contact forces).",
     )
     parser.add_argument("run", metavar="RUN", help="run folder")
     parser.add_argument("--out", metavar="FOLDER", help="where to (default: RUN/figures), made if it is missing")
@@ -28,7 +28,10 @@ def run(options):
         folder = open_run(options.run)
         for file in draw_all(folder, options.out or folder.path / "figures"):
             line_beside_bars(file)
-    except (RunFolderError, OSError) as error:
+    except RunFolderError as error:
         complain(error)
+        return FAILED
+    except OSError as error:
+        complain(f"{error.filename or options.run}: {error.strerror}")
         return FAILED
     return 0

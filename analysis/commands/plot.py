@@ -51,6 +51,9 @@ def run(options):
     from ..runs.write import replacing
 
     file = Path(options.out or f"{options.what}-{options.x}.png")
+    if file.suffix != ".png":
+        complain(f"{file}: must end in .png")
+        return FAILED
     logarithmic = "" if options.log == "none" else options.log
     structure = any("largest_" in name for name in (options.what, options.x, options.by))
     measured, problems = measure(options.runs, lambda run: row(run, structure))

@@ -121,7 +121,8 @@ def _write(analysis, options, table):
         for name in written.undrawn:
             complain(f"{name}: not drawn: it needs the run folders, a table has only their numbers")
         if options.page:
-            _write_page(options.page, analysis.page(written))
+            options.page.parent.mkdir(parents=True, exist_ok=True)
+            _write_page(options.page, analysis.page(written, _write_view(options.page, analysis.found.table)))
     return options.page or folder / "README.md"
 
 
@@ -135,12 +136,29 @@ def _folder(wanted):
             yield Path(folder)
 
 
+def _write_view(page, table):
+    """The page on which the first run that is at hand can be turned, beside the study's: (name of its file, the run's), or None."""
+    from ..export.viewer import NoThree, write_view
+    from ..runs.arrays import RunFolderError
+    from ..runs.folder import open_run
+    from ..runs.table import FOLDER
+
+    file = page.with_name(f"{page.stem}-view.html")
+    folder = next((folder for folder in table[FOLDER].dropna() if os.path.isdir(folder)), None)
+    if folder is None:
+        return None
+    try:
+        return write_view(open_run(folder), file).name, os.path.basename(folder)
+    except (NoThree, RunFolderError) as error:
+        complain(f"{file}: not written: {error}")
+        return None
+
+
 def _write_page(file, text):
     """The page and its PDF."""
     from ..report.pdf import NoPdf, write_pdf
     from ..runs.write import write_text
 
-    file.parent.mkdir(parents=True, exist_ok=True)
     pdf = file.with_suffix(".pdf")
     write_text(file, text)
     try:

@@ -30,17 +30,19 @@ class NoFilm(Exception):
     """The film could not be encoded; the message is one line."""
 
 
+ENDINGS = ".mp4", ".gif", ".mkv", ".mov"
 AXES = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}  # to the right, up, towards the viewer (but y: away)
 _NARROWEST = 480  # pixels, for the legend
 
 
 def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, along="z", colour="aggregate"):
-    """Write the states of a RunFolder as a film (H.264 in the container that the file's ending names, or a .gif that repeats), `width`
-    pixels wide, seen from far along the axis `along`, coloured by one of grain_colours.COLOURINGS. The file appears when it is
+    """Write the states of a RunFolder as a film (one of ENDINGS: H.264 in that container, or a .gif that repeats), `width` pixels wide, seen from far along the axis `along`, coloured by one of grain_colours.COLOURINGS. The file appears when it is
     complete. Grains of a periodic cell are drawn within it.
 
     NoFilm when ffmpeg is missing or fails, RunFolderError when a state is damaged or there is none."""
-    require_file(file)  # before the frames are drawn
+    if file.suffix not in ENDINGS:  # before the frames are drawn
+        raise NoFilm(f"{file}: must end in {' or '.join(ENDINGS)}")
+    require_file(file)
     axes = list(AXES[along])
     view = _view(run, axes)
     pixel = max((view[1] - view[0]) / width, (view[3] - view[2]) / _TALLEST)

@@ -76,7 +76,10 @@ def _quantity(what, drawn, by):
     """Quantity of what is drawn."""
     if what == "sticking":
         collisions = drawn.of(drawn.table[drawn.table.outcome.notna()])
-        values = collisions.fractions(lambda table: table.outcome == STICKING, by, _undecided)
+        try:
+            values = collisions.fractions(lambda table: table.outcome == STICKING, by, _undecided)
+        except ValueError as error:  # the same run twice
+            raise CannotPlot(str(error)) from None
         return Quantity(what, "", each(values, lambda fraction, *_: OfDecided(fraction)))
     if what == "energy":
         changing = {c: at_end(c) for c in CHANNELS if c == "kinetic" or drawn.table[at_end(c)].any()}

@@ -97,7 +97,11 @@ def run_folders(paths):
     for path in paths:
         pattern = has_magic(str(path)) and not os.path.exists(path)
         places = filter(Path.is_dir, map(Path, glob(str(path), recursive=True))) if pattern else [Path(path)]
-        folders = [folder for place in sorted(places) for folder in _inside(place)]
+        try:
+            folders = [folder for place in sorted(places) for folder in _inside(place)]
+        except PermissionError as error:
+            found.append((None, f"{error.filename}: {error.strerror}"))
+            continue
         new = [folder for folder in dict.fromkeys(folders) if folder.resolve() not in seen]
         seen.update(folder.resolve() for folder in folders)
         found += [(folder, None) for folder in new]

@@ -127,7 +127,7 @@ def read_summed(file):
 def _require_own_sum(file, text):
     found = _OWN_SUM.match(text)
     if not found:
-        raise RunFolderError(f"{file}: damaged: must begin with its sum")
+        raise RunFolderError(f"{file}: not as `analysis study` has written it: must begin with its sum")
     if summed(text[: found.start(1)] + UNSUMMED[SUM] + text[found.end(1) :]) != text:
         raise RunFolderError(f"{file}: not as it was written: its SHA-256 is another than its first line says")
 

@@ -64,11 +64,13 @@ def running(folder, run, where=None, now=None):
     now = time.time() if now is None else now
     progress = progress_of(folder, run)
     known = {} if where is None else {"host": where.host, "note": "" if where.here else str(where)}
-    written = changed(os.path.join(folder, HISTORY_FILE))
-    if not written > changed(os.path.join(folder, RUN_FILE)) or progress < EARLY:
+    begun, written = (changed(os.path.join(folder, name)) for name in (RUN_FILE, HISTORY_FILE))
+    if begun < 0:
         return State(RUNNING, progress, **known)
-    spent, since = _spent(folder, run), now - written
-    return State(RUNNING, progress, spent + since, max(0.0, spent * (1 - progress) / progress - since), **known)
+    spent, since = _spent(folder, run), max(0.0, now - max(begun, written))
+    paced = written > begun and progress >= EARLY
+    left = max(0.0, spent * (1 - progress) / progress - since) if paced else None
+    return State(RUNNING, progress, spent + since, left, **known)
 
 
 def progress_of(folder, run):

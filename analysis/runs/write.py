@@ -12,9 +12,17 @@ import re
 import secrets
 import stat
 from contextlib import contextmanager, suppress
-from fcntl import LOCK_EX, LOCK_NB, flock
 
 from ..signals import held
+
+try:
+    from fcntl import LOCK_EX, LOCK_NB, flock
+except ImportError:  # not of POSIX: as a file system without locks
+    LOCK_EX = LOCK_NB = 0
+
+    def flock(file, _how):
+        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS), file.name)
+
 
 _UNFINISHED = re.compile(r"\..+\.\w+\.unfinished(\.\w+)?")
 _NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK)

@@ -125,10 +125,10 @@ class Analysis:
             write_text(folder / name, text)
         return Written(folder, texts, tuple(undrawn))
 
-    def page(self, written):
-        """The HTML page (str) with what was written in it."""
+    def page(self, written, view=None):
+        """The HTML page (str) with what was written in it. view: (file beside it on which a run can be turned, the run's name), or None."""
         files = [written.folder / name for name in (TABLE_FILE, DATA_FILE)]
-        return html_page(self.study.title, written.texts.values(), written.folder, files)
+        return html_page(self.study.title, written.texts.values(), written.folder, files, view)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ TEMPLATE = "page.html"
 _TYPES = {".png": "image/png", ".csv": "text/csv", ".json": "application/json"}
 
 
-def html_page(title, texts, folder, files):
-    """The page (str) of texts in Markdown, one after the other, with the pictures they show from a folder (Path) and files (Paths)."""
+def html_page(title, texts, folder, files, view=None):
+    """The page (str) of texts in Markdown, one after the other, with the pictures they show from a folder (Path) and files (Paths).
+    view: (file beside the page on which a run can be turned, the run's name), or None."""
     # slow to load, and the numbers do without them
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -22,6 +23,7 @@ def html_page(title, texts, folder, files):
         title=title,
         parts=[_html(text, folder) for text in texts],
         files=[(file.name, _address(file)) for file in files],
+        view=view,
         version=version_text(),
     )
 

@@ -53,11 +53,14 @@ namespace avx2 {
 }
 
 #include "bond_pass.hpp"
+#include "energy_pass.hpp"
+#include "force_pass.hpp"
 #include "neighbour_search.hpp"
 
 namespace contact_law {
 InstructionSet avx2Passes()
 {
-	return NeighbourPasses<avx2::Pack>::addTo(BondPasses<avx2::Pack>::addTo(Passes<avx2::Pack>::all("avx2", &avx2::integrate)));
+	return NeighbourPasses<avx2::Pack>::addTo(
+	        BondPasses<avx2::Pack>::addTo(EnergyPasses<avx2::Pack>::addTo(Passes<avx2::Pack>::all("avx2", &avx2::integrate))));
 }
 }

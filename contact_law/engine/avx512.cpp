@@ -113,12 +113,14 @@ namespace avx512 {
 }
 
 #include "bond_pass.hpp"
+#include "energy_pass.hpp"
+#include "force_pass.hpp"
 #include "neighbour_search.hpp"
 
 namespace contact_law {
 InstructionSet avx512Passes()
 {
-	return NeighbourPasses<avx512::Pack>::addTo(
-	        BondPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate)));
+	return NeighbourPasses<avx512::Pack>::addTo(BondPasses<avx512::Pack>::addTo(
+	        EnergyPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate))));
 }
 }

@@ -1,13 +1,14 @@
-// The pass over sintered bonds, for one pack type: included by each instruction set's file after force_pass.hpp. One sweep, since a linear
+// The pass over sintered bonds, for one pack type: included by each instruction set's file. One sweep, since a linear
 // bond needs little room.
 #pragma once
+#include "../kernel/turning.hpp"
 #include "bond_list.hpp"
-#include "force_pass.hpp"
+#include "pass_access.hpp"
 
 namespace contact_law {
 
 template <class Pack> struct BondPasses {
-	using P = Passes<Pack>;
+	using P = PassAccess<Pack>;
 	static constexpr int width = Pack::width;
 
 	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at)
@@ -57,7 +58,7 @@ template <class Pack> struct BondPasses {
 	template <bool periodic> [[gnu::flatten]] static void forces(const BondPass& pass)
 	{
 		Crossing<Pack, periodic> crossing(pass.cell);
-		int dummies[lanes];
+		alignas(64) int dummies[lanes]; // loaded as a block's indices are
 		for (int& dummy : dummies)
 			dummy = pass.dummy;
 		for (int index = 0; index < pass.endBlock; ++index) {

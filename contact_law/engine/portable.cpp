@@ -31,12 +31,14 @@ namespace portable {
 }
 
 #include "bond_pass.hpp"
+#include "energy_pass.hpp"
+#include "force_pass.hpp"
 #include "neighbour_search.hpp"
 
 namespace contact_law {
 InstructionSet portablePasses()
 {
-	return NeighbourPasses<portable::Pack>::addTo(
-	        BondPasses<portable::Pack>::addTo(Passes<portable::Pack>::all("portable", &portable::integrate)));
+	return NeighbourPasses<portable::Pack>::addTo(BondPasses<portable::Pack>::addTo(
+	        EnergyPasses<portable::Pack>::addTo(Passes<portable::Pack>::all("portable", &portable::integrate))));
 }
 }

@@ -109,7 +109,16 @@ namespace bonds {
 		return first;
 	}
 
-	// Stored a step ago, less the work of the springs' half kick then over the step.
+	// Stored a step ago.
+	inline double held(const BondConstants<double>& b, const ContactBefore& before)
+	{
+		return 0.5
+		        * (b.normalStiffness * before.overlap * before.overlap + b.slidingStiffness * dot(before.sliding, before.sliding)
+		                + b.rollingStiffness * dot(before.rolling, before.rolling)
+		                + b.twistingStiffness * before.twist * before.twist);
+	}
+
+	// The same, less the work of the springs' half kick then over the step.
 	inline double heldAfterHalfKick(const BondConstants<double>& b, const ContactBefore& before, const ContactGeometry<double>& g,
 	        const ContactForces<double>& f, double twist)
 	{

@@ -13,10 +13,22 @@ struct BondStepResult {
 };
 
 namespace bonds {
+	// Whether stretch and slip have changed over the step by more than twice what the grains' motion does.
+	inline bool isTorn(const BondConstants<double>& b, const ContactMotion& m, const ContactBefore& before,
+	        const ContactGeometry<double>& g, const ContactForces<double>& f)
+	{
+		const auto length = [](const Vec3<double>& v) { return std::sqrt(dot(v, v)); };
+		const double most = 2 * m.dt * (length(m.velocity) + b.radius1 * length(m.spin1) + b.radius2 * length(m.spin2));
+		const double opening = g.overlap - before.overlap;
+		const Vec3<double> slip = f.slidingDisplacement - before.sliding;
+		return opening * opening + dot(slip, slip) > most * most;
+	}
+
 	/* The bond broke after a fraction of the step: its last kicks covered half a step, what is missing to the fraction follows now.
 	 * Shrunk grains that overlap now touch since then, or since they overlapped, with unstrained springs: S17's new contact. What
 	 * disappears is all that the bond held, less what the new contact holds and what the kicks take out of the step, less what
-	 * unequal half kicks lose in a leapfrog (contact_step.hpp). */
+	 * unequal half kicks lose in a leapfrog (contact_step.hpp). Where a script has torn the grains apart, by more than their motion
+	 * does, no steps led to the breaking: the bond is let go as it was, with what it held then. */
 	template <unsigned mechanisms>
 	inline BondStepResult broken(const BondConstants<double>& b, const PairConstants<double>& c, const ContactMotion& m,
 	        const ContactBefore& before, const ContactGeometry<double>& bondGeometry, const ContactForces<double>& bond,
@@ -26,9 +38,10 @@ namespace bonds {
 		ContactStepResult& r = result.contact;
 		result.bonded = false;
 		result.mode = breaking.mode;
-		double released = heldAfterHalfKick(b, before, bondGeometry, bond, h.twist);
+		const bool torn = isTorn(b, m, before, bondGeometry, bond);
+		double released = torn ? held(b, before) : heldAfterHalfKick(b, before, bondGeometry, bond, h.twist);
 		events::Kicks ahead, after;
-		ahead.add(breaking.fraction - 0.5, breaking.fraction - 0.5, bondGeometry, bond);
+		if (!torn) ahead.add(breaking.fraction - 0.5, breaking.fraction - 0.5, bondGeometry, bond);
 
 		r.geometry = geometryOf(m.separation, c.radius1 + c.radius2);
 		r.touching = r.geometry.overlap > 0;

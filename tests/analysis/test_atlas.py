@@ -8,12 +8,15 @@ from written_runs import two_pairs
 import analysis
 from analysis.__main__ import main
 from analysis.atlas import rules
+from analysis.atlas.barrier import barrier
 from analysis.atlas.columns import MEASURED
-from analysis.atlas.grid import COLUMNS, PROBABILITIES, outcome_grid
+from analysis.atlas.grid import AXES, COLUMNS, PROBABILITIES, outcome_grid
 from analysis.atlas.neighbours import MARGIN, Neighbours
-from analysis.atlas.outcome_table import read_outcomes, write_outcomes
+from analysis.atlas.outcome_table import Axis, OutcomeTable, read_outcomes, write_outcomes
 from analysis.atlas.power_law import power_law_index
-from analysis.atlas.variables import variables
+from analysis.atlas.remains import Remains
+from analysis.atlas.scores import within
+from analysis.atlas.variables import energy, variables
 from analysis.runs.table import make_table, read_table, table_text
 from analysis.studies.columns import flat, row_of
 from analysis.studies.definition import NotMeasured
@@ -106,7 +109,13 @@ def test_model_of_made_runs(made, tmp_path):
     assert np.abs(p[:, 0] - 1 / (1 + (made.velocity / 5) ** 3)).mean() < 0.05 and p.sum(axis=1) == pytest.approx(1)
     assert 0.005 < width[:, 0].mean() < 0.2
     left = fitted.left(point(velocity=0.2)).iloc[0]
-    assert left.largest > 0.97 and left.largest_low >= 0.5 and left.fragment_index == pytest.approx(2.0)
+    assert left.largest > 0.97 and left.fragment_index == pytest.approx(2.0)
+    slow = point(velocity=1e-3)
+    assert (
+        fitted.probabilities(slow)[0][0, 0] == 1
+        and fitted.slow.number == (energy(variables(made)) < fitted.slow.energy).sum()
+    )
+    assert fitted.slow.most == pytest.approx(3 / fitted.slow.number, rel=0.1)  # the rule of three
     file = tmp_path / "outcomes.txt"
     write_outcomes(file, outcome_grid(fitted, "0"))
     found = analysis.outcome(5 * 3.8231, 60, [300, 3e6], 0.2, file=file)
@@ -115,11 +124,56 @@ def test_model_of_made_runs(made, tmp_path):
     assert read_outcomes(file).columns == COLUMNS
 
 
+def test_intervals_hold_their_part():
+    """Of runs that the forest has not seen, where the gain scatters with the velocity."""
+    pytest.importorskip("sklearn")
+    random, number = np.random.default_rng(7), 1200
+    columns = {
+        "velocity": 10 ** random.uniform(-1, 1.4, number),
+        "v_break": 1.0,
+        "grains_target": 300.0,
+        "mass_ratio": 0.5,
+    }
+    columns |= {"impact": random.uniform(size=number), "filling_target": 0.2, "filling_projectile": 0.2}
+    table = pandas.DataFrame({**columns, "outcome": "erosion", "split": "fit", "fragment_index": 2.0})
+    lost = np.abs(random.normal(0.1, 0.02, number)) * table.velocity**0.5
+    table = table.assign(largest=2 / 3 - lost, second=lost, filling_largest=0.2 * (1 + lost))
+    told = Remains(table[:800]).intervals(variables(table[800:]))
+    for name, found in within(told, table[800:]).items():
+        assert found == pytest.approx(0.9, abs=0.045), name  # three standard errors of 400
+
+
+def surface(low, high, width=0.1):
+    """OutcomeTable whose p_bounce is above 1/2 between two velocities."""
+    axes = (Axis("velocity", "log10", np.geomspace(0.1, 10, 41)), *AXES[1:])
+    shape = tuple(len(axis.nodes) for axis in axes)
+    log = np.log(axes[0].nodes)
+    p = 0.5 + 0.2 * np.minimum(log - np.log(low), np.log(high) - log).clip(-2, 2)
+    p = np.broadcast_to(p[:, None, None, None], shape)
+    columns = {"p_bouncing": p, "error": np.full(shape, width), "inside": np.ones(shape), "runs": np.full(shape, 5.0)}
+    return OutcomeTable(axes, tuple(columns), np.stack(list(columns.values()), axis=-1))
+
+
+@pytest.mark.parametrize("low, high", [(0.5, 4.0), (0.5, 1e3), (30.0, 40.0)])
+def test_surface_of_bouncing(low, high):
+    found = barrier(surface(low, high)).iloc[0]
+    if low > 10:
+        assert found.p < 0.5 and np.isnan([found["first"][0], found["last"][0]]).all()
+        return
+    assert found["first"] == pytest.approx((low, low / np.exp(0.5), low * np.exp(0.5)), rel=0.02)
+    assert found["last"][0] == (np.inf if high > 10 else pytest.approx(high, rel=0.02))
+
+
 def test_a_query_beyond_the_runs_is_an_extrapolation(made):
     near, of_half = Neighbours(made), Neighbours(made[::2])
     assert near.beyond(point())[0] < 0 and near.within(point())[0] > 1
     at = variables(made[1::2])
     assert np.mean(of_half.beyond(at) <= MARGIN) > 0.9  # of 300 runs; corners of their box are beyond
+    for slow in (
+        {"velocity": 1e-4},
+        {"velocity": 1e-4, "grains_target": 1e6},
+    ):  # slower than any run; below one contact's energy
+        assert near.beyond(point(**slow))[0] <= 0, slow
     for beyond in ({"velocity": 1e4}, {"grains_target": 1e6}, {"filling_target": 0.9, "filling_projectile": 0.9}):
         assert near.beyond(point(**beyond))[0] > 4 * MARGIN, beyond
 

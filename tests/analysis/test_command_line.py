@@ -100,12 +100,6 @@ def test_a_run_at_rest_has_no_closure_and_no_restitution(run, tmp_path):
     assert drawn.returncode == 2 and "no kinetic energy at the start" in drawn.stderr
 
 
-def test_wrong_use_exits_with_2():
-    for arguments in ([], ["summary"], ["figures"], ["figures", "a", "b"], ["draw", "a"]):
-        done = analyse(*arguments)
-        assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
-
-
 def test_figures_are_written_where_asked_and_a_place_that_cannot_be_written_is_one_line(cluster_folder, tmp_path):
     done = analyse("figures", cluster_folder, "--out", tmp_path / "new" / "place")
     assert done.returncode == 0 and done.stderr == ""

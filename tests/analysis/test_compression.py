@@ -17,14 +17,6 @@ def test_d_and_v_of_few_grains():
     assert compression_and_velocity(x, speed, 2.0) == (0.0, 4.0)
 
 
-def test_v_is_the_rate_of_d():
-    random = np.random.default_rng(1)
-    x, speed = random.normal(size=500), random.normal(size=500)
-    step = 0.5 * np.abs(x / speed).min()  # no grain crosses x = 0
-    rate = (compression_length(x + step * speed, 3.0) - compression_length(x - step * speed, 3.0)) / (2 * step)
-    assert mutual_velocity(x, speed) == pytest.approx(rate, abs=1e-10)
-
-
 def test_maximum_of_a_parabola_between_samples():
     """At an end it is only a bound; samples without a value are left out."""
     time = np.linspace(0.0, 10.0, 8)

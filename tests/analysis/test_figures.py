@@ -1,5 +1,7 @@
 """What the figures show, read back from their artists and pixels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
@@ -77,6 +79,16 @@ def test_grains_are_shown_at_start_maximum_and_end_or_at_the_times_asked_for(run
     for make in (grains_figure, forces_figure):
         figure = make(run, [*times, times[-1]])
         assert [axes.get_title(loc="left") for axes in figure.axes] == expected
+
+
+def test_fluffy_aggregates_are_shown_whole(run):
+    """Of the same grains, cut at z = 0 and not: more of the picture is covered."""
+    covered = []
+    for filling, said in ((0.4, "behind"), (0.1, "all grains")):
+        figure = grains_figure(replace(run, parameters={**run.parameters, "filling": filling}))
+        assert said in figure._suptitle.get_text()
+        covered.append((figure.axes[0].images[0].get_array() < 1).any(axis=2).sum())
+    assert covered[1] > covered[0]
 
 
 def test_painted_spheres():

@@ -1,4 +1,4 @@
-"""Fragments, outcomes and restitution, by hand and by brute force."""
+"""Fragments and their sizes (A22 eqs 28, 31-33), outcomes, restitution, velocities between neighbours: by hand and by brute force."""
 
 import numpy as np
 import pytest
@@ -6,34 +6,19 @@ from written_runs import chain, state_arrays
 
 from analysis.measures.fragments import *
 from analysis.measures.outcome import classify, collision_outcome, restitution
-
-
-def _labels_by_flooding(grains, pairs):
-    neighbours = {k: set() for k in range(grains)}
-    for i, j in pairs:
-        neighbours[i].add(j)
-        neighbours[j].add(i)
-    pieces, left = [], set(range(grains))
-    while left:
-        piece, todo = set(), [min(left)]
-        while todo:
-            grain = todo.pop()
-            if grain not in piece:
-                piece.add(grain)
-                todo += neighbours[grain]
-        left -= piece
-        pieces.append(piece)
-    return pieces
+from analysis.measures.pair_velocities import pair_velocities, root_mean_square
 
 
 @pytest.mark.parametrize("contacts", [0, 20, 60, 200])
-def test_fragments_against_flooding(contacts):
-    random = np.random.default_rng(contacts)
-    pairs = random.integers(0, 100, size=(contacts, 2))
+def test_fragments_are_what_paths_of_contacts_reach(contacts):
+    """The hundredth power of the matrix of contacts says which grains a path joins."""
+    pairs = np.random.default_rng(contacts).integers(0, 100, size=(contacts, 2))
+    touching = np.eye(100)
+    touching[pairs[:, 0], pairs[:, 1]] = touching[pairs[:, 1], pairs[:, 0]] = 1
+    reached = np.linalg.matrix_power(touching, 100) > 0
     labels = fragment_labels(100, pairs)
-    pieces = {frozenset(np.flatnonzero(labels == k)) for k in range(labels.max() + 1)}
-    assert pieces == {frozenset(piece) for piece in _labels_by_flooding(100, pairs)}
-    assert list(fragment_sizes(labels)) == sorted((len(p) for p in pieces), reverse=True)
+    assert np.array_equal(labels[:, None] == labels, reached)
+    assert list(fragment_sizes(labels)) == sorted(np.bincount(labels), reverse=True)
 
 
 def test_masses_of_fragments():
@@ -136,3 +121,49 @@ def test_one_aggregate_alone_is_refused():
     alone = state_arrays(0.0, np.zeros((3, 3)), np.zeros((3, 3)), [0, 0, 0])
     with pytest.raises(ValueError, match="aggregate 1 has no grain"):
         _outcome(alone, alone)
+
+
+def chains(sizes):
+    """Contact pairs of fragments that are chains of these sizes."""
+    return np.concatenate(
+        [np.reshape(chain(start, n), (-1, 2)) for start, n in zip(np.cumsum([0, *sizes]), sizes)]
+    ).astype(int)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_cumulative_distributions_of_hand_made_fragments(seed):
+    """Eqs 31 to 33, summed term by term."""
+    sizes = np.random.default_rng(seed).integers(1, 40, 25)
+    found = fragment_sizes(fragment_labels(sizes.sum(), chains(sizes)))
+    assert sorted(found) == sorted(sizes)
+    n = np.bincount(sizes, minlength=200)
+    for N in (1, 1.5, 2, 7, 12.99, 39, 100):
+        up, down = int(np.ceil(N)), int(np.floor(N))
+        assert cumulative_number(found, [N])[0] == n[up:].sum()
+        assert cumulative_grains(found, [N])[0] == sum(n[k] * k for k in range(1, down + 1))
+        expected = sum(n[k] * k ** (2 / 3) for k in range(1, down + 1))
+        assert cumulative_cross_section(found, [N])[0] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "sizes, growth", [([200], 1.0), ([100, 100], 0.0), ([1] * 200, -0.99), ([150, 50], 0.5), ([60] + [1] * 140, -0.4)]
+)
+def test_growth_efficiency_from_coalescence_to_dust(sizes, growth):
+    largest = fragment_sizes(fragment_labels(200, chains(sizes))).max()
+    assert growth_efficiency(largest, 100, 100) == pytest.approx(growth)
+    assert growth_efficiency(43957, 50000, 50000) == pytest.approx(-0.12086) and growth_efficiency(30, 20, 10) == 1.0
+
+
+def test_velocities_of_neighbours_by_all_pairs():
+    random = np.random.default_rng(1)
+    position, velocity = random.uniform(0, 6, (80, 3)), random.normal(size=(80, 3))
+    expected = []
+    for i in range(80):
+        for j in range(i):
+            apart = position[i] - position[j]
+            distance = np.linalg.norm(apart)
+            if distance < 1.1:
+                expected.append(-(velocity[i] - velocity[j]) @ apart / distance)
+    assert len(expected) > 40
+    assert np.sort(pair_velocities(position, velocity, 1.1)) == pytest.approx(np.sort(expected))
+    assert np.isnan(root_mean_square([])) and root_mean_square([3.0, -4.0]) == pytest.approx(12.5**0.5)

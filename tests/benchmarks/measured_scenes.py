@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 ENGINE, BESIDE_LAMMPS = ("engine",), ("engine", "lammps")
 SLOW, PEERS = ("engine-avx2", "engine-portable", "functors", "stock"), ("lammps", "liggghts")
+EVERY = ("engine", "functors", "stock", "lammps", "lammps-newest", "liggghts")
 FLYING = {"flying": 0.0}
 
 
@@ -71,6 +72,12 @@ def bench(settings):
     return found
 
 
+def beside_peers(settings):
+    """The collision that all codes are measured on for the page of throughput."""
+    given, moments = {**CPE, "radius": settings.rung[0]}, {**FLYING, "compressed": 0.1e-6}
+    return Scene(f"two CPE, R {settings.rung[0]:g}, 3.16 m/s", "collision", given, moments, 1e-6, EVERY)
+
+
 def sized(radius):
     """Name of the scene of two CPE of this radius [grain radii]."""
     return f"cpe-{radius:g}"
@@ -83,4 +90,4 @@ def _two_cpe(title, kind, radius, codes):
 
 
 def all_scenes(settings):
-    return {**bench(settings), **PAPERS}
+    return {**bench(settings), **PAPERS, "peers": beside_peers(settings)}

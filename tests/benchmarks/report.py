@@ -9,9 +9,8 @@ from measured_on import LOUD
 from measured_scenes import all_scenes
 from moments import FAST_STRAIN, RELAXED
 from results import weights
-from targets import targets
 
-LEFT = {"scene", "scenes", "set", "moment", "code", "weights", "target", "wanted", "measured", "verdict"}
+LEFT = {"scene", "scenes", "set", "moment", "code", "weights", "version; skin, newton"}
 TWO = {"one": 1, "two": 2}  # cores
 HEAD = f"""A contact update is one step of one touching contact; rates are in million a second. Two CPE aggregates are of ice
 (r = 0.1 um, filling 0.4) at 3.16 m/s, with steps of 0.1 t0, unless said. The engine runs in YADE (with what an O.step adds to
@@ -34,9 +33,7 @@ fraction of the run that is nearest to it. K13 itself takes steps of 0.1 t0."""
 def text(results, settings):
     """The whole page."""
     scenes = all_scenes(settings)
-    verdicts = [target.cells() for target in targets(results, settings)]
     sections = {
-        "Targets": (pd.DataFrame(verdicts, columns="target wanted measured verdict".split()), ""),
         "Speed": (speed(results, scenes), of_codes(results)),
         "Lists, events and memory": (counts(results, scenes), OF_COUNTS),
         "Whole runs": (solution(results, scenes), OF_SOLUTION),
@@ -116,10 +113,10 @@ def with_worst(ms):
     return None if isnan(best) else f"{best:.3g}" + f" +{100 * (worst / best - 1):.0f} %" * (len(ms) > 1)
 
 
-def of_codes(results):
+def of_codes(results, shown=CODES):
     """What the codes are, and where they were not measured."""
     notes = []
-    for code, about in CODES.items():
+    for code, about in ((code, CODES[code]) for code in shown):
         versions = results.speed[results.speed.code == code].version.dropna().unique()
         notes.append(f"- {about.name}{f' ({versions[0]})' if len(versions) else ''}: {about.physics}")
     for (code, note), rows in results.speed[results.speed.note.notna()].groupby(["code", "note"]):
@@ -165,7 +162,6 @@ def solution(results, scenes):
 QUANTITIES = {
     "ledger": "ledger",
     "d_max": "d_max [r]",
-    "rebound": "rebound speed",
     "ledgerThin": "ledger, filling < 0.1",
     "workThin": "ln of the work, filling 0.05 - 0.1",
     "work": "ln of the work, to the end",

@@ -1,7 +1,7 @@
 """What was measured, as tables in a folder, and rates, ratios and times of whole runs out of it.
 
 speed.csv    a row a measurement: scene, moment, code, threads, round, contacts, steps, seconds, rate (contact updates a
-             second), fraction (processor seconds a second), skin (of a peer's lists), version (of a peer; instructions of
+             second), fraction (processor seconds a second), skin (of a peer's lists) and newton, version (of a peer; instructions of
              the engine), note (why there is no measurement)
 moments.csv  a row a moment of a scene: time [s] and progress of its run, on what and how it was measured, and what the
              engine counted in all its measurements there (speed.py)
@@ -19,9 +19,9 @@ MOMENTS = """scene moment time progress step runSteps grains contacts pieces mea
 contactUpdates energyChange kinetic boundaryWork lists forces eventHandling integration other bytes others cpu cores commit
 settings"""
 COLUMNS = {
-    "speed": "scene moment code threads round contacts steps seconds rate fraction skin version note".split(),
+    "speed": "scene moment code threads round contacts steps seconds rate fraction skin newton version note".split(),
     "moments": MOMENTS.split(),
-    "error": "scene code step sample ledger d_max rebound ledgerThin workThin work seconds refused cpu commit".split(),
+    "error": "scene code step sample ledger d_max ledgerThin workThin work kinetic seconds refused cpu commit".split(),
 }
 
 

@@ -13,6 +13,7 @@ from math import ceil, log, sqrt
 import numpy as np
 import scene_file
 
+from analysis.measures.fragments import fragment_labels
 from analysis.measures.virial import filling_factor
 from yade_scripts import packings
 from yade_scripts.experiments import collision, compression
@@ -111,6 +112,18 @@ def moved_back(start, apart):
     """The SceneFile of a start whose grains are back by so much time [s] on straight lines."""
     grains = start.scene.grains.copy()
     grains["position"] -= apart * grains["velocity"]
+    return replace(start.scene, grains=grains)
+
+
+def rung(start, rate):
+    """SceneFile of the first aggregate of a collision, or of its largest part whose grains touch, stretched along x and
+    squeezed across at a rate [1/s]: v = rate (x, -y/2, -z/2)."""
+    grains = start.scene.grains[: len(start.scene.grains) // 2]
+    touching = packings.contacts(packings.Packing(grains["position"], grains["radius"], 1))
+    part = fragment_labels(len(grains), touching)
+    grains = grains[part == np.bincount(part).argmax()].copy()
+    grains["position"] -= grains["position"].mean(axis=0)
+    grains["velocity"] = rate * grains["position"] * (1, -0.5, -0.5)
     return replace(start.scene, grains=grains)
 
 

@@ -4,6 +4,7 @@ of scenes are what they are said to be."""
 from contextlib import ExitStack
 
 import codes
+import errors
 import moments
 import numpy as np
 import peers
@@ -11,7 +12,7 @@ import pytest
 import settings
 import speed
 import starts
-from measured_scenes import PAPERS, bench
+from measured_scenes import EVERY, PAPERS, bench
 from test_harness import SMALL
 
 from yade_scripts import packings
@@ -30,6 +31,18 @@ def test_peers_run_the_scene(code, scene):
     touching = packings.contacts(packings.Packing(scene.grains["position"], scene.grains["radius"], 1))
     assert found["contacts"] == len(touching) and found["grains"] == len(scene.grains)
     assert speed.rate(found) > 1e5
+
+
+def test_all_codes_ring_alike():
+    """Where nothing is made, broken or slips: this law's two codes to rounding, the others to what their springs differ."""
+    scene, kinetic = starts.rung(starts.of(TINY["cpe-5"]), 2e5), {}
+    scene.head["step"] = errors.INTERVAL / 26
+    for code in (code for code in EVERY if code != "liggghts" and not codes.missing(code, scene)):
+        found = np.array(errors._follow(code, scene, 10, 26, settings.TINY)["kinetic"])
+        kinetic[code] = found / found[0]
+    assert kinetic["functors"] == pytest.approx(kinetic["engine"], abs=1e-6)
+    assert all(found == pytest.approx(kinetic["engine"], abs=0.03) for found in kinetic.values())
+    assert np.ptp(kinetic["engine"]) > 0.3
 
 
 def test_they_get_the_cell_the_spins_and_room(tmp_path):

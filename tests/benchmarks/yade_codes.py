@@ -14,6 +14,8 @@ import os
 import sys
 import time
 
+import numpy as np
+
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [HERE, os.path.dirname(os.path.dirname(HERE))]
 import scene_file
@@ -30,7 +32,7 @@ def resident():
     return 1024 * next(int(line.split()[1]) for line in open("/proc/self/status") if line.startswith("VmRSS"))
 
 
-def start(path, together, law, instructions):
+def start(path, together, law, instructions, warm=True):
     """Make everything, and touch memory for the first time: (whether it is the engine, small steps in an O.step, bytes that
     the engine took, None where there were interactions before)."""
     scene = scene_file.load(path)
@@ -41,13 +43,38 @@ def start(path, together, law, instructions):
         yade_scene.start_engine(scene, together, threads=2, instructions=instructions)
     else:
         yade_scene.start_loop(scene, law)
-    O.step(), O.step()
+    if warm:
+        O.step(), O.step()
     taken = resident() - before if law == "fused" and not len(scene.contacts) else None
     return law == "fused", together if law == "fused" else 1, taken
 
 
 def contacts():
     return O.engines[0].statistics()["contacts"] if fused else O.interactions.countReal()
+
+
+def velocities():
+    return np.array([[*body.state.vel, *body.state.angVel] for body in O.bodies])
+
+
+def follow(samples, each):
+    """{kinetic: energy, rotation's too, at the start and after each of so many times `each` small steps [J]; energy: sum of all
+    channels (None: no ledger); seconds: of the processor in the steps}; each is what an O.step of the engine makes."""
+    inertia = np.array([[body.state.mass] * 3 + list(body.state.inertia) for body in O.bodies])
+    if fused:
+        O.engines[0].threads = 1
+    kinetic, energy, seconds = [], [], 0.0
+    for k in range(samples + 1):
+        before, begin = velocities(), time.process_time()
+        if not fused or k < samples:
+            O.step()
+        # a loop has velocities of half a step before its positions and after
+        kinetic.append(np.sum(inertia * (before if fused else (before + velocities()) / 2) ** 2) / 2)
+        for _ in range(each - 1 if not fused and k < samples else 0):
+            O.step()
+        seconds += time.process_time() - begin
+        energy.append(sum(dict(O.energy.items()).values()))
+    return {"kinetic": kinetic, "energy": energy if any(energy) else None, "seconds": seconds}
 
 
 def run(seconds, most):
@@ -88,5 +115,6 @@ def measure(threads, seconds, most):
 
 fused, small_steps, taken = start(**json.loads(sys.argv[1]))
 for line in sys.stdin:
-    print("ANSWER " + json.dumps(measure(**json.loads(line))), flush=True)
+    asked = json.loads(line)
+    print("ANSWER " + json.dumps((follow if "each" in asked else measure)(**asked)), flush=True)
 sys.exit(0)

@@ -5,11 +5,28 @@ from yade import utils, wrapper
 from yade.minieigenHP import Matrix3, Vector3
 
 import contact_law  # noqa: F401  (puts the plugin's classes into wrapper)
+from analysis.theory import Material, pair_constants
 from yade_scripts.run.scene import VERLET_DISTANCE, functor_engines
 
 BLOCKED = {1: "x", 2: "y", 4: "z", 8: "X", 16: "Y", 32: "Z"}
-STOCK = {"frictionAngle": 0.5, "isCohesive": True, "normalCohesion": 1e9, "shearCohesion": 1e9}
-STOCK.update(momentRotationLaw=True, alphaKr=1, alphaKtw=1)
+
+
+def stock_material(given, radius):
+    """Of the stock law, for like grains: springs of JKR's slope at equilibrium (A24 eq 38) and of W07, which break at JKR's
+    pull; no limit of sliding."""
+    c = pair_constants(given, radius)
+    kn, ks = 6 * c.pull_off_force / (5 * c.equilibrium_overlap), c.sliding_stiffness
+    springs = {
+        "young": kn / radius,
+        "poisson": ks / kn,
+        "alphaKr": c.rolling_stiffness / 4 / ks,
+        "etaRoll": -1,
+        "etaTwist": -1,
+    }
+    springs |= {"alphaKtw": c.twisting_stiffness / (ks * radius**2), "momentRotationLaw": True, "frictionAngle": 0.5}
+    pull = c.pull_off_force / radius**2
+    cohesion = {"isCohesive": True, "normalCohesion": pull, "shearCohesion": 1e3 * pull}
+    return wrapper.CohFrictMat(density=given.density, **springs, **cohesion)
 
 
 def start_engine(scene, sub_steps, threads=1, instructions=""):
@@ -48,15 +65,35 @@ def start_loop(scene, law):
         ),
         wrapper.NewtonIntegrator(damping=0),
     ]
+    _settle(scene.grains)
+
+
+def _settle(grains):
+    """Let grains (GRAIN,) of the stock law touch now without a force: a step adds to their springs the way of the step before
+    it, which a step backwards takes away, after which all is where it was."""
+    omega = wrapper.Omega()
+
+    def place(sign):
+        columns = (
+            grains["position"].tolist(),
+            *((sign * grains[name]).tolist() for name in ("velocity", "angularVelocity")),
+        )
+        for body, now in zip(omega.bodies, zip(*columns)):
+            body.state.pos, body.state.vel, body.state.angVel = now
+
+    place(-1)
+    omega.step()
+    for contact in omega.interactions:
+        contact.phys.unp = contact.geom.penetrationDepth
+    place(1)
 
 
 def add_bodies(scene, law="fused"):
     omega = wrapper.Omega()
     for material in scene.materials:
         given = {name: float(material[name]) for name in material.dtype.names}
-        elastic = {name: given[name] for name in ("young", "poisson", "density")}
-        stock = law == "stock"
-        omega.materials.append(wrapper.CohFrictMat(**elastic, **STOCK) if stock else wrapper.JKRMat(**given))
+        stock = law == "stock" and stock_material(Material(*material.tolist()), float(scene.grains["radius"][0]))
+        omega.materials.append(stock or wrapper.JKRMat(**given))
     grains = scene.grains
     columns = [grains[name].tolist() for name in grains.dtype.names]
     bodies = []

@@ -1,6 +1,8 @@
 """The conformance suite: its references come out of its generator, this law agrees, and a code that differs is told so."""
 
 import json
+import random
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +12,7 @@ import pytest
 ROOM = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOM), str(ROOM / "adapters")]
 import check
+import check_ensembles
 import results_page
 from answers import SUITE, answer
 
@@ -66,3 +69,50 @@ def test_a_value_that_is_wrong_is_noticed(spoilt):
 
 def test_the_page_is_that_of_the_results():
     assert (ROOM / "results.md").read_text() == results_page.page()
+
+
+ENSEMBLES = json.loads(check_ensembles.ENSEMBLES.read_text())
+
+
+def test_a_sample_that_is_shifted_is_noticed_as_often_as_is_said():
+    """Samples drawn from each distribution's own values: their level holds, and of those shifted by what is said to be found by
+    90 % at least three quarters are (values are not normal, and few)."""
+    draw, level = random.Random(2), ENSEMBLES["level"] / len(ENSEMBLES["distributions"])
+    wrong, seen, number = 0, 0, 0
+    for values in (d["values"] for d in ENSEMBLES["distributions"] if set(d["values"]) != {0.0, 1.0}):
+        shift = check_ensembles.found_shift(values, level, len(values))
+        for _ in range(5):
+            sample = [draw.choice(values) for _ in values]
+            wrong += check_ensembles.p_value(sample, values) < level
+            seen += check_ensembles.p_value([x + shift for x in sample], values) < level
+            number += 1
+    assert wrong == 0 and seen > 0.75 * number
+
+
+def test_samples_are_compared(tmp_path, capsys):
+    same = {d["id"]: d["values"] for d in ENSEMBLES["distributions"]}
+    for spoilt, status in ({}, 0), ({"bcca-sticking": [1.0] * 60}, 1):
+        path = tmp_path / "samples.json"
+        path.write_text(json.dumps({"code": "x", "suite": ENSEMBLES["version"], "samples": {**same, **spoilt}}))
+        assert check_ensembles.main(path) == status
+        assert capsys.readouterr().out.count("differs") == status
+    path.write_text(json.dumps({"suite": ENSEMBLES["version"], "samples": {"cpe": [1.0, 2.0]}}))
+    with pytest.raises(SystemExit, match="cpe: must be one of cpe-0.4"):
+        check_ensembles.main(path)
+
+
+def test_the_mapping_for_on_dem_has_every_field():
+    mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())
+    source = (ROOM / "on_dem/jkr_wada.py").read_text()
+    for name, fields in mapping.items():
+        own = source.split(f"class {name}(")[1].split("\nclass ")[0]
+        assert set(re.findall(r"^    (\w+): ", own, re.M)) == set(fields)
+
+
+@pytest.mark.in_yade
+def test_what_the_mapping_for_on_dem_names_is_there():
+    from yade.wrapper import JKRMat, JKRWadaPhys
+
+    mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())
+    for fields, one in zip(mapping.values(), (JKRMat(), JKRWadaPhys())):
+        assert all(hasattr(one, path.rsplit(".")[-1]) for path in fields.values())

@@ -1,10 +1,12 @@
 """Fresh Debian systems, in each a clean clone, in it the README's commands. Run by `make test-debian`, as root.
 
     python3 tests/drivers/debian_systems.py bookworm trixie      [--commands 'make demo' ...]
+    python3 tests/drivers/debian_systems.py resolute=ADDRESS     Ubuntu's, from its archive at this address
 
 A system is made by debootstrap with the mirror of this system's apt, and removed afterwards. Each runs in mount and
 process namespaces of its own.
-What is tested is the last commit. Writes results/debian.md: system, versions, result and time of each command.
+What is tested is the last commit. Writes results/debian.md: system, versions, result and time of each command; systems
+that are not tried keep their lines.
 Exit status: 0 when every command of every system succeeded, otherwise 1; 2 when it could not begin.
 """
 
@@ -44,6 +46,7 @@ class System:
 
     suite: str
     folder: Path
+    ubuntu: str = ""  # address of its archive; "": Debian
     commit: str = "unknown"
     versions: dict = field(default_factory=dict)
     results: list = field(default_factory=list)  # (command, what became of it, seconds)
@@ -51,7 +54,7 @@ class System:
     def make(self, mirror):
         """Debootstrap, packages that come before the clone, and the clone."""
         self.folder.mkdir()
-        run(["debootstrap", "--variant=minbase", self.suite, str(self.folder), mirror])
+        run(["debootstrap", *self._of_ubuntu(), self.suite, str(self.folder), self.ubuntu or mirror, *self._script()])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
         # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
         (self.folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
@@ -59,6 +62,15 @@ class System:
         clone = self.folder / CLONE.lstrip("/")
         run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
         self.commit = run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
+
+    def _of_ubuntu(self):
+        """Options of debootstrap. Debian doesn't have Ubuntu's keys; apt inside checks all further packages with its own."""
+        return ["--variant=minbase", *(["--components=main,universe", "--no-check-gpg"] if self.ubuntu else [])]
+
+    def _script(self):
+        """How debootstrap makes a suite that is younger than itself."""
+        known = Path("/usr/share/debootstrap/scripts", self.suite).exists()
+        return [] if known else ["gutsy" if self.ubuntu else "sid"]
 
     def inside(self, command, check=False):
         """CompletedProcess of a shell command within the system, with processes, mounts and nothing of this one's
@@ -129,13 +141,28 @@ def commands_of_the_readme():
     return [line.split("#")[0].strip() for line in block.strip().splitlines()]
 
 
-def table(systems):
-    """The page that the repository keeps."""
+def lines_of_others(file, systems):
+    """Lines of the table in a file that are of none of these systems."""
+    lines = file.read_text().splitlines() if file.exists() else []
+    names = [f"| {name} |" for name in ("system", *(system.suite for system in systems))]
+    return [line for line in lines if line.startswith("| ") and not line.startswith(tuple(names))]
+
+
+def table(systems, others):
+    """The page that the repository keeps; others: lines of systems that are not tried now."""
     cores = len(os.sched_getaffinity(0))
     about = f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
     about += f"{' and '.join(BASE)} added; the first command installs all other packages."
     head = "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |"
-    lines = ["# Fresh Debian systems", "", about, "", head, "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|"]
+    lines = [
+        "# Fresh Debian systems",
+        "",
+        about,
+        "",
+        head,
+        "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|",
+        *others,
+    ]
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
@@ -145,7 +172,7 @@ def table(systems):
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("suites", nargs="+", metavar="SUITE")
+    parser.add_argument("suites", nargs="+", metavar="SUITE[=ADDRESS]", help="Debian's, or Ubuntu's with its archive")
     parser.add_argument("--commands", nargs="+", metavar="COMMAND", help="instead of the README's")
     parser.add_argument("--out", type=Path, default=RESULTS, help="where the table goes (default: %(default)s)")
     return parser.parse_args(arguments)
@@ -162,11 +189,11 @@ def main(arguments):
         scratch = Path(tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
         mirror, commands = mirror_of_this_system(), options.commands or commands_of_the_readme()
         systems = []
-        for suite in options.suites:
-            systems.append(System(suite, scratch / suite))
+        for suite, _, address in (each.partition("=") for each in options.suites):
+            systems.append(System(suite, scratch / suite, address))
             systems[-1].make(mirror)
             for _ in systems[-1].try_commands(commands):
-                options.out.write_text(table(systems))
+                options.out.write_text(table(systems, lines_of_others(options.out, systems)))
     except CannotBegin as error:
         print(f"debian_systems.py: {error}", file=sys.stderr)
         return 2

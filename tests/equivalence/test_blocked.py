@@ -45,8 +45,7 @@ def test_engine_and_functors_agree(scene, resting):
         new_scene(0.1 * unit)
         globals()[scene]()
         if engine:
-            fused_engine(subSteps=10)
-            O.dt *= 10
+            engine_of_sub_steps(10)
         O.run(steps // 10 if engine else steps, True)
         return positions(), energies()
 

@@ -69,8 +69,7 @@ def test_ledger_of_bonds_in_a_shrinking_cell_closes_with_second_order(homo):
 def test_same_bits_on_two_threads_and_after_a_checkpoint_and_rounding_on_instruction_sets():
     def end(save=False, **options):
         start("like", 1e-3, 2, side=4)
-        fused_engine(neck=0.4, subSteps=5, **options)
-        O.dt *= 5
+        engine_of_sub_steps(5, neck=0.4, **options)
         O.engines[0].prepare()
         O.run(15, True)
         if save:

@@ -70,8 +70,7 @@ def test_interactions_are_those_of_the_functors(kind, steps):
 
 def test_interactions_follow_the_contacts_and_stay_the_same_objects():
     start("like", count=64)
-    fused_engine(subSteps=5, exportInteractions=True)
-    O.dt *= 5
+    engine_of_sub_steps(5, exportInteractions=True)
     seen, ended, kept = {}, 0, 0
     for _ in range(80):
         O.step()
@@ -93,8 +92,7 @@ def test_interactions_follow_the_contacts_and_stay_the_same_objects():
 def test_exporting_changes_no_bit_and_checkpoints_go_on():
     def end(**options):
         start("unlike", count=64)
-        fused_engine(subSteps=7, **options)
-        O.dt *= 7
+        engine_of_sub_steps(7, **options)
         O.run(60, True)
         O.save("checkpoint.yade.gz")
         O.run(60, True)
@@ -122,8 +120,7 @@ def test_orientations_are_those_of_the_functors():
         grain((2.0001e-7, 0.3e-7, 0), 1e-7, ice(), (-1, 0.5, 0), (1e8, -3e8, 1e8))
         grain((1e-7, -2e-7, 0.2e-7), 1e-7, ice(), (0, 4, 0), (0, 3e8, 1e7))
         if sub_steps:
-            fused_engine(subSteps=sub_steps, orientations=True)
-            O.dt *= sub_steps
+            engine_of_sub_steps(sub_steps, orientations=True)
         O.run(480 // max(1, sub_steps), True)
         return orientations()
 

@@ -51,8 +51,7 @@ def test_engine_and_functors_agree():
         if pushed:
             push()
         if engine:
-            fused_engine(subSteps=10)
-            O.dt *= 10
+            engine_of_sub_steps(10)
         else:
             half_a_step_before()
         O.run(40 if engine else 400, True)

@@ -71,8 +71,7 @@ def test_handed_over_in_the_middle(kind, first):
 def test_same_bits_on_one_and_two_threads_and_from_a_checkpoint():
     def end(threads, saved=False):
         start(count=343)
-        fused_engine(threads=threads, subSteps=10)
-        O.dt *= 10
+        engine_of_sub_steps(10, threads=threads)
         O.run(30, True)
         if saved:
             O.save("checkpoint.yade.gz")

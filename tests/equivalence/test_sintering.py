@@ -108,8 +108,7 @@ def test_same_bits_on_one_and_two_threads_and_after_a_checkpoint(kind, count, sp
 
     def end(threads, save=False):
         start(kind, count, speed)
-        fused_engine(threads=threads, subSteps=10)
-        O.dt *= 10
+        engine_of_sub_steps(10, threads=threads)
         O.run(8, True)
         contact_law.sinter(0.4)
         O.run(8, True)

@@ -13,8 +13,7 @@ def start(kind, count=27):
 
 
 def to_engine(sub_steps=1, **options):
-    fused_engine(subSteps=sub_steps, **options)
-    O.dt *= sub_steps
+    engine_of_sub_steps(sub_steps, **options)
 
 
 def to_functors():

@@ -129,35 +129,50 @@ def test_a_pyrunner_may_call_the_engine_while_the_loop_runs():
     assert len(found) >= 3 and set(found) == {(3, 3, 3)}
 
 
-def test_a_checkpoint_of_another_format_or_damaged_is_refused():
-    """Of as many numbers, but another header; one that is cut off, or too long, or has another number somewhere: indices too."""
-    chain()
-    steps(20)
+def damageable(name):
+    """(numbers of an attribute of the engine in a saved scene, a function that loads the scene with others in their place)."""
     O.save("saved.xml")
     with open("saved.xml") as file:
         text = file.read()
     # <savedState> <count>..</count> ..<item>..</item> <item>.. </savedState>
     head, number, between, numbers, tail = re.fullmatch(
-        r"(.*<savedState>\s*<count>)(\d+)(.*?)(<item>.*</item>)(\s*</savedState>.*)", text, re.S
+        rf"(.*<{name}>\s*<count>)(\d+)(.*?)(<item>.*?</item>)(\s*</{name}>.*)", text, re.S
     ).groups()
-    items = re.findall(r"<item>.*?</item>", numbers)
+    items = re.findall(r"<item>(.*?)</item>", numbers)
     assert len(items) == int(number)
 
-    def loaded(items):
+    def load(items):
         with open("changed.xml", "w") as file:
-            file.write(f"{head}{len(items)}{between}{''.join(items)}{tail}")
+            file.write(f"{head}{len(items)}{between}{''.join(f'<item>{item}</item>' for item in items)}{tail}")
         O.load("changed.xml")
+
+    return items, load
+
+
+@pytest.mark.parametrize("name, first", [("savedState", 2), ("savedForces", 0)])
+def test_a_damaged_checkpoint_is_refused(name, first):
+    """Cut off, too long, or with another number somewhere, indices too: of the engine's state, and of permanent forces."""
+    chain()
+    for k in range(4):
+        O.forces.setPermF(k, Vector3(1e-9, -2e-9, 3e-9 * k))
+        O.forces.setPermT(k, Vector3(0, 1e-16, k * 1e-17))
+    steps(20)
+    items, load = damageable(name)
+
+    def loaded(items):
+        load(items)
         return said(O.step)
 
     def with_number(k, value):
-        return [*items[:k], f"<item>{value}</item>", *items[k + 1 :]]
+        return [*items[:k], value, *items[k + 1 :]]
 
     assert loaded(items) == ""
-    assert "is of format 99, which another version wrote: it must be 8" in loaded(with_number(1, 99))
-    assert "is of format 1, which another version wrote: it must be 8" in loaded(with_number(0, 4))
+    if name == "savedState":
+        assert "is of format 99, which another version wrote: it must be 8" in loaded(with_number(1, 99))
+        assert "is of format 1, which another version wrote: it must be 8" in loaded(with_number(0, 4))
     damaged = [items[:-1], [*items, items[-1]]]
-    for k in range(2, len(items), len(items) // DAMAGED_NUMBERS):
-        number = float(items[k][6:-7])
+    for k in range(first, len(items), max(1, len(items) // DAMAGED_NUMBERS)):
+        number = float(items[k])
         damaged += [with_number(k, value) for value in (number + 1, -number - 1, 1e300)]
     assert {loaded(changed).partition(": ")[2] for changed in damaged} == {
         "the checkpoint of the grains is damaged: it must be as O.save wrote it"

@@ -105,6 +105,32 @@ def test_a_touching_body_may_be_moved(mover, by):
         assert lost == pytest.approx(4 / 45 * c["pullOffForce"] * c["pullOffOverlap"], rel=0.05)
 
 
+@pytest.mark.parametrize("mover", ["fused", "functors"])
+@pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0, 2.0, 0)])
+def test_a_bonded_body_may_be_torn_away(mover, by):
+    """Its bond is let go as it was: what it held is booked, to the first order of the step, and nothing is thrown."""
+
+    def torn(step):
+        new_scene(step * unit, neck=0.3)
+        for k in range(4):
+            grain((k * 1.999e-7, 0, 0), 1e-7, O.bodies[0].material if k else ice(), (0, 0.1 * (-1) ** k, 0))
+        if mover == "fused":
+            fused_engine(neck=0.3)
+        steps(int(20 / step))
+        before = energies()
+        O.bodies[3].state.pos += Vector3(*by) * 1e-7
+        O.step()
+        bond = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=0.3).bondConstants(ice(), 1e-7, ice(), 1e-7)
+        changes = {name: (value - before[name]) / bond["breakingEnergy"] for name, value in energies().items()}
+        assert 0 < changes["bondBreaking"] < 1
+        steps(int(20 / step))
+        assert max(b.state.vel.norm() for b in O.bodies) < 1
+        return abs(sum(changes.values()))
+
+    coarse, fine = torn(0.1), torn(0.00625)
+    assert fine < coarse / 4 < 1e-3
+
+
 def test_ids_of_bodies_that_were_erased_are_left_out():
     """The run is that of a scene without them, with the ids of the others; what comes in later has the next id."""
 

@@ -103,7 +103,7 @@ def kernel(tmp_path_factory):
     library = tmp_path_factory.mktemp("kernel") / "kernel_probe.so"
     subprocess.run(
         [
-            "g++",
+            os.environ.get("CXX", "g++"),  # and PROBE_FLAGS: tests/drivers/sanitizers.py
             "-std=c++17",
             "-O2",
             "-ffp-contract=off",
@@ -112,7 +112,7 @@ def kernel(tmp_path_factory):
             "-Werror",
             "-fPIC",
             "-shared",
-            *os.environ.get("PROBE_FLAGS", "").split(),  # tests/drivers/sanitizers.py
+            *os.environ.get("PROBE_FLAGS", "").split(),
             str(HERE / "kernel_probe.cpp"),
             "-o",
             str(library),

@@ -68,13 +68,9 @@ def test_sites_are_those_of_a_face_centred_cubic_lattice():
 
 @pytest.mark.parametrize("filling", [0.15, 0.4, 0.6])
 def test_mean_coordination_of_inner_grains(filling):
-    """12 filling/maximum (A24 eq 39) to 3.9 standard errors: 99.99 % if right; fixed seeds, so the same at
-    each run.
+    """12 filling/maximum (A24 eq 39) to 3.9 standard errors of 40 seeds, of grains whose twelve neighbouring sites all lie in the sphere.
 
-    For grains whose twelve neighbouring sites all lie in the sphere; the expected number is 12 (N-1)/(n-1) of
-    n sites. One aggregate's mean scatters by at least sqrt(24 p (1-p)^2/N), p = filling/maximum, for pairs of
-    sites occupied independently, and more because the inner grains' number and the lattice's vary: so the
-    error is that of 40 seeds.
+    One aggregate's mean scatters by at least sqrt(24 p (1-p)^2/N), p = filling/maximum, for pairs of sites occupied independently.
     """
     expected = 12 * filling / packings.maximum_filling(RADIUS, OVERLAP)
     means = []

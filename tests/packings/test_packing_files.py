@@ -69,25 +69,3 @@ def test_the_command_makes_packings_and_says_of_what(tmp_path):
     for name in ("density", "criticalRolling", "viscoelasticTime", "file"):
         assert f"\n  {name}" not in shown
     assert "\n  surfaceEnergy" in shown
-
-
-COMMANDS = {
-    "a.npz filling=0.8": "must be at most 0.7519",
-    "a.npz radius=-3": "radius = -3: must be > 0 [grain radii]",
-    "a.npz velocity=3": "velocity: unknown parameter; must be one of packing, filling",
-    "a.npz density=900": "density: a packing doesn't depend on it; must be left out",
-    "a.npz surfaceEnergy=1e4 unusual=1": "grainRadius = 1e-07: contacts at rest have a radius of ",
-    "nowhere/a.npz": "nowhere",
-    "a.txt": "a.txt: a packing is saved as .npz; must end in .npz",
-    "a.npz b.npz from={here}": "b.npz: from = {here} is one aggregate; must be one file",
-    "a.npz ./a.npz radius=3": "./a.npz: given twice; must be two files, one for each aggregate",
-    "a.npz packing=file file=b.npz": "packing = file: must be cpe or bcca or bpca",
-}
-
-
-@pytest.mark.parametrize("arguments", COMMANDS)
-def test_command_line_errors(tmp_path, arguments):
-    failed = make_packing(tmp_path, *arguments.format(here=__file__).split())
-    assert failed.returncode != 0
-    assert COMMANDS[arguments].format(here=__file__) in failed.stderr and failed.stderr.count("\n") == 1
-    assert os.listdir(tmp_path) == []

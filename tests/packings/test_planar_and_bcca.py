@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from of_ice import OVERLAP, RADIUS, SPACING
 from scipy.spatial import cKDTree
+from scipy.stats import kstest
 
 from analysis.measures.fragments import fragment_labels
 from yade_scripts import packings
@@ -46,6 +47,16 @@ def test_bcca_is_one_cluster_whose_grains_touch_and_never_overlap_more(planar, g
     assert len(packings.contacts(packing)) >= grains - 1
     if planar:
         assert np.all(packing.position[:, 2] == 0)
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_clusters_meet_anywhere_on_their_cross_section(planar):
+    """Two grains, along x: the square of the impact parameter is uniform in space, itself in a plane; of fixed seeds."""
+    apart = np.array(
+        [np.diff(bcca(2, RADIUS, OVERLAP, seed, planar=planar).position, axis=0)[0] for seed in range(500)]
+    )
+    impact = np.linalg.norm(apart[:, 1:], axis=1) / SPACING
+    assert kstest(impact if planar else impact**2, "uniform").pvalue > 1e-3
 
 
 def test_bcca_is_a_function_of_seed_and_index():

@@ -1,78 +1,103 @@
-"""Tries every fault at every file-system call of every scenario (faults/scenarios.py), and writes results/faults.md.
+"""Tries faults at the file-system calls of every command that writes files (faults/), and writes results/faults.md.
 
-    python3 tests/persistence/enumerate_faults.py [-j JOBS] [--out FILE]      six to twenty minutes on two cores
+    python3 tests/persistence/enumerate_faults.py [NAME ...] [-j JOBS] [--out FILE]      an hour on two cores
 
-Exit status: 0 when nothing was lost, otherwise 1, with one line on stderr for each case.
+NAME: lines of the table, by default all; the others stay as they are. Exit status: 0 when all was right, otherwise 1, with
+one line on stderr for each case.
 """
 
 import argparse
 import os
 import sys
-import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "benchmarks")]
+sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks")]
 from conftest import fast_folder
-from faults.forks import Forks
+from faults.commands import COMMANDS, Trial
+from faults.forks import DISK_FULL, Forks
 from faults.scenarios import ACTIONS, SCENARIOS, Bench, enumerated, enumerated_stops
 from measured_on import machine
 
-STOPS = "a new run, SIGTERM in its third checkpoint"
+STOPS = "collide: a new run, SIGTERM in its third checkpoint"
 HEAD = """# Faults, one at each file-system call
 
-A run of a few grains, with a checkpoint after each of its six steps and four states, is repeated for each call that changes
-a file below its run folder. Before this call, or after half of the bytes of a write, the process is ended by SIGKILL; or from
-this call on the disk is full. Afterwards the run is called again as a user or `study.py` would. Lost means one of these: it
-doesn't come to its end, it ends with other bits than a run without faults, a checkpoint that was there is gone, a folder marked
-as ended holds something else, or the full disk gave more than one line. After SIGTERM the process is ended at each call up to
-the end of the next checkpoint.
+Each command is repeated for each call (or every so many) with which it changes a file of its output. Before this call, or after half of the bytes
+of a write, the process is ended by SIGKILL; or from this call on the disk is full. Then it is called again as a user would. Right means: every file
+is afterwards the one that was there or the one that the command writes, never half of one; the full disk gave one line and a status that says
+so; the second call comes to its end with the same bytes as a call without faults, and leaves no temporary file. Of runs, the bits of history and states count,
+once they are marked as ended; of collisions also that no checkpoint that was there is gone. What processes write that a command
+starts (workers of `study`, ffmpeg, the browser that prints PDF) is not counted; `install` and `uninstall` replace and remove an installation.
 
-`make test-faults`, commit {commit}, {cpu}, {cores} cores, {minutes:.0f} minutes.
+`make test-faults`, {cpu}, {cores} cores.
 
-| run | fault | cases | lost |
-|---|---|---:|---:|
+| command | calls | tried at every | kills | full disks | right | commit |
+|---|---:|---:|---:|---:|---:|---|
 """
 
 
-def jobs():
-    """(scenario's name, fault) of every row of the table."""
-    return [(scenario.name, fault) for scenario in SCENARIOS for fault in ACTIONS] + [(STOPS, "ends before")]
-
-
-def tried(job):
-    """(job, [Case])."""
-    name, fault = job
+def tried(name):
+    """(name, calls, of how many one is tried, [Case]) of a line of the table."""
+    command = next((command for command in COMMANDS if command.name == name), None)
     with fast_folder() as folder:
         forks = Forks(folder)
-        bench = Bench(forks, folder)
-        if name == STOPS:
-            cases = list(enumerated_stops(bench, 2))
+        if command:
+            (folder / "trial").mkdir()
+            trial = Trial(forks, command, folder / "trial")
+            found = len(trial.calls), command.every, list(trial.cases())
         else:
-            cases = list(enumerated(bench, next(s for s in SCENARIOS if s.name == name), (fault,)))
+            bench = Bench(forks, folder)
+            scenario = next((s for s in SCENARIOS if of_collide(s) == name), None)
+            cases = list(enumerated(bench, scenario) if scenario else enumerated_stops(bench, 2))
+            found = len(bench.calls(scenario or SCENARIOS[0])), 1, cases
         forks.close()
-    return job, cases
+    return name, *found
+
+
+def of_collide(scenario):
+    return f"collide: {scenario.name}"
+
+
+NAMES = [*map(of_collide, SCENARIOS), STOPS, *(command.name for command in COMMANDS)]
+
+
+def line(name, calls, every, cases, commit):
+    """Of the table."""
+    full = sum(ACTIONS[case.fault] == DISK_FULL for case in cases)
+    right = sum(not case.wrong for case in cases)
+    return f"| {name} | {calls} | {every} | {len(cases) - full} | {full} | {right} of {len(cases)} | {commit} |\n"
+
+
+def lines_of(file):
+    """{name: line} of a table that is there."""
+    lines = file.read_text().splitlines(keepends=True) if file.exists() else []
+    return {text.split(" | ")[0].removeprefix("| "): text for text in lines if text.startswith("| ")}
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", type=Path, default=HERE / "results" / "faults.md")
     options = parser.parse_args(arguments)
-    begun, rows, lost = time.monotonic(), [], []
+    for name in set(options.names) - set(NAMES):
+        parser.error(f"{name}: must be one of {', '.join(NAMES)}")
+    wrong, about = [], machine()
     with ProcessPoolExecutor(options.jobs) as pool:
-        for (name, fault), cases in pool.map(tried, jobs()):
-            wrong = [case for case in cases if case.wrong]
-            rows.append(f"| {name} | {fault} | {len(cases)} | {len(wrong)} |\n")
-            print(rows[-1], end="", flush=True)
-            lost += [f"{case.scenario}: {case.fault} call {case.call}: {'; '.join(case.wrong)}" for case in wrong]
-    options.out.parent.mkdir(exist_ok=True)
-    head = HEAD.format(**machine(), minutes=(time.monotonic() - begun) / 60)
-    options.out.write_text(head + "".join(rows) + "".join(f"\n- {line}" for line in lost))
-    for line in lost:
-        print(f"enumerate_faults.py: {line}", file=sys.stderr)
-    return 1 if lost else 0
+        for name, *found in pool.map(tried, options.names or NAMES):
+            text = line(name, *found, about["commit"])
+            print(text, end="", flush=True)
+            wrong += [
+                f"{case.scenario}: {case.fault} call {case.call}: {'; '.join(case.wrong)}"
+                for case in found[-1]
+                if case.wrong
+            ]
+            lines = {**lines_of(options.out), name: text}
+            options.out.write_text(HEAD.format(**about) + "".join(lines[name] for name in NAMES if name in lines))
+    for case in wrong:
+        print(f"enumerate_faults.py: {case}", file=sys.stderr)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

@@ -7,7 +7,8 @@ import subprocess
 
 import pytest
 from faults import scenarios
-from faults.scenarios import RECORDER, RUN, SCENARIOS, enumerated, enumerated_stops, power_loss, wrong_exports
+from faults.commands import COMMANDS, Trial
+from faults.scenarios import RECORDER, RUN, SCENARIOS, enumerated, enumerated_stops, power_loss
 
 from analysis.runs.write import is_unfinished
 
@@ -74,8 +75,11 @@ def test_what_a_power_loss_takes_is_noticed(bench):
         assert power_loss([call for call in calls if (call.name, call.path) != ("fsync", path)]), path
 
 
-def test_no_fault_leaves_half_an_export(forks, tmp_path):
-    assert wrong_exports(forks, tmp_path, every=29) == []
+@pytest.mark.parametrize("name, every", [("analysis export", 29), ("make_packing", 4), ("analysis view", 3)])
+def test_no_fault_leaves_half_of_what_a_command_writes(forks, tmp_path, name, every):
+    command = next(command for command in COMMANDS if command.name == name)
+    cases = list(Trial(forks, command, tmp_path).cases(every))
+    assert len(cases) > 3 and not [case for case in cases if case.wrong]
 
 
 @pytest.mark.parametrize("size", [16, 24, 32, 40])
@@ -90,7 +94,7 @@ def test_a_disk_that_is_really_full(forks, tmp_path, size):
         pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
     try:
         done = forks.run(RUN, disk / "run")
-        wrong = scenarios.wrong_on_a_full_disk(done, disk / "run")
+        wrong = scenarios.wrong_on_a_full_disk(done)
         assert done.status and not wrong, wrong
         subprocess.run(["mount", "-o", "remount,size=4m", disk], check=True)
         assert forks.run(RUN + ("resume=1",), disk / "run").status == 0

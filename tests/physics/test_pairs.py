@@ -27,14 +27,8 @@ def rebound(speed, step, gap, material, radius2=1e-7, other=None):
 
 
 def sticking(step, material, low, high):
-    """The velocity between two others up to which grains stick, to 2e-4 of it."""
-    while high - low > 2e-4 * low:
-        middle = 0.5 * (low + high)
-        if rebound(middle, step, 2e-9, material) > 0:
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
+    """The velocity between two others up to which grains stick."""
+    return threshold(lambda speed: rebound(speed, step, 2e-9, material) > 0, low, high)
 
 
 def viscous(time):

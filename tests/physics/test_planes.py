@@ -70,11 +70,8 @@ def test_sticking_velocity(fused):
     """[2 (8/15 2^(2/3) + 4/45) F_c delta_c/m]^(1/2) (A22 eqs 9, 10 with R = r and m* = m)."""
     c = ICY
     closed = np.sqrt(2 * (8 / 15 * 2 ** (2 / 3) + 4 / 45) * c.pull_off_force * c.pull_off_overlap / c.reduced_mass)
-    low, high = 0.9 * closed, 1.1 * closed
-    while high - low > 2e-4 * low:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if rebound(middle, 0.02, 2e-9, fused=fused) > 0 else (middle, high)
-    assert 0.5 * (low + high) == pytest.approx(closed, rel=1e-3)
+    found = threshold(lambda speed: rebound(speed, 0.02, 2e-9, fused=fused) > 0, 0.9 * closed, 1.1 * closed)
+    assert found == pytest.approx(closed, rel=1e-3)
 
 
 @pytest.mark.parametrize("fused", [False, True])
@@ -84,11 +81,8 @@ def test_rebound_converges_with_second_order(kind, fused):
     speed, time, other = dict(elastic=(9.0, 0, ICE), viscous=(40.0, 2e-12, ICE), unlike=(9.0, 0, SOFT))[kind]
     drag = dict(viscoelastic_time=time)
     pair = pair_constants(Material(**{**vars(ICE), **drag}), R, Material(**{**vars(other), **drag}), np.inf)
-    scene = dict(
-        fused=fused,
-        material=ice(viscoelasticTime=time),
-        other=soft() if kind == "unlike" else ice(viscoelasticTime=time),
-    )
+    material = ice(viscoelasticTime=time)
+    scene = dict(fused=fused, material=material, other=soft() if kind == "unlike" else material)
     exact = collide_pair(speed, pair).rebound_velocity
 
     def error(step):
@@ -236,7 +230,7 @@ def piston(step):
     assert work < -1e-16
     by_force = (
         2.0 * O.dt * (np.sum(pushes) - pushes[-1] / 2)
-    )  # the wall moves by -2 O.dt against this push in each step
+    )  # in each step the wall moves by -2 O.dt against this push
     return np.std(total) / -work, abs(by_force + work) / -work
 
 
@@ -249,18 +243,15 @@ def test_piston_against_a_chain():
 @pytest.mark.parametrize("format", [".xml.bz2", ".yade.gz"])
 def test_checkpoint_in_contact_continues_to_the_bit(format):
     lone_grain((0.3 * R, 0.2 * R, R - 1e-10), (1.7, 0.6, -3.0), SPIN, plane_velocity=(0.1, 0, 0))
-    O.run(200, True)
-    O.save("checkpoint" + format)
-    ends = []
-    for _ in range(2):
+
+    def end():
         O.run(400, True)
         s = O.bodies[1].state
-        ends.append([list(s.pos), list(s.vel), list(s.ori), energies("constraintWork")])
-        if len(ends) == 1:
-            assert (
-                O.interactions.countReal() == 1
-                and energies()["rolling"] > 0
-                and energies("constraintWork")["constraintWork"]
-            )
-            O.load("checkpoint" + format)
-    assert ends[0] == ends[1]
+        return list(s.pos), list(s.vel), list(s.ori), energies("constraintWork")
+
+    O.run(200, True)
+    O.save("checkpoint" + format)
+    straight = *_, energy = end()
+    assert O.interactions.countReal() == 1 and energy["rolling"] > 0 and energy["constraintWork"]
+    O.load("checkpoint" + format)
+    assert end() == straight

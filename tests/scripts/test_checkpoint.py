@@ -42,34 +42,26 @@ def killed(tmp_path_factory):
     return folder
 
 
-def test_a_killed_run_resumes_to_the_same_bits(straight, killed, tmp_path):
-    """What a writer that was killed has left is removed."""
-    run = shutil.copytree(killed / "run", tmp_path / "run")
-    saved = read_arrays(run, "checkpoint", "recorder.npz")["rows"]
-    assert 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
-    assert read_json(run, "run.json")["outcome"] == "running"
-    left = [run / ".history.npz.x.unfinished", run / "states" / ".000003.npz.x.unfinished"]
-    for path in left:
-        path.write_bytes(b"half")
-    completed(tmp_path, *RUN, "resume=1")
-    assert same_bits(run, straight) and not any(path.exists() for path in left)
-    assert sorted(os.listdir(run)) == ["ended", "history.npz", "run.json", "states"]
-    assert read_json(run, "run.json")["outcome"] == "completed"
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
-    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes."""
+    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes, and what a writer that was killed has left."""
     script, arguments, after = KINDS[name]
     arguments = arguments.split()
     (tmp_path / "straight").mkdir()
     completed(tmp_path / "straight", *arguments, script=script)
     number = signal.SIGTERM if name == "shorter steps" else signal.SIGKILL
     stop_midway(tmp_path, [*arguments, OFTEN], number, script, after)
-    before = read_json(tmp_path, "run", "run.json")["wallTime"]
+    run, straight = tmp_path / "run", tmp_path / "straight" / "run"
+    before, saved = read_json(run, "run.json"), read_arrays(run, "checkpoint", "recorder.npz")["rows"]
+    assert before["outcome"] == ("interrupted" if number == signal.SIGTERM else "running")
+    assert 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
+    left = [run / ".history.npz.x.unfinished", run / "states" / ".000003.npz.x.unfinished"]
+    for path in left:
+        path.write_bytes(b"half")
     about, _ = completed(tmp_path, *arguments, "resume=1", script=script)
-    assert about["wallTime"] > before
-    assert same_bits(tmp_path / "run", tmp_path / "straight" / "run")
+    assert about["wallTime"] > before["wallTime"] and about["outcome"] == "completed"
+    assert same_bits(run, straight) and not any(path.exists() for path in left)
+    assert {"ended", "history.npz", "run.json", "states"} <= set(os.listdir(run))
 
 
 def test_yades_own_loop_resumes_to_rounding(tmp_path):
@@ -87,7 +79,6 @@ def test_yades_own_loop_resumes_to_rounding(tmp_path):
 DAMAGED = {
     "commit": ('"commit": "', '"commit": "0', "written by the plugin of commit 0"),
     "yade": ('"yade": "', '"yade": "1', "written by YADE 1"),
-    "no scene": ("scene-", "nothing-", "not a checkpoint ([Errno 2]"),
     "columns": ('"drag", ', "", "of a history with other columns"),
     "kind": ('"kind": "collision"', '"kind": "toy"', "of a run with kind = toy, not collision"),
     "cut off": (": ", "", "not a checkpoint ("),
@@ -139,7 +130,13 @@ def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     assert all(continued[name].tobytes() == straight[name].tobytes() for name in straight)
 
 
-def test_ctrl_c_prints_what_continues(tmp_path):
-    output = stop_midway(tmp_path, [*RUN, OFTEN], signal.SIGINT).output
-    command = next(line for line in output.splitlines() if line.startswith("to continue: "))
+@pytest.mark.parametrize("number, status", [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_an_interrupted_run_leaves_what_it_had_and_prints_what_continues(tmp_path, number, status):
+    process = stop_midway(tmp_path, [*RUN, OFTEN], number)
+    assert process.returncode == status and "run folder: run (interrupted, " in process.output
+    assert sorted(os.listdir(tmp_path / "run")) == ["checkpoint", "history.npz", "run.json", "states"]
+    history = read_arrays(tmp_path, "run", "history.npz")
+    last = read_arrays(tmp_path, "run", "states", sorted(os.listdir(tmp_path / "run" / "states"))[-1])
+    assert last["time"] == history["time"][-1] > 0
+    command = next(line for line in process.output.splitlines() if line.startswith("to continue: "))
     assert call(tmp_path, *shlex.split(command)[2:]).returncode == 0 and (tmp_path / "run" / "ended").exists()

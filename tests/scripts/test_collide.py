@@ -1,12 +1,11 @@
-"""collide.py run for real: what a run folder holds, what is refused, what an interruption leaves."""
+"""collide.py run for real: what a run folder holds, what is refused."""
 
 import os
 import shutil
-import signal
 
 import numpy as np
 import pytest
-from running import TINY, collide, completed, messages, read_arrays, read_json, refusal, stop_midway
+from running import TINY, collide, completed, messages, read_arrays, read_json, refusal
 
 from analysis.runs.format import CHANNELS, COLLISION
 from analysis.runs.verify import verify_run
@@ -112,17 +111,6 @@ def test_a_run_that_has_ended_is_kept_unless_asked(run, tmp_path):
     assert os.stat(run / "run.json").st_mtime_ns == before
     about, _ = completed(tmp_path, *TINY, "overwrite=1", "seed=2")
     assert about["seed"] == 2 and (run / "ended").exists() and len(os.listdir(run / "states")) == 22
-
-
-@pytest.mark.parametrize("number, status", [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
-def test_an_interrupted_run_leaves_what_it_had(tmp_path, number, status):
-    process = stop_midway(tmp_path, ["radius=4", "velocity=10", "duration=1e-3", "checkpointInterval=0.1"], number)
-    assert process.returncode == status and "run folder: run (interrupted, " in process.output
-    assert sorted(os.listdir(tmp_path / "run")) == ["checkpoint", "history.npz", "run.json", "states"]
-    assert read_json(tmp_path, "run", "run.json")["outcome"] == "interrupted"
-    history = read_arrays(tmp_path, "run", "history.npz")
-    last = read_arrays(tmp_path, "run", "states", sorted(os.listdir(tmp_path / "run" / "states"))[-1])
-    assert last["time"] == history["time"][-1] > 0
 
 
 @pytest.mark.parametrize("arguments", [("radius=4",), ("packing=bcca", "grains=64")], ids=["cpe", "bcca"])

@@ -1,12 +1,15 @@
-"""Every command that the documents say is one: its parser takes it, and the first tutorial runs as written."""
+"""What the documents say: every command is one that its parser takes, README's script and the first tutorial run as written, files and numbers
+of tables are there."""
 
 import json
 import re
 import shlex
+import subprocess
 from pathlib import Path
 
 import pytest
 from running import PYTHON, TOP, call
+from scenes import *
 
 from analysis.__main__ import _parser
 from yade_scripts import study
@@ -16,10 +19,12 @@ from yade_scripts.packings.cut import CutParameters
 from yade_scripts.packings.imported import ImportParameters
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run.arguments import from_arguments, gather
+from yade_scripts.runner import cost, rows
 
 TOP = Path(TOP)
-PAGES = [TOP / name for name in ("README.md", "analysis/STUDIES.md", "yade_scripts/RUNS.md", "contact_law/SCRIPTS.md")]
-PAGES += sorted((TOP / "docs").glob("*.md")) + sorted((TOP / "docs").glob("*.ipynb"))
+BYTES_A_GRAIN = 130  # of a state
+DOCUMENTS = [TOP / name for name in "README.md analysis/STUDIES.md yade_scripts/RUNS.md contact_law/SCRIPTS.md".split()]
+PAGES = DOCUMENTS + sorted((TOP / "docs").glob("*.md")) + sorted((TOP / "docs").glob("*.ipynb"))
 PROGRAM = (
     r"(?:yade -n -x|/usr/bin/python3|python3) (yade_scripts/\w+\.py|-m analysis|-m yade_scripts\.make_packing)(?: |$)"
 )
@@ -81,9 +86,62 @@ def test_values_in_the_text_are_parameters():
         assert names == {"continue"} or any(names <= set(kind.columns()) for kind in kinds), words
 
 
-def test_the_first_tutorial(tmp_path):
-    """As its notebook has it, in plain Python."""
-    cells = json.loads((TOP / "docs/first_collision.ipynb").read_text())["cells"]
+@pytest.mark.parametrize(
+    "notebook, ask, answer",
+    [
+        ("first_collision", "runs.outcome[0]", "sticking"),
+        ("atlas", "runs.outcome[bands.cat.codes == 0].unique()", "['sticking']"),
+    ],
+)
+def test_notebooks(tmp_path, notebook, ask, answer):
+    """In plain Python."""
+    cells = json.loads((TOP / f"docs/{notebook}.ipynb").read_text())["cells"]
     code = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
-    done = call(tmp_path, PYTHON, "-c", code + "\nprint(runs.outcome[0])", PYTHONPATH=str(TOP), MPLBACKEND="agg")
-    assert done.returncode == 0 and done.stdout.splitlines()[-1] == "sticking", done.stderr
+    done = call(tmp_path, PYTHON, "-c", f"{code}\nprint({ask})", PYTHONPATH=str(TOP), MPLBACKEND="agg")
+    assert done.returncode == 0 and done.stdout.splitlines()[-1] == answer, done.stderr
+
+
+@pytest.mark.in_yade
+def test_the_script_and_the_fused_line():
+    """The README's engines and the fused engine in their place, each with two grains that meet."""
+    readme = DOCUMENTS[0].read_text()
+    block = re.search(r"```python\n(import contact_law.*?)```", readme, re.S).group(1)
+    fused = re.search(r"`(O\.engines = \[JKRWadaEngine.*?\])`", readme).group(1)
+    connection = []
+    for engines, together in ((block, 1), (f"{block}\nO.dt *= 50\n{fused}", 50)):
+        O.reset()
+        names = dict(globals())
+        exec(engines, names)
+        for x, v in ((0, 1), (2.01e-7, -1)):
+            grain((x, 0, 0), 1e-7, names["ice"], (v, 0, 0))
+        O.run(1000 // together, True)
+        connection.append(O.energy["connection"])
+    assert connection[0] > 0 and abs(connection[1] / connection[0] - 1) < 0.02
+
+
+def test_the_commands_are_there():
+    known = subprocess.run(["make", "-pRrq", ":"], cwd=TOP, capture_output=True, text=True).stdout
+    for document in DOCUMENTS:
+        text = document.read_text().replace("study-NAME", "study-viscous").replace("NAME", "viscous")
+        for target in re.findall(r"(?:^    |`)make ([a-z]+(?:-[a-z]+)*)", text, re.M):
+            assert re.search(rf"^{target}:", known, re.M), f"{document.name}: {target}"
+        for path in re.findall(r"(?<![\w/])(?:yade_scripts|contact_law|analysis|tests)/[\w./-]*\w/?", text):
+            assert (TOP / path.rstrip("/")).exists(), f"{document.name}: {path}"
+        for link in re.findall(r"\]\((?!https?:|#)([^)]+)\)", text):
+            assert (document.parent / link).exists(), f"{document.name}: {link}"
+
+
+def test_the_table_of_studies_is_that_of_their_tables():
+    study, seen = None, set()
+    for line in (TOP / "analysis/STUDIES.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        if len(cells) != 8 or cells[2] not in ("first", "desk", "full", "own", "beyond", "prediction"):
+            continue
+        study = cells[0].strip("`") or study
+        found = rows.read(str(TOP / f"yade_scripts/studies/{study}-{cells[2]}.table"))
+        assert int(cells[3]) == len(found), line
+        assert float(cells[4]) == pytest.approx(sum(map(cost.contact_updates, found)), rel=0.05), line
+        grains = sum(row.estimate.grains * row.parameters.states for row in found)
+        assert float(cells[7].split()[0]) == pytest.approx(grains * BYTES_A_GRAIN * 1e-9, rel=0.2), line
+        seen.add((study, cells[2]))
+    assert len(seen) == 12

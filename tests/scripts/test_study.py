@@ -44,7 +44,7 @@ def test_failures_fail_the_study_after_all_others_have_run_and_status_tells_it_m
     folder, (status, output, errors), midway = first_call
     assert status == 1 and output.splitlines()[-1] == "tiny: 4 rows, 1 done, 3 failed"
     first = output.splitlines()[0]  # the estimate
-    assert first.startswith("tiny: 4 rows, 1 failed, 3 to run; estimated time 00:")
+    assert first.startswith("tiny: 4 rows, 1 failed, 3 to run; estimated time ")
     assert "with 2 at once (measured: " in first
     refused, killed, fails = errors.splitlines()
     assert killed.startswith("study.py: killed: killed by signal 9 (checkpoint at ")
@@ -95,25 +95,6 @@ def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
     assert not (tmp_path / "runs" / "tiny" / "ends").exists()
     lines = study(tmp_path, "tiny.table", "--status").stdout.splitlines()
     assert lines[0].split()[:2] == ["waiting", "killed"] and "checkpoint at " in lines[0]
-
-
-USELESS = {
-    None: "No such file or directory; must be ",
-    "radius velocity\n": "no rows; must be ",
-    "radius velocity\n4\n": "line 2 has 1 cells; must be 2",
-    "radius velocity\n= 3\n": "line 2: = has no row above; must be a value",
-    "radius out\n4 a\n5 a\n": "lines 2 and 3 both have out = a; must be one",
-}
-
-
-@pytest.mark.parametrize("text", USELESS)
-def test_tables_that_cannot_be_used_run_nothing(tmp_path, text):
-    if text:
-        (tmp_path / "rows.table").write_text(text)
-    failed = study(tmp_path, "rows.table")
-    assert failed.returncode == 2 and failed.stderr.count("\n") == 1
-    assert failed.stderr.startswith(f"study.py: rows.table: {USELESS[text]}")
-    assert "runs" not in os.listdir(tmp_path)
 
 
 def test_a_full_disk_is_one_line(tmp_path):

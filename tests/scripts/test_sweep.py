@@ -51,7 +51,17 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
 
 @pytest.mark.parametrize(
     "given",
-    [{"out": "x"}, {"resume": 1}, {"file": "a b.npz", "packing": "file"}, {"jobs": 0}, {"folder": "a b"}, {"seed": []}],
+    [
+        {"out": "x"},
+        {"resume": 1},
+        {"file": "a b.npz", "packing": "file"},
+        {"jobs": 0},
+        {"folder": "a b"},
+        {"seed": []},
+        {"jobs": 1.5},
+        {"folder": 3},
+        {"seed": [1, 2, 1]},
+    ],
 )
 def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):
     with pytest.raises(ParameterError, match="must be"):

@@ -4,7 +4,7 @@ import os
 import signal
 
 import pytest
-from running import COLLIDE, PYTHON, STUDY, call, process_writing, same_bits, start, study, wait_for
+from running import COLLIDE, PYTHON, STUDY, call, process_writing, same_bits, start, wait_for
 
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows
@@ -58,6 +58,7 @@ def test_a_worker_that_is_killed_loses_its_row_alone_and_says_which(one_worker):
     assert refused.startswith("study.py: refused: collide.py: neck = 0.01: ") and "broke down" in fails
     begun = [name for name in RUNS if "Welcome to Yade" in log(folder, name).read_text()]
     assert begun == ["bcca", "again"]  # two workers
+    assert same_bits(folder / "bcca", folder / "again")
 
 
 @pytest.mark.parametrize("name", [name for name in RUNS if name not in ("killed", "refused", "again")])
@@ -65,15 +66,6 @@ def test_a_row_has_the_bits_of_a_process_of_its_own(one_worker, tmp_path, name):
     folder, *_ = one_worker
     call(tmp_path, "yade", "-n", "-x", COLLIDE, *RUNS[name].split(), "out=run")
     assert same_bits(folder / name, tmp_path / "run")
-
-
-def test_the_killed_row_is_taken_up_again(one_worker, tmp_path):
-    folder, *_ = one_worker
-    write_table(folder, ["killed", "bcca"])
-    done = study(folder, "rows.table", "-j", "1")
-    assert done.returncode == 0 and "1 of them from checkpoints" in done.stdout, done.stderr
-    call(tmp_path, "yade", "-n", "-x", COLLIDE, *RUNS["killed"].split(), "out=run")
-    assert same_bits(folder / "killed", tmp_path / "run") and same_bits(folder / "bcca", folder / "again")
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from math import sqrt
 import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
-from analysis.measures.decided import REBOUND_PER_RADIUS, rebound_time
+from analysis.measures.decided import BREAKING, REBOUND_PER_RADIUS, rebound_time
 from analysis.measures.plate import has_plate
 from analysis.runs.format import COLLISION, RESTING
 from yade_scripts import packings, stability
@@ -31,6 +31,9 @@ from yade_scripts.run.parameters import RunParameters
 
 WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
 VELOCITY = Usual(1e-6, 3e3, "thermal motion of aggregates to sound in ice")
+# Of 1,900 runs of the atlas with endWhenApart: below RESTFUL breaking energies a grain most stick and end REST times rebound_time()
+# after the touch; from ten times that on most take all of their duration.
+RESTFUL, REST = 0.05, 2.0
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
@@ -277,10 +280,17 @@ def estimate(parameters):
     touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
     if duration is None:
         duration = default_duration(parameters, radius, constants["timeUnit"], touch)
+    end = duration
+    if (
+        parameters.endWhenApart
+        and _energy_of_grain(parameters, grains, constants) < RESTFUL * (1 - parameters.impact) ** 2
+    ):
+        end = min(duration, touch + REST * rebound_time(radius, constants["timeUnit"]))
     steps = duration / constants["timeUnit"] / expected_step(parameters, constants)
     if parameters.impactStepFraction is not None:
         steps += impact_step.more_steps(parameters.changed(radius=radius), touch, duration, constants["timeUnit"])
-    return Estimate(sum(grains), sum(grains) * neighbours / 2, steps)
+    share = end / duration
+    return Estimate(sum(grains), sum(grains) * neighbours / 2, share * steps, share)
 
 
 def expected(parameters, run):
@@ -315,6 +325,14 @@ def _grain_numbers(parameters):
         return tuple(packings.load(p.file).grains for p in of)
     except PackingError:
         return len(of) * (1,)
+
+
+def _energy_of_grain(parameters, grains, constants):
+    """K(0) of a grain of the aggregates (numbers of their grains) over what breaks a contact."""
+    target, projectile = grains if len(grains) == 2 else (np.inf, *grains)  # a plate
+    moving = projectile / (1 + projectile / target)  # grains' masses, of the relative motion
+    kinetic = moving * 2 * constants["reducedMass"] * parameters.velocity**2 / 2
+    return kinetic / sum(grains) / (BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"])
 
 
 def _typical_radius(packing, grains, planar):

@@ -13,11 +13,13 @@ from yade_scripts.parameters.errors import InputError
 
 
 class Estimate(NamedTuple):
-    """What a run is about to take: number of grains, mean number of contacts, small steps."""
+    """What a run is about to take: number of grains, mean number of contacts, small steps until its end; which share of all
+    that fit into its duration these are."""
 
     grains: float
     contacts: float
     steps: float
+    share: float = 1.0
 
 
 @dataclass(frozen=True)

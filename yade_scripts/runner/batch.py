@@ -4,18 +4,22 @@ import fcntl
 import json
 import os
 import subprocess
+import time
 from contextlib import suppress
+from dataclasses import asdict
 from multiprocessing.connection import wait
 
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import read_json
+from analysis.runs.format import ENDED_FILE
+from analysis.runs.status import changed
 from yade_scripts.run.folder import write_json
-from yade_scripts.runner.cost import TELLING, Cost
+from yade_scripts.runner.cost import Cost, Piece, setup_seconds, step_seconds
 from yade_scripts.runner.rows import DONE
 from yade_scripts.runner.workers import Worker
 
 LOGS = os.path.join("runs", "logs")
-MEASURING = 300  # s, at most
+MEASURING, POLL = 300, 0.05  # s, at most; s between looks at it
 MEASURE_SPEED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "measure_speed.py")
 NICE = 10  # as yade-batch runs its jobs
 
@@ -58,44 +62,55 @@ class StudyFolder:
     def cost(self, rows, states):
         """Cost from the rows that have ended, and from what was measured."""
         ended = [(row, s.seconds) for row, s in zip(rows, states) if row.kind and s.kind == DONE and s.seconds]
+        ended.sort(key=lambda found: changed(os.path.join(found[0].out, ENDED_FILE)))
         try:
-            speed = read_json(self.file("speed.json"))
-            row = next(row for row in rows if row.name == speed["row"] and row.kind and row.parameters)
-            measured = row, float(speed["contactUpdatesPerSecond"]), float(speed["setup"])
-        except (RunFolderError, ValueError, TypeError, KeyError, StopIteration):
-            measured = None
-        return Cost(measured, ended)
+            piece = Piece(**{name: float(number) for name, number in read_json(self.file("speed.json")).items()})
+        except (RunFolderError, ValueError, TypeError, AttributeError):
+            piece = None
+        return Cost(piece, ended)
 
-    def measure(self, row, rows, states, at_once):
+    def measure(self, row, rows, states, at_once, stop):
         """Time a piece of a row's run, at_once of them together, unless runs have ended to judge by."""
-        if any(state.kind == DONE and (state.seconds or 0) >= TELLING for state in states):
+        if any(state.kind == DONE and state.seconds for state in states):
             return
         scene = [f"{name}={text}" for name, text in row.cells.items() if name[0] != "!"]
         command = ["yade", "-n", f"--nice={NICE}", "-x", MEASURE_SPEED, row.script, *scene]
         environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
-        together = max(1, at_once // row.threads)
-        pieces = [
-            subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
-            for _ in range(together)
-        ]
+        together, begun = max(1, at_once // row.threads), time.monotonic()
+        # In sessions of their own, as the runs: Linux shares processors out by session.
+        of_process = dict(stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
+        pieces = [subprocess.Popen(command, start_new_session=True, **of_process) for _ in range(together)]
         try:
-            found = [json.loads(piece.communicate(timeout=MEASURING)[0].splitlines()[-1]) for piece in pieces]
-        except (subprocess.TimeoutExpired, ValueError, IndexError):  # a row that fails says so when it is run
+            while (
+                None in [piece.poll() for piece in pieces]
+                and time.monotonic() < begun + MEASURING
+                and not stop.received
+            ):
+                time.sleep(POLL)
+            found = [json.loads(piece.stdout.read().splitlines()[-1]) for piece in pieces if piece.poll() == 0]
+        except (ValueError, IndexError):
+            found = []
+        finally:
             for piece in pieces:
                 piece.kill()
+                piece.wait()
+        if len(found) < together:  # a row that fails says so when it is run
             return
-        slowest = min(found, key=lambda piece: piece["contactUpdatesPerSecond"])
-        write_json(self.file("speed.json"), {**slowest, "row": row.name})
+        slowest = max(found, key=lambda piece: piece["step"])
+        setup, step = slowest["setup"], slowest["step"]
+        start = time.monotonic() - begun - setup - step * slowest["steps"]
+        write_json(self.file("speed.json"), asdict(Piece(step / step_seconds(row), setup / setup_seconds(row), start)))
 
     def basis(self, rows, states):
         """What the estimate rests on, in words."""
         cost = self.cost(rows, states)
-        telling = sum(time >= TELLING for _, time in cost.ended)
-        if telling:
-            return f"from {telling} runs that have ended"
-        if cost.measured:
-            return f"measured: {cost.measured[1] / 1e6:.1f} million contact updates/s of each at first"
-        return "nothing could be measured"
+        if cost.ended:
+            return f"from {len(cost.ended)} runs that have ended"
+        return (
+            "nothing could be measured"
+            if cost.piece is None
+            else "measured: a piece of the first run, at the machine's present pace"
+        )
 
 
 class Batch:

@@ -1,4 +1,4 @@
-"""How long the rows of a study take: from runs that have ended, else from a measured piece of one."""
+"""How long the rows of a study take: a model of a run's time, times the pace of runs that have ended and of a measured piece."""
 
 import heapq
 from dataclasses import dataclass, field
@@ -6,52 +6,69 @@ from functools import cached_property
 
 import numpy as np
 
-# Cost of a contact update grows with this power of the number of grains: 37, 34 and 28 million updates a second
-# at 6,400, 51,200 and 409,600 grains.
-CACHE_EXPONENT = 0.07
-SIMILAR = 1.3  # ratio of sizes up to which ended runs count as equals, their median the estimate
-TYPICAL = 3e7  # contact updates a second
-TELLING = 2.0  # s that an ended run must have taken to tell of others: shorter ones mostly make packings and files
+from yade_scripts.run.schedule import Schedule
+
+# Seconds of a usual processor (a core of an AMD EPYC of 2024), of runs of 60 to 51,200 grains, by processor time; linear in the
+# grains: what is there of any run, and what a grain adds.
+STEP, CONTACT = (0.8e-6, 5e-9), 14e-9  # a small step of the fused engine: also of each contact
+CACHE_EXPONENT = 0.07  # grains and contacts of large scenes take longer: with this power of their number
+SAMPLE = 0.15e-3, 0.15e-6  # of the history
+LOOK, LOOKS = (1e-3, 2e-6), 100  # whether pieces are apart, states: so often in the duration of any run
+SETUP = 0.01, 2e-4  # packings and the scene
+BETWEEN = 0.04  # from a run's end to the next one's beginning
+FUNCTORS = 37  # a step of YADE's own loop over one of the engine
+
+ALIKE = np.log(2)  # logarithm of the ratio of two runs' times at which one tells of the other half as much as an equal
+RECENT = 10  # runs that ended later halve what one tells: a machine is busier at times
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A measured piece of a row's run: pace and setup are the seconds of its steps and of setting it up, over those of a
+    usual processor; start: seconds in which YADE starts."""
+
+    pace: float
+    setup: float
+    start: float
 
 
 @dataclass
 class Cost:
     """seconds(row) that the run of a runner.rows.StudyRow takes.
 
-    ended: [(row, wall time [s])] of runs that came to their end; measured: (a row, contact updates a second of a piece
-    of its run, seconds of setting it up), or None.
+    ended: [(row, wall time [s])] of runs that came to their end, in the order in which they did; piece: Piece, or None.
     """
 
-    measured: tuple = None
+    piece: Piece = None
     ended: list = field(default_factory=list)
 
     @cached_property
     def _ended(self):
-        """{(name of the kind, engine): (sizes, times [s])} of what has ended."""
+        """{(name of the kind, engine): (logarithms of the model's times, ratios of the times to these, weights)}."""
         by_kind = {}
-        for row, time in self.ended:
-            by_kind.setdefault((row.kind.name, row.parameters.engine), []).append((run_size(row), time))
+        for later, (row, time) in enumerate(reversed(self.ended)):
+            model = self._model(row)
+            found = by_kind.setdefault((row.kind.name, row.parameters.engine), [])
+            found.append((np.log(model), time / model, 0.5 ** (later / RECENT)))
         return {key: np.array(found).T for key, found in by_kind.items()}
 
     def seconds(self, wanted):
         """Estimated wall time [s] of a row's run, or None when too little is known."""
         if wanted.kind is None:
             return None
-        size = run_size(wanted)
-        sizes, times = self._ended.get((wanted.kind.name, wanted.parameters.engine), np.empty((2, 0)))
-        ratios = np.maximum(sizes / size, size / sizes)
-        similar = (times >= TELLING) | (ratios < SIMILAR)
-        if not similar.any():
-            return self._from_measured(wanted)
-        near = similar & (ratios <= SIMILAR * ratios[similar].min())
-        return float(size * np.median(times[near] / sizes[near]))
+        model = self._model(wanted)
+        sizes, ratios, weights = self._ended.get((wanted.kind.name, wanted.parameters.engine), np.empty((3, 0)))
+        weights = weights / (1 + ((sizes - np.log(model)) / ALIKE) ** 2)
+        of_piece = float(self.piece is not None)  # as much as one run
+        known = weights.sum() + of_piece
+        return (model + self._piece.pace * BETWEEN) * float(weights @ ratios + of_piece) / known if known else None
 
-    def _from_measured(self, wanted):
-        if self.measured is None:
-            return None
-        row, rate, setup = self.measured
-        stepping = run_size(wanted) / row.estimate.grains**CACHE_EXPONENT / rate
-        return stepping + setup * wanted.estimate.grains / row.estimate.grains
+    def _model(self, row):
+        return self._piece.setup * setup_seconds(row) + self._piece.pace * stepping_seconds(row)
+
+    @property
+    def _piece(self):
+        return self.piece or Piece(1.0, 1.0, 0.0)
 
 
 def contact_updates(row):
@@ -61,18 +78,40 @@ def contact_updates(row):
 
 def typical_seconds(row):
     """Seconds that the run of a row takes on a usual processor, where nothing is known of it but the row."""
-    return contact_updates(row) / TYPICAL
+    return setup_seconds(row) + stepping_seconds(row)
 
 
-def run_size(row):
-    """Contact updates, weighted with CACHE_EXPONENT."""
-    return contact_updates(row) * row.estimate.grains**CACHE_EXPONENT
+def setup_seconds(row):
+    """Seconds of a usual processor in which a row's run is set up."""
+    return _linear(SETUP, row.estimate.grains)
+
+
+def stepping_seconds(row):
+    """The same of all that follows."""
+    grains, _, steps, share = row.estimate
+    samples = Schedule.of(steps / share, 1.0).samples
+    looking = share * (samples * _linear(SAMPLE, grains) + LOOKS * _linear(LOOK, grains))
+    slower = FUNCTORS if row.parameters.engine == "functors" else 1
+    return slower * steps * step_seconds(row) + looking
+
+
+def step_seconds(row):
+    """The same of a small step, of the fused engine."""
+    grains, contacts, _, _ = row.estimate
+    crowd = max(1.0, (grains / 1000) ** CACHE_EXPONENT)
+    return (_linear(STEP, grains) + CONTACT * contacts) * crowd
+
+
+def _linear(numbers, grains):
+    constant, of_grain = numbers
+    return constant + of_grain * grains
 
 
 def makespan(running, waiting, at_once):
-    """Seconds until all is done: times left of what runs [s], times of what waits in its order, jobs at once."""
-    ends = sorted(running) + [0.0] * (at_once - len(running))
-    heapq.heapify(ends)
-    for time in waiting:
-        heapq.heappush(ends, heapq.heappop(ends) + time)
-    return max(ends, default=0.0)
+    """Seconds until all is done: [(time left [s], threads)] of what runs, the same of what waits in its order, threads at once."""
+    ends = [0.0] * at_once
+    for time, threads in [*running, *waiting]:
+        taken = [heapq.heappop(ends) for _ in range(min(threads, at_once))]
+        for _ in taken:
+            heapq.heappush(ends, max(taken) + time)
+    return max(ends)

@@ -11,14 +11,16 @@ import tempfile
 import time
 from inspect import cleandoc
 from itertools import product
+from numbers import Integral
 
 from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
-from analysis.runs.format import ENDED_FILE
-from analysis.runs.status import DONE, state
+from analysis.report.status import duration_text
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import table
+from yade_scripts.runner.screen import SHARE
+from yade_scripts.runner.study import Study
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 STUDY = os.path.join(TOP, "study.py")
@@ -57,14 +59,18 @@ for _function, _kind in ((collide, collision.KIND), (compress, compression.KIND)
 
 
 def _sweep(kind, script, parameters, folder, jobs):
-    if jobs is not None and not jobs >= 1:
-        raise ParameterError(f"jobs = {jobs}: must be 1 or more")
+    if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
+        raise ParameterError(f"jobs = {jobs}: must be a whole number, 1 or more")
+    if not isinstance(folder, (str, os.PathLike)):
+        raise ParameterError(f"folder = {folder}: must be a path; parameters are given by name, velocity=3")
+    if os.path.lexists(folder) and not os.path.isdir(folder):
+        raise ParameterError(f"folder = {folder}: is a file; must be a folder")
     rows = _rows(kind, script, parameters, os.fspath(folder))
     name = hashlib.sha256(repr(rows).encode()).hexdigest()[:8]
     file = os.path.join(folder, f"{kind.name}-{name}.table")
     os.makedirs(folder, exist_ok=True)
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    _run(file, [row["out"] for row in rows], jobs or os.cpu_count())
+    _run(file, jobs or os.cpu_count())
     return table_of_runs([row["out"] for row in rows])
 
 
@@ -89,6 +95,9 @@ def _listed(name, value):
     values = list(value) if isinstance(value, (list, tuple, range, set)) else [value]
     if not values:
         raise ParameterError(f"{name}: has no value; must be one or several")
+    twice = [str(value) for place, value in enumerate(values) if value in values[:place]]
+    if twice:
+        raise ParameterError(f"{name} = {twice[0]}: given twice; must be given once")
     return values
 
 
@@ -100,14 +109,16 @@ def _text(name, value):
     return text
 
 
-def _run(file, folders, jobs):
+def _run(file, jobs):
     """Have study.py run a table; RunsFailed unless all its runs have ended."""
     command = [sys.executable, STUDY, file, "-j", str(jobs)]
+    of_table = Study(file, jobs, run_scripts=True)
+    of_table.forget_failures()
     with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as errors:
         # In a session of its own, so that Ctrl-C reaches it once, and by us.
         study = subprocess.Popen(command, stdout=said, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True)
         try:
-            _wait(study, said.fileno(), folders)
+            _wait(study, said.fileno(), of_table)
         except BaseException:
             study.send_signal(signal.SIGINT)
             study.wait()
@@ -119,20 +130,19 @@ def _run(file, folders, jobs):
         raise RunsFailed("; ".join(lines[:TOLD]) + more or f"{file}: study.py ended with status {study.returncode}")
 
 
-def _wait(study, said, folders):
+def _wait(process, said, study):
     """Show how far the runs are until study.py has ended; its estimate comes first."""
-    ended, told = {folder for folder in folders if os.path.exists(os.path.join(folder, ENDED_FILE))}, 0
-    with bar(len(folders), "runs", len(ended)) as shown:
+    told = 0
+    with bar(len(study.rows), "runs") as shown:
         over = False
         while not over:
-            over = study.poll() is not None  # asked first, so that what has ended meanwhile is shown
+            begun = time.monotonic()
+            over = process.poll() is not None  # asked first, so that what has ended meanwhile is shown
             text = os.pread(said, 10_000, told).decode()
             if told == 0 and "\n" in text:
                 told = len(text.encode())
                 shown.write(text.rstrip("\n"))
-            states = {folder: state(folder) for folder in folders if folder not in ended and os.path.isdir(folder)}
-            ended |= {folder for folder, found in states.items() if found.kind == DONE}
-            reached = len(ended) + sum(found.progress for folder, found in states.items() if folder not in ended)
-            if reached > shown.n:
-                shown.update(reached - shown.n)
-            time.sleep(0.0 if over else POLL)
+            left = study.left()
+            shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
+            shown.update(sum(state.progress for state in study.states()) - shown.n)
+            time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))

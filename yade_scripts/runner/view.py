@@ -16,25 +16,29 @@ def headline(name, states, cost, rows, at_once):
 
 def total_left(states, cost, rows, at_once):
     """Seconds until every row is done or has failed, or None when no cost is known."""
-    left = [seconds_left(state, cost, row) for state, row in zip(states, rows)]
-    open_rows = [time for time, state in zip(left, states) if state.kind in (RUNNING, WAITING)]
-    if None in open_rows:
+    left = {
+        kind: [(seconds_left(state, cost, row), row.threads) for state, row in zip(states, rows) if state.kind == kind]
+        for kind in (RUNNING, WAITING)
+    }
+    if any(time is None for time, _ in left[RUNNING] + left[WAITING]):
         return None
-    return makespan(
-        [time for time, state in zip(left, states) if state.kind == RUNNING],
-        [time for time, state in zip(left, states) if state.kind == WAITING],
-        at_once,
-    )
+    start = cost.piece.start if cost.piece and left[WAITING] and not left[RUNNING] else 0.0
+    return start + makespan(left[RUNNING], left[WAITING], at_once)
 
 
 def seconds_left(state, cost, row):
-    """Of one row: by its own pace when it runs, otherwise by the estimate."""
+    """Of one row: by the estimate, and more and more by its own pace as it runs."""
     if state.kind not in (RUNNING, WAITING):
         return 0.0
-    if state.left is not None:
-        return state.left
     estimate = cost.seconds(row)
-    return None if estimate is None else estimate * (1 - state.progress)
+    if estimate is None:
+        return state.left
+    by_estimate = estimate * (1 - state.progress)
+    if state.kind == WAITING:
+        return by_estimate
+    if state.left is None:
+        return max(0.0, by_estimate - (state.seconds or 0.0))
+    return state.progress * state.left + (1 - state.progress) * by_estimate
 
 
 def line(row, state, cost):

@@ -15,7 +15,7 @@ from ...theory import MATERIALS, interaction_energies, pair_constants
 from ..outcome_table import INSIDE, OutcomeTable, read_outcomes
 
 ONE_OF = {"outside": ("clamp", "dustpy"), "speeds": ("maxwell", "rms"), "material": tuple(MATERIALS)}
-PER_NODE = 2  # speeds between two nodes of the table at which a pair's probabilities are kept
+PER_NODE = 4  # speeds between two nodes of the table at which a pair's probabilities are kept
 # By the atlas's rules the target gains 0 to 0.8 of the projectile's mass, say 0.4; in DustPy it gains 1 where they stick, and -1 where
 # it is eroded (excavatedMass = 1).
 TRANSFERRED = (1 + 0.4) / 2

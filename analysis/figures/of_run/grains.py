@@ -1,5 +1,5 @@
-"""Snapshots of the grains, coloured by aggregate: the half behind the plane z = 0, as Fig. 3 of Arakawa et al.
-(2024, A24) but cut open."""
+"""Snapshots of the grains, coloured by aggregate, as Fig. 3 of Arakawa et al. (2024, A24): fluffy aggregates whole, of dense
+ones the half behind the plane z = 0."""
 
 import numpy as np
 
@@ -12,19 +12,21 @@ from ..style import NANO, new_figure, run_title, styled
 # More pixels than this across would only cost time: the figure is about 1,300 wide.
 _PIXELS_ACROSS = 1500
 _ONE_COLUMN = 3  # as many panels stand below each other
+_FLUFFY = 0.3  # filling factor below which one sees into aggregates, and a cut leaves pieces that look like fragments
 _LARGEST_VIEW = 2.0  # half height of the view in aggregate sizes: fragments that flew farther are left outside
 
 
 @styled
 def grains_figure(run, times=None):
     """Figure of the grains at the start, at the largest compression and at the end (those of them that are
-    different states), cut along the plane z = 0 through the collision axis, to one scale in grain radii.
+    different states), to one scale in grain radii; aggregates of a filling factor of 0.3 and more are cut along the plane z = 0
+    through the collision axis.
     times [s]: of the states to show instead, the nearest of each. RunFolderError if there is no state."""
     run.start  # says so when there is no state
     unit = run.derived["grainRadius"]
     chosen = _chosen_states(run, times)
     states = [run.states[i] for i in chosen]
-    window = _window(states, unit)
+    window, whole = _window(states, unit), run.parameters.get("filling", 1.0) < _FLUFFY
     pixel = max((window[1] - window[0]) / _PIXELS_ACROSS, 0.02)
     columns = 1 if len(states) <= _ONE_COLUMN else 2
     rows = -(-len(states) // columns)
@@ -33,7 +35,7 @@ def grains_figure(run, times=None):
     figure = new_figure(width, rows * (panel + 0.35) + 0.75, constrained_layout=True)
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for place, state in zip(axes.flat, states):
-        _draw(place, state, unit, window, pixel)
+        _draw(place, state, unit, window, pixel, whole)
     for place in axes.flat[len(states) :]:
         place.remove()
     for place in axes[:, 0]:
@@ -41,7 +43,9 @@ def grains_figure(run, times=None):
     for column in range(columns):
         [p for p in axes[:, column] if p.figure][-1].set_xlabel("$x$  [grain radii]")
     figure.get_layout_engine().set(w_pad=0.1)
-    figure.suptitle(run_title(run, "grains behind the plane $z$ = 0"), fontsize=10, color="0.3")
+    figure.suptitle(
+        run_title(run, "all grains" if whole else "grains behind the plane $z$ = 0"), fontsize=10, color="0.3"
+    )
     return figure
 
 
@@ -78,11 +82,12 @@ def _planes(state, unit, axis):
     return state.plane_position[state.plane_axis == axis] / unit
 
 
-def _draw(axes, state, unit, window, pixel):
-    behind = state.position[:, 2] <= 0.0
-    position = state.position[behind] / unit
-    colour = np.array(AGGREGATE_COLOURS)[state.aggregate[behind]]
-    image = paint_spheres(position, state.radius[behind] / unit, colour, window, pixel)
+def _draw(axes, state, unit, window, pixel, whole):
+    shown = (state.position[:, 2] <= 0.0) | whole
+    position = state.position[shown] / unit
+    colour = np.array(AGGREGATE_COLOURS)[state.aggregate[shown]]
+    fading = {"fading": window[3]} if whole else {}  # over all of its depth
+    image = paint_spheres(position, state.radius[shown] / unit, colour, window, pixel, **fading)
     axes.imshow(image, extent=window, origin="lower", interpolation="antialiased")
     for draw, axis in ((axes.axvline, 0), (axes.axhline, 1)):
         for place in _planes(state, unit, axis):

@@ -13,7 +13,11 @@ from ..runs import select
 from .study import BOUNCING, STICKING
 
 GRAINS, RATIO = 256, 0.25  # of the lines: where most runs are
-VELOCITIES = (0.3, 1.2, 4.5)  # v_break: 1.1, 4.6 and 17 m/s for ice
+VELOCITIES = (0.5, 2.2, 10.0)  # v_break: 1.9, 8.4 and 38 m/s for ice
+
+
+def _ends(values):
+    return values.min(), values.max()
 
 
 @styled
@@ -22,7 +26,7 @@ def sticking(results):
     if not FILE.exists():
         return None
     table, (figure, axes) = read_outcomes(FILE), panels(2, 3, 3.4, 2.9)
-    velocity = np.geomspace(table.axes[0].nodes[0], table.axes[0].nodes[-1], 100)
+    velocity = np.geomspace(*_ends(variables(results.table).velocity), 100)
     runs = results[f"{STICKING}_at"].values
     for filling, place, colour in zip(sorted(set(runs.index.get_level_values("filling"))), axes.ravel(), COLOURS):
         found = table.lookup(velocity=velocity, grains=GRAINS, mass_ratio=RATIO, filling=filling)
@@ -52,7 +56,7 @@ def bouncing(results):
     runs = decided(results.table)
     at, bounced = variables(runs), (runs.outcome == BOUNCING).to_numpy()
     filling = np.linspace(table.axes[3].nodes[0], table.axes[3].nodes[-1], 60)
-    grains = np.geomspace(table.axes[1].nodes[0], 1024, 60)
+    grains = np.geomspace(*_ends(at.grains), 60)
     limits = np.geomspace(
         VELOCITIES[0] ** 1.5 / VELOCITIES[1] ** 0.5, VELOCITIES[-1] ** 1.5 / VELOCITIES[-2] ** 0.5, len(VELOCITIES) + 1
     )
@@ -61,7 +65,10 @@ def bouncing(results):
         drawn = place.pcolormesh(
             filling, grains, found["p_bouncing"], vmin=0, vmax=1, cmap="Purples", shading="nearest", rasterized=True
         )
-        place.contour(filling, grains, found["p_bouncing"], levels=[0.1, 0.5], colors="#7b3fa0", linestyles=[":", "-"])
+        for sign, line in ((0, "-"), (-1, ":"), (1, ":")):
+            p = found["p_bouncing"] + sign * found["error"]
+            if p.min() < 0.5 < p.max():
+                place.contour(filling, grains, p, levels=[0.5], colors="#7b3fa0", linestyles=line)
         place.contourf(filling, grains, found["inside"], levels=[-1, 0.999], colors="none", hatches=["///"])
         near = at.velocity.between(low, high).to_numpy()
         for kind, marker, colour in ((~bounced, ".", "0.6"), (bounced, "o", "#111111")):
@@ -86,8 +93,8 @@ FIGURES = (
     ),
     StudyFigure(
         "bouncing",
-        "Fraction of collisions of equal aggregates that bounce, averaged over impact parameters, by the table of outcomes; lines at 0.1 (dotted) and 0.5; hatched: "
-        "extrapolated. Dots: decided runs of all mass ratios near that velocity, black ones bounced.",
+        "Fraction of collisions of equal aggregates that bounce, averaged over impact parameters, by the table of outcomes; line: 1/2, dotted: with its error (90 %); "
+        "hatched: extrapolated. Dots: decided runs of all mass ratios near that velocity, black ones bounced.",
         bouncing,
     ),
 )

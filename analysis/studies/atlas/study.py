@@ -5,11 +5,13 @@ import pandas
 from scipy.spatial import cKDTree
 
 from ...atlas.columns import MEASURED
+from ...atlas.neighbours import slow
 from ...atlas.rules import KINDS
-from ...atlas.variables import decided, scaled, touching, variables
+from ...atlas.variables import FIT, decided, scaled, touching, variables
 from ...measures.outcome import NEVER_MET, UNDECIDED
 from ...runs.collect import Scene
 from ..definition import Quantity, Study
+from ..estimate import EXACT, Estimate
 from ..runs import Runs, select
 from .bouncing import threshold_exponent
 
@@ -18,6 +20,7 @@ SPEEDS = np.geomspace(0.078, 26.2, 9)  # v_break: limits of bands
 FILLINGS = (0.0, 0.04, 0.12, 0.2, 0.3, 0.4, 0.6)
 SLOW = 5.0  # v_break, 19 m/s for ice: faster aggregates break, or pass each other
 MANY_CONTACTS, COMPACT = 6.0, 0.4
+FAST, HALF = 20.0, 0.5  # v_break; mass ratio of equals at least, and b of head-on collisions at most
 HEAD_ON, EQUAL = 0.7, 0.25  # impact parameter at most, mass ratio at least
 BY_BAND, BY_GROUP = ("filling", "speed"), ("group",)
 
@@ -31,6 +34,8 @@ def quantities(table):
     yield Quantity(
         "missed", "runs whose aggregates never touch", all_runs.fractions(is_kind(NEVER_MET), ("structure",))
     )
+    yield _counts(table)
+    yield _slow(slow(runs.table[runs.table.split == FIT]))
     still_open = all_runs.of(touching(table)).fractions(is_kind(UNDECIDED), ("structure",))
     yield Quantity("undecided", "runs whose outcome is undecided, of those that touch", still_open)
     for kind in KINDS:
@@ -53,6 +58,27 @@ def quantities(table):
     yield Quantity(
         "energy_closure", "largest error of the ledger, of K(0)", runs.estimates("energy_closure", ("structure",))
     )
+
+
+def _counts(table):
+    """Grains of the larger aggregates, and cells."""
+    known = {
+        "least": table.grains_target.min(),
+        "most": table.grains_target.max(),
+        "cells": table.cell[table.cell > 0].nunique(),
+    }
+    return Quantity("grains", "of the larger aggregate; cells that compressed ones are cut out of", _exact(known))
+
+
+def _slow(own):
+    meaning = f"energy over E_break below which all fitted runs stuck, and their number; anything else has a chance of {own.most:.2g} there at most (95 %)"
+    return Quantity("slow", meaning, _exact({"energy": own.energy, "runs": own.number}))
+
+
+def _exact(values):
+    """Series of numbers without scatter, by `number`."""
+    found = [Estimate(float(value), np.full((1, 1), float(value)), EXACT) for value in values.values()]
+    return pandas.Series(found, pandas.Index(list(values), name="number"), dtype=object)
 
 
 def _middle(values, limits):
@@ -79,6 +105,8 @@ def _bouncing(runs):
         "compressed of filling 0.35 to 0.45": (table.structure == "compressed") & at.filling.between(0.35, 0.45),
         "fewer than 6 contacts": contacts < MANY_CONTACTS,
         "6 contacts or more": contacts >= MANY_CONTACTS,
+        "equal and dense": compact & (at.mass_ratio > HALF),
+        "equal, dense and head-on": compact & (at.mass_ratio > HALF) & (table.impact < HALF),
         **{f"structure {name}": table.structure == name for name in sorted(set(table.structure))},
     }
     found = _grouped(slow, groups).fractions("bounced", BY_GROUP)
@@ -87,6 +115,14 @@ def _bouncing(runs):
         "larger than smaller": (large, compact & ~large),
         "CPE than compressed": (narrow & (table.structure == "cpe"), narrow & (table.structure == "compressed")),
     }
+    fast = runs.of(runs.table[variables(runs.table).velocity.between(SLOW, FAST)])
+    groups = {
+        "equal": fast.table.mass_ratio > HALF,
+        "equal and head-on": (fast.table.mass_ratio > HALF) & (fast.table.impact < HALF),
+    }
+    found = _grouped(fast, groups).fractions(lambda t: t.outcome == BOUNCING, BY_GROUP)
+    meaning = f"runs that bounce, of decided ones of {SLOW:g} to {FAST:g} v_break; equal: mass ratio above {HALF:g}, head-on: b below {HALF:g}"
+    yield Quantity("bouncing_fast", meaning, found)
     mean = lambda name, own: _grouped(slow, {name: own}).estimates("bounced", BY_GROUP)
     more = [mean(name, one) - mean(name, other) for name, (one, other) in pairs.items()]
     yield Quantity(

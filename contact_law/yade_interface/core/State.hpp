@@ -42,11 +42,8 @@ public:
 	unsigned int blockedDOFs;
 	bool isDamped;
 	Real densityScaling;
-
-protected:
-	Real dR; // not used: keeps the size
 };
-static_assert(sizeof(State) == 328, "State");
+static_assert(sizeof(State) == 320, "State");
 YADE_INTERFACE_AT_(State, se3, 88)
 YADE_INTERFACE_AT_(State, vel, 144)
 YADE_INTERFACE_AT_(State, mass, 168)

@@ -1,25 +1,27 @@
-"""Runs collide.py and the analysis many times over from one YADE: a fork for each run, which starts in milliseconds.
+"""Runs scripts and the analysis many times over from one YADE: a fork for each run, which starts in milliseconds.
 
     LD_PRELOAD=injector.so yade -n -x -j1 fork_server.py REQUESTS ANSWERS     (numbers of two open pipes)
 
-A request is one line of JSON: folder (to run in), program (collide or analysis), arguments, watched (the folder whose changes are counted), call, action,
-stop, log, output (file of stdout and stderr), as fault_arm() in injector.c has them. The answer is one line of JSON: the
-exit status, or minus the number of the signal that ended the run. A run is the script's own main(), with what yade itself
-does at its end left out.
+A request is one line of JSON: folder (to run in), program (a script's path in the repository, or a module as of python3 -m), arguments, watched (the
+folder whose changes are counted), call, action, stop, log, output (file of stdout and stderr), as fault_arm() in injector.c has them. The answer is one
+line of JSON: the exit status, or minus the number of the signal that ended the run. What yade itself does at its end is left out.
 """
 
 import ctypes
 import json
 import os
+import runpy
 import signal
 import sys
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
 sys.path.insert(0, TOP)
 import contact_law  # noqa: F401  (loaded once, for all runs)
-from analysis import __main__ as analysis
-from analysis.export import extended_xyz, vtk_series  # noqa: F401
-from yade_scripts.experiments.collision import KIND
+from analysis import commands, export, figures  # noqa: F401
+from analysis.atlas import model, outcome_table, scores  # noqa: F401
+from analysis.commands import study  # noqa: F401
+from analysis.export import extended_xyz, film, viewer, vtk_series  # noqa: F401
+from yade_scripts.experiments import collision, compression  # noqa: F401
 from yade_scripts.run import checkpoint_writer, loop, recorder, report, scene, script  # noqa: F401
 
 
@@ -32,15 +34,19 @@ def run(request):
     status = 1
     try:
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        sys.argv = ["collide.py", *request["arguments"]]
+        program = request["program"]
+        path = os.path.join(TOP, program)
+        sys.argv = [path, *request["arguments"]]
         injector = ctypes.CDLL(None)
         arm = injector.fault_arm
         arm.argtypes = (ctypes.c_char_p, ctypes.c_long, ctypes.c_int, ctypes.c_long, ctypes.c_char_p)
         watched = [request[name].encode() for name in ("watched", "log")]
         arm(watched[0], request["call"], request["action"], request["stop"], watched[1])
-        if request["program"] == "analysis":
-            sys.exit(analysis.main(request["arguments"]))
-        script.main(KIND, "")
+        if program.endswith(".py"):
+            runpy.run_path(path, run_name="__main__")
+        else:
+            runpy.run_module(program, run_name="__main__", alter_sys=True)
+        status = 0
     except SystemExit as end:
         status = end.code or 0
     except BaseException:

@@ -1,4 +1,4 @@
-"""Runs of collide.py that end, or meet a full disk, at a chosen call that changes their files."""
+"""Runs of programs that end, or meet a full disk, at a chosen call that changes their files."""
 
 import json
 import os
@@ -45,7 +45,12 @@ class Forks:
         environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
         self._yade = subprocess.Popen(
             ["yade", "-n", "-x", "-j1", HERE / "fork_server.py", str(requests), str(answers)],
-            env={**environment, "LD_PRELOAD": str(library), "OPENBLAS_NUM_THREADS": "1"},
+            env={
+                **environment,
+                "LD_PRELOAD": f"{os.environ.get('LD_PRELOAD', '')} {library}",
+                "OPENBLAS_NUM_THREADS": "1",
+                "SOURCE_DATE_EPOCH": "0",  # which PDF files hold
+            },
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
@@ -61,18 +66,17 @@ class Forks:
     def run(self, arguments, watched, call=0, action=COUNT, stop=0):
         """Ended of collide.py with these arguments, in the folder that holds `watched` (the run folder, its changes are
         counted): ended or failing at a call, with SIGTERM before call number `stop` (0: none)."""
-        return self._ended("collide", [*arguments, f"out={Path(watched).name}"], watched, call, action, stop)
+        return self.call(
+            "yade_scripts/collide.py", [*arguments, f"out={Path(watched).name}"], watched, call, action, stop
+        )
 
-    def analyse(self, arguments, watched, call=0, action=COUNT):
-        """The same of `python3 -m analysis` with these arguments, which writes into `watched`."""
-        return self._ended("analysis", list(arguments), watched, call, action, 0)
-
-    def _ended(self, program, arguments, watched, call, action, stop):
+    def call(self, program, arguments, watched, call=0, action=COUNT, stop=0):
+        """The same of a program (as fork_server.py has it) that writes into `watched`, called in the folder that holds it."""
         watched, log, output = Path(watched), self.folder / "calls", self.folder / "output"
         request = dict(
             folder=str(watched.parent),
             program=program,
-            arguments=arguments,
+            arguments=list(arguments),
             watched=str(watched),
             call=call,
             action=action,

@@ -14,6 +14,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
@@ -149,6 +150,9 @@ WRITE(write, next(descriptor, data, bytes), next(descriptor, data, bytes / 2), c
 WRITE(pwrite, next(descriptor, data, bytes, at), next(descriptor, data, bytes / 2, at), const void* data, size_t bytes, off_t at)
 WRITE(pwrite64, next(descriptor, data, bytes, at), next(descriptor, data, bytes / 2, at), const void* data, size_t bytes, off64_t at)
 WRITE(writev, next(descriptor, vectors, number), syscall(SYS_write, descriptor, vectors->iov_base, vectors->iov_len / 2), const struct iovec* vectors, int number)
+// How Python copies a file.
+WRITE(sendfile, next(descriptor, from, at, bytes), next(descriptor, from, at, bytes / 2), int from, off_t* at, size_t bytes)
+WRITE(sendfile64, next(descriptor, from, at, bytes), next(descriptor, from, at, bytes / 2), int from, off64_t* at, size_t bytes)
 
 #define OF_DESCRIPTOR(name, ROOM, PASS, ...) \
 	int name(__VA_ARGS__) \

@@ -8,8 +8,6 @@ from pathlib import Path
 import numpy as np
 from faults.forks import COUNT, DISK_FULL, END_BEFORE, END_HALFWAY
 
-from analysis.runs.write import is_unfinished
-
 # Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.
 RUN = ("radius=2", "velocity=30", "impact=1", "duration=1e-10", "states=4", "threads=1", "checkpointInterval=1e-9")
 OTHER = ("seed=2",)  # of a run that was in the folder before
@@ -107,7 +105,7 @@ class Bench:
         text = f"{call.number} {_plain(call)}" + (f", SIGTERM before {stop}" if stop else "")
         case = Case(scenario.name, fault, text)
         if ACTIONS[fault] == DISK_FULL:
-            case.wrong += wrong_on_a_full_disk(done, run)
+            case.wrong += wrong_on_a_full_disk(done)
         elif done.status != -9 and not (stop and done.status == STOPPED):  # stopped before that call
             case.wrong.append(f"exit status {done.status}: {done.lines}")
         renamed = sum(c.name == "rename" and c.path == RECORDER for c in done.calls[: call.number - 1])
@@ -159,55 +157,14 @@ class Bench:
         return [] if arrays(run) == self.straight[RUN] else [f"{called}: other arrays"]
 
 
-def outputs(folder):
-    """{path: bytes} of the files below a folder, but temporary ones."""
-    files = (path for path in Path(folder).rglob("*") if path.is_file() and not is_unfinished(path.name))
-    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
-
-
-def wrong_exports(forks, folder, every):
-    """What is wrong after a fault at every so many calls of an export over that of another run, in words (nothing: []). Each file
-    must be that of one of the two exports; calling again must leave that of the run, and no more."""
-    out, whole = folder / "out", {}
-    for name, more in (("other", OTHER), ("run", ())):
-        assert forks.run(RUN + more, folder / name).status == 0
-        done = forks.analyse(_export(name), out)
-        assert done.status == 0, done.lines
-        whole[name] = outputs(out)
-        shutil.copytree(out, folder / f"export of {name}")
-    wrong, cases = [], [(call, fault) for call in done.calls[::every] for fault in ACTIONS]
-    for call, fault in cases:
-        shutil.rmtree(out)
-        shutil.copytree(folder / "export of other", out)
-        done = forks.analyse(_export("run"), out, call.number, ACTIONS[fault])
-        half = [
-            path for path, found in outputs(out).items() if found not in (each.get(path) for each in whole.values())
-        ]
-        if ACTIONS[fault] == DISK_FULL and done.status:
-            half += [] if sum(line.startswith("analysis: ") for line in done.lines) == 1 else done.lines
-        again = forks.analyse(_export("run"), out)
-        left = [path.name for path in out.rglob("*") if is_unfinished(path.name)]
-        if half or again.status or left or outputs(out) != whole["run"]:
-            wrong.append(f"{fault} {call}: {half}, then {again.lines}, leaves {left}")
-    assert len(cases) > 6
-    return wrong
-
-
-def _export(run):
-    return f"export {run} --format all --out out".split()
-
-
-def wrong_on_a_full_disk(done, run):
-    """What is wrong unless a run printed one line about it, and has a status that says so."""
-    own = [line for line in done.lines if not line.startswith("run folder: ")]
-    wrong = []
-    if done.status == 0 and (run / "ended").exists():
-        return wrong  # nothing was left to write
-    if done.status not in (1, 2):
-        wrong.append(f"exit status {done.status}")
-    if len(own) != 1 or "No space left on device" not in own[0]:
-        wrong.append(f"{len(own)} lines: {own[-1] if own else ''}")
-    return wrong
+def wrong_on_a_full_disk(done):
+    """What is wrong unless a program said so in one line and its status, or had nothing left to write."""
+    full = [line for line in done.lines if "No space left on device" in line and not line.startswith("run folder: ")]
+    if done.status == 0 and not full:
+        return []
+    untidy = [line for line in done.lines if line.startswith("Traceback")]
+    right = done.status in (1, 2) and len(full) == 1 and not untidy
+    return [] if right else [f"exit status {done.status}, {len(full)} lines: {done.lines[-1:]}"]
 
 
 def _plain(call):

@@ -1,5 +1,5 @@
 // Numbers and vectors as YADE has them: double precision, and Eigen without vectorisation or alignment.
-// Eigen changes its layouts with these definitions, so they may neither be forgotten nor differ between files: State would be 352 instead of 328 bytes.
+// Eigen changes its layouts with these definitions, so they may neither be forgotten nor differ between files: State would be larger.
 #pragma once
 #if !defined(EIGEN_DONT_VECTORIZE) || !defined(EIGEN_DONT_ALIGN) || !defined(EIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT)
 #error "a file that sees a YADE type must be compiled with -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT"

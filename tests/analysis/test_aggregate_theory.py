@@ -1,0 +1,125 @@
+"""The formulae of K13, T23 and A24 for aggregates and S17's chain model, against the papers' own numbers, each other and other ways to them."""
+
+import numpy as np
+import pytest
+
+from analysis.studies.elastoplastic.andrews_fit import PRINTED
+from analysis.theory import ICE, SILICATE, aggregates, chains, normal_force, pair_constants
+from analysis.theory.compression import *
+
+R = 1e-7  # of grains [m]
+PAIR = pair_constants(ICE, R)
+OVERLAP, FORCE, UNIT = PAIR.equilibrium_overlap, PAIR.pull_off_force, PAIR.time_unit
+ENERGY = rolling_energy(0.1, R, 0.8e-9)
+SCALE = strength_scale(ENERGY, R)
+MASS = 4 / 3 * np.pi * ICE.density * R**3
+GRAIN = (R, ICE.young, MASS, ICE.surface_energy)
+
+
+def test_numbers_of_k13():
+    """And of section 3.7, silicate: v_d = 4.01 cm/s and c_s = 0.77 cm/s at a filling of 0.01, equal at 0.034."""
+    assert ENERGY == pytest.approx(4.74e-16, rel=1e-3) and SCALE == pytest.approx(4.74e5, rel=1e-3)
+    assert rolling_energy(0.02, 0.6e-6, 2e-9) == pytest.approx(1.42e-15, rel=2e-3)
+    assert bcca_filling(16384) == pytest.approx(3.63e-3, rel=1e-3)
+    for filling, speed in ((1e-3, 0.127), (1e-2, 0.059), (1e-1, 0.027)):  # section 3.2
+        assert boundary_speed(filling, 3e-7, 16384, 1e-7, UNIT) == pytest.approx(speed, rel=0.02)
+    assert sound_speed(1.0, ENERGY, MASS) == pytest.approx(11.0, rel=0.04)  # eq 28
+    unit, mass = pair_constants(SILICATE, 0.6e-6).time_unit, 4 / 3 * np.pi * (0.6e-6) ** 3 * 2650
+    energy = rolling_energy(0.02, 0.6e-6, 2e-9)
+    assert boundary_speed(0.01, 3e-7, 16384, 0.6e-6, unit) == pytest.approx(0.0401, rel=0.01)
+    assert sound_speed(0.01, energy, mass) == pytest.approx(0.0077, rel=0.01)
+    assert static_from(3e-7, 16384, 0.6e-6, unit, energy, mass) == pytest.approx(0.034, rel=0.02)
+
+
+def test_the_derivation_gives_eq_25():
+    """Eqs 30-34, step by step: each quantity follows from the ones before it."""
+    filling = np.array([1e-3, 1e-2, 0.1])
+    cluster = weakest_cluster(filling, ENERGY, 1e-7)
+    assert cluster.pressure == pytest.approx(compressive_strength(filling, SCALE), rel=1e-12)
+    assert cluster.grains * (1e-7 / cluster.radius) ** 3 == pytest.approx(filling, rel=1e-12)
+    assert cluster.force * cluster.radius == pytest.approx(ENERGY * np.ones(3), rel=1e-12)
+
+
+def test_formulae_for_any_filling():
+    thin, dense = 1e-4, 0.6
+    assert compressive_strength_dense(thin, SCALE) == pytest.approx(compressive_strength(thin, SCALE), rel=1e-3)
+    assert compressive_strength_dense(dense, 0.47e6) == pytest.approx(float(aggregates.bcca_strength(dense)), rel=1e-12)
+    for densest, formula in ((None, compressive_strength), (0.74, compressive_strength_dense)):
+        assert filling_at(formula(0.3, SCALE), SCALE, densest) == pytest.approx(0.3, rel=1e-12)
+
+
+def test_numbers_of_a24():
+    coordination = aggregates.cpe_coordination(0.4, R, OVERLAP)
+    modulus = aggregates.bulk_modulus(0.4, coordination, R, OVERLAP, FORCE)
+    assert modulus == pytest.approx(74.3e6, rel=1e-3)  # eq 41
+    assert aggregates.poisson_ratio(PRINTED[0.4][1], modulus) == pytest.approx(0.443, abs=5e-4)  # eq 43
+    assert aggregates.bcca_coordination(0.0) == 2.0
+    for filling, (stress, *_) in PRINTED.items():  # Fig. 11: above the quasistatic strength
+        assert 3 < stress / aggregates.bcca_strength(filling) < 10
+
+
+def test_poissons_ratio_and_modulus_are_inverse_and_the_densest_lattice_has_twelve_contacts():
+    poisson = np.linspace(-0.9, 0.49, 30)
+    young = aggregates.reduced_young(poisson, 70e6)
+    assert aggregates.poisson_ratio(young, 70e6) == pytest.approx(poisson, abs=1e-12)
+    densest = aggregates.fcc_filling(R, OVERLAP)
+    assert aggregates.fcc_filling(R, 0.0) == pytest.approx(np.pi / 18**0.5) and densest > np.pi / 18**0.5
+    assert aggregates.cpe_coordination(densest, R, OVERLAP) == pytest.approx(12.0)
+
+
+def test_bulk_modulus_is_that_of_springs_on_the_lattice():
+    """A uniform strain e of the densest lattice stretches each of its six contacts a grain by the distance times e:
+    9/2 K e^2 times the volume of a grain's cell is 6 k (e distance)^2/2."""
+    distance = 2 * R - OVERLAP
+    stiffness = aggregates.contact_stiffness(FORCE, OVERLAP)
+    cell = 4 / 3 * np.pi * R**3 / aggregates.fcc_filling(R, OVERLAP)
+    expected = 6 * 0.5 * stiffness * distance**2 / (4.5 * cell)
+    found = aggregates.bulk_modulus(aggregates.fcc_filling(R, OVERLAP), 12.0, R, OVERLAP, FORCE)
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_eq_16_from_counting_grains_and_contacts():
+    """3N - 3 contact points of (3N - 5)/2 grains in a cell (S17 eq 15)."""
+    for grains in (4.0, 7.0, 50.0):
+        assert chains.contacts_of_chain(grains) == pytest.approx((3 * grains - 3) / ((3 * grains - 5) / 2))
+        assert chains.chain_of_contacts(chains.contacts_of_chain(grains)) == pytest.approx(grains)
+    assert np.isinf(chains.chain_of_contacts(2.0)) and chains.chain_of_contacts(3.0) == pytest.approx(3.0)
+
+
+def test_neck_of_the_kernel():
+    """k_sr = pi a^4 E/(4 d); d = 2 R x/(R + x), worked out by hand for beta = 1/2: x = R/4, d = 2R/5."""
+    assert chains.neck_thickness(0.5, R) == pytest.approx(0.4 * R)
+    expected = np.pi * (0.5 * R) ** 4 * ICE.young / (4 * 0.4 * R)
+    assert chains.rolling_stiffness(0.5, R, ICE.young) == pytest.approx(expected)
+
+
+def test_force_balances_the_kinetic_energy_and_its_limits():
+    """k u^2/2 = N m V^2/4 a chain, F = k u."""
+    stiffness = chains.chain_stiffness(12.0, 0.6, R, ICE.young)
+    force = chains.largest_force(7.0, 12.0, 0.6, R, ICE.young, MASS)
+    stretch = force / stiffness
+    assert 0.5 * stiffness * stretch**2 == pytest.approx(12.0 * MASS * 7.0**2 / 4)
+    assert chains.largest_force(10.0, np.inf, 0.7, R, ICE.young, MASS) == 0
+    assert np.isinf(chains.sticking_ratio(10.0, np.inf, 0.7, *GRAIN))
+    with pytest.raises(ValueError, match="must be above 3"):
+        chains.chain_stiffness(3.0, 0.7, R, ICE.young)
+    thousand = chains.chain_stiffness(np.array([1e3, 2e3]), 0.7, R, ICE.young)
+    assert thousand[0] / thousand[1] == pytest.approx(8.0, rel=0.01)  # bending: as the length's inverse cube
+
+
+def test_what_the_text_says_of_fig_17():
+    """Almost unity with the loops of 44 grains at 10 m/s; BCCA aggregates (N = 100) would stick there."""
+    ratio = lambda velocity, grains, beta: chains.sticking_ratio(velocity, grains, beta, *GRAIN)
+    assert 0.5 < ratio(10.0, 22.0, 0.7) < 1.0
+    assert ratio(10.0, chains.grains_of_chain(100.0, 1.0), 0.7) > 3
+    assert ratio(3.0, 5.4, 0.2) == pytest.approx(1.0, abs=0.02) and ratio(1.0, 6.0, 0.7) > 1
+    assert chains.bouncing_velocity(22.0, 0.7, *GRAIN) == pytest.approx(10.0 * ratio(10.0, 22.0, 0.7))
+
+
+def test_period_is_that_of_small_vibrations():
+    """Against the JKR force's slope at equilibrium, by differences."""
+    step = 1e-5 * PAIR.equilibrium_overlap
+    below, above = (normal_force(PAIR.equilibrium_overlap + change, PAIR) for change in (-step, step))
+    slope = (above - below) / (2 * step)
+    assert chains.stretching_period(PAIR) == pytest.approx(2 * np.pi * np.sqrt(PAIR.reduced_mass / slope), rel=1e-6)
+    assert 20_000 * chains.stretching_period(PAIR) == pytest.approx(24.4e-6, rel=2e-3)

@@ -1,0 +1,127 @@
+"""Collisions of BPCA aggregates as a user runs them (oblique, with drag, of unlike sizes, from files, their early end), impactStepFraction, and
+the law's parameters `limit` and slidingStiffnessFactor."""
+
+import numpy as np
+import pytest
+from running import completed, read_arrays, read_json
+
+from analysis.measures.fragments import fragment_labels, fragment_sizes
+from analysis.measures.ledger import closure_history
+from analysis.runs.folder import open_run
+from analysis.runs.provenance import provenance
+from yade_scripts import packings
+from yade_scripts.experiments.collision import KIND
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
+
+OVERLAP = equilibrium_overlap(MATERIALS["ice"])
+TINY = ("packing=bpca", "grains=40", "velocity=40", "stepFraction=0.2", "threads=1")
+
+
+def fragments(run):
+    return sorted(fragment_sizes(fragment_labels(len(run.last.radius), run.last.contact_pairs)))
+
+
+def test_a_collision_with_drag_ends_early_with_the_fragments_of_the_whole_time(tmp_path):
+    arguments = (*TINY, "viscoelasticTime=6e-12", "impact=0.6", "duration=6e-7", "states=7", "seed=3")
+    for name in ("whole", "early"):
+        (tmp_path / name).mkdir()
+    whole, history = completed(tmp_path / "whole", *arguments)
+    early, shorter = completed(tmp_path / "early", *arguments, "endWhenApart=1")
+    assert whole["timeReached"] == pytest.approx(6e-7, rel=1e-2)
+    assert early["outcome"] == "completed" and early["timeReached"] < 0.8 * whole["timeReached"]
+    run, other = (open_run(tmp_path / name / "run") for name in ("early", "whole"))
+    assert run.ended and shorter["time"][-1] == early["timeReached"] == run.last.time and len(other.states) == 7
+    assert fragments(run) == fragments(other)
+    # until then the two are the same run
+    assert np.array_equal(shorter["rollingDissipation"], history["rollingDissipation"][: len(shorter["time"])])
+    assert shorter["drag"][-1] > 0 and early["derived"]["targetCharacteristicRadius"] > 0
+
+
+def test_aggregates_that_pass_each_other(tmp_path):
+    """Seeds that miss at B_off = 1: with a duration a run that ends at once."""
+    run, history = completed(tmp_path, *TINY, "impact=1", "seed=1", "duration=4e-7", "endWhenApart=1")
+    assert run["timeReached"] < 3e-7 and "firstTouch" not in run["derived"]
+    assert fragments(open_run(tmp_path / "run")) == [40, 40] and np.all(history["contacts_between"] == 0)
+
+
+def test_unlike_grains_and_unlike_aggregates(tmp_path):
+    arguments = ("projectileGrains=20", "sizes=two", "sizeRatio=1.5", "stepFraction=0.1", "duration=5e-8")
+    run, _ = completed(tmp_path, *TINY[:3], "threads=1", *arguments)
+    assert (run["derived"]["targetGrains"], run["derived"]["projectileGrains"]) == (40, 20)
+    state = open_run(tmp_path / "run").start
+    assert np.bincount(state.aggregate).tolist() == [40, 20] and set(np.unique(state.radius)) == {1e-7, 1.5e-7}
+    momentum = (state.radius**3)[:, None] * state.velocity
+    assert np.abs(momentum.sum(axis=0)).max() < 1e-9 * np.abs(momentum).sum()
+
+
+def test_aggregates_from_files(tmp_path):
+    for name, grains, index in (("a", 30, 0), ("b", 20, 1)):
+        packings.save(tmp_path / f"{name}.npz", packings.bpca(grains, 1e-7, OVERLAP, 3, index))
+    files = ("packing=file", "file=a.npz", "projectileFile=b.npz")
+    run, _ = completed(tmp_path, *files, "velocity=30", "threads=1", "duration=2e-8")
+    assert (run["parameters"]["grains"], run["derived"]["projectileGrains"]) == (30, 20)
+
+
+RUN = ("radius=8", "velocity=30", "duration=400e-9", "threads=1", "stepFraction=0.2", "states=3")
+
+
+@pytest.fixture(scope="module")
+def shorter(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("shorter")
+    completed(folder, *RUN, "impactStepFraction=0.06")
+    return folder / "run"
+
+
+def test_samples_stay_and_the_ledger_closes_better(shorter, tmp_path):
+    about, one = read_json(shorter, "run.json"), read_arrays(shorter, "history.npz")
+    longer, other = completed(tmp_path, *RUN)
+    assert np.allclose(one["time"], other["time"], rtol=1e-12, atol=0)
+    assert about["derived"]["steps"] == longer["derived"]["steps"]
+    assert about["derived"]["stepChoice"].startswith("as given: 0.06 t0 until ")
+    until = float(about["derived"]["stepChoice"].split()[5])
+    assert until == pytest.approx(about["derived"]["firstTouch"] + 4 * 8e-7 / 30, rel=1e-3)
+    passed = one["time"] < until
+    assert 0.2 < np.mean(passed) < 0.8
+    errors = [np.abs(closure_history(history)[passed]).max() for history in (one, other)]
+    assert 0 < errors[0] < 0.3 * errors[1]
+
+
+def test_together_with_an_early_end(tmp_path):
+    run = "packing=bpca grains=40 velocity=40 threads=1 impact=0.6 duration=6e-7 viscoelasticTime=6e-12 seed=3"
+    about, _ = completed(tmp_path, *run.split(), "stepFraction=0.2", "impactStepFraction=0.1", "endWhenApart=1")
+    assert about["timeReached"] < 5e-7
+
+
+@pytest.mark.parametrize("times", [0.2, 1])
+@pytest.mark.parametrize("packing", [{"radius": "20"}, {"packing": "bpca", "grains": "5000"}])
+def test_estimates_count_the_shorter_steps(packing, times):
+    """In a run of no more than the time until the touch and four radii, as many as the ratio of the steps."""
+    usual = {**packing, "velocity": "30", "stepFraction": "0.2"}
+    radius = KIND.parse(usual).radius or 2.6 * 5000 ** (1 / 2.97)
+    usual["duration"] = f"{times * 4 * radius * 1e-7 / 30}"
+    longer, shorter = (KIND.estimate(KIND.parse({**usual, **more})) for more in ({}, {"impactStepFraction": "0.05"}))
+    assert shorter.steps == pytest.approx(4 * longer.steps, rel=1e-6) and shorter.contacts == longer.contacts
+
+
+def test_tables_of_runs_tell_both_steps(shorter):
+    assert provenance([open_run(shorter)])["stepFractions"] == {"0.2 (impact: 0.06)": 1}
+
+
+SHORT = ("radius=3", "velocity=30", "duration=12e-9", "threads=1", "seed=2", "stepFraction=0.05")
+
+
+@pytest.mark.parametrize("name, given, default", [("limit", "cut", "held"), ("slidingStiffnessFactor", 2, 1)])
+def test_engine_and_functors_obey_it(tmp_path, name, given, default):
+    runs = {}
+    for how in ("fused", "functors", "usual"):
+        (tmp_path / how).mkdir()
+        law = [] if how == "usual" else [f"{name}={given}", f"engine={how}"]
+        about, runs[how] = completed(tmp_path / how, *SHORT, *law)
+        assert about["parameters"][name] == (default if how == "usual" else given)
+    fused, functors, usual = runs.values()
+    for channel in ("kinetic", "slidingDissipation", "rollingDissipation"):
+        assert fused[channel] == pytest.approx(functors[channel], abs=1e-6 * fused["kinetic"][0]), channel
+    if name == "limit":
+        assert fused["rollingDissipation"][-1] < 0.8 * usual["rollingDissipation"][-1]
+    else:
+        assert np.abs(fused["sliding"] - usual["sliding"]).max() > 1e-3 * fused["kinetic"][0]
