@@ -36,6 +36,7 @@ sys.path.insert(0, TOP)
 from scipy.stats import qmc
 
 from analysis.atlas.columns import MEASURED, breaking_velocity
+from analysis.atlas.variables import CHOSEN_FROM
 from analysis.measures.outcome import UNDECIDED
 from analysis.measures.virial import filling_factor
 from analysis.progress import progress
@@ -128,7 +129,7 @@ def scenes(rows):
 
 def _points(rows):
     """Points (rows, DIMENSIONS) in the unit cube: of a Sobol sequence, and then those chosen."""
-    sobol = min(rows, atlas_choice.FIRST)
+    sobol = min(rows, CHOSEN_FROM)
     # Not scrambled by scipy, whose versions may do it differently, but shifted: the first point would be a corner.
     shift = np.random.default_rng(SEED).uniform(size=DIMENSIONS)
     points = (qmc.Sobol(DIMENSIONS, scramble=False).random_base2(int(np.ceil(np.log2(sobol)))) + shift) % 1.0
@@ -140,7 +141,7 @@ def _points(rows):
 
 
 def candidates(number):
-    """Points (CANDIDATES, DIMENSIONS) of which a row from atlas_choice.FIRST on is one."""
+    """Points (CANDIDATES, DIMENSIONS) of which a row from CHOSEN_FROM on is one."""
     size = (atlas_choice.CANDIDATES, DIMENSIONS)
     return np.random.default_rng([SEED, number, *size]).uniform(size=size)
 
@@ -316,7 +317,7 @@ def write_size(size, first, last):
 
 def choose(file, last):
     """Choose the rows that are not chosen yet up to before last, by a table of runs. Raises TableError."""
-    runs, first = read_table(file, flat(MEASURED))[0], atlas_choice.FIRST + len(atlas_choice.chosen())
+    runs, first = read_table(file, flat(MEASURED))[0], CHOSEN_FROM + len(atlas_choice.chosen())
     rows = range(first, last)
     found = atlas_choice.least_sure([[_scene(i, point) for point in candidates(i)] for i in rows], runs, GRAIN_RADIUS)
     held = [_held_out(i // BLOCK * BLOCK)[0] == i for i in rows]

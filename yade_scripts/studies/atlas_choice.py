@@ -1,4 +1,4 @@
-"""Which collisions the atlas holds from row FIRST on: for each row that of CANDIDATES, drawn at random, of which a model of the runs so far is the least sure.
+"""Which collisions the atlas holds from row CHOSEN_FROM on: for each row that of CANDIDATES, drawn at random, of which a model of the runs so far is the least sure.
 
 The choices stand in atlas-chosen.txt, a digit a row, so that the table follows from the repository. Rows that are held out take their first candidate,
 and so stay a sample of the whole space."""
@@ -13,13 +13,13 @@ from analysis.atlas.model import Model
 from analysis.atlas.variables import touching
 from analysis.theory import MATERIALS
 
-FIRST, CANDIDATES = 3_000, 8
+CANDIDATES = 8
 FILE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "atlas-chosen.txt")
 WIDTH = 100  # digits a line
 
 
 def chosen():
-    """Indices (rows,) of the candidates of the rows from FIRST on."""
+    """Indices (rows,) of the candidates of the rows from CHOSEN_FROM on."""
     with open(FILE) as file:
         return [int(digit) for digit in file.read() if not digit.isspace()]
 

@@ -87,7 +87,7 @@ def bouncing(results):
 FIGURES = (
     StudyFigure(
         "sticking",
-        "Fraction of collisions that stick, averaged over impact parameters. Dots: all decided runs in a band of filling φ and velocity "
+        "Fraction of collisions that stick, averaged over impact parameters. Dots: decided runs that were not chosen, in a band of filling φ and velocity "
         f"(ice: v_break = 3.8 m/s), with 95 % intervals; lines: the table of outcomes at {GRAINS} grains and a mass ratio of 1/4, with its error; dotted: extrapolated.",
         sticking,
     ),

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 from ...atlas.columns import MEASURED
 from ...atlas.neighbours import slow
 from ...atlas.rules import KINDS
-from ...atlas.variables import FIT, decided, scaled, touching, variables
+from ...atlas.variables import FIT, decided, drawn, scaled, touching, variables
 from ...measures.outcome import NEVER_MET, UNDECIDED
 from ...runs.collect import Scene
 from ..definition import Quantity, Study
@@ -26,7 +26,11 @@ BY_BAND, BY_GROUP = ("filling", "speed"), ("group",)
 
 
 def quantities(table):
-    """Quantities of a table of runs (atlas.columns.MEASURED)."""
+    """Quantities of a table of runs (atlas.columns.MEASURED): fractions are of its drawn() rows."""
+    fitted = decided(table)
+    yield _counts(table)
+    yield _slow(slow(fitted[fitted.split == FIT]))
+    table = drawn(table)
     at = variables(table)
     table = table.assign(filling=_middle(at.filling, FILLINGS), speed=_middle(at.velocity, SPEEDS))
     all_runs, runs = Runs(table, "number"), Runs(decided(table), "number")
@@ -34,8 +38,6 @@ def quantities(table):
     yield Quantity(
         "missed", "runs whose aggregates never touch", all_runs.fractions(is_kind(NEVER_MET), ("structure",))
     )
-    yield _counts(table)
-    yield _slow(slow(runs.table[runs.table.split == FIT]))
     still_open = all_runs.of(touching(table)).fractions(is_kind(UNDECIDED), ("structure",))
     yield Quantity("undecided", "runs whose outcome is undecided, of those that touch", still_open)
     for kind in KINDS:
@@ -66,8 +68,9 @@ def _counts(table):
         "least": table.grains_target.min(),
         "most": table.grains_target.max(),
         "cells": table.cell[table.cell > 0].nunique(),
+        "chosen": len(table) - len(drawn(table)),
     }
-    return Quantity("grains", "of the larger aggregate; cells that compressed ones are cut out of", _exact(known))
+    return Quantity("grains", "of the larger aggregate; cells that compressed ones are cut out of; rows that were chosen", _exact(known))
 
 
 def _slow(own):
