@@ -104,7 +104,7 @@ $(OBJECTS_FOLDER)/engine/avx2.o:   INSTRUCTIONS := $(AVX2_FLAGS)
 $(OBJECTS_FOLDER)/engine/avx512.o: INSTRUCTIONS := $(AVX512_FLAGS)
 
 # For tests/drivers/sanitizers.py, in a clone: SANITIZE=address,undefined or thread. YADE's classes are declared here and made there: no vptr.
-# YADE_CXX compiles what sees YADE's types, which another compiler than YADE's own lays out otherwise (clang: State).
+# YADE_CXX compiles what sees YADE's types: g++, as YADE was.
 YADE_CXX ?= $(CXX)
 ifdef SANITIZE
 SANITIZED := -fsanitize=$(SANITIZE) -fno-sanitize=vptr -fno-omit-frame-pointer -g1 -O1
