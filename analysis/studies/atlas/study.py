@@ -70,7 +70,11 @@ def _counts(table):
         "cells": table.cell[table.cell > 0].nunique(),
         "chosen": len(table) - len(drawn(table)),
     }
-    return Quantity("grains", "of the larger aggregate; cells that compressed ones are cut out of; rows that were chosen", _exact(known))
+    return Quantity(
+        "grains",
+        "of the larger aggregate; cells that compressed ones are cut out of; rows that were chosen",
+        _exact(known),
+    )
 
 
 def _slow(own):
