@@ -43,7 +43,7 @@ COPIED = {
         "atlas/adapters/*.f90",
         "gallery/*/snapshots/*",
     ),
-    "yade_scripts": ("**/*.py", "**/*.table"),
+    "yade_scripts": ("**/*.py", "**/*.table", "studies/*.txt"),
 }
 
 # PYTHONPATH, not the folder that one stands in, says which packages these are.
