@@ -49,11 +49,12 @@ def run(options):
     from ..runs.table import TableError
 
     try:
-        print(printable_lines(text(options)))
+        answer = text(options)
     except (ValueError, NoLearning, TableError) as error:
         complain(error)
         return FAILED
     except OSError as error:
         complain(f"{error.filename}: {error.strerror}; must be the atlas's, which a checkout has")
         return FAILED
+    print(printable_lines(answer))
     return 0
