@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 from ...atlas.columns import MEASURED
 from ...atlas.neighbours import slow
 from ...atlas.rules import KINDS
-from ...atlas.variables import FIT, decided, drawn, scaled, touching, variables
+from ...atlas.variables import decided, drawn, fit_and_held_out, scaled, touching, variables
 from ...measures.outcome import NEVER_MET, UNDECIDED
 from ...runs.collect import Scene
 from ..definition import Quantity, Study
@@ -27,9 +27,9 @@ BY_BAND, BY_GROUP = ("filling", "speed"), ("group",)
 
 def quantities(table):
     """Quantities of a table of runs (atlas.columns.MEASURED): fractions are of its drawn() rows."""
-    fitted = decided(table)
+    fit, _ = fit_and_held_out(table)
     yield _counts(table)
-    yield _slow(slow(fitted[fitted.split == FIT]))
+    yield _slow(slow(fit))
     table = drawn(table)
     at = variables(table)
     table = table.assign(filling=_middle(at.filling, FILLINGS), speed=_middle(at.velocity, SPEEDS))
