@@ -195,6 +195,40 @@ def test_a_starter_that_was_paused_for_all_of_another_run_is_refused(tmp_path, m
     assert sorted(os.listdir(tmp_path / "run")) == [".heartbeat-1", HEARTBEAT_FILE]
 
 
+def test_a_starter_that_is_refused_is_no_end_of_the_run_before_it(tmp_path, monkeypatch):
+    """Start 2 has the folder; start 3 is refused, and takes its file away while start 4 looks at it."""
+    left_by(tmp_path / "run", replace(ELSEWHERE, start=2))
+    refused, read = tmp_path / "run" / ".heartbeat-3", running.read_heartbeat
+    refused.touch()
+
+    def while_it_goes(folder, name=HEARTBEAT_FILE):
+        refused.unlink(missing_ok=True)
+        return read(folder, name)
+
+    monkeypatch.setattr(running, "read_heartbeat", while_it_goes)
+    with pytest.raises(RunsElsewhere, match="on node7"):
+        Beating(str(tmp_path / "run"))
+    assert sorted(os.listdir(tmp_path / "run")) == [".heartbeat-2", HEARTBEAT_FILE]
+
+
+def test_a_start_that_has_the_number_of_a_refused_one_is_another(tmp_path, monkeypatch):
+    """While start 3 sees that 1 was killed and 2 refused, another start 2 takes the folder."""
+    left_by(tmp_path / "run", ELSEWHERE, STALE)
+    refused, beats = tmp_path / "run" / ".heartbeat-2", running.beats
+    refused.touch()
+
+    def while_another_begins(file, heartbeat):
+        if file != str(refused):
+            return beats(file, heartbeat)
+        refused.unlink()
+        left_by(tmp_path / "run", replace(ELSEWHERE, start=2))
+        return False
+
+    monkeypatch.setattr(running, "beats", while_another_begins)
+    with pytest.raises(RunsElsewhere, match="has just begun"):
+        Beating(str(tmp_path / "run"))
+
+
 def test_a_file_system_without_hard_links_will_do(tmp_path, monkeypatch):
     def no_link(*_):
         raise PermissionError(1, "Operation not permitted")

@@ -80,17 +80,17 @@ class Beating:
         if os.path.lexists(self._file(HEARTBEAT_FILE)) and not is_heartbeat(self.folder, HEARTBEAT_FILE):
             raise OSError(errno.EEXIST, "no run has written it; must be moved away", self._file(HEARTBEAT_FILE))
         last = running.read_heartbeat(self.folder)
-        self.now = replace(self.now, start=max([*starts, last.start if last else 0]) + 1)
+        self.now = replace(self.now, start=max([*_numbers(starts), last.start if last else 0]) + 1)
         if not make_new(self._own(), _text(self.now)):
             raise RunsElsewhere("which has just begun")
         try:
-            if _starts(self.folder) - starts != {self.now.start}:  # another one, while this process was paused
+            if _numbers(_starts(self.folder) - starts) != {self.now.start}:  # another one, while this process was paused
                 raise RunsElsewhere("which has just begun")
             self._write()
         except BaseException:
             _unlink(self._own())
             raise
-        for start in starts:
+        for start in _numbers(starts):
             _unlink(self._file(_name(start)))
 
     def _write(self, **changed):
@@ -119,21 +119,31 @@ def is_heartbeat(folder, name):
 
 
 def require_stopped(folder):
-    """{N} of the starts in a folder; RunsElsewhere unless the last of them has stopped. One that was killed as it began has left
-    nothing but its own file."""
+    """The starts in a folder (see _starts); RunsElsewhere unless all have stopped: the one that heartbeat.json is of, and those
+    that came later, which have left nothing but their own file when they were killed as they began, or are about to be
+    refused, and then no sign of an end of the one before them."""
     starts = _starts(folder)
-    heartbeat, name = running.read_heartbeat(folder), HEARTBEAT_FILE
-    if starts and (heartbeat is None or heartbeat.start < max(starts)):
-        name = _name(max(starts))
+    last = running.read_heartbeat(folder)
+    later = sorted(number for number in _numbers(starts) if last is None or number > last.start)
+    for name in [HEARTBEAT_FILE, *map(_name, later)]:
         heartbeat = running.read_heartbeat(folder, name)
-    if heartbeat and running.beats(os.path.join(folder, name), heartbeat):
-        raise RunsElsewhere(str(Place(heartbeat.host, heartbeat.job, False)))
+        if heartbeat and running.beats(os.path.join(folder, name), heartbeat):
+            raise RunsElsewhere(str(Place(heartbeat.host, heartbeat.job, False)))
     return starts
 
 
 def _starts(folder):
-    """{N} of the files .heartbeat-N in a folder."""
-    return {int(found.group(1)) for found in map(_START.fullmatch, os.listdir(folder)) if found}
+    """{(N, when it was made [ns])} of the files .heartbeat-N in a folder: one that a refused start has taken away, and the next
+    one has made anew, is another."""
+    found = set()
+    for file in filter(lambda file: _START.fullmatch(file.name), os.scandir(folder)):
+        with suppress(FileNotFoundError):
+            found.add((int(_START.fullmatch(file.name).group(1)), os.stat(file.path).st_mtime_ns))
+    return found
+
+
+def _numbers(starts):
+    return {number for number, _ in starts}
 
 
 def _name(start):
