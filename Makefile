@@ -71,7 +71,7 @@ endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-sklearn python3-tqdm python3-yaml python3-jinja2 python3-markdown python3-pytest python3-pytest-xdist \
-            python3-vtk9 ffmpeg libjs-three
+            python3-vtk9 ffmpeg libjs-three qemu-user
 
 # ---- flags ----
 

@@ -3,20 +3,28 @@
 
 namespace contact_law {
 
+// Each compiled for its instruction set as a whole: to be called only on a machine that has it. Nor may these files define anything that the
+// linker might take for all of the plugin, such as functions of std::vector.
 InstructionSet avx512Passes();
 InstructionSet avx2Passes();
 InstructionSet portablePasses();
 
 const InstructionSet& instructionSet(const std::string& name)
 {
-	static const InstructionSet sets[] = { avx512Passes(), avx2Passes(), portablePasses() };
-	const bool here[] = { __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq")
-		        && __builtin_cpu_supports("avx512vl"),
-		__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"), true };
-	for (int k = 0; k < 3; ++k)
-		if (here[k] && (name.empty() || name == sets[k].name)) return sets[k];
-	throw std::invalid_argument("instructions = '" + name + "': must be here '' (the best), " + (here[0] ? "'avx512', " : "")
-	        + (here[1] ? "'avx2', " : "") + "'portable'");
+	const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq")
+	        && __builtin_cpu_supports("avx512vl");
+	const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+	static const std::vector<InstructionSet> here = [&] {
+		std::vector<InstructionSet> found;
+		if (avx512) found.push_back(avx512Passes());
+		if (avx2) found.push_back(avx2Passes());
+		found.push_back(portablePasses());
+		return found;
+	}();
+	for (const InstructionSet& set : here)
+		if (name.empty() || name == set.name) return set;
+	throw std::invalid_argument("instructions = '" + name + "': must be here '' (the best), " + (avx512 ? "'avx512', " : "")
+	        + (avx2 ? "'avx2', " : "") + "'portable'");
 }
 
 } // namespace contact_law

@@ -47,12 +47,11 @@ struct NeighbourSearch {
 template <class Pack> struct NeighbourPasses {
 	static constexpr int width = Pack::width;
 
-	// Adds the grains with their centres in the box to the candidates.
+	// Adds the grains with their centres in the box to the candidates, which have room for all of the box's (makeRoomFor).
 	template <bool periodic> static void addInBox(const BoxSearch& box, Candidates& to)
 	{
 		const Vec3<Pack> centre = Images<Pack>::spread(box.centre), half = Images<Pack>::spread(box.half);
 		const Images<Pack> images(box.cell);
-		to.makeRoomFor(box.last - box.first);
 		for (int at = box.first; at < box.last; at += width) {
 			alignas(64) int index[lanes];
 			for (int k = 0; k < width; ++k)

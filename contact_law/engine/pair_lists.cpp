@@ -81,6 +81,7 @@ void PairLists::gatherCandidates(const Group& group, const PeriodicCell& cell)
 	candidates.clear();
 	for (const int g : group.nearby) {
 		const Group& its = s.groups[g];
+		candidates.makeRoomFor(its.last - its.first);
 		s.passes->addInBox[cell.on](
 		        { s.grains.data(), s.radius.data(), cell, box.centre(), half, its.first, its.last }, candidates);
 	}

@@ -1,5 +1,7 @@
 """The harness runs the engine as YADE does: the same grains after the same steps, whatever the scene; any number of threads, the same bits."""
 
+import json
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -95,6 +97,30 @@ def test_as_many_threads_as_wanted_give_the_same_bits_and_what_is_printed(folder
     assert end["instructions"] == "portable" and end["domains"] == 4 and end["grains"] == 600
     assert abs(end["energyChange"]) < 1e-3 * end["kinetic"]
     assert end["time"] == pytest.approx(30e-9 + 400 * 0.2 * 1.9365e-10, rel=0.05)
+
+
+@pytest.mark.parametrize("processor, best", [("Nehalem", "portable"), ("Haswell-noTSX", "avx2")])
+def test_processors_without_the_newest_instructions_run_what_they_have(folder, processor, best):
+    """Emulated ones, to which any other instruction is illegal."""
+    emulator = shutil.which("qemu-x86_64") or shutil.which("qemu-x86_64-static")
+    if not emulator:
+        pytest.skip("no qemu-x86_64 (Debian's qemu-user)")
+    path = files("drag", folder)[1][1]
+    command = [emulator, "-cpu", processor, codes.HARNESS, path, "steps=50"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    end = json.loads(done.stdout.splitlines()[-1])
+    assert end["instructions"] == best
+    assert end["hash"] == codes.harness(path, steps=50, instructions=best)[-1]["hash"]
+
+
+def test_what_is_compiled_for_an_instruction_set_is_taken_for_no_other():
+    """Of a function that several files define the linker takes one, for all of them."""
+    for name in ("avx2", "avx512"):
+        listed = ["nm", "-C", "--defined-only", TOP / f"build/objects/engine/{name}.o"]
+        symbols = subprocess.run(listed, check=True, capture_output=True, text=True).stdout.splitlines()
+        shared = [line for line in symbols if line.split()[1] in "WVu" and f"{name}::Pack" not in line]
+        assert len(symbols) > 50 and shared == []
 
 
 def test_files_come_back_as_they_were_and_are_made_once(folder):
