@@ -82,7 +82,7 @@ def tested(top, tests, jobs=0):
     if re.search(r"^E .*(no end within|TimeoutExpired)", done.stdout, re.MULTILINE):
         return Result(error="a test ran into its time limit, which says nothing: try again on a quiet machine")
     failed = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", done.stdout, re.MULTILINE)
-    if done.returncode == 0 or (done.returncode == 1 and failed):
+    if done.returncode == 0 or (done.returncode in (1, 2) and failed):  # 2: -x, with several files at once
         return Result(failed and failed.group(1))
     return Result(error=(done.stdout + done.stderr).strip().splitlines()[-1])
 
