@@ -128,10 +128,15 @@ def collision_errors(parameters, constants):
 
 def energies(parameters, constants):
     """(K(0), the same for a grain) of a collision, both over F_c delta_c."""
+    return energies_of(constants, (parameters.grains, parameters.of_projectile().grains), parameters.velocity)
+
+
+def energies_of(constants, grains, velocity):
+    """energies() of a pair of so many grains (target, projectile)."""
     contact = constants["pullOffForce"] * constants["pullOffOverlap"]
-    target, projectile = parameters.grains, parameters.of_projectile().grains
+    target, projectile = grains
     reduced = 2 * constants["reducedMass"] * target * projectile / (target + projectile)  # a grain's mass is 2 m*
-    kinetic = reduced * parameters.velocity**2 / 2 / contact
+    kinetic = reduced * velocity**2 / 2 / contact
     return kinetic, kinetic / (target + projectile)
 
 

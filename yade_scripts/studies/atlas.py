@@ -213,17 +213,9 @@ def step(scene):
     given = {**of, "grains": scene.grains[0], "velocity": scene.velocity, "material": scene.material}
     texts = {**given, "grainRadius": GRAIN_RADIUS, "tolerance": TOLERANCE, "stepFraction": "auto"}
     both = CollisionParameters.parse({name: str(value) for name, value in texts.items()})
-    kinetic, of_grain = _energies(scene, contact_constants(both))
-    error = step_choice.scene_factor(both) * sum(step_choice.ledger_errors(kinetic, of_grain))
+    energies = step_choice.energies_of(contact_constants(both), scene.grains, scene.velocity)
+    error = step_choice.scene_factor(both) * sum(step_choice.ledger_errors(*energies))
     return min(LONGEST, float(f"{(TOLERANCE / error) ** 0.5:.2g}"))
-
-
-def _energies(scene, constants):
-    """K(0), and K(0) for a grain, over F_c delta_c."""
-    target, projectile = scene.grains
-    mass = 2 * constants["reducedMass"] * target * projectile / (target + projectile)
-    kinetic = mass * scene.velocity**2 / 2 / (constants["pullOffForce"] * constants["pullOffOverlap"])
-    return kinetic, kinetic / (target + projectile)
 
 
 def packing_file(scene, index):
