@@ -53,7 +53,9 @@
 
 # ---- where things are, and of which version ----
 
-LIBRARY_FOLDER := lib/x86_64-linux-gnu/yade-double
+# The processor that is compiled for, as Debian's folders have it. (make CXX=aarch64-linux-gnu-g++ build/harness: for another.)
+PROCESSOR := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null)))
+LIBRARY_FOLDER := lib/$(PROCESSOR)-linux-gnu/yade-double
 YADE_LIBRARIES := /usr/$(LIBRARY_FOLDER)
 OVERLAY        := build/$(LIBRARY_FOLDER)
 PLUGIN         := $(OVERLAY)/libcontact_law.so
@@ -89,7 +91,7 @@ endif
 PACKAGES += libopenmpi-dev
 YADE_DEFINITIONS += -DCONTACT_LAW_YADES_OWN_HEADERS -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MULTI_HP -DMAX_LOG_LEVEL=5 \
                     -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE= \
-                    -DOMPI_SKIP_MPICXX -isystem /usr/lib/x86_64-linux-gnu/openmpi/include
+                    -DOMPI_SKIP_MPICXX -isystem /usr/lib/$(PROCESSOR)-linux-gnu/openmpi/include
 endif
 YADE_HEADERS = $(if $(YADE_INCLUDE),-isystem $(YADE_INCLUDE),-Icontact_law/yade_interface)
 YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python$(PYTHON_VERSION)
@@ -123,7 +125,7 @@ LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python$(subst .,,$(PYTHON_VER
 
 INTERFACE := contact_law/yade_interface
 YADE_SOURCES   := $(wildcard contact_law/yade/*.cpp $(INTERFACE)/proof/*.cpp)
-ENGINE_SOURCES := $(wildcard contact_law/engine/*.cpp)
+ENGINE_SOURCES := $(filter-out $(if $(filter x86_64,$(PROCESSOR)),,%/avx2.cpp %/avx512.cpp),$(wildcard contact_law/engine/*.cpp))
 YADE_OBJECTS   := $(YADE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
 ENGINE_OBJECTS := $(ENGINE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
 OBJECTS        := $(YADE_OBJECTS) $(ENGINE_OBJECTS)
@@ -187,7 +189,7 @@ endef
 $(eval $(call LIST,commit,$(COMMIT)))
 $(eval $(call LIST,yade_version,$(YADE_VERSION)))
 $(eval $(call LIST,objects,$(OBJECTS)))
-$(eval $(call LIST,flags,$(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FLAGS)))
+$(eval $(call LIST,flags,$(CXX) $(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FLAGS)))
 
 # Links to the installed files, beside which the plugin lies: YADE_PREFIX=$PWD/build yade. yade-batch starts bin/yade-double.
 build/overlay: Makefile

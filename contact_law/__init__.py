@@ -19,7 +19,7 @@ from .yade_functions import give_way, show_contacts
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 with open(os.path.join(TOP, "analysis/VERSION")) as _file:
     __version__ = _file.read().strip()
-LIBRARY = os.path.join(TOP, "build/lib/x86_64-linux-gnu/yade-double/libcontact_law.so")
+LIBRARY = os.path.join(TOP, f"build/lib/{os.uname().machine}-linux-gnu/yade-double/libcontact_law.so")
 
 
 def _running_yade():

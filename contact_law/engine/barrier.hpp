@@ -28,7 +28,7 @@ public:
 		}
 		for (int spins = 0; spins < 2000; ++spins) {
 			if (rounds.load(std::memory_order_acquire) != round) return;
-			__builtin_ia32_pause();
+			pause();
 		}
 		sleepers.fetch_add(1, std::memory_order_seq_cst);
 		while (rounds.load(std::memory_order_seq_cst) == round)
@@ -37,6 +37,16 @@ public:
 	}
 
 private:
+	// Tells the processor that the thread spins.
+	static void pause()
+	{
+#if defined __x86_64__
+		__builtin_ia32_pause();
+#elif defined __aarch64__
+		asm volatile("yield");
+#endif
+	}
+
 	const int threads;
 	alignas(64) std::atomic<int> arrived { 0 };
 	alignas(64) std::atomic<int> rounds { 0 };

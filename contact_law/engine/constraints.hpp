@@ -3,7 +3,6 @@
 #include "../kernel/blocked.hpp"
 #include "arrays.hpp"
 #include <algorithm>
-#include <emmintrin.h>
 
 namespace contact_law {
 
@@ -66,20 +65,26 @@ public:
 private:
 	std::size_t next = 0;
 
+	// The compiler's own pair of numbers, at any of them.
+	using Two = double __attribute__((vector_size(16)));
+	using TwoAnywhere = Two __attribute__((aligned(8), may_alias));
+	static TwoAnywhere& two(double* first) { return *reinterpret_cast<TwoAnywhere*>(first); }
+	static const TwoAnywhere& two(const double* first) { return *reinterpret_cast<const TwoAnywhere*>(first); }
+
 	// The power of what is withheld of a grain, now and before. In the plane all grains come here in every step: by pairs of numbers, without branches.
 	static double withheldFrom(Grain& g, Constrained& c)
 	{
 		const double* blocked = blockedRows[c.blocked].data();
 		double *forces = &g.fx, *before = &c.force.x;
 		const double* velocities = &g.vx;
-		__m128d power = _mm_setzero_pd();
+		Two power = { 0, 0 };
 		for (int k = 0; k < 6; k += 2) {
-			const __m128d force = _mm_loadu_pd(forces + k), held = _mm_mul_pd(_mm_loadu_pd(blocked + k), force);
-			power = _mm_add_pd(power, _mm_mul_pd(_mm_add_pd(_mm_loadu_pd(before + k), held), _mm_loadu_pd(velocities + k)));
-			_mm_storeu_pd(before + k, held);
-			_mm_storeu_pd(forces + k, _mm_sub_pd(force, held));
+			const Two force = two(forces + k), held = two(blocked + k) * force;
+			power += (two(before + k) + held) * two(velocities + k);
+			two(before + k) = held;
+			two(forces + k) = force - held;
 		}
-		return _mm_cvtsd_f64(power) + _mm_cvtsd_f64(_mm_unpackhi_pd(power, power));
+		return power[0] + power[1];
 	}
 };
 

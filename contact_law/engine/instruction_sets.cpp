@@ -11,20 +11,23 @@ InstructionSet portablePasses();
 
 const InstructionSet& instructionSet(const std::string& name)
 {
-	const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq")
-	        && __builtin_cpu_supports("avx512vl");
-	const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-	static const std::vector<InstructionSet> here = [&] {
+	static const std::vector<InstructionSet> here = [] {
 		std::vector<InstructionSet> found;
+#ifdef __x86_64__
+		const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd")
+		        && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 		if (avx512) found.push_back(avx512Passes());
-		if (avx2) found.push_back(avx2Passes());
+		if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found.push_back(avx2Passes());
+#endif
 		found.push_back(portablePasses());
 		return found;
 	}();
-	for (const InstructionSet& set : here)
+	std::string names;
+	for (const InstructionSet& set : here) {
 		if (name.empty() || name == set.name) return set;
-	throw std::invalid_argument("instructions = '" + name + "': must be here '' (the best), " + (avx512 ? "'avx512', " : "")
-	        + (avx2 ? "'avx2', " : "") + "'portable'");
+		names += std::string(", '") + set.name + "'";
+	}
+	throw std::invalid_argument("instructions = '" + name + "': must be here '' (the best)" + names);
 }
 
 } // namespace contact_law
