@@ -24,7 +24,7 @@ namespace neck {
 		return 0.75 * (fillet - spheres);
 	}
 	// R'/R_g: what is left of a grain's radius when it has given two necks (S17 section 3.3, Fig. 4)
-	inline double shrunkRadius(double beta) { return beta > 0 ? std::cbrt(1 - 2 * volume(beta)) : 1; }
+	inline double shrunkRadius(double beta) { return beta > 0 ? cubeRoot(1 - 2 * volume(beta)) : 1; }
 }
 
 /* Ordinary contacts between grains that sintering has shrunk, r1 and r2 their radii before (beta = 0: as they are). Mass is conserved:

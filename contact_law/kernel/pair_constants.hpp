@@ -1,6 +1,7 @@
 // What two materials and two radii make of a contact: derived once for each pair, and read by every step.
 // Symbols and sources: MODEL.md. A22 = Arakawa et al. 2022, K13 = Kataoka et al. 2013.
 #pragma once
+#include "cube_root.hpp"
 #include <cmath>
 
 namespace contact_law {
@@ -95,7 +96,7 @@ inline PairConstants<double> derivePair(
 	c.reducedShear = 1 / ((2 - m1.poisson) / G1 + (2 - m2.poisson) / G2);
 
 	const double R = c.reducedRadius;
-	c.equilibriumContactRadius = std::cbrt(9 * pi * gamma * R * R / c.reducedYoung); // A22 (1)
+	c.equilibriumContactRadius = cubeRoot(9 * pi * gamma * R * R / c.reducedYoung); // A22 (1)
 	const double a0 = c.equilibriumContactRadius;
 	c.equilibriumOverlap = a0 * a0 / (3 * R);
 	c.pullOffOverlap = std::cbrt(9. / 16.) * c.equilibriumOverlap;                 // A22 (3)
@@ -111,7 +112,7 @@ inline PairConstants<double> derivePair(
 	const double mass = 2 * c.reducedMass, radius = 2 * R;
 	const double density = mass / (4 * pi / 3 * radius * radius * radius);
 	// K13 (2) with E* for E (see MODEL.md)
-	c.timeUnit = 0.95 * std::sqrt(density) * std::pow(radius, 7. / 6.) / (std::cbrt(c.reducedYoung) * std::pow(gamma, 1. / 6.));
+	c.timeUnit = 0.95 * std::sqrt(density) * std::pow(radius, 7. / 6.) / (cubeRoot(c.reducedYoung) * std::pow(gamma, 1. / 6.));
 	c.linearDrag = options.linearDamping * mass / c.timeUnit; // K13 (4)
 	c.complete();
 	return c;

@@ -53,6 +53,10 @@ class Kernel:
         )
         return SimpleNamespace(array=out, **dict(zip(self.constant_names, out)))
 
+    def cube_root(self, x):
+        self.library.cubeRootOf.restype, self.library.cubeRootOf.argtypes = ctypes.c_double, [ctypes.c_double]
+        return self.library.cubeRootOf(x)
+
     def normal_law(self, overlap):
         overlap = array(overlap)
         u, force, energy = np.empty((3, overlap.size))

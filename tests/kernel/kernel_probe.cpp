@@ -76,6 +76,8 @@ void returnToLimit(const double* constants, const double* normalVector, double* 
 	write(pointers, p.n2);
 }
 
+double cubeRootOf(double x) { return cubeRoot(x); }
+
 // out: fillet radius, length, volume, radius of the shrunk grain, all relative to the grain
 void neckGeometry(double beta, double* out)
 {

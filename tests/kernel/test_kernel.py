@@ -1,5 +1,7 @@
 """The kernel against closed forms and finite differences: constants, normal law, forces as gradients, limits."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -30,6 +32,16 @@ def test_constants_of_ice_are_those_of_model(kernel):
     for name, value in expected.items():
         digits = len(f"{value:e}".split("e")[0].rstrip("0").replace(".", ""))
         assert getattr(c, name) == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits)), name
+
+
+def test_a_cube_root_is_the_nearest_number(kernel):
+    """So it is the same on every machine."""
+    for x in 10 ** np.random.default_rng(1).uniform(-200, 200, 1000):
+        root = kernel.cube_root(x)
+        below, above = (Fraction(root) + Fraction(np.nextafter(root, end)) for end in (0, np.inf))
+        assert below**3 < 8 * Fraction(x) < above**3
+        assert kernel.cube_root(-x) == -root
+    assert kernel.cube_root(0.0) == 0 and kernel.cube_root(np.inf) == np.inf and np.isnan(kernel.cube_root(np.nan))
 
 
 def test_energies_of_table_2_of_a22(kernel):
