@@ -39,6 +39,8 @@
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
 #             tests/drivers/results/debian.md. SYSTEMS=sid: unstable
+# make test-arm64  asks for the same bits of the engine on a 64-bit ARM, emulated, as here: tests/drivers/results/arm64.md. A whole system:
+#             make test-debian SYSTEMS=bookworm-arm64
 # make yade-tree  compiles against YADE's own source, which it downloads (Debian 13), and loads the result
 # make deps   installs what is missing from Debian's packages
 # make clean  removes what make built
@@ -305,8 +307,14 @@ build/ovito/installed: Makefile
 SYSTEMS ?= bookworm trixie
 .PHONY: test-debian
 test-debian:
-	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git"
+	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git $(if $(findstring -,$(SYSTEMS)),qemu-user-static binfmt-support)"
 	@$(PYTHON) tests/drivers/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
+
+# Results in tests/drivers/results.
+.PHONY: test-arm64
+test-arm64:
+	@$(MAKE) --no-print-directory deps PACKAGES="g++ g++-aarch64-linux-gnu qemu-user-static"
+	@$(PYTHON) tests/drivers/arm64.py
 
 # On Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
 .PHONY: yade-tree

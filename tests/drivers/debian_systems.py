@@ -2,6 +2,8 @@
 
     python3 tests/drivers/debian_systems.py bookworm trixie      [--commands 'make demo' ...]
     python3 tests/drivers/debian_systems.py resolute=ADDRESS     Ubuntu's, from its archive at this address
+    python3 tests/drivers/debian_systems.py bookworm-arm64       of another processor, emulated where this one is none
+                                                                 (Debian's qemu-user-static and binfmt-support)
 
 A system is made by debootstrap with the mirror of this system's apt, and removed afterwards. Each runs in mount and
 process namespaces of its own.
@@ -44,7 +46,7 @@ class CannotBegin(Exception):
 class System:
     """A Debian system in a folder; what has been found out about it."""
 
-    suite: str
+    name: str  # suite, or suite-architecture
     folder: Path
     ubuntu: str = ""  # address of its archive; "": Debian
     commit: str = "unknown"
@@ -54,7 +56,9 @@ class System:
     def make(self, mirror):
         """Debootstrap, packages that come before the clone, and the clone."""
         self.folder.mkdir()
-        run(["debootstrap", *self._of_ubuntu(), self.suite, str(self.folder), self.ubuntu or mirror, *self._script()])
+        suite, _, architecture = self.name.partition("-")
+        options = self._of_ubuntu() + ([f"--arch={architecture}"] if architecture else [])
+        run(["debootstrap", *options, suite, str(self.folder), self.ubuntu or mirror, *self._script(suite)])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
         # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
         (self.folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
@@ -67,9 +71,9 @@ class System:
         """Options of debootstrap. Debian doesn't have Ubuntu's keys; apt inside checks all further packages with its own."""
         return ["--variant=minbase", *(["--components=main,universe", "--no-check-gpg"] if self.ubuntu else [])]
 
-    def _script(self):
+    def _script(self, suite):
         """How debootstrap makes a suite that is younger than itself."""
-        known = Path("/usr/share/debootstrap/scripts", self.suite).exists()
+        known = Path("/usr/share/debootstrap/scripts", suite).exists()
         return [] if known else ["gutsy" if self.ubuntu else "sid"]
 
     def inside(self, command, check=False):
@@ -89,7 +93,7 @@ class System:
             done = self.inside(f"cd {CLONE} && git config --global --add safe.directory {CLONE} && {command}")
             seconds = time.monotonic() - begun
             self.results.append((command, outcome(done), seconds))
-            print(f"{self.suite}: {command}: {self.results[-1][1]}, {seconds:.0f} s", flush=True)
+            print(f"{self.name}: {command}: {self.results[-1][1]}, {seconds:.0f} s", flush=True)
             if done.returncode:
                 print((done.stdout + done.stderr)[-6000:], flush=True)
             for name, ask in VERSIONS.items():
@@ -144,7 +148,7 @@ def commands_of_the_readme():
 def lines_of_others(file, systems):
     """Lines of the table in a file that are of none of these systems."""
     lines = file.read_text().splitlines() if file.exists() else []
-    names = [f"| {name} |" for name in ("system", *(system.suite for system in systems))]
+    names = [f"| {name} |" for name in ("system", *(system.name for system in systems))]
     return [line for line in lines if line.startswith("| ") and not line.startswith(tuple(names))]
 
 
@@ -152,7 +156,8 @@ def table(systems, others):
     """The page that the repository keeps; others: lines of systems that are not tried now."""
     cores = len(os.sched_getaffinity(0))
     about = f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
-    about += f"{' and '.join(BASE)} added; the first command installs all other packages."
+    about += f"{' and '.join(BASE)} added; the first command installs all other packages. "
+    about += "Those of another processor than this machine's ran emulated."
     head = "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |"
     lines = [
         "# Fresh Debian systems",
@@ -166,13 +171,14 @@ def table(systems, others):
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
-            lines.append(f"| {system.suite} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
+            lines.append(f"| {system.name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
     return "\n".join(lines) + "\n"
 
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("suites", nargs="+", metavar="SUITE[=ADDRESS]", help="Debian's, or Ubuntu's with its archive")
+    words = "Debian's, of another processor too, or Ubuntu's with its archive"
+    parser.add_argument("names", nargs="+", metavar="SUITE[-ARCHITECTURE][=ADDRESS]", help=words)
     parser.add_argument("--commands", nargs="+", metavar="COMMAND", help="instead of the README's")
     parser.add_argument("--out", type=Path, default=RESULTS, help="where the table goes (default: %(default)s)")
     return parser.parse_args(arguments)
@@ -189,8 +195,8 @@ def main(arguments):
         scratch = Path(tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
         mirror, commands = mirror_of_this_system(), options.commands or commands_of_the_readme()
         systems = []
-        for suite, _, address in (each.partition("=") for each in options.suites):
-            systems.append(System(suite, scratch / suite, address))
+        for name, _, address in (each.partition("=") for each in options.names):
+            systems.append(System(name, scratch / name, address))
             systems[-1].make(mirror)
             for _ in systems[-1].try_commands(commands):
                 options.out.write_text(table(systems, lines_of_others(options.out, systems)))
