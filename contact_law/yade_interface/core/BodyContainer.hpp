@@ -40,7 +40,7 @@ private:
 	std::vector<int> subdomainBodies;
 	declare::Mutex drawloopmutex;
 };
-static_assert(sizeof(BodyContainer) == 200, "BodyContainer");
+static_assert(sizeof(BodyContainer) == 160 + declare::mutex, "BodyContainer");
 YADE_INTERFACE_AT_(BodyContainer, dirty, 48) // right behind body
 YADE_INTERFACE_AT_(BodyContainer, insertedBodies, 56)
 YADE_INTERFACE_AT_(BodyContainer, useRedirection, 128)

@@ -5,7 +5,7 @@
 namespace yade {
 
 class ForceContainer {
-	char room[304] __attribute__((aligned(8)));
+	char room[264 + declare::mutex] __attribute__((aligned(8)));
 	ForceContainer(); // made by YADE only, inside of Scene
 	ForceContainer(const ForceContainer&);
 
@@ -25,6 +25,6 @@ public:
 	void sync();
 	void reset(long iter, bool resetAll = false); // resetAll: permanent forces (O.forces.setPermF) too
 };
-static_assert(sizeof(ForceContainer) == 304, "ForceContainer");
+static_assert(sizeof(ForceContainer) == 264 + declare::mutex, "ForceContainer");
 
 } // namespace yade

@@ -44,10 +44,10 @@ public:
 	bool serializeSorted;
 	long iterColliderLastRun;
 };
-static_assert(sizeof(InteractionContainer) == 192, "InteractionContainer");
+static_assert(sizeof(InteractionContainer) == 152 + declare::mutex, "InteractionContainer");
 YADE_INTERFACE_AT_(InteractionContainer, interaction, 104) // right behind linIntrs ... empty
 YADE_INTERFACE_AT_(InteractionContainer, dirty, 128)
-YADE_INTERFACE_AT_(InteractionContainer, serializeSorted, 176)
-YADE_INTERFACE_AT_(InteractionContainer, iterColliderLastRun, 184)
+YADE_INTERFACE_AT_(InteractionContainer, serializeSorted, 136 + declare::mutex)
+YADE_INTERFACE_AT_(InteractionContainer, iterColliderLastRun, 144 + declare::mutex)
 
 } // namespace yade

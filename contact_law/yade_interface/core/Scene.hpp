@@ -56,23 +56,23 @@ public:
 private:
 	char room3[48] __attribute__((aligned(8))); // parameters for display and others
 };
-static_assert(sizeof(Scene) == 752, "Scene");
+static_assert(sizeof(Scene) == 712 + declare::mutex, "Scene");
 YADE_INTERFACE_AT_(Scene, forces, 32)
-YADE_INTERFACE_AT_(Scene, dt, 440)
-YADE_INTERFACE_AT_(Scene, iter, 448)
-YADE_INTERFACE_AT_(Scene, subStep, 460)
-YADE_INTERFACE_AT_(Scene, time, 464)
-YADE_INTERFACE_AT_(Scene, stopAtIter, 480)
-YADE_INTERFACE_AT_(Scene, stopAtTime, 488)
-YADE_INTERFACE_AT_(Scene, isPeriodic, 496)
-YADE_INTERFACE_AT_(Scene, trackEnergy, 497)
-YADE_INTERFACE_AT_(Scene, doSort, 498)
-YADE_INTERFACE_AT_(Scene, tags, 528)
-YADE_INTERFACE_AT_(Scene, engines, 552)
-YADE_INTERFACE_AT_(Scene, bodies, 600)
-YADE_INTERFACE_AT_(Scene, interactions, 616)
-YADE_INTERFACE_AT_(Scene, energy, 632)
-YADE_INTERFACE_AT_(Scene, materials, 648)
-YADE_INTERFACE_AT_(Scene, cell, 688)
+YADE_INTERFACE_AT_(Scene, dt, 400 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, iter, 408 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, subStep, 420 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, time, 424 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, stopAtIter, 440 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, stopAtTime, 448 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, isPeriodic, 456 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, trackEnergy, 457 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, doSort, 458 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, tags, 488 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, engines, 512 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, bodies, 560 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, interactions, 576 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, energy, 592 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, materials, 608 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, cell, 648 + declare::mutex)
 
 } // namespace yade

@@ -43,18 +43,18 @@ public:
 	bool isDamped;
 	Real densityScaling;
 };
-static_assert(sizeof(State) == 320, "State");
-YADE_INTERFACE_AT_(State, se3, 88)
-YADE_INTERFACE_AT_(State, vel, 144)
-YADE_INTERFACE_AT_(State, mass, 168)
-YADE_INTERFACE_AT_(State, angVel, 176)
-YADE_INTERFACE_AT_(State, angMom, 200)
-YADE_INTERFACE_AT_(State, inertia, 224)
-YADE_INTERFACE_AT_(State, refPos, 248)
-YADE_INTERFACE_AT_(State, refOri, 272)
-YADE_INTERFACE_AT_(State, blockedDOFs, 304)
-YADE_INTERFACE_AT_(State, isDamped, 308)
-YADE_INTERFACE_AT_(State, densityScaling, 312)
+static_assert(sizeof(State) == 280 + declare::mutex, "State");
+YADE_INTERFACE_AT_(State, se3, 48 + declare::mutex)
+YADE_INTERFACE_AT_(State, vel, 104 + declare::mutex)
+YADE_INTERFACE_AT_(State, mass, 128 + declare::mutex)
+YADE_INTERFACE_AT_(State, angVel, 136 + declare::mutex)
+YADE_INTERFACE_AT_(State, angMom, 160 + declare::mutex)
+YADE_INTERFACE_AT_(State, inertia, 184 + declare::mutex)
+YADE_INTERFACE_AT_(State, refPos, 208 + declare::mutex)
+YADE_INTERFACE_AT_(State, refOri, 232 + declare::mutex)
+YADE_INTERFACE_AT_(State, blockedDOFs, 264 + declare::mutex)
+YADE_INTERFACE_AT_(State, isDamped, 268 + declare::mutex)
+YADE_INTERFACE_AT_(State, densityScaling, 272 + declare::mutex)
 
 } // namespace yade
 
