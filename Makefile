@@ -86,6 +86,9 @@ FLAGS := -std=c++17 -fPIC -fopenmp -O2 -ffp-contract=off -Wall -Wextra -MMD -MP
 # Files that see a YADE type. Eigen's three definitions shape YADE's objects; the others say how Debian's YADE was built, for YADE's own headers.
 YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT \
                     -DBOOST_BIND_GLOBAL_PLACEHOLDERS -DBOOST_ALLOW_DEPRECATED_HEADERS # Boost.Python's own use of older Boost
+# Debian builds YADE without MPI on 64-bit ARM.
+YADE_FEATURES ?= $(shell sed -n "s/^features *= *'\(.*\)'.*/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
+YADE_DEFINITIONS += $(if $(filter MPI,$(YADE_FEATURES)),-DYADE_MPI)
 ifdef YADE_INCLUDE
 ifneq ($(words $(YADE_INCLUDE)),1)
 $(error YADE_INCLUDE = $(YADE_INCLUDE): has blanks, which make takes for several folders; must be a path without)

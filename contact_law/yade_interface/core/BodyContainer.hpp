@@ -1,6 +1,7 @@
 // All bodies of a scene, by id. Erased ones leave an empty pointer, which operator[] shows and the iterator skips.
 #pragma once
 #include <core/Body.hpp>
+#include <declare/subdomain.hpp>
 #include <boost/iterator/filter_iterator.hpp>
 #include <vector>
 
@@ -37,10 +38,12 @@ public:
 	bool useRedirection, enableRedirection;
 
 private:
+#ifdef YADE_MPI
 	std::vector<int> subdomainBodies;
+#endif
 	declare::Mutex drawloopmutex;
 };
-static_assert(sizeof(BodyContainer) == 160 + declare::mutex, "BodyContainer");
+static_assert(sizeof(BodyContainer) == 136 + declare::mutex + declare::subdomain, "BodyContainer");
 YADE_INTERFACE_AT_(BodyContainer, dirty, 48) // right behind body
 YADE_INTERFACE_AT_(BodyContainer, insertedBodies, 56)
 YADE_INTERFACE_AT_(BodyContainer, useRedirection, 128)

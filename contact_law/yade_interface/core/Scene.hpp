@@ -40,7 +40,7 @@ public:
 	bool runInternalConsistencyChecks;
 
 private:
-	char room2[28] __attribute__((aligned(4))); // selected body, subdomain
+	char room2[4 + declare::subdomain] __attribute__((aligned(4))); // selected body, subdomain
 
 public:
 	std::vector<std::string> tags;
@@ -56,7 +56,7 @@ public:
 private:
 	char room3[48] __attribute__((aligned(8))); // parameters for display and others
 };
-static_assert(sizeof(Scene) == 712 + declare::mutex, "Scene");
+static_assert(sizeof(Scene) == 688 + declare::mutex + declare::subdomain, "Scene");
 YADE_INTERFACE_AT_(Scene, forces, 32)
 YADE_INTERFACE_AT_(Scene, dt, 400 + declare::mutex)
 YADE_INTERFACE_AT_(Scene, iter, 408 + declare::mutex)
@@ -67,12 +67,12 @@ YADE_INTERFACE_AT_(Scene, stopAtTime, 448 + declare::mutex)
 YADE_INTERFACE_AT_(Scene, isPeriodic, 456 + declare::mutex)
 YADE_INTERFACE_AT_(Scene, trackEnergy, 457 + declare::mutex)
 YADE_INTERFACE_AT_(Scene, doSort, 458 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, tags, 488 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, engines, 512 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, bodies, 560 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, interactions, 576 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, energy, 592 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, materials, 608 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, cell, 648 + declare::mutex)
+YADE_INTERFACE_AT_(Scene, tags, 464 + declare::mutex + declare::subdomain)
+YADE_INTERFACE_AT_(Scene, engines, 488 + declare::mutex + declare::subdomain)
+YADE_INTERFACE_AT_(Scene, bodies, 536 + declare::mutex + declare::subdomain)
+YADE_INTERFACE_AT_(Scene, interactions, 552 + declare::mutex + declare::subdomain)
+YADE_INTERFACE_AT_(Scene, energy, 568 + declare::mutex + declare::subdomain)
+YADE_INTERFACE_AT_(Scene, materials, 584 + declare::mutex + declare::subdomain)
+YADE_INTERFACE_AT_(Scene, cell, 624 + declare::mutex + declare::subdomain)
 
 } // namespace yade
