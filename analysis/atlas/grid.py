@@ -7,6 +7,7 @@ import numpy as np
 import pandas
 from scipy.spatial import cKDTree
 
+from ..arguments import FLAG, NAMES, NOT_NEGATIVE, PATH, WrongArgument, number, numbers, one_of, takes
 from ..theory import ICE, MATERIALS
 from .columns import breaking_velocity
 from .neighbours import MARGIN, NEAR, ONE_CONTACT, Neighbours
@@ -23,6 +24,7 @@ AXES = (
     Axis("mass_ratio", "log10", np.append(64.0 ** np.arange(-4, -1), np.geomspace(1 / 64, 1.0, 4))),
     Axis("filling", "linear", np.array([0.02, 0.1, 0.2, 0.3, 0.4, 0.5])),
 )
+GRAINS = numbers(right=("{} >= 1", lambda x: (x >= 1) & (x < np.inf)))
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
 COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
@@ -91,6 +93,17 @@ def _table(file, maxwell):
     return table.maxwell() if maxwell else table
 
 
+@takes(
+    velocity=numbers(right=NOT_NEGATIVE),
+    projectile=GRAINS,
+    target=GRAINS,
+    material=one_of(*MATERIALS),
+    filling=numbers(right=("{} > 0 and at most 1", lambda x: (x > 0) & (x <= 1))),
+    grain_radius=number(("{} of 1e-9 to 1e-3 [m]", lambda x: (x >= 1e-9) & (x <= 1e-3))),
+    maxwell=FLAG,
+    columns=NAMES,
+    file=PATH,
+)
 def outcome(
     velocity,
     projectile,
@@ -108,11 +121,12 @@ def outcome(
     velocity [m/s] (maxwell: root mean square of a Maxwell distribution of speeds), projectile and target: numbers of grains, filling: volume
     filling factor; arrays that broadcast. material: ice or silicate, grain_radius [m]: v_break follows from these. columns: only these.
     `inside` is 1 within the data, and less where the answer is an extrapolation. ValueError for what cannot be, one line."""
-    if material not in MATERIALS:
-        raise ValueError(f"material = {material}: must be {' or '.join(MATERIALS)}")
+    try:
+        np.broadcast(velocity, projectile, target, filling)
+    except ValueError:
+        shapes = ", ".join(str(np.shape(each)) for each in (velocity, projectile, target, filling))
+        raise WrongArgument(f"velocity, projectile, target, filling: have shapes {shapes}; must broadcast") from None
     projectile, target = np.broadcast_arrays(np.asarray(projectile, dtype=float), np.asarray(target, dtype=float))
-    if not (np.all(projectile >= 1) and np.all(target >= 1)):
-        raise ValueError("projectile and target: numbers of grains; must be 1 or more")
     large, small = np.maximum(projectile, target), np.minimum(projectile, target)
     speed = np.asarray(velocity, dtype=float) / breaking_velocity(MATERIALS[material], grain_radius)
     return _table(file, maxwell).lookup(

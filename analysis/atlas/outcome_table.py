@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 
+from ..runs.named import suggested
 from ..runs.write import write_text
 
 SCALES = {"log10": np.log10, "linear": np.asarray}
@@ -65,7 +66,7 @@ class OutcomeTable:
             raise ValueError(f"lookup of {', '.join(sorted(query))}: must be of {', '.join(names)}")
         wanted = tuple(dict.fromkeys((*(self.columns if columns is None else columns), INSIDE)))
         if unknown := [name for name in wanted if name not in self.columns]:
-            raise ValueError(f"{', '.join(unknown)}: no column of the table; it has {', '.join(self.columns)}")
+            raise ValueError(f"table of outcomes: no column {unknown[0]}{suggested(unknown[0], self.columns)}")
         given = np.broadcast_arrays(*(np.asarray(query[name], dtype=float) for name in names))
         found = self._interpolated(
             [axis.position(value).ravel() for axis, value in zip(self.axes, given)],

@@ -31,11 +31,13 @@ def add_parser(commands):
         "--maxwell", action="store_true", help="velocity is the root mean square of a Maxwell distribution of speeds"
     )
     parser.add_argument("--material", default="ice", help="of the grains, ice or silicate")
-    parser.add_argument("--grain-radius", default=1e-7, type=_positive, metavar="R", help="of the grains [m]")
+    parser.add_argument("--grain-radius", default=1e-7, type=_radius, metavar="R", help="of the grains [m]")
     parser.set_defaults(command=run)
 
 
 _positive = number(lambda value: 0 < value < float("inf"), "a number > 0")
+
+_radius = number(lambda value: 1e-9 <= value <= 1e-3, "1e-09 to 0.001 [m]")
 
 
 def _impact(text):

@@ -45,6 +45,7 @@ def run(options):
     """Exit status: 0, or 2 when a run could not be read or nothing be drawn."""
     from pathlib import Path
 
+    from ..arguments import WrongArgument
     from ..report.plot import CannotPlot, plot
     from ..report.rows import frame, measure, row
     from ..runs.named import UnknownName
@@ -66,7 +67,7 @@ def run(options):
         file.parent.mkdir(parents=True, exist_ok=True)
         with replacing(file) as out:
             figure.savefig(out, format="png", dpi=150)
-    except (CannotPlot, UnknownName) as error:
+    except (CannotPlot, UnknownName, WrongArgument) as error:
         complain(error)
         return FAILED
     except OSError as error:

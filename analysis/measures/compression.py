@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import ANY, NOT_NEGATIVE, WrongArgument, number, numbers, takes
+
 
 @dataclass(frozen=True)
 class Maximum:
@@ -23,6 +25,7 @@ class Maximum:
     inside: bool
 
 
+@takes(x=numbers("K"), aggregate_radius=number(NOT_NEGATIVE))
 def compression_length(x, aggregate_radius):
     """d = 2 R_agg - (x_+ - x_-) [m], with x_+ (x_-) the mean of the x > 0 (x < 0): A24 eqs 10, 11.
 
@@ -35,6 +38,7 @@ def compression_length(x, aggregate_radius):
     return compression_and_velocity(x, x, aggregate_radius)[0]
 
 
+@takes(x=numbers("K"), x_velocity=numbers("K"))
 def mutual_velocity(x, x_velocity):
     """v = -(v_+ - v_-) [m/s], positive while approaching, with v_+ (v_-) the mean over grains with x > 0 (x < 0): A24
     eqs 12, 13.
@@ -59,6 +63,7 @@ def compression_and_velocity(x, x_velocity, aggregate_radius):
     return float(d), float(-(mean(x_velocity, right) - mean(x_velocity, left)))
 
 
+@takes(time=numbers("N"), d=numbers("N", ANY), v=numbers("N", ANY))
 def maximum_compression(time, d, v):
     """Maximum of the compression length between samples (A24: t_max is the time when d = d_max).
 
@@ -67,18 +72,15 @@ def maximum_compression(time, d, v):
     neighbouring samples; its highest point is d_max, and where it stands is t_max. length_error: the largest
     of the difference from the parabola through the three samples, and of the amount by which d and v disagree
     over the two intervals (d jumps when a grain crosses x = 0). time_error: the largest of the difference
-    from the parabola's vertex and from the nearest time where v falls through zero. Returns Maximum;
-    ValueError for unequal shapes.
+    from the parabola's vertex and from the nearest time where v falls through zero. Returns Maximum.
 
     >>> top = maximum_compression([0.0, 1.0, 2.0], [0.0, 1.0, 0.0], [2.0, 0.0, -2.0])
     >>> print(top.length, top.time, top.inside)
     1.0 1.0 True
     """
     time, d, v = (np.asarray(a, dtype=float) for a in (time, d, v))
-    if not (time.ndim == 1 and time.shape == d.shape == v.shape and time.size):
-        raise ValueError(
-            "time, d and v must be one-dimensional and equally long, they are " f"{time.shape}, {d.shape}, {v.shape}"
-        )
+    if not np.all(np.diff(time) > 0):
+        raise WrongArgument(f"time: falls or stays after sample {np.argmin(np.diff(time) > 0)}; must rise")
     known = np.isfinite(d) & np.isfinite(v)
     if not known.any():
         return None

@@ -2,7 +2,10 @@
 
 import numpy as np
 
+from ..arguments import COUNT, NOT_NEGATIVE, PAIRS, number, numbers, takes
 
+
+@takes(grains=number(COUNT), contact_pairs=PAIRS)
 def mean_coordination(grains, contact_pairs):
     """2 M/N for N = `grains` and contact_pairs (M,2).
 
@@ -12,6 +15,7 @@ def mean_coordination(grains, contact_pairs):
     return 2.0 * len(contact_pairs) / grains
 
 
+@takes(position=numbers("N,3"), contact_pairs=PAIRS, centre=numbers("3 or N,3"), reach=number(NOT_NEGATIVE))
 def inner_coordination(position, contact_pairs, centre, reach):
     """Mean number of contacts of the grains whose centre, position (N,3), lies nearer than `reach` to `centre` (3,), or
     (N,3) with one for each grain; all in one unit, contact_pairs (M,2). NaN if there is no such grain.

@@ -3,9 +3,11 @@
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from ..arguments import GRAIN_COUNT, NOT_NAN, NOT_NEGATIVE, PAIRS, POSITIVE, WHOLE, numbers, takes
 from .network import contact_network
 
 
+@takes(grains=GRAIN_COUNT, contact_pairs=PAIRS)
 def fragment_labels(grains, contact_pairs):
     """Fragment number (N,) int of each of N = `grains` grains, joined by contact_pairs (M,2) int. Number 0
     has the most grains, and so on; equally large ones are in the order of their first grain.
@@ -20,6 +22,7 @@ def fragment_labels(grains, contact_pairs):
     return rank[labels]
 
 
+@takes(labels=numbers("N", WHOLE))
 def fragment_sizes(labels):
     """Number of grains (K,) int of each fragment, for labels (N,) as fragment_labels returns them.
 
@@ -29,6 +32,7 @@ def fragment_sizes(labels):
     return np.bincount(labels)
 
 
+@takes(labels=numbers("N", WHOLE), mass=numbers("N", NOT_NEGATIVE))
 def fragment_masses(labels, mass):
     """Mass (K,) of each fragment, for labels (N,) and grain masses (N,) in any unit.
 
@@ -53,6 +57,7 @@ def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
     return fragment_masses(labels, mass)[labels] >= least_fraction * whole[aggregate] * (1.0 - 1e-12)
 
 
+@takes(largest=numbers(), target=numbers(), projectile=numbers(right=POSITIVE))
 def growth_efficiency(largest, target, projectile):
     """f_gro = (N_lar - N_tar)/N_pro from the numbers of grains of the largest fragment, of target and
     projectile: A22 eq 28.
@@ -60,9 +65,10 @@ def growth_efficiency(largest, target, projectile):
     >>> growth_efficiency(30, 20, 10)
     1.0
     """
-    return (largest - target) / projectile
+    return np.subtract(largest, target) / projectile
 
 
+@takes(sizes=numbers("K", NOT_NEGATIVE), numbers=numbers(right=NOT_NAN))
 def cumulative_number(sizes, numbers):
     """Z_cum(>= N) (G,): fragments of N grains or more, from the fragments' grains `sizes` (K,) at N = numbers (G,): A22
     eq 31.
@@ -74,6 +80,7 @@ def cumulative_number(sizes, numbers):
     return len(sizes) - np.searchsorted(sizes, np.ceil(numbers), side="left")
 
 
+@takes(sizes=numbers("K", NOT_NEGATIVE), numbers=numbers(right=NOT_NAN))
 def cumulative_grains(sizes, numbers):
     """N_cum(<= N) (G,): grains in fragments of at most N grains; arguments as cumulative_number. A22 eq 32.
 
@@ -83,6 +90,7 @@ def cumulative_grains(sizes, numbers):
     return _up_to(sizes, np.asarray(sizes, dtype=float), numbers)
 
 
+@takes(sizes=numbers("K", NOT_NEGATIVE), numbers=numbers(right=NOT_NAN))
 def cumulative_cross_section(sizes, numbers):
     """S_cum(<= N)/S_1 (G,): cross-sections N^(2/3) of the fragments of at most N grains, in units of one grain's pi r_1^2;
     arguments as cumulative_number. A22 eq 33.

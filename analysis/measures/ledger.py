@@ -4,9 +4,11 @@ A history is a dict of arrays (T,) by name: `time` [s] and every channel of runs
 
 import numpy as np
 
+from ..arguments import History, number, takes, wrong
 from ..runs.format import CHANNELS
 
 
+@takes(history=History())
 def total_energy(history):
     """Sum of all channels (T,) [J], work on boundaries and constraints included: constant for an exact ledger.
 
@@ -29,6 +31,7 @@ def closure_history(history):
     return (total - total[0]) / unit if unit > 0 else None
 
 
+@takes(history=History())
 def closure(history):
     """max over t of |E(t) - E(0)|/K(0); None where K(0) = 0.
 
@@ -65,6 +68,7 @@ def fractions(history):
     return {name: (history[name] - (0.0 if name == "kinetic" else history[name][0])) / unit for name in CHANNELS}
 
 
+@takes(history=History("time"), time=number())
 def fractions_at(history, time):
     """fractions(history) at one time [s], linear between samples, by name: floats. None where K(0) = 0.
 
@@ -72,5 +76,8 @@ def fractions_at(history, time):
     >>> fractions_at({**dict.fromkeys(CHANNELS, np.zeros(2)), **times}, 1.0)["kinetic"]
     0.25
     """
+    first, last = history["time"][0], history["time"][-1]
+    if not first <= time <= last:
+        raise wrong("time", time, f"within the record, {first:g} to {last:g} s")
     parts = fractions(history)
     return None if parts is None else {c: float(np.interp(time, history["time"], part)) for c, part in parts.items()}

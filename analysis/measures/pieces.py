@@ -5,9 +5,10 @@ from inspect import cleandoc
 import numpy as np
 import pandas
 
+from ..arguments import PAIRS, POSITIVE, WHOLE, numbers, takes
 from ..runs.table import Column, columns_text, described
 from .fragments import fragment_labels, fragment_masses, fragment_sizes
-from .structure import correlation_dimension, filling_factor, gyration_radius
+from .structure import POINTS, RADII, correlation_dimension, filling_factor, gyration_radius
 
 STRUCTURE = (
     Column("filling_factor", "1", "volume of its grains over that of a sphere of radius (5/3)^(1/2) R_g", gaps=True),
@@ -25,6 +26,9 @@ PIECES = (
 )
 
 
+@takes(
+    position=POINTS, radius=RADII, contact_pairs=PAIRS, aggregate=numbers("N", WHOLE), cell_size=numbers("3", POSITIVE)
+)
 def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
     """DataFrame with a row a piece, the most grains first, numbered as fragments.fragment_labels does.
 

@@ -7,9 +7,13 @@ from math import ceil
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..arguments import COUNT, NOT_NEGATIVE, POSITIVE, number, numbers, takes
+
 SCALES, MOST_ORIGINS = 12, 500  # of correlation_dimension
+POINTS, RADII = numbers("N,3"), numbers("N", POSITIVE)
 
 
+@takes(position=POINTS, distance=numbers(right=NOT_NEGATIVE), cell_size=numbers("3", POSITIVE), origins=number(COUNT))
 def grains_within(position, distance, cell_size=None, origins=None):
     """N(r < r_in): mean number of grains, itself and images included, whose centre is nearer than `distance` (K,) to that
     of a grain (K13 section 3.6).
@@ -25,14 +29,15 @@ def grains_within(position, distance, cell_size=None, origins=None):
     if cell_size is not None:
         cell_size = np.asarray(cell_size, dtype=float)
         position = position - cell_size * np.floor(position / cell_size)
-        reach = [range(-ceil(distance.max() / edge), ceil(distance.max() / edge) + 1) for edge in cell_size]
+        farthest = distance.max(initial=0.0)
+        reach = [range(-ceil(farthest / edge), ceil(farthest / edge) + 1) for edge in cell_size]
         shifts = [cell_size * image for image in product(*reach)]
     chosen = position
     if origins is not None and origins < len(position):
         chosen = position[np.linspace(0, len(position) - 1, origins).round().astype(int)]
     tree, counts = cKDTree(position), np.zeros(distance.shape)
     for shift in shifts:
-        counts += cKDTree(chosen + shift).count_neighbors(tree, distance)
+        counts += cKDTree(chosen + shift).count_neighbors(tree, distance.ravel()).reshape(distance.shape)
     return counts / len(chosen)
 
 
@@ -41,6 +46,7 @@ def fractal_dimension(distance, counts):
     return np.diff(np.log(counts)) / np.diff(np.log(distance))
 
 
+@takes(position=POINTS, radius=RADII)
 def correlation_dimension(position, radius):
     """Fractal dimension of a piece: slope of ln N(< s) against ln s, fitted at SCALES distances s from 3 radii (the largest of
     radius (N,)) to 0.7 R_g, N(< s) as in grains_within; position (N,3), one unit. NaN where that is less than a factor of 1.5.
@@ -61,6 +67,7 @@ def correlation_dimension(position, radius):
     return float(np.polyfit(np.log(distance), np.log(counts), 1)[0])
 
 
+@takes(position=POINTS, radius=RADII)
 def gyration_radius(position, radius=None):
     """R_g of points (N,3) of equal mass, in their unit: S17 eq 13; with the grains' radius (N,): of spheres of one density,
     R_g^2 = sum m_i (|x_i - x_c|^2 + 3/5 r_i^2)/sum m_i.
@@ -75,6 +82,7 @@ def gyration_radius(position, radius=None):
     return float(np.sqrt(np.average(square + 0.6 * own**2, weights=mass)))
 
 
+@takes(position=POINTS, radius=RADII)
 def filling_factor(position, radius):
     """Volume of spheres at position (N,3) with radius (N,), over that of a homogeneous sphere of their gyration radius, whose radius
     is r_c = (5/3)^(1/2) R_g (Mukai et al. 1992; A22 section 2.4); overlaps counted twice. One unit. Of one grain 1.

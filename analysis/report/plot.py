@@ -1,10 +1,13 @@
 """A column of a table of runs against another, with error bars over pairs of aggregates."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 import pandas
 
+from ..arguments import Kind, one_of, takes, wrong
 from ..measures.outcome import STICKING, UNDECIDED
 from ..runs.format import CHANNELS
 from ..runs.named import unknown
@@ -15,6 +18,7 @@ from ..studies.estimate import Fraction
 from ..studies.runs import Runs, each
 from .rows import at_end, table, varied
 
+WHATS = "sticking", "largest", "energy"
 SEED, CHANNEL, LARGEST = "seed", "channel", "largest_fraction"
 APART = 5.0  # points between curves
 
@@ -42,6 +46,16 @@ class OfDecided:
         return self.fraction.interval()
 
 
+NAME = Kind("the name of a column", lambda name: isinstance(name, str) and name != "")
+
+
+@takes(
+    what=Kind(f"{', '.join(WHATS)}, or {NAME.must}", NAME.is_right),
+    x=NAME,
+    by=Kind(f"{NAME.must}, or ''", lambda name: name is None or isinstance(name, str)),
+    where=Kind("{column: value}", lambda where: isinstance(where, Mapping)),
+    logarithmic=one_of("x", "y", "xy", ""),
+)
 def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     """matplotlib Figure of runs (a table(), or what that takes).
 
@@ -55,11 +69,10 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     CannotPlot (ValueError) where runs differ in parameters beside x, by and the seed; UnknownName (KeyError) for a wrong column.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
-    for name in (x, by, *(where or {})):
-        if name and name not in found:
-            raise unknown("table of runs", name, found.columns)
+    _require_columns(found, what, [x, *([by] if by else []), *(where or {})])
     drawn = Runs(found, SEED if SEED in found else RUN)
-    drawn = drawn.where(**where) if where else drawn
+    for name, value in (where or {}).items():
+        drawn = _only(drawn, name, value)
     _require_drawable(drawn.table, x, by)
     quantity = _quantity(what, drawn, [x, by] if by else [x])
     if not len(quantity.values):
@@ -85,8 +98,6 @@ def _quantity(what, drawn, by):
         changing = {c: at_end(c) for c in CHANNELS if c == "kinetic" or drawn.table[at_end(c)].any()}
         return Quantity(what, "", drawn.parts(changing, by, CHANNEL), "%", 0.01)
     column = LARGEST if what == "largest" else what
-    if column not in drawn.table:
-        raise unknown("table of runs", what, ("sticking", "largest", "energy", *drawn.table.columns))
     _require_numbers(drawn.table, column)
     return Quantity(what, "", drawn.estimates(column, by))
 
@@ -111,6 +122,32 @@ def _curves(what, found, x, by, logarithmic):
         line="-" if x in found.attrs.get("parameters", ()) else "",
         apart=0.0 if what == "energy" else APART,
     )
+
+
+def _require_columns(found, what, named):
+    """Raise UnknownName for a name that is no column of a table, CannotPlot where it is none of table()."""
+    if what not in (*WHATS, *found.columns):
+        raise unknown("table of runs", what, (*WHATS, *found.columns))
+    of_what = {"sticking": [], "largest": [LARGEST], "energy": map(at_end, CHANNELS)}.get(what, [what])
+    own = [SEED if SEED in found else RUN, "outcome", "ended"]
+    for name in named:
+        if name not in found:
+            raise unknown("table of runs", name, found.columns)
+    lacking = [name for name in (*of_what, *own) if name not in found]
+    if lacking:
+        raise CannotPlot(f"table of runs: lacks {', '.join(lacking)}; must be as analysis.table() gives it")
+
+
+def _only(drawn, name, value):
+    """The Runs with a value in a column."""
+    of_numbers = drawn.table[name].dtype.kind in "fiu"
+    if of_numbers and not isinstance(value, Real) or not (of_numbers or np.isscalar(value)):
+        raise wrong(f"where {name}", value, "a number" if of_numbers else "one value")
+    left = drawn.where(**{name: value})
+    if not len(left.table):
+        there = ", ".join(map(str, drawn.table[name].unique()))
+        raise CannotPlot(f"where {name} = {value}: no run is left; must be one of {there}")
+    return left
 
 
 def _require_drawable(found, x, by):

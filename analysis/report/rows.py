@@ -2,10 +2,13 @@
 
 import os
 import warnings
+from collections.abc import Iterable, Mapping
 from inspect import cleandoc
 
 import numpy as np
+import pandas
 
+from ..arguments import FLAG, PATH, takes, wrong
 from ..measures.coordination import mean_coordination
 from ..measures.fragments import fragment_labels
 from ..measures.ledger import fractions_at
@@ -24,6 +27,8 @@ of_largest = "largest_{}".format
 
 # How a run is stored and carried out, which says nothing of its physics.
 _BOOKKEEPING = ("out", "overwrite", "resume", "checkpointInterval", "threads", "states")
+
+RUNS = "a path, a pattern, a RunFolder, or a list of these"
 
 _OF_MATERIAL = ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling")
 
@@ -61,6 +66,7 @@ SHORT = (
 )
 
 
+@takes(structure=FLAG)
 def table(runs, structure=True):
     """DataFrame with a row a run.
 
@@ -178,6 +184,12 @@ def _largest(state):
 
 def _folders(runs):
     """[(RunFolder or its path, None) or (None, what is wrong)] of what table() is given."""
-    several = [runs] if isinstance(runs, (str, os.PathLike, RunFolder)) else list(runs)
+    several = [runs] if isinstance(runs, (str, os.PathLike, RunFolder)) else runs
+    if isinstance(several, (bytes, Mapping, pandas.DataFrame)) or not isinstance(several, Iterable):
+        raise wrong("runs", runs, RUNS)
+    several = list(several)
+    for run in several:
+        if not (isinstance(run, RunFolder) or PATH.is_right(run)):
+            raise wrong("runs", run, RUNS)
     opened = [run for run in several if isinstance(run, RunFolder)]
     return [(run, None) for run in opened] + run_folders([path for path in several if path not in opened])

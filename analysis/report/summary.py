@@ -2,9 +2,11 @@
 
 import textwrap
 
+from ..arguments import Kind, takes
 from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure, work_on_boundaries
 from ..measures.of_run import maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
+from ..runs.folder import RunFolder
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, LABELS
 from ..runs.shown import WIDTH, settings
 from ..runs.table import Column
@@ -36,6 +38,7 @@ ENERGY_KEYS = (
 )
 
 
+@takes(run=Kind("a RunFolder, as open_run() gives", lambda run: isinstance(run, RunFolder)))
 def summarise(run):
     """Numbers of a RunFolder as a dict, SI units, None where a value does not exist: run (path), ended, time (of the last
     sample), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions) and ENERGY_KEYS. RunFolderError when a

@@ -13,6 +13,7 @@ from typing import Mapping
 
 import numpy as np
 
+from ..arguments import Kind, PATH, WrongArgument, number, shown, takes
 from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_values
 from .format import (
     COLLISION,
@@ -80,7 +81,7 @@ class StateSequence(Sequence):
     def __getitem__(self, index):
         if isinstance(index, slice):
             return StateSequence(self.files[index], self.kind, self.file_format, self.seal)
-        return read_state(self._checked(self.files[index]), self.kind, self.file_format)
+        return read_state(self._checked(self._file(index)), self.kind, self.file_format)
 
     def __repr__(self):
         return f"{len(self)} states of a {self.kind.name}"
@@ -98,14 +99,23 @@ class StateSequence(Sequence):
 
     def nearest(self, time):
         """Index of the state whose time is nearest to `time` [s]."""
+        number().require("time", time, {})
         return int(np.argmin(np.abs(self.times - time)))
 
     def arrays(self, index, names):
         """Some arrays of a state by name, without reading the others; their values are checked, not their shapes."""
-        arrays = read_arrays(self._checked(self.files[index]), names)
+        arrays = read_arrays(self._checked(self._file(index)), names)
         for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
             require_values(self.files[index], quantity, arrays[quantity.name])
         return arrays
+
+    def _file(self, index):
+        if not isinstance(index, (int, np.integer)):
+            raise WrongArgument(f"state {shown(index)}: must be a whole number, or a slice")
+        if not -len(self) <= index < len(self):
+            must = f"{-len(self)} to {len(self) - 1}" if self.files else "of a run that has left one"
+            raise IndexError(f"no state {index}: must be {must}")
+        return self.files[index]
 
     def _checked(self, file):
         if self.seal:
@@ -155,6 +165,7 @@ class RunFolder:
         return self.states[index]
 
 
+@takes(path=Kind("the path of a run folder", PATH.is_right))
 def open_run(path):
     """RunFolder at `path`; RunFolderError when it is no run folder, has no history yet, or is damaged.
 

@@ -27,6 +27,12 @@ class Named(Mapping):
             raise unknown(self._what, name, self._values)
         return self._values[name]
 
+    def __getattr__(self, name):
+        if name.startswith("_"):  # what copying and notebooks ask every object for
+            raise AttributeError(name)
+        self[name]
+        raise UnknownName(f'{self._what}: {name} is no attribute; must be read as ["{name}"]')
+
     def __iter__(self):
         return iter(self._values)
 

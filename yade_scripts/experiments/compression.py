@@ -64,7 +64,7 @@ class CompressionParameters(GrainParameters, RunParameters):
     )
     finalFilling: float | None = parameter(
         None,
-        Check("> initialFilling and at most that of random close packing", lambda x: x > 0),
+        Check("> initialFilling and at most that of random close packing", lambda x: 0 < x < 1),
         f"filling factor at which the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)",
         "1",
     )

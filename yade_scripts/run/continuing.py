@@ -6,8 +6,9 @@ import sys
 from analysis.printable import shell_line
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.folder import read_json
-from analysis.runs.format import RUN_FILE
+from analysis.runs.format import ENDED_FILE, RUN_FILE
 from yade_scripts.parameters import ParameterError
+from yade_scripts.run import checkpoint
 
 CONTINUE = "continue"
 MAY_CHANGE = ("duration",)  # beside what is of no consequence
@@ -36,6 +37,10 @@ def _held(kind, folder):
     if run.get("kind") != kind.name or set(held) != set(kind.parameters.columns()):
         raise ParameterError(
             f"{CONTINUE} = {folder}: a run of another kind or version; must be a {kind.name} of this version"
+        )
+    if os.path.exists(os.path.join(folder, ENDED_FILE)) and not checkpoint.exists(folder):
+        raise ParameterError(
+            f"{CONTINUE} = {folder}: the run has ended, decided; must be one that was stopped, or is undecided"
         )
     return held
 

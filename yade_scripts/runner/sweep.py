@@ -17,7 +17,7 @@ from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
 from analysis.report.status import duration_text
 from yade_scripts.experiments import collision, compression
-from yade_scripts.parameters import ParameterError
+from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
 from yade_scripts.runner.screen import SHARE
 from yade_scripts.runner.study import Study
@@ -59,16 +59,19 @@ for _function, _kind in ((collide, collision.KIND), (compress, compression.KIND)
 
 
 def _sweep(kind, script, parameters, folder, jobs):
-    if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
+    if jobs is not None and (isinstance(jobs, bool) or not (isinstance(jobs, Integral) and jobs >= 1)):
         raise ParameterError(f"jobs = {jobs}: must be a whole number, 1 or more")
-    if not isinstance(folder, (str, os.PathLike)):
+    if not isinstance(folder, (str, os.PathLike)) or os.fspath(folder) == "":
         raise ParameterError(f"folder = {folder}: must be a path; parameters are given by name, velocity=3")
     if os.path.lexists(folder) and not os.path.isdir(folder):
         raise ParameterError(f"folder = {folder}: is a file; must be a folder")
     rows = _rows(kind, script, parameters, os.fspath(folder))
     name = hashlib.sha256(repr(rows).encode()).hexdigest()[:8]
     file = os.path.join(folder, f"{kind.name}-{name}.table")
-    os.makedirs(folder, exist_ok=True)
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        raise ParameterError(f"folder = {folder}: {error.strerror}; must be a folder that can be written") from None
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
     _run(file, jobs or os.cpu_count())
     return table_of_runs([row["out"] for row in rows])
@@ -79,14 +82,24 @@ def _rows(kind, script, parameters, folder):
     for name in OURS:
         if name in parameters:
             raise ParameterError(f"{name}: is the sweep's own; must be left out (folder says where the runs go)")
-    rows, folder = [], _text("folder", folder)
+    rows, folder = {}, _text("folder", folder)
     for values in product(*map(_listed, parameters, parameters.values())):
         cells = {name: _text(name, value) for name, value in zip(parameters, values) if value is not None}
+        _require_no_truths(kind, dict(zip(parameters, values)))
         out = os.path.basename(kind.parse(cells).out)
-        rows.append(
-            {"description": out, **cells, "out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
-        )
-    return rows
+        if out in rows:
+            raise ParameterError(f"{' '.join(map('='.join, cells.items()))}: given twice; must be given once")
+        place = {"out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
+        rows[out] = {"description": out, **cells, **place}
+    return list(rows.values())
+
+
+def _require_no_truths(kind, values):
+    """Raise ParameterError for True or False as a number or a name; where 0 or 1 is wanted they are these."""
+    for name, column in kind.parameters.columns().items():
+        if isinstance(values.get(name), bool) and column.check is not SWITCH:
+            what = "a name" if column.kind is str else "a number"
+            raise ParameterError(f"{name} = {values[name]}: not {what}; {column.must}")
 
 
 def _listed(name, value):
