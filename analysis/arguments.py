@@ -16,6 +16,7 @@ from .printable import printable
 from .runs.format import CHANNELS
 
 LONGEST = 60  # characters of a value in a message
+LIKE_VALUES = "None", "True", "False", "nan", "inf"  # texts that are quoted
 
 
 class WrongArgument(ValueError, TypeError):
@@ -30,14 +31,15 @@ def wrong(name, value, must):
 def shown(value):
     """A value in a message: one short line.
 
-    >>> shown("5"), shown([0.1, None]), shown(np.zeros((9, 3))), shown({1: 2}.items())
-    ("'5'", '[0.1, None]', 'array (9, 3)', 'a dict_items')
+    >>> shown("ice"), shown("5"), shown([0.1, None]), shown(np.zeros((9, 3))), shown({1: 2}.items())
+    ('ice', "'5'", '[0.1, None]', 'array (9, 3)', 'a dict_items')
     """
     if isinstance(value, np.ndarray) and value.ndim:
         return f"array {value.shape}"
     if not isinstance(value, (str, bytes, int, float, complex, list, tuple, dict, np.generic, type(None))):
         return f"a {type(value).__name__}"
-    text = printable(value if isinstance(value, np.generic) else repr(value))
+    plain = isinstance(value, np.generic) or isinstance(value, str) and value.isidentifier() and value not in LIKE_VALUES
+    text = printable(value if plain else repr(value))
     return text if len(text) <= LONGEST else text[:LONGEST] + "..."
 
 
