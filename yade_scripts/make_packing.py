@@ -79,13 +79,18 @@ def main(arguments):
         print(f"make_packing.py {version_text()}")
         return 0
     files = [argument for argument in arguments if "=" not in argument]
-    if "--help" in arguments or not 1 <= len(files) <= 2:
+    if "--help" in arguments:
         print(
             f"{__doc__}\n{MadeParameters.help_text((*WITHOUT_EFFECT, 'file'))}\n\nWith from=FILE of another program:\n"
             f"{ImportParameters.help_text(WITHOUT_EFFECT)}\n\nWith from=RUN/states/NNNNNN.npz of a compression:\n"
             f"{CutParameters.help_text()}"
         )
-        return 0 if "--help" in arguments else 2
+        return 0
+    options = [argument for argument in files if argument.startswith("-")]
+    if options:
+        raise ParameterError(f"{options[0]}: not understood; must be name=value, or --help")
+    if not 1 <= len(files) <= 2:
+        raise ParameterError(f"{len(files)} files given; must be one or two to write, a.npz b.npz, or --help")
     if len(set(map(os.path.realpath, files))) < len(files):
         raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
     texts = from_arguments(argument for argument in arguments if "=" in argument)
@@ -97,6 +102,8 @@ def main(arguments):
         if name in texts:
             raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
     if "from" in texts:
+        if not texts["from"]:
+            raise ParameterError("from = : must be a file")
         _save_from(texts.pop("from"), files, texts)
         return 0
     parameters = MadeParameters.parse(texts)

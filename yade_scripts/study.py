@@ -27,6 +27,7 @@ import os
 import signal
 import sys
 import time
+from difflib import get_close_matches
 from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -87,6 +88,17 @@ def find_table(table):
     """The file named, or else the table of that name among those that come with this: elastoplastic-desk, say."""
     own = os.path.join(STUDIES, os.path.basename(table).removesuffix(".table") + ".table")
     return own if not os.path.exists(table) and os.path.dirname(table) == "" and os.path.isfile(own) else table
+
+
+def hint(table):
+    """' (did you mean ...?)' for a table that isn't there, of those in its folder and those that come with this; or ''."""
+    folder, name = os.path.split(table)
+    if os.path.exists(table):
+        return ""
+    places = [folder or os.curdir] + ([] if folder else [STUDIES])
+    found = [each for place in places if os.path.isdir(place) for each in os.listdir(place) if each.endswith(".table")]
+    close = get_close_matches(name.removesuffix(".table") + ".table", found, 1)
+    return f" (did you mean {os.path.join(folder, close[0])}?)" if close else ""
 
 
 def place_of(table):
@@ -200,7 +212,7 @@ def main(arguments):
             study.forget_failures()
             return submit(study, options.jobs, options.sbatch, options.dry_run)
     except (TableError, StudyBusy, slurm.SlurmError) as error:
-        tell(error, SCRIPT)
+        tell(f"{error}{hint(table)}", SCRIPT)
         return 2
     except OSError as error:
         tell(f"{error.filename}: {error.strerror}", SCRIPT)

@@ -22,7 +22,7 @@ def add_parser(commands):
         default=10.0,
         help="states a second (default: 10)",
     )
-    parser.add_argument("--along", choices="xyz", default="z", help="axis along which it is seen (default: z)")
+    parser.add_argument("--along", choices=tuple("xyz"), default="z", help="axis along which it is seen (default: z)")
     parser.add_argument("--colour", choices=COLOURINGS, default="aggregate", help="of the grains (default: aggregate)")
     parser.add_argument("--width", metavar="PIXELS", type=_width, default=960, help="from 160 to 3840 (default: 960)")
     parser.set_defaults(command=run)

@@ -1,6 +1,6 @@
 """python3 -m analysis view RUN [--out FILE] [--three FOLDER]"""
 
-from . import write_of_run
+from . import FAILED, complain, write_of_run
 
 
 def add_parser(commands):
@@ -21,6 +21,9 @@ def run(options):
     """Exit status: 0, or 2 when the run could not be read or the page not be written."""
     from ..export.viewer import THREE, NoThree, write_view
 
+    if options.out and not options.out.endswith((".html", ".htm")):
+        complain(f"{options.out}: must end in .html")
+        return FAILED
     return write_of_run(
         options, "view.html", lambda folder, file: write_view(folder, file, options.three or THREE), NoThree
     )

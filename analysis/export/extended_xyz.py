@@ -5,7 +5,7 @@ Source: https://github.com/libAtoms/extxyz (the format's specification). Numbers
 import numpy as np
 
 from ..progress import progress
-from ..runs.write import replacing
+from ..runs.write import make_folder, replacing
 from .fields import exported_states, grain_fields
 
 FILE = "run.xyz"
@@ -19,7 +19,7 @@ def write_xyz(run, folder):
     """Write the states of a RunFolder; returns the file's Path. Columns: species, pos [m] and fields.GRAINS (v is called
     velo); a frame's line has Time [s] and, of a periodic run, the cell."""
     file = folder / FILE
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     with replacing(file) as out:
         for exported in progress(exported_states(run), "writing states", len(run.states)):
             _write_frame(out, exported)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..progress import progress
-from ..runs.write import write_text
+from ..runs.write import make_folder, write_text
 from . import vtk_xml
 from .fields import contact_fields, exported_states, grain_fields
 
@@ -17,6 +17,7 @@ def write_vtk(run, folder):
     Grains are points with the fields of fields.GRAINS. Contacts are lines from the first grain's centre to the second's
     nearest image, with fields.CONTACTS; each has its own two points. `time` [s] and, of a periodic run, `cell_size` [m]
     are field data of the grains. (OVITO 3.17 shows the contacts of an earlier state where a state has none.)"""
+    make_folder(folder)
     names, times = [], []
     for number, exported in enumerate(progress(exported_states(run), "writing states", len(run.states))):
         names.append(f"state_{number:06d}")

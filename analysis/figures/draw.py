@@ -5,7 +5,7 @@ from importlib import import_module
 from pathlib import Path
 
 from ..progress import progress
-from ..runs.write import replacing
+from ..runs.write import make_folder, replacing
 from . import of_run
 
 
@@ -27,7 +27,7 @@ def draw_all(run, folder):
     RunFolderError when the run lacks what a figure shows, OSError when the folder can't be written.
     """
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     for name, make in progress(figures_of(run).items(), "drawing"):
         figure = make(run)
         file = folder / f"{name}.png"

@@ -88,6 +88,13 @@ def require_file(path, within=None, inputs=()):
     return found
 
 
+def make_folder(path):
+    """Make a folder, and those that it is in, unless it is there. Raises OSError, with .filename."""
+    if os.path.lexists(path) and not os.path.isdir(path):
+        raise _refusal(os.fspath(path), "is a file; must be a folder")
+    os.makedirs(path, exist_ok=True)
+
+
 def make_new(path, content):
     """Make a file with its bytes at once; whether there was none. Of several that do so together one has made it."""
     with unfinished(path) as file:

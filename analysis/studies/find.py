@@ -5,6 +5,7 @@ from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
+from traceback import extract_tb
 
 from .. import studies
 from ..runs.named import suggested
@@ -42,9 +43,14 @@ def _own(file):
         raise NoSuchStudy(f"{file}: no such file")
     spec = spec_from_file_location(f"own_study_{file.stem}", file)
     module = module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:
+        where = error.lineno if isinstance(error, SyntaxError) else extract_tb(error.__traceback__)[-1].lineno
+        said = " ".join(str(error).split())
+        raise NoSuchStudy(f"{file}: {type(error).__name__} at line {where}: {said}; must define STUDY") from None
     if not hasattr(module, "STUDY"):
-        raise NoSuchStudy(f"{file}: defines no STUDY")
+        raise NoSuchStudy(f"{file}: defines no STUDY; must be as analysis/STUDIES.md says")
     return module
 
 

@@ -107,5 +107,6 @@ def test_figures_are_written_where_asked_and_a_place_that_cannot_be_written_is_o
     assert sorted(names) == ["energy.png", "forces.png", "grains.png", "motion.png"]
     assert all((tmp_path / "new" / "place" / name).read_bytes().startswith(b"\x89PNG") for name in names)
     (tmp_path / "taken").write_text("")
-    done = analyse("figures", cluster_folder, "--out", tmp_path / "taken")
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "taken" in done.stderr
+    for command in ("figures", "export"):
+        done = analyse(command, cluster_folder, "--out", tmp_path / "taken")
+        assert done.returncode == 2 and done.stderr == f"analysis: {tmp_path}/taken: is a file; must be a folder\n"

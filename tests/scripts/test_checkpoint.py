@@ -109,6 +109,12 @@ def test_a_run_with_a_checkpoint_starts_again_only_when_asked(straight, killed, 
     assert same_bits(tmp_path / "run", straight) and not (tmp_path / "run" / "checkpoint").exists()
 
 
+def test_a_run_that_ended_decided_does_not_go_on(tmp_path):
+    completed(tmp_path, "packing=bcca", "grains=16", "velocity=10", "seed=3")
+    line = refusal(collide(tmp_path, "continue=run", "duration=1e-6"))
+    assert line.endswith("continue = run: the run has ended, decided; must be one that was stopped, or is undecided")
+
+
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     """Its line has the command; what the command says of other parameters, or of no more time, is refused."""
     fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()

@@ -21,6 +21,9 @@ TABLES = {
     "unit.table": "velocity\n3 m/s\n",
     "runs.csv": "a,b\n",
     "no.json": "{}",
+    "mine.py": "x = 1\n",
+    "typo.py": "x = 1\ny\n",
+    "syntax.py": "def (:\n",
 }
 # what is typed: words of the line, which is all that is said
 MISTAKES = {
@@ -37,6 +40,11 @@ MISTAKES = {
     ),
     "analysis film empty --width 9.5": "argument --width: 9.5: must be a whole number from 160 to 3840",
     "analysis film empty --colour blue": "invalid choice: 'blue' (choose from 'aggregate'",
+    "analysis film empty --along xy": "invalid choice: 'xy' (choose from 'x', 'y', 'z')",
+    "analysis view empty --out a.txt": "a.txt: must end in .html",
+    "analysis study mine.py empty": "mine.py: defines no STUDY; must be as analysis/STUDIES.md says",
+    "analysis study typo.py empty": "typo.py: NameError at line 2: name 'y' is not defined; must define STUDY",
+    "analysis study syntax.py empty": "syntax.py: SyntaxError at line 1: ",
     "analysis film empty --along w": "invalid choice: 'w' (choose from 'x', 'y', 'z')",
     "analysis export empty --format ply": "invalid choice: 'ply' (choose from 'vtk', 'xyz', 'all')",
     "analysis plot sticking empty": "empty: no run folder (run.json) there",
@@ -66,6 +74,9 @@ MISTAKES = {
     "study above.table": "above.table: line 2: = has no row above; must be a value",
     "study twice.table": "twice.table: has the column velocity 2 times; must be once",
     "study same.table": "same.table: lines 2 and 3 both have out = runs/a; must be one",
+    "study same": "same: No such file or directory; must be a table of parameters (did you mean same.table?)",
+    "study elastoplastic-dsk": "must be a table of parameters (did you mean elastoplastic-desk.table?)",
+    "study latin.table": "latin.table: has bytes that are not UTF-8; must be a table",
     "study text.txt": "text.txt: no rows; must be a line of names, then rows of values",
     "study empty": "empty: is no regular file; must be one",
     "study nowhere.table": "nowhere.table: No such file or directory; must be a table",
@@ -75,6 +86,10 @@ MISTAKES = {
     "study unit.table": "unit.table: line 2 has 2 cells; must be 1, one for each name",
     "study cells.table column.table": "unrecognized arguments: column.table",
     "study cells.table -j 2.5": "argument -j/--jobs: invalid int value: '2.5'",
+    "make_packing": "0 files given; must be one or two to write, a.npz b.npz, or --help",
+    "make_packing a.npz b.npz c.npz radius=3": "3 files given; must be one or two",
+    "make_packing a.npz --seed 3": "--seed: not understood; must be name=value, or --help",
+    "make_packing a.npz from= unit=um": "from = : must be a file",
     "make_packing a.npz packing=bcca grains=ten": "grains = ten: not a finite number",
     "make_packing a.npz packing=bcca grains=1e9": "grains = 1e9: must be 2 to 5000000",
     "make_packing a.npz packing=bcca grains=10 filling=0.4": "filling = 0.4: given with packing = bcca",
@@ -120,10 +135,11 @@ OF_YADE = {
 def folder(tmp_path, monkeypatch):
     for name, text in TABLES.items():
         (tmp_path / name).write_text(text)
+    (tmp_path / "latin.table").write_bytes(b"grains\n16 # gr\xf6\xdfe\n")
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path)
     yield tmp_path
-    assert {path.name for path in tmp_path.iterdir()} == {*TABLES, "empty"}  # nothing was made
+    assert {path.name for path in tmp_path.iterdir()} == {*TABLES, "latin.table", "empty"}  # nothing was made
 
 
 @pytest.mark.parametrize("typed", MISTAKES)

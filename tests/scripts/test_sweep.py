@@ -61,6 +61,11 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
         {"jobs": 1.5},
         {"folder": 3},
         {"seed": [1, 2, 1]},
+        {"velocity": True},
+        {"velocity": ["1", 1]},
+        {"packing": True},
+        {"jobs": True},
+        {"folder": ""},
     ],
 )
 def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):

@@ -38,8 +38,10 @@ def read(path):
             lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
     except RunFolderError as error:
         raise TableError(error) from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise TableError(f'{path}: {getattr(error, "strerror", error)}; must be a table of parameters') from None
+    except UnicodeDecodeError:
+        raise TableError(f"{path}: has bytes that are not UTF-8; must be a table of parameters") from None
+    except OSError as error:
+        raise TableError(f"{path}: {error.strerror}; must be a table of parameters") from None
     used = [(number, cells) for number, cells in enumerate(lines, 1) if cells]
     if len(used) < 2:
         raise TableError(f"{path}: no rows; must be a line of names, then rows of values")
