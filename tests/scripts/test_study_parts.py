@@ -13,7 +13,7 @@ from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constant
 from yade_scripts.packings.approach import first_touch
 from yade_scripts.run import agreement, table
 from yade_scripts.run.closing_line import closing_line, outcome_told
-from yade_scripts.runner import cost, rows, view
+from yade_scripts.runner import batch, cost, rows, view
 from yade_scripts.runner.batch import StudyFolder
 from yade_scripts.runner.screen import Screen
 
@@ -80,6 +80,22 @@ def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
     assert study_folder.cost([given], [rows.State(rows.WAITING)]).piece is None
     with pytest.raises(table.TableError, match="log: is no regular file; must be one"):
         table.read(tmp_path / "log")
+
+
+def test_runs_that_ended_are_looked_at_once(tmp_path, monkeypatch):
+    """However often the time left is asked for; the estimate is the same one until another run ends."""
+    monkeypatch.chdir(tmp_path)
+    looked, models, model = [], [], cost.Cost._model
+    monkeypatch.setattr(batch, "changed", lambda file: looked.append(file) or float(len(looked)))
+    monkeypatch.setattr(cost.Cost, "_model", lambda self, row: models.append(row) or model(self, row))
+    study_folder, given = StudyFolder("any"), [row(out=f"r{number}", seed=number) for number in range(500)]
+    states = [rows.State(rows.DONE, 1.0, 2.0)] * 400 + [rows.State(rows.WAITING)] * 100
+    for _ in range(3):
+        left = view.total_left(states, study_folder.cost(given, states), given, 1)
+    assert len(looked) == 400 and len(models) == cost.MOST + 3 * 100
+    states[400] = states[0]
+    assert view.total_left(states, study_folder.cost(given, states), given, 1) == pytest.approx(left * 99 / 100, rel=1e-9)
+    assert len(looked) == 401
 
 
 def test_failures_count_from_a_moment_on_whatever_the_clock_does(tmp_path):

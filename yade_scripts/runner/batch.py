@@ -34,6 +34,7 @@ class StudyFolder:
     def __init__(self, name):
         self.path = os.path.join(LOGS, name)
         self.held = None
+        self._ends, self._cost, self._known = {}, None, None
 
     def file(self, name):
         return os.path.join(self.path, name)
@@ -60,14 +61,23 @@ class StudyFolder:
             ) from None
 
     def cost(self, rows, states):
-        """Cost from the rows that have ended, and from what was measured."""
+        """Cost from the rows that have ended, and from what was measured; the same one until there is more of either."""
         ended = [(row, s.seconds) for row, s in zip(rows, states) if row.kind and s.kind == DONE and s.seconds]
-        ended.sort(key=lambda found: changed(os.path.join(found[0].out, ENDED_FILE)))
         try:
             piece = Piece(**{name: float(number) for name, number in read_json(self.file("speed.json")).items()})
         except (RunFolderError, ValueError, TypeError, AttributeError):
             piece = None
-        return Cost(piece, ended)
+        known = piece, [(row.out, seconds) for row, seconds in ended]
+        if known != self._known:
+            self._known, self._cost = known, Cost(piece, sorted(ended, key=self._end))
+        return self._cost
+
+    def _end(self, ended):
+        """When a row's run came to its end [s since 1970]: looked up once."""
+        out = ended[0].out
+        if out not in self._ends:
+            self._ends[out] = changed(os.path.join(out, ENDED_FILE))
+        return self._ends[out]
 
     def measure(self, row, rows, states, at_once, stop):
         """Time a piece of a row's run, at_once of them together, unless runs have ended to judge by."""

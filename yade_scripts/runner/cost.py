@@ -20,6 +20,7 @@ FUNCTORS = 37  # a step of YADE's own loop over one of the engine
 
 ALIKE = np.log(2)  # logarithm of the ratio of two runs' times at which one tells of the other half as much as an equal
 RECENT = 10  # runs that ended later halve what one tells: a machine is busier at times
+MOST = 20 * RECENT  # of a kind and engine, the latest: earlier ones tell less than a millionth
 
 
 @dataclass(frozen=True)
@@ -41,30 +42,38 @@ class Cost:
 
     piece: Piece = None
     ended: list = field(default_factory=list)
+    _known: dict = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def _ended(self):
         """{(name of the kind, engine): (logarithms of the model's times, ratios of the times to these, weights)}."""
         by_kind = {}
         for later, (row, time) in enumerate(reversed(self.ended)):
-            model = self._model(row)
             found = by_kind.setdefault((row.kind.name, row.parameters.engine), [])
-            found.append((np.log(model), time / model, 0.5 ** (later / RECENT)))
+            if len(found) < MOST:
+                model = self._model(row)
+                found.append((np.log(model), time / model, 0.5 ** (later / RECENT)))
         return {key: np.array(found).T for key, found in by_kind.items()}
 
     def seconds(self, wanted):
         """Estimated wall time [s] of a row's run, or None when too little is known."""
         if wanted.kind is None:
             return None
-        model = self._model(wanted)
-        sizes, ratios, weights = self._ended.get((wanted.kind.name, wanted.parameters.engine), np.empty((3, 0)))
+        key = wanted.kind.name, wanted.parameters.engine, self._model(wanted)
+        if key not in self._known:  # the rows of a table differ in their seeds, as a rule
+            self._known[key] = self._seconds(key[:2], key[2])
+        return self._known[key]
+
+    def _seconds(self, of, model):
+        sizes, ratios, weights = self._ended.get(of, np.empty((3, 0)))
         weights = weights / (1 + ((sizes - np.log(model)) / ALIKE) ** 2)
         of_piece = float(self.piece is not None)  # as much as one run
         known = weights.sum() + of_piece
         return (model + self._piece.pace * BETWEEN) * float(weights @ ratios + of_piece) / known if known else None
 
     def _model(self, row):
-        return self._piece.setup * setup_seconds(row) + self._piece.pace * stepping_seconds(row)
+        setup, stepping = row.typical
+        return self._piece.setup * setup + self._piece.pace * stepping
 
     @property
     def _piece(self):

@@ -16,6 +16,7 @@ from yade_scripts.run.agreement import difference
 from yade_scripts.run.file_name import file_name
 from yade_scripts.run.kind import Kind, NoKind, kind_of
 from yade_scripts.run.parameters import RunParameters
+from yade_scripts.runner.cost import setup_seconds, stepping_seconds
 from yade_scripts.runner.log import failure
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -58,6 +59,11 @@ class StudyRow:
     def estimate(self):
         """run.kind.Estimate of its run."""
         return self.kind.estimate(self.parameters)
+
+    @cached_property
+    def typical(self):
+        """(seconds of setting it up, seconds of its steps) of a usual processor."""
+        return setup_seconds(self), stepping_seconds(self)
 
 
 def read(path, run_scripts=True):
