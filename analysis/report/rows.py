@@ -105,8 +105,10 @@ def frame(measured):
 
 
 def short_text(found):
-    """A line a run of a table(): its folder, the parameters in which the runs differ, and SHORT as far as there is any."""
-    first = [FOLDER, *(["velocity"] if "velocity" in found else []), *varied(found)]
+    """A line a run of a table(): its folder, the parameters in which the runs of a kind differ, and SHORT as far as there is any."""
+    kinds = [found[found.kind == kind] for kind in found.kind.unique()]
+    differing = [name for own in kinds for name in varied(own)] + (["kind"] if len(kinds) > 1 else [])
+    first = [FOLDER, *(["velocity"] if "velocity" in found else []), *differing]
     shown = [name for name in SHORT if name in found and found[name].notna().any()]
     names = dict.fromkeys([*first, *([] if found.ended.all() else ["ended"]), *shown])
     units = {name: found.attrs["units"].get(name, "") for name in names}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import analysis
-from analysis.report.rows import LARGEST, MEASURED, table
+from analysis.report.rows import LARGEST, MEASURED, frame, row, short_text, table
 from analysis.runs.arrays import RunFolderError
 from analysis.runs.format import CHANNELS
 
@@ -78,6 +78,13 @@ def test_a_table_has_a_row_a_run(run, pair_folder, tmp_path):
     for column in LARGEST:
         assert np.array_equal(found[column.name][0], piece[column.name.removeprefix("largest_")], equal_nan=True)
     assert table([run, str(tmp_path), f"{tmp_path}/r*"]).run.tolist() == ["run", "r0", "r1"]
+
+
+def test_runs_of_two_kinds_show_what_differs_within_a_kind(run):
+    collision = row(run)
+    compressed = {name: value for name, value in collision.items() if name != "velocity"} | {"kind": "compression"}
+    found = frame([("a", {**collision, "seed": 1}), ("b", {**collision, "seed": 2}), ("c", {**compressed, "grains": 9})])
+    assert short_text(found).splitlines()[0].split()[:5] == ["run", "velocity", "[m/s]", "seed", "kind"]
 
 
 def test_a_run_that_cannot_be_read_is_named_and_left_out(run, tmp_path):

@@ -112,7 +112,7 @@ def _of_run(place):
         largest = maximum_compression(history["time"], history["d"], history["v"])
         d_max = largest.length / GRAIN_RADIUS if largest else None
         return {"ledger": ledger.closure(history), "d_max": d_max, "seconds": seconds}
-    total, work, by_filling = ledger.total_energy(history), -history["boundaryWork"], {}
+    total, work, by_filling = ledger.total_energy(history), -ledger.work_on_boundaries(history), {}
     error = np.maximum.accumulate(np.abs(total - total[0]))
     for filling in FILLINGS:
         if (history["filling"] >= filling).any():
