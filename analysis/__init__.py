@@ -7,7 +7,8 @@
     analysis.plot("sticking", runs, x="velocity").savefig("sticking.png")
 
 dir(analysis) lists what there is; each docstring says shapes and units. Functions of measures take plain arrays:
-analysis.fragment_labels(grains, contact_pairs) and so on. `analysis.__version__` and `analysis.commit` say which sources these are.
+analysis.fragment_labels(grains, contact_pairs) and so on; what cannot be is refused in one line, WrongArgument (a ValueError).
+`analysis.__version__` and `analysis.commit` say which sources these are.
 
 A24 = Arakawa et al. 2024 (elastoplastic collisions), A22 = Arakawa et al. 2022 (viscous dissipation), K13 =
 Kataoka et al. 2013 (static compression), S17 = Sirono & Ueno 2017 (sintered aggregates). Everything is in SI units."""
@@ -17,6 +18,7 @@ from importlib import import_module
 # Loaded when they are first asked for: the scripts that yade runs import analysis.runs.format only.
 _PUBLIC = {
     ".runs.folder": ("RunFolder", "State", "open_run"),
+    ".arguments": ("WrongArgument",),
     ".runs.arrays": ("RunFolderError",),
     ".report.rows": ("table",),
     ".report.plot": ("plot",),

@@ -38,7 +38,9 @@ def shown(value):
         return f"array {value.shape}"
     if not isinstance(value, (str, bytes, int, float, complex, list, tuple, dict, np.generic, type(None))):
         return f"a {type(value).__name__}"
-    plain = isinstance(value, np.generic) or isinstance(value, str) and value.isidentifier() and value not in LIKE_VALUES
+    plain = (
+        isinstance(value, np.generic) or isinstance(value, str) and value.isidentifier() and value not in LIKE_VALUES
+    )
     text = printable(value if plain else repr(value))
     return text if len(text) <= LONGEST else text[:LONGEST] + "..."
 

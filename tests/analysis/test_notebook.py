@@ -83,7 +83,9 @@ def test_a_table_has_a_row_a_run(run, pair_folder, tmp_path):
 def test_runs_of_two_kinds_show_what_differs_within_a_kind(run):
     collision = row(run)
     compressed = {name: value for name, value in collision.items() if name != "velocity"} | {"kind": "compression"}
-    found = frame([("a", {**collision, "seed": 1}), ("b", {**collision, "seed": 2}), ("c", {**compressed, "grains": 9})])
+    found = frame(
+        [("a", {**collision, "seed": 1}), ("b", {**collision, "seed": 2}), ("c", {**compressed, "grains": 9})]
+    )
     assert short_text(found).splitlines()[0].split()[:5] == ["run", "velocity", "[m/s]", "seed", "kind"]
 
 

@@ -94,7 +94,9 @@ def test_runs_that_ended_are_looked_at_once(tmp_path, monkeypatch):
         left = view.total_left(states, study_folder.cost(given, states), given, 1)
     assert len(looked) == 400 and len(models) == cost.MOST + 3 * 100
     states[400] = states[0]
-    assert view.total_left(states, study_folder.cost(given, states), given, 1) == pytest.approx(left * 99 / 100, rel=1e-9)
+    assert view.total_left(states, study_folder.cost(given, states), given, 1) == pytest.approx(
+        left * 99 / 100, rel=1e-9
+    )
     assert len(looked) == 401
 
 

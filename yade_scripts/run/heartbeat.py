@@ -84,7 +84,8 @@ class Beating:
         if not make_new(self._own(), _text(self.now)):
             raise RunsElsewhere("which has just begun")
         try:
-            if _numbers(_starts(self.folder) - starts) != {self.now.start}:  # another one, while this process was paused
+            # another one, while this process was paused
+            if _numbers(_starts(self.folder) - starts) != {self.now.start}:
                 raise RunsElsewhere("which has just begun")
             self._write()
         except BaseException:

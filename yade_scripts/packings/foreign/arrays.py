@@ -51,7 +51,8 @@ def of_vtk(path):
         locale.setlocale(locale.LC_ALL, spoken)  # which VTK leaves as C: text files would be ASCII from then on
     output = None if problems.GetOutput() else reader.GetOutputDataObject(0)
     if not hasattr(output, "GetPoints") or output.GetPoints() is None:
-        raise PackingError(f"{path}: no points in it that VTK can read; must be a file of points with their radii")
+        must = "must be a file of points with their radii, such as state_NNNNNN/grains.vtp of an export"
+        raise PackingError(f"{path}: no points in it that VTK can read; {must}")
     data = output.GetPointData()
     names = [data.GetArrayName(number) for number in range(data.GetNumberOfArrays())]
     by_role = {role: vtk_to_numpy(data.GetArray(column)) for role, column in roles(names).items() if role not in "xyz"}
