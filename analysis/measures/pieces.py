@@ -62,8 +62,16 @@ fragments.__doc__ = f"{cleandoc(fragments.__doc__)}\n\n{columns_text(PIECES)}"
 
 def structure_of(position, radius, pieces, cell_size=None):
     """{column of STRUCTURE: (K,)} of K pieces, each the rows of its grains; NaN in a periodic cell."""
-    measures = (filling_factor, gyration_radius, correlation_dimension)
-    if cell_size is not None:
-        measures = [lambda *_: float("nan")] * 3
-    values = [[measure(position[own], radius[own]) for measure in measures] for own in pieces]
+    of = _no_structure if cell_size is not None else _structure
+    values = [of(position[own], radius[own]) for own in pieces]
     return {column.name: np.array(each) for column, each in zip(STRUCTURE, np.transpose(values))}
+
+
+def _structure(position, radius):
+    if len(radius) == 1:  # as the functions have it: there may be very many
+        return 1.0, np.sqrt(0.6 * radius[0] ** 2), np.nan
+    return [measure(position, radius) for measure in (filling_factor, gyration_radius, correlation_dimension)]
+
+
+def _no_structure(*_):
+    return [np.nan] * 3
