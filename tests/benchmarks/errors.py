@@ -115,7 +115,7 @@ def _of_run(place):
     total, work, by_filling = ledger.total_energy(history), -ledger.work_on_boundaries(history), {}
     error = np.maximum.accumulate(np.abs(total - total[0]))
     for filling in FILLINGS:
-        if (history["filling"] >= filling).any():
+        if history["filling"][0] < filling <= history["filling"].max():
             end = np.argmax(history["filling"] >= filling)
             by_filling[filling] = [error[end] / work[end], work[end]]
     thin = by_filling.get(THIN, [None])[0]

@@ -221,7 +221,7 @@ PLATES = [
 ]  # fmt: skip
 PISTONS = [
     {"grains": 70, "finalFilling": 0.3, "strainRate": 2.8e-4, "tolerance": 1e-3},
-    {"grains": 90, "finalFilling": 0.45, "strainRate": 2.2e-4, "tolerance": 3e-4},
+    {"grains": 190, "finalFilling": 0.45, "strainRate": 2.9e-4, "tolerance": 3e-4},
     {"grains": 75, "finalFilling": 0.25, "strainRate": 2.5e-4, "linearDamping": 0, "tolerance": 1e-3},
     {"grains": 110, "finalFilling": 0.35, "strainRate": 2.9e-4, "tolerance": 5e-4},
 ]
