@@ -7,10 +7,11 @@ PREFIX/lib/contact_law holds the packages contact_law, analysis and yade_scripts
 an overlay that YADE_PREFIX may name. PREFIX/bin holds the commands. A line in a .pth file makes every Python 3 of the
 system find the packages whose folders of modules lie in PREFIX: ~/.local, /usr/local, or PYTHONUSERBASE.
 PREFIX/lib/contact_law/installed.json lists every file with its SHA-256: these go again, where they still are what was
-installed, and no others. Links are not followed.
+installed, and no others. Links are not followed. What a call that was killed has left, the next one removes.
 Exit status: 0, or 2 with one line on stderr.
 """
 
+import fcntl
 import glob
 import hashlib
 import json
@@ -20,15 +21,18 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP))
 from analysis.printable import printable, printable_lines, shell_line
-from analysis.runs.write import write_text
+from analysis.runs.write import remove_unfinished, write_text
 from analysis.version import commit, version_text
 
 FOLDER, LIST, PATH_FILE = "lib/contact_law", "installed.json", "contact_law.pth"
+TEMPORARY = ".contact_law.{}.unfinished"  # folders beside FOLDER
+COMMIT_FILE = "analysis/COMMIT"
 COPIED = {
     "contact_law": ("*.py",),
     "analysis": (
@@ -67,23 +71,19 @@ def install(prefix):
     if not list((TOP / "build").glob("lib/*/yade-double/libcontact_law.so")):
         raise CannotInstall(f"{TOP / 'build'}: holds no plugin; must be built before (make)")
     beside = {**_commands(prefix / "bin", folder), **{path / PATH_FILE: f"{folder}\n" for path in paths}}
-    _require_free(prefix, beside)
     folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder.parent, prefix=".contact_law.") as temporary:
-        new = Path(temporary) / folder.name
-        _copy_all(new)
-        made = {folder / path.relative_to(new): _digest(path) for path in _files(new)}
-        made |= {path: _sha256(text.encode()) for path, text in beside.items()}
-        listed = sorted([str(path.relative_to(prefix)), digest] for path, digest in made.items())
-        write_text(new / LIST, json.dumps(listed, indent=0) + "\n")
-        if folder.exists():
-            uninstall(prefix)
-        folder.parent.mkdir(exist_ok=True)
-        new.rename(folder)
-    for path, text in beside.items():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_text(path, text, within=prefix)
-        path.chmod(0o755 if path.name in COMMANDS else 0o644)
+    with _alone(prefix):
+        _require_free(prefix, beside)
+        with _temporary(prefix) as temporary:
+            new = temporary / FOLDER
+            _fill(new, {str(path.relative_to(prefix)): _sha256(text.encode()) for path, text in beside.items()})
+            if folder.exists():
+                _remove(prefix, _listed(prefix))
+            new.rename(folder)
+        for path, text in beside.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_text(path, text, within=prefix)
+            path.chmod(0o755 if path.name in COMMANDS else 0o644)
     lines = [
         f"contact_law {version_text()} is installed in {folder}",
         f"commands in {prefix / 'bin'}: {' '.join(COMMANDS)}",
@@ -97,20 +97,76 @@ def install(prefix):
 
 def uninstall(prefix):
     """Remove what install() made there; returns the lines that say so, and what was left."""
+    with _alone(prefix):
+        left = _remove(prefix, _listed(prefix))
+    return [f"contact_law is removed from {prefix}", *left]
+
+
+def _remove(prefix, listed, whole=True):
+    """Remove listed files and the folders that are empty then; a line for each that is left. whole: only those that are what was
+    installed."""
     folder, left = prefix / FOLDER, []
-    listed = _listed(prefix)
     for path, digest in listed.items():
-        if _is_as_installed(prefix, path, digest):
+        if _is_as_installed(prefix, path, digest) or not whole and _is_within(prefix, path) and path.is_file():
             path.unlink()
         elif os.path.lexists(path):
             left.append(f"{path}: is not what was installed in {prefix}; is left there")
     for path in {cache for path in listed if _is_within(prefix, path) for cache in _caches(path)}:
         path.unlink()
-    (folder / LIST).unlink()
     ours = {path.parent for path in listed} | {path.parent / "__pycache__" for path in listed} | {folder}
+    for path in ours:
+        if _is_within(prefix, path / LIST):
+            remove_unfinished(path)
+    (folder / LIST).unlink()
     for path in sorted(ours, key=lambda path: len(path.parts), reverse=True):
         _remove_empty(path, prefix)
-    return [f"contact_law is removed from {prefix}", *left]
+    return left
+
+
+@contextmanager
+def _alone(prefix):
+    """Once nobody else installs or removes anything in the prefix; what killed calls have left there is gone then."""
+    folder = (prefix / FOLDER).parent
+    if not folder.is_dir():
+        raise CannotInstall(f"{prefix / FOLDER}: no installation there")
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # of a file system without locks
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        for left in folder.glob(TEMPORARY.format("*")):
+            _remove_temporary(left)
+        _remove_empty_below(prefix / FOLDER)  # uninstall was killed among its last calls
+        yield
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def _temporary(prefix):
+    """A folder beside the installation's place, which goes again, for an installation that takes this place when it is whole."""
+    before, after = TEMPORARY.split("{}")
+    made = Path(tempfile.mkdtemp(dir=(prefix / FOLDER).parent, prefix=before, suffix=after))
+    try:
+        yield made
+    finally:
+        _remove_temporary(made)
+
+
+def _remove_temporary(folder):
+    """Remove what _fill() has listed, and nothing else."""
+    if folder.is_symlink():
+        return
+    with suppress(CannotInstall):  # killed before there was a list
+        _remove(folder, _listed(folder), whole=False)
+    remove_unfinished(folder / FOLDER)
+    _remove_empty_below(folder)
+
+
+def _remove_empty_below(folder):
+    """Remove the folder and those in it, if there is nothing else in it."""
+    if not folder.is_symlink() and not any(_files(folder)):
+        for at, *_ in os.walk(folder, topdown=False):
+            os.rmdir(at)
 
 
 def _require_free(prefix, beside):
@@ -204,20 +260,26 @@ def _commands(folder, target):
     }
 
 
-def _copy_all(new):
-    for package, patterns in COPIED.items():
-        for file in {f for pattern in patterns for f in (TOP / package).glob(pattern)}:
-            _copy(file, new / file.relative_to(TOP))
-    for file in ("yade_version.list", "commit.list"):
-        _copy(TOP / "build" / file, new / "build" / file)
+def _fill(new, beside):
+    """Make an installation in the folder `new`, its list first. beside: {path: digest} of files outside of it."""
+    plan, told = _plan(), commit() + "\n"
+    listed = {f"{FOLDER}/{name}": _digest(file) for name, file in plan.items()}
+    listed |= {f"{FOLDER}/{COMMIT_FILE}": _sha256(told.encode()), **beside}
+    new.mkdir(parents=True)
+    write_text(new / LIST, json.dumps(sorted(listed.items()), indent=0) + "\n")
+    for name, file in plan.items():
+        (new / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(file, new / name, follow_symlinks=False)
+    write_text(new / COMMIT_FILE, told)
+
+
+def _plan():
+    """{path in the installation: file or link that is copied there}."""
+    files = [file for package, patterns in COPIED.items() for each in patterns for file in (TOP / package).glob(each)]
+    files += [TOP / "build" / name for name in ("yade_version.list", "commit.list")]
     for part in ("lib", "bin"):  # links to YADE's own files, and the plugin
-        shutil.copytree(TOP / "build" / part, new / "build" / part, symlinks=True)
-    write_text(new / "analysis/COMMIT", commit() + "\n")
-
-
-def _copy(file, target):
-    target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copy2(file, target)
+        files += _files(TOP / "build" / part)
+    return {str(file.relative_to(TOP)): file for file in files}
 
 
 def _remove_empty(folder, prefix):
@@ -240,7 +302,8 @@ def main(arguments):
         print(printable(f"make {action}: {error}"), file=sys.stderr)
         return 2
     except OSError as error:
-        print(printable(f"make {action}: {error.filename}: {error.strerror}"), file=sys.stderr)
+        file = error.filename2 or error.filename or prefix  # of a copy the place, not the source
+        print(printable(f"make {action}: {file}: {error.strerror}"), file=sys.stderr)
         return 2
     return 0
 

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +19,31 @@ def installation(action, prefix, base=None):
     command = [sys.executable, str(TOP / "contact_law/installation.py"), action, str(prefix)]
     environment = {**os.environ, "PYTHONUSERBASE": str(base or prefix)}
     return subprocess.run(command, capture_output=True, text=True, env=environment)
+
+
+# installation.py with a function that ends the process at a call, counted from 0.
+KILLED = """
+import os, pathlib, runpy, shutil, sys
+place, name, calls = {"copy2": shutil, "rmdir": os, "unlink": pathlib.Path}, sys.argv[1], int(sys.argv[2])
+own = getattr(place[name], name)
+def ends(*arguments, **more):
+    global calls
+    calls -= 1
+    return own(*arguments, **more) if calls >= 0 else os.kill(os.getpid(), 9)
+setattr(place[name], name, ends)
+if name == "rmdir":
+    pathlib.Path.rmdir = ends
+sys.argv = sys.argv[3:]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+
+
+def killed(action, prefix, function, calls):
+    """An installation or removal that is killed at so many calls of a function."""
+    command = [sys.executable, "-c", KILLED, function, str(calls), str(TOP / "contact_law/installation.py")]
+    environment = {**os.environ, "PYTHONUSERBASE": str(prefix)}
+    done = subprocess.run([*command, action, str(prefix)], env=environment, capture_output=True, text=True)
+    assert done.returncode == -signal.SIGKILL, done.stderr
 
 
 def refused(done, words):
@@ -123,6 +149,63 @@ def test_only_what_was_installed_is_removed(tmp_path):
     assert done.returncode == 0 and f"{changed}: is not what was installed" in done.stdout
     assert {file: file.read_bytes() for file in kept} == kept
     assert {path for path in prefix.rglob("*") if path.is_file()} == {changed, mine}
+
+
+@pytest.mark.parametrize("again", ["install", "uninstall"])
+def test_a_killed_installation_is_cleaned_up_by_the_next_call(tmp_path, again):
+    """What it has copied goes; files beside and below it that it did not make stay."""
+    mine = tmp_path / "lib/.contact_law.notes.unfinished/mine"
+    mine.parent.mkdir(parents=True)
+    mine.write_text("mine")
+    for calls in (0, 20):
+        killed("install", tmp_path, "copy2", calls)
+    left = set((tmp_path / "lib").glob(".contact_law.*")) - {mine.parent}
+    assert len(left) == 1 and any(each.is_file() for each in left.pop().rglob("*.py"))  # the second has removed the first's
+    done = installation(again, tmp_path)
+    assert done.returncode == 0 if again == "install" else "no installation there" in done.stderr
+    assert list((tmp_path / "lib").glob(".contact_law.*")) == [mine.parent] and mine.read_text() == "mine"
+    assert (tmp_path / "lib/contact_law/installed.json").exists() == (again == "install")
+
+
+def test_a_file_in_the_folder_of_a_killed_installation_is_kept(tmp_path):
+    killed("install", tmp_path, "copy2", 5)
+    (left,) = (tmp_path / "lib").glob(".contact_law.*")
+    mine = next(left.rglob("analysis")) / "mine.py"
+    mine.write_text("mine")
+    assert installation("install", tmp_path).returncode == 0
+    assert [path for path in left.rglob("*") if path.is_file()] == [mine]
+
+
+@pytest.mark.parametrize("function, calls", [("unlink", 30), ("rmdir", 3)])
+def test_a_killed_removal_does_not_stand_in_the_way(tmp_path, function, calls):
+    assert installation("install", tmp_path).returncode == 0
+    killed("uninstall", tmp_path, function, calls)
+    assert installation("install", tmp_path).returncode == 0
+    killed("uninstall", tmp_path, function, calls)
+    done = installation("uninstall", tmp_path)
+    assert done.returncode == 0 or "no installation there" in done.stderr
+    assert not list(tmp_path.rglob("contact_law*"))
+
+
+def test_a_command_that_a_killed_installation_has_half_written_is_removed(tmp_path):
+    assert installation("install", tmp_path).returncode == 0
+    half = tmp_path / "bin/.dust-study.0123abcd.unfinished"
+    half.write_text("#!/bin")
+    assert installation("uninstall", tmp_path).returncode == 0
+    assert not half.exists()
+
+
+def test_a_full_disk_is_told_in_a_line_and_leaves_nothing(tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=9m", "none", disk], capture_output=True, text=True)
+    if mount.returncode:
+        pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
+    try:
+        refused(installation("install", disk), "No space left on device")
+        assert [path for path in disk.rglob("*") if not path.is_dir()] == []
+    finally:
+        subprocess.run(["umount", disk], check=True)
 
 
 @pytest.mark.parametrize("listed", ['["{mine}"]', "no list", "{{}}"], ids=["of version 0.3", "no JSON", "no list"])
