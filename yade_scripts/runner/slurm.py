@@ -16,7 +16,7 @@ from math import ceil
 from analysis.printable import shell_line
 from analysis.runs.arrays import RunFolderError, require_regular
 from analysis.runs.running import states_of_job
-from analysis.runs.write import write_text
+from analysis.runs.write import remove_unfinished, write_text
 from yade_scripts.run.file_name import file_name
 from yade_scripts.run.table import read
 from yade_scripts.runner.cost import typical_seconds
@@ -88,6 +88,8 @@ def require_usable(study_folder):
 
 def submit(study_folder, rows, at_once=None, options=()):
     """Submit rows; yields (Slurm's number of a job, its rows, how many tasks they are). options: of sbatch. Raises SlurmError and OSError."""
+    for number in _numbers(study_folder):  # of calls that were killed
+        remove_unfinished(study_folder.file(f"slurm-{number}"))
     for group, tasks in arrays(rows):
         study_folder.remove_logs(group)
         yield _submit(study_folder, group, tasks, at_once, options), group, tasks

@@ -11,6 +11,7 @@ import pandas
 from analysis.atlas.columns import breaking_velocity
 from analysis.atlas.model import Model
 from analysis.atlas.variables import touching
+from analysis.runs.write import write_text
 from analysis.theory import MATERIALS
 
 CANDIDATES = 8
@@ -27,8 +28,7 @@ def chosen():
 def append(digits):
     """Add the choices of the next rows to FILE."""
     text = "".join(map(str, [*chosen(), *digits]))
-    with open(FILE, "w") as file:
-        file.writelines(text[i : i + WIDTH] + "\n" for i in range(0, len(text), WIDTH))
+    write_text(FILE, "".join(text[i : i + WIDTH] + "\n" for i in range(0, len(text), WIDTH)))
 
 
 def least_sure(scenes, table, radius):

@@ -1,5 +1,6 @@
 """Every command that writes files, ended or with a full disk at its file-system calls: which, and what must hold afterwards."""
 
+import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,12 +28,28 @@ STUDY = collision_study(title="T", question="Q?", varied=("velocity", "seed"), q
 FIGURES = (CurveFigure("sticking", "What sticks.", "sticking", x="velocity", logarithmic="x"),)
 """
 TABLE = "description {}\na {}\n".format(*(" ".join(words) for words in zip(*(cell.split("=") for cell in RUN))))
+# Programs that commands call: a queue of Slurm's in which the one job waits once it has been submitted. (make test-slurm has the real one.)
+PROGRAMS = {
+    "sbatch": 'touch "$0.called"; echo 12',
+    "squeue": 'test -e "${0%squeue}sbatch.called" && echo 12_1 PENDING',
+}
 
 
 def files_below(folder):
     """{path: bytes} of the files below a folder, but temporary ones and what Python has made of modules."""
-    files = (path for path in Path(folder).rglob("*") if path.is_file() and not is_unfinished(path.name))
-    return {str(path.relative_to(folder)): path.read_bytes() for path in files if path.suffix != ".pyc"}
+    files = (path for path in Path(folder).rglob("*") if path.is_file() and path.suffix != ".pyc")
+    named = {str(path.relative_to(folder)): path for path in files}
+    return {name: path.read_bytes() for name, path in named.items() if not any(map(is_unfinished, name.split("/")))}
+
+
+def submitted(folder):
+    """{path: bytes} of what was submitted to Slurm: a second call after a fault has a number of its own, and all else is the same."""
+    numbered = re.compile(rb"slurm-\d+")
+    found = {}
+    for path, content in sorted(files_below(folder).items()):
+        name, content = numbered.sub(b"slurm-N", path.encode()).decode(), numbered.sub(b"slurm-N", content)
+        found[name if found.get(name, content) == content else path] = content
+    return found
 
 
 def ended_runs(folder):
@@ -43,7 +60,7 @@ def ended_runs(folder):
 @dataclass(frozen=True)
 class Command:
     """arguments: of the call that meets the fault; before: of one whose files are there then, for it to replace (None: none are).
-    Called in a folder with the runs `run` and `other`, own.py and t.table. watched: what it writes into, a folder; content: of what
+    Called in a folder with the runs `run` and `other`, own.py and t.table, and PROGRAMS on PATH. watched: what it writes into, a folder; content: of what
     must be whole; every: of how many calls one is tried, where there are many, or each takes long."""
 
     name: str
@@ -83,7 +100,8 @@ COMMANDS = (
         ("out/a.npz", "out/b.npz", "radius=4"),
         ("out/a.npz", "out/b.npz", "radius=3"),
     ),
-    Command("study", "yade_scripts/study.py", ("t.table", "-j1"), watched="runs", content=ended_runs),
+    Command("study", "yade_scripts/study.py", ("t.table", "-j1"), watched="runs", content=ended_runs, every=2),
+    Command("study --slurm", "yade_scripts/study.py", ("t.table", "--slurm"), watched="runs", content=submitted),
     _of_analysis("export run --format all --out out", "other"),
     _of_analysis("figures run --out out", "other", every=8),
     _of_analysis("view run --out out/view.html", "other"),
@@ -95,9 +113,38 @@ COMMANDS = (
     _of_analysis("verify run"),
     _of_analysis("outcome --velocity 5 --projectile 200 --target 500 --filling 0.15"),
     Command("analysis.atlas.make", "analysis.atlas.make", ("atlas",), watched="atlas", every=2),
-    Command("install", "contact_law/installation.py", ("install", "out"), ("install", "out"), every=499),
-    Command("uninstall", "contact_law/installation.py", ("uninstall", "out"), ("install", "out"), every=97),
+    Command("install", "contact_law/installation.py", ("install", "out"), ("install", "out"), every=97),
+    Command("uninstall", "contact_law/installation.py", ("uninstall", "out"), ("install", "out"), every=23),
 )
+
+# {module that writes files: the row of which command tries it, or why none does}. They write by analysis.runs.write alone.
+BY_PACKING = "by packings.save, which make_packing tries"
+ITS_TABLE = "a table by yade_scripts/run/table.py, which study --slurm tries"
+WRITERS = {
+    "analysis/atlas/adapters/disk.py": "needs DustPy",
+    "analysis/atlas/make.py": "analysis.atlas.make",
+    "analysis/atlas/outcome_table.py": "analysis.atlas.make",
+    "analysis/commands/plot.py": "analysis plot",
+    "analysis/commands/study.py": "analysis study",
+    "analysis/export/extended_xyz.py": "analysis export",
+    "analysis/export/film.py": "analysis film",
+    "analysis/export/viewer/__init__.py": "analysis view",
+    "analysis/export/vtk_series.py": "analysis export",
+    "analysis/figures/draw.py": "analysis figures",
+    "analysis/figures/save.py": "analysis study",
+    "analysis/report/pdf.py": "analysis study, where weasyprint or chromium is installed",
+    "analysis/runs/running.py": "a temporary file only, for the clock of another machine's disk",
+    "analysis/studies/analyse.py": "analysis study",
+    "analysis/studies/documents/__init__.py": "writes into the repository",
+    "contact_law/installation.py": "install",
+    "yade_scripts/packings/packing.py": "make_packing",
+    "yade_scripts/run/folder.py": "collide",
+    "yade_scripts/run/heartbeat.py": "collide",
+    "yade_scripts/run/table.py": "study --slurm",
+    "yade_scripts/runner/slurm.py": "study --slurm",
+    "yade_scripts/runner/batch.py": "study",
+    "yade_scripts/studies/atlas_choice.py": "writes into the repository",
+}
 
 
 class Trial:
@@ -110,6 +157,10 @@ class Trial:
             assert forks.run(RUN + more, self._folder / name).status == 0
         (self._folder / "own.py").write_text(OWN)
         (self._folder / "t.table").write_text(TABLE)
+        (self._folder / "bin").mkdir()
+        for name, line in PROGRAMS.items():
+            (self._folder / "bin" / name).write_text(f"#!/bin/sh\n{line}\n")
+            (self._folder / "bin" / name).chmod(0o755)
         self._out.mkdir()
         if command.watched == "atlas":
             _part_of_the_atlas(self._out)
@@ -138,6 +189,7 @@ class Trial:
 
     def _case(self, call, fault):
         shutil.rmtree(self._out)
+        (self._folder / "bin/sbatch.called").unlink(missing_ok=True)
         shutil.copytree(self._kept, self._out, symlinks=True)
         done = self._call(self.command.arguments, call.number, ACTIONS[fault])
         found, wrong = self.command.content(self._out), []

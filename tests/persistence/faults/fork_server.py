@@ -2,7 +2,7 @@
 
     LD_PRELOAD=injector.so yade -n -x -j1 fork_server.py REQUESTS ANSWERS     (numbers of two open pipes)
 
-A request is one line of JSON: folder (to run in), program (a script's path in the repository, or a module as of python3 -m), arguments, watched (the
+A request is one line of JSON: folder (to run in, with programs in its bin), program (a script's path in the repository, or a module as of python3 -m), arguments, watched (the
 folder whose changes are counted), call, action, stop, log, output (file of stdout and stderr), as fault_arm() in injector.c has them. The answer is one
 line of JSON: the exit status, or minus the number of the signal that ended the run. What yade itself does at its end is left out.
 """
@@ -34,6 +34,7 @@ def run(request):
     status = 1
     try:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+        os.environ["PATH"] = os.path.join(request["folder"], "bin") + os.pathsep + os.environ["PATH"]
         program = request["program"]
         path = os.path.join(TOP, program)
         sys.argv = [path, *request["arguments"]]
