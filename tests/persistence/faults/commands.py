@@ -100,7 +100,7 @@ COMMANDS = (
         ("out/a.npz", "out/b.npz", "radius=4"),
         ("out/a.npz", "out/b.npz", "radius=3"),
     ),
-    Command("study", "yade_scripts/study.py", ("t.table", "-j1"), watched="runs", content=ended_runs, every=2),
+    Command("study", "yade_scripts/study.py", ("t.table", "-j1"), watched="runs", content=ended_runs, every=7),
     Command("study --slurm", "yade_scripts/study.py", ("t.table", "--slurm"), watched="runs", content=submitted),
     _of_analysis("export run --format all --out out", "other"),
     _of_analysis("figures run --out out", "other", every=8),
@@ -112,9 +112,9 @@ COMMANDS = (
     _of_analysis("status run"),
     _of_analysis("verify run"),
     _of_analysis("outcome --velocity 5 --projectile 200 --target 500 --filling 0.15"),
-    Command("analysis.atlas.make", "analysis.atlas.make", ("atlas",), watched="atlas", every=2),
-    Command("install", "contact_law/installation.py", ("install", "out"), ("install", "out"), every=97),
-    Command("uninstall", "contact_law/installation.py", ("uninstall", "out"), ("install", "out"), every=23),
+    Command("analysis.atlas.make", "analysis.atlas.make", ("atlas",), watched="atlas", every=4),
+    Command("install", "contact_law/installation.py", ("install", "out"), ("install", "out"), every=211),
+    Command("uninstall", "contact_law/installation.py", ("uninstall", "out"), ("install", "out"), every=41),
 )
 
 # {module that writes files: the row of which command tries it, or why none does}. They write by analysis.runs.write alone.
