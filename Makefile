@@ -197,11 +197,12 @@ $(eval $(call LIST,objects,$(OBJECTS)))
 $(eval $(call LIST,flags,$(CXX) $(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FLAGS)))
 
 # Links to the installed files, beside which the plugin lies: YADE_PREFIX=$PWD/build yade. yade-batch starts bin/yade-double.
+# That to contact_law is relative: in an installation it leads to the package there.
 build/overlay: Makefile
 	@mkdir -p $(OVERLAY) build/bin
 	@ln -sfn $(filter-out %/py,$(wildcard $(YADE_LIBRARIES)/*)) $(OVERLAY)/
 	@rm -rf $(OVERLAY)/py && mkdir $(OVERLAY)/py
-	@ln -sfn $(YADE_LIBRARIES)/py/* "$(CURDIR)/contact_law" $(OVERLAY)/py/
+	@ln -sfn $(YADE_LIBRARIES)/py/* ../../../../../contact_law $(OVERLAY)/py/
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
 

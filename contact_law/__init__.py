@@ -16,7 +16,7 @@ from .grain_arrays import snapshot  # noqa: F401 (of the package)
 from .sintering import sinter  # noqa: F401
 from .yade_functions import give_way, show_contacts
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+TOP = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 with open(os.path.join(TOP, "analysis/VERSION")) as _file:
     __version__ = _file.read().strip()
 LIBRARY = os.path.join(TOP, f"build/lib/{os.uname().machine}-linux-gnu/yade-double/libcontact_law.so")

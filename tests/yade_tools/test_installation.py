@@ -117,6 +117,23 @@ def test_files_that_the_analysis_reads_are_installed(installed):
             assert (gallery.parent / file.relative_to(TOP / "analysis")).read_bytes() == file.read_bytes()
 
 
+def test_plain_yade_finds_the_contact_law_in_the_overlay(installed, tmp_path):
+    prefix, call = installed
+    script = tmp_path / "script.py"
+    script.write_text("import contact_law\nprint('found', contact_law.__version__, contact_law.LIBRARY, JKRMat().young)\n")
+    overlay = f"{prefix}/lib/contact_law/build"
+    done = call("env", f"YADE_PREFIX={overlay}", "PYTHONUSERBASE=/nowhere", "yade", "-n", "-x", str(script))
+    assert done.returncode == 0, done.stderr
+    assert f"{overlay}/lib" in done.stdout
+
+
+def test_no_link_of_an_installation_leads_to_the_checkout(installed):
+    prefix, call = installed
+    links = {path: Path(os.path.realpath(path)) for path in prefix.rglob("*") if path.is_symlink()}
+    assert [path for path, place in links.items() if place.is_relative_to(TOP)] == []
+    assert prefix / "lib/contact_law/contact_law" in links.values()
+
+
 def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin/other").write_text("another program")
