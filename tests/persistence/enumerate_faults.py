@@ -15,7 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks")]
 from conftest import fast_folder
-from faults.commands import COMMANDS, Trial
+from faults.commands import COMMANDS, WRITERS, Trial
 from faults.forks import DISK_FULL, Forks
 from faults.scenarios import ACTIONS, SCENARIOS, Bench, enumerated, enumerated_stops
 from measured_on import machine
@@ -28,12 +28,18 @@ of a write, the process is ended by SIGKILL; or from this call on the disk is fu
 is afterwards the one that was there or the one that the command writes, never half of one; the full disk gave one line and a status that says
 so; the second call comes to its end with the same bytes as a call without faults, and leaves no temporary file. Of runs, the bits of history and states count,
 once they are marked as ended; of collisions also that no checkpoint that was there is gone. What processes write that a command
-starts (workers of `study`, ffmpeg, the browser that prints PDF) is not counted; `install` and `uninstall` replace and remove an installation.
+starts (workers of `study`, ffmpeg, the browser that prints PDF) is not counted; sbatch and squeue are programs of this test (`make test-slurm` has
+the real ones); `install` and `uninstall` replace and remove an installation.
 
-`make test-faults`, {cpu}, {cores} cores.
+`make test-faults`, last on {cpu}, {cores} cores.
 
 | command | calls | tried at every | kills | full disks | right | commit |
 |---|---:|---:|---:|---:|---:|---|
+"""
+FOOT = """
+Of the modules that write files (faults/commands.py has all) these have no line of their own:
+
+{}
 """
 
 
@@ -75,6 +81,13 @@ def lines_of(file):
     return {text.split(" | ")[0].removeprefix("| "): text for text in lines if text.startswith("| ")}
 
 
+def page(lines, about):
+    """Text of the page of {name: line}."""
+    none = [f"- `{module}`: {why}" for module, why in WRITERS.items() if why not in {*NAMES, "collide"}]
+    own = "".join(lines[name] for name in NAMES if name in lines)
+    return HEAD.format(**about) + own + FOOT.format("\n".join(none))
+
+
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME")
@@ -94,7 +107,7 @@ def main(arguments):
                 if case.wrong
             ]
             lines = {**lines_of(options.out), name: text}
-            options.out.write_text(HEAD.format(**about) + "".join(lines[name] for name in NAMES if name in lines))
+            options.out.write_text(page(lines, about))
     for case in wrong:
         print(f"enumerate_faults.py: {case}", file=sys.stderr)
     return 1 if wrong else 0

@@ -117,9 +117,8 @@ COMMANDS = (
     Command("uninstall", "contact_law/installation.py", ("uninstall", "out"), ("install", "out"), every=41),
 )
 
-# {module that writes files: the row of which command tries it, or why none does}. They write by analysis.runs.write alone.
-BY_PACKING = "by packings.save, which make_packing tries"
-ITS_TABLE = "a table by yade_scripts/run/table.py, which study --slurm tries"
+# {module that writes files: the row of which command tries it, or why none does}. The scripts of studies write tables and packings by run/table.py and
+# packings/packing.py.
 WRITERS = {
     "analysis/atlas/adapters/disk.py": "needs DustPy",
     "analysis/atlas/make.py": "analysis.atlas.make",
