@@ -120,7 +120,9 @@ def test_files_that_the_analysis_reads_are_installed(installed):
 def test_plain_yade_finds_the_contact_law_in_the_overlay(installed, tmp_path):
     prefix, call = installed
     script = tmp_path / "script.py"
-    script.write_text("import contact_law\nprint('found', contact_law.__version__, contact_law.LIBRARY, JKRMat().young)\n")
+    script.write_text(
+        "import contact_law\nprint('found', contact_law.__version__, contact_law.LIBRARY, JKRMat().young)\n"
+    )
     overlay = f"{prefix}/lib/contact_law/build"
     done = call("env", f"YADE_PREFIX={overlay}", "PYTHONUSERBASE=/nowhere", "yade", "-n", "-x", str(script))
     assert done.returncode == 0, done.stderr
@@ -177,7 +179,9 @@ def test_a_killed_installation_is_cleaned_up_by_the_next_call(tmp_path, again):
     for calls in (0, 20):
         killed("install", tmp_path, "copy2", calls)
     left = set((tmp_path / "lib").glob(".contact_law.*")) - {mine.parent}
-    assert len(left) == 1 and any(each.is_file() for each in left.pop().rglob("*.py"))  # the second has removed the first's
+    assert len(left) == 1 and any(
+        each.is_file() for each in left.pop().rglob("*.py")
+    )  # the second has removed the first's
     done = installation(again, tmp_path)
     assert done.returncode == 0 if again == "install" else "no installation there" in done.stderr
     assert list((tmp_path / "lib").glob(".contact_law.*")) == [mine.parent] and mine.read_text() == "mine"
