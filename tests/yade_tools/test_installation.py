@@ -6,12 +6,14 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 TOP = Path(__file__).resolve().parents[2]
 COMMANDS = ("dust-analysis", "dust-collide", "dust-compress", "dust-packing", "dust-study")
+WAIT = 3  # s in which an installation gets far
 SMALL = ("grains=30", "packing=bpca", "velocity=20", "duration=2e-9", "stepFraction=0.1")
 
 
@@ -44,6 +46,23 @@ def killed(action, prefix, function, calls):
     environment = {**os.environ, "PYTHONUSERBASE": str(prefix)}
     done = subprocess.run([*command, action, str(prefix)], env=environment, capture_output=True, text=True)
     assert done.returncode == -signal.SIGKILL, done.stderr
+
+
+# installation.py that waits for a line of stdin when it has copied half.
+WAITS = """
+import runpy, shutil, sys
+copy2, calls = shutil.copy2, 0
+def waits(*arguments, **more):
+    global calls
+    calls += 1
+    if calls == 100:
+        print("half", flush=True)
+        sys.stdin.readline()
+    return copy2(*arguments, **more)
+shutil.copy2 = waits
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
 
 
 def refused(done, words):
@@ -179,13 +198,26 @@ def test_a_killed_installation_is_cleaned_up_by_the_next_call(tmp_path, again):
     for calls in (0, 20):
         killed("install", tmp_path, "copy2", calls)
     left = set((tmp_path / "lib").glob(".contact_law.*")) - {mine.parent}
-    assert len(left) == 1 and any(
-        each.is_file() for each in left.pop().rglob("*.py")
-    )  # the second has removed the first's
+    assert len(left) == 1  # the second has removed the first's
+    assert list(left.pop().rglob("*.py"))
     done = installation(again, tmp_path)
     assert done.returncode == 0 if again == "install" else "no installation there" in done.stderr
     assert list((tmp_path / "lib").glob(".contact_law.*")) == [mine.parent] and mine.read_text() == "mine"
     assert (tmp_path / "lib/contact_law/installed.json").exists() == (again == "install")
+
+
+def test_an_installation_waits_for_another_one(tmp_path):
+    """And doesn't take the other's half for one that was left."""
+    script, pipes = str(TOP / "contact_law/installation.py"), dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    first = subprocess.Popen([sys.executable, "-c", WAITS, script, "install", str(tmp_path)], text=True, **pipes)
+    assert first.stdout.readline() == "half\n"
+    second = subprocess.Popen([sys.executable, script, "install", str(tmp_path)], stdout=subprocess.DEVNULL)
+    with suppress(subprocess.TimeoutExpired):
+        second.wait(WAIT)
+    first.communicate("\n")
+    assert (first.returncode, second.wait()) == (0, 0)
+    assert installation("uninstall", tmp_path).returncode == 0
+    assert [path for path in tmp_path.rglob("*") if not path.is_dir()] == []
 
 
 def test_a_file_in_the_folder_of_a_killed_installation_is_kept(tmp_path):
