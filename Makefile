@@ -317,7 +317,8 @@ test-debian:
 # Results in tests/drivers/results.
 .PHONY: test-arm64
 test-arm64:
-	@$(MAKE) --no-print-directory deps PACKAGES="g++ g++-aarch64-linux-gnu qemu-user-static"
+	@$(MAKE) --no-print-directory deps PACKAGES="$(PACKAGES) g++-aarch64-linux-gnu"
+	@$(MAKE) --no-print-directory build/harness
 	@$(PYTHON) tests/drivers/arm64.py
 
 # On Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"

@@ -24,7 +24,7 @@ from sanitizers import scenes_in
 
 CLONE = TOP / "build/arm64"
 COMPILER = "aarch64-linux-gnu-g++"
-EMULATED = ("qemu-aarch64-static", "-L", "/usr/aarch64-linux-gnu", str(CLONE / "build/harness"))
+EMULATED = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", str(CLONE / "build/harness"))
 HOW = ("steps=1000", "domains=4", "instructions=portable")
 HEAD = """# 64-bit ARM
 
