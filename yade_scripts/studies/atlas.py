@@ -234,15 +234,16 @@ def make_packings(scene):
 
 
 def _cpe(scene, index):
-    """The first that is more than one grain: of few grains most may be loose."""
+    """The first that is more than one grain: of few grains most may be loose, or their sphere may hold too few places of the lattice."""
     texts = {"packing": "cpe", "filling": scene.filling, "grains": scene.grains[index], "removeLooseGrains": 1}
     texts |= {"material": scene.material, "grainRadius": GRAIN_RADIUS}
     for number in range(PLACES):
         own = {**texts, "seed": scene.seed + number * SIZES["full"]}
         parameters = AggregateParameters.parse({name: str(value) for name, value in own.items()})
-        found = make(parameters, equilibrium_overlap(parameters), index)
-        if found.grains > 1:
-            return found
+        with suppress(PackingError):
+            found = make(parameters, equilibrium_overlap(parameters), index)
+            if found.grains > 1:
+                return found
     raise PackingError(
         f"row {scene.number}: no {scene.grains[index]} close-packed grains hang together in {PLACES} draws"
     )
