@@ -4,7 +4,8 @@
     python3 yade_scripts/studies/atlas.py pilot [FIRST LAST]      runs/atlas-pilot.table, and the packings of its rows; also desk, full;
                                                                   FIRST to LAST: the table has these rows alone
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
-    python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long
+    python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long;
+                                                                  analysed alone, their runs.csv goes before RUNS.csv: of two the first counts
     python3 yade_scripts/studies/atlas.py choose RUNS.csv LAST    chooses the rows to before LAST by a model of the runs that ended: atlas-chosen.txt
     python3 yade_scripts/studies/atlas.py tables                  writes atlas-cells.table, and atlas-cells-full.table, which full needs too
 
@@ -40,9 +41,6 @@ from analysis.atlas.variables import CHOSEN_FROM
 from analysis.measures.outcome import UNDECIDED
 from analysis.measures.virial import filling_factor
 from analysis.progress import progress
-from analysis.runs.arrays import RunFolderError
-from analysis.runs.folder import read_json
-from analysis.runs.format import RUN_FILE
 from analysis.runs.table import TableError, read_table
 from analysis.studies.columns import flat
 from analysis.theory import ICE, SILICATE
@@ -209,13 +207,18 @@ def with_duration(cells):
 
 def step(scene):
     """Time step [t0], as if aggregates were of fluffy ones' larger error where they are not CPE."""
+    alike = _alike(scene)
+    energies = step_choice.energies_of(contact_constants(alike), scene.grains, scene.velocity)
+    error = step_choice.scene_factor(alike) * sum(step_choice.ledger_errors(*energies))
+    return min(LONGEST, float(f"{(TOLERANCE / error) ** 0.5:.2g}"))
+
+
+def _alike(scene):
+    """Parameters of a collision of equal aggregates, whose errors and time unit are those of the scene."""
     of = {"packing": "cpe", "filling": 0.4} if scene.structure == "cpe" else {"packing": "bcca"}
     given = {**of, "grains": scene.grains[0], "velocity": scene.velocity, "material": scene.material}
     texts = {**given, "grainRadius": GRAIN_RADIUS, "tolerance": TOLERANCE, "stepFraction": "auto"}
-    both = CollisionParameters.parse({name: str(value) for name, value in texts.items()})
-    energies = step_choice.energies_of(contact_constants(both), scene.grains, scene.velocity)
-    error = step_choice.scene_factor(both) * sum(step_choice.ledger_errors(*energies))
-    return min(LONGEST, float(f"{(TOLERANCE / error) ** 0.5:.2g}"))
+    return CollisionParameters.parse({name: str(value) for name, value in texts.items()})
 
 
 def packing_file(scene, index):
@@ -318,14 +321,17 @@ def choose(file, last):
 
 
 def write_longer(file):
-    """Write runs/atlas-longer.table for a table of runs. Raises TableError, and RunFolderError where a run's folder is not at hand."""
+    """Write runs/atlas-longer.table for a table of runs, the cheapest first, and make its packings. Raises TableError and PackingError."""
     runs, known = read_table(file, flat(MEASURED))[0], scenes(SIZES["full"])
+    undecided = runs[runs.outcome == UNDECIDED].sort_values("seconds")
     found = []
-    for number in runs[runs.outcome == UNDECIDED].number:
-        cells = row(known[number])
-        duration = read_json(os.path.join(cells["out"], RUN_FILE))["parameters"]["duration"]
-        out = f"{RUNS}-longer/{known[number].name}"
-        found.append({**cells, "out": out, "duration": f"{LONGER * duration:.3g}", "endWhenApart": 1})
+    for run in progress(list(undecided.itertuples()), "making packings"):
+        scene = known[run.number]
+        if scene.from_file:
+            make_packings(scene)
+        duration = LONGER * run.steps * step(scene) * contact_constants(_alike(scene))["timeUnit"]
+        own = {"out": f"{RUNS}-longer/{scene.name}", "duration": f"{duration:.3g}", "endWhenApart": 1}
+        found.append({**row(scene), **own})
     table.write(
         f"{RUNS}-longer.table",
         found,
@@ -342,7 +348,7 @@ def main(arguments):
         os.chdir(TOP)
         try:
             write_longer(file)
-        except (TableError, RunFolderError) as error:
+        except (TableError, PackingError) as error:
             sys.exit(f"atlas.py: {error}")
     elif size == "choose" and len(arguments) == 3 and arguments[2].isdecimal():
         try:
