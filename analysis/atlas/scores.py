@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from .model import Model, best, chances, is_kind
 from .rules import KINDS
-from .variables import SEED, fit_and_held_out, folds, left, scaled, variables
+from .variables import SEED, decided, drawn, fit_and_held_out, folds, left, scaled, variables
 
 NEIGHBOURS, BINS = 5, 10
 STRUCTURES = np.array(["bcca", "bpca", "cpe", "compressed"])
@@ -141,6 +141,20 @@ def scores(table):
                 row |= within(pandas.concat([rest for _, rest in told], ignore_index=True), rows)
             found.append(row)
     return pandas.DataFrame(found).sort_values("runs", kind="stable")
+
+
+def foretold(table, before):
+    """DataFrame (a row a set of runs): decided runs of the numbers from `before` on, as observed and as Model tells them from the earlier ones: by
+    KINDS "observed (told)", their number, brier and mean_miss. table: of runs."""
+    model, later = Model(table[table.number < before], members=0), decided(table[table.number >= before])
+    sets = {"drawn": drawn(later), "chosen": later.drop(drawn(later).index)}
+    found = []
+    for name, runs in ((name, runs) for name, runs in sets.items() if len(runs)):
+        p, seen = model.probabilities(variables(runs))[0], is_kind(runs.outcome.to_numpy())
+        counts = {kind: f"{n} ({told:.0f})" for kind, n, told in zip(KINDS, seen.sum(axis=0), p.sum(axis=0))}
+        brier = ((p - seen) ** 2).sum(axis=1).mean()
+        found.append({"runs": name, "number": len(runs), **counts, "brier": brier, "miss": mean_miss(p, runs.outcome)})
+    return pandas.DataFrame(found)
 
 
 def log_loss(p, outcome):

@@ -124,6 +124,23 @@ def test_model_of_made_runs(made, tmp_path):
     assert read_outcomes(file).columns == COLUMNS
 
 
+def test_what_earlier_runs_foretell_of_later_ones(made):
+    """Of 300 runs from the others: told as the known chance says, and counted as they ended; those that were chosen apart."""
+    scores = pytest.importorskip("analysis.atlas.scores")
+    pytest.importorskip("sklearn")
+    later = made.index >= 300
+    table = made.assign(number=np.where(later, made.index + 2_900, made.index))
+    table.loc[table.index >= 500, "split"] = "held_out"
+    found = scores.foretold(table, 3_100).set_index("runs")
+    assert found.number.to_dict() == {"drawn": 100, "chosen": 200}
+    for name, rows in (("drawn", made[500:]), ("chosen", made[300:500])):
+        stuck, told = map(float, found.sticking[name].strip(")").split(" ("))
+        expected = (1 / (1 + (rows.velocity / 5) ** 3)).sum()
+        assert stuck == (rows.outcome == "sticking").sum() and told == pytest.approx(expected, abs=0.06 * len(rows))
+        assert found.bouncing[name] == "0 (0)" and 0.05 < found.brier[name] < 0.35
+    assert scores.foretold(made.assign(number=made.index), 3_100).empty
+
+
 def test_intervals_hold_their_part():
     """Of runs that the forest has not seen, where the gain scatters with the velocity."""
     pytest.importorskip("sklearn")
