@@ -56,7 +56,7 @@
 # ---- where things are, and of which version ----
 
 # The processor that is compiled for, as Debian's folders have it. (make CXX=aarch64-linux-gnu-g++ build/harness: for another.)
-PROCESSOR := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null)))
+PROCESSOR := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null)) $(shell uname -m))
 LIBRARY_FOLDER := lib/$(PROCESSOR)-linux-gnu/yade-double
 YADE_LIBRARIES := /usr/$(LIBRARY_FOLDER)
 OVERLAY        := build/$(LIBRARY_FOLDER)

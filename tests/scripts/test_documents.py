@@ -123,7 +123,7 @@ def test_the_commands_are_there():
     known = subprocess.run(["make", "-pRrq", ":"], cwd=TOP, capture_output=True, text=True).stdout
     for document in DOCUMENTS:
         text = document.read_text().replace("study-NAME", "study-viscous").replace("NAME", "viscous")
-        for target in re.findall(r"(?:^    |`)make ([a-z]+(?:-[a-z]+)*)", text, re.M):
+        for target in re.findall(r"(?:^    |`)make ([a-z]+(?:-[a-z0-9]+)*)", text, re.M):
             assert re.search(rf"^{target}:", known, re.M), f"{document.name}: {target}"
         for path in re.findall(r"(?<![\w/])(?:yade_scripts|contact_law|analysis|tests)/[\w./-]*\w/?", text):
             assert (TOP / path.rstrip("/")).exists(), f"{document.name}: {path}"
