@@ -4,7 +4,7 @@ import numpy as np
 
 from ...atlas.grid import FILE
 from ...atlas.outcome_table import read_outcomes
-from ...atlas.variables import decided, variables
+from ...atlas.variables import decided, drawn, variables
 from ...figures.panels import letter, panels
 from ...figures.style import styled
 from ..curve_figure import COLOURS, plain_ticks, points
@@ -53,7 +53,7 @@ def bouncing(results):
     if not FILE.exists():
         return None
     table, (figure, axes) = read_outcomes(FILE), panels(1, len(VELOCITIES), 3.7, 3.4)
-    runs = decided(results.table)
+    runs = drawn(decided(results.table))  # those chosen would hide what lies behind them
     at, bounced = variables(runs), (runs.outcome == BOUNCING).to_numpy()
     filling = np.linspace(table.axes[3].nodes[0], table.axes[3].nodes[-1], 60)
     grains = np.geomspace(*_ends(at.grains), 60)
@@ -62,7 +62,7 @@ def bouncing(results):
     )
     for place, velocity, low, high in zip(axes.ravel(), VELOCITIES, limits, limits[1:]):
         found = table.lookup(velocity=velocity, grains=grains[:, None], mass_ratio=1.0, filling=filling)
-        drawn = place.pcolormesh(
+        areas = place.pcolormesh(
             filling, grains, found["p_bouncing"], vmin=0, vmax=1, cmap="Purples", shading="nearest", rasterized=True
         )
         for sign, line in ((0, "-"), (-1, ":"), (1, ":")):
@@ -80,7 +80,7 @@ def bouncing(results):
         place.set_title(f"$v$ = {velocity:g} $v_{{break}}$", fontsize=10)
         place.set_xlabel(r"filling factor $\phi$")
     axes[0, 0].set_ylabel("grains of the larger aggregate")
-    figure.colorbar(drawn, ax=list(axes.ravel()), label="$p_{bounce}$, equal masses")
+    figure.colorbar(areas, ax=list(axes.ravel()), label="$p_{bounce}$, equal masses")
     return figure
 
 
@@ -94,7 +94,7 @@ FIGURES = (
     StudyFigure(
         "bouncing",
         "Fraction of collisions of equal aggregates that bounce, averaged over impact parameters, by the table of outcomes; line: 1/2, dotted: with its error (90 %); "
-        "hatched: extrapolated. Dots: decided runs of all mass ratios near that velocity, black ones bounced.",
+        "hatched: extrapolated. Dots: decided runs that were not chosen, of all mass ratios near that velocity, black ones bounced.",
         bouncing,
     ),
 )
