@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
+from analysis.theory.pair_constants import GRAIN_RADII
 from yade_scripts.parameters import (
     POSITIVE,
     SWITCH,
@@ -40,7 +41,7 @@ MATERIALS = {
 }
 
 
-GRAINS = Usual(1e-9, 1e-3, "smallest soot monomers to chondrules")
+GRAINS = Usual(*GRAIN_RADII, "smallest soot monomers to chondrules")
 YOUNG = Usual(1e6, 1.3e12, "rubber to diamond")
 DENSITY = Usual(100, 23_000, "aerogel to osmium")
 SURFACE = Usual(1e-3, 10, "liquid gases to clean metals")

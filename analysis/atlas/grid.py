@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from ..arguments import FLAG, NAMES, NOT_NEGATIVE, PATH, WrongArgument, number, numbers, one_of, takes
 from ..theory import ICE, MATERIALS
+from ..theory.pair_constants import GRAIN_RADII
 from .columns import breaking_velocity
 from .neighbours import MARGIN, NEAR, ONE_CONTACT, Neighbours
 from .outcome_table import Axis, OutcomeTable, read_outcomes
@@ -24,6 +25,8 @@ AXES = (
     Axis("mass_ratio", "log10", np.append(64.0 ** np.arange(-4, -1), np.geomspace(1 / 64, 1.0, 4))),
     Axis("filling", "linear", np.array([0.02, 0.1, 0.2, 0.3, 0.4, 0.5])),
 )
+SMALLEST, LARGEST = GRAIN_RADII
+RADIUS = f"{{}} of {SMALLEST:g} to {LARGEST:g} [m]", lambda x: (x >= SMALLEST) & (x <= LARGEST)
 GRAINS = numbers(right=("{} >= 1", lambda x: (x >= 1) & (x < np.inf)))
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
 COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
@@ -99,7 +102,7 @@ def _table(file, maxwell):
     target=GRAINS,
     material=one_of(*MATERIALS),
     filling=numbers(right=("{} > 0 and at most 1", lambda x: (x > 0) & (x <= 1))),
-    grain_radius=number(("{} of 1e-9 to 1e-3 [m]", lambda x: (x >= 1e-9) & (x <= 1e-3))),
+    grain_radius=number(RADIUS),
     maxwell=FLAG,
     columns=NAMES,
     file=PATH,

@@ -21,7 +21,7 @@ MISTAKES = {
     "analysis.outcome([1, 2], [200] * 3, 500, .15)": "have shapes (2,), (3,), (), (); must broadcast",
     "analysis.outcome(5, 200, 500, .15, material='rock')": "material = rock: must be ice or silicate",
     "analysis.outcome(5, 200, 500, .15, material=['ice'])": "material = ['ice']: must be ice or silicate",
-    "analysis.outcome(5, 200, 500, .15, grain_radius=0.1)": "grain_radius = 0.1: must be a number of 1e-9 to 1e-3 [m]",
+    "analysis.outcome(5, 200, 500, .15, grain_radius=0.1)": "grain_radius = 0.1: must be a number of 1e-09 to 0.001 [m]",
     "analysis.outcome(5, 200, 500, .15, columns='largest')": "columns = largest: must be a list of names",
     "analysis.outcome(5, 200, 500, .15, columns=['larest'])": "no column larest (did you mean largest?)",
     "analysis.outcome(5, 200, 500, .15, maxwell='no')": "maxwell = no: must be True or False",
