@@ -27,7 +27,6 @@ import os
 import signal
 import sys
 import time
-from difflib import get_close_matches
 from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -37,6 +36,7 @@ from analysis.signals import end_quietly
 end_quietly(signal.SIGINT)
 require_libraries()
 from analysis.printable import printable
+from analysis.runs.named import meant
 from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.stop_signals import StopSignals
@@ -97,8 +97,7 @@ def hint(table):
         return ""
     places = [folder or os.curdir] + ([] if folder else [STUDIES])
     found = [each for place in places if os.path.isdir(place) for each in os.listdir(place) if each.endswith(".table")]
-    close = get_close_matches(name.removesuffix(".table") + ".table", found, 1)
-    return f" (did you mean {os.path.join(folder, close[0])}?)" if close else ""
+    return meant(name.removesuffix(".table") + ".table", found, os.path.join(folder, ""))
 
 
 def place_of(table):

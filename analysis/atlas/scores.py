@@ -132,7 +132,7 @@ def scores(table):
         crossed = [of(fit.iloc[others], fit.iloc[own]) for others, own in parts]
         for runs, told, rows in ((CROSSED, crossed, fit.iloc[order]), (HELD, [of(fit, held)], held)):
             p = np.concatenate([part for part, _ in told])
-            squares = ((p - is_kind(rows.outcome)) ** 2).sum(axis=1)
+            squares = _squares(p, rows.outcome)
             more = squares - reference.setdefault(runs, squares)
             row = {"predictor": name, "runs": runs, "number": len(rows), "brier": squares.mean()}
             row |= {"more": more.mean(), "error": more.std() / len(more) ** 0.5} if name != ATLAS else {}
@@ -147,14 +147,19 @@ def foretold(table, before):
     """DataFrame (a row a set of runs): decided runs of the numbers from `before` on, as observed and as Model tells them from the earlier ones: by
     KINDS "observed (told)", their number, brier and mean_miss. table: of runs."""
     model, later = Model(table[table.number < before], members=0), decided(table[table.number >= before])
-    sets = {"drawn": drawn(later), "chosen": later.drop(drawn(later).index)}
-    found = []
+    unchosen, found = drawn(later), []
+    sets = {"drawn": unchosen, "chosen": later.drop(unchosen.index)}
     for name, runs in ((name, runs) for name, runs in sets.items() if len(runs)):
-        p, seen = model.probabilities(variables(runs))[0], is_kind(runs.outcome.to_numpy())
+        p, seen = model.probabilities(variables(runs))[0], is_kind(runs.outcome)
         counts = {kind: f"{n} ({told:.0f})" for kind, n, told in zip(KINDS, seen.sum(axis=0), p.sum(axis=0))}
-        brier = ((p - seen) ** 2).sum(axis=1).mean()
-        found.append({"runs": name, "number": len(runs), **counts, "brier": brier, "miss": mean_miss(p, runs.outcome)})
+        of_all = {"brier": _squares(p, runs.outcome).mean(), "miss": mean_miss(p, runs.outcome)}
+        found.append({"runs": name, "number": len(runs), **counts, **of_all})
     return pandas.DataFrame(found)
+
+
+def _squares(p, outcome):
+    """(n,): of which Brier scores are means."""
+    return ((p - is_kind(outcome)) ** 2).sum(axis=1)
 
 
 def log_loss(p, outcome):

@@ -58,9 +58,14 @@ def unknown(what, name, names):
 def suggested(name, names, many=""):
     """What a message says of a name that isn't one of `names`: which is close, and which there are, or `many` in place of a long list."""
     names = list(map(str, names))
-    close = get_close_matches(str(name), names, 1)
-    hint = f" (did you mean {close[0]}?)" if close else ""
-    return hint + (many if close and len(names) > LISTED else f"; must be one of {', '.join(names)}")
+    hint = meant(str(name), names)
+    return hint + (many if hint and len(names) > LISTED else f"; must be one of {', '.join(names)}")
+
+
+def meant(name, names, before=""):
+    """' (did you mean ...?)' with that one of `names` which is close to a name, and what stands before it; or ''."""
+    close = get_close_matches(name, names, 1)
+    return f" (did you mean {before}{close[0]}?)" if close else ""
 
 
 def protect(values):

@@ -120,9 +120,10 @@ def is_heartbeat(folder, name):
 
 
 def require_stopped(folder):
-    """The starts in a folder (see _starts); RunsElsewhere unless all have stopped: the one that heartbeat.json is of, and those
-    that came later, which have left nothing but their own file when they were killed as they began, or are about to be
-    refused, and then no sign of an end of the one before them."""
+    """The starts in a folder, as _starts() gives them; RunsElsewhere unless all have stopped.
+
+    A start later than the one that heartbeat.json is of has left nothing but its own file: it was killed as it began, or is about
+    to be refused, and then says nothing of the one before it."""
     starts = _starts(folder)
     last = running.read_heartbeat(folder)
     later = sorted(number for number in _numbers(starts) if last is None or number > last.start)
@@ -136,11 +137,11 @@ def require_stopped(folder):
 def _starts(folder):
     """{(N, when it was made [ns])} of the files .heartbeat-N in a folder: one that a refused start has taken away, and the next
     one has made anew, is another."""
-    found = set()
-    for file in filter(lambda file: _START.fullmatch(file.name), os.scandir(folder)):
+    starts = set()
+    for found in filter(None, map(_START.fullmatch, os.listdir(folder))):
         with suppress(FileNotFoundError):
-            found.add((int(_START.fullmatch(file.name).group(1)), os.stat(file.path).st_mtime_ns))
-    return found
+            starts.add((int(found.group(1)), os.stat(os.path.join(folder, found.string)).st_mtime_ns))
+    return starts
 
 
 def _numbers(starts):

@@ -329,9 +329,10 @@ def write_longer(file):
         scene = known[run.number]
         if scene.from_file:
             make_packings(scene)
-        duration = LONGER * run.steps * step(scene) * contact_constants(_alike(scene))["timeUnit"]
+        cells = row(scene)
+        duration = LONGER * run.steps * cells["stepFraction"] * contact_constants(_alike(scene))["timeUnit"]
         own = {"out": f"{RUNS}-longer/{scene.name}", "duration": f"{duration:.3g}", "endWhenApart": 1}
-        found.append({**row(scene), **own})
+        found.append({**cells, **own})
     table.write(
         f"{RUNS}-longer.table",
         found,
