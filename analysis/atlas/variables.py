@@ -7,7 +7,7 @@ from ..measures.outcome import NEVER_MET, UNDECIDED
 
 FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
 FIT, HELD_OUT = "fit", "held_out"  # of the column `split`
-CHOSEN_FROM = 3_000  # `number` of the first row that was chosen by a model
+CHOSEN = range(3_000, 10_000)  # `number` of the rows that were chosen by a model
 OFFSETS = (np.arange(8) + 0.5) / 8  # b^2 over its largest, of averages
 FOLDS, SEED = 5, 1  # of cross-validation
 LEFT = ("largest", "second", "fragment_index", "filling_after")
@@ -58,8 +58,8 @@ def folds(number):
 
 def drawn(table):
     """The rows that were drawn without regard to the model: their fractions are those of the space that they were drawn from. All others, the
-    rows from CHOSEN_FROM on that are not held out, are where a model was the least sure."""
-    return table[(table.number < CHOSEN_FROM) | (table.split == HELD_OUT)]
+    rows of CHOSEN that are not held out, are where a model was the least sure."""
+    return table[~table.number.isin(CHOSEN) | (table.split == HELD_OUT)]
 
 
 def touching(table):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from running import STUDIES, TOP
 
-from analysis.atlas.variables import CHOSEN_FROM
+from analysis.atlas.variables import CHOSEN
 from yade_scripts.experiments.compression import KIND as COMPRESSION
 from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.run import table
@@ -198,7 +198,7 @@ def test_rows_of_the_atlas_are_the_same_in_every_size():
     scenes = atlas.scenes(4000)
     assert scenes[:500] == atlas.scenes(500) and len({scene.seed for scene in scenes}) == 4000
     assert sum(scene.held for scene in scenes) == 400 and sum(scene.material == "silicate" for scene in scenes) == 400
-    assert not any(atlas.atlas_choice.chosen()[k] for k, scene in enumerate(scenes[CHOSEN_FROM:]) if scene.held)
+    assert not any(atlas.chosen()[k] for k, scene in enumerate(scenes[CHOSEN.start :]) if scene.held)
     assert not any(scene.material == "silicate" and scene.structure == "compressed" for scene in scenes)
     numbers = [sum(scene.structure == name for scene in scenes[:2000]) for name in atlas.STRUCTURES]
     assert numbers == pytest.approx([500] * 4, abs=2)

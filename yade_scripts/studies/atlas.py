@@ -6,12 +6,12 @@
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
     python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long;
                                                                   analysed alone, their runs.csv goes before RUNS.csv: of two the first counts
-    python3 yade_scripts/studies/atlas.py choose RUNS.csv LAST    chooses the rows to before LAST by a model of the runs that ended: atlas-chosen.txt
     python3 yade_scripts/studies/atlas.py tables                  writes atlas-cells.table, and atlas-cells-full.table, which full needs too
 
-make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 10,000 rows long: a larger size goes on
+make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 13,000 rows long: a larger size goes on
 from a smaller one. Aggregates hold 64 to 1,024 grains together in the first 2,000 rows, and up to 4,096 in the others.
-From row 3,000 on a row is the one of some candidates, drawn at random, whose outcome was the least sure by the model when it was chosen.
+Rows 3,000 to 9,999 are the one of CANDIDATES, drawn at random, whose outcome was the least sure by a model of the rows before: the choices
+stand in atlas-chosen.txt, a digit a row. Rows from 10,000 on are drawn at random, as those held out are: a sample of the whole space.
 
 Of every ten rows one, drawn at random, is held out (its name ends in -held): no model may be fitted to it, and it is not chosen. Of every ten one is of silicate,
 at velocities that are the same over v_break = (E_break/m0)^(1/2); compressed aggregates are of ice alone, whose cells they are cut out of.
@@ -37,7 +37,7 @@ sys.path.insert(0, TOP)
 from scipy.stats import qmc
 
 from analysis.atlas.columns import MEASURED, breaking_velocity
-from analysis.atlas.variables import CHOSEN_FROM
+from analysis.atlas.variables import CHOSEN
 from analysis.measures.outcome import UNDECIDED
 from analysis.measures.virial import filling_factor
 from analysis.progress import progress
@@ -53,13 +53,12 @@ from yade_scripts.packings.approach import first_touch
 from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.run import table
-from yade_scripts.studies import atlas_choice
 
-SIZES = {"pilot": 500, "desk": 2_000, "full": 10_000}
+SIZES = {"pilot": 500, "desk": 2_000, "full": 13_000}
 RUNS, PACKINGS, CELLS = "runs/atlas", "runs/atlas-packings", "runs/atlas-cells"
 SEED, DIMENSIONS = 20260, 6
 STRUCTURES = ("bcca", "bpca", "cpe", "compressed")
-FEWEST, MOST = 64, {2_000: 1_024, 10_000: 4_096}  # grains of both; the most up to that row
+FEWEST, MOST = 64, {2_000: 1_024, 13_000: 4_096}  # grains of both; the most up to that row
 LEAST, MOST_UNEQUAL = 4, 64  # grains of the smaller one; mass ratio
 VELOCITIES = (0.3, 100.0)  # m/s, of ice
 FILLINGS = {"cpe": (0.25, 0.55), "compressed": (0.1, 0.5)}  # N (r/R)^3; CPE aggregates that are fluffier fall apart
@@ -69,6 +68,8 @@ MISSED = "1e-9"  # s
 LONGER = 5  # times the duration, of runs that are undecided
 STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
 KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
+CANDIDATES = 8  # of which one was chosen
+SEED_STEP = 10_000  # from one draw of a close-packed aggregate to the next
 BLOCK = 10  # rows of which one is held out and one of silicate
 CELL_SEEDS = {
     1_024: range(1, 11),
@@ -113,7 +114,7 @@ class Scene:
 
 
 def scenes(rows):
-    """[Scene] of the first rows. Raises PackingError where they have not been chosen yet."""
+    """[Scene] of the first rows."""
     blocks = -(-rows // BLOCK)
     points = _points(blocks * BLOCK)
     found = []
@@ -126,21 +127,24 @@ def scenes(rows):
 
 
 def _points(rows):
-    """Points (rows, DIMENSIONS) in the unit cube: of a Sobol sequence, and then those chosen."""
-    sobol = min(rows, CHOSEN_FROM)
+    """Points (rows, DIMENSIONS) in the unit cube: of a Sobol sequence, then those chosen, then drawn."""
+    sobol = min(rows, CHOSEN.start)
     # Not scrambled by scipy, whose versions may do it differently, but shifted: the first point would be a corner.
     shift = np.random.default_rng(SEED).uniform(size=DIMENSIONS)
     points = (qmc.Sobol(DIMENSIONS, scramble=False).random_base2(int(np.ceil(np.log2(sobol)))) + shift) % 1.0
-    chosen = atlas_choice.chosen()
-    if rows - sobol > len(chosen):
-        raise PackingError(f"row {sobol + len(chosen)} is not chosen yet; must be, by atlas.py choose RUNS.csv {rows}")
-    own = [candidates(sobol + k)[chosen[k]] for k in range(rows - sobol)]
-    return [*points[:sobol], *own]
+    choice = dict(zip(CHOSEN, chosen()))
+    return [*points[:sobol], *(_candidates(i)[choice.get(i, 0)] for i in range(sobol, rows))]
 
 
-def candidates(number):
-    """Points (CANDIDATES, DIMENSIONS) of which a row from CHOSEN_FROM on is one."""
-    size = (atlas_choice.CANDIDATES, DIMENSIONS)
+def chosen():
+    """Which candidate (rows,) each row of CHOSEN is; those held out are the first, without regard to the model."""
+    with open(os.path.join(HERE, "atlas-chosen.txt")) as file:
+        return [int(digit) for digit in file.read() if not digit.isspace()]
+
+
+def _candidates(number):
+    """Points (CANDIDATES, DIMENSIONS) of which a row from CHOSEN on is one."""
+    size = (CANDIDATES, DIMENSIONS)
     return np.random.default_rng([SEED, number, *size]).uniform(size=size)
 
 
@@ -241,7 +245,7 @@ def _cpe(scene, index):
     texts = {"packing": "cpe", "filling": scene.filling, "grains": scene.grains[index], "removeLooseGrains": 1}
     texts |= {"material": scene.material, "grainRadius": GRAIN_RADIUS}
     for number in range(PLACES):
-        own = {**texts, "seed": scene.seed + number * SIZES["full"]}
+        own = {**texts, "seed": scene.seed + number * SEED_STEP}
         parameters = AggregateParameters.parse({name: str(value) for name, value in own.items()})
         with suppress(PackingError):
             found = make(parameters, equilibrium_overlap(parameters), index)
@@ -311,15 +315,6 @@ def write_size(size, first, last):
     table.write(f"runs/atlas-{size}.table", found, head + "Written by yade_scripts/studies/atlas.py.")
 
 
-def choose(file, last):
-    """Choose the rows that are not chosen yet up to before last, by a table of runs. Raises TableError."""
-    runs, first = read_table(file, flat(MEASURED))[0], CHOSEN_FROM + len(atlas_choice.chosen())
-    rows = range(first, last)
-    found = atlas_choice.least_sure([[_scene(i, point) for point in candidates(i)] for i in rows], runs, GRAIN_RADIUS)
-    held = [_held_out(i // BLOCK * BLOCK)[0] == i for i in rows]
-    atlas_choice.append(np.where(held, 0, found))
-
-
 def write_longer(file):
     """Write runs/atlas-longer.table for a table of runs, the cheapest first, and make its packings. Raises TableError and PackingError."""
     runs, known = read_table(file, flat(MEASURED))[0], scenes(SIZES["full"])
@@ -351,11 +346,6 @@ def main(arguments):
             write_longer(file)
         except (TableError, PackingError) as error:
             sys.exit(f"atlas.py: {error}")
-    elif size == "choose" and len(arguments) == 3 and arguments[2].isdecimal():
-        try:
-            choose(arguments[1], int(arguments[2]))
-        except TableError as error:
-            sys.exit(f"atlas.py: {error}")
     elif "--help" in arguments:
         print(__doc__)
     elif size in SIZES and len(arguments) in (1, 3) and all(part.isdecimal() for part in arguments[1:]):
@@ -366,7 +356,7 @@ def main(arguments):
             sys.exit(f"atlas.py: {error}")
     else:
         print(
-            f"atlas.py: must be called with tables, longer, choose, {', '.join(SIZES)}; --help says more",
+            f"atlas.py: must be called with tables, longer, {', '.join(SIZES)}; --help says more",
             file=sys.stderr,
         )
         sys.exit(2)

@@ -142,7 +142,6 @@ WRITERS = {
     "yade_scripts/run/table.py": "study --slurm",
     "yade_scripts/runner/slurm.py": "study --slurm",
     "yade_scripts/runner/batch.py": "study",
-    "yade_scripts/studies/atlas_choice.py": "writes into the repository",
 }
 
 
