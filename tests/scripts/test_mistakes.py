@@ -7,6 +7,7 @@ import pytest
 from running import PYTHON, SCRIPTS, call, messages
 
 from analysis.__main__ import main as analysis
+from analysis.studies.documents.__main__ import main as documents
 from yade_scripts import make_packing, study
 from yade_scripts.parameters.errors import one_line_errors
 
@@ -69,6 +70,7 @@ MISTAKES = {
     "analysis summary": "the following arguments are required: RUNS",
     "analysis figures a b": "unrecognized arguments: b",
     "analysis": "the following arguments are required: command",
+    "documents": "documents: must be called with the file of the PDF",
     "study commas.table": "commas.table: line 1 has commas; names and values must be parted by blanks",
     "study column.table": "column.table: velocty: unknown parameter (did you mean velocity?)",
     "study cells.table": "cells.table: line 2 has 2 cells; must be 3, one for each name",
@@ -119,7 +121,7 @@ def make(arguments):
         return make_packing.main(arguments)
 
 
-COMMANDS = {"analysis": analysis, "study": study.main, "make_packing": make}
+COMMANDS = {"analysis": analysis, "documents": documents, "study": study.main, "make_packing": make}
 # the same of what YADE runs
 OF_YADE = {
     "velocity 3": "argument 'velocity': not understood; must be name=value, or --help",
