@@ -145,15 +145,17 @@ def commands_of_the_readme():
     return [line.split("#")[0].strip() for line in block.strip().splitlines()]
 
 
-def lines_of_others(file, systems):
-    """Lines of the table in a file that are of none of these systems."""
+def of_before(file, systems):
+    """(lines of the table in a file that are of none of these systems, lines below the table)."""
     lines = file.read_text().splitlines() if file.exists() else []
+    rows = [i for i, line in enumerate(lines) if line.startswith("|")]
     names = [f"| {name} |" for name in ("system", *(system.name for system in systems))]
-    return [line for line in lines if line.startswith("| ") and not line.startswith(tuple(names))]
+    others = [lines[i] for i in rows if lines[i].startswith("| ") and not lines[i].startswith(tuple(names))]
+    return others, lines[rows[-1] + 1 :] if rows else []
 
 
-def table(systems, others):
-    """The page that the repository keeps; others: lines of systems that are not tried now."""
+def table(systems, others, below):
+    """The page that the repository keeps; others: lines of systems that are not tried now; below: lines under the table."""
     cores = len(os.sched_getaffinity(0))
     about = f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
     about += f"{' and '.join(BASE)} added; the first command installs all other packages. "
@@ -172,7 +174,7 @@ def table(systems, others):
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
             lines.append(f"| {system.name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *below]) + "\n"
 
 
 def parse_arguments(arguments):
@@ -199,7 +201,7 @@ def main(arguments):
             systems.append(System(name, scratch / name, address))
             systems[-1].make(mirror)
             for _ in systems[-1].try_commands(commands):
-                options.out.write_text(table(systems, lines_of_others(options.out, systems)))
+                options.out.write_text(table(systems, *of_before(options.out, systems)))
     except CannotBegin as error:
         print(f"debian_systems.py: {error}", file=sys.stderr)
         return 2
