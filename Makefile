@@ -13,7 +13,7 @@
 # make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full
 # make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
 # make study-compressed  collisions of compressed aggregates beside CPE ones
-# make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 13,000)
+# make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 14,000)
 # make gallery-atlas  makes its page, model and table of outcomes again
 # make study-status STUDY=viscous  how far a study is, from another shell
 # make gallery  makes the page above all studies and the paper again, analysis/gallery/README.md and paper.md, and build/paper.pdf

@@ -43,7 +43,7 @@ COPIED = {
         "studies/*/*.toml",
         "studies/*/*.csv",
         "gallery/*/*.json",
-        "gallery/atlas/outcomes.txt",
+        "gallery/atlas/outcomes*.txt",
         "atlas/adapters/*.f90",
         "gallery/*/snapshots/*",
     ),

@@ -16,7 +16,7 @@ from .outcome_table import Axis, OutcomeTable, read_outcomes
 from .rules import KINDS
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
-FILE, RUNS_FILE = FOLDER / "outcomes.txt", FOLDER / "runs.csv"
+FILE, IMPACT_FILE, RUNS_FILE = (FOLDER / name for name in ("outcomes.txt", "outcomes-impact.txt", "runs.csv"))
 GRAIN_RADIUS = 1e-7  # m
 # Beyond the runs only what is slow is known: the nodes there are few.
 AXES = (
@@ -25,19 +25,28 @@ AXES = (
     Axis("mass_ratio", "log10", np.append(64.0 ** np.arange(-4, -1), np.geomspace(1 / 64, 1.0, 4))),
     Axis("filling", "linear", np.array([0.02, 0.1, 0.2, 0.3, 0.4, 0.5])),
 )
+# Of one impact parameter: sizes and mass ratios of the runs alone.
+IMPACT_AXES = (
+    AXES[0],
+    Axis("grains", "log10", np.geomspace(64, 4096, 7)),
+    Axis("mass_ratio", "log10", np.geomspace(1 / 64, 1.0, 4)),
+    AXES[3],
+    Axis("impact_square", "linear", np.linspace(0.0, 1.0, 5)),
+)
 SMALLEST, LARGEST = GRAIN_RADII
 RADIUS = f"{{}} of {SMALLEST:g} to {LARGEST:g} [m]", lambda x: (x >= SMALLEST) & (x <= LARGEST)
 GRAINS = numbers(right=("{} >= 1", lambda x: (x >= 1) & (x < np.inf)))
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
+INTERVALS = "largest_low", "largest_high", "filling_after_low", "filling_after_high"
 COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
 Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff of the repository.
 Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of the larger aggregate,
-mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of both).
-Columns: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the aggregates touch, averaged over
-impact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2, and over orientations; error: 90 % half width of the most uncertain
+mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of both){axis}.
+Columns: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the aggregates touch, {impact}
+and averaged over orientations; error: 90 % half width of the most uncertain
 of them; largest, second: mass of the two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest;
-filling_after: of the largest piece; inside: 1 within the convex hull of the runs
+filling_after: of the largest piece{intervals}; inside: 1 within the convex hull of the runs
 in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther beyond, where values are those of the
 nearest node within; runs: number of runs within {near:g} of the scatter. Between nodes: multilinear in the scaled coordinates; the last axis is the fastest.
 Slow collisions: all {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck; anything else has a chance of {most:.2g} there at most (95 %).
@@ -46,24 +55,37 @@ dissipates, aggregates cannot part, and are inside at any size and filling (erro
 Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
 
 
+AVERAGED = dict(
+    axis="",
+    impact="averaged over\nimpact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2,",
+    intervals="",
+)
+OF_IMPACT = dict(
+    axis=", square of the impact parameter\nb in units of the sum of these radii",
+    impact="at that\nimpact parameter,",
+    intervals="; _low, _high: ends of the intervals that hold 90 % of such collisions,\nfor the largest piece of those that leave more than one",
+)
+
+
 def outcome_grid(model, version, upto=1.0):
-    """OutcomeTable of a model.Model, averaged over impact parameters uniform in b^2 up to `upto`."""
-    points, near = _nodes(), Neighbours(model.runs)
-    inside, p = near.beyond(points) <= MARGIN, np.zeros((len(points), len(COLUMNS)))
+    """OutcomeTable of a model.Model, averaged over impact parameters uniform in b^2 up to `upto`; None: for each one, with INTERVALS."""
+    axes, columns = (IMPACT_AXES, (*COLUMNS, *INTERVALS)) if upto is None else (AXES, COLUMNS)
+    points, near = _nodes(axes), Neighbours(model.runs)
+    inside, p = near.beyond(points) <= MARGIN, np.zeros((len(points), len(columns)))
     if not inside.any():
         raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
     own = points[inside]
     chances, widths = model.probabilities(own, upto)
-    left = model.left(own, upto)
+    left = model.left(own, upto).join(model.remains.intervals(own) if upto is None else [])
     values = {
         **dict(zip(PROBABILITIES, chances.T)),
         "error": widths.max(axis=1),
-        **{name: left[name] for name in COLUMNS if name in left},
+        **{name: left[name] for name in columns if name in left},
     }
     for name, value in values.items():
-        p[inside, COLUMNS.index(name)] = value
-    p[~inside] = p[inside][_nearest(points[~inside], own)]
-    p[:, COLUMNS.index("inside")], p[:, COLUMNS.index("runs")] = inside, near.within(points)
+        p[inside, columns.index(name)] = value
+    p[~inside] = p[inside][_nearest(axes, points[~inside], own)]
+    p[:, columns.index("inside")], p[:, columns.index("runs")] = inside, near.within(points)
     about = ABOUT.format(
         version=version,
         runs=len(model.runs),
@@ -74,19 +96,20 @@ def outcome_grid(model, version, upto=1.0):
         energy=model.slow.energy,
         most=model.slow.most,
         contact=ONE_CONTACT,
+        **(OF_IMPACT if upto is None else AVERAGED),
     )
-    return OutcomeTable(AXES, COLUMNS, p.reshape(*(len(a.nodes) for a in AXES), -1), tuple(about.splitlines()))
+    return OutcomeTable(axes, columns, p.reshape(*(len(a.nodes) for a in axes), -1), tuple(about.splitlines()))
 
 
-def _nodes():
+def _nodes(axes):
     """DataFrame of variables() of all nodes, the last axis fastest."""
-    mesh = np.meshgrid(*(axis.nodes for axis in AXES), indexing="ij")
-    return pandas.DataFrame({a.name: values.ravel() for a, values in zip(AXES, mesh)}).assign(impact_square=0.5)
+    mesh = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")
+    return pandas.DataFrame({"impact_square": 0.5} | {a.name: values.ravel() for a, values in zip(axes, mesh)})
 
 
-def _nearest(points, others):
+def _nearest(axes, points, others):
     """Row (n,) of the nearest of others, in steps of the grid."""
-    place = lambda own: np.column_stack([axis.position(own[axis.name]) for axis in AXES])
+    place = lambda own: np.column_stack([axis.position(own[axis.name]) for axis in axes])
     return cKDTree(place(others)).query(place(points))[1]
 
 
@@ -104,6 +127,7 @@ def _table(file, maxwell):
     filling=numbers(right=("{} > 0 and at most 1", lambda x: (x > 0) & (x <= 1))),
     grain_radius=number(RADIUS),
     maxwell=FLAG,
+    impact=numbers(right=("{} from 0 to 1", lambda x: (x >= 0) & (x <= 1))),
     columns=NAMES,
     file=PATH,
 )
@@ -115,23 +139,27 @@ def outcome(
     material="ice",
     grain_radius=GRAIN_RADIUS,
     maxwell=False,
+    impact=None,
     columns=None,
-    file=FILE,
+    file=None,
 ):
-    """{column: array} of what becomes of collisions of two aggregates, from the atlas's table (analysis/gallery/atlas/outcomes.txt, or another
-    file); its head says what the columns are.
+    """{column: array} of what becomes of collisions of two aggregates, from the atlas's table, analysis/gallery/atlas/outcomes.txt (with an impact
+    parameter outcomes-impact.txt), or another file; its head says what the columns are.
 
     velocity [m/s] (maxwell: root mean square of a Maxwell distribution of speeds), projectile and target: numbers of grains, filling: volume
-    filling factor; arrays that broadcast. material: ice or silicate, grain_radius [m]: v_break follows from these. columns: only these.
+    filling factor, impact: parameter over the sum of the radii (5/3)^(1/2) R_g (None: averaged, uniform in its square); arrays that broadcast.
+    material: ice or silicate, grain_radius [m]: v_break follows from these. columns: only these.
     `inside` is 1 within the data, and less where the answer is an extrapolation. ValueError for what cannot be, one line."""
+    given = {"velocity": velocity, "projectile": projectile, "target": target, "filling": filling}
+    given |= {} if impact is None else {"impact": impact}
     try:
-        np.broadcast(velocity, projectile, target, filling)
+        np.broadcast(*given.values())
     except ValueError:
-        shapes = ", ".join(str(np.shape(each)) for each in (velocity, projectile, target, filling))
-        raise WrongArgument(f"velocity, projectile, target, filling: have shapes {shapes}; must broadcast") from None
+        shapes = ", ".join(str(np.shape(each)) for each in given.values())
+        raise WrongArgument(f"{', '.join(given)}: have shapes {shapes}; must broadcast") from None
     projectile, target = np.broadcast_arrays(np.asarray(projectile, dtype=float), np.asarray(target, dtype=float))
     large, small = np.maximum(projectile, target), np.minimum(projectile, target)
     speed = np.asarray(velocity, dtype=float) / breaking_velocity(MATERIALS[material], grain_radius)
-    return _table(file, maxwell).lookup(
-        columns, velocity=speed, grains=large, mass_ratio=small / large, filling=filling
-    )
+    square = {} if impact is None else {"impact_square": np.square(impact, dtype=float)}
+    table = _table(file or (FILE if impact is None else IMPACT_FILE), maxwell)
+    return table.lookup(columns, velocity=speed, grains=large, mass_ratio=small / large, filling=filling, **square)

@@ -2,7 +2,7 @@
 
     python3 -m analysis.atlas.make [FOLDER]
 
-outcomes.txt, the table of outcomes on a grid, and model.md, how good the model is and where it lets aggregates bounce, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
+outcomes.txt and outcomes-impact.txt, the tables of outcomes on grids, and model.md, how good the model is and where it lets aggregates bounce, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
 
 import sys
 from pathlib import Path
@@ -15,19 +15,17 @@ from ..studies.tables import markdown_table
 from ..version import version
 from .barrier import barrier_text
 from .columns import MEASURED
-from .grid import FILE, FOLDER, RUNS_FILE, outcome_grid
+from .grid import FILE, FOLDER, IMPACT_FILE, RUNS_FILE, outcome_grid
 from .model import Model, NoLearning
 from .neighbours import slow
 from .outcome_table import write_outcomes
 from .remains import LEVEL
 from .scores import CROSSED, HELD, foretold, of_atlas, reliability, scores
-from .variables import fit_and_held_out
+from .variables import CHOSEN, fit_and_held_out
 
 ALL = "of all collisions"
-BEFORE = 4_000  # `number` of the first run that was made after a model of the earlier ones stood in the repository
 FORETOLD = """
-Later runs as the model of the first {before} foretold them, which had stood here before they were made: number of runs observed (told). Chosen: where
-it, or from row 7,000 on the model of 5,000, was the least sure.
+Rows from {before} on, which were drawn at random, as the model fitted to the rows before tells them: number of runs observed (told).
 """
 UPTO = {ALL: 1.0, "of collisions with b < 1/2": 0.25}  # b^2
 HEAD = """# How good the model of the atlas is
@@ -67,13 +65,13 @@ def report(table, grids):
     shown["more"] = [f"{more} ± {error}" if more else "" for more, error in zip(shown.more, shown.pop("error"))]
     shown.columns = [name.replace("mean_miss", "miss").replace("_", " ") for name in shown.columns]
     bins = reliability(of_atlas(fit, held)[0], held.outcome).round(3)
-    later = foretold(table, BEFORE)
+    later = foretold(table, CHOSEN.stop)
     parts = [
         head,
         markdown_table(shown),
         "\nHeld-out runs, in bins of probability of all outcomes together:\n",
         markdown_table(bins),
-        *([FORETOLD.format(before=BEFORE), markdown_table(later.round(3))] if len(later) else []),
+        *([FORETOLD.format(before=f"{CHOSEN.stop:,}"), markdown_table(later.round(3))] if len(later) else []),
         "\n## Where aggregates bounce\n",
         *(line for name, grid in grids.items() for line in barrier_text(name, grid)),
     ]
@@ -88,6 +86,7 @@ def main(arguments):
         model = Model(table)
         grids = {name: outcome_grid(model, version(), upto) for name, upto in UPTO.items()}
         write_outcomes(folder / FILE.name, grids[ALL])
+        write_outcomes(folder / IMPACT_FILE.name, outcome_grid(model, version(), None))
         write_text(folder / "model.md", report(table, grids))
     except OSError as error:
         complain(f"{error.filename or folder}: {error.strerror}")

@@ -8,7 +8,6 @@ from ..studies.columns import flat
 from ..theory import MATERIALS
 from .columns import MEASURED, breaking_velocity
 from .grid import PROBABILITIES, RUNS_FILE, outcome
-from .model import Model
 from .neighbours import MARGIN, Neighbours
 from .rules import KINDS
 from .variables import FEATURES, variables
@@ -19,36 +18,27 @@ LABELS = {
     "fragment_index": "n of dN/dm ~ m^-n of all but the largest",
     "filling_after": "filling of the largest piece",
 }
-# What the intervals are of, where it is not all collisions.
-WHERE = {**dict.fromkeys(LABELS, ""), "largest": "where there are more: ", "second": "where there is one: "}
+# What the intervals are of
+WHERE = {"largest": "where there are more: ", "filling_after": ""}
 COMMAND = "python3 yade_scripts/studies/atlas.py full {} {} && python3 yade_scripts/study.py runs/atlas-full.table"
 
 
 def text(options):
-    """Lines (str) for the options of commands.outcome. ValueError for what cannot be, model.NoLearning, OSError where the atlas is not at hand."""
-    if options.maxwell and options.impact != "averaged":
-        raise ValueError(
-            f"--impact {options.impact:g}: given with --maxwell, whose collisions are averaged; must be left out"
-        )
-    about = (options.material, options.grain_radius)
-    answer = outcome(options.velocity, options.projectile, options.target, options.filling, *about, options.maxwell)
+    """Lines (str) for the options of commands.outcome. ValueError for what cannot be, OSError where the atlas is not at hand."""
+    impact = None if options.impact == "averaged" else options.impact
+    about = (options.material, options.grain_radius, options.maxwell, impact)
+    answer = outcome(options.velocity, options.projectile, options.target, options.filling, *about)
     answer = {name: float(value) for name, value in answer.items()}
-    widths, ranges = dict.fromkeys(PROBABILITIES, answer["error"]), {}
     point = _point(options)
-    table = read_table(RUNS_FILE, flat(MEASURED))[0] if RUNS_FILE.exists() or options.impact != "averaged" else None
-    if options.impact != "averaged":
-        model = Model(table)
-        chances, width = model.probabilities(point)
-        answer |= {**dict(zip(PROBABILITIES, chances[0])), **model.left(point).iloc[0].to_dict()}
-        widths = dict(zip(PROBABILITIES, width[0]))
-        ends = model.remains.intervals(point).iloc[0]
-        ranges = {
-            name: f" ({where}{ends[f'{name}_low']:.3g} to {ends[f'{name}_high']:.3g} in 90 %)"
-            for name, where in WHERE.items()
-        }
+    table = read_table(RUNS_FILE, flat(MEASURED))[0] if RUNS_FILE.exists() else None
+    ranges = {
+        name: f" ({where}{answer[f'{name}_low']:.3g} to {answer[f'{name}_high']:.3g} in 90 %)"
+        for name, where in WHERE.items()
+        if f"{name}_low" in answer
+    }
     lines = [_title(options, point)]
     for name, kind in zip(PROBABILITIES, KINDS):
-        low, high = np.clip([answer[name] - widths[name], answer[name] + widths[name]], 0, 1)
+        low, high = np.clip([answer[name] - answer["error"], answer[name] + answer["error"]], 0, 1)
         lines.append(f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}  ({low:.2f} to {high:.2f})")
     lines += [f"  {label:<42} {answer[name]:.3g}{ranges.get(name, '')}" for name, label in LABELS.items()]
     return "\n".join([*lines, *_nearest(table, point, answer["inside"])])

@@ -9,8 +9,8 @@ def add_parser(commands):
     parser = commands.add_parser(
         "outcome",
         help="what becomes of a collision of two aggregates, from the collision atlas",
-        description="Probabilities of the outcomes of a collision of two aggregates, and what is left, from the collision atlas (analysis/gallery/atlas): "
-        "from its table of outcomes; with an impact parameter from its model, which takes scikit-learn. Intervals are of 90 %%.",
+        description="Probabilities of the outcomes of a collision of two aggregates, and what is left, from the tables of the collision atlas "
+        "(analysis/gallery/atlas). Intervals are of 90 %%.",
     )
     of_number = {"type": _positive, "required": True, "metavar": "X"}
     parser.add_argument("--velocity", help="relative velocity [m/s]", **of_number)
@@ -46,13 +46,12 @@ def _impact(text):
 
 def run(options):
     """Exit status: 0, or 2 with one line on stderr."""
-    from ..atlas.model import NoLearning
     from ..atlas.query import text
     from ..runs.table import TableError
 
     try:
         answer = text(options)
-    except (ValueError, NoLearning, TableError) as error:
+    except (ValueError, TableError) as error:
         complain(error)
         return FAILED
     except OSError as error:

@@ -10,7 +10,7 @@ from analysis.__main__ import main
 from analysis.atlas import rules
 from analysis.atlas.barrier import barrier
 from analysis.atlas.columns import MEASURED
-from analysis.atlas.grid import AXES, COLUMNS, PROBABILITIES, outcome_grid
+from analysis.atlas.grid import AXES, COLUMNS, INTERVALS, PROBABILITIES, outcome_grid
 from analysis.atlas.neighbours import MARGIN, Neighbours
 from analysis.atlas.outcome_table import Axis, OutcomeTable, read_outcomes, write_outcomes
 from analysis.atlas.power_law import power_law_index
@@ -92,7 +92,11 @@ def made():
         "filling_target": filling,
         "filling_projectile": filling,
     }
-    columns |= {"outcome": np.where(stuck, "sticking", "erosion"), "largest": np.where(stuck, 1.0, 0.5), "second": 0.0}
+    columns |= {
+        "outcome": np.where(stuck, "sticking", "erosion"),
+        "largest": np.where(stuck, 1.0, 0.5),
+        "second": np.where(stuck, 0.0, 0.1),
+    }
     return pandas.DataFrame({**columns, "filling_largest": filling, "fragment_index": np.where(stuck, np.nan, 2.0)})
 
 
@@ -122,23 +126,30 @@ def test_model_of_made_runs(made, tmp_path):
     assert sum(found[name] for name in PROBABILITIES) == pytest.approx(1, abs=1e-4)
     assert found["p_sticking"][0] == pytest.approx(0.5, abs=0.2) and found["inside"].tolist() == [1.0, 0.0]
     assert read_outcomes(file).columns == COLUMNS
+    file = tmp_path / "outcomes-impact.txt"
+    write_outcomes(file, outcome_grid(fitted, "0", None))
+    of_each = analysis.outcome(5 * 3.8231, 60, 300, 0.2, impact=[0, 0.6, 1], file=file)
+    assert of_each["p_sticking"] == pytest.approx(0.5, abs=0.25) and np.ptp(of_each["p_sticking"]) > 0
+    node = {"velocity": AXES[0].nodes[-4], "grains": 512, "mass_ratio": 1 / 4, "filling": 0.2, "impact_square": 0.25}
+    on_node = {name: float(value) for name, value in read_outcomes(file).lookup(INTERVALS, **node).items()}
+    assert on_node.pop("inside") == 1
+    ends = fitted.remains.intervals(pandas.DataFrame([node])).iloc[0]
+    assert on_node == pytest.approx(ends[[*INTERVALS]].to_dict(), abs=1e-4)
 
 
 def test_what_earlier_runs_foretell_of_later_ones(made):
-    """Of 300 runs from the others: told as the known chance says, and counted as they ended; those that were chosen apart."""
+    """Of 300 runs from the others: told as the known chance says, and counted as they ended; each structure's apart."""
     scores = pytest.importorskip("analysis.atlas.scores")
     pytest.importorskip("sklearn")
-    later = made.index >= 300
-    table = made.assign(number=np.where(later, made.index + 2_900, made.index))
-    table.loc[table.index >= 500, "split"] = "held_out"
-    found = scores.foretold(table, 3_100).set_index("runs")
-    assert found.number.to_dict() == {"drawn": 100, "chosen": 200}
-    for name, rows in (("drawn", made[500:]), ("chosen", made[300:500])):
+    table = made.assign(number=made.index, structure=np.where(made.index < 500, "bcca", "cpe"))
+    found = scores.foretold(table, 300).set_index("runs")
+    assert found.number.to_dict() == {"all": 300, "bcca": 200, "cpe": 100}
+    for name, rows in (("all", made[300:]), ("cpe", made[500:]), ("bcca", made[300:500])):
         stuck, told = map(float, found.sticking[name].strip(")").split(" ("))
         expected = (1 / (1 + (rows.velocity / 5) ** 3)).sum()
         assert stuck == (rows.outcome == "sticking").sum() and told == pytest.approx(expected, abs=0.06 * len(rows))
         assert found.bouncing[name] == "0 (0)" and 0.05 < found.brier[name] < 0.35
-    assert scores.foretold(made.assign(number=made.index), 3_100).empty
+    assert scores.foretold(table, 600).empty
 
 
 def test_intervals_hold_their_part():
@@ -199,7 +210,6 @@ WRONG = {
     "--impact 3": "argument --impact: 3: must be 0 to 1, or averaged",
     "--velocity fast": "argument --velocity: fast: must be a number > 0",
     "--material lead": "analysis: material = lead: must be ice or silicate",
-    "--impact 0.5 --maxwell": "analysis: --impact 0.5: given with --maxwell, whose collisions are averaged; must be left out",
 }
 
 
@@ -214,11 +224,11 @@ def test_errors_of_the_command_are_one_line(options, capsys):
 
 
 def test_command_with_the_gallerys_atlas(capsys):
-    pytest.importorskip("sklearn")
-    for options in ("", "--impact 0.3", "--maxwell"):
+    for options in ("", "--impact 0.3", "--maxwell", "--maxwell --impact 0.3"):
         assert main(f"outcome --velocity 1 --projectile 200 --target 300 --filling 0.3 {options}".split()) == 0
         lines = capsys.readouterr().out.splitlines()
         assert float(lines[1].split()[1]) > 0.8 and lines[1].split()[0] == "sticking"
         assert any("study.py runs/atlas-full.table" in line for line in lines) and "EXTRAPOLATION" not in "".join(lines)
+        assert ("in 90 %" in "".join(lines)) == ("--impact" in options)
     assert main("outcome --velocity 300 --projectile 200 --target 300 --filling 0.3".split()) == 0
     assert "EXTRAPOLATION" in capsys.readouterr().out

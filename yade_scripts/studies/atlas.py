@@ -8,7 +8,7 @@
                                                                   analysed alone, their runs.csv goes before RUNS.csv: of two the first counts
     python3 yade_scripts/studies/atlas.py tables                  writes atlas-cells.table, and atlas-cells-full.table, which full needs too
 
-make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 13,000 rows long: a larger size goes on
+make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 14,000 rows long: a larger size goes on
 from a smaller one. Aggregates hold 64 to 1,024 grains together in the first 2,000 rows, and up to 4,096 in the others.
 Rows 3,000 to 9,999 are the one of CANDIDATES, drawn at random, whose outcome was the least sure by a model of the rows before: the choices
 stand in atlas-chosen.txt, a digit a row. Rows from 10,000 on are drawn at random, as those held out are: a sample of the whole space.
@@ -54,11 +54,11 @@ from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.run import table
 
-SIZES = {"pilot": 500, "desk": 2_000, "full": 13_000}
+SIZES = {"pilot": 500, "desk": 2_000, "full": 14_000}
 RUNS, PACKINGS, CELLS = "runs/atlas", "runs/atlas-packings", "runs/atlas-cells"
 SEED, DIMENSIONS = 20260, 6
 STRUCTURES = ("bcca", "bpca", "cpe", "compressed")
-FEWEST, MOST = 64, {2_000: 1_024, 13_000: 4_096}  # grains of both; the most up to that row
+FEWEST, MOST = 64, {2_000: 1_024, 14_000: 4_096}  # grains of both; the most up to that row
 LEAST, MOST_UNEQUAL = 4, 64  # grains of the smaller one; mass ratio
 VELOCITIES = (0.3, 100.0)  # m/s, of ice
 FILLINGS = {"cpe": (0.25, 0.55), "compressed": (0.1, 0.5)}  # N (r/R)^3; CPE aggregates that are fluffier fall apart
