@@ -1,5 +1,6 @@
 """The outcomes on a grid, made from the model, and their fast look-up."""
 
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -116,7 +117,11 @@ def _nearest(axes, points, others):
 @lru_cache
 def _table(file, maxwell):
     table = read_outcomes(file)
-    return table.maxwell() if maxwell else table
+    if not maxwell:
+        return table
+    kept = [name for name in table.columns if name not in INTERVALS]  # a mean of ends is no end of the interval of all
+    values = table.values[..., [table.columns.index(name) for name in kept]]
+    return replace(table, columns=tuple(kept), values=values).maxwell()
 
 
 @takes(

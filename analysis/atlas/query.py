@@ -74,7 +74,7 @@ def _outside(runs, point):
 def _nearest(table, point, inside):
     """Lines on the nearest runs, and whether the answer is an extrapolation."""
     if table is None:  # installed without the repository's tables
-        yield "  EXTRAPOLATION" if inside < 1 else "  within the data"
+        yield "  within the data" if inside == 1 else f"  EXTRAPOLATION: inside = {inside:.4g} in the table of outcomes"
         return
     near = Neighbours(table)
     beyond = near.beyond(point)[0]
@@ -82,7 +82,7 @@ def _nearest(table, point, inside):
     if beyond > MARGIN:
         yield f"  EXTRAPOLATION: {beyond:.2g} times the scatter of the runs beyond the region that they fill{outside}"
     elif inside < 1:
-        yield f"  at the edge of the data: inside = {inside:.2g} in the table of outcomes"
+        yield f"  at the edge of the data: inside = {inside:.4g} in the table of outcomes"
     yield "nearest runs:"
     for run in near.runs.iloc[near.nearest(point)[0]].itertuples():
         yield (
