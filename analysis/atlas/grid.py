@@ -1,6 +1,5 @@
 """The outcomes on a grid, made from the model, and their fast look-up."""
 
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -19,18 +18,19 @@ from .rules import KINDS
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 FILE, IMPACT_FILE, RUNS_FILE = (FOLDER / name for name in ("outcomes.txt", "outcomes-impact.txt", "runs.csv"))
 GRAIN_RADIUS = 1e-7  # m
+SIZES, RATIOS = np.geomspace(64, 4096, 7), np.geomspace(1 / 64, 1.0, 4)  # of the runs
 # Beyond the runs only what is slow is known: the nodes there are few.
 AXES = (
     Axis("velocity", "log10", np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.0, 20))),
-    Axis("grains", "log10", np.array([1, 8, *np.geomspace(64, 4096, 7), *(8.0 ** np.arange(5, 9))])),
-    Axis("mass_ratio", "log10", np.append(64.0 ** np.arange(-4, -1), np.geomspace(1 / 64, 1.0, 4))),
+    Axis("grains", "log10", np.array([1, 8, *SIZES, *(8.0 ** np.arange(5, 9))])),
+    Axis("mass_ratio", "log10", np.append(64.0 ** np.arange(-4, -1), RATIOS)),
     Axis("filling", "linear", np.array([0.02, 0.1, 0.2, 0.3, 0.4, 0.5])),
 )
 # Of one impact parameter: sizes and mass ratios of the runs alone.
 IMPACT_AXES = (
     AXES[0],
-    Axis("grains", "log10", np.geomspace(64, 4096, 7)),
-    Axis("mass_ratio", "log10", np.geomspace(1 / 64, 1.0, 4)),
+    Axis("grains", "log10", SIZES),
+    Axis("mass_ratio", "log10", RATIOS),
     AXES[3],
     Axis("impact_square", "linear", np.linspace(0.0, 1.0, 5)),
 )
@@ -117,11 +117,7 @@ def _nearest(axes, points, others):
 @lru_cache
 def _table(file, maxwell):
     table = read_outcomes(file)
-    if not maxwell:
-        return table
-    kept = [name for name in table.columns if name not in INTERVALS]  # a mean of ends is no end of the interval of all
-    values = table.values[..., [table.columns.index(name) for name in kept]]
-    return replace(table, columns=tuple(kept), values=values).maxwell()
+    return table.maxwell() if maxwell else table
 
 
 @takes(

@@ -13,6 +13,7 @@ from ..runs.named import suggested
 from ..runs.write import write_text
 
 SCALES = {"log10": np.log10, "linear": np.asarray}
+ENDS = "_low", "_high"  # of names of columns that are ends of intervals
 INSIDE = "inside"  # the column that is 1 within the data and 0 outside
 ROUNDING = 1e-9  # of the sum of a query's weights
 CHUNK = 20_000  # queries at once: what they need stays in the processor's cache
@@ -97,7 +98,8 @@ class OutcomeTable:
         """The same table for collisions of Maxwell-distributed speeds, its first axis being their root mean square.
 
         Of collisions, not of pairs: v^3 exp(-3 v^2 / 2 <v^2>), as faster ones meet more often; with a threshold it gives the
-        probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of the collisions that are inside.
+        probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of the collisions that are inside; ends of
+        intervals are left out, as their means are no ends of the interval of all.
         """
         speed, x = self.axes[0], np.geomspace(1e-2, 5.0, 2000)
         density = x**4 * np.exp(-1.5 * x**2)  # per logarithm of x
@@ -109,10 +111,13 @@ class OutcomeTable:
             for kind, part in enumerate((density, density * (speed.beyond(velocity * x) == 0))):
                 np.add.at(shares[kind, row], below, part * (1.0 - position + below))
                 np.add.at(shares[kind, row], below + 1, part * (position - below))
-        values = np.tensordot(shares[0], self.values, 1)
-        inside = self.columns.index(INSIDE)
-        values[..., inside] = np.tensordot(shares[1], self.values[..., inside], 1)
-        return replace(self, values=values, comments=(*self.comments, "velocity: rms of a Maxwell distribution"))
+        columns = tuple(name for name in self.columns if not name.endswith(ENDS))
+        own = self.values[..., [self.columns.index(name) for name in columns]]
+        values, inside = np.tensordot(shares[0], own, 1), columns.index(INSIDE)
+        values[..., inside] = np.tensordot(shares[1], own[..., inside], 1)
+        return replace(
+            self, columns=columns, values=values, comments=(*self.comments, "velocity: rms of a Maxwell distribution")
+        )
 
 
 def read_outcomes(path):
