@@ -3,6 +3,7 @@
 #include "../kernel/blocked.hpp"
 #include "arrays.hpp"
 #include <algorithm>
+#include <cstring>
 
 namespace contact_law {
 
@@ -65,11 +66,15 @@ public:
 private:
 	std::size_t next = 0;
 
-	// The compiler's own pair of numbers, at any of them.
+	// The compiler's own pair of numbers, from and to places of any alignment.
 	using Two = double __attribute__((vector_size(16)));
-	using TwoAnywhere = Two __attribute__((aligned(8), may_alias));
-	static TwoAnywhere& two(double* first) { return *reinterpret_cast<TwoAnywhere*>(first); }
-	static const TwoAnywhere& two(const double* first) { return *reinterpret_cast<const TwoAnywhere*>(first); }
+	static Two two(const double* first)
+	{
+		Two pair;
+		std::memcpy(&pair, first, sizeof pair);
+		return pair;
+	}
+	static void put(double* first, Two pair) { std::memcpy(first, &pair, sizeof pair); }
 
 	// The power of what is withheld of a grain, now and before. In the plane all grains come here in every step: by pairs of numbers, without branches.
 	static double withheldFrom(Grain& g, Constrained& c)
@@ -81,8 +86,8 @@ private:
 		for (int k = 0; k < 6; k += 2) {
 			const Two force = two(forces + k), held = two(blocked + k) * force;
 			power += (two(before + k) + held) * two(velocities + k);
-			two(before + k) = held;
-			two(forces + k) = force - held;
+			put(before + k, held);
+			put(forces + k, force - held);
 		}
 		return power[0] + power[1];
 	}
