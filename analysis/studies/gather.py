@@ -27,7 +27,7 @@ class Gathered:
 
 
 def gather(study, paths):
-    """Gathered runs of a study: tables (.csv) are read, run folders measured. Of two runs with the same numbers in scene.key only the
+    """Gathered runs of a study: tables (.csv) are read, then run folders measured. Of two runs with the same numbers in scene.key only the
     first is counted: counted twice it would make errors too small. Where that is a row of a table, figures that need a run's states
     take them from the folder of the other."""
     collection = collect(paths, study.scene)
@@ -48,7 +48,7 @@ def gather(study, paths):
     if parts:
         tables, origins = zip(*parts)
         found.table = pandas.concat(tables, ignore_index=True) if len(tables) > 1 else tables[0]
-        found.provenance = joined(origins) if len(origins) > 1 else origins[0]
+        found.provenance = {**joined(origins), "runs": len(found.table)} if len(origins) > 1 else origins[0]
         found.table[FOLDER] = [folders.get(_key(study, row), row[FOLDER]) for row in found.table.to_dict("records")]
     return found
 
@@ -85,12 +85,15 @@ def _read(study, file, taken):
     if head["provenance"].get("runs") != len(table):
         said = head["provenance"].get("runs")
         raise TableError(f"{file}: says that it holds {said} runs, it holds {len(table)}")
-    keys = {_key(study, row): f"{file}, {row[RUN]}" for row in table.to_dict("records")}
-    twins = keys.keys() & taken.keys()
-    if twins or len(keys) < len(table):
+    keys = [_key(study, row) for row in table.to_dict("records")]
+    if len(set(keys)) < len(keys):
         raise TableError(f"{file}: two runs have the same {_listed(study.scene.key)}")
-    taken.update(keys)
-    return table, head["provenance"], head.get("notes", [])
+    new = [key not in taken for key in keys]
+    notes = list(head.get("notes", []))
+    if not all(new):
+        notes.append(f"runs of {file.name} that are in a table before it, which counts: {new.count(False)}")
+    taken.update((key, f"{file}, {run}") for key, run, counts in zip(keys, table[RUN], new) if counts)
+    return table[new], head["provenance"], notes
 
 
 def _key(study, values):

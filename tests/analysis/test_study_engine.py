@@ -87,6 +87,23 @@ def test_its_table_is_read_again(own, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
+def test_of_a_run_in_two_tables_the_first_counts(own, capsys):
+    """A run that was continued replaces the one that was undecided."""
+    two_pairs(own / "longer" / "open", 40.0, 1)
+    tables = [str(own / f"{name}.csv") for name in ("longer", "runs")]
+    for table in tables:
+        main(["study", str(own / "sticking.py"), table.removesuffix(".csv"), "--format", "csv"])
+        Path(table).write_text(capsys.readouterr().out)
+    assert main(["study", str(own / "sticking.py"), *tables, "--format", "csv"]) == 0
+    both = capsys.readouterr().out
+    (own / "both.csv").write_text(both)
+    assert "runs of runs.csv that are in a table before it, which counts: 1" in both.splitlines()[0]
+    assert main(["study", str(own / "sticking.py"), str(own / "both.csv"), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["provenance"]["runs"] == 5
+    assert [row["low"] > 0 for row in answer["quantities"]["sticking"]["rows"] if row["velocity"] == 40.0] == [True]
+
+
 def test_everything_is_inside_the_page(own, capsys, monkeypatch):
     monkeypatch.setattr(pdf, "_CONVERTERS", ())
     assert run(own, "--page", own / "out" / "page.html") == 0
