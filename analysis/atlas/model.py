@@ -92,7 +92,7 @@ def classifier(strength, order=ORDER):
     from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
     steps = [("scale", StandardScaler()), ("powers", PolynomialFeatures(order, include_bias=False))]
-    return Pipeline([*steps, ("fit", LogisticRegression(C=strength, max_iter=2000))])
+    return Pipeline([*steps, ("fit", LogisticRegression(C=strength, max_iter=10000))])
 
 
 def chances(fit, coordinates):

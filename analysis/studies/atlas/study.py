@@ -69,10 +69,11 @@ def _counts(table):
         "most": table.grains_target.max(),
         "cells": table.cell[table.cell > 0].nunique(),
         "chosen": len(table) - len(drawn(table)),
+        "undecided": (table.outcome == UNDECIDED).sum(),
     }
     return Quantity(
         "grains",
-        "of the larger aggregate; cells that compressed ones are cut out of; rows that were chosen",
+        "of the larger aggregate; cells that compressed ones are cut out of; rows that were chosen; undecided ones",
         _exact(known),
     )
 
