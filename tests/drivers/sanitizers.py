@@ -1,6 +1,6 @@
 """The sanitizers of addresses, undefined behaviour and threads on the engine, the kernel, the functors and checkpoints. Run by `make test-sanitizers`.
 
-    python3 tests/drivers/sanitizers.py [--out FILE]      an hour on two cores
+    python3 tests/drivers/sanitizers.py [--out FILE]      a quarter of an hour on two cores
 
 The last commit is cloned into build/sanitizers and compiled there once for each trial. Scenes of the harness are made with the ordinary build.
 Compiled by clang, as g++ takes more than ten times as long for the engine's passes; what sees YADE's types by g++, as YADE was. Threads are looked at in
@@ -36,10 +36,14 @@ IN_YADE = (
     "tests/equivalence",
     "tests/hard_cases",
 )
+# YADE's own: where a second thread's numbers need more room, it copies as many bytes as the new place has (OpenMPArrayAccumulator::resize), and
+# clears those beyond the old ones.
+YADES = "interceptor_via_fun:yade::EnergyTracker::add"
 HEAD = """# Sanitizers
 
 `make test-sanitizers`, commit {commit}, {cpu}, {cores} cores. {version}.
 YADE itself is Debian's and not instrumented: what it does with memory that the plugin gave it is seen only where it calls malloc, free or memcpy.
+Left out is one finding in YADE: with two threads EnergyTracker::add reads up to a cache line too much, and then clears what it read.
 
 | sanitizers | what ran | result | findings | time [s] |
 |---|---|---|---:|---:|
@@ -68,9 +72,10 @@ class Trial:
     def row(self, what, command, **more):
         """A line of the table for a command, and whether it passed with nothing found."""
         with tempfile.TemporaryDirectory() as folder:
-            log = f"log_path={folder}/found"
+            log, known = f"log_path={folder}/found", Path(folder) / "known"
+            known.write_text(YADES)
             own = {
-                "ASAN_OPTIONS": f"{log}:detect_leaks=0:detect_odr_violation=0",
+                "ASAN_OPTIONS": f"{log}:detect_leaks=0:detect_odr_violation=0:suppressions={known}",
                 "UBSAN_OPTIONS": f"{log}:print_stacktrace=1",
                 "TSAN_OPTIONS": f"{log}:ignore_noninstrumented_modules=1",
             }
@@ -78,7 +83,7 @@ class Trial:
             done = subprocess.run(
                 command, cwd=self.clone, env={**os.environ, **own, **more}, capture_output=True, text=True
             )
-            found = "".join(file.read_text(errors="replace") for file in sorted(Path(folder).iterdir()))
+            found = "".join(file.read_text(errors="replace") for file in sorted(Path(folder).glob("found*")))
         count = sum(found.count(words) for words in FINDINGS)
         lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
         result = (lines[-1].strip("= ") if lines else "ended") if "pytest" in command else "ended"
