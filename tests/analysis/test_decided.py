@@ -127,12 +127,8 @@ def test_cuts_are_those_contacts_without_which_there_is_a_piece_more(seed):
 def standing(velocity, on=True, broken=(), bonded=False):
     """A chain whose first grain touches the plate at x = -1, or all but touches it."""
     state = chain(velocity, broken, bonded=bonded)
-    contacts = {
-        "plane_axis": np.array([0]),
-        "plane_position": np.array([-1.0]),
-        "plane_contacts": np.zeros((int(on), 2), int),
-    }
-    return {**state, **contacts, "aggregate": np.zeros(len(velocity), int), "time": 0.0}
+    plane = dict(plane_axis=np.array([0]), plane_position=np.array([-1.0]), plane_contacts=np.zeros((int(on), 2), int))
+    return {**state, **plane, "aggregate": np.zeros(len(velocity), int), "time": 0.0}
 
 
 def leaving(energy):
@@ -154,24 +150,10 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
         ("sticking", standing(leaving(0.9 * HOLDS), bonded=True), LONG, 1, 0, None),
         ("sticking", standing(leaving(1.1 * HOLDS), bonded=True), LONG, 1, None, "parts of 100% of the mass"),
         ("bouncing", standing(STILL + 1, on=False), LONG, 0, 0.5, None),
-        (
-            "bouncing",
-            standing(STILL - 1, on=False),
-            LONG,
-            0,
-            None,
-            "pieces of 100% of the mass may still meet the plate",
-        ),
+        ("bouncing", standing(STILL - 1, on=False), LONG, 0, None, "100% of the mass may still meet the plate"),
         ("bouncing", standing(STILL + 1, broken=[0]), LONG, 0.05, 0.5, None),  # all but one grain
         ("fragmentation", standing(UPPER_HALF, broken=[9]), LONG, 0.5, None, None),
-        (
-            "fragmentation",
-            standing(-UPPER_HALF, broken=[9]),
-            LONG,
-            0.5,
-            None,
-            "pieces of 50% of the mass may still meet",
-        ),
+        ("fragmentation", standing(-UPPER_HALF, broken=[9]), LONG, 0.5, None, "50% of the mass may still meet"),
         ("never met", standing(STILL - 1, on=False), LONG, 0, None, "may still meet the plate"),
     ],
 )
