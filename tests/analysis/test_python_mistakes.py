@@ -30,6 +30,8 @@ MISTAKES = {
     "analysis.open_run(run)": "path = a RunFolder: must be the path of a run folder",
     "run.parameters.velocity": 'velocity is no attribute; must be read as ["velocity"]',
     "run.parameters['velocty']": "no velocty (did you mean velocity?)",
+    "run.history['kinetc']": "no kinetc (did you mean kinetic?)",
+    "run.last.positions": "no positions (did you mean position?)",
     "run.states[100]": "no state 100: must be -12 to 11",
     "run.states['last']": "state last: must be a whole number, or a slice",
     "run.states.nearest('end')": "time = end: must be a finite number",
@@ -44,6 +46,7 @@ MISTAKES = {
     "analysis.plot(3, found)": "what = 3: must be sticking, largest, energy, or the name of a column",
     "analysis.plot('stiking', found)": "no stiking (did you mean sticking?)",
     "analysis.plot('sticking', found, x='velocty')": "no velocty (did you mean velocity?)",
+    "analysis.plot('sticking', found, by='velocty')": "no velocty (did you mean velocity?)",
     "analysis.plot('sticking', found, x=['velocity'])": "x = ['velocity']: must be the name of a column",
     "analysis.plot('sticking', found, by=3)": "by = 3: must be the name of a column, or ''",
     "analysis.plot('sticking', found, where='velocity=3')": "where = 'velocity=3': must be {column: value}",
@@ -109,6 +112,7 @@ def test_mistakes_get_one_line(given, typed):
         eval(typed, given)
     said = str(wrong.value)
     ours = wrong.type.__module__.startswith("analysis.") or wrong.type is IndexError  # which a sequence must raise
+    assert isinstance(wrong.value, KeyError) or "did you mean" not in said or "columns" in typed
     assert (ours or wrong.type is ValueError) and MISTAKES[typed] in said and "\n" not in said, said
 
 
