@@ -16,10 +16,10 @@ def compression_record(seed, **others):
     given = dict(material="ice", grains=GRAINS, packing="bcca", seed=seed, strainRate=3e-7, linearDamping=0.01)
     given |= dict(criticalRolling=0.8e-9, grainRadius=RADIUS, slidingStiffnessFactor=1.0, stepFraction=0.2)
     given |= dict(finalFilling=0.5, viscoelasticTime=0.0) | others
-    about = {**record(1.0, given), "kind": "compression", "seed": seed}
-    derived = {**about["derived"], **{name: given[name] for name in CONSTANTS if name in given}}
-    energy = rolling_energy(derived["surfaceEnergy"], derived["grainRadius"], derived["criticalRolling"])
-    return {**about, "derived": {**derived, "rollingEnergy": energy}}
+    about = record(1.0, given, **{name: given[name] for name in CONSTANTS if name in given})
+    of_rolling = (about["derived"][name] for name in ("surfaceEnergy", "grainRadius", "criticalRolling"))
+    about["derived"]["rollingEnergy"] = rolling_energy(*of_rolling)
+    return {**about, "kind": "compression", "seed": seed}
 
 
 def compression_history(pressure, low=0.002, high=0.5, stretched=False):

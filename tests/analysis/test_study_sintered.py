@@ -32,10 +32,9 @@ def made_run(path, velocity, neck, seed, largest=GRAINS, growth=0.0, broken=0, *
         states[-1]["contact_bonded"] = np.full(len(pairs), neck > 0)
     states[1]["position"][largest:, 0] += RADIUS
     own = dict(packing="file" if growth else "bcca", neck=neck, velocity=velocity, seed=1 if growth else seed)
-    about = record(200 * RADIUS, {**PLAIN, **own, "duration": 24.4e-6, **parameters})
-    about["derived"].update(criticalRolling=2e-10)
-    if growth:
-        about["derived"]["targetPacking"] = {"growthVelocity": growth, "seed": seed}
+    grown = {"targetPacking": {"growthVelocity": growth, "seed": seed}} if growth else {}
+    given = {**PLAIN, **own, "duration": 24.4e-6, **parameters}
+    about = record(200 * RADIUS, given, criticalRolling=2e-10, **grown)
     return write_run(path, about, history, states)
 
 

@@ -16,14 +16,14 @@ PAIR = pair_constants(ICE, RADIUS)
 MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS**3
 
 
-def record(aggregate_radius, parameters=None):
-    """The dict of run.json for ice grains of 0.1 um and an aggregate radius [m]."""
+def record(aggregate_radius, parameters=None, **others):
+    """The dict of run.json for ice grains of 0.1 um and an aggregate radius [m]; others: derived constants that differ, or are more."""
     material = {"young": ICE.young, "poisson": ICE.poisson, "surfaceEnergy": ICE.surface_energy, "density": ICE.density}
     material |= {"criticalRolling": ICE.critical_rolling, "viscoelasticTime": 0.0}
     pair = "equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce timeUnit".split()
     pair = {name: getattr(PAIR, re.sub("([A-Z])", r"_\1", name).lower()) for name in pair}
     derived = {**material, "grainRadius": RADIUS, "grainMass": MASS, **pair, "timeStep": 0.1 * PAIR.time_unit}
-    derived |= {"steps": 0, "aggregateRadius": aggregate_radius, "grainsPerAggregate": 1}
+    derived |= {"steps": 0, "aggregateRadius": aggregate_radius, "grainsPerAggregate": 1, **others}
     about = {"format": FORMAT, "kind": "collision", "parameters": parameters or {"material": "ice"}, "derived": derived}
     about |= {"versions": {}, "commit": "unknown", "seed": 1, "hardware": {"cpu": "", "cores": 1}}
     return {**about, "wallTime": 0.0, "outcome": "completed"}
@@ -105,14 +105,14 @@ def pair_run(path, velocity=8.0, samples=201):
     after = time - collision.duration
     overlap = np.where(apart, -PAIR.pull_off_overlap - collision.rebound_velocity * after, overlap)
     rate = np.where(apart, -collision.rebound_velocity, rate)
-    history = {name: np.zeros(samples) for name in CHANNELS}
-    history["kinetic"] = 0.5 * PAIR.reduced_mass * rate**2
-    history["normal"] = np.where(apart, 0.0, normal_energy(overlap, PAIR))
-    history["connection"] = np.full(samples, -normal_energy(0.0, PAIR))
-    # The contact exists from the first sample on: what it took is part of the start.
-    history["disconnection"] = np.where(apart, normal_energy(-PAIR.pull_off_overlap, PAIR), 0.0)
-    touching = (~apart).astype(int)
-    history.update(time=time, d=overlap - 2 * RADIUS, v=rate, contacts=touching, contacts_between=touching)
+    energies = {
+        "kinetic": 0.5 * PAIR.reduced_mass * rate**2,
+        "normal": np.where(apart, 0.0, normal_energy(overlap, PAIR)),
+        # The contact exists from the first sample on: what it took is part of the start.
+        "connection": np.full(samples, -normal_energy(0.0, PAIR)),
+        "disconnection": np.where(apart, normal_energy(-PAIR.pull_off_overlap, PAIR), 0.0),
+    }
+    history = losing(time, touching=~apart, contacts=(~apart).astype(int), d=overlap - 2 * RADIUS, v=rate, **energies)
     states = [_pair_state(time[k], overlap[k], rate[k], not apart[k]) for k in (0, samples // 3, samples - 1)]
     write_run(path, record(0.0), history, states)
     return velocity, collision
@@ -125,12 +125,12 @@ def _pair_state(time, overlap, rate, touching):
     return state_arrays(time, position, velocity, [0, 1], *contact)
 
 
-def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, **parameters):
+def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, derived={}, **parameters):
     """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding, and stick (still
-    parting at the end unless it settles) or part at half their speed. Returns the path."""
+    parting at the end unless it settles) or part at half their speed. derived: as record's others. Returns the path."""
     values = {"packing": "cpe", "material": "ice", "grains": 2, "velocity": velocity, "seed": seed, "impact": 0.0}
     pair, lost = np.array([[0, 0, 0], [0, 2 * RADIUS, 0]]), {"slidingDissipation": 1.0}
-    about, v = record(RADIUS, {**values, **parameters}), -0.5 if not sticks else 0.0 if settles else -0.4
+    about, v = record(RADIUS, {**values, **parameters}, **derived), -0.5 if not sticks else 0.0 if settles else -0.4
     return meeting(path, about, pair, [[0, 1]], velocity, lost, away=v, sticks=sticks, ended=ended, states=states)
 
 
@@ -153,10 +153,9 @@ def meeting(path, about, one, pairs, velocity, lost, away=0.0, sticks=True, ende
     d = -velocity * meet + np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(time))])
     grains, random = len(one), np.random.default_rng(1)
     energy, touching = grains * MASS * (velocity / 2) ** 2, (time > meet) & (sticks | (time < 3e-7))
-    history = {name: np.zeros(time.size) for name in CHANNELS}
-    history["kinetic"] = energy * (v / velocity) ** 2
-    history.update({name: part * (energy - history["kinetic"]) for name, part in lost.items()})
-    history.update(time=time, d=d, v=v, contacts=2 * len(pairs) + touching, contacts_between=touching.astype(int))
+    kinetic = energy * (v / velocity) ** 2
+    energies = {"kinetic": kinetic, **{name: part * (energy - kinetic) for name, part in lost.items()}}
+    history = losing(time, touching=touching, contacts=2 * len(pairs) + touching, d=d, v=v, **energies)
     within, kept = np.concatenate([pairs, np.add(pairs, grains)]), []
     for k in np.linspace(0, 400, states).astype(int):
         shift = np.array([about["derived"]["aggregateRadius"] - 0.5 * d[k], 0, 0])
