@@ -1,7 +1,6 @@
 """A film of a run, read back frame by frame."""
 
 import json
-import os
 import shutil
 import subprocess
 
@@ -51,16 +50,11 @@ def test_every_state_is_a_frame_with_the_grains_in_their_places(run):
         assert _places(frame, AGGREGATE_COLOURS[1]) == pytest.approx(0.5 + x / width, abs=0.01)
 
 
-@needs_ffmpeg
-def test_what_cannot_be_encoded_leaves_no_file(run, capsys):
-    assert main(["film", str(run), "--out", str(run / "film.nonsense")]) == 2
+@pytest.mark.parametrize(
+    "name, words", [("film.nonsense", "film.nonsense: must end in .mp4 or .gif"), ("film.mp4", "ffmpeg: not installed")]
+)
+def test_what_cannot_be_encoded_is_one_line_and_leaves_no_file(run, capsys, monkeypatch, name, words):
+    monkeypatch.setenv("PATH", "/nowhere")
+    assert main(["film", str(run), "--out", str(run / name)]) == 2
     message = capsys.readouterr().err
-    assert "film.nonsense: must end in .mp4 or .gif" in message and message.count("\n") == 1
-    assert not [path for path in run.iterdir() if "film" in path.name]
-
-
-def test_without_ffmpeg_one_line_says_so(run, capsys, monkeypatch):
-    monkeypatch.setitem(os.environ, "PATH", "/nowhere")
-    assert main(["film", str(run)]) == 2
-    assert "ffmpeg: not installed" in capsys.readouterr().err
-    assert not [path for path in run.iterdir() if "film" in path.name]
+    assert words in message and message.count("\n") == 1 and not list(run.glob("*film*"))

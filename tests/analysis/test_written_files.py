@@ -11,7 +11,6 @@ import time
 from pathlib import Path
 
 import pytest
-from test_study_engine import own as tiny  # noqa: F401  (a fixture)
 from written_runs import two_pairs
 
 from analysis.__main__ import main
@@ -32,9 +31,9 @@ OUTPUTS = [
 
 
 @pytest.mark.parametrize("command, output", OUTPUTS)
-def test_no_output_goes_through_a_link(tiny, monkeypatch, capsys, command, output):  # noqa: F811
-    monkeypatch.chdir(tiny)
-    link, mine = tiny / "out" / output, tiny / "mine"
+def test_no_output_goes_through_a_link(own, monkeypatch, capsys, command, output):
+    monkeypatch.chdir(own)
+    link, mine = own / "out" / output, own / "mine"
     link.parent.mkdir(parents=True)
     if output == "state_000000":
         mine.mkdir()
@@ -105,29 +104,29 @@ def test_what_killed_writers_left_goes_and_what_others_write_stays(tmp_path):
 
 
 @pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
-def test_a_film_that_is_stopped_leaves_nothing(tiny):  # noqa: F811
-    two_pairs(tiny / "runs" / "long", 3.0, 9, states=400)
-    command = [sys.executable, "-m", "analysis", "film", str(tiny / "runs" / "long"), "--out", str(tiny / "film.mp4")]
-    before = set(tiny.iterdir())
+def test_a_film_that_is_stopped_leaves_nothing(own):
+    two_pairs(own / "runs" / "long", 3.0, 9, states=400)
+    command = [sys.executable, "-m", "analysis", "film", str(own / "runs" / "long"), "--out", str(own / "film.mp4")]
+    before = set(own.iterdir())
     process = subprocess.Popen(command, cwd=TOP, stderr=subprocess.PIPE, text=True)
-    while set(tiny.iterdir()) == before:
+    while set(own.iterdir()) == before:
         assert process.poll() is None
         time.sleep(0.001)
     process.terminate()
     assert process.communicate(timeout=60)[1] == "" and process.returncode == 128 + signal.SIGTERM
-    assert set(tiny.iterdir()) == before
+    assert set(own.iterdir()) == before
 
 
 # ---- nothing is written over what is read ----
 
 
-def test_a_table_is_not_written_over_itself(tiny, capsys, monkeypatch):  # noqa: F811
+def test_a_table_is_not_written_over_itself(own, capsys, monkeypatch):
     def study(*runs):
         return main(["study", "sticking.py", *runs, "--figures", "out"])
 
-    monkeypatch.chdir(tiny)
+    monkeypatch.chdir(own)
     study("runs/s1", "runs/s2")
-    table, comparison = tiny / "out" / "runs.csv", tiny / "out" / "comparison.json"
+    table, comparison = own / "out" / "runs.csv", own / "out" / "comparison.json"
     before, text = table.stat(), table.read_text()
     comparison.unlink()
     capsys.readouterr()
