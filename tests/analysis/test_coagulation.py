@@ -40,15 +40,12 @@ def test_lookup(table, tmp_path):
     within = queries(1000, 1.0)
     v, n, q, f = within.values()
     found = table.lookup(**within)
-    np.testing.assert_allclose(
-        found["product"], (1 + np.log10(v)) * np.log10(n) * (2 + np.log10(q)) * (1 - f), rtol=1e-12
-    )
+    linear = (1 + np.log10(v)) * np.log10(n) * (2 + np.log10(q)) * (1 - f)
+    np.testing.assert_allclose(found["product"], linear, rtol=1e-12)
     assert np.all((found["inside"] == 1) == (n <= 500))
-    edge = {
-        name: np.clip(x, *next(a.nodes[[0, -1]] for a in AXES if a.name == name))
-        for name, x in queries(1000, 3.0).items()
-    }
-    beyond = table.lookup(**queries(1000, 3.0))
+    far = queries(1000, 3.0)
+    edge = {axis.name: np.clip(far[axis.name], *axis.nodes[[0, -1]]) for axis in AXES}
+    beyond = table.lookup(**far)
     np.testing.assert_array_equal(beyond["p_sticking"], table.lookup(**edge)["p_sticking"])
     assert 0 < np.mean(beyond["inside"] == 0) < 1
     with pytest.raises(ValueError, match="velocity = nan: must be 0 or more"):

@@ -64,10 +64,13 @@ def _outcome(start, end, met=True):
     return collision_outcome(*about, *(end[name] for name in both), met)
 
 
-def test_sticking():
+def test_sticking_and_fragmentation():
     outcome = _outcome(START, _state(STILL, (0, 40)))
     assert (outcome.kind, outcome.restitution, outcome.largest_fragment) == ("sticking", 0.0, 40)
     assert outcome.growth_efficiency == 1.0 and outcome.fragments == 1
+    outcome = _outcome(START, _state(STILL, (0, 10), (20, 12)))
+    assert (outcome.kind, outcome.restitution, outcome.largest_fragment) == ("fragmentation", None, 12)
+    assert outcome.mass_fractions == (0.3, 0.25)
 
 
 @pytest.mark.parametrize("moved", [0, 2, -2])
@@ -104,12 +107,6 @@ def test_two_large_pieces_that_are_not_the_two_aggregates_are_fragments(pieces):
     assert outcome.kind == "fragmentation" and outcome.restitution is None
 
 
-def test_fragmentation():
-    outcome = _outcome(START, _state(STILL, (0, 10), (20, 12)))
-    assert outcome.kind == "fragmentation" and outcome.mass_fractions == (0.3, 0.25)
-    assert outcome.restitution is None and outcome.largest_fragment == 12
-
-
 def test_a_grain_that_was_alone_does_not_spoil_sticking():
     """Grains 16 to 19, a fifth of aggregate 0, lie about singly from the start."""
     start, end = _state(MEETING, (0, 16), (20, 20)), _state(STILL, (0, 16), (20, 20), [15, 20])
@@ -125,9 +122,9 @@ def test_one_aggregate_alone_is_refused():
 
 def chains(sizes):
     """Contact pairs of fragments that are chains of these sizes."""
-    return np.concatenate(
-        [np.reshape(chain(start, n), (-1, 2)) for start, n in zip(np.cumsum([0, *sizes]), sizes)]
-    ).astype(int)
+    return np.array([pair for start, n in zip(np.cumsum([0, *sizes]), sizes) for pair in chain(start, n)]).reshape(
+        -1, 2
+    )
 
 
 @pytest.mark.parametrize("seed", range(3))

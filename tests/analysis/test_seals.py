@@ -114,9 +114,8 @@ def test_runs_without_sums_are_read_with_one_line(run, pair_folder, capsys):
 @pytest.mark.parametrize("how", [how for how in DAMAGE if how != "missing"] + ["a changed digit"])
 @pytest.mark.parametrize("name", ["runs.csv", "comparison.json"])
 def test_damaged_tables_of_studies(tmp_path, capsys, name, how):
-    file, other = (
-        shutil.copy(GALLERY / study / name, tmp_path / f"{study}-{name}") for study in ("viscous", "sintered")
-    )
+    own = {study: tmp_path / f"{study}-{name}" for study in ("viscous", "sintered")}
+    file, other = (shutil.copy(GALLERY / study / name, copy) for study, copy in own.items())
     assert main(["verify", str(file)]) == 0 and read_summed(file)
     if how == "of another run":  # a row of it
         rows = other.read_text().splitlines()
