@@ -1,8 +1,7 @@
 """CPE aggregates beside spheres cut out of compressed cells, of made collisions."""
 
-import json
-
 import pytest
+from study_answers import answered, quantities
 from written_runs import RADIUS, two_pairs
 
 from analysis.__main__ import main
@@ -22,7 +21,7 @@ def test_both_kinds_from_the_first_touch_on(tmp_path, capsys):
         for compressed in (0, 1):
             collision(tmp_path / f"{compressed}-{seed}", seed, compressed=bool(compressed))
     assert main(["study", "compressed", str(tmp_path), "--json", "--figures", str(tmp_path / "out")]) == 0
-    found = {name: own["rows"] for name, own in json.loads(capsys.readouterr().out)["quantities"].items()}
+    found = quantities(capsys.readouterr().out)
     deepest = pytest.approx(3.0 * 99e-9**2 / 200e-9 / RADIUS, rel=1e-3)
     assert [(row["kind"], row["value"]) for row in found["compression"]] == [("CPE", deepest), ("compressed", deepest)]
     assert all(row["value"] == pytest.approx(99e-9, rel=0.02) and row["pairs"] == 3 for row in found["t_max"])
@@ -35,9 +34,7 @@ def test_other_packings_are_left_out_and_other_grains_and_steps_kept_apart(tmp_p
     collision(tmp_path / "gamma", 1, surfaceEnergy=0.05)
     collision(tmp_path / "step", 1, timeStep=1e-11)
     two_pairs(tmp_path / "other", 3.0, 1, packing="file")
-    assert main(["study", "compressed", str(tmp_path), "--json"]) == 0
-    out, err = capsys.readouterr()
-    rows = json.loads(out)["quantities"]["compression"]["rows"]
+    found, _, err = answered(capsys, "compressed", tmp_path)
     assert "neither CPE aggregates nor spheres cut out" in err and "the same" not in err
-    assert sorted(row["of"] for row in rows) == ["ice", "ice", "ice (gamma = 0.05 J/m^2)"]
-    assert {row["pairs"] for row in rows} == {1}
+    assert sorted(row["of"] for row in found["compression"]) == ["ice", "ice", "ice (gamma = 0.05 J/m^2)"]
+    assert {row["pairs"] for row in found["compression"]} == {1}

@@ -1,35 +1,19 @@
 """The study of Kataoka et al. (2013), of made compressions whose answers are known."""
 
-import json
-
 import numpy as np
 import pytest
 from made_compressions import SILICATE_GRAINS, made_compression
+from study_answers import answered, quantities, rows
 from written_runs import seal
 
 from analysis.__main__ import main
 from analysis.studies.compression.strength import exponent, level
-from analysis.studies.runs import alike
 
 SCALE = 4.7374e5
 
 
 def power(factor=1.0):
     return lambda filling: factor * SCALE * filling**3
-
-
-def of_json(text):
-    return {name: own["rows"] for name, own in json.loads(text)["quantities"].items()}
-
-
-def analysed(capsys, path):
-    assert main(["study", "compression", str(path), "--json"]) == 0
-    out, err = capsys.readouterr()
-    return of_json(out), err
-
-
-def rows(found, **where):
-    return [row for row in found if all(alike([row[name]], value)[0] for name, value in where.items())]
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +28,7 @@ def found(tmp_path_factory):
     made_compression(tmp_path / "silicate-s1", 1, silicate, states=False, **SILICATE_GRAINS)
     made_compression(tmp_path / "stretched-s1", 1, power(0.8), states=False, finalFilling=0.501, stretched=True)
     assert main(["study", "compression", str(tmp_path), "--figures", str(tmp_path / "out")]) == 0
-    return of_json((tmp_path / "out" / "comparison.json").read_text())
+    return quantities((tmp_path / "out" / "comparison.json").read_text())
 
 
 def test_what_was_made_comes_back(found):
@@ -79,7 +63,7 @@ def test_a_mean_is_over_all_clusters_that_went_so_far(tmp_path, capsys):
     for seed in (1, 2, 3):
         ends = {"low": 0.01} if seed == 3 else {"high": 0.64} if seed == 1 else {}
         made_compression(tmp_path / f"a{seed}", seed, power(0.7 + 0.1 * seed), states=False, **ends)
-    found, _ = analysed(capsys, tmp_path)
+    found, _, _ = answered(capsys, "compression", tmp_path)
     pairs = {round(row["filling"], 4): row["pairs"] for row in found["strength"]}
     assert (pairs[0.0133], pairs[0.49], pairs[0.55], pairs[0.625]) == (3, 3, 1, 1) and min(pairs) == 0.0133
 
@@ -98,7 +82,7 @@ def test_other_grains_are_sets_of_their_own(tmp_path, capsys, name, value, shown
     for seed in (1, 2):
         made_compression(tmp_path / f"a{seed}", seed, power(), states=False)
         made_compression(tmp_path / f"b{seed}", seed, power(), states=False, **{name: value})
-    found, err = analysed(capsys, tmp_path)
+    found, _, err = answered(capsys, "compression", tmp_path)
     assert "the same" not in err and [row["pairs"] for row in found["level"]] == [2, 2]
     own, other = sorted(found["level"], key=lambda row: (row["material"] != "ice", row["criticalRolling"] != 8e-10))
     assert other["material"] == shown and other["value"] * e_roll == pytest.approx(own["value"], rel=1e-6)
@@ -112,7 +96,7 @@ def test_twins_and_runs_without_a_bin_are_left_out(tmp_path, capsys):
         np.savez(tmp_path / "short" / "history.npz", **{name: array[:30] for name, array in file.items()})
     seal(tmp_path / "short")
     made_compression(tmp_path / "drag", 8, power(), states=False, viscoelasticTime=1e-12)
-    found, err = analysed(capsys, tmp_path)
+    found, _, err = answered(capsys, "compression", tmp_path)
     assert len(err.splitlines()) == 3 and "covers no bin of the filling factor" in err
     assert "the same grains" in err and "viscoelasticTime = 1e-12" in err
 

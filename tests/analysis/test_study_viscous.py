@@ -1,10 +1,9 @@
 """Tests of the study of viscous drag (Arakawa et al. 2022): what is measured of made runs whose answers are known, which runs count, and
 means over offsets, thresholds and fits against closed forms."""
 
-import json
-
 import numpy as np
 import pytest
+from study_answers import answered, quantities, rows
 from written_runs import MASS, PAIR, RADIUS, chain, losing, record, state_arrays, write_run
 
 from analysis import theory
@@ -50,13 +49,6 @@ def made_run(path, velocity, square, viscous_time, seed, derived={}, **parameter
     return write_run(path, about, history, states)
 
 
-def answer_of(capsys, folder):
-    """(number of runs that count, what is said of the others) of a folder of runs."""
-    assert main(["study", "viscous", str(folder), "--json"]) == 0
-    said = capsys.readouterr()
-    return json.loads(said.out)["provenance"]["runs"], said.err
-
-
 @pytest.fixture(scope="module")
 def answer(tmp_path_factory):
     """{quantity: [row]} of three pairs at A22's offsets, without drag and with the most."""
@@ -69,13 +61,7 @@ def answer(tmp_path_factory):
                     made_run(path, velocity, square, viscous_time, seed)
     assert main(["study", "viscous", str(folder), "--figures", str(out)]) == 0
     assert {"fig03_mean_growth", "drag", "size"} <= {file.stem for file in out.glob("*.png")}
-    content = json.loads((out / "comparison.json").read_text())
-    return {name: quantity["rows"] for name, quantity in content["quantities"].items()}
-
-
-def rows(found, **where):
-    same = lambda one, value: one == (value if isinstance(value, str) else pytest.approx(value, rel=1e-6, abs=0))
-    return [row for row in found if all(same(row[name], value) for name, value in where.items())]
+    return quantities((out / "comparison.json").read_text())
 
 
 def test_thresholds_energies_and_events_of_made_runs(answer):
@@ -120,7 +106,7 @@ def test_runs_of_other_scenes_grains_or_law_are_left_out(tmp_path, capsys):
         made_run(tmp_path / name, VELOCITIES[0], 0.0, 0.0, 2, **{name: value})
     for name, value in OTHER_GRAINS.items():
         made_run(tmp_path / name, VELOCITIES[0], 0.0, 0.0, 1, {name: value})
-    runs, said = answer_of(capsys, tmp_path)
+    _, runs, said = answered(capsys, "viscous", tmp_path)
     assert runs == 4 and "neck = 0.5, the study of Arakawa et al. (2022) has 0.0" in said
     for name, value in {**OTHER_SCENES, **OTHER_GRAINS}.items():
         assert f"{name} = {value if isinstance(value, str) else f'{value:g}'}" in said
@@ -131,7 +117,7 @@ def test_a_run_too_short_for_final_fragments_is_left_out(tmp_path, capsys):
     made_run(tmp_path / "short", 0.1, 0.0, 0.0, 1, duration=2e-6)
     made_run(tmp_path / "apart", 0.1, 0.0, 0.0, 2, duration=6.34e-6)
     made_run(tmp_path / "long", VELOCITIES[1], 0.0, 0.0, 3, duration=2e-6)
-    runs, said = answer_of(capsys, tmp_path)
+    _, runs, said = answered(capsys, "viscous", tmp_path)
     assert runs == 2 and "short: lasts 2e-06 s, too short" in said
 
 
@@ -143,7 +129,7 @@ def test_rounded_numbers_are_those_of_the_grid(tmp_path, capsys):
     assert STUDY.measure(open_run(tmp_path / "b"))["velocity"] == pytest.approx(VELOCITIES[1], rel=1e-15)
     row = STUDY.measure(open_run(tmp_path / "c"))
     assert (row["velocity"], row["impact"]) == (45.0, pytest.approx(0.3, rel=1e-15))
-    runs, said = answer_of(capsys, tmp_path)
+    _, runs, said = answered(capsys, "viscous", tmp_path)
     assert runs == 2 and "b: the same grains, impact, velocity" in said
 
 
