@@ -207,6 +207,7 @@ STATE_DAMAGE = {
     "half": (_halve, "damaged"),
     "a pipe": (_as_pipe, "is no regular file; must be one"),
     "no radius": (state(radius=np.array([1e-7, 0.0])), "'radius' is 0 at index 1; must be > 0"),
+    "negative radius": (state(radius=np.array([-1e-7, 1e-7])), "'radius' is -1e-07 at index 0; must be > 0"),
     "a time that is no number": (state(time=np.nan), "'time' holds a value that is not finite"),
     "a cell without an edge": (state(cell_size=np.array([1e-6, 0.0, 1e-6])), "'cell_size' is 0 at index 1; must be > 0"),
     "pair out of range": (state(contact_pairs=np.array([[0, 2]])), "names grain 2, there are grains 0 to 1"),
