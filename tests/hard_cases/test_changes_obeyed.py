@@ -269,18 +269,3 @@ def test_energies_after_the_functors_and_a_checkpoint(tracked):
     straight = end(False)
     assert straight["slidingDissipation"] > 0 and straight["connection"] > 0
     assert end(True) == close_to(straight, "connection")
-
-
-def test_an_engine_that_is_dead_for_a_while_continues_on_any_threads():
-    def end(dead, threads):
-        new_scene(0.1 * unit)
-        converging(64, 1, [ice()], [1e-7])
-        fused_engine()
-        for k in range(100 + dead):
-            engine().dead = 40 <= k < 40 + dead
-            engine().threads = threads(k)
-            O.step()
-        return positions()
-
-    straight = end(0, lambda k: 1)
-    assert (straight == end(20, lambda k: 1)).all() and (straight == end(0, lambda k: 1 + k // 10 % 2)).all()
