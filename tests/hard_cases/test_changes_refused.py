@@ -106,6 +106,10 @@ OUT_OF_RANGE = {
     **{f"{name}={value}": [f"{name} = {value}: must be >= 1"] for name in ("subSteps", "threads") for value in (0, -3)},
     "subSteps=2**31 - 1": ["subSteps = 2147483647: must be <= 1000000"],
     "domains=-3": ["domains = -3: must be >= 1, or 0 (by the number of bodies)"],
+    "neck=0.8": ["neck = 0.8"],
+    "neck=-1": ["neck = -1: must be 0 (no bonds), or up to 0.7 for sintered bonds"],
+    "limit='Cut'": ["limit = 'Cut': must be 'held' or 'cut'"],
+    "instructions='sse9'": ["instructions = 'sse9': must be here"],
 }  # fmt: skip
 
 
@@ -117,6 +121,7 @@ SCENES = {
     "O.bodies[1].mask = 2": ["body 1: mask = 2, must be 1"],
     "O.bodies[1].bounded = False": ["body 1 must be bounded"],
     "O.bodies[1].state.ori = Quaternion(float('nan'), 0, 0, 1)": ["body 1 has a position, orientation or velocity that is not"],
+    "O.bodies[1].state.vel = Vector3(float('nan'), 0, 0)": ["body 1 has a position, orientation or velocity that is not a finite"],
     "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["body 1: its three moments of inertia must be the same"],
 }  # fmt: skip
 
