@@ -148,8 +148,7 @@ def test_ids_of_bodies_that_were_erased_are_left_out():
         steps(20)
         grain((0, 1e-6, 0), 1e-7, material)
         O.step()
-        O.save("gaps.yade")
-        O.load("gaps.yade")
+        saved_and_loaded("gaps.yade")
         steps(20)
         return [b.id for b in O.bodies], contact_law.snapshot()
 
@@ -189,8 +188,7 @@ def test_a_body_wrapped_into_the_cell_keeps_its_contacts():
 
     def end(wrapped):
         chain()
-        O.periodic = True
-        O.cell.setBox(1.5e-6, 1.5e-6, 1.5e-6)
+        periodic_cell(1.5e-6, 1.5e-6, 1.5e-6)
         steps(100)
         if wrapped:
             O.bodies[2].state.pos += Vector3(*shift)

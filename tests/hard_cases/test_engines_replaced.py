@@ -80,9 +80,7 @@ def test_grains_that_are_added_meet_the_others(periodic):
     def end(late):
         chain(exportInteractions=periodic)
         if periodic:
-            O.periodic = True
-            O.cell.setBox(3e-6, 3e-6, 3e-6)
-            O.cell.velGrad = Matrix3(0, 0, 0, 0, 0, 0, 0, 0, -1e5)
+            periodic_cell(3e-6, 3e-6, 3e-6, velocity_gradient=(0, 0, -1e5))
         bullet = lambda y: grain((2e-7, y, 0), 1e-7, O.bodies[0].material, (0, -2, 0))  # noqa: E731
         if not late:
             bullet(2.05e-7 + 2 * 40 * O.dt)

@@ -50,9 +50,7 @@ def on_walls():
 
 def shrinking():
     colliding()
-    O.periodic = True
-    O.cell.setBox(3e-6, 3e-6, 3e-6)
-    O.cell.velGrad = Matrix3(-1e5, 0, 0, 0, 0, 0, 0, 0, 0)
+    periodic_cell(3e-6, 3e-6, 3e-6, velocity_gradient=(-1e5, 0, 0))
 
 
 SCENES = {
