@@ -84,8 +84,22 @@ def energies(*works):
     return {name: have.get(name, 0.0) for name in (*CHANNELS, *works)}
 
 
-def total_energy():
-    return sum(energies().values())
+def total_energy(*works):
+    return sum(energies(*works).values())
+
+
+def largest_change(steps, *works, step=lambda: O.step()):
+    """How far the sum of all channels and these works gets, in so many calls of step(), from what it is now [J]."""
+    first = total_energy(*works)
+    largest = 0
+    for _ in range(steps):
+        step()
+        largest = max(largest, abs(total_energy(*works) - first))
+    return largest
+
+
+def rms(numbers):
+    return np.sqrt(np.mean(np.square([*numbers]), axis=0))
 
 
 def momenta():
@@ -115,6 +129,21 @@ def converging(count, seed, materials, radii, speed=5.0, spin=2e7):
         x = 2.02 * max(radii) * (site + 0.004 * random.normal(size=3))
         velocity = -speed * site + 0.2 * speed * random.normal(size=3)
         grain(x, radius, materials[k % len(materials)], velocity, spin * random.normal(size=3))
+
+
+def meeting(kind, count=27, step=0.1, **options):
+    """An empty scene with a small step [t0], and in it converging() grains of one of KINDS."""
+    new_scene(step * unit, **options)
+    converging(count, 1, *KINDS[kind])
+
+
+def periodic_cell(*edges, homo=2, velocity_gradient=(0, 0, 0)):
+    """Edges [m]; homo: O.cell.homoDeform; velocity_gradient: its diagonal [1/s]."""
+    O.periodic = True
+    O.cell.setBox(*map(float, edges))
+    O.cell.homoDeform = homo
+    if any(velocity_gradient):
+        O.cell.velGrad = Matrix3(*np.diag(velocity_gradient).ravel().tolist())
 
 
 def fused_engine(**options):
@@ -165,6 +194,22 @@ def refusal(steps=1):
 
 def positions():
     return np.array([b.state.pos for b in O.bodies])
+
+
+def motion():
+    """Positions, velocities and spins of all grains, as lists."""
+    return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel)] for b in O.bodies]
+
+
+def counts():
+    """The engine's, without what the lists of neighbours do."""
+    found = O.engines[0].statistics()
+    return {name: n for name, n in found.items() if name not in ("searches", "distanceChecks")}
+
+
+def saved_and_loaded(name="saved.yade.gz"):
+    O.save(name)
+    O.load(name)
 
 
 def differences_of_instruction_sets(run):

@@ -3,8 +3,8 @@
     /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report] [--again]
 
 --scene: names, or groups of them: bench (sizes, unlike grains, moments of collisions, and the error against the step:
-a collision), papers (moments of the papers' runs), compressions (error against the step of a compression), peers (all
-codes, on a collision and an aggregate that rings: throughput.py makes their page).
+a collision), papers (moments of the papers' runs), peers (all codes, on a collision and an aggregate that rings:
+throughput.py makes their page).
 Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
 100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
 measured with the same plugin (its commit), machine and settings, are not done again (--again measures anew). Results:
@@ -39,7 +39,7 @@ def arguments(words=None):
     size = parser.add_mutually_exclusive_group()
     for name, what in (("quick", "a shortened version"), ("tiny", "as little as shows that it works")):
         size.add_argument(f"--{name}", action="store_const", dest="size", const=name, help=what)
-    parser.add_argument("--scene", default="bench", help="scenes, or groups: bench, papers, compressions, peers")
+    parser.add_argument("--scene", default="bench", help="scenes, or groups: bench, papers, peers")
     parser.add_argument("--only", default=",".join(PARTS), help="parts to do: " + ",".join(PARTS))
     parser.add_argument("--again", action="store_true", help="measure again what has been measured")
     parser.add_argument("--out", type=Path, help="folder for the results")
@@ -58,14 +58,9 @@ def arguments(words=None):
 
 def groups(how):
     """{name of a group: names of scenes, and of the errors' scenes}"""
-    collision, *compressions, ringing, meeting = errors.scenes(how)
+    collision, ringing, meeting = errors.scenes(how)
     own = [*measured_scenes.bench(how), collision]
-    return {
-        "bench": own,
-        "papers": [*measured_scenes.PAPERS],
-        "compressions": compressions,
-        "peers": ["peers", ringing, meeting],
-    }
+    return {"bench": own, "papers": [*measured_scenes.PAPERS], "peers": ["peers", ringing, meeting]}
 
 
 def measure_speed(scenes, how, results, again):

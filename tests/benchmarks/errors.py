@@ -1,9 +1,7 @@
-"""Error and cost against the time step, of collisions, compressions, and scenes that all codes run: error.csv, a row a run.
+"""Error and cost against the time step, of collisions, and of scenes that all codes run: error.csv, a row a run.
 
-ledger: largest error of the sum of all channels, over K(0) (collision) or over the boundaries' work until then (compression;
-ledgerThin: up to a filling of 0.1). d_max: of a collision, in grain radii. workThin, work: of a compression's boundaries [J]
-from a filling of 0.05 to 0.1, and from there to the end: the pressure. These three are compared with those of the finest
-step and the same seed (sample). kinetic: of an aggregate that rings and of pairs that meet, by any code: root mean square
+ledger: largest error of the sum of all channels, over K(0). d_max: in grain radii, compared with that of the finest step and
+the same seed (sample). kinetic: of an aggregate that rings and of pairs that meet, by any code: root mean square
 difference of K(t) from that of the code's own finest step, over K(0); ledger as far as the code has one. seconds: of the run,
 one thread; of ringing and meeting the processor's, by the share of the finest run. A step that is refused or blows up is
 recorded as that, in its own words.
@@ -35,14 +33,13 @@ PAIR_SPEED, GRAIN_RADIUS = 9.0, 1e-7  # m/s, m
 FOLLOWED, INTERVAL = ("ringing", "meeting"), 0.5e-9  # by all codes; s, from a moment to the next
 RINGING_RATE = 2e5  # 1/s: 0.4 m/s at the surface; no contact is made, broken or slips
 FIRST_GAP, PAIRS = 2e-9, 100
-COMPRESSION_STEPS = (0.05, 0.1, 0.2, 0.3, 0.36)
-FILLINGS, THIN = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5), 0.1
+FILLINGS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
 
 
 @dataclass(frozen=True)
 class ErrorScene:
-    """title; parameters as collide.py or compress.py has them (None: pairs of grains); steps [t0], or small steps between
+    """title; parameters as collide.py has them (None: pairs of grains); steps [t0], or small steps between
     moments; number of samples: seeds from 1 on, or moments."""
 
     title: str
@@ -54,13 +51,9 @@ class ErrorScene:
 def scenes(settings):
     """{name: ErrorScene}"""
     collision = {"radius": settings.error_radius, "duration": settings.error_duration}
-    cell = {"grains": settings.cell[0], "strainRate": settings.cell[1], "finalFilling": 0.5}
-    of_cell = COMPRESSION_STEPS, 2 * settings.seeds
     radius, moments, small_steps = settings.rung
     return {
         "collision": ErrorScene("collision", collision, settings.error_steps, settings.seeds),
-        "compression": ErrorScene("compression, k_n 0.01", {**cell, "linearDamping": 0.01}, *of_cell),
-        "compression-undamped": ErrorScene("compression, k_n 0", {**cell, "linearDamping": 0.0}, *of_cell),
         "ringing": ErrorScene("an aggregate that rings", {**CPE, "radius": radius}, small_steps, moments),
         "meeting": ErrorScene(f"{PAIRS} pairs that meet and part", None, settings.met, moments),
     }
@@ -79,9 +72,6 @@ def runs(scene):
     asked = [{**scene.parameters, "stepFraction": step, "seed": seed} for step in scene.steps for seed in seeds]
     for one, found in zip(asked, of_scripts(asked), strict=True):
         found["refused"] = found.pop("failed", None)
-        work = [work for _, work in found.pop("byFilling", {}).values()]
-        if work:
-            found |= {"workThin": work[1] - work[0], "work": work[-1] - work[1]}
         yield {"step": one["stepFraction"], "sample": one["seed"], **found}
 
 
@@ -118,8 +108,7 @@ def _of_run(place):
         if history["filling"][0] < filling <= history["filling"].max():
             end = np.argmax(history["filling"] >= filling)
             by_filling[filling] = [error[end] / work[end], work[end]]
-    thin = by_filling.get(THIN, [None])[0]
-    return {"ledger": error[-1] / work[-1], "ledgerThin": thin, "byFilling": by_filling, "seconds": seconds}
+    return {"ledger": error[-1] / work[-1], "byFilling": by_filling, "seconds": seconds}
 
 
 def followed(name, scene, settings):
@@ -155,9 +144,7 @@ def _follow(code, scene, samples, each, settings):
 def curve(rows, quantity):
     """(steps (n,), root mean square error (n,)) of a scene's rows; see the module's head."""
     values = rows.pivot(index="step", columns="sample", values=quantity).dropna()
-    if quantity.startswith("work"):
-        values = np.log(values)
-    if quantity == "d_max" or quantity.startswith("work"):
+    if quantity == "d_max":
         values = (values - values.iloc[0]).iloc[1:]
     return values.index.to_numpy(float), np.sqrt(np.mean(values.to_numpy(float) ** 2, axis=1))
 

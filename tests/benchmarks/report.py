@@ -159,13 +159,7 @@ def solution(results, scenes):
 
 # ---- errors ----
 
-QUANTITIES = {
-    "ledger": "ledger",
-    "d_max": "d_max [r]",
-    "ledgerThin": "ledger, filling < 0.1",
-    "workThin": "ln of the work, filling 0.05 - 0.1",
-    "work": "ln of the work, to the end",
-}
+QUANTITIES = {"ledger": "ledger", "d_max": "d_max [r]"}
 
 
 def curves(results):
@@ -191,7 +185,7 @@ def of_errors(results, settings):
     fitted = " to ".join(f"{step:g}" for step in errors.FITTED)
     notes = [f"Order of convergence, fitted from {fitted} t0: {'; '.join(fits)}."] * bool(fits)
     notes.append(
-        "Root mean squares over the runs of a step (errors.py); d_max and work against the finest step; two aggregates of "
+        "Root mean squares over the runs of a step (errors.py); d_max against the finest step; two aggregates of "
         f"R = {settings.error_radius:g} at 3.16 m/s; the scripts' limit is 0.4 t0, the engine's own half a time unit.\n"
     )
     refused = results.error[results.error.refused.notna()].groupby(["scene", "step"]).refused.first()

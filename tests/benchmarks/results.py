@@ -21,7 +21,7 @@ settings"""
 COLUMNS = {
     "speed": "scene moment code threads round contacts steps seconds rate fraction skin newton version note".split(),
     "moments": MOMENTS.split(),
-    "error": "scene code step sample ledger d_max ledgerThin workThin work kinetic seconds refused cpu commit".split(),
+    "error": "scene code step sample ledger d_max kinetic seconds refused cpu commit".split(),
 }
 
 

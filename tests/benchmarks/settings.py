@@ -20,10 +20,9 @@ class Settings:
     error_radius: float = 20
     error_duration: float = 130e-9  # maximum compression is at about 100 ns
     error_steps: tuple = (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
-    seeds: int = 3  # of the error's collisions; twice as many of its compressions
+    seeds: int = 3  # of the error's collisions
     rung: tuple = (20, 40, (104, 36, 26, 13, 7))  # radius, moments, small steps from one to the next
     met: tuple = (416, 104, 52, 26, 13, 7)  # the same of pairs
-    cell: tuple = (256, 1e-5)  # grains and C_v of the error's compressions
 
     def text(self):
         """What a measurement of speed depends on, for a table's cell."""
@@ -35,5 +34,5 @@ FULL = Settings()
 QUICK = replace(FULL, radii=(20, 40), through=FULL.through[1:], error_steps=(0.05, 0.1, 0.2, 0.4, 0.5), seeds=1)
 QUICK = replace(QUICK, rounds=2, seconds=0.5, stretch=0.03, peer_rounds=1, peer_steps=30, skins=(0.6,), sampled=1.0)
 TINY = replace(QUICK, radii=(4, 5), reference=5, through=(), seconds=0.03, peer_steps=20, sampled=0.2)
-TINY = replace(TINY, error_radius=4, error_duration=2e-9, error_steps=(0.1, 0.2, 0.4, 0.5), cell=(64, 1e-4))
+TINY = replace(TINY, error_radius=4, error_duration=2e-9, error_steps=(0.1, 0.2, 0.4, 0.5))
 TINY = replace(TINY, rung=(4, 4, (26, 13, 7)), met=(26, 13, 7))

@@ -14,14 +14,13 @@ import errors
 import measured_scenes
 import moments
 import numpy as np
-import pandas as pd
 import pytest
 import report
 import speed
 import step_choice_report
 import throughput
 from measured_on import RESULTS, TOP
-from results import COLUMNS, Results, Spread, weights
+from results import Results, Spread, weights
 from settings import FULL, TINY
 from step_choice import COLLISIONS, COMPRESSIONS
 from test_harness import SMALL, harness_is_built  # noqa: F401  (a fixture)
@@ -91,12 +90,15 @@ def test_moments_are_measured(tmp_path):
 
 
 def test_compressions_are_measured_against_the_step():
-    rows = pd.DataFrame(errors.measure("compression", TINY), columns=COLUMNS["error"])
-    for quantity in ("ledger", "ledgerThin"):
-        steps, error = errors.curve(rows, quantity)
-        slope, wrong = errors.order(steps, error, (0.05, 0.36))
-        assert list(steps) == list(errors.COMPRESSION_STEPS) and slope == pytest.approx(2, abs=0.3 + 2 * wrong)
-    assert errors.curve(rows, "workThin")[1].max() < 0.05
+    steps, cell = (0.05, 0.1, 0.2, 0.3, 0.36), {"grains": 64, "strainRate": 1e-4, "linearDamping": 0.01}
+    asked = [{**cell, "finalFilling": 0.5, "stepFraction": step, "seed": seed} for step in steps for seed in (1, 2)]
+    found = errors.of_scripts(asked)
+    for ledger in (lambda run: run["ledger"], lambda run: run["byFilling"][0.1][0]):
+        error = np.sqrt(np.mean(np.reshape([ledger(run) ** 2 for run in found], (5, 2)), axis=1))
+        slope, wrong = errors.order(np.array(steps), error, (0.05, 0.36))
+        assert slope == pytest.approx(2, abs=0.3 + 2 * wrong)
+    work = np.reshape([run["byFilling"][0.1][1] - run["byFilling"][0.05][1] for run in found], (5, 2))
+    assert abs(np.log(work / work[0])).max() < 0.05
 
 
 def test_what_is_done_is_not_measured_again(tiny, monkeypatch):
@@ -205,7 +207,7 @@ def test_parts_of_the_time():
 
 
 REFUSED = {
-    "--scene a22,a23": r"--scene a23: must be of bench, papers, compressions, .*a22-drag",
+    "--scene a22,a23": r"--scene a23: must be of bench, papers, peers, .*a22-drag",
     "--only bake": "--only bake: must be of make, measure, report",
     "--only report --out nowhere": "holds no measurement: must be measured first",
 }

@@ -1,4 +1,4 @@
-"""Sintered bonds in JKRWadaEngine: against the functors step by step, threads, instruction sets, checkpoints, O.interactions, refusals."""
+"""Sintered bonds in JKRWadaEngine: against the functors step by step, threads, instruction sets, checkpoints, O.interactions."""
 
 import pytest
 from scenes import *
@@ -17,13 +17,6 @@ def start(kind="like", count=27, speed=20.0):
 
 def fused(**options):
     fused_engine(neck=NECK, **options)
-
-
-def end_of_run():
-    """Positions, statistics without what the lists of neighbours do, and energies."""
-    counts = O.engines[0].statistics()
-    counts = {name: n for name, n in counts.items() if name not in ("searches", "distanceChecks")}
-    return positions().tolist(), counts, energies()
 
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
@@ -53,15 +46,14 @@ def test_same_bits_on_one_and_two_threads_and_after_a_checkpoint(kind):
         if save:
             O.save("half.xml.gz")
         O.run(40, True)
-        return end_of_run()
+        return positions().tolist(), counts(), energies()
 
-    straight = *_, energy = end(1)
+    straight = x, counted, energy = end(1)
     assert straight == end(2) == end(1, True)
     O.load("half.xml.gz")
     O.run(40, True)
-    *others, its_energy = end_of_run()
-    assert others == [*straight[:2]] and its_energy == pytest.approx(energy, rel=1e-12)
-    assert sum(broken()) > 50 and straight[1]["bonds"] > 20
+    assert (positions().tolist(), counts()) == (x, counted) and energies() == pytest.approx(energy, rel=1e-12)
+    assert sum(broken()) > 50 and counted["bonds"] > 20
 
 
 def test_instruction_sets_agree_to_rounding():
@@ -99,22 +91,6 @@ def test_bonds_go_to_the_functors_and_back():
     assert counted.tolist() == of_functors
 
 
-@pytest.mark.parametrize(
-    "change,message",
-    [
-        ("O.engines[0].neck = 0.8", "neck = 0.8"),
-        ("O.engines[0].neck = -1", "neck = -1: must be 0 (no bonds), or up to 0.7 for sintered bonds"),
-        ("O.dt = 0.45 * unit", "every packing of these grains is unstable"),
-    ],
-)
-def test_what_cannot_be_done_is_refused_in_one_line(change, message):
-    start(count=8)
-    fused()
-    exec(change)
-    refused = refusal()
-    assert message in refused and "\n" not in refused
-
-
 def test_a_bonded_pair_is_unstable_right_above_the_limit():
     """The limit is 2 over the fastest vibration of two bonded grains. At beta = 0.5 that is sliding against turning, w^2 = k_st (2/m + 2 r^2/I) = 7 k_st/m
     (7 G > 2 E): the spins stay just below the limit and grow without bound just above it."""
@@ -135,7 +111,7 @@ def test_a_bonded_pair_is_unstable_right_above_the_limit():
 
     assert max(grow(0.985, engine) for engine in ("functors", "fused")) < 20
     assert grow(1.015, "functors") > 1e6
-    with pytest.raises(RuntimeError, match="is unstable"):
+    with pytest.raises(RuntimeError, match="every packing of these grains is unstable"):
         grow(1.015, "fused")
 
 

@@ -6,18 +6,13 @@ from scenes import *
 pytestmark = pytest.mark.in_yade
 
 
-def start(kind, count=27, **options):
-    new_scene(0.1 * unit, **options)
-    converging(count, 1, *KINDS[kind])
-
-
 @pytest.mark.parametrize("limit", ["held", "cut"])
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_engine_and_functors_agree_step_by_step(kind, limit):
     """27 grains fly together: contacts form, slip and break. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
-    start(kind, limit=limit)
+    meeting(kind, limit=limit)
     functors = record(401)
-    start(kind)
+    meeting(kind)
     fused_engine(limit=limit)
     engine = record(400)
     last = engine[1][-1]
@@ -31,7 +26,7 @@ def test_grains_far_apart_meet_their_neighbours():
     """Stragglers 10^5 radii away, many more cells apart than there are grains: those of the crowd find each other as they do without them."""
 
     def end(fused):
-        start("like")
+        meeting("like")
         for k in range(6):
             grain(1e-2 * np.eye(3)[k % 3] * (1 if k < 3 else -0.7), 1e-7, ice(), velocity=(0, 0, 20))
         if fused:
@@ -48,7 +43,7 @@ def test_grains_far_apart_meet_their_neighbours():
 @pytest.mark.parametrize("kind,limit", [("like", "held"), ("unlike", "held"), ("drag", "held"), ("unlike", "cut")])
 def test_same_bits_on_one_and_two_threads_and_on_every_run(kind, limit):
     def end(threads):
-        start(kind, count=400)
+        meeting(kind, count=400)
         engine_of_sub_steps(10, threads=threads, limit=limit)
         O.run(120, True)
         assert O.engines[0].statistics()["events"] > 1000
@@ -60,7 +55,7 @@ def test_same_bits_on_one_and_two_threads_and_on_every_run(kind, limit):
 @pytest.mark.parametrize("limit", ["held", "cut"])
 def test_instruction_sets_agree_to_rounding(limit):
     def run(instructions):
-        start("like")
+        meeting("like")
         fused_engine(instructions=instructions, limit=limit)
         O.run(200, True)
 
@@ -68,17 +63,12 @@ def test_instruction_sets_agree_to_rounding(limit):
         assert difference < 1e-11, name
 
 
-@pytest.mark.parametrize(
-    "kind,format,limit",
-    [
-        ("like", ".yade.bz2", "held"),
-        ("unlike", ".xml.gz", "held"),
-        ("drag", ".yade.gz", "held"),
-        ("drag", ".yade", "cut"),
-    ],
-)
+CHECKPOINTS = "like .yade.bz2 held, unlike .xml.gz held, drag .yade.gz held, drag .yade cut"
+
+
+@pytest.mark.parametrize("kind,format,limit", [case.split() for case in CHECKPOINTS.split(", ")])
 def test_checkpoint_continues_to_the_bit(kind, format, limit):
-    start(kind, count=100)
+    meeting(kind, count=100)
     engine_of_sub_steps(7, limit=limit)
     O.run(40, True)
     O.save("checkpoint" + format)
@@ -94,24 +84,9 @@ def test_sub_steps_are_steps():
     """Ten O.steps of one small step, and one O.step of ten."""
 
     def end(number):
-        start("like")
+        meeting("like")
         engine_of_sub_steps(number)
         O.run(300 // number, True)
         return positions()
 
     assert (end(1) == end(10)).all()
-
-
-REFUSED = {  # at the first step; tests/hard_cases has later changes
-    "O.bodies[2].state.vel = Vector3(float('nan'), 0, 0)": "body 2 has a position, orientation or velocity that is not a finite",
-    "O.engines[0].instructions = 'sse9'": "instructions = 'sse9': must be here",
-}
-
-
-@pytest.mark.parametrize("change", REFUSED)
-def test_what_cannot_be_done_is_refused_in_one_line(change):
-    start("like", count=8)
-    fused_engine()
-    exec(change)
-    message = refusal()
-    assert REFUSED[change] in message and "\n" not in message

@@ -6,11 +6,6 @@ from scenes import *
 pytestmark = pytest.mark.in_yade
 
 
-def start(kind, count=27):
-    new_scene(0.1 * unit)
-    converging(count, 1, *KINDS[kind])
-
-
 def contacts():
     """{ids: {name: numbers}}, each pair in the order of rising ids."""
     found = {}
@@ -48,13 +43,13 @@ def orientations():
 @pytest.mark.parametrize("kind, steps", [("like", 200), ("unlike", 700), ("drag", 200)])
 def test_interactions_are_those_of_the_functors(kind, steps):
     """After n O.steps the engine's contacts are of the positions then; the functors have them one step later."""
-    start(kind)
+    meeting(kind)
     O.run(steps, True)
     x = positions()  # of the forces of the next step, after which YADE's bodies are a step further than the forces
     O.run(1, True)
     functors = contacts()
     stress = sum(np.outer(c["normalForce"] + c["shearForce"], x[a] - x[b]) for (a, b), c in functors.items()) / 1e-18
-    start(kind)
+    meeting(kind)
     fused_engine(exportInteractions=True, orientations=True)
     O.run(steps, True)
     engine = contacts()
@@ -69,7 +64,7 @@ def test_interactions_are_those_of_the_functors(kind, steps):
 
 
 def test_interactions_follow_the_contacts_and_stay_the_same_objects():
-    start("like", count=64)
+    meeting("like", count=64)
     engine_of_sub_steps(5, exportInteractions=True)
     seen, ended, kept = {}, 0, 0
     for _ in range(80):
@@ -91,7 +86,7 @@ def test_interactions_follow_the_contacts_and_stay_the_same_objects():
 
 def test_exporting_changes_no_bit_and_checkpoints_go_on():
     def end(**options):
-        start("unlike", count=64)
+        meeting("unlike", count=64)
         engine_of_sub_steps(7, **options)
         O.run(60, True)
         O.save("checkpoint.yade.gz")
@@ -150,7 +145,7 @@ def test_orientations_converge_with_second_order():
 
 
 def test_orientations_stay_as_they_are_unless_they_are_asked_for():
-    start("like")
+    meeting("like")
     fused_engine()
     O.run(20, True)
     assert (orientations() == [0, 0, 0, 1]).all()

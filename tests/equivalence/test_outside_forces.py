@@ -1,23 +1,14 @@
 """Forces of scripts and other engines (O.forces) in JKRWadaEngine: as NewtonIntegrator takes them, and booked as externalWork."""
 
-import math
-
 import pytest
 from scenes import *
 
 pytestmark = pytest.mark.in_yade
+WORKS = ("constraintWork", "externalWork")
 
 
 def weight():
     return 1e-3 * constants(ice(), 1e-7)["pullOffForce"]
-
-
-def total():
-    return sum(energies("constraintWork", "externalWork").values())
-
-
-def state():
-    return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel)] for b in O.bodies]
 
 
 def pushes():
@@ -106,7 +97,7 @@ def test_free_grains_follow_the_closed_form():
         assert O.bodies[1].state.angVel[1] == pytest.approx(w, rel=1e-9)
         less = (0.1 * unit) ** 2 / 8 * (f @ f / m + m * 1e18 + twist**2 / inertia)
         assert O.energy["externalWork"] == pytest.approx(less - done, rel=1e-9)
-        ends.append(total())
+        ends.append(total_energy(*WORKS))
     assert np.ptp(ends) < 1e-9 * energies()["kinetic"]
 
 
@@ -124,22 +115,22 @@ def test_the_ledger_closes_with_second_order():
         fused_engine(subSteps=round(0.4 / step), threads=threads, domains=3)
         O.dt = 0.4 * unit
         O.engines[0].prepare()
-        first, worst = total(), 0
-        for k in range(150):
+
+        def pushed():
             for number, (force, torque) in held.items():
-                turn = 1 + math.sin(0.1 * k + number)
+                turn = 1 + np.sin(0.1 * O.iter + number)
                 O.forces.addF(number, Vector3(*(turn * force)))
                 O.forces.addT(number, Vector3(*(turn * torque)))
             O.step()
-            worst = max(worst, abs(total() - first))
-        return worst / unit_energy
+
+        return largest_change(150, *WORKS, step=pushed) / unit_energy
 
     coarse, _, fine = (closure(step) for step in (0.1, 0.05, 0.025))
-    work, one = abs(O.energy["externalWork"]) / unit_energy, state()
+    work, one = abs(O.energy["externalWork"]) / unit_energy, motion()
     assert work > 1 and O.energy["constraintWork"] != 0
     assert coarse / fine > 8 and fine < 1e-2 * work
     closure(0.025, threads=3)
-    assert one == state()
+    assert one == motion()
 
 
 @pytest.mark.parametrize("drag", [0, 1e-12])
@@ -152,14 +143,14 @@ def test_a_checkpoint_with_permanent_forces_resumes_to_the_same_bits(drag):
     O.run(20, True)
     O.save("saved.xml")
     O.run(20, True)
-    straight, sums = state(), dict(O.energy.items())
+    straight, sums = motion(), dict(O.energy.items())
     O.load("saved.xml")
     O.run(20, True)
-    assert state() == straight and dict(O.energy.items()) == sums and sums["externalWork"] != 0
+    assert motion() == straight and dict(O.energy.items()) == sums and sums["externalWork"] != 0
     O.load("saved.xml")
     O.forces.setPermF(1, Vector3(0, 0, 0))
     O.run(20, True)
-    assert state() != straight
+    assert motion() != straight
 
 
 @pytest.mark.parametrize("loaded", [False, True])
@@ -172,14 +163,12 @@ def test_permanent_forces_that_are_saved_before_the_first_step_hold(loaded):
         fused_engine(subSteps=10)
         if loaded:
             O.run(3, True)
-            O.save("stepped.xml")
-            O.load("stepped.xml")
+            saved_and_loaded("stepped.xml")
         push()
         if saved:
-            O.save("pushed.xml")
-            O.load("pushed.xml")
+            saved_and_loaded("pushed.xml")
         O.run(10, True)
-        return state()
+        return motion()
 
     assert end(True) == end(False) and O.energy["externalWork"] != 0
 

@@ -14,16 +14,13 @@ def start(kind, rate, homo, count=27, limit="held"):
     random = np.random.default_rng(1)
     side = int(round(count ** (1 / 3)))
     size = side * 1.02 * 2 * max(radii)
-    O.periodic = True
-    O.cell.setBox(size, 1.02 * size, 1.04 * size)
-    O.cell.homoDeform = homo
+    gradient = -rate / unit * np.array([1, 0.7, 0.4])
+    periodic_cell(size, 1.02 * size, 1.04 * size, homo=homo, velocity_gradient=gradient)
     for k in range(count):
         site = np.array([k % side, k // side % side, k // side**2]) + 0.5 + 0.001 * random.normal(size=3)
         x = size * site / side + size * random.integers(-1, 2, size=3) * (1, 1.02, 1.04)
         velocity, spin = 3 * random.normal(size=3), 2e7 * random.normal(size=3)
         grain(x, radii[k % len(radii)], materials[k % len(materials)], velocity, spin)
-    if rate:
-        O.cell.velGrad = Matrix3(-rate / unit, 0, 0, 0, -0.7 * rate / unit, 0, 0, 0, -0.4 * rate / unit)
 
 
 def cell_size():
@@ -41,18 +38,11 @@ def record_with_sizes(n):
     return (np.array(tracks), sums), np.array(sizes)
 
 
-@pytest.mark.parametrize(
-    "kind,rate,homo,limit",
-    [
-        ("like", 0, 2, "held"),
-        ("unlike", 0, 0, "held"),
-        ("like", 2e-3, 0, "held"),
-        ("drag", 2e-3, 1, "held"),
-        ("unlike", 2e-3, 1, "held"),
-        ("like", 2e-3, 2, "held"),
-        ("drag", 2e-3, 0, "cut"),
-    ],
-)
+AT_REST = [("like", 0, 2, "held"), ("unlike", 0, 0, "held")]
+SHRINKING = [("like", 0, "held"), ("drag", 1, "held"), ("unlike", 1, "held"), ("like", 2, "held"), ("drag", 0, "cut")]
+
+
+@pytest.mark.parametrize("kind,rate,homo,limit", AT_REST + [(kind, 2e-3, *how) for kind, *how in SHRINKING])
 def test_engine_and_functors_agree_step_by_step(kind, rate, homo, limit):
     """Grains of which some lie in other periods than their neighbours, in a cell at rest, in a shrinking one through which they fly (homoDeform 0), and in one whose mean field moves them.
 
@@ -148,8 +138,7 @@ def test_a_look_at_the_contacts_does_not_move_the_cell(homo):
         O.run(20, True)
         O.cell.velGrad = Matrix3(2e-3 / unit, 0, 0, 0, 0, 0, 0, 0, 0)
         if look == "loaded":
-            O.save("half.yade.gz")
-            O.load("half.yade.gz")
+            saved_and_loaded()
             O.engines[0].writeInteractions()
         O.run(20, True)
         return positions().tolist(), O.cell.hSize[0, 0], energies(WORK)
@@ -161,17 +150,12 @@ def test_a_look_at_the_contacts_does_not_move_the_cell(homo):
 def test_grains_touch_across_the_longest_side(axis):
     """Their nearest images follow from that side's own length."""
     new_scene(0.1 * unit)
-    size, across = np.full(3, 6e-7), np.eye(3)[axis]
-    size[axis] *= 3
-    O.periodic = True
-    O.cell.setBox(*map(float, size))
+    across = np.eye(3)[axis]
+    size = 6e-7 * (1 + 2 * across)
+    periodic_cell(*size)
     half = 1e-7 - constants(ice(), 1e-7)["equilibriumOverlap"] / 2
     for sign in (1, -1):
-        grain(
-            size / 2 * (1 - across) + (sign * half) % size * across,
-            1e-7,
-            O.bodies[0].material if len(O.bodies) else ice(),
-        )
+        grain(size / 2 * (1 - across) + (sign * half) % size * across, 1e-7, ice())
     fused_engine()
     O.step()
     assert O.engines[0].statistics()["contacts"] == 1

@@ -22,8 +22,7 @@ def start(kind="like", count=27, **options):
 
 
 def on_planes():
-    fused = isinstance(O.engines[0], JKRWadaEngine)
-    if fused:
+    if isinstance(O.engines[0], JKRWadaEngine):
         O.engines[0].writeInteractions()
     return sum(isinstance(O.bodies[i.id1].shape, Wall) for i in O.interactions if i.isReal)
 
@@ -74,9 +73,7 @@ def test_same_bits_on_one_and_two_threads_and_from_a_checkpoint():
         engine_of_sub_steps(10, threads=threads)
         O.run(30, True)
         if saved:
-            O.save("checkpoint.yade.gz")
-            O.reset()
-            O.load("checkpoint.yade.gz")
+            saved_and_loaded()
         O.run(60, True)
         assert O.engines[0].statistics()["planeContacts"] > 20
         return positions().tolist(), energies("constraintWork")
@@ -89,8 +86,8 @@ def test_same_bits_on_one_and_two_threads_and_from_a_checkpoint():
 
 def test_a_plane_moved_or_stopped_by_the_script():
     """Obeyed from the next step on, as by the functors (which see the step before with the velocity set after it)."""
-    tracks = []
-    for fused in (False, True):
+
+    def end(fused):
         rest, piston = start()
         if fused:
             fused_engine()
@@ -98,18 +95,17 @@ def test_a_plane_moved_or_stopped_by_the_script():
         O.bodies[piston].state.vel = (0, 0, 3)
         O.bodies[rest].state.pos += Vector3(-1e-9, 0, 0)
         O.run(100, True)
-        tracks.append(positions())
-    assert (tracks[0][[rest, piston]] == tracks[1][[rest, piston]]).all() and np.abs(
-        tracks[0] - tracks[1]
-    ).max() < 3e-10
+        return positions(), positions()[[rest, piston]]
+
+    (x, planes), (y, same_planes) = end(False), end(True)
+    assert (planes == same_planes).all() and np.abs(x - y).max() < 3e-10
 
 
 def test_in_a_wide_periodic_cell_as_in_the_open():
     def end(periodic):
         start()
         if periodic:
-            O.periodic = True
-            O.cell.setBox(1e-5, 1e-5, 1e-5)
+            periodic_cell(1e-5, 1e-5, 1e-5)
         fused_engine()
         O.run(150, True)
         assert O.engines[0].statistics()["planeContacts"] > 4

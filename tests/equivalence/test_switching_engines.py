@@ -6,14 +6,9 @@ from scenes import *
 pytestmark = pytest.mark.in_yade
 
 
-def start(kind, count=27):
-    new_scene(0.1 * unit)
+def start(kind):
+    meeting(kind)
     O.engines[2].loopOnSortedInteractions = True
-    converging(count, 1, *KINDS[kind])
-
-
-def to_engine(sub_steps=1, **options):
-    engine_of_sub_steps(sub_steps, **options)
 
 
 def to_functors():
@@ -25,12 +20,8 @@ def state():
     return positions(), np.array([b.state.vel for b in O.bodies]), np.array([b.state.angVel for b in O.bodies])
 
 
-def difference(a, b):
-    return np.abs(a - b).max() / np.abs(b).max()
-
-
-def largest_difference(a, b):
-    return max(difference(*pair) for pair in zip(a, b))
+def largest_difference(state, other):
+    return max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(state, other))
 
 
 @pytest.mark.parametrize("kind, first", [("like", 100), ("unlike", 700), ("drag", 100)])
@@ -42,7 +33,7 @@ def test_functors_then_engine_then_functors_is_one_run(kind, first):
     start(kind)
     O.run(first, True)
     assert O.interactions.countReal() > 8
-    to_engine(11)
+    engine_of_sub_steps(11)
     O.run(9, True)
     assert O.engines[0].statistics()["events"] > 8 and len(O.interactions) == 0
     to_functors()
@@ -65,7 +56,7 @@ def test_a_saved_scene_of_the_functors_continues_with_the_engine():
     O.run(60, True)
     straight = state()
     O.load("functors.xml.bz2")
-    to_engine(6)
+    engine_of_sub_steps(6)
     O.run(9, True)
     assert O.engines[0].statistics()["contacts"] > 8
     to_functors()
@@ -74,7 +65,7 @@ def test_a_saved_scene_of_the_functors_continues_with_the_engine():
 
 
 def test_what_cannot_be_handed_over_is_refused():
-    start("like", count=8)
+    meeting("like", count=8)
     fused_engine()
     with pytest.raises(RuntimeError, match="before the first step"):
         O.engines[0].handOver()

@@ -35,8 +35,3 @@ def require_refused(cases, attempt):
         if not message or "\n" in message or not all(word in message for word in words):
             others[text] = message
     assert not others, "\n".join(f"{text}: {message!r}" for text, message in others.items())
-
-
-def saved_and_loaded(name="saved.yade.gz"):
-    O.save(name)
-    O.load(name)

@@ -148,8 +148,7 @@ def test_ids_of_bodies_that_were_erased_are_left_out():
         steps(20)
         grain((0, 1e-6, 0), 1e-7, material)
         O.step()
-        O.save("gaps.yade")
-        O.load("gaps.yade")
+        saved_and_loaded("gaps.yade")
         steps(20)
         return [b.id for b in O.bodies], contact_law.snapshot()
 
@@ -189,8 +188,7 @@ def test_a_body_wrapped_into_the_cell_keeps_its_contacts():
 
     def end(wrapped):
         chain()
-        O.periodic = True
-        O.cell.setBox(1.5e-6, 1.5e-6, 1.5e-6)
+        periodic_cell(1.5e-6, 1.5e-6, 1.5e-6)
         steps(100)
         if wrapped:
             O.bodies[2].state.pos += Vector3(*shift)
@@ -269,18 +267,3 @@ def test_energies_after_the_functors_and_a_checkpoint(tracked):
     straight = end(False)
     assert straight["slidingDissipation"] > 0 and straight["connection"] > 0
     assert end(True) == close_to(straight, "connection")
-
-
-def test_an_engine_that_is_dead_for_a_while_continues_on_any_threads():
-    def end(dead, threads):
-        new_scene(0.1 * unit)
-        converging(64, 1, [ice()], [1e-7])
-        fused_engine()
-        for k in range(100 + dead):
-            engine().dead = 40 <= k < 40 + dead
-            engine().threads = threads(k)
-            O.step()
-        return positions()
-
-    straight = end(0, lambda k: 1)
-    assert (straight == end(20, lambda k: 1)).all() and (straight == end(0, lambda k: 1 + k // 10 % 2)).all()

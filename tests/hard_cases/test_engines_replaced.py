@@ -1,64 +1,19 @@
-"""A script puts another engine in JKRWadaEngine's place, or adds grains, in the middle of a run: no spring is lost."""
-
-import copy
+"""A script puts another engine in JKRWadaEngine's place, or adds grains, in the middle of a run: no spring is lost (test_random_edits.py too)."""
 
 import pytest
 from changes import *
 
 pytestmark = pytest.mark.in_yade
 STEPS = 60  # before and after the change
-BOOKED = ("constraintWork", "externalWork", "boundaryWork")
 
 
-def strained(periodic=False, **options):
+def strained():
     """27 grains that have collided: springs are strained, slide and hold."""
     new_scene(0.1 * unit)
     converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-    if periodic:
-        O.periodic = True
-        O.cell.setBox(3e-6, 3e-6, 3e-6)
-        O.cell.velGrad = Matrix3(-1e5, 0, 0, 0, 0, 0, 0, 0, 0)
-    fused_engine(subSteps=5, **options)
-    O.dt *= 5
+    engine_of_sub_steps(5)
     steps(STEPS)
     assert engine().statistics()["contacts"] > 20 and energies()["slidingDissipation"] > 0
-
-
-def label_it():
-    engine().label = "mover"
-    O.engines = O.engines
-
-
-REPLACED = {
-    "O.engines = [JKRWadaEngine(subSteps=5)]": {},
-    "O.engines = [copy.deepcopy(engine())]": {},
-    "O.save('s.yade'); O.engines = [copy.deepcopy(engine())]": {},
-    "O.save('s.yade'); O.load('s.yade'); O.engines = [JKRWadaEngine(subSteps=5)]": {},
-    "old = engine(); O.engines = [JKRWadaEngine(subSteps=5)]; O.engines = [old]": {},
-    "O.engines = []; O.step(); O.engines = [JKRWadaEngine(subSteps=5)]": {},
-    "label_it(); O.engines = [JKRWadaEngine(subSteps=5, label='mover')]": {},
-    "label_it(); engine().writeInteractions(); O.engines = [JKRWadaEngine(subSteps=5)]": {},
-    "O.engines = [JKRWadaEngine(subSteps=5)] ": dict(exportInteractions=True),
-    "O.engines = [JKRWadaEngine(subSteps=5)]  ": dict(periodic=True),
-    "O.forces.reset(False)": dict(exportInteractions=True),
-    "O.bodies.append(utils.sphere((9e-7, 9e-7, 9e-7), 1e-7, material=ice()))": {},
-    "O.bodies.append(utils.sphere((9e-7, 9e-7, 9e-7), 1e-7, material=ice())) ": dict(periodic=True, exportInteractions=True),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("change", REPLACED)
-def test_contacts_are_handed_over(change):
-    """To another engine, or to this one with more grains: positions and ledger as if nothing had been."""
-    ends = []
-    for text in ("pass", change):
-        strained(**REPLACED[change])
-        run(text, copy=copy, label_it=label_it)
-        steps(STEPS)
-        ends.append((positions()[:27], energies(*BOOKED)))
-    (x, e), (y, f) = ends
-    assert np.abs(x - y).max() < 1e-5 * 1e-7
-    scale = e["kinetic"] + e["connection"]
-    assert {name: f[name] for name in e if abs(f[name] - e[name]) > 1e-5 * scale} == {}
 
 
 def test_losses_of_engines_that_never_tracked_are_booked():
@@ -118,11 +73,14 @@ def test_what_would_lose_contacts_is_refused():
     require_refused(REFUSED, attempt)
 
 
-def test_grains_that_are_added_meet_the_others():
-    """A grain is shot at a resting chain in the middle of a run: as if it had been there, far away, from the start."""
+@pytest.mark.parametrize("periodic", [False, True])
+def test_grains_that_are_added_meet_the_others(periodic):
+    """A grain is shot at a vibrating chain in the middle of a run: as if it had been there, far away, from the start."""
 
     def end(late):
-        chain(speed=0)
+        chain(exportInteractions=periodic)
+        if periodic:
+            periodic_cell(3e-6, 3e-6, 3e-6, velocity_gradient=(0, 0, -1e5))
         bullet = lambda y: grain((2e-7, y, 0), 1e-7, O.bodies[0].material, (0, -2, 0))  # noqa: E731
         if not late:
             bullet(2.05e-7 + 2 * 40 * O.dt)

@@ -37,7 +37,7 @@ def test_engine_and_functors_agree_and_the_ledger_closes(springs, limit):
     assert difference[:100].max() < 1e-12 and difference.max() < 1e-9
     for name, on in springs.items():
         assert on or ledger[-1][f"{name}Dissipation"] == 0
-    coarse, fine = (np.sqrt(np.mean([error(step, seed) ** 2 for seed in range(1, 5)])) for step in (0.1, 0.025))
+    coarse, fine = (rms(error(step, seed) for seed in range(1, 5)) for step in (0.1, 0.025))
     assert coarse < 1e-3 and coarse > 9 * fine  # second order: 16, first: 4
 
 

@@ -49,15 +49,12 @@ def test_grains_that_meet_and_fly_apart(speed, steps, radii):
 def test_a_shrinking_cell_whose_rate_jumps():
     """Images approach at the rate of the cell, which changes from one O.step to the next."""
     new_scene(0.1 * unit)
-    O.periodic = True
     edge = 2.6e-6
-    O.cell.setBox(edge, edge, edge)
-    O.cell.homoDeform = 0
+    periodic_cell(edge, edge, edge, homo=0)
     random = np.random.default_rng(3)
     for site in np.ndindex(7, 7, 7):
-        grain(
-            edge * (np.array(site) + 0.5) / 7 + 2e-8 * random.normal(size=3), 1e-7, ice(), 0.3 * random.normal(size=3)
-        )
+        place = edge * (np.array(site) + 0.5) / 7 + 2e-8 * random.normal(size=3)
+        grain(place, 1e-7, ice(), 0.3 * random.normal(size=3))
     fused_engine(domains=3, threads=2, subSteps=20)
     O.dt *= 20
 

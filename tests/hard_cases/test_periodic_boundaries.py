@@ -10,9 +10,7 @@ pytestmark = pytest.mark.in_yade
 def box(size, mover="fused", **options):
     """An empty periodic cell with edges `size` [m]."""
     new_scene(0.1 * unit)
-    O.periodic = True
-    O.cell.setBox(*size)
-    O.cell.homoDeform = 0
+    periodic_cell(*size, homo=0)
     if mover == "fused":
         fused_engine(**options)
 

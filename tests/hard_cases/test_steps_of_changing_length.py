@@ -38,9 +38,7 @@ def vibrating(kind, base):
     if kind == "blocked":
         O.bodies[1].state.blockedDOFs = "xZ"
     if kind == "cell":
-        O.periodic = True
-        O.cell.setBox(4 * d, 8e-7, 8e-7)
-        O.cell.velGrad = Matrix3(1e5, 0, 0, 0, -1e5, 0, 0, 0, 0)
+        periodic_cell(4 * d, 8e-7, 8e-7, velocity_gradient=(1e5, -1e5, 0))
     fused_engine(neck=0.3 if kind == "bonds" else 0.0)
     engine().prepare()
     if kind == "force":

@@ -58,11 +58,12 @@ def frequency(signal, interval):
 
 K_STRETCH, K_SLIDE, K_TILT, K_TWIST = stiffnesses(NECK)
 SPEED, SPIN = 1e-3, 1e4  # m/s, 1/s: far below what bends the geometry
+ACROSS = (0, -2 * LEVER * INERTIA / (MASS * RADIUS) * SPIN, 0)
 # Two free grains, 1 and 2: initial relative velocity and spins of the mode (sliding: without angular momentum), what is watched, omega^2.
 PAIR_MODES = {
     "stretching": ((SPEED, 0, 0), (0, 0, 0), (0, 0, 0), "vel", 0, -1, 2 * K_STRETCH / MASS),
     "sliding": (
-        (0, -2 * LEVER * INERTIA / (MASS * RADIUS) * SPIN, 0),
+        ACROSS,
         (0, 0, SPIN),
         (0, 0, SPIN),
         "angVel",

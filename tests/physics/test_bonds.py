@@ -101,7 +101,7 @@ def test_ledger_of_breaking_clusters_closes_with_second_order_and_momenta_stay(n
         breaks += sum(broken())
         return max(abs(sum(one.values()) - first) for one in sums) / kinetic
 
-    coarse, fine = (np.sqrt(np.mean([closure(step, seed) ** 2 for seed in range(6)])) for step in (0.1, 0.025))
+    coarse, fine = (rms(closure(step, seed) for seed in range(6)) for step in (0.1, 0.025))
     assert breaks > 30 and coarse < 2e-2 and coarse / fine > 9
 
 

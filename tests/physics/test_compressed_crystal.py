@@ -17,8 +17,7 @@ def pressure(shot):
 def crystal(sites, edge):
     """(pressure [Pa], number of contacts) of grains at sites of a periodic cell."""
     new_scene(1e-11)
-    O.periodic = True
-    O.cell.setBox(edge, edge, edge)
+    periodic_cell(edge, edge, edge)
     for site in sites:
         grain(site, 1e-7, ice())
     fused_engine()

@@ -67,9 +67,6 @@ def test_run_out_of_a_pair_that_turns_freely(mode, engine):
     assert run_out(mode, engine, "held", 20.5, 0.0125)[0] == pytest.approx(21.5 / 2, rel=2e-3)
 
 
-def test_a_rule_of_another_name_is_refused_in_one_line():
+def test_a_rule_of_another_name_is_refused():
     with pytest.raises(ValueError, match="^limit = 'broken': must be 'held' or 'cut'$"):
         Law2_ScGeom_JKRWadaPhys_JKRWada(limit="broken")
-    pair("rolling", 0.1, 0, "held", "", "fused")
-    O.engines[0].limit = "Cut"
-    assert refusal() == "JKRWadaEngine: limit = 'Cut': must be 'held' or 'cut'"

@@ -66,8 +66,7 @@ def test_rebound_converges_with_second_order(kind):
     gaps = 2e-9 + 1e-10 * np.arange(12) / 1.7
 
     def error(step):
-        found = np.array([rebound(speed, step, gap, material, **others) for gap in gaps])
-        return np.sqrt(np.mean((found / exact - 1) ** 2))
+        return rms(rebound(speed, step, gap, material, **others) / exact - 1 for gap in gaps)
 
     coarse, fine = error(0.1), error(0.0125)
     assert coarse < 1e-2 and fine < 2e-4 and coarse / fine > 3.2**3  # second order gives 64, first order 8

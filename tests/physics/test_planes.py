@@ -7,6 +7,7 @@ from analysis.theory import ICE, Material, collide_pair, pair_constants
 
 pytestmark = pytest.mark.in_yade
 R = 1e-7  # of the grains [m]
+STILL, MOVING = (0, 0, 0), dict(plane_velocity=(3.0, 1.0, 8.0))
 SOFT = Material(3e9, 0.33, 1300.0, 0.05, 1.1e-9)  # soft() of scenes.py
 ICY = pair_constants(ICE, R, ICE, np.inf)
 
@@ -17,24 +18,11 @@ def plane(material, axis=2, position=0.0, velocity=(0, 0, 0)):
     return O.bodies.append(body)
 
 
-def lone_grain(
-    position,
-    velocity=(0, 0, 0),
-    spin=(0, 0, 0),
-    step=0.05,
-    blocked="",
-    plane_velocity=(0, 0, 0),
-    other=None,
-    material=None,
-    fused=False,
-    **options,
-):
-    """A grain above the plane z = 0; O.dt is `step` t0."""
+def lone_grain(position, velocity=STILL, spin=STILL, step=0.05, blocked="", plane_velocity=STILL, **options):
+    """A grain of ice above the plane z = 0; O.dt is `step` t0."""
     new_scene(step * ICY.time_unit, **options)
-    plane(other or material or ice(), velocity=plane_velocity)
-    grain(position, R, material or ice(), velocity, spin, blocked)
-    if fused:
-        fused_engine()
+    plane(ice(), velocity=plane_velocity)
+    grain(position, R, ice(), velocity, spin, blocked)
 
 
 def test_equilibrium_and_pull_off():
@@ -56,11 +44,14 @@ def test_equilibrium_and_pull_off():
     assert overlaps[-2] > -c.pull_off_overlap > overlaps[-1] - rise
 
 
-def rebound(speed, step, gap, **scene):
-    """Velocity with which a grain leaves the plane, 0 when it sticks."""
-    lone_grain((0.3 * R, 0, R + gap), (0, 0, -speed), step=step, **scene)
+def rebound(speed, step, gap, fused, material, other):
+    """Velocity with which a grain leaves a plane of another material, 0 when it sticks."""
+    new_scene(step * ICY.time_unit)
+    plane(other)
+    grain((0.3 * R, 0, R + gap), R, material, (0, 0, -speed))
+    if fused:
+        fused_engine()
     O.run(int((gap / speed + 60 * ICY.time_unit) / O.dt), True)
-    fused = scene.get("fused")
     touching = O.engines[0].statistics()["planeContacts"] if fused else O.interactions.countReal()
     return 0.0 if touching else O.bodies[1].state.vel[2]
 
@@ -70,7 +61,7 @@ def test_sticking_velocity(fused):
     """[2 (8/15 2^(2/3) + 4/45) F_c delta_c/m]^(1/2) (A22 eqs 9, 10 with R = r and m* = m)."""
     c = ICY
     closed = np.sqrt(2 * (8 / 15 * 2 ** (2 / 3) + 4 / 45) * c.pull_off_force * c.pull_off_overlap / c.reduced_mass)
-    found = threshold(lambda speed: rebound(speed, 0.02, 2e-9, fused=fused) > 0, 0.9 * closed, 1.1 * closed)
+    found = threshold(lambda speed: rebound(speed, 0.02, 2e-9, fused, ice(), ice()) > 0, 0.9 * closed, 1.1 * closed)
     assert found == pytest.approx(closed, rel=1e-3)
 
 
@@ -82,12 +73,12 @@ def test_rebound_converges_with_second_order(kind, fused):
     drag = dict(viscoelastic_time=time)
     pair = pair_constants(Material(**{**vars(ICE), **drag}), R, Material(**{**vars(other), **drag}), np.inf)
     material = ice(viscoelasticTime=time)
-    scene = dict(fused=fused, material=material, other=soft() if kind == "unlike" else material)
+    materials = material, soft() if kind == "unlike" else material
     exact = collide_pair(speed, pair).rebound_velocity
 
     def error(step):
         gaps = 2e-9 + 1e-10 * np.arange(12) / 1.7
-        return np.sqrt(np.mean([(rebound(speed, step, gap, **scene) / exact - 1) ** 2 for gap in gaps]))
+        return rms(rebound(speed, step, gap, fused, *materials) / exact - 1 for gap in gaps)
 
     coarse, fine = error(0.1), error(0.0125)
     assert coarse < 1e-2 and fine < 2e-4 and coarse / fine > 3.2**3  # second order gives 64, first order 8
@@ -134,52 +125,38 @@ def test_driven_past_the_limit(mode, limit):
 VELOCITY, SPIN = np.array([1.7, 0.6, -12.0]), np.array([1e8, -0.7e8, 2e8])
 
 
-def impact(
-    step=0.05,
-    axis=2,
-    side=1,
-    radius2=None,
-    plane_velocity=(0, 0, 0),
-    gap=0.003,
-    first=True,
-    duration=20,
-    fused=None,
-    **options,
-):
+def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.003, first=True, fused=None, **options):
     """(velocity, spin r) of a grain that has met a plane (appended before it or after) obliquely, and the closure after it over K(0).
     Vectors are given for a plane across z, below the grain, and turned with it."""
     turn = np.roll(np.eye(3), axis - 2, axis=0) if side > 0 else np.roll(np.diag([1.0, -1, -1]), axis - 2, axis=0)
     new_scene(step * ICY.time_unit, **options)
     drift = turn @ plane_velocity
-    bodies = [
-        lambda: grain(turn @ np.array([0.3, 0.2, 1 + gap]) * R, R, ice(), turn @ VELOCITY + drift, turn @ SPIN),
-        lambda: plane(ice(), axis, 0.0, drift)
-        if radius2 is None
-        else grain(turn @ (0, 0, -radius2), radius2, ice(), blocked="xyzXYZ"),
-    ]
-    ids = [add() for add in (reversed(bodies) if first else bodies)]
+    place = turn @ np.array([0.3, 0.2, 1 + gap]) * R
+    for add_plane in (first, not first):
+        if not add_plane:
+            number = grain(place, R, ice(), turn @ VELOCITY + drift, turn @ SPIN)
+        elif radius2 is None:
+            plane(ice(), axis, 0.0, drift)
+        else:
+            grain(turn @ (0, 0, -radius2), radius2, ice(), blocked="xyzXYZ")
     if fused is not None:
         fused_engine(**fused)
     O.step()
     sums = []
-    for _ in range(int(duration / step)):
+    for _ in range(int(20 / step)):
         O.step()
         e = energies("constraintWork")
         sums.append(sum(e.values()))
         kinetic = e["kinetic"] if len(sums) == 1 else kinetic
-    s = O.bodies[ids[1 if first else 0]].state
+    s = O.bodies[number].state
     assert e["slidingDissipation"] > 0 and e["disconnection"] > 0
     return turn.T @ (s.vel - drift), turn.T @ s.angVel * R, (sums[-1] - sums[0]) / kinetic
 
 
-@pytest.mark.parametrize(
-    "where",
-    [
-        *(dict(axis=axis, side=side) for axis in (0, 1, 2) for side in (-1, 1)),
-        dict(plane_velocity=(3.0, 1.0, 8.0)),
-        dict(first=False),
-    ],
-)
+SIDES = [dict(axis=axis, side=side) for axis in (0, 1, 2) for side in (-1, 1)]
+
+
+@pytest.mark.parametrize("where", [*SIDES, MOVING, dict(first=False)])
 def test_a_plane_is_the_same_on_all_axes_and_sides_and_when_it_moves(where):
     (velocity, spin, _), (expected, expected_spin, _) = impact(**where), impact()
     assert np.abs(velocity - expected).max() < 1e-8 and np.abs(spin - expected_spin).max() < 1e-8
@@ -188,27 +165,19 @@ def test_a_plane_is_the_same_on_all_axes_and_sides_and_when_it_moves(where):
 @pytest.mark.parametrize("limit", ["held", "cut"])
 def test_a_plane_is_the_limit_of_a_huge_sphere(limit):
     plane_end = np.concatenate(impact(limit=limit)[:2])
-    off = [
-        np.abs(np.concatenate(impact(radius2=n * R, limit=limit)[:2]) - plane_end).max() * n for n in (1e3, 1e4, 1e5)
-    ]
+    ends = {n: np.concatenate(impact(radius2=n * R, limit=limit)[:2]) for n in (1e3, 1e4, 1e5)}
+    off = [np.abs(end - plane_end).max() * n for n, end in ends.items()]
     assert max(off) < 100 and np.ptp(off) < 0.1 * off[2]  # the difference is of first order in r/r2
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        dict(),
-        dict(limit="cut"),
-        dict(damping=0.02),
-        dict(plane_velocity=(3.0, 1.0, 8.0)),
-        dict(rolling=False),
-        dict(fused=dict(linearDamping=0.02)),
-        dict(fused=dict(limit="cut"), plane_velocity=(3.0, 1.0, 8.0)),
-    ],
-)
+OF_FUNCTORS = [dict(), dict(limit="cut"), dict(damping=0.02), MOVING, dict(rolling=False)]
+OF_ENGINE = [dict(fused=dict(linearDamping=0.02)), dict(fused=dict(limit="cut"), **MOVING)]
+
+
+@pytest.mark.parametrize("options", OF_FUNCTORS + OF_ENGINE)
 def test_ledger_of_an_oblique_impact_closes_with_second_order(options):
     gaps = 0.003 + 0.001 * np.arange(8) / 1.7  # root mean square, as of rebounds
-    coarse, fine = (np.sqrt(np.mean([impact(s, gap=gap, **options)[2] ** 2 for gap in gaps])) for s in (0.05, 0.00625))
+    coarse, fine = (rms(impact(s, gap=gap, **options)[2] for gap in gaps) for s in (0.05, 0.00625))
     assert fine < 1e-4 and coarse / fine > 3.2**3
 
 
@@ -228,9 +197,8 @@ def piston(step):
     total = np.array([sum(e.values()) for e in sums])
     work = sums[-1]["constraintWork"]
     assert work < -1e-16
-    by_force = (
-        2.0 * O.dt * (np.sum(pushes) - pushes[-1] / 2)
-    )  # in each step the wall moves by -2 O.dt against this push
+    # in each step the wall moves by -2 O.dt against this push
+    by_force = 2.0 * O.dt * (np.sum(pushes) - pushes[-1] / 2)
     return np.std(total) / -work, abs(by_force + work) / -work
 
 

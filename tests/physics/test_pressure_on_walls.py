@@ -12,8 +12,7 @@ WIDTH = 2 * R * ROWS
 def plates_with_grains_between():
     """Ids of the grains of both plates. Periodic along y and z; along x so long that the plates' backs and images are out of reach."""
     new_scene(0.2 * unit, damping=0.2)
-    O.periodic = True
-    O.cell.setBox(40 * R, WIDTH, WIDTH)
+    periodic_cell(40 * R, WIDTH, WIDTH)
     random = np.random.default_rng(3)
     site = np.stack(np.meshgrid(np.arange(ROWS), np.arange(ROWS)), axis=-1).reshape(-1, 2)
     plates = [[grain((x, *(2 * s + 1) * R), R, ice(), blocked="xyzXYZ") for s in site] for x in (13 * R, 27 * R)]
