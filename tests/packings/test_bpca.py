@@ -88,12 +88,7 @@ def test_radii_that_were_asked_for():
         assert low <= drawn.min() and drawn.max() <= high
 
 
-def test_same_seed_same_aggregate_whatever_the_sizes():
-    """Sizes come from a stream of their own."""
-    one = packings.bpca(400, RADIUS, OVERLAP, 5)
-    assert np.array_equal(one.position, packings.bpca(400, RADIUS, OVERLAP, 5).position)
-    for seed, index in ((6, 0), (5, 1)):
-        assert not np.allclose(one.position[1:], packings.bpca(400, RADIUS, OVERLAP, seed, index).position[1:])
+def test_parameters_give_the_same_aggregate_and_sizes():
     plain = make(AggregateParameters.parse(dict(packing="bpca", grains=200, seed=3)), OVERLAP, 0)
     assert np.array_equal(plain.position, packings.bpca(200, RADIUS, OVERLAP, 3).position)
     cells = dict(packing="bpca", grains=200, seed=3, sizes="two", sizeRatio=2, sizeFraction=0.25)

@@ -1,6 +1,7 @@
 """Close-packed and extracted aggregates are what A24 section 3 says, exactly."""
 
 import time
+from functools import partial
 
 import numpy as np
 import pytest
@@ -15,6 +16,9 @@ def ice(filling=0.4, relative_radius=20, seed=1, index=0):
     return packings.cpe(filling, relative_radius * RADIUS, RADIUS, OVERLAP, seed, index)
 
 
+bpca, bcca = (partial(make, 400, RADIUS, OVERLAP) for make in (packings.bpca, packings.bcca))
+
+
 @pytest.mark.parametrize(
     "filling, relative_radius, grains",
     [(0.4, 20, 3200), (0.3, 20, 2400), (0.4, 4, 26), (0.35, 10.3, 382), (0.7, 12, 1210)],
@@ -25,10 +29,15 @@ def test_number_of_grains_is_filling_times_the_cubed_radius(filling, relative_ra
     assert packing.position.shape == (grains, 3) and np.all(packing.radius == RADIUS)
 
 
-def test_same_seed_same_packing_of_the_streams_that_a_seed_sequence_spawns():
-    assert np.array_equal(ice(seed=5).position, ice(seed=5).position)
-    assert not np.allclose(ice(seed=5).position, ice(seed=6).position)
-    assert not np.allclose(ice(seed=5, index=0).position, ice(seed=5, index=1).position)
+@pytest.mark.parametrize("make", [ice, bpca, bcca])
+def test_same_seed_and_index_same_aggregate(make):
+    one = make(seed=5, index=0).position
+    assert np.array_equal(one, make(seed=5, index=0).position)
+    for other in (dict(seed=6, index=0), dict(seed=5, index=1)):
+        assert not np.allclose(one[1:], make(**other).position[1:])
+
+
+def test_streams_are_those_that_a_seed_sequence_spawns():
     for index, spawned in enumerate(np.random.SeedSequence(7).spawn(2)):
         expected = np.random.default_rng(spawned).random(5)
         assert np.array_equal(packings.random_stream(7, index).random(5), expected)

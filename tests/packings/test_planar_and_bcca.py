@@ -59,13 +59,6 @@ def test_clusters_meet_anywhere_on_their_cross_section(planar):
     assert kstest(impact if planar else impact**2, "uniform").pvalue > 1e-3
 
 
-def test_bcca_is_a_function_of_seed_and_index():
-    one = bcca(64, RADIUS, OVERLAP, 1).position
-    assert np.array_equal(one, bcca(64, RADIUS, OVERLAP, 1).position)
-    assert not np.array_equal(one, bcca(64, RADIUS, OVERLAP, 2).position)
-    assert not np.array_equal(one, bcca(64, RADIUS, OVERLAP, 1, index=1).position)
-
-
 @pytest.mark.parametrize("planar, dimension", [(True, 1.5), (False, 1.9)])
 def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, dimension):
     """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991). Mean of the logarithm over 12 aggregates at 64 and 1024
