@@ -177,11 +177,8 @@ def test_a_folder_of_other_files_is_left_as_it_is(tmp_path, what, options):
 
 def test_a_file_is_left_as_it_is_and_an_unwritable_folder_is_one_line(tmp_path):
     (tmp_path / "run").write_text("mine")
-    for path, words in (
-        (tmp_path / "run", "is a file; must be a folder"),
-        ("x" * 256, "File name too long"),
-        ("/proc/run", ""),
-    ):
+    places = {tmp_path / "run": "is a file; must be a folder", "x" * 256: "File name too long", "/proc/run": ""}
+    for path, words in places.items():
         with refused(RunFolderError, f"out = {path}: ", words, "must be a folder"):
             RunFolder(str(path), overwrite=True)
 

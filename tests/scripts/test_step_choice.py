@@ -48,23 +48,16 @@ def test_auto_and_its_tolerance():
     assert parse({}).tolerance is None
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        {},
-        {"velocity": 30},
-        {"velocity": 0.5},
-        {"radius": 8},
-        {"radius": 60, "filling": 0.3},
-        {"material": "silicate"},
-        {"packing": "bpca", "grains": 5000, "velocity": 50, "viscoelasticTime": 1e-12},
-        {"packing": "bcca", "grains": 500, "planar": 1, "limit": "cut"},
-        {"packing": "bcca", "grains": 1000, "projectileGrains": 100, "neck": 0.3, "velocity": 4},
-        {"strainRate": 3e-7, "finalFilling": 0.2},
-        {"strainRate": 3e-7, "linearDamping": 0},
-    ],
-    ids=str,
-)
+SCENES = [
+    {}, {"velocity": 30}, {"velocity": 0.5}, {"radius": 8}, {"radius": 60, "filling": 0.3}, {"material": "silicate"},
+    {"packing": "bpca", "grains": 5000, "velocity": 50, "viscoelasticTime": 1e-12},
+    {"packing": "bcca", "grains": 500, "planar": 1, "limit": "cut"},
+    {"packing": "bcca", "grains": 1000, "projectileGrains": 100, "neck": 0.3, "velocity": 4},
+    {"strainRate": 3e-7, "finalFilling": 0.2}, {"strainRate": 3e-7, "linearDamping": 0},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=str)
 def test_the_step_is_the_longest_of_two_digits_that_keeps_to_the_tolerance(scene):
     steps = []
     for tolerance in (1e-5, 1e-4, 1e-3, 1e-2):

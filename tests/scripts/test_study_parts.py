@@ -161,17 +161,13 @@ def test_pairs_that_stick_are_expected_to_end_early():
     assert shares[0] < 0.1 and shares[1] == 1
 
 
-@pytest.mark.parametrize(
-    "running, waiting, at_once, expected",
-    [
-        ([], [], 2, 0),
-        ([], [(5, 1), (1, 1), (1, 1)], 2, 5),
-        ([(4, 1)], [(1, 1)] * 3, 2, 4),
-        ([(4, 1)] * 2, [(1, 1)], 2, 5),
-        ([], [(3, 1)] * 2, 1, 6),
-        ([], [(3, 2), (3, 8), (1, 1), (1, 1)], 2, 7),
-    ],
-)
+MAKESPANS = [
+    ([], [], 2, 0), ([], [(5, 1), (1, 1), (1, 1)], 2, 5), ([(4, 1)], [(1, 1)] * 3, 2, 4), ([(4, 1)] * 2, [(1, 1)], 2, 5),
+    ([], [(3, 1)] * 2, 1, 6), ([], [(3, 2), (3, 8), (1, 1), (1, 1)], 2, 7),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("running, waiting, at_once, expected", MAKESPANS)
 def test_makespan(running, waiting, at_once, expected):
     """The numbers are (time, threads)."""
     assert cost.makespan(running, waiting, at_once) == expected
