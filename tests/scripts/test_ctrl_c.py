@@ -15,21 +15,15 @@ COMMANDS = {
 }
 
 
-def interrupted(command, module, folder):
-    """The process, after Ctrl-C while it imported the module."""
-    (folder / f"{module}.py").write_text(SLOW)
-    importing = folder / "importing"
-    os.mkfifo(importing)
-    how = {"env": environment(PYTHONPATH=f"{folder}:{TOP}", IMPORTING=str(importing))}
-    process = start(folder, *command, **how)
-    with open(importing):  # waits for the other end
-        process.send_signal(signal.SIGINT)
-    output = process.communicate(timeout=50)
-    return process.returncode, *output
-
-
 @pytest.mark.parametrize("name", COMMANDS)
 def test_ctrl_c_during_the_imports(tmp_path, name):
-    status, _, errors = interrupted(*COMMANDS[name], tmp_path)
-    assert status in (130, -signal.SIGINT)
+    command, module = COMMANDS[name]
+    (tmp_path / f"{module}.py").write_text(SLOW)
+    importing = tmp_path / "importing"
+    os.mkfifo(importing)
+    process = start(tmp_path, *command, env=environment(PYTHONPATH=f"{tmp_path}:{TOP}", IMPORTING=str(importing)))
+    with open(importing):  # waits for the other end
+        process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=50)
+    assert process.returncode in (130, -signal.SIGINT)
     assert not [line for line in errors.splitlines() if "Traceback" in line or "Interrupt" in line], errors

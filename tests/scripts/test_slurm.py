@@ -154,9 +154,17 @@ sys.exit(143)
 
 
 @pytest.fixture
-def begin(tmp_path):
-    """begin(script) -> a Task that runs it in a worker, the exit status to come, and the log."""
+def signals():
+    """What a task does to this process's signals is undone."""
     handlers = {number: signal.getsignal(number) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
+    yield
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+
+
+@pytest.fixture
+def begin(tmp_path, signals):
+    """begin(script) -> a Task that runs it in a worker, the exit status to come, and the log."""
     log, script = tmp_path / "a.log", tmp_path / "script.py"
     task = slurm_task.Task()
 
@@ -169,8 +177,6 @@ def begin(tmp_path):
 
     yield begin
     task._worker.close()
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
 
 
 def told(log):
@@ -211,7 +217,7 @@ def test_a_signal_to_all_of_the_job_is_not_passed_on(begin, monkeypatch):
 
 @pytest.mark.parametrize("progress, requeued", [(0.5, True), (0.1, False)], ids=["further", "no further"])
 def test_a_task_at_its_limit_is_put_into_the_queue_again_if_it_came_further(
-    tmp_path, program, monkeypatch, progress, requeued
+    tmp_path, program, monkeypatch, signals, progress, requeued
 ):
     """Otherwise it would begin anew for ever."""
     (tmp_path / "logs" / "slurm-1").mkdir(parents=True)
@@ -222,7 +228,6 @@ def test_a_task_at_its_limit_is_put_into_the_queue_again_if_it_came_further(
     program("scontrol", 'echo "$@" > scontrol')
     states = iter([rows.State(rows.WAITING, 0.1), rows.State(rows.WAITING, progress, note="checkpoint")])
     monkeypatch.setattr(rows, "state", lambda *_, **__: next(states))
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
 
     def stopped(task, *_):
         task._note(signal.SIGUSR1, None)
@@ -230,8 +235,6 @@ def test_a_task_at_its_limit_is_put_into_the_queue_again_if_it_came_further(
 
     monkeypatch.setattr(slurm_task.Task, "_run", stopped)
     assert slurm_task.main(["logs/slurm-1/rows.table", "1", "1"]) == 143  # of the second row no state is asked
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
     asked = tmp_path / "scontrol"
     assert asked.read_text() == "requeue 12_3\n" if requeued else not asked.exists()
 
