@@ -6,8 +6,10 @@ import os
 import signal
 import subprocess
 import time
+from contextlib import contextmanager
 
 import numpy as np
+import pytest
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPTS = os.path.join(TOP, "yade_scripts")
@@ -44,7 +46,8 @@ def collide(folder, *arguments, **more):
 
 
 def completed(folder, *arguments, script=COLLIDE):
-    """(run.json, history) of a run, in the folder run, that comes to its end and has nothing to say."""
+    """(run.json, history) of a run, in the folder run, that comes to its end and has nothing to say. The folder is made if need be."""
+    os.makedirs(folder, exist_ok=True)
     done = call(folder, "yade", "-n", "-x", script, *arguments, "out=run")
     assert done.returncode == 0 and messages(done) == [], done.stderr
     return read_json(folder, "run", "run.json"), read_arrays(folder, "run", "history.npz")
@@ -82,6 +85,21 @@ def wait_for(condition, seconds=60):
     while not condition():
         assert time.monotonic() < deadline, "waited in vain"
         time.sleep(0.002)
+
+
+@contextmanager
+def small_disk(folder, size):
+    """A file system of this size, in memory, is the folder; mounting takes root, and without it the test is skipped."""
+    folder.mkdir()
+    mount = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", f"size={size}", "none", folder], capture_output=True, text=True
+    )
+    if mount.returncode:
+        pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", folder], check=True)
 
 
 def process_writing(folder):

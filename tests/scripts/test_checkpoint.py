@@ -47,7 +47,6 @@ def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
     """SIGTERM records one state more, where it stopped; that one is removed when the run resumes, and what a writer that was killed has left."""
     script, arguments, after = KINDS[name]
     arguments = arguments.split()
-    (tmp_path / "straight").mkdir()
     completed(tmp_path / "straight", *arguments, script=script)
     number = signal.SIGTERM if name == "shorter steps" else signal.SIGKILL
     stop_midway(tmp_path, [*arguments, OFTEN], number, script, after)
@@ -67,7 +66,6 @@ def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
 def test_yades_own_loop_resumes_to_rounding(tmp_path):
     """Forces may be added in another order after loading; early in a run that is all the difference."""
     arguments = ("radius=5", "velocity=30", "duration=12e-9", "engine=functors")
-    (tmp_path / "straight").mkdir()
     _, one = completed(tmp_path / "straight", *arguments)
     stop_midway(tmp_path, [*arguments, OFTEN])
     _, other = completed(tmp_path, *arguments, "resume=1")
@@ -118,7 +116,6 @@ def test_a_run_that_ended_decided_does_not_go_on(tmp_path):
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     """Its line has the command; what the command says of other parameters, or of no more time, is refused."""
     fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()
-    (tmp_path / "straight").mkdir()
     _, straight = completed(tmp_path / "straight", *fluffy, "duration=6e-7")
     done = collide(tmp_path, *fluffy, "duration=3e-7", "out=run")
     reason, _, command = done.stdout.partition("; to continue: ")

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from running import completed, read_arrays, read_json
 
-from analysis.measures.fragments import fragment_labels, fragment_sizes
 from analysis.measures.ledger import closure_history
 from analysis.runs.folder import open_run
 from analysis.runs.provenance import provenance
@@ -17,21 +16,15 @@ OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 TINY = ("packing=bpca", "grains=40", "velocity=40", "stepFraction=0.2", "threads=1")
 
 
-def fragments(run):
-    return sorted(fragment_sizes(fragment_labels(len(run.last.radius), run.last.contact_pairs)))
-
-
 def test_a_collision_with_drag_ends_early_with_the_fragments_of_the_whole_time(tmp_path):
     arguments = (*TINY, "viscoelasticTime=6e-12", "impact=0.6", "duration=6e-7", "states=7", "seed=3")
-    for name in ("whole", "early"):
-        (tmp_path / name).mkdir()
     whole, history = completed(tmp_path / "whole", *arguments)
     early, shorter = completed(tmp_path / "early", *arguments, "endWhenApart=1")
     assert whole["timeReached"] == pytest.approx(6e-7, rel=1e-2)
     assert early["outcome"] == "completed" and early["timeReached"] < 0.8 * whole["timeReached"]
     run, other = (open_run(tmp_path / name / "run") for name in ("early", "whole"))
     assert run.ended and shorter["time"][-1] == early["timeReached"] == run.last.time and len(other.states) == 7
-    assert fragments(run) == fragments(other)
+    assert run.last.fragments().grains.tolist() == other.last.fragments().grains.tolist()
     # until then the two are the same run
     assert np.array_equal(shorter["rollingDissipation"], history["rollingDissipation"][: len(shorter["time"])])
     assert shorter["drag"][-1] > 0 and early["derived"]["targetCharacteristicRadius"] > 0
@@ -41,7 +34,8 @@ def test_aggregates_that_pass_each_other(tmp_path):
     """Seeds that miss at B_off = 1: with a duration a run that ends at once."""
     run, history = completed(tmp_path, *TINY, "impact=1", "seed=1", "duration=4e-7", "endWhenApart=1")
     assert run["timeReached"] < 3e-7 and "firstTouch" not in run["derived"]
-    assert fragments(open_run(tmp_path / "run")) == [40, 40] and np.all(history["contacts_between"] == 0)
+    assert open_run(tmp_path / "run").last.fragments().grains.tolist() == [40, 40]
+    assert np.all(history["contacts_between"] == 0)
 
 
 def test_unlike_grains_and_unlike_aggregates(tmp_path):
@@ -114,7 +108,6 @@ SHORT = ("radius=3", "velocity=30", "duration=12e-9", "threads=1", "seed=2", "st
 def test_engine_and_functors_obey_it(tmp_path, name, given, default):
     runs = {}
     for how in ("fused", "functors", "usual"):
-        (tmp_path / how).mkdir()
         law = [] if how == "usual" else [f"{name}={given}", f"engine={how}"]
         about, runs[how] = completed(tmp_path / how, *SHORT, *law)
         assert about["parameters"][name] == (default if how == "usual" else given)

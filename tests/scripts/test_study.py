@@ -2,10 +2,9 @@
 
 import os
 import signal
-import subprocess
 
 import pytest
-from running import PYTHON, STUDY, collide, process_writing, read_json, same_bits, start, study, wait_for
+from running import PYTHON, STUDY, collide, process_writing, read_json, same_bits, small_disk, start, study, wait_for
 
 HEADER = "description radius velocity duration stepFraction checkpointInterval out\n"
 ROWS = {
@@ -49,9 +48,7 @@ def test_failures_fail_the_study_after_all_others_have_run_and_status_tells_it_m
     refused, killed, fails = errors.splitlines()
     assert killed.startswith("study.py: killed: killed by signal 9 (checkpoint at ")
     assert fails.startswith("study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run broke down at t = ")
-    assert refused.startswith(
-        "study.py: refused: line 5 of tiny.table: velocity = -1: must be > 0 [m/s]; the other rows"
-    )
+    assert refused.startswith("study.py: refused: line 5 of tiny.table: velocity = -1: must be > 0 [m/s]; the other")
     assert sorted(os.listdir(folder / "runs" / "tiny")) == ["ends", "fails", "killed"]
     assert midway.returncode == 0 and midway.stderr == ""
     states = [line.split()[:2] for line in midway.stdout.splitlines()]
@@ -99,15 +96,8 @@ def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
 
 def test_a_full_disk_is_one_line(tmp_path):
     """A file system of one page: the table fits, nothing else does."""
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", disk], capture_output=True, text=True)
-    if mount.returncode:
-        pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
-    try:
+    with small_disk(tmp_path / "disk", "4k") as disk:
         write_table(disk, "tiny.table", "ends")
         done = study(disk, "tiny.table", "-j", "1")
-    finally:
-        subprocess.run(["umount", disk], check=True)
     assert done.returncode == 1
     assert done.stderr == "study.py: runs/logs/tiny/speed.json: No space left on device\n"

@@ -10,15 +10,18 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from running import small_disk
 
 TOP = Path(__file__).resolve().parents[2]
+INSTALLER = str(TOP / "contact_law/installation.py")
 COMMANDS = ("dust-analysis", "dust-collide", "dust-compress", "dust-packing", "dust-study")
 WAIT = 3  # s in which an installation gets far
 SMALL = ("grains=30", "packing=bpca", "velocity=20", "duration=2e-9", "stepFraction=0.1")
 
 
-def installation(action, prefix, base=None):
-    command = [sys.executable, str(TOP / "contact_law/installation.py"), action, str(prefix)]
+def installation(action, prefix, base=None, within=()):
+    """An installation or removal that ended; within: what Python is given before the installer."""
+    command = [sys.executable, *within, INSTALLER, action, str(prefix)]
     environment = {**os.environ, "PYTHONUSERBASE": str(base or prefix)}
     return subprocess.run(command, capture_output=True, text=True, env=environment)
 
@@ -42,9 +45,7 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 
 def killed(action, prefix, function, calls):
     """An installation or removal that is killed at so many calls of a function."""
-    command = [sys.executable, "-c", KILLED, function, str(calls), str(TOP / "contact_law/installation.py")]
-    environment = {**os.environ, "PYTHONUSERBASE": str(prefix)}
-    done = subprocess.run([*command, action, str(prefix)], env=environment, capture_output=True, text=True)
+    done = installation(action, prefix, within=("-c", KILLED, function, str(calls)))
     assert done.returncode == -signal.SIGKILL, done.stderr
 
 
@@ -80,13 +81,23 @@ def installed(tmp_path_factory):
     return prefix, lambda *command: subprocess.run(command, **how)
 
 
-def test_a_script_of_any_folder_imports_the_contact_law(installed, tmp_path):
+@pytest.mark.parametrize(
+    "environment, told, place",
+    [
+        ((), "__file__", "lib/contact_law/contact_law/__init__.py"),
+        # plain YADE finds it in the overlay
+        (("YADE_PREFIX={}/lib/contact_law/build", "PYTHONUSERBASE=/nowhere"), "LIBRARY", "lib/contact_law/build/lib"),
+    ],
+    ids=["user's site", "overlay"],
+)
+def test_a_script_of_any_folder_imports_the_contact_law(installed, tmp_path, environment, told, place):
     prefix, call = installed
     script = tmp_path / "script.py"
-    script.write_text("import contact_law\nprint('found', contact_law.__file__, JKRMat().young, contact_law.commit)\n")
-    done = call("yade", "-n", "-x", str(script))
+    words = f"contact_law.{told}, JKRMat().young, contact_law.commit, contact_law.__version__"
+    script.write_text(f"import contact_law\nprint('found', {words})\n")
+    done = call("env", *(word.format(prefix) for word in environment), "yade", "-n", "-x", str(script))
     assert done.returncode == 0, done.stderr
-    assert f"found {prefix}/lib/contact_law/contact_law/__init__.py" in done.stdout
+    assert f"found {prefix}/{place}" in done.stdout
 
 
 def test_any_python_imports_the_analysis_and_commands_tell_its_version_and_commit(installed):
@@ -134,18 +145,6 @@ def test_files_that_the_analysis_reads_are_installed(installed):
         assert files
         for file in files:
             assert (gallery.parent / file.relative_to(TOP / "analysis")).read_bytes() == file.read_bytes()
-
-
-def test_plain_yade_finds_the_contact_law_in_the_overlay(installed, tmp_path):
-    prefix, call = installed
-    script = tmp_path / "script.py"
-    script.write_text(
-        "import contact_law\nprint('found', contact_law.__version__, contact_law.LIBRARY, JKRMat().young)\n"
-    )
-    overlay = f"{prefix}/lib/contact_law/build"
-    done = call("env", f"YADE_PREFIX={overlay}", "PYTHONUSERBASE=/nowhere", "yade", "-n", "-x", str(script))
-    assert done.returncode == 0, done.stderr
-    assert f"{overlay}/lib" in done.stdout
 
 
 def test_no_link_of_an_installation_leads_to_the_checkout(installed):
@@ -208,10 +207,10 @@ def test_a_killed_installation_is_cleaned_up_by_the_next_call(tmp_path, again):
 
 def test_an_installation_waits_for_another_one(tmp_path):
     """And doesn't take the other's half for one that was left."""
-    script, pipes = str(TOP / "contact_law/installation.py"), dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    first = subprocess.Popen([sys.executable, "-c", WAITS, script, "install", str(tmp_path)], text=True, **pipes)
+    pipes = dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    first = subprocess.Popen([sys.executable, "-c", WAITS, INSTALLER, "install", str(tmp_path)], text=True, **pipes)
     assert first.stdout.readline() == "half\n"
-    second = subprocess.Popen([sys.executable, script, "install", str(tmp_path)], stdout=subprocess.DEVNULL)
+    second = subprocess.Popen([sys.executable, INSTALLER, "install", str(tmp_path)], stdout=subprocess.DEVNULL)
     with suppress(subprocess.TimeoutExpired):
         second.wait(WAIT)
     first.communicate("\n")
@@ -249,16 +248,9 @@ def test_a_command_that_a_killed_installation_has_half_written_is_removed(tmp_pa
 
 
 def test_a_full_disk_is_told_in_a_line_and_leaves_nothing(tmp_path):
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=9m", "none", disk], capture_output=True, text=True)
-    if mount.returncode:
-        pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
-    try:
+    with small_disk(tmp_path / "disk", "9m") as disk:
         refused(installation("install", disk), "No space left on device")
         assert [path for path in disk.rglob("*") if not path.is_dir()] == []
-    finally:
-        subprocess.run(["umount", disk], check=True)
 
 
 @pytest.mark.parametrize("listed", ['["{mine}"]', "no list", "{{}}"], ids=["of version 0.3", "no JSON", "no list"])
