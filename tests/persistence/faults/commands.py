@@ -112,7 +112,7 @@ COMMANDS = (
     _of_analysis("status run"),
     _of_analysis("verify run"),
     _of_analysis("outcome --velocity 5 --projectile 200 --target 500 --filling 0.15"),
-    Command("analysis.atlas.make", "analysis.atlas.make", ("atlas",), watched="atlas", every=4),
+    Command("analysis.atlas.make", "analysis.atlas.make", ("atlas",), watched="atlas", every=8),
     Command("install", "contact_law/installation.py", ("install", "out"), ("install", "out"), every=211),
     Command("uninstall", "contact_law/installation.py", ("uninstall", "out"), ("install", "out"), every=41),
 )
@@ -207,7 +207,7 @@ class Trial:
 
 
 def _part_of_the_atlas(folder):
-    """A twelfth of its table of runs: the model's fit takes the time."""
+    """A twelfth of its table of runs: the model takes a minute of each call."""
     columns = flat(MEASURED)
     table, head = read_table(RUNS_FILE, columns)
     (folder / "runs.csv").write_text(table_text(table[::12], columns, head))
