@@ -112,7 +112,7 @@ COMMANDS = (
     _of_analysis("status run"),
     _of_analysis("verify run"),
     _of_analysis("outcome --velocity 5 --projectile 200 --target 500 --filling 0.15"),
-    Command("analysis.atlas.make", "analysis.atlas.make", ("atlas",), watched="atlas", every=8),
+    Command("analysis.atlas.make", "analysis.atlas.make", ("atlas",), watched="atlas", every=4),
     Command("install", "contact_law/installation.py", ("install", "out"), ("install", "out"), every=211),
     Command("uninstall", "contact_law/installation.py", ("uninstall", "out"), ("install", "out"), every=41),
 )
