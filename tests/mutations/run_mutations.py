@@ -116,6 +116,7 @@ def main(arguments):
     print(f"{len(chosen) - missed} of {len(chosen)} were noticed")
     out = options.out or (None if options.words else HERE / "results" / "mutations.md")
     if out:
+        out.parent.mkdir(exist_ok=True)
         out.write_text(HEAD.format(**about, minutes=(time.monotonic() - begun) / 60) + "".join(rows))
     return 1 if missed else 0
 
