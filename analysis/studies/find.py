@@ -3,12 +3,13 @@
 import pkgutil
 from dataclasses import replace
 from importlib import import_module
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from importlib.util import find_spec
 from pathlib import Path
 from traceback import extract_tb
 
 from .. import studies
 from ..runs.named import suggested
+from ..runs.script import module_of
 
 
 class NoSuchStudy(Exception):
@@ -41,10 +42,8 @@ def figures(study):
 def _own(file):
     if not file.is_file():
         raise NoSuchStudy(f"{file}: no such file")
-    spec = spec_from_file_location(f"own_study_{file.stem}", file)
-    module = module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        module = module_of(str(file), f"own_study_{file.stem}")
     except (Exception, SystemExit) as error:
         where = error.lineno if isinstance(error, SyntaxError) else extract_tb(error.__traceback__)[-1].lineno
         said = " ".join(str(error).split())

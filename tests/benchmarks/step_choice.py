@@ -53,7 +53,8 @@ class Table:
         """Write the scenes; origins: what to say of sets that are new, the others' comments stay."""
         text = "".join(f"# {name}: {words}\n" for name, words in {**self.origins(), **origins}.items())
         scenes = scenes.astype({name: "Int64" for name in WHOLE if name in scenes})
-        errors = scenes[[*self.errors]].applymap(lambda error: "" if error != error else f"{error:.4g}")
+        shown = lambda error: "" if error != error else f"{error:.4g}"
+        errors = scenes[[*self.errors]].apply(lambda column: column.map(shown))
         self.path.write_text(text + scenes.assign(**errors).to_csv(index=False))
 
     def measure(self, again=False):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from running import COMPRESS, call, messages, read_arrays, read_json, refusal
 from running import completed as run_completed
+from scipy.integrate import trapezoid
 
 from analysis.runs.format import CHANNELS
 from yade_scripts.experiments.compression import KIND, typical_first_filling
@@ -70,7 +71,7 @@ def test_pressure_is_the_work_per_volume(run):
     size, found = volume(history), []
     for low in 0.1 * 1.5 ** np.arange(4):
         part = np.flatnonzero((history["filling"] >= low) & (history["filling"] <= 1.5 * low))
-        virial = np.trapz(history["pressure"][part], size[part])
+        virial = trapezoid(history["pressure"][part], size[part])
         found.append(virial / (history["boundaryWork"][part[-1]] - history["boundaryWork"][part[0]]))
     assert found == pytest.approx(np.ones(4), abs=0.06)
 
@@ -124,7 +125,7 @@ def test_a_piston_between_plates(tmp_path):
     late = history["filling"] > 0.25
     assert history["piston_pressure"][late].mean() == pytest.approx(history["pressure"][late].mean(), rel=0.03)
     size, work = volume(history)[late], history["constraintWork"][late]
-    assert np.trapz(history["pressure"][late], size) == pytest.approx(work[-1] - work[0], rel=0.06)
+    assert trapezoid(history["pressure"][late], size) == pytest.approx(work[-1] - work[0], rel=0.06)
     total = sum(history[name] for name in CHANNELS)
     assert np.abs(total - total[0]).max() < 1e-4 * -work[-1]
     last = read_arrays(tmp_path, "run", "states", sorted(os.listdir(tmp_path / "run" / "states"))[-1])

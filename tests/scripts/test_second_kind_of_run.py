@@ -1,6 +1,7 @@
 """Another kind of run, as one script of a user (shrinking_cell.py): it is run, recorded and studied without a change elsewhere."""
 
 import os
+import sys
 
 import numpy as np
 import pytest
@@ -79,7 +80,9 @@ def test_a_study_of_two_kinds(run, tmp_path):
     assert kinds == {"cell": "shrink", "collision": "collision"}
 
 
-def test_scripts_that_define_no_kind(tmp_path):
+def test_scripts_that_define_no_kind(tmp_path, monkeypatch):
+    """Each is read anew, though of one second and size, and leaves nothing."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
     script = tmp_path / "script.py"
     for text, words in {
         "x = 1": "defines no KIND; must be a",
@@ -89,3 +92,4 @@ def test_scripts_that_define_no_kind(tmp_path):
         script.write_text(text)
         with refused(NoKind, words):
             kind_of(str(script))
+    assert [file.name for file in tmp_path.iterdir()] == ["script.py"]

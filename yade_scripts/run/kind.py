@@ -1,6 +1,5 @@
 """What run/ and runner/ know of a kind of run: one Kind for each file of experiments/, named KIND in its script."""
 
-import importlib.util
 import os
 import sys
 from dataclasses import dataclass, field
@@ -9,6 +8,7 @@ from typing import Any, Callable, Mapping, NamedTuple
 import numpy as np
 
 from analysis.runs.format import RunKind
+from analysis.runs.script import module_of
 from yade_scripts.parameters.errors import InputError
 
 
@@ -95,9 +95,7 @@ def kind_of(script):
     name = "script_" + os.path.splitext(os.path.basename(script))[0]
     path = list(sys.path)
     try:
-        spec = importlib.util.spec_from_file_location(name, script)
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
+        module = module_of(script, name)
     except (Exception, SystemExit) as error:
         raise NoKind(f"{script}: {' '.join(str(error).split()) or type(error).__name__}") from None
     finally:
