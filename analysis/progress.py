@@ -1,10 +1,14 @@
 """Progress with the time left, of whatever takes longer than a moment: on a terminal and in a notebook, nothing elsewhere."""
 
 import sys
+from threading import RLock
 
 from tqdm import tqdm
 
 from .printable import printable
+
+# tqdm's own is one between processes too, for which Python 3.14 starts a process that outlives a killed run, and warns.
+tqdm.set_lock(RLock())
 
 
 def progress(items, what, total=None):

@@ -62,7 +62,7 @@ def growth_efficiency(largest, target, projectile):
     """f_gro = (N_lar - N_tar)/N_pro from the numbers of grains of the largest fragment, of target and
     projectile: A22 eq 28.
 
-    >>> growth_efficiency(30, 20, 10)
+    >>> float(growth_efficiency(30, 20, 10))
     1.0
     """
     return np.subtract(largest, target) / projectile

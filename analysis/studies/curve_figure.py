@@ -74,9 +74,10 @@ class CurveFigure:
         """The Figure of definition.Results; None where there is nothing to draw."""
         quantity = results[self.y]
         series = _chosen(quantity.values, self.where)
-        if not len(series):
+        some = _drawable(self, series)
+        if not len(some):
             return None
-        shown = list(dict.fromkeys(series.index.get_level_values(self.panel))) if self.panel else [None]
+        shown = list(dict.fromkeys(some.index.get_level_values(self.panel))) if self.panel else [None]
         shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
         columns = min(len(shown), WIDEST)
         drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
@@ -114,6 +115,11 @@ def _chosen(series, where):
     return select(series, **single)
 
 
+def _drawable(figure, series):
+    """The part of a Series that its axis can show."""
+    return series[[estimate.value > 0 for estimate in series]] if "y" in figure.logarithmic else series
+
+
 def _share_y(places, limits):
     """One scale for all panels of a quantity."""
     low, high = zip(*(place.get_ylim() for place in places))
@@ -137,9 +143,7 @@ def _curves(axes, figure, quantity, series, results):
 
 
 def _curve(axes, figure, quantity, series, colour, label=None, k=0, aside=0.0):
-    series = series.sort_index()
-    if "y" in figure.logarithmic:
-        series = series[[estimate.value > 0 for estimate in series]]
+    series = _drawable(figure, series).sort_index()
     x, words = series.index.get_level_values(figure.x), figure.where.get(figure.x)
     if isinstance(words, tuple) and isinstance(words[0], str):
         axes.set_xticks(range(len(words)), [level(figure.x).text(word).replace(" ", "\n") for word in words])

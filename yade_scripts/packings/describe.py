@@ -18,7 +18,7 @@ def description(packing):
     The filling factor is the grains' volume over that of the sphere of the characteristic radius, the fractal dimension the
     mean slope of the number of grains about a grain (analysis.measures.structure) from NEAREST to the radius of gyration."""
     pairs, radius = contacts(packing), packing.radius.mean()
-    pieces = fragment_labels(packing.grains, pairs).max() + 1
+    pieces = int(fragment_labels(packing.grains, pairs).max()) + 1
     characteristic, gyration = characteristic_radius(packing), gyration_radius(packing)
     words = [
         f"{packing.grains} grains in {pieces} piece{'s' * (pieces > 1)}, {len(pairs)} contacts",

@@ -2,7 +2,7 @@
 
 import sys
 
-from tqdm import tqdm
+from analysis.progress import tqdm
 
 
 def progress_bar(total, already=0, stream=sys.stderr, unit="step"):

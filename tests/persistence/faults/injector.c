@@ -202,3 +202,9 @@ int link(const char* from, const char* path)
 	counted_at("link", AT_FDCWD, path, 0);
 	return next(from, path);
 }
+int linkat(int from_at, const char* from, int at, const char* path, int flags)
+{
+	NEXT(linkat);
+	counted_at("link", at, path, 0);
+	return next(from_at, from, at, path, flags);
+}
