@@ -40,6 +40,10 @@ def points(axes, x, estimates, colour, label=None, marker="o", line="-", scale=1
     known = np.array([error is not None for error in errors], dtype=bool)
     bars = np.array([error or (0.0, 0.0) for error in errors]).T / scale
     place = {"transform": offset_copy(axes.transData, axes.figure, aside, units="points"), "color": colour}
+    # Limits as if at x: matplotlib 3.10.9 leaves out what is moved.
+    good = np.isfinite(value)
+    for ends in (value - bars[0], value + bars[1]) if len(value) else ():
+        axes.update_datalim(np.column_stack([np.asarray(x, dtype=float), ends])[good])
     axes.plot(x, value, linestyle=line or "none", lw=1.2, **place)
     axes.errorbar(x, value, bars, fmt=marker, capsize=3, markersize=5, mfc="white", label=label, **place)
     axes.plot(np.asarray(x)[known], value[known], marker, markersize=5, zorder=3, **place)
@@ -74,10 +78,9 @@ class CurveFigure:
         """The Figure of definition.Results; None where there is nothing to draw."""
         quantity = results[self.y]
         series = _chosen(quantity.values, self.where)
-        some = _drawable(self, series)
-        if not len(some):
+        if not len(series):
             return None
-        shown = list(dict.fromkeys(some.index.get_level_values(self.panel))) if self.panel else [None]
+        shown = list(dict.fromkeys(series.index.get_level_values(self.panel))) if self.panel else [None]
         shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
         columns = min(len(shown), WIDEST)
         drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
@@ -115,11 +118,6 @@ def _chosen(series, where):
     return select(series, **single)
 
 
-def _drawable(figure, series):
-    """The part of a Series that its axis can show."""
-    return series[[estimate.value > 0 for estimate in series]] if "y" in figure.logarithmic else series
-
-
 def _share_y(places, limits):
     """One scale for all panels of a quantity."""
     low, high = zip(*(place.get_ylim() for place in places))
@@ -143,7 +141,9 @@ def _curves(axes, figure, quantity, series, results):
 
 
 def _curve(axes, figure, quantity, series, colour, label=None, k=0, aside=0.0):
-    series = _drawable(figure, series).sort_index()
+    series = series.sort_index()
+    if "y" in figure.logarithmic:
+        series = series[[estimate.value > 0 for estimate in series]]
     x, words = series.index.get_level_values(figure.x), figure.where.get(figure.x)
     if isinstance(words, tuple) and isinstance(words[0], str):
         axes.set_xticks(range(len(words)), [level(figure.x).text(word).replace(" ", "\n") for word in words])

@@ -75,6 +75,8 @@ def test_the_next_call_takes_up_the_killed_row_and_skips_what_has_ended(first_ca
 
 def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
     write_table(tmp_path, "tiny.table", "killed", "ends")
+    table = tmp_path / "tiny.table"
+    table.write_text(table.read_text().replace("500e-9", "5000e-9"))  # it must not end before it is stopped
     old = tmp_path / "runs" / "logs" / "tiny" / "ends.log"  # of an earlier failure
     old.parent.mkdir(parents=True)
     old.write_text("status  : 1 (FAILED)\nfinished: long ago\n")
