@@ -11,6 +11,7 @@ import pytest
 from faults import scenarios
 from faults.commands import COMMANDS, WRITERS, Trial
 from faults.scenarios import RECORDER, RUN, SCENARIOS, enumerated, enumerated_stops, power_loss
+from running import small_disk
 
 from analysis.runs.write import is_unfinished
 
@@ -103,14 +104,7 @@ def test_no_fault_leaves_half_of_what_a_command_writes(forks, tmp_path, name, ev
 @pytest.mark.parametrize("size", [16, 24, 32, 40])
 def test_a_disk_that_is_really_full(forks, tmp_path, size):
     """A small file system in memory; size in kB. A run needs less than 80."""
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    mount = subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", f"size={size}k", "none", disk], capture_output=True, text=True
-    )
-    if mount.returncode:
-        pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
-    try:
+    with small_disk(tmp_path / "disk", f"{size}k") as disk:
         done = forks.run(RUN, disk / "run")
         wrong = scenarios.wrong_on_a_full_disk(done)
         assert done.status and not wrong, wrong
@@ -119,5 +113,3 @@ def test_a_disk_that_is_really_full(forks, tmp_path, size):
         straight = forks.run(RUN, tmp_path / "straight")
         assert straight.status == 0
         assert scenarios.arrays(disk / "run") == scenarios.arrays(tmp_path / "straight")
-    finally:
-        subprocess.run(["umount", disk], check=True)
