@@ -1,5 +1,6 @@
 """The pages of a study in Markdown: one screen that answers, and the details behind it. All studies have the same."""
 
+from collections import Counter
 from functools import partial
 
 import pandas
@@ -8,10 +9,9 @@ from ..measures.outcome import UNDECIDED
 from ..runs.provenance import provenance_lines
 from .paper import PaperError
 from .tables import claims_table, markdown_table, quantity_table, tests_table
-from .verdict import NO, UNTESTED, YES
 
 TEXT_ALONE = "The paper enters by its text and printed numbers alone; its figures were not measured."
-OURS = "Ours: mean ± standard error (independent {}). *Yes* and *no* by the tests declared in paper.toml; *untested*: not decided."
+OURS = "Ours: mean ± standard error (independent {}). *Yes*, *no*: by the tests declared in paper.toml; *untested*: undecided, not run or without a test."
 WORDS = (("How our set-up differs", "differs"), ("New", "new"), ("Missing, and what it would cost", "missing"))
 DETAILS_FILE, PAGE_FILE = "details.md", "README.md"
 
@@ -26,7 +26,7 @@ def screen(analysis, pictures, prose):
     parts.append(filled(words.verdict, analysis) if prose and words.verdict else counted(analysis.judgements))
     if words.figure in pictures:
         name, caption = pictures[words.figure]
-        parts.append(f"![{caption}]({name})\n\n{caption}")
+        parts.append(f"![{words.figure}]({name})\n\n{caption}")
     if judged:
         parts += [markdown_table(claims_table(judged)), OURS.format(analysis.study.independent)]
     parts += [undecided(analysis.results.table)]
@@ -61,13 +61,14 @@ def details(analysis, pictures, commands=()):
 
 
 def counted(judgements):
-    """One sentence on how many of a paper's statements these runs reproduce; '' without any."""
-    numbers = {kind: sum(j.verdict == kind for j in judgements) for kind in (YES, NO, UNTESTED)}
+    """One sentence on how many of the comparisons with a paper these runs decide; '' without any."""
     if not judgements:
         return ""
+    numbers = Counter(j.state for j in judgements)
     return (
-        f"Of {len(judgements)} statements of the paper these runs reproduce {numbers[YES]}, contradict {numbers[NO]} and leave "
-        f"{numbers[UNTESTED]} untested."
+        f"Of {len(judgements)} comparisons with the paper (a statement at each size, velocity and rule is one) {numbers['reproduced']} are reproduced "
+        f"and {numbers['contradicted']} contradicted; {numbers['undecided']} are undecided, {numbers['without a test']} without a test, and "
+        f"{numbers['not run']} have not run."
     )
 
 
@@ -75,7 +76,7 @@ def undecided(table):
     """A sentence on runs whose outcome is undecided; '' where there is none."""
     number = int((table.outcome == UNDECIDED).sum()) if "outcome" in table else 0
     return (
-        f"Undecided: {number} of {len(table)} runs ended before their outcome was; fractions have bounds with them on either side."
+        f"Undecided: {number} of {len(table)} runs ended before their outcome was; a fraction says how many of its runs are."
         if number
         else ""
     )

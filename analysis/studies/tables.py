@@ -2,6 +2,7 @@
 
 import pandas
 
+from .estimate import number_text
 from .levels import level
 from .runs import keyed
 
@@ -13,7 +14,7 @@ def claims_table(judgements):
     rows = [
         (
             f"{j.claim.label}{f' [{j.unit}]' if j.unit else ''}",
-            j.claim.printed,
+            j.claim.printed + (f", margin {number_text(j.claim.margin)}" if j.claim.margin else ""),
             "not run" if j.ours is None else j.ours_text,
             j.verdict,
         )

@@ -32,6 +32,13 @@ class Judgement:
     why: str
 
     @property
+    def state(self):
+        """'reproduced', 'contradicted', or why it is neither: 'undecided', 'without a test' (or without an error of ours), 'not run'."""
+        if self.verdict != UNTESTED:
+            return "reproduced" if self.verdict == YES else "contradicted"
+        return "not run" if self.ours is None else "without a test" if self.p is None else "undecided"
+
+    @property
     def ours_text(self):
         """'54.0 ± 1.0 (4)', with the number of pairs; '-' where it is not known."""
         return "-" if self.ours is None else self.ours.text

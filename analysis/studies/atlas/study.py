@@ -12,7 +12,7 @@ from ...measures.outcome import NEVER_MET, UNDECIDED
 from ...runs.collect import Scene
 from ..definition import Quantity, Study
 from ..estimate import EXACT, Estimate
-from ..runs import Runs, select
+from ..runs import Runs, select, together
 from .bouncing import threshold_exponent
 
 STICKING, BOUNCING, *BREAKING = KINDS
@@ -20,6 +20,7 @@ SPEEDS = np.geomspace(0.078, 26.2, 9)  # v_break: limits of bands
 FILLINGS = (0.0, 0.04, 0.12, 0.2, 0.3, 0.4, 0.6)
 SLOW = 5.0  # v_break, 19 m/s for ice: faster aggregates break, or pass each other
 MANY_CONTACTS, COMPACT = 6.0, 0.4
+ERODING = 13.0  # v_break; chosen after the runs
 FAST, HALF = 20.0, 0.5  # v_break; mass ratio of equals at least, and b of head-on collisions at most
 HEAD_ON, EQUAL = 0.7, 0.25  # impact parameter at most, mass ratio at least
 BY_BAND, BY_GROUP = ("filling", "speed"), ("group",)
@@ -43,7 +44,8 @@ def quantities(table):
     for kind in KINDS:
         meaning = f"{kind.replace('_', ' ')}, of decided runs, by filling (mean of a band) and velocity over v_break"
         yield Quantity(f"{kind}_at", meaning, runs.fractions(is_kind(kind), BY_BAND))
-    yield from _bouncing(runs)
+    yield from _bouncing(runs, all_runs.of(touching(table)))
+    yield _fast(runs)
     head_on = (runs.table.impact < HEAD_ON) & (runs.table.mass_ratio > EQUAL) & (at.velocity[runs.table.index] < SLOW)
     compressed = (runs.table.structure == "compressed") & (at.filling[runs.table.index] > 0.35)
     lost = _grouped(runs, {"compressed of filling 0.35 to 0.5": head_on & compressed}).estimates(
@@ -101,35 +103,28 @@ def _grouped(runs, groups):
     return runs.of(pandas.concat(parts, ignore_index=True))
 
 
-def _bouncing(runs):
-    """Where aggregates bounce, of decided runs below SLOW, and differences of it."""
-    at = variables(runs.table)
-    slow = runs.of(runs.table[at.velocity < SLOW].assign(bounced=lambda t: (t.outcome == BOUNCING).astype(float)))
-    table, at = slow.table, at.loc[slow.table.index]
-    contacts = table[["coordination_target", "coordination_projectile"]].max(axis=1)
+def _bouncing(runs, touched):
+    """Where aggregates bounce: of all that touch and of decided runs, below SLOW, and differences of it between the latter."""
+    all_slow, _ = _slower(touched)
+    found = _grouped(all_slow, _kinds(all_slow.table)).fractions("bounced", BY_GROUP, lambda t: t.outcome == UNDECIDED)
+    yield Quantity(BOUNCING, f"runs that bounce, of those below {SLOW:g} v_break that touch", found)
+    slow, at = _slower(runs)
+    table = slow.table
     compact, narrow = at.filling > COMPACT, at.filling.between(0.4, 0.5)
     large = compact & (at.grains > at.grains[compact].median())
-    groups = {
-        "compressed of filling 0.35 to 0.45": (table.structure == "compressed") & at.filling.between(0.35, 0.45),
-        "fewer than 6 contacts": contacts < MANY_CONTACTS,
-        "6 contacts or more": contacts >= MANY_CONTACTS,
-        "equal and dense": compact & (at.mass_ratio > HALF),
-        "equal, dense and head-on": compact & (at.mass_ratio > HALF) & (table.impact < HALF),
-        **{f"structure {name}": table.structure == name for name in sorted(set(table.structure))},
-    }
-    found = _grouped(slow, groups).fractions("bounced", BY_GROUP)
-    yield Quantity(BOUNCING, f"runs that bounce, of decided ones below {SLOW:g} v_break", found)
     pairs = {
         "larger than smaller": (large, compact & ~large),
         "CPE than compressed": (narrow & (table.structure == "cpe"), narrow & (table.structure == "compressed")),
     }
-    fast = runs.of(runs.table[variables(runs.table).velocity.between(SLOW, FAST)])
+    fast = touched.of(touched.table[variables(touched.table).velocity.between(SLOW, FAST)])
     groups = {
         "equal": fast.table.mass_ratio > HALF,
         "equal and head-on": (fast.table.mass_ratio > HALF) & (fast.table.impact < HALF),
     }
-    found = _grouped(fast, groups).fractions(lambda t: t.outcome == BOUNCING, BY_GROUP)
-    meaning = f"runs that bounce, of decided ones of {SLOW:g} to {FAST:g} v_break; equal: mass ratio above {HALF:g}, head-on: b below {HALF:g}"
+    found = _grouped(fast, groups).fractions(
+        lambda t: t.outcome == BOUNCING, BY_GROUP, lambda t: t.outcome == UNDECIDED
+    )
+    meaning = f"runs that bounce, of those of {SLOW:g} to {FAST:g} v_break that touch; equal: mass ratio above {HALF:g}, head-on: b below {HALF:g}"
     yield Quantity("bouncing_fast", meaning, found)
     mean = lambda name, own: _grouped(slow, {name: own}).estimates("bounced", BY_GROUP)
     more = [mean(name, one) - mean(name, other) for name, (one, other) in pairs.items()]
@@ -141,6 +136,40 @@ def _bouncing(runs):
         "a of N ~ v^a, the grains from which on more than half of the runs bounce: logistic regression on ln N and ln v"
     )
     yield Quantity("bouncing_exponent", meaning, select(law, number="exponent"))
+
+
+def _slower(runs):
+    """(Runs of those below SLOW with the column `bounced`, their variables)."""
+    at = variables(runs.table)
+    slow = runs.of(runs.table[at.velocity < SLOW].assign(bounced=lambda t: (t.outcome == BOUNCING).astype(float)))
+    return slow, at.loc[slow.table.index]
+
+
+def _kinds(table):
+    """{name: mask (runs,)} of the kinds of pairs of which the page tells how often they bounce."""
+    at = variables(table)
+    contacts = table[["coordination_target", "coordination_projectile"]].max(axis=1)
+    equal = (at.filling > COMPACT) & (at.mass_ratio > HALF)
+    return {
+        "compressed of filling 0.35 to 0.45": (table.structure == "compressed") & at.filling.between(0.35, 0.45),
+        "fewer than 6 contacts": contacts < MANY_CONTACTS,
+        "6 contacts or more": contacts >= MANY_CONTACTS,
+        "equal and dense": equal,
+        "equal, dense and head-on": equal & (table.impact < HALF),
+        **{f"structure {name}": table.structure == name for name in sorted(set(table.structure))},
+    }
+
+
+def _fast(runs):
+    """Decided runs above SLOW by outcome, below and above the velocity from which most erode."""
+    at = variables(runs.table).velocity
+    groups = {
+        f"{SLOW:g} to {ERODING:g} v_break": at.between(SLOW, ERODING),
+        f"above {ERODING:g} v_break": at > ERODING,
+    }
+    grouped = _grouped(runs, groups)
+    of_kinds = {kind: grouped.fractions(lambda t, kind=kind: t.outcome == kind, BY_GROUP) for kind in KINDS}
+    return Quantity("fast", f"decided runs above {SLOW:g} v_break by outcome", together(of_kinds, "outcome"))
 
 
 def _silicate(runs):

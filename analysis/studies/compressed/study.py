@@ -75,7 +75,7 @@ def quantities(table):
 
 STUDY = Study(
     title="Collisions of close-packed and of compressed aggregates",
-    question="Were close-packed and extracted (CPE) aggregates a fair stand-in for compressed ones in Arakawa et al. (2024)?",
+    question="Do compressed aggregates collide as close-packed and extracted (CPE) ones of the same filling factor do?",
     scene=Scene("the study of CPE and compressed aggregates", collisions.HEAD_ON_ICE, ("velocity",), measured=KEY),
     measured=MEASURED,
     quantities=quantities,
