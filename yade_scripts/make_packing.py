@@ -21,7 +21,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from analysis.libraries import require_libraries
 from analysis.signals import end_quietly
 
-end_quietly(signal.SIGINT)
+end_quietly(signal.SIGINT, signal.SIGTERM)
 require_libraries()
 from analysis.printable import printable, shell_line
 from analysis.runs.write import require_file
@@ -90,14 +90,15 @@ def main(arguments):
     if options:
         raise ParameterError(f"{options[0]}: not understood; must be name=value, or --help")
     if not 1 <= len(files) <= 2:
-        raise ParameterError(f"{len(files)} files given; must be one or two to write, a.npz b.npz, or --help")
+        raise ParameterError(f"{len(files)} files given; must be one or two to write, a.npz b.npz (names without =), or --help")
     if len(set(map(os.path.realpath, files))) < len(files):
         raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
     texts = from_arguments(argument for argument in arguments if "=" in argument)
     for file in files:
         if not file.endswith(".npz"):
             raise ParameterError(f"{file}: a packing is saved as .npz; must end in .npz")
-        require_file(file, inputs=[texts["from"]] if "from" in texts else ())
+        if require_file(file, inputs=[texts["from"]] if "from" in texts else ()) and not packings.is_packing(file):
+            raise ParameterError(f"{file}: is there, and no packing; must be a new file, or a packing to replace")
     for name in WITHOUT_EFFECT:
         if name in texts:
             raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")

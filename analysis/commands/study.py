@@ -75,7 +75,7 @@ def run(options):
         if not options.runs:
             complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
             return FAILED
-        table = _writes_table(options)
+        table = _writes_table(options, study.name)
         analysis = analyse(study, options.runs)
         _complain_of(analysis.found)
         written = _write(analysis, options, table) if options.figures or options.page else None
@@ -97,16 +97,17 @@ def run(options):
     return FAILED if analysis.found.problems else 0
 
 
-def _writes_table(options):
+def _writes_table(options, study):
     """Whether a table is written: not in the place of all that is read, which holds the same runs. OSError where a file cannot be
-    written, or is one of several that are read."""
+    written, is one of several that are read, or is somebody else's."""
     from ..runs.write import require_file
-    from ..studies.analyse import TABLE_FILE
+    from ..studies.analyse import TABLE_FILE, require_own
 
     if options.page:
         require_file(options.page)
     if not options.figures:
         return True
+    require_own(Path(options.figures), study)
     file = os.path.join(options.figures, TABLE_FILE)
     if [os.path.realpath(path) for path in options.runs] == [os.path.realpath(file)]:
         return False

@@ -55,6 +55,9 @@ def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, alon
     )
     with replacing(file, ending=file.suffix) as part:
         _encode(frames, os.path.abspath(part.name), frames_per_second)
+        written = _frames_in(os.path.abspath(part.name))
+        if written != len(run.states):  # ffmpeg ends with status 0 on a full disk
+            raise NoFilm(f"{file}: ffmpeg has written {written} of {len(run.states)} frames; must have room on the disk")
     return file
 
 
@@ -127,6 +130,13 @@ def _font(size=20):
     import matplotlib
 
     return ImageFont.truetype(os.path.join(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf"), size)
+
+
+def _frames_in(file):
+    """Number of frames in a film, 0 where it is none."""
+    asked = ["-count_packets", "-select_streams", "v:0", "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0"]
+    done = subprocess.run(["ffprobe", "-v", "error", *asked, file], capture_output=True, text=True)
+    return int(done.stdout) if done.stdout.strip().isdigit() else 0
 
 
 def _encode(frames, file, frames_per_second):

@@ -24,7 +24,7 @@ except ImportError:  # not of POSIX: as a file system without locks
         raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS), file.name)
 
 
-_UNFINISHED = re.compile(r"\..+\.\w+\.unfinished(\.\w+)?")
+_UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}\.unfinished(\.\w+)?")
 _NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK)
 _KINDS = {stat.S_IFDIR: "folder", stat.S_IFIFO: "FIFO", stat.S_IFSOCK: "socket"}
 

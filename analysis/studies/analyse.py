@@ -1,12 +1,14 @@
 """From a study and paths to its results, pages, table and figures."""
 
+import errno
 import json
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..progress import progress
-from ..runs.seal import UNSUMMED, read_summed, summed
+from ..runs.seal import UNSUMMED, read_summed, read_text, summed
 from ..runs.table import NoRunFolder, table_text
 from ..runs.write import replacing, write_text
 from .columns import CLOSURE
@@ -129,6 +131,16 @@ class Analysis:
         """The HTML page (str) with what was written in it. view: (file beside it on which a run can be turned, the run's name), or None."""
         files = [written.folder / name for name in (TABLE_FILE, DATA_FILE)]
         return html_page(self.study.title, written.texts.values(), written.folder, files, view)
+
+
+def require_own(folder, study):
+    """Raise OSError where a folder (Path) holds a page or table that no analysis of a study of this name has written."""
+    files = [folder / name for name in (PAGE_FILE, DETAILS_FILE, DATA_FILE, TABLE_FILE)]
+    there = [file for file in files if file.is_file() and not file.is_symlink()]  # the writer refuses all else
+    head = re.compile(r'(?:# )?\{\s*(?:"sha256": "\w+",\s*)?"study": ' + re.escape(json.dumps(study)))
+    if there and not any(head.match(read_text(file)) for file in there if file.name in (DATA_FILE, TABLE_FILE)):
+        reason = f"no analysis of {study} has written it; must be another folder"
+        raise OSError(errno.EEXIST, reason, str(there[0]))
 
 
 @dataclass(frozen=True)

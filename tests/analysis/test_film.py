@@ -50,6 +50,21 @@ def test_every_state_is_a_frame_with_the_grains_in_their_places(run):
         assert _places(frame, AGGREGATE_COLOURS[1]) == pytest.approx(0.5 + x / width, abs=0.01)
 
 
+@needs_ffmpeg
+def test_a_full_disk_keeps_the_film_that_was_there(run, tmp_path, capsys):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=12k", "tmpfs", disk], capture_output=True).returncode:
+        pytest.skip("a file system of its own can't be mounted")
+    try:
+        (disk / "film.gif").write_bytes(b"before")
+        assert main(["film", str(run), "--out", str(disk / "film.gif")]) == 2
+        assert "must have room on the disk" in capsys.readouterr().err
+        assert [(path.name, path.read_bytes()) for path in disk.iterdir()] == [("film.gif", b"before")]
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
 @pytest.mark.parametrize(
     "name, words", [("film.nonsense", "film.nonsense: must end in .mp4 or .gif"), ("film.mp4", "ffmpeg: not installed")]
 )

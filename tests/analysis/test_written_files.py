@@ -99,8 +99,9 @@ def test_what_killed_writers_left_goes_and_what_others_write_stays(tmp_path):
         assert list(tmp_path.iterdir()) == [own]
         os.kill(writer, signal.SIGKILL)
         os.waitpid(writer, 0)
+    (tmp_path / ".thesis.tex.unfinished").write_text("the user's own")
     write_text(tmp_path / "page.html", "whole")
-    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+    assert {path.name for path in tmp_path.iterdir()} == {"page.html", ".thesis.tex.unfinished"}
 
 
 @pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
@@ -117,7 +118,15 @@ def test_a_film_that_is_stopped_leaves_nothing(own):
     assert set(own.iterdir()) == before
 
 
-# ---- nothing is written over what is read ----
+# ---- nothing is written over what is read, or what others have written ----
+
+
+def test_pages_of_others_stay(own, capsys, monkeypatch):
+    monkeypatch.chdir(own)
+    (own / "README.md").write_text("the user's own")
+    assert main(["study", "sticking.py", "runs/s1", "--figures", "."]) == 2
+    assert capsys.readouterr().err == "analysis: README.md: no analysis of sticking has written it; must be another folder\n"
+    assert (own / "README.md").read_text() == "the user's own"
 
 
 def test_a_table_is_not_written_over_itself(own, capsys, monkeypatch):

@@ -54,7 +54,7 @@ def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
     before, saved = read_json(run, "run.json"), read_arrays(run, "checkpoint", "recorder.npz")["rows"]
     assert before["outcome"] == ("interrupted" if number == signal.SIGTERM else "running")
     assert 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
-    left = [run / ".history.npz.x.unfinished", run / "states" / ".000003.npz.x.unfinished"]
+    left = [run / ".history.npz.0123abcd.unfinished", run / "states" / ".000003.npz.0123abcd.unfinished"]
     for path in left:
         path.write_bytes(b"half")
     about, _ = completed(tmp_path, *arguments, "resume=1", script=script)

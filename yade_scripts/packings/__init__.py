@@ -13,6 +13,7 @@ from yade_scripts.packings.packing import (  # noqa: F401
     contacts,
     extent,
     gyration_radius,
+    is_packing,
     load,
     moved,
     random_stream,

@@ -111,6 +111,14 @@ def save(path, packing):
     write_bytes(path, content)
 
 
+def is_packing(path):
+    """Whether a file is one that save() wrote, be its grains right or not."""
+    try:
+        return zipfile.is_zipfile(path) and bool(read_arrays(path, ("seed",), texts=("parameters",)))
+    except (RunFolderError, OSError):
+        return False
+
+
 def load(path):
     """Read a packing that save() wrote.
 
