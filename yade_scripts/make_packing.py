@@ -90,7 +90,9 @@ def main(arguments):
     if options:
         raise ParameterError(f"{options[0]}: not understood; must be name=value, or --help")
     if not 1 <= len(files) <= 2:
-        raise ParameterError(f"{len(files)} files given; must be one or two to write, a.npz b.npz (names without =), or --help")
+        raise ParameterError(
+            f"{len(files)} files given; must be one or two to write, a.npz b.npz (names without =), or --help"
+        )
     if len(set(map(os.path.realpath, files))) < len(files):
         raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
     texts = from_arguments(argument for argument in arguments if "=" in argument)

@@ -57,7 +57,9 @@ def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, alon
         _encode(frames, os.path.abspath(part.name), frames_per_second)
         written = _frames_in(os.path.abspath(part.name))
         if written != len(run.states):  # ffmpeg ends with status 0 on a full disk
-            raise NoFilm(f"{file}: ffmpeg has written {written} of {len(run.states)} frames; must have room on the disk")
+            raise NoFilm(
+                f"{file}: ffmpeg has written {written} of {len(run.states)} frames; must have room on the disk"
+            )
     return file
 
 

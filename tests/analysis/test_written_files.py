@@ -125,7 +125,10 @@ def test_pages_of_others_stay(own, capsys, monkeypatch):
     monkeypatch.chdir(own)
     (own / "README.md").write_text("the user's own")
     assert main(["study", "sticking.py", "runs/s1", "--figures", "."]) == 2
-    assert capsys.readouterr().err == "analysis: README.md: no analysis of sticking has written it; must be another folder\n"
+    assert (
+        capsys.readouterr().err
+        == "analysis: README.md: no analysis of sticking has written it; must be another folder\n"
+    )
     assert (own / "README.md").read_text() == "the user's own"
 
 

@@ -183,6 +183,8 @@ WRONG = [
     (DATA.format(n=9).replace(" # sphere", "") + "1 0 0 0\n", UM, "atom style not said, columns without names; must be"),
     (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9, as it says"),
     ("aggregate:\n  positions: &a [*a]\n", UM, "not of pyFracAggregate (anchors in it); must have aggregate: positions"),
+    ("aggregate:\n  positions: " + "[" * 10**5 + "]" * 10**5, UM, "not of pyFracAggregate (nested too deep); must have aggregate"),
+    ("0 0 0\n" + "1 " * 5001, dict(UM, names="x,y,z"), "a line of 10002 characters; must be at most 10000, a grain a line"),
     ("aggregate:\n  positions: [[0, 0]]\n  radii: [1]\n", {}, "positions have the shape (1, 2); must be (N, 3)"),
     ("aggregate:\n  positions: [\n", UM, "not of pyFracAggregate"),
     ("# vtk DataFile Version 3.0\nno\nASCII\nDATASET POLY", UM, "no points in it that VTK can read; must be a file of points"),

@@ -84,7 +84,9 @@ def test_a_run_that_ends_while_its_folder_is_opened_is_not_erased(tmp_path, monk
     assert sorted(os.listdir(path)) == ["ended", "history.npz", "run.json", "states"]
 
 
-@pytest.mark.parametrize("left", [[], [".run.json.0123abcd.unfinished"], ["states/.000000.npz.0123abcd.unfinished"]], ids=str)
+@pytest.mark.parametrize(
+    "left", [[], [".run.json.0123abcd.unfinished"], ["states/.000000.npz.0123abcd.unfinished"]], ids=str
+)
 def test_a_folder_that_a_killed_run_began_is_used(tmp_path, left):
     """states/ without run.json is what version 0.2 left."""
     (tmp_path / "run" / "states").mkdir(parents=True)

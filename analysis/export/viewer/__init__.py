@@ -10,6 +10,7 @@ from jinja2 import Environment, FileSystemLoader
 
 from ...figures.grain_colours import BONDED, COLOURINGS, SCALE, Range
 from ...figures.style import run_title
+from ...printable import printable
 from ...progress import progress
 from ...runs.write import require_file, write_text
 from ..fields import exported_states
@@ -34,7 +35,10 @@ def write_view(run, file, three=THREE):
     data = json.dumps(_data(run)).replace("<", "\\u003c")  # no text in it can end the script
     viewer = (_HERE / "viewer.js").read_text(encoding="utf-8")
     write_text(
-        file, page.render(title=run.path.resolve().name, ways=COLOURINGS, scripts=scripts, data=data, viewer=viewer)
+        file,
+        page.render(
+            title=printable(run.path.resolve().name), ways=COLOURINGS, scripts=scripts, data=data, viewer=viewer
+        ),
     )
     return file
 

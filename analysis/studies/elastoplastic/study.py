@@ -63,7 +63,11 @@ def _sizes(runs, grain):
     """The straight line of d_max against size at A24's velocity, and what follows from its delta_max/R*."""
     several = runs.of(runs.table[runs.table.groupby("filling").radius.transform("nunique") > 1])
     line = several.fit(fits.size_line, ("c1", "c2", "δ_offset", "δ_max/R*", "d_max at 60 r"), ("filling",), fitted=2)
-    yield Quantity("line", "d_max = c1 R - c2 at 3.2 m/s (A24 eq 14), δ_offset and δ_max/R* (eqs 18, 19); lengths in grain radii", line)
+    yield Quantity(
+        "line",
+        "d_max = c1 R - c2 at 3.2 m/s (A24 eq 14), δ_offset and δ_max/R* (eqs 18, 19); lengths in grain radii",
+        line,
+    )
     ends = {
         "σ, rigid-plastic": lambda x, rho: stress_if_rigid(x, fits.VELOCITY, rho),
         "E*, elastic": lambda x, rho: young_if_elastic(x, fits.VELOCITY, rho),

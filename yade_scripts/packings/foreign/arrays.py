@@ -1,6 +1,7 @@
 """Spheres of files that hold whole arrays: npz, VTK, and the YAML of pyFracAggregate."""
 
 import locale
+import re
 
 import numpy as np
 
@@ -59,6 +60,9 @@ def of_vtk(path):
     return _spheres(path, "VTK", vtk_to_numpy(output.GetPoints().GetData()), by_role)
 
 
+_DEEP = re.compile(r"(?:[\[{]\s*){9}|(?:- *){9}|^ {99}", re.MULTILINE)
+
+
 def of_yaml(path):
     """Spheres of pyFracAggregate: aggregate: positions, radii, length_unit."""
     import yaml
@@ -68,6 +72,8 @@ def of_yaml(path):
     try:
         if "&" in text:
             raise ValueError("anchors in it")
+        if _DEEP.search(text):  # libyaml has no limit of its own
+            raise ValueError("nested too deep")
         found = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))["aggregate"]
         position, radius = (np.array(found[name], dtype=float) for name in ("positions", "radii"))
     except (yaml.YAMLError, ValueError, KeyError, TypeError, RecursionError) as error:

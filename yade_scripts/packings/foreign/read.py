@@ -10,7 +10,7 @@ from yade_scripts.packings.foreign.spheres import FORMATS, IGNORED, require_axes
 from yade_scripts.packings.foreign.text import find_table
 from yade_scripts.packings.packing import PackingError
 
-MOST_BYTES = 4 << 30
+MOST_BYTES, LONGEST_LINE = 4 << 30, 10_000
 BY_START = {b"PK\x03\x04": of_npz, b"# vtk DataFile": of_vtk, b"<?xml": of_vtk, b"<VTKFile": of_vtk}
 
 
@@ -39,6 +39,10 @@ def read_spheres(path, most, names=None):
 
 
 def _of_table(path, most, names):
+    with open(path, "rb") as file:
+        longest = max(map(len, file), default=0)
+    if longest > LONGEST_LINE:
+        raise PackingError(f"{path}: a line of {longest} characters; must be at most {LONGEST_LINE}, a grain a line")
     table = find_table(path)
     names = names or table.names
     if names is None:
