@@ -57,6 +57,8 @@ class System:
         """Debootstrap, packages that come before the clone, and the clone."""
         self.folder.mkdir()
         suite, _, architecture = self.name.partition("-")
+        if architecture:
+            emulate()
         options = self._of_ubuntu() + ([f"--arch={architecture}"] if architecture else [])
         run(["debootstrap", *options, suite, str(self.folder), self.ubuntu or mirror, *self._script(suite)])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
@@ -112,6 +114,13 @@ def run(command, check=True, **more):
         lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
         raise CannotBegin(f"{' '.join(map(str, command[:4]))}: {lines[-1] if lines else done.returncode}")
     return done
+
+
+def emulate():
+    """Have the kernel start other processors' programs by qemu, which it forgets when the machine starts where no service tells it."""
+    if not Path("/proc/sys/fs/binfmt_misc/status").exists():
+        run(["mount", "-t", "binfmt_misc", "binfmt_misc", "/proc/sys/fs/binfmt_misc"])
+    run(["update-binfmts", "--enable"])
 
 
 def outcome(done):
