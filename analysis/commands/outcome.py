@@ -54,8 +54,5 @@ def run(options):
     except (ValueError, TableError) as error:
         complain(error)
         return FAILED
-    except OSError as error:
-        complain(f"{error.filename}: {error.strerror}; must be the atlas's, which a checkout has")
-        return FAILED
     print(printable_lines(answer))
     return 0
