@@ -8,16 +8,15 @@ import pandas
 from scipy.spatial import cKDTree
 
 from ..arguments import FLAG, NAMES, NOT_NEGATIVE, PATH, WrongArgument, number, numbers, one_of, takes
-from ..theory import ICE, MATERIALS
+from ..theory import GRAIN_RADIUS, ICE, MATERIALS
 from ..theory.pair_constants import GRAIN_RADII
 from .columns import breaking_velocity
 from .neighbours import MARGIN, NEAR, ONE_CONTACT, Neighbours
-from .outcome_table import Axis, OutcomeTable, read_outcomes
+from .outcome_table import INSIDE, Axis, OutcomeTable, read_outcomes
 from .rules import KINDS
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 FILE, IMPACT_FILE, RUNS_FILE = (FOLDER / name for name in ("outcomes.txt", "outcomes-impact.txt", "runs.csv"))
-GRAIN_RADIUS = 1e-7  # m
 SIZES, RATIOS = np.geomspace(64, 4096, 7), np.geomspace(1 / 64, 1.0, 4)  # of the runs
 # Beyond the runs only what is slow is known: the nodes there are few.
 AXES = (
@@ -38,6 +37,7 @@ SMALLEST, LARGEST = GRAIN_RADII
 RADIUS = f"{{}} of {SMALLEST:g} to {LARGEST:g} [m]", lambda x: (x >= SMALLEST) & (x <= LARGEST)
 GRAINS = numbers(right=("{} >= 1", lambda x: (x >= 1) & (x < np.inf)))
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
+MOSTLY = 0.5  # inside: below it the errors of the nearest data say nothing
 INTERVALS = "largest_low", "largest_high", "filling_after_low", "filling_after_high"
 COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
@@ -90,7 +90,7 @@ def outcome_grid(model, version, upto=1.0):
     about = ABOUT.format(
         version=version,
         runs=len(model.runs),
-        ice=breaking_velocity(ICE, GRAIN_RADIUS),
+        ice=breaking_velocity(ICE, GRAIN_RADIUS["ice"]),
         margin=MARGIN,
         near=NEAR,
         sure=model.slow.number,
@@ -138,7 +138,7 @@ def outcome(
     target,
     filling,
     material="ice",
-    grain_radius=GRAIN_RADIUS,
+    grain_radius=None,
     maxwell=False,
     impact=None,
     columns=None,
@@ -149,8 +149,10 @@ def outcome(
 
     velocity [m/s] (maxwell: root mean square of a Maxwell distribution of speeds), projectile and target: numbers of grains, filling: volume
     filling factor, impact: parameter over the sum of the radii (5/3)^(1/2) R_g (None: averaged, uniform in its square); arrays that broadcast.
-    material: ice or silicate, grain_radius [m]: v_break follows from these. columns: only these.
-    `inside` is 1 within the data, and less where the answer is an extrapolation. ValueError for what cannot be, one line."""
+    material: ice or silicate, grain_radius [m] (None: 1e-7 of ice, 6e-7 of silicate, as collide() has it): v_break follows from these, and is
+    all that they change; the runs' grains had 1e-7. columns: only these.
+    `inside` is 1 within the data, less where the answer is an extrapolation: at 0 it is that of the nearest data. Below MOSTLY, 1/2, `error`
+    and the ends of intervals are NaN. ValueError for what cannot be, one line."""
     given = {"velocity": velocity, "projectile": projectile, "target": target, "filling": filling}
     given |= {} if impact is None else {"impact": impact}
     try:
@@ -160,7 +162,11 @@ def outcome(
         raise WrongArgument(f"{', '.join(given)}: have shapes {shapes}; must broadcast") from None
     projectile, target = np.broadcast_arrays(np.asarray(projectile, dtype=float), np.asarray(target, dtype=float))
     large, small = np.maximum(projectile, target), np.minimum(projectile, target)
-    speed = np.asarray(velocity, dtype=float) / breaking_velocity(MATERIALS[material], grain_radius)
+    radius = GRAIN_RADIUS[material] if grain_radius is None else grain_radius
+    speed = np.asarray(velocity, dtype=float) / breaking_velocity(MATERIALS[material], radius)
     square = {} if impact is None else {"impact_square": np.square(impact, dtype=float)}
     table = _table(file or (FILE if impact is None else IMPACT_FILE), maxwell)
-    return table.lookup(columns, velocity=speed, grains=large, mass_ratio=small / large, filling=filling, **square)
+    found = table.lookup(columns, velocity=speed, grains=large, mass_ratio=small / large, filling=filling, **square)
+    for name in {"error", *INTERVALS} & set(found):
+        found[name][found[INSIDE] < MOSTLY] = np.nan
+    return found

@@ -121,9 +121,13 @@ class OutcomeTable:
 
 
 def read_outcomes(path):
-    """The OutcomeTable of a file as write_outcomes() makes it. OutcomeTableError for another one, OSError where there is none."""
-    with open(path, encoding="ascii", errors="replace") as file:
-        lines = [line.rstrip("\n") for line in file]
+    """The OutcomeTable of a file as write_outcomes() makes it. OutcomeTableError for another one, and where there is none."""
+    try:
+        with open(path, encoding="ascii", errors="replace") as file:
+            lines = [line.rstrip("\n") for line in file]
+    except OSError as error:
+        said = f"{path}: {error.strerror}; must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
+        raise OutcomeTableError(said) from None
     comments = tuple(line[1:].strip() for line in lines if line.startswith("#"))
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:

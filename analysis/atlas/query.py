@@ -5,7 +5,7 @@ import pandas
 
 from ..runs.table import read_table
 from ..studies.columns import flat
-from ..theory import MATERIALS
+from ..theory import GRAIN_RADIUS, MATERIALS
 from .columns import MEASURED, breaking_velocity
 from .grid import PROBABILITIES, RUNS_FILE, outcome
 from .neighbours import MARGIN, Neighbours
@@ -24,7 +24,7 @@ COMMAND = "python3 yade_scripts/studies/atlas.py full {} {} && python3 yade_scri
 
 
 def text(options):
-    """Lines (str) for the options of commands.outcome. ValueError for what cannot be, OSError where the atlas is not at hand."""
+    """Lines (str) for the options of commands.outcome. ValueError for what cannot be, or where the atlas is not at hand."""
     impact = None if options.impact == "averaged" else options.impact
     about = (options.material, options.grain_radius, options.maxwell, impact)
     answer = outcome(options.velocity, options.projectile, options.target, options.filling, *about)
@@ -34,30 +34,38 @@ def text(options):
     ranges = {
         name: f" ({where}{answer[f'{name}_low']:.3g} to {answer[f'{name}_high']:.3g} in 90 %)"
         for name, where in WHERE.items()
-        if f"{name}_low" in answer
+        if np.isfinite(answer.get(f"{name}_low", np.nan))
     }
-    lines = [_title(options, point)]
+    without = "" if np.isfinite(answer["error"]) else "; the answer is that of the nearest data, its error is not known"
+    near = None if table is None else Neighbours(table)  # None: installed without the repository's tables
+    lines = [_title(options, point), *(line + without for line in _beyond(near, point, answer["inside"]))]
     for name, kind in zip(PROBABILITIES, KINDS):
         low, high = np.clip([answer[name] - answer["error"], answer[name] + answer["error"]], 0, 1)
-        lines.append(f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}  ({low:.2f} to {high:.2f})")
+        interval = f"  ({low:.2f} to {high:.2f})" if np.isfinite(answer["error"]) else ""
+        lines.append(f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}{interval}")
     lines += [f"  {label:<42} {answer[name]:.3g}{ranges.get(name, '')}" for name, label in LABELS.items()]
-    return "\n".join([*lines, *_nearest(table, point, answer["inside"])])
+    return "\n".join([*lines, *_nearest(near, point)])
 
 
 def _point(options):
     """The query as a row of variables()."""
     large, small = max(options.projectile, options.target), min(options.projectile, options.target)
-    speed = options.velocity / breaking_velocity(MATERIALS[options.material], options.grain_radius)
+    speed = options.velocity / breaking_velocity(MATERIALS[options.material], _radius(options))
     square = 0.5 if options.impact == "averaged" else options.impact**2
     values = {"velocity": speed, "grains": large, "mass_ratio": small / large, "filling": options.filling}
     return pandas.DataFrame([{**values, "impact_square": square}])
+
+
+def _radius(options):
+    """Of the grains [m]."""
+    return options.grain_radius or GRAIN_RADIUS[options.material]
 
 
 def _title(options, point):
     impact = "averaged over impact parameters" if options.impact == "averaged" else f"b = {options.impact:g}"
     speeds = ", rms of a Maxwell distribution" if options.maxwell else ""
     return (
-        f"{options.projectile:g} and {options.target:g} grains of {options.material}, filling {options.filling:g}, {options.velocity:g} m/s "
+        f"{options.projectile:g} and {options.target:g} grains of {options.material}, radius {1e6 * _radius(options):g} um, filling {options.filling:g}, {options.velocity:g} m/s "
         f"({point.velocity[0]:.3g} v_break{speeds}), {impact}:"
     )
 
@@ -71,18 +79,21 @@ def _outside(runs, point):
     )
 
 
-def _nearest(table, point, inside):
-    """Lines on the nearest runs, and whether the answer is an extrapolation."""
-    if table is None:  # installed without the repository's tables
+def _beyond(near, point, inside):
+    """A line where the answer is an extrapolation, or no run is at hand to see."""
+    if near is None:
         yield "  within the data" if inside == 1 else f"  EXTRAPOLATION: inside = {inside:.4g} in the table of outcomes"
-        return
-    near = Neighbours(table)
-    beyond = near.beyond(point)[0]
-    outside = _outside(near.runs, point)
-    if beyond > MARGIN:
+    elif (beyond := near.beyond(point)[0]) > MARGIN:
+        outside = _outside(near.runs, point)
         yield f"  EXTRAPOLATION: {beyond:.2g} times the scatter of the runs beyond the region that they fill{outside}"
     elif inside < 1:
         yield f"  at the edge of the data: inside = {inside:.4g} in the table of outcomes"
+
+
+def _nearest(near, point):
+    """Lines on the nearest runs."""
+    if near is None:
+        return
     yield "nearest runs:"
     for run in near.runs.iloc[near.nearest(point)[0]].itertuples():
         yield (

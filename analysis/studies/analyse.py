@@ -17,6 +17,7 @@ from .find import figures
 from .gather import Gathered, gather
 from .html import html_page
 from .page import DETAILS_FILE, PAGE_FILE, details, screen
+from .paper import FILE as PAPER
 from .paper import Page, PaperError, read_paper
 from .predictions import predictions
 from .runs import keyed
@@ -158,15 +159,15 @@ def analyse(study, paths):
 
     NothingToAnalyse where no run that belongs to it is among them, paper.PaperError where its paper.toml or predictions.csv can't be used;
     what is wrong with runs is in .found."""
-    words, claims = read_paper(study.folder)
+    words, claims = read_paper(study.beside)
     found = gather(study, paths)
     if found.table is None:
         raise NothingToAnalyse(study, found)
     results = study.results(found.table)
     try:
         judged = judge(claims, results)
-    except (KeyError, ValueError) as error:
-        raise PaperError(f"{study.folder}: paper.toml: {error.args[0]}") from None
+    except ValueError as error:
+        raise PaperError(f"{study.beside / PAPER}: {error}") from None
     return Analysis(study, found, results, words, judged, predictions(study.folder, results))
 
 

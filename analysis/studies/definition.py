@@ -7,6 +7,7 @@ from typing import Callable
 import pandas
 
 from ..runs.collect import Scene
+from ..runs.named import suggested
 from .columns import flat, row_of
 from .levels import SI
 from .runs import at, select
@@ -44,9 +45,8 @@ class Quantity:
         """The Estimate or Fraction, in SI units, there; None where it is not known (runs.at)."""
         try:
             return at(self.values, **where)
-        except KeyError as error:
-            levels = ", ".join(self.values.index.names)
-            raise KeyError(f"{self.name} has no {error.args[0]}: it is by {levels}") from None
+        except (KeyError, ValueError) as error:
+            raise type(error)(f"{self.name}: {error.args[0]}") from None
 
     def shown(self, estimate):
         """An estimate in the unit in which it is shown."""
@@ -67,7 +67,7 @@ class Results:
 
     def __getitem__(self, name):
         if name not in self.quantities:
-            raise KeyError(f"no quantity {name}: there are {', '.join(self.quantities)}")
+            raise KeyError(f"no quantity {name}{suggested(name, self.quantities)}")
         return self.quantities[name]
 
     def series(self, name, **where):
@@ -82,7 +82,7 @@ class Study:
     measured    (columns.Columns, ...): a row of the table, with the numbers that tell runs apart
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
     independent what counts as one in errors, in the plural: pairs (of aggregates), clusters
-    folder (Path; find() fills it in): where paper.toml is, if there is one. name: the folder's."""
+    folder (Path; find() fills it in): the study's, or the file of one's own. name: the folder's, or the file's."""
 
     title: str
     question: str
@@ -97,6 +97,11 @@ class Study:
     def columns(self):
         """(runs.table.Column, ...) of the table."""
         return flat(self.measured)
+
+    @property
+    def beside(self):
+        """Folder (Path; None: there is none) in which paper.toml is, if there is one."""
+        return self.folder.parent if self.folder and self.folder.suffix == ".py" else self.folder
 
     def measure(self, run):
         """{column: value} of a RunFolder; NotMeasured or RunFolderError where a column can't be measured."""

@@ -2,7 +2,7 @@
 
 from math import isclose
 
-from ..theory import ICE, SILICATE
+from ..theory import GRAIN_RADIUS, MATERIALS
 from .columns import constant, parameter, row_of
 from .definition import NotMeasured
 
@@ -29,7 +29,7 @@ def _of_paper(material, radius):
 
 
 # Kataoka et al. (2013), Table 1 and section 2.1; its ice is that of Arakawa et al. (2022, 2024) too.
-PAPERS = {"ice": _of_paper(ICE, 0.1e-6), "silicate": _of_paper(SILICATE, 0.6e-6)}
+PAPERS = {name: _of_paper(material, GRAIN_RADIUS[name]) for name, material in MATERIALS.items()}
 
 
 def other_grains(parameters):

@@ -30,8 +30,8 @@ def predictions(folder, results):
     rows = table.to_dict("records")
     try:
         judged = iter(judge([_claim(row) for row in rows if row["quantity"]], results))
-    except (KeyError, ValueError) as error:
-        raise PaperError(f"{file}: {error.args[0]}") from None
+    except ValueError as error:
+        raise PaperError(f"{file}: {error}") from None
     return [_prediction(row, next(judged) if row["quantity"] else None) for row in rows]
 
 

@@ -5,6 +5,7 @@ from copy import copy
 import numpy as np
 import pandas
 
+from ..runs.named import suggested
 from .estimate import Estimate, Fraction, curve, mean_over_points, stretch, weights_of_pairs
 
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
@@ -156,12 +157,14 @@ def each(series, f):
 def at(series, **where):
     """The one Estimate or Fraction of a Series at these values of its levels (numbers to SAME); None where there is none. KeyError for a
     level that it lacks, ValueError where several are left."""
-    chosen = np.ones(len(series), dtype=bool)
+    chosen, known = np.ones(len(series), dtype=bool), [name for name in series.index.names if name is not None]
     for name, value in where.items():
+        if name not in known:
+            raise KeyError(f"no level {name}{suggested(name, known)}")
         chosen &= alike(series.index.get_level_values(name), value)
     left = series[chosen]
     if len(left) > 1:
-        raise ValueError(f"{where}: {len(left)} estimates, by {', '.join(series.index.names)}")
+        raise ValueError(f"{where}: {len(left)} estimates: must be one, by {', '.join(known)}")
     return left.iloc[0] if len(left) else None
 
 

@@ -57,13 +57,13 @@ class Judgement:
 
 
 def judge(claims, results):
-    """[Judgement] of claims beside definition.Results; KeyError for a quantity or level that there is not."""
-    found = [(claim, *_ours(claim, results)) for claim in claims]
-    chances = [_chance(claim, ours) if claim.test and ours is not None else None for claim, _, ours in found]
+    """[Judgement] of claims beside definition.Results; ValueError, with the claim's label, for one that is not of these."""
+    found = [(claim, *_beside(claim, results)) for claim in claims]
+    chances = [p for *_, p in found]
     corrected = holm(chances)
     return [
         Judgement(claim, unit, ours, p, own, *_verdict(claim, ours, own, results.independent))
-        for (claim, unit, ours), p, own in zip(found, chances, corrected)
+        for (claim, unit, ours, p), own in zip(found, corrected)
     ]
 
 
@@ -81,10 +81,18 @@ def holm(chances):
     return corrected
 
 
-def _ours(claim, results):
-    quantity = results[claim.quantity]
-    estimate = quantity.at(**claim.where)
-    return quantity.unit, None if estimate is None else quantity.shown(estimate)
+def _beside(claim, results):
+    """(unit, ours, p) of a claim."""
+    key = "quantity"
+    try:
+        quantity = results[claim.quantity]
+        key = "where"
+        estimate = quantity.at(**claim.where)
+        ours = None if estimate is None else quantity.shown(estimate)
+        key = "value, low or high"
+        return quantity.unit, ours, _chance(claim, ours) if claim.test and ours is not None else None
+    except (KeyError, ValueError) as error:
+        raise ValueError(f"{claim.label}: {key}: {error.args[0]}") from None
 
 
 def _agreement(claim):
@@ -99,6 +107,8 @@ def _chance(claim, ours):
         return None
     low, high = _agreement(claim)
     nearest = min(max(ours.value, low), high)
+    if isinstance(ours, Fraction) and not 0 <= nearest <= 1:
+        raise ValueError(f"{nearest:g} of a fraction: must be 0 to 1")
     p = ours.chance(nearest, claim.runs)
     if p is None or low == high:
         return p

@@ -17,6 +17,7 @@ from .jkr import (
     normalised_stiffness,
 )
 from .pair_constants import (
+    GRAIN_RADIUS,
     ICE,
     MATERIALS,
     SILICATE,
@@ -42,6 +43,7 @@ __all__ = [
     "contact_radius",
     "normal_energy",
     "normal_force",
+    "GRAIN_RADIUS",
     "ICE",
     "MATERIALS",
     "SILICATE",

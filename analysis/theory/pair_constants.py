@@ -35,6 +35,8 @@ class Material:
 ICE = Material(young=7e9, poisson=0.25, density=1000.0, surface_energy=0.1, critical_rolling=0.8e-9)  # A22 Table 1
 SILICATE = Material(young=54e9, poisson=0.17, density=2650.0, surface_energy=0.02, critical_rolling=2e-9)  # K13
 MATERIALS = {"ice": ICE, "silicate": SILICATE}
+# m, of the papers; a run and the atlas take it where none is given
+GRAIN_RADIUS = {"ice": 0.1e-6, "silicate": 0.6e-6}
 GRAIN_RADII = 1e-9, 1e-3  # m, from the smallest soot monomers to chondrules
 
 

@@ -122,6 +122,7 @@ def test_model_of_made_runs(made, tmp_path):
     found = analysis.outcome(5 * 3.8231, 60, [300, 3e6], 0.2, file=file)
     assert sum(found[name] for name in PROBABILITIES) == pytest.approx(1, abs=1e-4)
     assert found["p_sticking"][0] == pytest.approx(0.5, abs=0.2) and found["inside"].tolist() == [1.0, 0.0]
+    assert found["error"][0] > 0 and np.isnan(found["error"][1])
     assert read_outcomes(file).columns == COLUMNS
     file = tmp_path / "outcomes-impact.txt"
     write_outcomes(file, outcome_grid(fitted, "0", None))
@@ -206,7 +207,18 @@ def test_command_with_the_gallerys_atlas(capsys):
         assert float(lines[1].split()[1]) > 0.8 and lines[1].split()[0] == "sticking"
         assert any("study.py runs/atlas-full.table" in line for line in lines) and "EXTRAPOLATION" not in "".join(lines)
         assert ("in 90 %" in "".join(lines)) == (options == "--impact 0.3")
-    assert ask("", velocity=300) == 0 and "EXTRAPOLATION" in capsys.readouterr().out
+    assert ask("", velocity=300) == 0
+    title, beyond, sticking = capsys.readouterr().out.splitlines()[:3]
+    assert "of ice, radius 0.1 um, " in title and "EXTRAPOLATION" in beyond and "error is not known" in beyond
+    assert sticking.split()[0] == "sticking" and "(" not in sticking
+    for radius in (None, 6e-7):  # collide()'s of silicate
+        assert ask("--material silicate" + (f" --grain-radius {radius}" if radius else ""), 0.5) == 0
+        assert "of silicate, radius 0.6 um, filling 0.3, 0.5 m/s (7.08 v_break)" in capsys.readouterr().out
+    of = [analysis.outcome(0.5, 200, 20, 0.1, "silicate", r)["p_sticking"] for r in (None, 6e-7, 1e-7)]
+    assert of[0] == of[1] < of[2]
+    with pytest.raises(SystemExit, match="0"):
+        ask("--help")
+    assert "1e-07 of ice and 6e-07 of silicate" in " ".join(capsys.readouterr().out.split())
     assert (
         ask("--material lead") == 2
         and capsys.readouterr().err == "analysis: material = lead: must be ice or silicate\n"

@@ -94,13 +94,16 @@ end program
 """
 
 
-@pytest.mark.skipif(not shutil.which("gfortran"), reason="gfortran is not installed")
+needs_gfortran = pytest.mark.skipif(not shutil.which("gfortran"), reason="gfortran is not installed")
+READER = ROOT / "analysis/atlas/adapters/dust_outcomes.f90"
+
+
+@needs_gfortran
 @pytest.mark.parametrize("flag", ["-O2", "-fdefault-real-8"])  # mcdust compiles with the second
 def test_fortran_reader(table, tmp_path, flag):
     write_outcomes(tmp_path / "outcomes.txt", table)
     (tmp_path / "ask.f90").write_text(PROGRAM)
-    reader = ROOT / "analysis/atlas/adapters/dust_outcomes.f90"
-    subprocess.run(["gfortran", flag, "-Wall", "-fcheck=all", reader, "ask.f90", "-o", "ask"], cwd=tmp_path, check=True)
+    subprocess.run(["gfortran", flag, "-Wall", "-fcheck=all", READER, "ask.f90", "-o", "ask"], cwd=tmp_path, check=True)
     asked = queries(2000, 2.0)
     lines = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(asked.values())).tolist())
     answer = subprocess.run(["./ask"], input=lines, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
@@ -109,3 +112,48 @@ def test_fortran_reader(table, tmp_path, flag):
     inside = ours.pop("inside")
     np.testing.assert_allclose(theirs[:, 4], inside, atol=1e-12)
     np.testing.assert_allclose(theirs[:, :3], np.column_stack(list(ours.values())), rtol=1e-12, atol=1e-12)
+
+
+@needs_gfortran
+@pytest.mark.parametrize(
+    "change, says",
+    [
+        (("'(5es25.16)') values, inside", "*) column('sticking')"), "column: must be a name of the table"),
+        (("values(4)", "values(3)"), "values must have a number for each column"),
+        (("query(4)", "query(3)"), "query must have a number for each axis"),
+        (("look_up(query", "look_up(-query"), "query must be 0 or more"),
+        (("look_up(query", "look_up(sqrt(-query)"), "query must be 0 or more"),
+    ],
+)
+def test_fortran_stops_at_mistakes(table, tmp_path, change, says):
+    write_outcomes(tmp_path / "outcomes.txt", table)
+    (tmp_path / "ask.f90").write_text(PROGRAM.replace(*change))
+    subprocess.run(["gfortran", READER, "ask.f90", "-o", "ask"], cwd=tmp_path, check=True)
+    done = subprocess.run(["./ask"], input="1 100 0.5 0.2\n", cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode and f"ERROR STOP dust_outcomes: {says}" in done.stderr.replace("look_up: ", "")
+
+
+# What mcdust has of its own around the example of README.md: names and kinds.
+MCDUST = """module collisions
+   use dust_outcomes, only: dp, look_up, column
+   type :: swarm
+      real :: mass
+   end type
+   real :: erosion_mass_ratio
+contains
+   subroutine collision(nri, nrk, swarms, relvels, accelncol)
+      integer, intent(in) :: nri, nrk
+      type(swarm) :: swarms(:)
+      real :: relvels(:,:), accelncol(:,:)
+{}
+   end subroutine
+end module
+"""
+
+
+@needs_gfortran
+@pytest.mark.parametrize("flag", ["-O0", "-fdefault-real-8"])
+def test_the_example_for_mcdust_compiles(tmp_path, flag):
+    page = (ROOT / "analysis/atlas/adapters/README.md").read_text()
+    (tmp_path / "collisions.f90").write_text(MCDUST.format(page.partition("```fortran\n")[2].partition("```")[0]))
+    subprocess.run(["gfortran", flag, "-c", READER, "collisions.f90"], cwd=tmp_path, check=True)

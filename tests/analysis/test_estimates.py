@@ -3,6 +3,7 @@
 Random seeds are fixed; a statistical bound says how often it would fail for others."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas
@@ -211,6 +212,21 @@ def test_verdicts(ours, given, verdict):
     assert found.why and re.match(verdict, f"{found.verdict}: {found.why}")
 
 
+@pytest.mark.parametrize(
+    "given, says",
+    [
+        (dict(where={"grain": 1}), "made: where: q: no level grain (did you mean grains?); must be one of grains"),
+        (dict(quantity="r"), "made: quantity: no quantity r; must be one of q"),
+        (dict(), "made: value, low or high: 95 of a fraction: must be 0 to 1"),
+    ],
+)
+def test_a_claim_of_what_there_is_not(given, says):
+    """Of another level or quantity, or a fraction in percent."""
+    of = Quantity("q", "made", pandas.Series({1: Fraction(3, 4)}).rename_axis("grains"))
+    with refused(ValueError, says):
+        judge([replace(claim(value=95.0), **given)], Results(None, {"q": of}))
+
+
 def test_a_family_is_corrected_together():
     """One difference at p = 0.02 stands alone, and not among ten tests (Holm)."""
     results, one = of_mean((10.0, 0.1), 30), claim(value=10.45, runs=30, margin=0.1)
@@ -229,7 +245,30 @@ UNUSABLE = {
     "[[claim]": "paper.toml",
     "[other]\na = 1": "other",
     "[[claim]]\nwhere = { v = [1, 2] }\nvalue = [1, 2, 3]": "value has 3 values: must be 2",
+    "[claim]\nquantity = 'q'": "must have one [page] at most, and [[claim]] above each claim",
+    "[page]\nruns = 0": "[page]: runs = 0: must be a whole number >= 1, or inf",
+    PRINTED.replace("'l'", "'at {w}'") + "where = { v = 1 }": "label: what it has in {} must be of where: v",
 }
+# What claim 1 (l) says besides, and what must be instead.
+WRONG = {
+    "value = '0.95'": "value = '0.95': must be a finite number",
+    "value = true": "value = True: must be a finite number",
+    "value = nan": "value = nan: must be a finite number",
+    "value = inf": "value = inf: must be a finite number",
+    "low = nan": "low = nan: must be a number or -inf",
+    "low = 2\nhigh = 1": "low = 2: must be at most high, 1",
+    "low = -inf\nhigh = inf": "is tested, and has no number: must have value, low or high",
+    "value = 1\nmargin = inf": "margin = inf: must be a finite number >= 0",
+    "value = 1\nmargin = -0.1": "margin = -0.1: must be a finite number >= 0",
+    "value = 1\nruns = 1.5": "runs = 1.5: must be a whole number >= 1, or inf",
+    "value = 1\nruns = 0": "runs = 0: must be a whole number >= 1, or inf",
+    "value = 1\nruns = '5'": "runs = '5': must be a whole number >= 1, or inf",
+    "value = 1\nrow = 1": "row = 1: must be true or false",
+    "value = 1\nnote = 1": "note = 1: must be text",
+    "value = 1\nwhere = []": "where = []: must be a table of levels, or a list of such tables",
+    "value = 1\nwhere = 'grains'": "where = grains: must be a table of levels, or a list of such tables",
+}
+UNUSABLE |= {PRINTED + text: f"paper.toml: claim 1 (l): {says}" for text, says in WRONG.items()}
 
 
 @pytest.mark.parametrize("text", UNUSABLE)

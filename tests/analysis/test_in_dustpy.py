@@ -1,15 +1,19 @@
 """The atlas in real DustPy (make test-dustpy), with tables of which the answer is known."""
 
+import re
+import warnings
 from math import pi
 
 import numpy as np
 import pytest
 
 from analysis.atlas.adapters.dustpy import fragments_of, use_atlas
+from analysis.atlas.grid import FILE
 from analysis.atlas.outcome_table import Axis, OutcomeTable
 from analysis.theory import ICE, interaction_energies, pair_constants
 
 dustpy = pytest.importorskip("dustpy", reason="DustPy is not installed; make test-dustpy has it")
+pytestmark = pytest.mark.filterwarnings("ignore:use_atlas")  # the tables made here begin with 60 grains
 KINDS = ("p_sticking", "p_bouncing", "p_mass_transfer", "p_erosion", "p_fragmentation")
 BREAK = interaction_energies(pair_constants(ICE, 1e-7))["break"]
 
@@ -117,12 +121,25 @@ def test_fragments(sim):
     np.testing.assert_allclose(fragments_of(sim.grid.m, 11 / 6), sim.dust.coagulation.phi, rtol=1e-12)
 
 
+@pytest.mark.parametrize("options", [{}, {"material": "silicate"}, {"grain_radius": 1e-5}])
+def test_grains_of_another_size_than_meant(sim, options):
+    """Of 1e-5, 0.1 um in cm, or of silicate by default, all aggregates of the start would be less than one: said in one line."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        use_atlas(sim, FILE, **options)
+    lines = [str(each.message) for each in said if "use_atlas" in str(each.message)]
+    assert len(lines) == bool(options) and all(
+        re.match(r"use_atlas: \d+% of the .* m; report\(\) says", line) for line in lines
+    )
+
+
 def test_refusals(sim):
     for options, says in (
-        ({"outside": "mine"}, "must be one of clamp, dustpy"),
-        ({"grain_radius": 0}, "a length in m"),
+        ({"outside": "mine"}, "outside = mine: must be clamp or dustpy"),
+        ({"grain_radius": 0.1}, "grain_radius = 0.1: must be a number of 1e-09 to 0.001"),
+        ({"outcomes": "nosuch.txt"}, "nosuch.txt: No such file or directory; must be a table of outcomes"),
     ):
         with pytest.raises(ValueError, match=says):
-            use_atlas(sim, table_of(smooth), **options)
+            use_atlas(sim, **{"outcomes": table_of(smooth), **options})
     with pytest.raises(ValueError, match="must be called after sim.initialize()"):
         use_atlas(dustpy.Simulation(verbosity=0), table_of(smooth))

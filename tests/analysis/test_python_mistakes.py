@@ -23,6 +23,7 @@ MISTAKES = {
     "analysis.outcome(5, 200, 500, .15, columns='largest')": "columns = largest: must be a list of names",
     "analysis.outcome(5, 200, 500, .15, columns=['larest'])": "no column larest (did you mean largest?)",
     "analysis.outcome(5, 200, 500, .15, maxwell='no')": "maxwell = no: must be True or False",
+    "analysis.outcome(5, 200, 500, .15, file='nosuch')": "nosuch: No such file or directory; must be a table of outcomes",
     "analysis.open_run('')": "path = '': must be the path of a run folder",
     "analysis.open_run(run)": "path = a RunFolder: must be the path of a run folder",
     "run.parameters.velocity": 'velocity is no attribute; must be read as ["velocity"]',

@@ -62,6 +62,21 @@ def test_the_documented_study_runs(own, capsys):
     assert "Undecided: 2 of 5 runs" in page and "3 of 4" in details and "(sticking.png)" in details
 
 
+def test_a_paper_beside_ones_own_file_is_read(own, capsys):
+    claim = "[[claim]]\nquantity = 'sticking'\nlabel = 'how many'\nprinted = ''\nsource = ''\nvalue = 0.75\nwhere = { velocity = 3.0 }\n"
+    (own / "paper.toml").write_text(claim)
+    assert run(own, "--json") == 0
+    (judged,) = json.loads(capsys.readouterr().out)["claims"]
+    assert judged["label"] == "how many" and judged["ours"]["value"] == 0.75
+    (own / "paper.toml").write_text(claim.replace("velocity", "speed"))
+    assert run(own) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert (
+        said
+        == f"analysis: {own / 'paper.toml'}: how many: where: sticking: no level speed; must be one of grains, velocity"
+    )
+
+
 def test_of_a_run_in_two_tables_the_first_counts(own, capsys):
     """A run that was continued replaces the one that was undecided."""
     two_pairs(own / "longer" / "open", 40.0, 1)

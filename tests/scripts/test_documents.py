@@ -131,6 +131,16 @@ def test_the_commands_are_there():
             assert (document.parent / link).exists(), f"{document.name}: {link}"
 
 
+def test_the_table_of_ones_own_study_runs_where_its_analysis_looks(tmp_path):
+    text = (TOP / "analysis/STUDIES.md").read_text()
+    table = tmp_path / "sticking.table"
+    table.write_text(re.search(r"```\n(description.*?)```", text, re.DOTALL)[1])
+    folder = re.search(r"study sticking\.py (\S+)", text)[1]
+    assert [row.out for row in rows.read(str(table))] == [
+        f"{folder}/{name}" for name in "v1-s1 v1-s2 v10-s1 v10-s2".split()
+    ]
+
+
 def test_the_table_of_studies_is_that_of_their_tables():
     study, seen = None, set()
     for line in (TOP / "analysis/STUDIES.md").read_text().splitlines():

@@ -7,6 +7,7 @@ import time
 import pytest
 from refused import refused
 
+from analysis import theory
 from yade_scripts import stability
 from yade_scripts.experiments import collision, collision_step
 from yade_scripts.experiments.collision import CollisionParameters
@@ -241,3 +242,4 @@ def test_materials_are_in_si(name):
     assert unit == pytest.approx({"ice": 1.93e-10, "silicate": 1.71e-9}[name], rel=0.005)
     rolling = 6 * math.pi**2 * m.surfaceEnergy * m.grainRadius * m.criticalRolling
     assert rolling == pytest.approx({"ice": 4.74e-16, "silicate": 1.42e-15}[name], rel=0.005)
+    assert theory.GRAIN_RADIUS[name] == m.grainRadius  # analysis.outcome() asks of the grains that collide() runs

@@ -3,13 +3,15 @@
 !     call read_outcomes('outcomes.txt')
 !     call look_up([v / v_break, grains, mass_ratio, filling], values, inside)    ! of the axes in the file's order
 !     values(column('p_sticking'))
+! real(dp) :: values(size(columns)), inside; the literals of a query are real(dp), too: 0.4_dp.
 ! Between nodes multilinear in the scaled coordinates, beyond an edge the value at the edge. inside: 1 within the data, below 1
-! where the answer is an extrapolation. Threads may look up at once.
+! where the answer is an extrapolation: 0 beyond an edge, as of a mass ratio above 1 (smaller over larger). What is negative or no
+! number, a name that is no column, and an array of another size stop the program. Threads may look up at once.
 module dust_outcomes
    use iso_fortran_env, only: dp => real64   ! also where -fdefault-real-8 makes double precision quadruple
    implicit none
    private
-   public :: read_outcomes, look_up, column, columns
+   public :: dp, read_outcomes, look_up, column, columns
    integer, parameter :: most_nodes = 200
    integer :: axes = 0, width = 0
    integer, allocatable :: nodes(:), strides(:)
@@ -45,12 +47,13 @@ contains
       strides = [(product(nodes(k + 1:)), k = 1, axes)]
    end subroutine read_outcomes
 
-   ! Number of a column by its name, 0 where there is none.
+   ! Number of a column by its name.
    integer function column(name)
       character(len=*), intent(in) :: name
       do column = width, 1, -1
-         if (columns(column) == name) exit
+         if (columns(column) == name) return
       end do
+      error stop 'dust_outcomes: column: must be a name of the table that read_outcomes has read'
    end function column
 
    subroutine look_up(query, values, inside)
@@ -59,6 +62,9 @@ contains
       real(dp) :: x, above(axes), weight
       integer :: k, corner, below(axes), up(axes)
       logical :: beyond
+      if (size(query) /= axes) error stop 'dust_outcomes: look_up: query must have a number for each axis'
+      if (size(values) /= width) error stop 'dust_outcomes: look_up: values must have a number for each column'
+      if (.not. all(query >= 0)) error stop 'dust_outcomes: look_up: query must be 0 or more'
       beyond = .false.
       do k = 1, axes
          x = query(k)

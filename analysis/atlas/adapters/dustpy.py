@@ -7,14 +7,16 @@
 
 Needs DustPy's simulation only: nothing of it is imported. DustPy is in CGS, the atlas without units but for the grains'."""
 
+import warnings
 from math import pi
 
 import numpy as np
 
-from ...theory import MATERIALS, interaction_energies, pair_constants
+from ...arguments import FLAG, PATH, Kind, number, one_of, takes
+from ...theory import GRAIN_RADIUS, MATERIALS, interaction_energies, pair_constants
+from ..grid import MOSTLY, RADIUS
 from ..outcome_table import INSIDE, OutcomeTable, read_outcomes
 
-ONE_OF = {"outside": ("clamp", "dustpy"), "speeds": ("maxwell", "rms"), "material": tuple(MATERIALS)}
 PER_NODE = 4  # speeds between two nodes of the table at which a pair's probabilities are kept
 # By the atlas's rules the target gains 0 to 0.8 of the projectile's mass, say 0.4; in DustPy it gains 1 where they stick, and -1 where
 # it is eroded (excavatedMass = 1).
@@ -22,34 +24,45 @@ TRANSFERRED = (1 + 0.4) / 2
 CM, GRAM, GRAM_PER_CM3 = 100.0, 1000.0, 1e-3  # of one m, kg, kg/m^3
 
 
+@takes(
+    outcomes=Kind("a path, or an OutcomeTable", lambda value: isinstance(value, OutcomeTable) or PATH.is_right(value)),
+    outside=one_of("clamp", "dustpy"),
+    speeds=one_of("maxwell", "rms"),
+    material=one_of(*MATERIALS),
+    grain_radius=number(RADIUS),
+    fragment_index=FLAG,
+)
 def use_atlas(
-    sim, outcomes, outside="clamp", speeds="maxwell", material="ice", grain_radius=1e-7, fragment_index=False
+    sim, outcomes, outside="clamp", speeds="maxwell", material="ice", grain_radius=None, fragment_index=False
 ):
     """Give an initialised dustpy.Simulation the atlas's probabilities: updaters of sim.dust.p.frag and sim.dust.p.stick. Returns
     the AtlasInDustPy, which reports.
 
     outcomes: a file (outcomes.txt) or an OutcomeTable. outside: beyond the data "clamp" takes the probabilities at the nearest
     edge of the data, "dustpy" DustPy's own (sim.dust.v.frag). speeds: sim.dust.v.rel.tot is the rms of "maxwell" distributed
-    collisions, as DustPy itself has it, or every collision's ("rms"). material ("ice" or "silicate") and grain_radius [m] of the
-    grains make E_break; their density is sim.dust.rhos, the filling factor of the aggregates sim.dust.fill. fragment_index: also
-    gives sim.dust.coagulation.phi the atlas's mean power law of fragments.
+    collisions, as DustPy itself has it, or every collision's ("rms"). material ("ice" or "silicate") and grain_radius of the
+    grains, in m, not cm (None: 1e-7 of ice, 6e-7 of silicate), make E_break; their density is sim.dust.rhos, the filling factor of
+    the aggregates sim.dust.fill. fragment_index: also gives sim.dust.coagulation.phi the atlas's mean power law of fragments.
 
-    ValueError for what is none of these, or a simulation that is not initialised; OutcomeTableError for a wrong table.
+    Warns where most collisions at present are outside of the data, as of grains of another size than meant. ValueError for what is
+    none of these, or a simulation that is not initialised; OutcomeTableError for a wrong table.
     """
-    for name, value in (("outside", outside), ("speeds", speeds), ("material", material)):
-        if value not in ONE_OF[name]:
-            raise ValueError(f"use_atlas: {name} = {value!r}: must be one of {', '.join(ONE_OF[name])}")
-    if not grain_radius > 0.0:
-        raise ValueError(f"use_atlas: grain_radius = {grain_radius!r}: must be a length in m")
     if sim.dust.p.frag is None:
         raise ValueError("use_atlas: the simulation is not initialised; must be called after sim.initialize()")
     table = outcomes if isinstance(outcomes, OutcomeTable) else read_outcomes(outcomes)
-    atlas = AtlasInDustPy(sim, table, outside == "dustpy", speeds == "maxwell", MATERIALS[material], grain_radius)
+    radius = GRAIN_RADIUS[material] if grain_radius is None else grain_radius
+    atlas = AtlasInDustPy(sim, table, outside == "dustpy", speeds == "maxwell", MATERIALS[material], radius)
     sim.dust.p.frag.updater = atlas.breaking
     sim.dust.p.stick.updater = atlas.sticking
     if fragment_index:
         sim.dust.coagulation.phi[...] = fragments_of(sim.grid.m, mean_fragment_index(table))
     sim.update()
+    rate, share = atlas.outside(sim)
+    if (rate * share).sum() > MOSTLY * rate.sum():
+        said = f"{np.average(share, weights=rate):.0%} of the collisions are at present outside of the atlas's data"
+        warnings.warn(
+            f"use_atlas: {said}, with grain_radius = {radius:g} m; report() says beyond which end", stacklevel=3
+        )
     return atlas
 
 
