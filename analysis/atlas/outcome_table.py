@@ -4,18 +4,22 @@ from analysis.atlas.outcome_table import read_outcomes
 table = read_outcomes("analysis/gallery/atlas/outcomes.txt")
 table.lookup(velocity=[1, 10], grains=500, mass_ratio=1, filling=0.15)["p_sticking"]"""
 
+import json
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
+from ..runs.arrays import RunFolderError
 from ..runs.named import suggested
+from ..runs.seal import SUM, UNSUMMED, read_summed, summed
 from ..runs.write import write_text
 
 SCALES = {"log10": np.log10, "linear": np.asarray}
 ENDS = "_low", "_high"  # of names of columns that are ends of intervals
 INSIDE = "inside"  # the column that is 1 within the data and 0 outside
 ROUNDING = 1e-9  # of the sum of a query's weights
+_SUMMED = f'# {{"{SUM}"'  # the first line of a file with a sum
 CHUNK = 20_000  # queries at once: what they need stays in the processor's cache
 
 
@@ -121,14 +125,20 @@ class OutcomeTable:
 
 
 def read_outcomes(path):
-    """The OutcomeTable of a file as write_outcomes() makes it. OutcomeTableError for another one, and where there is none."""
+    """The OutcomeTable of a file as write_outcomes() makes it; one without a sum may be another program's. OutcomeTableError for another
+    text, and where there is none."""
     try:
         with open(path, encoding="ascii", errors="replace") as file:
-            lines = [line.rstrip("\n") for line in file]
+            lines = file.read().split("\n")
     except OSError as error:
         said = f"{path}: {error.strerror}; must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
         raise OutcomeTableError(said) from None
-    comments = tuple(line[1:].strip() for line in lines if line.startswith("#"))
+    if lines[0].startswith(_SUMMED):
+        try:
+            read_summed(path)
+        except RunFolderError as error:
+            raise OutcomeTableError(str(error)) from None
+    comments = tuple(line[1:].strip() for line in lines if line.startswith("#") and not line.startswith(_SUMMED))
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:
         axes = tuple(_axis(next(rows)) for _ in range(int(next(rows)[0])))
@@ -162,10 +172,11 @@ def _columns(rows):
 
 def write_outcomes(path, table):
     """Write an OutcomeTable: comments (#), number of axes, an axis a line (name, nodes, scale, their values), number of columns,
-    their names, and a row a node, the last axis fastest. Fortran's list-directed reads take it, but for the comments."""
-    lines = [f"# {comment}".rstrip() for comment in table.comments]
+    their names, and a row a node, the last axis fastest. Fortran's list-directed reads take it, but for the comments. The first comment is
+    the SHA-256 of the file with zeros in its place."""
+    lines = [f"# {json.dumps(UNSUMMED)}", *(f"# {comment}".rstrip() for comment in table.comments)]
     lines += [f"{len(table.axes)} number of axes: name, number of nodes, scale, nodes"]
     lines += [" ".join([a.name, str(len(a.nodes)), a.scale, *(f"{node:.9g}" for node in a.nodes)]) for a in table.axes]
     lines += [f"{len(table.columns)} number of columns", " ".join(table.columns)]
     lines += [" ".join(f"{value:.6g}" for value in row) for row in table.values.reshape(-1, len(table.columns))]
-    write_text(path, "\n".join(lines) + "\n")
+    write_text(path, summed("\n".join(lines) + "\n"))

@@ -18,7 +18,7 @@ def add_parser(commands):
         "runs",
         nargs="+",
         metavar="RUNS",
-        help="run folder, folder that holds run folders, a pattern such as 'runs/**', or a study's runs.csv or comparison.json",
+        help="run folder, folder that holds run folders, a pattern such as 'runs/**', a study's runs.csv or comparison.json, or a table of outcomes",
     )
     parser.set_defaults(command=run)
 
@@ -29,7 +29,7 @@ def run(options):
     from ..runs.collect import run_folders
     from ..runs.verify import verify_run, verify_text
 
-    texts = [Path(path) for path in options.runs if Path(path).suffix in (".csv", ".json") and Path(path).is_file()]
+    texts = [Path(path) for path in options.runs if Path(path).suffix in (".csv", ".json", ".txt") and Path(path).is_file()]
     found, differs = run_folders([path for path in options.runs if Path(path) not in texts]), False
     for path, problem in progress([*((text, None) for text in texts), *found], "verifying"):
         problems, said = ([problem], []) if problem else verify_text(path) if path in texts else verify_run(path)

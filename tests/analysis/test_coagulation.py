@@ -73,9 +73,11 @@ def test_maxwell(table):
 def test_wrong_tables(table, tmp_path, change, says):
     file = tmp_path / "outcomes.txt"
     write_outcomes(file, table)
-    file.write_text(file.read_text().replace(*change, 1))
-    with pytest.raises(OutcomeTableError, match=f"^{file}: .*{says}"):
-        read_outcomes(file)
+    text = file.read_text().replace(*change, 1)
+    for content, expected in ((text, "its SHA-256 is another"), (text.partition("\n")[2], says)):
+        file.write_text(content)
+        with pytest.raises(OutcomeTableError, match=f"^{file}: .*{expected}"):
+            read_outcomes(file)
 
 
 PROGRAM = """program ask
