@@ -41,7 +41,7 @@ def text(options):
     lines = [_title(options, point), *(line + without for line in _beyond(near, point, answer["inside"]))]
     for name, kind in zip(PROBABILITIES, KINDS):
         low, high = np.clip([answer[name] - answer["error"], answer[name] + answer["error"]], 0, 1)
-        interval = f"  ({low:.2f} to {high:.2f})" if np.isfinite(answer["error"]) else ""
+        interval = f"  ({low:.3f} to {high:.3f})" if np.isfinite(answer["error"]) else ""
         lines.append(f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}{interval}")
     lines += [f"  {label:<42} {answer[name]:.3g}{ranges.get(name, '')}" for name, label in LABELS.items()]
     return "\n".join([*lines, *_nearest(near, point)])
