@@ -17,8 +17,10 @@ def maximum_of_run(run):
 
 
 def met(run):
-    """Whether the two aggregates of a RunFolder, or aggregate and plate, touched at any recorded time."""
-    return bool(np.any(run.history["contacts_between"] > 0))
+    """Whether the two aggregates of a RunFolder, or aggregate and plate, touched until its last sample: at the run's first touch, which knows
+    of a graze between two samples too, or at a sample."""
+    history = run.history
+    return bool(run.derived.get("firstTouch", np.inf) <= history["time"][-1] or np.any(history["contacts_between"] > 0))
 
 
 def time_of_touch(run):

@@ -88,6 +88,11 @@ def test_aggregates_that_never_met_have_that_outcome(run):
     assert numbers["outcome"] == "never met" and numbers["restitution"] is None
     table = analyse("summary", "--long", run).stdout
     assert re.search(r"outcome +never met", table) and re.search(r"restitution +none: never met", table)
+    about = json.loads((run / "run.json").read_text())
+    about["derived"]["firstTouch"] = 1e-12  # a graze, between two samples
+    (run / "run.json").write_text(json.dumps(about))
+    seal(run)
+    assert json.loads(analyse("summary", "--json", run).stdout)["outcome"] == "bouncing"
 
 
 def test_a_run_at_rest_has_no_closure_and_no_restitution(run, tmp_path):
