@@ -21,7 +21,14 @@ COMPRESSION_KEYS = (
 )
 OUTCOME_KEYS = (
     Column("restitution", "1", "coefficient of restitution, where there is one (measures.outcome)", gaps=True),
-    Column("outcome", "", "sticking, bouncing, fragmentation, never met, undecided (measures.outcome)", "O", gaps=True),
+    Column(
+        "outcome",
+        "",
+        "sticking (the largest piece gained at least 0.8 of the projectile's mass over the target; of equal ones: holds 0.9 of all), "
+        "bouncing, fragmentation, never met, undecided (measures.outcome, .plate)",
+        "O",
+        gaps=True,
+    ),
     Column("why_undecided", "", "why an outcome may still become another one; none of decided ones", "O", gaps=True),
     Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O", gaps=True),
     Column("largest_fragment", "", "number of grains of the largest piece", gaps=True),
