@@ -10,10 +10,19 @@ from .fragments import belongs_to_an_aggregate
 from .outcome import collision_outcome
 from .plate import has_plate, plate_outcome, why_undecided_on_plate
 
+UNLIKE = 0.05  # of the heavier aggregate's mass: with a larger difference the plane x = 0 is not where they meet
+
 
 def maximum_of_run(run):
     """compression.Maximum of a RunFolder over all of its history; None where d has no value."""
     return maximum_compression(run.history["time"], run.history["d"], run.history["v"])
+
+
+def are_equal(run):
+    """Whether the two aggregates of a RunFolder are of equal mass to within UNLIKE, so that its d and v have a meaning; with a plate they have."""
+    start = run.start
+    masses = np.bincount(start.aggregate, start.radius**3, minlength=2)
+    return has_plate(vars(start)) or bool(np.ptp(masses) <= UNLIKE * masses.max())
 
 
 def met(run):
