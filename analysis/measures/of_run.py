@@ -49,7 +49,7 @@ def outcome_of_run(run):
         found = plate_outcome(vars(start), vars(end), met(run)) if on_plate else _of_two(start, end, met(run))
     except ValueError as error:
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
-    if not all(name in run.derived for name in CONSTANTS):
+    if _passes(run) or not all(name in run.derived for name in CONSTANTS):
         return found
     touch = time_of_touch(run)
     before = np.flatnonzero(is_recent(run.states.times, end.time, touch))[:-1]
@@ -60,6 +60,11 @@ def outcome_of_run(run):
         counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
         why = why_undecided(found.kind, counted, vars(end), run.derived, touch, recent)
     return found.if_decided(why)
+
+
+def _passes(run):
+    """Whether a RunFolder's aggregates never touch on their straight ways, as its run has found; those of format 1 didn't look."""
+    return run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run)
 
 
 def _of_two(start, end, met):
