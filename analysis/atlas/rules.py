@@ -11,12 +11,15 @@ more than the target had, over the projectile's mass (the growth efficiency of A
     fragmentation   F1  it keeps less
 
 Names: Guettler et al. (2010, section 4); mass transfer and erosion as Windmark et al. (2012, section 2) tell them apart, by the sign of the
-target's change; KEPT is the usual line of catastrophic disruption. For equal masses sticking is f1 >= 0.9, as in measures.outcome."""
+target's change; KEPT is the usual line of catastrophic disruption. Sticking, STAYS and OWN are those of measures.outcome. Its
+bouncing asks that both aggregates together lose no more than a fifth of the projectile's mass to other pieces, B1 that the projectile alone does."""
 
 import numpy as np
 
+from ..measures.outcome import OWN, STAYS, sticks
+
 KINDS = ("sticking", "bouncing", "mass_transfer", "erosion", "fragmentation")
-STAYS, OWN, KEPT = 0.8, 0.9, 0.5
+KEPT = 0.5
 
 
 def gain(row):
@@ -35,7 +38,7 @@ def compaction(row):
 
 def sticking(row):
     """Whether it is, by the rules of this module; so are the others."""
-    return gain(row) >= STAYS
+    return sticks(row["largest"], _target(row))
 
 
 def bouncing(row):

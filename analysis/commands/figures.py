@@ -8,7 +8,7 @@ def add_parser(commands):
     parser = commands.add_parser(
         "figures",
         help="draw a run's figures",
-        description="Write motion.png (d and v against time), energy.png (the channels), grains.png (the grains, dense aggregates cut through the "
+        description="Write motion.png (d and v against time, of equal aggregates), energy.png (the channels), grains.png (the grains, dense aggregates cut through the "
         "middle) and forces.png (contact forces).",
     )
     parser.add_argument("run", metavar="RUN", help="run folder")

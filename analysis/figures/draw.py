@@ -17,6 +17,7 @@ def figures_of(run):
         for name, module in modules.items()
         if run.kind.name in getattr(module, "KINDS", (run.kind.name,))
         and run.kind.name not in getattr(module, "NOT_OF", ())
+        and getattr(module, "HAS_MEANING", lambda run: True)(run)
     }
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from .cuts import loose_cuts
 from .fragments import fragment_labels, fragment_masses
 from .free_flight import inner_kinetic_energy, pieces_can_meet, pieces_that_can_meet
-from .outcome import BOUNCING, NEVER_MET, STICKING, classify
+from .outcome import BOUNCING, NEVER_MET, STICKING, classify, target_fraction
 
 BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
 # A24 follows aggregates of 80 grain radii for 1000 ns, in which they are compressed and part: 12.5 ns a grain radius, in
@@ -118,17 +118,22 @@ class Pieces:
         shares = fragment_masses(self.labels, self.mass * counted) / self.mass[counted].sum()
         return shares, *(*np.argsort(-shares, kind="stable")[:2], None)[:2]
 
+    def target(self, counted):
+        """Fraction of the counted mass in the target."""
+        return target_fraction(self.state["aggregate"], self.mass * counted)
+
 
 def _why_breaking(kind, pieces, counted):
     """For an outcome that the loss of a side of one of the largest pieces makes another one; not told of pieces that are no such outcome
     yet."""
     shares, *largest = pieces.shares(counted)
     largest = np.array([piece for piece in largest[: 2 if kind == BOUNCING else 1] if piece is not None])
-    cut, side = pieces.loose_cuts()
+    cut, side, target = *pieces.loose_cuts(), pieces.target(counted)
     for piece in largest:
         lost = side[cut == piece].max(initial=0.0) / pieces.mass.sum()
         seen, left = (sorted(shares[largest] - less * (largest == piece), reverse=True) for less in (0.0, lost))
-        if classify(*(seen + [0.0])[:2]) == kind != classify(*(left + [0.0])[:2]):
+        seen, left = (classify(*(masses + [0.0])[:2], target=target) for masses in (seen, left))
+        if seen == kind != left:
             return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
 
 
@@ -139,7 +144,9 @@ def _why_meeting(kind, pieces, counted):
     whole = shares[largest] + shares[near].sum()
     if second is not None and not near[second]:
         other = shares[second] + shares[pieces_that_can_meet(second, *pieces.flight, EVER) & ~near].sum()
-    seen = (shares[largest], 0.0 if second is None else shares[second])
-    have_parted = classify(*seen) == kind  # otherwise pieces of such masses, but not those of the two aggregates
-    if classify(*sorted((whole, other), reverse=True), have_parted) != kind:
+    seen, target = (shares[largest], 0.0 if second is None else shares[second]), pieces.target(counted)
+    have_parted = (
+        classify(*seen, target=target) == kind
+    )  # otherwise pieces of such masses, but not those of the two aggregates
+    if classify(*sorted((whole, other), reverse=True), have_parted, target) != kind:
         return f"pieces of {whole - shares[largest]:.0%} of the mass may still meet the largest"

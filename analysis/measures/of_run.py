@@ -10,15 +10,26 @@ from .fragments import belongs_to_an_aggregate
 from .outcome import collision_outcome
 from .plate import has_plate, plate_outcome, why_undecided_on_plate
 
+UNLIKE = 0.05  # of the heavier aggregate's mass: with a larger difference the plane x = 0 is not where they meet
+
 
 def maximum_of_run(run):
     """compression.Maximum of a RunFolder over all of its history; None where d has no value."""
     return maximum_compression(run.history["time"], run.history["d"], run.history["v"])
 
 
+def are_equal(run):
+    """Whether the two aggregates of a RunFolder are of equal mass to within UNLIKE, so that its d and v have a meaning; with a plate they have."""
+    start = run.start
+    masses = np.bincount(start.aggregate, start.radius**3, minlength=2)
+    return has_plate(vars(start)) or bool(np.ptp(masses) <= UNLIKE * masses.max())
+
+
 def met(run):
-    """Whether the two aggregates of a RunFolder, or aggregate and plate, touched at any recorded time."""
-    return bool(np.any(run.history["contacts_between"] > 0))
+    """Whether the two aggregates of a RunFolder, or aggregate and plate, touched until its last sample: at the run's first touch, which knows
+    of a graze between two samples too, or at a sample."""
+    history = run.history
+    return bool(run.derived.get("firstTouch", np.inf) <= history["time"][-1] or np.any(history["contacts_between"] > 0))
 
 
 def time_of_touch(run):
@@ -38,7 +49,7 @@ def outcome_of_run(run):
         found = plate_outcome(vars(start), vars(end), met(run)) if on_plate else _of_two(start, end, met(run))
     except ValueError as error:
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
-    if not all(name in run.derived for name in CONSTANTS):
+    if _passes(run) or not all(name in run.derived for name in CONSTANTS):
         return found
     touch = time_of_touch(run)
     before = np.flatnonzero(is_recent(run.states.times, end.time, touch))[:-1]
@@ -49,6 +60,11 @@ def outcome_of_run(run):
         counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
         why = why_undecided(found.kind, counted, vars(end), run.derived, touch, recent)
     return found.if_decided(why)
+
+
+def _passes(run):
+    """Whether a RunFolder's aggregates never touch on their straight ways, as its run has found; those of format 1 didn't look."""
+    return run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run)
 
 
 def _of_two(start, end, met):

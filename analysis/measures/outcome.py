@@ -1,14 +1,18 @@
 """Outcome of a collision of two aggregates, and the coefficient of restitution.
 
 Counted are the grains that belong to an aggregate at the start (fragments.belongs_to_an_aggregate).
-With f1 >= f2 the fractions of their mass in the two heaviest fragments at the end:
+The target is the heavier aggregate, m_t and m_p are the fractions of their mass in target and projectile; with f1 >= f2 those in
+the two heaviest fragments at the end, and the gain (f1 - m_t)/m_p:
 
     never met      no contact between the aggregates at any time
-    sticking       f1 >= 0.9
-    bouncing       f1 + f2 >= 0.9 and f2 >= 0.25, and of each of the two pieces at least OWN is mass of one
-                   aggregate, of one each
-    fragmentation  everything else: also a part torn off one aggregate, and a merged body that broke in two
+    sticking       gain >= STAYS: four fifths of the projectile or more stay on the target
+    bouncing       the two part again: the target changes by no more than the rest, a fifth of the projectile, |gain| <= 1 - STAYS,
+                   no more than that lies in other pieces, f1 + f2 >= 1 - (1 - STAYS) m_p, and of each of the two pieces at least OWN
+                   is mass of one aggregate, of one each
+    fragmentation  everything else: also mass transfer and erosion, a part torn off one aggregate, and a merged body that broke in two
     undecided      what is seen at the end is one of these, and may still become another one (decided.py)
+
+Of equal aggregates sticking is f1 >= 0.9, and bouncing f1 + f2 >= 0.9 of pieces that are one aggregate's each.
 
 The coefficient of restitution is 0 for sticking. For bouncing it is minus the relative velocity of the centres of mass
 of the two heaviest fragments, projected on the direction of the aggregates' relative velocity at the start, over that
@@ -30,9 +34,12 @@ from .fragments import (
 NEVER_MET, STICKING, BOUNCING, FRAGMENTATION = "never met", "sticking", "bouncing", "fragmentation"
 UNDECIDED = "undecided"
 
+# Of the projectile's mass, so much at least stays where it sticks.
+STAYS = 0.8
 # Of the mass of a piece that bounced, so much at least is of one aggregate. Aggregates that part where they had touched
-# exchange what stuck to the other side: up to a tenth of a piece, as sticking leaves out up to a tenth.
+# exchange what stuck to the other side: up to a tenth of a piece, as sticking leaves out up to a tenth of equal ones.
 OWN = 0.9
+ROUNDING = 1e-9  # four grains of five are STAYS
 
 
 @dataclass(frozen=True)
@@ -61,18 +68,33 @@ class Outcome:
         return replace(self, kind=UNDECIDED, restitution=None, why_undecided=why, seen=self.kind)
 
 
-def classify(f1, f2, parted=True):
+def sticks(largest, target):
+    """Whether aggregates stick whose largest piece and target have these fractions of their mass; arrays too.
+
+    >>> sticks(0.9, 0.5), sticks(0.98, 0.9), sticks(0.97, 0.9)
+    (True, True, False)
+    """
+    return largest - target >= (STAYS - ROUNDING) * (1.0 - target)
+
+
+def classify(f1, f2, parted=True, target=0.5):
     """Name of the outcome for the mass fractions f1 >= f2 of the two heaviest fragments, parted: whether these are the two
-    aggregates again (have_parted). The rule at the module's head.
+    aggregates again (have_parted), and that of the target. The rule at the module's head.
 
     >>> classify(0.5, 0.5), classify(0.95, 0.01), classify(0.5, 0.1), classify(0.5, 0.5, parted=False)
     ('bouncing', 'sticking', 'fragmentation', 'fragmentation')
     """
-    if f1 >= 0.9:
+    if sticks(f1, target):
         return STICKING
-    if f1 + f2 >= 0.9 and f2 >= 0.25 and parted:
+    rest = (1.0 - STAYS + ROUNDING) * (1.0 - target)
+    if parted and abs(f1 - target) <= rest and 1.0 - f1 - f2 <= rest:
         return BOUNCING
     return FRAGMENTATION
+
+
+def target_fraction(aggregate, mass):
+    """m_t, of grains (N,): aggregate 0 or 1, mass in any unit, 0 of those that don't count."""
+    return float(np.bincount(aggregate, mass).max() / mass.sum())
 
 
 def have_parted(shares):
@@ -123,7 +145,8 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
     f1, f2 = (float(fractions[k]) for k in heaviest) if len(heaviest) == 2 else (float(fractions[0]), 0.0)
     pieces = [(labels == k) & counted for k in heaviest]
     shares = [np.average(aggregate[piece], weights=mass[piece]) if piece.any() else 0.0 for piece in pieces]
-    kind = classify(f1, f2, have_parted(shares)) if met else NEVER_MET
+    target = target_fraction(aggregate, mass * counted)
+    kind = classify(f1, f2, have_parted(shares), target) if met else NEVER_MET
     ratio = 0.0 if kind == STICKING else None
     if kind == BOUNCING:
         by_aggregate = [pieces[k] for k in np.argsort(shares)]

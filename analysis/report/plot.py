@@ -8,7 +8,7 @@ import numpy as np
 import pandas
 
 from ..arguments import Kind, one_of, takes, wrong
-from ..measures.outcome import STICKING, UNDECIDED
+from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
 from ..runs.format import CHANNELS
 from ..runs.named import unknown
 from ..runs.table import RUN
@@ -60,7 +60,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     """matplotlib Figure of runs (a table(), or what that takes).
 
     what: "sticking" (fraction of the runs that stick, with Wilson's 95 % intervals; of the decided ones: those that are undecided, or
-    have not ended, widen the interval, counted either way, and are named above), "largest" (mass fraction of the largest piece), "energy" (change of every
+    have not ended, widen the interval, counted either way, and are named above, as are those that never met, which are left out),
+    "largest" (mass fraction of the largest piece), "energy" (change of every
     channel from the start to the end, over K(0)), or any column. x: a column of numbers; by: a column that tells curves (panels, of
     "energy") apart; where: {column: value} of the runs that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it
     spans a decade). Bars but of "sticking" are standard errors of the mean over pairs of aggregates, which are told by their seed;
@@ -88,7 +89,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
 def _quantity(what, drawn, by):
     """Quantity of what is drawn."""
     if what == "sticking":
-        collisions = drawn.of(drawn.table[drawn.table.outcome.notna()])
+        collisions = drawn.of(drawn.table[drawn.table.outcome.notna() & ~_never_met(drawn.table)])
         try:
             values = collisions.fractions(lambda table: table.outcome == STICKING, by, _undecided)
         except ValueError as error:  # the same run twice
@@ -172,13 +173,19 @@ def _undecided(found):
     return found.outcome.map(lambda text: str(text).startswith(UNDECIDED)) | ~found.ended.astype(bool)
 
 
+def _never_met(found):
+    return found.outcome == NEVER_MET
+
+
 def _with_unit(found, name):
     unit = found.attrs.get("units", {}).get(name, "")
     return name + (f"  [{unit}]" if unit not in ("", "1") else "")
 
 
 def _about(found, what):
-    """How many runs there are, and how many of them have no outcome that counts."""
-    undecided = int(_undecided(found).sum())
-    text = f"{len(found)} runs" + (f", {undecided} of them undecided or not ended" if undecided else "")
+    """How many runs there are, and how many of them have no outcome that counts, or are left out."""
+    missed = _never_met(found) & (what == "sticking")
+    undecided = int((_undecided(found) & ~missed).sum())
+    text = f"{len(found)} runs" + (f", {missed.sum()} that never met left out" if missed.any() else "")
+    text += f", {undecided} of them undecided or not ended" if undecided else ""
     return text + ("\n(in the bars, counted either way)" if undecided and what == "sticking" else "")

@@ -17,7 +17,7 @@ from ..progress import progress
 from ..runs.arrays import RunFolderError
 from ..runs.collect import run_folders
 from ..runs.folder import RunFolder, open_run
-from ..runs.format import CHANNEL_TABLE, CHANNELS, PARAMETER_UNITS, RUN_KINDS
+from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, PARAMETER_UNITS, RUN_KINDS
 from ..runs.table import FOLDER, RUN, Column, columns_text, described, make_table
 from .summary import COMPRESSION_KEYS, ENERGY_KEYS, OUTCOME_KEYS, summarise
 
@@ -59,6 +59,7 @@ SERIES = tuple(
     for series in kind.series
 )
 MEASURED = (*OUTCOME, *LARGEST, *COMPRESSION_KEYS, *ENERGIES, *SERIES)
+OF_EQUAL = "d", "v"  # series without a meaning where the aggregates' masses differ
 # What is said of a run in one line.
 SHORT = (
     *("outcome", "largest_fraction", "fragments", "growth_efficiency", "mass_on_plate", "restitution", "d_max"),
@@ -113,7 +114,11 @@ def short_text(found):
     names = dict.fromkeys([*first, *([] if found.ended.all() else ["ended"]), *shown])
     units = {name: found.attrs["units"].get(name, "") for name in names}
     heads = {name: name + (f" [{unit}]" if unit not in ("", "1") else "") for name, unit in units.items()}
-    text = found[list(names)].rename(columns={**heads, FOLDER: RUN})
+    text = found[list(names)]
+    if "d_max" in names:
+        shown = zip(found.d_max, found.maximum_inside)
+        text = text.assign(d_max=[f"{'' if inside else '>='}{d:.4g}" if d == d else "-" for d, inside in shown])
+    text = text.rename(columns={**heads, FOLDER: RUN})
     return text.to_string(index=False, na_rep="-", float_format="{:.4g}".format)
 
 
@@ -137,13 +142,16 @@ def row(run, structure=True):
     del numbers[RUN]
     fractions = numbers.pop("mass_fractions") or (None, None)
     of_k = fractions_at(run.history, run.history["time"][-1]) or {}
+    without = OF_EQUAL if run.kind is COLLISION and numbers["d_max"] is None else ()
     values = {
         "kind": run.kind.name,
         **numbers,
         **dict(zip(("largest_fraction", "second_fraction"), fractions)),
         **{at_end(channel): of_k.get(channel) for channel in CHANNELS},
         **{
-            final(series.name): run.history[series.name][-1] for series in run.kind.series if series.name in run.history
+            final(series.name): None if series.name in without else run.history[series.name][-1]
+            for series in run.kind.series
+            if series.name in run.history
         },
         **(_largest(run.last) if structure else {}),
     }

@@ -4,7 +4,7 @@ import textwrap
 
 from ..arguments import Kind, takes
 from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure, work_on_boundaries
-from ..measures.of_run import maximum_of_run, outcome_of_run
+from ..measures.of_run import are_equal, maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
 from ..runs.folder import RunFolder
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, LABELS
@@ -13,7 +13,7 @@ from ..runs.table import Column
 
 # Of a collision, named as measures.compression.Maximum and measures.outcome.Outcome have them.
 COMPRESSION_KEYS = (
-    Column("d_max", "m", "largest compression length (A24 eqs 10, 11)", gaps=True),
+    Column("d_max", "m", "largest compression length of equal aggregates (A24 eqs 10, 11)", gaps=True),
     Column("d_max_error", "m", "its error", gaps=True),
     Column("t_max", "s", "its time", gaps=True),
     Column("t_max_error", "s", "its error", gaps=True),
@@ -21,7 +21,14 @@ COMPRESSION_KEYS = (
 )
 OUTCOME_KEYS = (
     Column("restitution", "1", "coefficient of restitution, where there is one (measures.outcome)", gaps=True),
-    Column("outcome", "", "sticking, bouncing, fragmentation, never met, undecided (measures.outcome)", "O", gaps=True),
+    Column(
+        "outcome",
+        "",
+        "sticking (the largest piece gained at least 0.8 of the projectile's mass over the target; of equal ones: holds 0.9 of all), "
+        "bouncing, fragmentation, never met, undecided (measures.outcome, .plate)",
+        "O",
+        gaps=True,
+    ),
     Column("why_undecided", "", "why an outcome may still become another one; none of decided ones", "O", gaps=True),
     Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O", gaps=True),
     Column("largest_fragment", "", "number of grains of the largest piece", gaps=True),
@@ -45,7 +52,7 @@ def summarise(run):
     state is missing or damaged."""
     history = run.history
     collision = run.kind is COLLISION
-    maximum = maximum_of_run(run) if collision else None
+    maximum = maximum_of_run(run) if collision and are_equal(run) else None
     numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
     numbers.update(_compression(maximum))
     numbers.update(_outcome(run) if collision else dict.fromkeys(_names(OUTCOME_KEYS)))
@@ -117,7 +124,7 @@ def _compression_measures(history):
 
 
 def _collision_measures(run, numbers):
-    yield "d_max", _d_max(numbers, run.derived["grainRadius"])
+    yield "d_max", _d_max(run, numbers)
     yield "t_max", _t_max(numbers)
     f1, f2 = numbers["mass_fractions"]
     kind = numbers["outcome"] + ("" if run.ended else ", so far")
@@ -139,9 +146,10 @@ def _no_restitution(numbers):
     return f"none: {numbers['outcome']}"
 
 
-def _d_max(numbers, grain_radius):
+def _d_max(run, numbers):
+    grain_radius = run.derived["grainRadius"]
     if numbers["d_max"] is None:
-        return "undefined: all grains on one side of x = 0"
+        return "undefined: " + ("all grains on one side of x = 0" if are_equal(run) else "aggregates of unlike mass")
     text = f"{numbers['d_max']:.4g} m = {numbers['d_max'] / grain_radius:.4g} grain radii"
     if numbers["maximum_inside"]:
         return text + f" (+- {numbers['d_max_error'] / grain_radius:.1g})"

@@ -152,7 +152,7 @@ COLLISION = RunKind(
     "collision",
     (
         Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11) of equal aggregates; NaN with all grains on one side. On a plate: the aggregate's radius less its mean distance", gaps=True),
-        Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13), positive while approaching", gaps=True),
+        Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13) of equal aggregates, positive while approaching", gaps=True),
         Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates, or with the plate", "i"),
         Quantity("formed", ("T",), "", "contacts formed since the start (A22 N_con)", "i", optional=True),
         Quantity("broken", ("T",), "", "contacts broken since the start (A22 N_cut)", "i", optional=True),

@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 from written_runs import seal
 
+from analysis.figures.draw import figures_of
+from analysis.report.rows import row
+from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNELS
 
 TOP = Path(__file__).resolve().parents[2]
@@ -66,12 +69,12 @@ def run(pair_folder, tmp_path):
     return shutil.copytree(pair_folder[0], tmp_path / "run")
 
 
-def set_to_zero(run, names):
-    """These arrays of a folder."""
+def change(run, names, to=np.zeros_like):
+    """These arrays of a folder, to what a function makes of them."""
     for file in (run / "history.npz", *(run / "states").iterdir()):
         with np.load(file) as archive:
             arrays = dict(archive)
-        np.savez(file, **{name: np.zeros_like(own) if name in names else own for name, own in arrays.items()})
+        np.savez(file, **{name: to(own) if name in names else own for name, own in arrays.items()})
     seal(run)
 
 
@@ -83,15 +86,32 @@ def test_an_unfinished_run_says_so(run):
 
 
 def test_aggregates_that_never_met_have_that_outcome(run):
-    set_to_zero(run, {"contacts_between"})
+    change(run, {"contacts_between"})
     numbers = json.loads(analyse("summary", "--json", run).stdout)
     assert numbers["outcome"] == "never met" and numbers["restitution"] is None
     table = analyse("summary", "--long", run).stdout
     assert re.search(r"outcome +never met", table) and re.search(r"restitution +none: never met", table)
+    about = json.loads((run / "run.json").read_text())
+    about["derived"]["firstTouch"] = 1e-12  # a graze, between two samples
+    (run / "run.json").write_text(json.dumps(about))
+    seal(run)
+    assert json.loads(analyse("summary", "--json", run).stdout)["outcome"] == "bouncing"
+
+
+def test_a_compression_is_of_equal_aggregates_and_a_bound_is_marked(run):
+    assert open_run(run).history["d"].max() > open_run(run).history["d"][-1] and "motion" in figures_of(open_run(run))
+    change(run, {"d"}, np.sort)  # it rises until the end
+    largest = open_run(run).history["d"].max()
+    assert f">={largest:.4g}" in analyse("summary", run).stdout
+    change(run, {"radius"}, lambda radius: radius * [1.0, 0.98])
+    assert "d_max                undefined: aggregates of unlike mass" in analyse("summary", "--long", run).stdout
+    found = row(open_run(run))
+    assert all(np.isnan(found[name]) for name in ("d_max", "t_max", "final_d", "final_v"))
+    assert "motion" not in figures_of(open_run(run))
 
 
 def test_a_run_at_rest_has_no_closure_and_no_restitution(run, tmp_path):
-    set_to_zero(run, {"kinetic", "velocity"})
+    change(run, {"kinetic", "velocity"})
     numbers = json.loads(analyse("summary", "--json", run).stdout)
     assert numbers["energy_closure"] is None and numbers["restitution"] is None
     told = analyse("summary", "--long", run).stdout

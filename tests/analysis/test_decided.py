@@ -18,8 +18,9 @@ CONSTANTS = {
 LONG = 2 * decided.REBOUND_PER_RADIUS
 
 
-def chain(velocity, broken=(), places=None, bonded=False):
-    """A state of a straight chain of grains of which the first half is aggregate 0; velocity (N,) along it, broken: contacts left out."""
+def chain(velocity, broken=(), places=None, bonded=False, small=None):
+    """A state of a straight chain of grains of which the first half, or so small a part, is aggregate 0; velocity (N,) along it, broken:
+    contacts left out."""
     grains = len(velocity)
     position = np.zeros((grains, 3))
     position[:, 0] = 2 * np.arange(grains) if places is None else places
@@ -28,7 +29,7 @@ def chain(velocity, broken=(), places=None, bonded=False):
         "position": position,
         "velocity": np.column_stack([velocity, np.zeros((grains, 2))]),
         "radius": np.ones(grains),
-        "aggregate": (np.arange(grains) >= grains // 2).astype(int),
+        "aggregate": (np.arange(grains) >= (small or grains // 2)).astype(int),
         "contact_pairs": np.array(pairs),
         "contact_bonded": np.full(len(pairs), bonded),
     }
@@ -55,6 +56,8 @@ APART = np.repeat([-1.0, 1.0], 10)
         ("sticking", chain(parting(20, 1.1, 10), bonded=True), LONG, None),
         ("sticking", chain(parting(20, 1.1, 4)), LONG, "parts of 20% of the mass"),  # within an aggregate
         ("sticking", chain(parting(20, 1.1, 2)), LONG, None),  # a tenth less is sticking too
+        ("sticking", chain(parting(20, 1.1, 2), small=2), LONG, "parts of 10% of the mass"),  # the projectile
+        ("bouncing", chain(np.repeat([-1.0, 1.0], [2, 18]), [1], small=2), LONG, None),
         ("bouncing", chain(APART, [9]), LONG, None),
         ("bouncing", chain(-APART, [9]), LONG, "may still meet the largest"),
         ("bouncing", chain(APART + 3 * np.repeat([0, 1], [15, 5]), [9]), LONG, "parts of 25% of the mass"),

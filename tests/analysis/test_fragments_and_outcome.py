@@ -35,8 +35,8 @@ def test_crumbs_of_a_packing_do_not_count():
 
 
 def test_rule():
-    rule = {(1.0, 0.0): "sticking", (0.9, 0.1): "sticking", (0.5, 0.5): "bouncing", (0.65, 0.25): "bouncing"}
-    torn = ((0.89, 0.11), (0.66, 0.24), (0.45, 0.44), (0.1, 0.1))
+    rule = {(1.0, 0.0): "sticking", (0.9, 0.1): "sticking", (0.5, 0.5): "bouncing", (0.55, 0.35): "bouncing"}
+    torn = ((0.89, 0.11), (0.65, 0.25), (0.45, 0.44), (0.1, 0.1))
     for fractions, kind in {**rule, **dict.fromkeys(torn, "fragmentation")}.items():
         assert classify(*fractions) == kind, fractions
 
@@ -71,6 +71,32 @@ def test_sticking_and_fragmentation():
     outcome = _outcome(START, _state(STILL, (0, 10), (20, 12)))
     assert (outcome.kind, outcome.restitution, outcome.largest_fragment) == ("fragmentation", None, 12)
     assert outcome.mass_fractions == (0.3, 0.25)
+
+
+@pytest.mark.parametrize(
+    "pieces, kind",
+    [
+        ((40,), "sticking"),
+        ((39, 1), "sticking"),
+        ((38, 2), "fragmentation"),  # three quarters of the projectile stay
+        ((32, 8), "bouncing"),
+        ((33, 7), "bouncing"),
+        ((30, 2, 8), "fragmentation"),  # erosion
+        ((32, 6, 2), "fragmentation"),
+    ],
+)
+def test_unlike_aggregates_are_judged_by_what_the_target_gains(pieces, kind):
+    """Of 32 and 8 grains: nine tenths of the mass in one piece are no sign of sticking."""
+    velocity = np.where(np.arange(40)[:, None] < pieces[0], [[-0.06, 0, 0]], [[0.24, 0, 0]])
+    start, end = (
+        _state(*own) for own in ((MEETING, (0, 32), (32, 8)), (velocity, *zip(np.cumsum([0, *pieces]), pieces)))
+    )
+    start["aggregate"] = np.repeat([0, 1], [32, 8])
+    start["velocity"] = np.where(start["aggregate"][:, None], [[-0.8, 0, 0]], [[0.2, 0, 0]])
+    outcome = _outcome(start, end)
+    assert outcome.kind == kind
+    expected = {"sticking": 0.0, "bouncing": 0.3}.get(kind)
+    assert outcome.restitution is expected or outcome.restitution == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("moved", [0, 2, -2])

@@ -39,6 +39,10 @@ def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs)
     assert bars[1] == pytest.approx(wilson(1, 4), rel=1e-12)
     assert "8 runs, 1 of them undecided or not ended (in the bars, counted either way)" in said
     assert "3 to 4 pairs" in said and "[m/s]" in said
+    missed = pandas.concat([runs, runs[:1].assign(seed=9, outcome="never met")], ignore_index=True)
+    missed.attrs = runs.attrs
+    *same, said = drawn(plot("sticking", missed))
+    assert same == [points, bars] and "9 runs, 1 that never met left out, 1 of them undecided" in said
 
 
 def test_equal_curves_stand_beside_each_other(runs):

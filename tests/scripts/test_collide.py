@@ -138,7 +138,6 @@ WRONG = {
     "threads=2 engine=functors": "threads = 2: YADE was started with 1; must be ",
     "out=/dev/null/run": "out = /dev/null/run: Not a directory; must be a folder that can be written",
     "out=.": "out = .: exists and is no run folder; must be ",
-    "impact=1": "impact = 1: the aggregates of seed 1 would never meet; must be another impact or seed, or",
     "density=1e300 unusual=1": "density = 1e+300 kg/m^3: must be 1e-07 to 2.3e+13 kg/m^3 also with unusual=1",
     "surfaceEnergy=1e4 unusual=1": "grainRadius = 1e-07: contacts at rest have a radius of ",
     "table=rows.table:3": "velocity = fast: not a finite number; must be > 0 [m/s]",

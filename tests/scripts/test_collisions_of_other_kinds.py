@@ -6,6 +6,7 @@ import pytest
 from running import completed, read_arrays, read_json
 
 from analysis.measures.ledger import closure_history
+from analysis.measures.of_run import outcome_of_run
 from analysis.runs.folder import open_run
 from analysis.runs.provenance import provenance
 from yade_scripts import packings
@@ -31,11 +32,13 @@ def test_a_collision_with_drag_ends_early_with_the_fragments_of_the_whole_time(t
 
 
 def test_aggregates_that_pass_each_other(tmp_path):
-    """Seeds that miss at B_off = 1: with a duration a run that ends at once."""
-    run, history = completed(tmp_path, *TINY, "impact=1", "seed=1", "duration=4e-7", "endWhenApart=1")
+    """A seed that misses at B_off = 1 makes a run, whose outcome is decided however short it is."""
+    run, history = completed(tmp_path, *TINY, "impact=1", "seed=1")
     assert run["timeReached"] < 3e-7 and "firstTouch" not in run["derived"]
     assert open_run(tmp_path / "run").last.fragments().grains.tolist() == [40, 40]
     assert np.all(history["contacts_between"] == 0)
+    completed(tmp_path / "short", *TINY, "impact=1", "seed=1", "duration=1e-9")
+    assert outcome_of_run(open_run(tmp_path / "short" / "run")).kind == "never met"
 
 
 def test_unlike_grains_and_unlike_aggregates(tmp_path):

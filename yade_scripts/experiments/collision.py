@@ -241,15 +241,11 @@ def _sizes(aggregate_radius, pair, parameters):
 
 
 def with_duration(parameters, time_unit, touch):
-    """The parameters with a duration; touch: time of the first touch [s], or None. Raises ParameterError."""
+    """The parameters with a duration; touch: time of the first touch [s], or None: aggregates that pass each other do so from the start
+    on. Raises ParameterError."""
     if parameters.duration is not None:
         return parameters
-    if touch is None:
-        raise ParameterError(
-            f"impact = {parameters.impact:g}: the aggregates of seed {parameters.seed} would never meet; must be "
-            "another impact or seed, or duration be given"
-        )
-    duration = default_duration(parameters, parameters.radius, time_unit, touch)
+    duration = default_duration(parameters, parameters.radius, time_unit, touch or 0.0)
     stability.require_countable(duration, parameters.stepFraction, time_unit)
     return parameters.changed(duration=duration)
 
@@ -296,13 +292,13 @@ def estimate(parameters):
 def expected(parameters, run):
     """What a run's run.json should hold of size and duration where the parameters leave them open.
 
-    Runs of format 1 didn't count the time until the first touch.
+    Runs of format 1 didn't count the time until the first touch, and aggregates that pass each other have none.
     """
     held, derived = run.get("parameters", {}), run.get("derived", {})
     open_names = ("radius", "filling", "grains")
     found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
-    touch = derived.get("firstTouch") if run.get("format", 1) > 1 else 0.0
-    if parameters.duration is None and None not in (touch, held.get("radius"), derived.get("timeUnit")):
+    touch = derived.get("firstTouch", 0.0)
+    if parameters.duration is None and None not in (held.get("radius"), derived.get("timeUnit")):
         found["duration"] = default_duration(parameters, held["radius"], derived["timeUnit"], touch)
     return found
 

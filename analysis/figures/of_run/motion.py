@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...measures.of_run import maximum_of_run
+from ...measures.of_run import are_equal, maximum_of_run
 from ...runs.arrays import RunFolderError
 from ...runs.format import COLLISION, HISTORY_FILE
 from ..style import NANO, new_figure, run_title, styled
@@ -35,7 +35,7 @@ def motion_figure(run):
     return figure
 
 
-FIGURE, KINDS = motion_figure, (COLLISION.name,)
+FIGURE, KINDS, HAS_MEANING = motion_figure, (COLLISION.name,), are_equal
 
 
 def _mark(axes, maximum, grain_radius, d):
