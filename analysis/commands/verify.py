@@ -29,7 +29,9 @@ def run(options):
     from ..runs.collect import run_folders
     from ..runs.verify import verify_run, verify_text
 
-    texts = [Path(path) for path in options.runs if Path(path).suffix in (".csv", ".json", ".txt") and Path(path).is_file()]
+    texts = [
+        Path(path) for path in options.runs if Path(path).suffix in (".csv", ".json", ".txt") and Path(path).is_file()
+    ]
     found, differs = run_folders([path for path in options.runs if Path(path) not in texts]), False
     for path, problem in progress([*((text, None) for text in texts), *found], "verifying"):
         problems, said = ([problem], []) if problem else verify_text(path) if path in texts else verify_run(path)

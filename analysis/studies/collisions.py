@@ -7,7 +7,7 @@ from ..measures.compression import first_compression
 from ..measures.coordination import mean_coordination
 from ..measures.ledger import fractions_at, initial_kinetic_energy
 from ..measures.of_run import met, outcome_of_run
-from ..measures.outcome import BOUNCING, FRAGMENTATION, STICKING, UNDECIDED
+from ..measures.outcome import BOUNCING, FRAGMENTATION, NEVER_MET, STICKING, UNDECIDED
 from ..measures.return_phase import largest_return_speed
 from ..runs.arrays import RunFolderError
 from ..runs.collect import Scene
@@ -91,11 +91,12 @@ COMPACT = (_COORDINATION, CLOSURE, OUTCOME, _RETURN, _PARTITION)
 
 
 def outcome_quantities(runs, by):
-    """Quantities of a runs.Runs with the columns of OUTCOME, by the columns `by`: fractions of the runs that stick, bounce and break, with
-    undecided ones apart, and the mean restitution of those that bounce."""
+    """Quantities of a runs.Runs with the columns of OUTCOME, by the columns `by`: fractions of the runs that stick, bounce and break, of those
+    that met, with undecided ones apart, and the mean restitution of those that bounce."""
     undecided = lambda table: table.outcome == UNDECIDED
+    met = runs.of(runs.table[runs.table.outcome != NEVER_MET])
     for name, kind in (("sticking", STICKING), ("bouncing", BOUNCING), ("breaking", FRAGMENTATION)):
-        values = runs.fractions(lambda table, kind=kind: table.outcome == kind, by, undecided)
+        values = met.fractions(lambda table, kind=kind: table.outcome == kind, by, undecided)
         yield Quantity(name, f"runs that end in {kind}", values)
     bounced = runs.of(runs.table[runs.table.outcome == BOUNCING])
     restitution = bounced.estimates("restitution", by)

@@ -8,6 +8,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from PIL import Image
 from written_runs import two_pairs
@@ -17,7 +18,9 @@ from analysis.report import pdf
 from analysis.runs.folder import open_run
 from analysis.studies import documents, find
 from analysis.studies.analyse import analyse
+from analysis.studies.collisions import outcome_quantities
 from analysis.studies.paper import read_paper
+from analysis.studies.runs import Runs
 from analysis.studies.snapshot_figure import SnapshotFigure, read_snapshots, write_snapshots
 
 TOP = Path(__file__).resolve().parents[2]
@@ -75,6 +78,14 @@ def test_a_paper_beside_ones_own_file_is_read(own, capsys):
         said
         == f"analysis: {own / 'paper.toml'}: how many: where: sticking: no level speed; must be one of grains, velocity"
     )
+
+
+def test_runs_that_never_met_are_in_no_fraction():
+    table = pandas.DataFrame({"seed": [1, 2, 3], "velocity": 1.0, "outcome": ["sticking", "never met", "bouncing"]})
+    found = {
+        quantity.name: quantity for quantity in outcome_quantities(Runs(table.assign(restitution=0.5)), ("velocity",))
+    }
+    assert [repr(found[name].at(velocity=1.0)) for name in ("sticking", "bouncing")] == ["1 of 2", "1 of 2"]
 
 
 def test_of_a_run_in_two_tables_the_first_counts(own, capsys):
