@@ -188,7 +188,7 @@ def said(call):
 
 
 def refusal(steps=1):
-    """What one of so many O.steps is refused with, or ''. (O.run now and then loses, on a busy machine, what its thread threw.)"""
+    """What one of so many O.steps is refused with, or ''."""
     return said(lambda: [O.step() for _ in range(steps)])
 
 

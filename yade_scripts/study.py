@@ -6,9 +6,10 @@
     python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as job arrays of Slurm, JOBS tasks of
                                                      each at once; OPTIONS of sbatch: -- --time=12:00:00
 
-Rows whose run folder has ended are skipped, provided that its parameters are the row's; runs that were killed
-resume from their last checkpoint. Before anything runs, the time it will take is estimated from runs that have
-ended, or from a piece of one that is measured, and printed. Ctrl-C and SIGTERM stop the runs, each with
+Rows whose run folder has ended are skipped, provided that its parameters are the row's (its duration may be longer);
+runs that were killed, or ended undecided before the row's duration, resume from their last checkpoint. Before anything
+runs, the time it will take is estimated from runs that have ended, or from a piece of one that is measured, and
+printed. Ctrl-C and SIGTERM stop the runs, each with
 a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
 Logs are in runs/logs/NAME of the table. TABLE may also be the name of
 a table in yade_scripts/studies: elastoplastic-desk. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are

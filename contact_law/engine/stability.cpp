@@ -22,7 +22,7 @@ double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 	eachKind(dynamics, [&](int k) {
 		const Material& m = shared.material[shared.kind[k]];
 		const BondConstants<double> b = deriveBond(m, shared.grainRadius[k], m, shared.grainRadius[k], neck);
-		least = std::min(least, 2 / fastestVibration(b, shared.inverseMass[k], shared.inverseInertia[k]));
+		least = std::min(least, unstableStep(b, 2 * shared.inverseMass[k], shared.inverseInertia[k], shared.inverseInertia[k]));
 	});
 	return least;
 }
@@ -30,10 +30,7 @@ double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 double unstableStep(const Dynamics& dynamics)
 {
 	double least = 1e300;
-	const auto consider = [&least](const PairConstants<double>& c) {
-		const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
-		least = std::min({ least, 0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : least });
-	};
+	const auto consider = [&least](const PairConstants<double>& c) { least = std::min(least, unstableStep(c)); };
 	eachKind(dynamics, [&](int k) {
 		consider(dynamics.state().constantsOf(k, k));
 		for (int plane = 0; plane < int(dynamics.state().planes.size()); ++plane)

@@ -131,15 +131,16 @@ namespace bonds {
 
 // ---- stability ----
 
-/* The fastest vibration of two equal grains with one bond between them [1/s]: leapfrog is unstable for it, and for it in any packing, at
- * steps of 2 over this.
- * The two against each other along the normal; across it, both turning with the motion, or against each other's turning (tilt, twist). */
-inline double fastestVibration(const BondConstants<double>& b, double inverseMass, double inverseInertia)
+/* Steps from here on are unstable for two grains with one bond between them, and for it in any packing [s]: leapfrog is, at 2 over the fastest vibration.
+ * The two against each other along the normal; across it, both turning with the motion, or against each other's turning (tilt, twist).
+ * inverseMass: 1/m1 + 1/m2. */
+inline double unstableStep(const BondConstants<double>& b, double inverseMass, double inverseInertia1, double inverseInertia2)
 {
-	const double r = b.radius1, R = b.reducedRadius;
-	const double along = 2 * b.normalStiffness * inverseMass, across = 2 * b.slidingStiffness * (inverseMass + r * r * inverseInertia);
-	const double tilt = 2 * b.rollingStiffness * R * R * inverseInertia, twist = 2 * b.twistingStiffness * inverseInertia;
-	return std::sqrt(std::max({ along, across, tilt, twist }));
+	const double r1 = b.radius1, r2 = b.radius2, R = b.reducedRadius, turning = inverseInertia1 + inverseInertia2;
+	const double along = b.normalStiffness * inverseMass;
+	const double across = b.slidingStiffness * (inverseMass + r1 * r1 * inverseInertia1 + r2 * r2 * inverseInertia2);
+	const double tilt = b.rollingStiffness * R * R * turning, twist = b.twistingStiffness * turning;
+	return 2 / std::sqrt(std::max({ along, across, tilt, twist }));
 }
 
 } // namespace contact_law

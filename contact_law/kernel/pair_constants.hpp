@@ -118,4 +118,12 @@ inline PairConstants<double> derivePair(
 	return c;
 }
 
+/* Steps from here on are unstable for such a pair, in whatever packing [s] (MODEL.md, "Step limits"): half a time unit, at which collisions were seen to blow
+ * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. */
+inline double unstableStep(const PairConstants<double>& c)
+{
+	const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
+	return std::fmin(0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : 1e300);
+}
+
 } // namespace contact_law

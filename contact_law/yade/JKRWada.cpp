@@ -231,11 +231,19 @@ unsigned Law2_ScGeom_JKRWadaPhys_JKRWada::mechanismsOf(const PairConstants<doubl
 	return contact_law::mechanismsOf(sliding, rolling, twisting, c.dragPerContactRadius > 0 || c.linearDrag > 0);
 }
 
+bool Law2_ScGeom_JKRWadaPhys_JKRWada::stepIsBelow(Real unstable) const
+{
+	const bool is = scene->dt > 0 && scene->dt < unstable;
+	if (!is) refuseInStep(*scene, "Law2_ScGeom_JKRWadaPhys_JKRWada: " + tooLong("step O.dt", scene->dt, unstable));
+	return is;
+}
+
 bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction)
 {
 	if (!shapes.fit(*scene)) return true;
 	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
 	const PairConstants<double> constants = phys.constants->forKernel();
+	if (!stepIsBelow(contact_law::unstableStep(constants))) return true;
 	if (std::isinf(constants.radius2)) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);
 	const State& state1 = *(*scene->bodies)[interaction->getId1()]->state;
 	const State& state2 = *(*scene->bodies)[interaction->getId2()]->state;
@@ -254,6 +262,10 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	const ContactMotion motion { apart, toKernel(velocity), toKernel(state1.angVel), toKernel(state2.angVel), dt, inverseMass,
 		toKernel(imageVelocity), contact_law::inverseInertiaOf(1 / state1.inertia[0], state1.blockedDOFs),
 		contact_law::inverseInertiaOf(1 / state2.inertia[0], state2.blockedDOFs) };
+	if (phys.bonded
+	        && !stepIsBelow(contact_law::unstableStep(
+	                phys.bond->forKernel(), motion.inverseMass, motion.inverseInertia1, motion.inverseInertia2)))
+		return true;
 	const contact_law::ContactBefore before = phys.before();
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 

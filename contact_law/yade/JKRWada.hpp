@@ -175,6 +175,7 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	SceneShapes shapes;
 
 	unsigned mechanismsOf(const contact_law::PairConstants<double>&) const;
+	bool stepIsBelow(Real unstable) const; // refuses the scene in this step if not
 	void book(const contact_law::ContactStepResult&);
 	bool goPlane(const GenericSpheresContact&, JKRWadaPhys&, const contact_law::PairConstants<double>&, const Interaction&);
 	void sinter(JKRWadaPhys&, const contact_law::ContactMotion&, contact_law::ContactHistory<double>&, contact_law::ContactStepResult&);

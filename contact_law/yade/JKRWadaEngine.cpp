@@ -78,13 +78,15 @@ std::unique_lock<std::mutex> JKRWadaEngine::atRest(const char* call) const
 // YADE would resume a step that was refused without its beginning, or begin it again with the cell deformed already.
 void JKRWadaEngine::action()
 {
-	const std::lock_guard<std::mutex> acting(busy);
+	std::unique_lock<std::mutex> acting(busy);
 	const SceneCell::Before before(*scene);
 	try {
 		makeStep();
 	} catch (...) {
 		before.restore(*scene);
 		scene->subStep = -1;
+		acting.unlock(); // a call that waits for this engine holds Python's lock
+		letPythonWait();
 		throw;
 	}
 }

@@ -156,9 +156,7 @@ void JKRWadaEngine::requireSound(const Run& run)
 void JKRWadaEngine::requireStable(const Dynamics& dynamics, Real step)
 {
 	const double unstable = contact_law::unstableStep(dynamics);
-	if (!(step > 0 && step < unstable))
-		refuseInEngine("the small step O.dt/subSteps is " + text(step) + " s: must be above 0 and below " + text(unstable)
-		        + " s, where every packing of these grains is unstable (dense ones, and drag, want less)");
+	if (!(step > 0 && step < unstable)) refuseInEngine(tooLong("small step O.dt/subSteps", step, unstable));
 }
 
 } // namespace yade

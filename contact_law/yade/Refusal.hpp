@@ -23,6 +23,13 @@ inline std::string rounded(double number, int digits = 4)
 	return buffer;
 }
 
+// step: its name; unstable: from where on no packing of the grains allows it [s].
+inline std::string tooLong(const std::string& step, double seconds, double unstable)
+{
+	return "the " + step + " is " + text(seconds) + " s: must be above 0 and below " + text(unstable)
+	        + " s, where every packing of these grains is unstable (dense ones, and drag, want less)";
+}
+
 inline std::string bodyName(std::size_t id) { return "body " + std::to_string(id); }
 
 } // namespace yade

@@ -2,6 +2,7 @@
 
 import os
 import re
+import sys
 import time
 
 import pytest
@@ -49,6 +50,19 @@ def test_interactions_that_a_script_erased_are_written_again():
         run(erase)
         O.step()
         assert len(O.interactions) == 0, erase
+
+
+def test_a_refusal_is_raised_where_python_waits_for_the_run_late():
+    """As on a busy machine in O.run(n, True): O.wait() of YADE raises nothing when the loop has ended before it looks."""
+    chain(threads=0)
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(60)  # Python keeps its lock, as between the two halves of that call
+    O.run(2)
+    end = time.monotonic() + 0.3
+    while time.monotonic() < end:
+        pass
+    assert "threads = 0: must be >= 1" in said(O.wait)
+    sys.setswitchinterval(interval)
 
 
 def test_two_scenes_with_an_engine_each():

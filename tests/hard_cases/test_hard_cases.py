@@ -123,3 +123,30 @@ def test_a_step_above_the_limit_is_refused_with_the_limit_below_which_strong_dra
     overlap = 2e-7 - b.pos[0] + a.pos[0]
     assert abs(b.vel[0] - a.vel[0]) < 0.1 and O.energy["drag"] > 0
     assert 0 < overlap < 2 * constants(ice(), 1e-7)["equilibriumOverlap"]
+
+
+TOO_LONG = {
+    "half a t0": (0.6, {}),
+    "no step": (0.0, {}),
+    "drag": (0.1, dict(viscoelasticTime=100e-12)),
+    "bonds": (0.4, {}),
+}
+
+
+@pytest.mark.parametrize("what", TOO_LONG)
+def test_functors_refuse_the_same_steps_in_the_same_words(what):
+    """And none below the limit that they name."""
+    (step, made_of), neck = TOO_LONG[what], 0.5 * (what == "bonds")
+
+    def touching(dt):
+        new_scene(dt, neck=neck)
+        for x in (0, 1.99e-7):
+            grain((x, 0, 0), 1e-7, ice(**made_of))
+
+    touching(step * unit)
+    told = refusal()
+    fused_engine(neck=neck)
+    assert told.startswith("Law2_ScGeom_JKRWadaPhys_JKRWada: the step O.dt is ") and "\n" not in told
+    assert told.partition(" is ")[2] == refusal().partition(" is ")[2]
+    touching(0.999 * float(told.split("below ")[1].split(" s")[0]))
+    assert refusal() == ""

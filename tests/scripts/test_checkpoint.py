@@ -114,7 +114,8 @@ def test_a_run_that_ended_decided_does_not_go_on(tmp_path):
 
 
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
-    """Its line has the command; what the command says of other parameters, or of no more time, is refused."""
+    """Its line has the command; what the command says of other parameters, or of no more time, is refused. A row of a table is its run if that
+    is as long as it wants, and goes on with it otherwise."""
     fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()
     _, straight = completed(tmp_path / "straight", *fluffy, "duration=6e-7")
     done = collide(tmp_path, *fluffy, "duration=3e-7", "out=run")
@@ -128,7 +129,18 @@ def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
         ([command[-1], "continue=nowhere"], "continue: given twice; must be given once"),
     ):
         assert words in refusal(call(tmp_path, *command[:-1], *wrong))
-    assert call(tmp_path, *command).returncode == 0
+    assert "outcome undecided" in call(tmp_path, *command[:-1], "duration=3.1e-7").stdout
+    for wanted, words in (
+        ("duration=3e-7 seed=2", "holds an ended run with seed = 1, not 2; must be the same"),
+        ("duration=3e-7", "rows: 1 rows, 1 done"),
+        ("duration=6e-7", "1 to run, 1 of them from checkpoints"),
+        ("duration=3.1e-7", "rows: 1 rows, 1 done"),
+        ("duration=7e-7", "holds an ended run with duration = 6e-07, not 7e-07; must be the same"),
+    ):
+        cells = dict(cell.split("=") for cell in ("description=row", "out=run", *fluffy, *wanted.split()))
+        (tmp_path / "rows.table").write_text(" ".join(cells) + "\n" + " ".join(cells.values()) + "\n")
+        done = study(tmp_path, "rows.table", "-j", "1")
+        assert words in done.stdout + done.stderr
     continued = read_arrays(tmp_path, "run", "history.npz")
     assert all(continued[name].tobytes() == straight[name].tobytes() for name in straight)
 

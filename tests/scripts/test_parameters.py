@@ -92,6 +92,7 @@ WRONG = {
     "velocity=9**9**9**9": "velocity = 9**9**9**9: an exponent above 1000; must be > 0 [m/s]",
     "velocity=" + "1" * 300: "velocity = " + 60 * "1" + "...: longer than 200 characters",
     "velocity=-1": "velocity = -1: must be > 0 [m/s]",
+    "velocity=3000": "velocity = 3000 m/s: must be 1e-06 to 1000 m/s (thermal motion of aggregates to ",
     "velocity=auto": "velocity = auto: not a finite number",
     "radius=-20": "radius = -20: must be > 0 [grain radii]",
     "radius=1": "radius = 1: 0 grains at filling 0.4; must be about 1.71",

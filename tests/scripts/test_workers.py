@@ -15,7 +15,7 @@ RUNS = {
     "bcca": "packing=bcca grains=32 velocity=10 duration=60e-9",
     "refused": "radius=5 neck=0.01",  # by the run, which knows the contact
     "drag": "radius=5 velocity=30 duration=15e-9 viscoelasticTime=6e-12",
-    "fails": "radius=5 velocity=3000 duration=10e-9 stepFraction=0.4",
+    "fails": "radius=5 velocity=3000 unusual=1 duration=10e-9 stepFraction=0.4",
     "sintered": "packing=bpca grains=20 neck=0.5 limit=cut velocity=10 duration=20e-9",
     "functors": "radius=4 velocity=30 duration=15e-9 engine=functors",
     "two": "radius=5 velocity=30 duration=15e-9 threads=2",

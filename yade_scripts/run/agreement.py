@@ -8,6 +8,7 @@ def difference(kind, wanted, run, but=()):
 
     kind: the Kind wanted; wanted: its parameters, complete or not; run: a dictionary as in run.json, with 'parameters'
     and 'derived'; but: names that are not compared. A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'.
+    A run that was continued has a longer duration than is wanted, and is what is wanted all the same.
     """
     there = run.get("kind", "collision")  # format 1 had collisions only
     if there != kind.name:
@@ -18,9 +19,9 @@ def difference(kind, wanted, run, but=()):
     for name, column in columns.items():
         if not column.of_consequence or name in left_out:
             continue
-        value, default = expected[name], run.get("derived", {}).get(name, column.default)
-        if not _same(value, held.get(name, default)):
-            return f"{name} = {_text(held.get(name, default))}, not {_text(value)}"
+        value, found = expected[name], held.get(name, run.get("derived", {}).get(name, column.default))
+        if not _same(value, found) and not (name == "duration" and _is_longer(found, value)):
+            return f"{name} = {_text(found)}, not {_text(value)}"
     return None
 
 
@@ -34,9 +35,17 @@ def _compares_steps(wanted, held):
 
 
 def _same(one, other):
-    if isinstance(one, (int, float)) and isinstance(other, (int, float)):
+    if _are_numbers(one, other):
         return one == other or isclose(one, other, rel_tol=1e-12)
     return one == other
+
+
+def _is_longer(one, other):
+    return _are_numbers(one, other) and one > other
+
+
+def _are_numbers(*values):
+    return all(isinstance(value, (int, float)) for value in values)
 
 
 def _text(value):

@@ -127,7 +127,7 @@ def state(row, log, before=types.MappingProxyType({})):
     folder = row.out
     where = place(folder)  # first: a run that ends now has its mark before it gives up the lock and its heartbeat
     run = run_of(folder)
-    if os.path.exists(os.path.join(folder, ENDED_FILE)):
+    if os.path.exists(os.path.join(folder, ENDED_FILE)) and not _goes_on(row, run):
         return _ended(row, run)
     if where:
         return running_state(folder, run, where)
@@ -151,6 +151,14 @@ def _ended(row, run):
         note = f"{row.out}: holds an ended run with {differs}; must be the same, or removed to run the row"
         return State(FAILED, note=note)
     return State(DONE, 1.0, run.get("wallTime"))
+
+
+def _goes_on(row, run):
+    """Whether a run that ended undecided, with a checkpoint, is the row's but for its duration, of which the row asks for more."""
+    if not (row.kind and run and checkpoint.exists(row.out)):
+        return False
+    found = [difference(row.kind, row.parameters, run, but) for but in ((), ("duration",))]
+    return found[0] is not None and found[1] is None
 
 
 def _stopped(folder, run):
