@@ -42,12 +42,12 @@ killed (SIGKILL); each after its first checkpoint. One row fails, eight end.
 
 
 def write_table(folder, velocity=10):
-    lines = ["description radius filling velocity seed duration stepFraction checkpointInterval threads out"]
+    lines = ["description radius filling velocity unusual seed duration stepFraction checkpointInterval threads out"]
     for seed, name in enumerate(LONG, 1):
-        lines.append(f"{name} 10 0.4 {velocity} {seed} 500e-9 * 0.1 1 runs/dozen/{name}")
-    lines.append("fails 5 0.4 3000 1 10e-9 0.4 * 1 runs/dozen/fails")  # a step too long for such an impact
+        lines.append(f"{name} 10 0.4 {velocity} * {seed} 500e-9 * 0.1 1 runs/dozen/{name}")
+    lines.append("fails 5 0.4 3000 1 1 10e-9 0.4 * 1 runs/dozen/fails")  # a step too long for such an impact
     for seed, name in zip(SEEDS, SHORT):
-        lines.append(f"{name} 6 0.4 5 {seed} 100e-9 * * 1 runs/dozen/{name}")
+        lines.append(f"{name} 6 0.4 5 * {seed} 100e-9 * * 1 runs/dozen/{name}")
     (folder / "dozen.table").write_text("\n".join(lines) + "\n")
 
 

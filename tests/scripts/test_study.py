@@ -6,12 +6,12 @@ import signal
 import pytest
 from running import PYTHON, STUDY, collide, process_writing, read_json, same_bits, small_disk, start, study, wait_for
 
-HEADER = "description radius velocity duration stepFraction checkpointInterval out\n"
+HEADER = "description radius velocity unusual duration stepFraction checkpointInterval out\n"
 ROWS = {
-    "ends": "ends    5  10   10e-9   *   *   runs/tiny/ends\n",
-    "killed": "killed  10 10   500e-9  *   0.1 runs/tiny/killed\n",
-    "fails": "fails   5  3000 10e-9   0.4 *   runs/tiny/fails\n",  # a step too long for such an impact
-    "refused": "refused 5  -1   =       =   *   runs/tiny/refused\n",
+    "ends": "ends    5  10   * 10e-9   *   *   runs/tiny/ends\n",
+    "killed": "killed  10 10   * 500e-9  *   0.1 runs/tiny/killed\n",
+    "fails": "fails   5  3000 1 10e-9   0.4 *   runs/tiny/fails\n",  # a step too long for such an impact
+    "refused": "refused 5  -1   * =       =   *   runs/tiny/refused\n",
 }
 
 

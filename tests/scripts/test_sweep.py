@@ -73,7 +73,7 @@ def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):
 def test_a_run_that_fails_is_named(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RunsFailed, match=r"^collide-.*v3000.*: the run broke down at t = "):
-        from_python(folder="own", radius=5, velocity=[10, 3000], duration=10e-9, stepFraction=0.4)
+        from_python(folder="own", radius=5, velocity=[10, 3000], unusual=1, duration=10e-9, stepFraction=0.4)
     assert len(list(tmp_path.glob("own/*/ended"))) == 1
 
 
