@@ -17,10 +17,10 @@ import hashlib
 import json
 import os
 import re
+import secrets
 import shutil
 import subprocess
 import sys
-import tempfile
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -144,8 +144,8 @@ def _alone(prefix):
 @contextmanager
 def _temporary(prefix):
     """A folder beside the installation's place, which goes again, for an installation that takes this place when it is whole."""
-    before, after = TEMPORARY.split("{}")
-    made = Path(tempfile.mkdtemp(dir=(prefix / FOLDER).parent, prefix=before, suffix=after))
+    made = (prefix / FOLDER).parent / TEMPORARY.format(secrets.token_hex(4))  # a name of runs.write.unfinished()
+    made.mkdir(0o700)
     try:
         yield made
     finally:
