@@ -145,8 +145,7 @@ def _why_meeting(kind, pieces, counted):
     if second is not None and not near[second]:
         other = shares[second] + shares[pieces_that_can_meet(second, *pieces.flight, EVER) & ~near].sum()
     seen, target = (shares[largest], 0.0 if second is None else shares[second]), pieces.target(counted)
-    have_parted = (
-        classify(*seen, target=target) == kind
-    )  # otherwise pieces of such masses, but not those of the two aggregates
+    # otherwise pieces of such masses, but not those of the two aggregates
+    have_parted = classify(*seen, target=target) == kind
     if classify(*sorted((whole, other), reverse=True), have_parted, target) != kind:
         return f"pieces of {whole - shares[largest]:.0%} of the mass may still meet the largest"
