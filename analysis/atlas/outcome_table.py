@@ -12,7 +12,7 @@ import numpy as np
 
 from ..runs.arrays import RunFolderError
 from ..runs.named import suggested
-from ..runs.seal import SUM, UNSUMMED, read_summed, summed
+from ..runs.seal import SUM, UNSUMMED, require_own_sum, summed
 from ..runs.write import write_text
 
 SCALES = {"log10": np.log10, "linear": np.asarray}
@@ -129,15 +129,16 @@ def read_outcomes(path):
     text, and where there is none."""
     try:
         with open(path, encoding="ascii", errors="replace") as file:
-            lines = file.read().split("\n")
+            text = file.read()
     except OSError as error:
         said = f"{path}: {error.strerror}; must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
         raise OutcomeTableError(said) from None
-    if lines[0].startswith(_SUMMED):
+    if text.startswith(_SUMMED):
         try:
-            read_summed(path)
+            require_own_sum(path, text)
         except RunFolderError as error:
             raise OutcomeTableError(str(error)) from None
+    lines = text.split("\n")
     comments = tuple(line[1:].strip() for line in lines if line.startswith("#") and not line.startswith(_SUMMED))
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:

@@ -91,7 +91,7 @@ def read_seal(folder):
     text = read_text(file)
     if not text:
         return None if text is None else Seal(Path(folder))
-    _require_own_sum(file, text)
+    require_own_sum(file, text)
     lines = [line.split() for line in text.splitlines()[1:]]
     try:
         files = {name: written for written, name in (line for line in lines if line[0] != "#")}
@@ -120,11 +120,12 @@ def read_summed(file):
     if _WITHOUT.match(text):
         warnings.warn(NO_SUMS, stacklevel=1)
     else:
-        _require_own_sum(file, text)
+        require_own_sum(file, text)
     return text
 
 
-def _require_own_sum(file, text):
+def require_own_sum(file, text):
+    """RunFolderError where a file's text is not what summed() has made."""
     found = _OWN_SUM.match(text)
     if not found:
         raise RunFolderError(f"{file}: not as `analysis study` has written it: must begin with its sum")
