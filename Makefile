@@ -10,7 +10,7 @@
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
 #             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.
 # make study-viscous  those of Arakawa et al. (2022), or SIZE=full
-# make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full
+# make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full; SIZE=own: clusters of the paper's size to where its law ends
 # make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
 # make study-compressed  collisions of compressed aggregates beside CPE ones
 # make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 14,000)

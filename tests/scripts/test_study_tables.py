@@ -22,7 +22,7 @@ TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
 WRITTEN = {
     elastoplastic: ("elastoplastic-desk", "elastoplastic-first", "elastoplastic-full"),
     viscous: ("viscous-desk", "viscous-full", "viscous-own", "viscous-prediction"),
-    compression: ("compression-desk", "compression-full"),
+    compression: ("compression-desk", "compression-full", "compression-own"),
     sintered: ("sintered-beyond", "sintered-desk", "sintered-full"),
     compressed: ("compressed-cells", "compressed-desk"),
     atlas: ("atlas-cells-full", "atlas-cells"),

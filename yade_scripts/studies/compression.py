@@ -4,6 +4,8 @@ full is what the paper's Figs 4 to 13 show: ten clusters of every set of paramet
 two cores: the fiducial parameters with three clusters, fewer grains with more, every parameter varied at 1024 grains, and
 cells that are stretched again, which K13 leaves to later work. Rows are in the order in which they are worth having:
 every figure gets its first points early.
+
+own has more clusters of the paper's size, and of 1,024 grains, up to the filling factor where the paper's law ends.
 """
 
 import os
@@ -42,6 +44,11 @@ FULL = (
     + [({**FIDUCIAL, "criticalRolling": rolling}, 10) for rolling in ROLLING]
     + [({**FIDUCIAL, **SILICATE}, 10)]
 )
+# Clusters beside those of the desk, to where K13's law ends: the other half of a run to 0.5 has no claim of the paper.
+TO_LAW = {"strainRate": "3e-7", "finalFilling": "0.11"}
+OWN = [({**TO_LAW, "grains": 16384}, range(2, 11))] + [
+    ({**TO_LAW, "grains": 1024, "strainRate": rate}, range(5, 9)) for rate in ("3e-7", "1e-5")
+]
 
 SHORT = {"grains": "N", "strainRate": "Cv", "linearDamping": "k", "criticalRolling": "xi", "stepFraction": "step"}
 
@@ -56,10 +63,10 @@ def name(parameters, seed):
 
 
 def rows(sets, folder):
-    """A table's rows: first one cluster of every set, then the others."""
+    """A table's rows of [(parameters, number of clusters or their seeds)]: first one cluster of every set, then the others."""
     found = []
     for parameters, seeds in sets:
-        for seed in range(1, seeds + 1):
+        for seed in range(1, seeds + 1) if isinstance(seeds, int) else seeds:
             description = name(parameters, seed)
             row = {
                 "description": description,
@@ -80,10 +87,11 @@ Units: strainRate: 1/t0; criticalRolling: m; stepFraction: t0. Written by yade_s
 
 
 def write_tables(folder):
-    """Write compression-desk.table and compression-full.table into a folder."""
+    """Write compression-desk.table, compression-full.table and compression-own.table into a folder."""
     for which, sets, runs, what in (
         ("desk", DESK, "runs/compression", "A selection, and cells stretched again."),
         ("full", FULL, "runs/compression-full", "All of the paper's."),
+        ("own", OWN, "runs/compression-own", "More clusters, the paper's size among them, up to where its law ends."),
     ):
         path = os.path.join(folder, f"compression-{which}.table")
         table.write(path, rows(sets, runs), HEAD.format(which=what))

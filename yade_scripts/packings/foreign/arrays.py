@@ -60,7 +60,7 @@ def of_vtk(path):
     return _spheres(path, "VTK", vtk_to_numpy(output.GetPoints().GetData()), by_role)
 
 
-_DEEP = re.compile(r"(?:[\[{]\s*){9}|(?:- *){9}|^ {99}", re.MULTILINE)
+_DEEP = re.compile(r"(?:[\[{]\s*){9}|(?:- +){9}|^ {99}", re.MULTILINE)
 
 
 def of_yaml(path):
