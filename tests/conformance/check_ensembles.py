@@ -52,7 +52,7 @@ def compared(samples, suite):
             sys.exit(f"check_ensembles.py: {name}: must have at least two runs")
         p = p_value(values, given[name])
         shift = found_shift(given[name], level, len(values))
-        said = "differs" if p < level else "agrees"
+        said = "differs" if p < level else "not told apart"
         found[name] = dict(said=said, p=p, mean=mean(values), reference=mean(given[name]), shift=shift)
     return found
 

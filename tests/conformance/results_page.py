@@ -3,7 +3,9 @@
 import json
 import math
 from pathlib import Path
+from statistics import mean, stdev
 
+import check_ensembles
 from check import CASES, verdicts
 
 ROOM = Path(__file__).resolve().parent
@@ -14,6 +16,14 @@ Made by `make conformance`; [README.md](README.md) says how.
 *Agrees*: every value that a case asks for is within {tolerance:.0e} of the reference when it is extrapolated in the time step with order two.
 In brackets stand the largest difference, and the median of the orders with which errors fall (*exact*: the step leaves none).
 Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled.
+"""
+
+ENSEMBLES = """
+## Aggregates
+
+Distributions of `ensembles.json` beside samples of new aggregates: mean ± standard error (runs), and the probability of a distance as large by chance.
+Bold: differs (p below {level:.4f}); otherwise the two are not told apart, which is not agreement: the README says what shifts are found.
+In brackets: the mean difference from the engine's run with the same aggregates.
 """
 
 
@@ -33,10 +43,48 @@ def explained(name, found, why):
         like = case not in own and case in why.get(own.get("as"), {})
         if one["said"] == "differs" and not like:
             lines.append(f"- **{case}** ({cell(one).strip('*')}, {one['worst']}): {own.get(case, 'not explained')}.")
+    lines += [f"- **aggregates**: {own['aggregates']}."] if "aggregates" in own else []
     missing = [(case, one["why"]) for case, one in found.items() if one["said"] == "not modelled"]
     for reason in dict.fromkeys(reason for _, reason in missing if lines):
         lines.append(f"- Not modelled, {', '.join(case for case, its in missing if its == reason)}: {reason}.")
     return lines
+
+
+def of_mean(values):
+    return f"{mean(values):.3f} ± {stdev(values) / len(values) ** 0.5:.3f}"
+
+
+def of_sample(values, own, found):
+    """A code's cell of a distribution, beside the engine's own values for the same aggregates."""
+    if values is None:
+        return "–"
+    said = f"{of_mean(values)} ({len(values)})"
+    beside = "" if values == own else f" [{of_mean([one - other for one, other in zip(values, own)])}]"
+    return (f"**{said}**" if found["said"] == "differs" else said) + f", p {found['p']:.2g}{beside}"
+
+
+def ensembles():
+    """Lines of the table of aggregates, distribution against code."""
+    suite = json.loads(check_ensembles.ENSEMBLES.read_text())
+    files = {name: ROOM / f"results/ensembles/{name}.json" for name in CODES}
+    samples = {name: json.loads(path.read_text())["samples"] for name, path in files.items() if path.exists()}
+    found = {name: check_ensembles.compared(its, suite) for name, its in samples.items()}
+    columns = ["distribution", "suite", *samples]
+    lines = [
+        ENSEMBLES.format(level=suite["level"] / len(suite["distributions"])),
+        row(columns),
+        row(["---"] * len(columns)),
+    ]
+    for given in suite["distributions"]:
+        name, own = given["id"], samples["engine"].get(given["id"])
+        cells = [of_sample(samples[code].get(name), own, found[code].get(name)) for code in samples]
+        if own:
+            lines.append(row([name, f"{of_mean(given['values'])} ({len(given['values'])})", *cells]))
+    return lines
+
+
+def row(cells):
+    return "| " + " | ".join(cells) + " |"
 
 
 def page():
@@ -50,6 +98,7 @@ def page():
         lines.append(f"| {case['id']} | " + " | ".join(cell(its[case["id"]]) for its in found.values()) + " |")
     lines += ["", "| column | code |", "|---|---|"]
     lines += [f"| {name} | {results['code']}, {results['version']} |" for name, results in of.items()]
+    lines += ensembles()
     lines += ["", "## The cases", "", *(f"- **{case['id']}**: {case['title']}." for case in suite["cases"])]
     return "\n".join(lines + [line for name in of for line in explained(name, found[name], why)]) + "\n"
 

@@ -1,0 +1,120 @@
+"""A code's aggregates beside ensembles.json:  /usr/bin/python3 adapters/ensembles_of.py CODE SAMPLES.json RUNS
+
+CODE: engine, or lammps (LMP=program, lmp) with the options of adapters/lammps.py. Both take the same aggregates, made by this
+repository's scripts by the recipe of each scene, with other random numbers than the suite's own; RUNS is the folder for them.
+CPE aggregates and compressed cells are not among them.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+from answers import SUITE
+from lammps import LMP, contact_words
+from lammps_family import LENGTH, TIME
+
+ROOM = Path(__file__).resolve().parents[1]
+TOP = ROOM.parents[1]
+sys.path[:0] = [str(TOP), str(ROOM / "generator")]
+from ensembles import MASS_OF, STICKS
+
+import analysis
+from analysis import fragment_labels, fragment_sizes, open_run
+from yade_scripts import collide
+
+STEP = 0.1  # t0, LAMMPS's: half of the suite's, since events at whole steps leave errors of first order
+FIRST = 1001  # seed
+SCENES = {  # of distributions in the suite: (aggregates, number of runs)
+    "bpca-largest-50": (dict(packing="bpca", grains=250, velocity=50), 24),
+    "bpca-largest-100": (dict(packing="bpca", grains=250, velocity=100), 24),
+    "bcca-sticking": (dict(packing="bcca", grains=128, velocity=30), 60),
+}
+SCRIPT = """units lj
+atom_style sphere
+atom_modify sort 1000 20
+boundary f f f
+comm_modify vel yes
+read_data grains
+pair_style granular
+pair_coeff * * {contact}
+neighbor 0.3 bin
+neigh_modify delay 0 every 1 check yes binsize 20
+fix move all nve/sphere
+compute pairs all property/local patom1 patom2 cutoff type
+compute forces all pair/local force cutoff type
+timestep {step!r}
+thermo 1000000
+dump contacts all local {steps} contacts.* index c_pairs[1] c_pairs[2] c_forces
+run {steps}
+"""
+
+
+def grains_file(state, reach):
+    """A data file in LAMMPS's units."""
+    x, v = state.position / LENGTH, state.velocity * TIME / LENGTH
+    edges = "".join(f"{-reach!r} {reach!r} {axis}lo {axis}hi\n" for axis in "xyz")
+    atoms = "".join(f"{k} 1 2.0 1.0 {' '.join(map(repr, row))}\n" for k, row in enumerate(x.tolist(), 1))
+    speeds = "".join(f"{k} {' '.join(map(repr, row))} 0 0 0\n" for k, row in enumerate(v.tolist(), 1))
+    return f"grains\n\n{len(x)} atoms\n1 atom types\n\n{edges}\nAtoms\n\n{atoms}\nVelocities\n\n{speeds}"
+
+
+def contacts_at_end(state, contact, time):
+    """Pairs of grains (M, 2) that touch at a time [s]: between which LAMMPS has a force."""
+    steps = round(time / (STEP * contact["time_unit"]))
+    reach = 50 + (np.abs(state.position).max() + 3 * np.abs(state.velocity).max() * time) / LENGTH
+    filled = SCRIPT.format(contact=contact_words(contact), step=time / TIME / steps, steps=steps)
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "grains").write_text(grains_file(state, float(reach)))
+        Path(folder, "in").write_text(filled)
+        done = subprocess.run([LMP, "-in", "in", "-log", "none"], cwd=folder, capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"{LMP}: {done.stdout[-2000:]}{done.stderr[-2000:]}")
+        rows = np.loadtxt(Path(folder, f"contacts.{steps}"), skiprows=9, ndmin=2)
+    return rows[rows[:, 3] != 0, 1:3].astype(int) - 1
+
+
+def of_engine(runs):
+    """Fraction of the grains in the largest piece of each run of a table."""
+    return runs.largest_fraction.tolist()
+
+
+def of_lammps(runs):
+    """As of_engine, from the grains with which those runs began."""
+    contact = next(case for case in SUITE["cases"] if case["id"] == "equilibrium")["scenes"]["scene"]["contact"]
+
+    def largest(folder):
+        state = open_run(folder).start
+        pairs = contacts_at_end(state, contact, MASS_OF["duration"])
+        return int(fragment_sizes(fragment_labels(len(state.position), pairs)).max()) / len(state.position)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(largest, runs.folder))
+
+
+def version_of(code):
+    if code == "engine":
+        return "JKRWadaEngine", analysis.__version__
+    said = subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout
+    return "LAMMPS", re.search(r"Simulator - (.+)", said)[1]
+
+
+def main(code, path, folder):
+    samples = {}
+    for name, (scene, number) in SCENES.items():
+        runs = collide(seed=range(FIRST, FIRST + number), folder=Path(folder) / name, **MASS_OF, **scene)
+        samples[name] = {"engine": of_engine, "lammps": of_lammps}[code](runs)
+    samples["bcca-sticking"] = [float(fraction > STICKS) for fraction in samples["bcca-sticking"]]
+    suite = json.loads((ROOM / "ensembles.json").read_text())["version"]
+    name, version = version_of(code)
+    text = dict(code=name, version=version, suite=suite, samples=samples)
+    Path(path).write_text(json.dumps(text) + "\n")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
