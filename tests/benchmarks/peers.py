@@ -8,14 +8,12 @@ springs, there is no drag, and a periodic cell keeps its size.
 
 import os
 import re
-import resource
 import shutil
 import subprocess
 import tempfile
-import time
 from functools import lru_cache
 from itertools import product
-from math import pi
+from math import isnan, nan, pi
 from pathlib import Path
 
 import numpy as np
@@ -106,7 +104,7 @@ class PeerCode:
         if 1 not in self.best:
             self.measure(1, None, None)
         found = measure(self.code, self.scene, samples * each, 1, *self.best[1], samples)
-        return {**found, "seconds": found["seconds"] * found["fraction"]}
+        return found if isnan(found["fraction"]) else {**found, "seconds": found["seconds"] * found["fraction"]}
 
     def close(self):
         pass
@@ -115,10 +113,10 @@ class PeerCode:
 def measure(code, scene, steps, cores=1, skin=0.3, newton="off", samples=1):
     """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin, newton, kinetic} of a run of a SceneFile.
 
-    fraction: processor seconds a second of the whole run, all processes together; skin: of its lists, in grain radii; newton:
-    whether two processes share the forces between their grains ("on") or both take them; contacts is the mean of the touching
-    pairs that the code itself counts at start and end; kinetic: energy, rotation's too, at the start and after each of
-    `samples` equal parts [its units]. Raises PeerFailed with the program's last words.
+    fraction: processor seconds a second of the time loop, all processes together, as the code says it (nan where it doesn't);
+    skin: of its lists, in grain radii; newton: whether two processes share the forces between their grains ("on") or both take
+    them; contacts is the mean of the touching pairs that the code itself counts at start and end; kinetic: energy, rotation's
+    too, at the start and after each of `samples` equal parts [its units]. Raises PeerFailed with the program's last words.
     """
     numbers = {"steps": steps, "sample": steps // samples, "skin": skin, "newton": newton, "processes": cores}
     numbers |= {"boundary": "p" if scene.periodic else "f", "bins": bin_edge(scene), **scaled_constants(scene)}
@@ -128,10 +126,9 @@ def measure(code, scene, steps, cores=1, skin=0.3, newton="off", samples=1):
         command = [*PARALLEL.get(code, OPEN_MPI), "-n", str(cores), *command]
     with tempfile.TemporaryDirectory() as folder:
         write_grains(Path(folder) / "grains.data", scene)
-        start, processor = time.perf_counter(), processor_seconds()
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment())
-        fraction = (processor_seconds() - processor) / (time.perf_counter() - start)
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
+    used = re.search(r"([\d.]+)% CPU use with", done.stdout)
     # grains, contacts (twice, once from each grain), kinetic energies
     rows = np.array(re.findall(r"^ *\d+ +(\d+) +(\S+) +(\S+) +(\S+) *$", done.stdout, re.M), float)
     if done.returncode or not loop:
@@ -139,6 +136,7 @@ def measure(code, scene, steps, cores=1, skin=0.3, newton="off", samples=1):
     if len(rows) < 2 or rows[-1, 0] != len(scene.grains):
         raise PeerFailed(f"{PROGRAMS[code]} lost grains or counted nothing:\n{done.stdout[-1500:]}")
     found = {"grains": len(scene.grains), "contacts": rows[[0, -1], 1].mean() / 2, "steps": steps}
+    fraction = float(used.group(1)) / 100 * cores if used else nan
     found |= {"seconds": float(loop.group(1)), "fraction": fraction, "version": version(code), "newton": newton}
     return {**found, "skin": skin, "kinetic": (rows[:, 2] + rows[:, 3]).tolist()}
 
@@ -148,12 +146,6 @@ def last_words(done):
     printed = f"{done.stdout}\n{done.stderr}"
     errors = re.findall(r"^ERROR.*$", printed, re.M)
     return errors[-1] if errors else printed[-1500:]
-
-
-def processor_seconds():
-    """Of all programs that were started here and have ended."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 def box_of(scene):

@@ -33,6 +33,19 @@ def test_peers_run_the_scene(code, scene):
     assert speed.rate(found) > 1e5
 
 
+@pytest.mark.parametrize("code", ["lammps", "liggghts"])
+def test_the_time_of_a_peers_start_is_not_its_time(code, monkeypatch, tmp_path):
+    """MPI alone takes half a second to start, in which the processor waits."""
+    if reason := peers.missing(code):
+        pytest.skip(reason)
+    late = tmp_path / "late"
+    late.write_text(f'#!/bin/sh\nsleep 2\nexec {peers.PROGRAMS[code]} "$@"\n')
+    late.chmod(0o755)
+    monkeypatch.setitem(peers.PROGRAMS, code, str(late))
+    found = peers.measure(code, starts.of(TINY["cpe-5"]).scene, 20)
+    assert found["seconds"] < 1 and not found["fraction"] < 0.3
+
+
 def test_all_codes_ring_alike():
     """Where nothing is made, broken or slips: this law's two codes to rounding, the others to what their springs differ."""
     scene, kinetic = starts.rung(starts.of(TINY["cpe-5"]), 2e5), {}
