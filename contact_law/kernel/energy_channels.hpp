@@ -135,8 +135,14 @@ namespace channel_numbers {
 	}
 	constexpr int storedFrom = distinct(grainChannels), lostFrom = storedFrom + distinct(storedChannels),
 	              workFrom = lostFrom + distinct(lostChannels);
-	// of the channel that a row of lostChannels belongs to
-	constexpr int ofLost(std::size_t row) { return lostFrom + distinct(lostChannels, row + 1) - 1; }
+	constexpr std::array<int, std::size(lostChannels)> numberLost()
+	{
+		std::array<int, std::size(lostChannels)> numbers {};
+		for (std::size_t row = 0; row < numbers.size(); ++row)
+			numbers[row] = lostFrom + distinct(lostChannels, row + 1) - 1;
+		return numbers;
+	}
+	constexpr auto ofLost = numberLost(); // of the channel that a row of lostChannels belongs to
 }
 constexpr int channelCount = channel_numbers::workFrom + channel_numbers::distinct(workChannels);
 
@@ -149,7 +155,7 @@ constexpr std::array<Channel, channelCount> makeChannels()
 	for (const auto& row : storedChannels)
 		all[at++] = { row.name, ChannelKind::Stored };
 	for (std::size_t k = 0; k < std::size(lostChannels); ++k)
-		all[channel_numbers::ofLost(k)] = { lostChannels[k].name, ChannelKind::Lost };
+		all[channel_numbers::ofLost[k]] = { lostChannels[k].name, ChannelKind::Lost };
 	at = channel_numbers::workFrom;
 	for (const auto& row : workChannels)
 		all[at++] = { row.name, ChannelKind::Work };
@@ -179,7 +185,7 @@ template <class Visit> inline void eachRow(const StoredEnergy<double>& stored, c
 	for (std::size_t k = 0; k < std::size(storedChannels); ++k)
 		visit(channel_numbers::storedFrom + int(k), stored.*storedChannels[k].member);
 	for (std::size_t k = 0; k < std::size(lostChannels); ++k)
-		visit(channel_numbers::ofLost(k), lost.*lostChannels[k].member);
+		visit(channel_numbers::ofLost[k], lost.*lostChannels[k].member);
 }
 
 // The energies by channel [J].

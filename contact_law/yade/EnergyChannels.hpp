@@ -88,7 +88,8 @@ private:
 
 	void add(Scene& scene, int channel, double energy)
 	{
-		if (energy != 0) scene.energy->add(energy, "", ids[channel], perStep(channel));
+		static const std::string known; // by its id
+		if (energy != 0) scene.energy->add(energy, known, ids[channel], perStep(channel));
 	}
 
 	std::array<int, count> ids {};
