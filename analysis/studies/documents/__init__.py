@@ -4,8 +4,9 @@
 
 Each is a template of the same name beside this file. In it say("viscous", "drag_largest", grains = 50000) stands for '8600 ± 2100', a quantity of
 a study of the gallery's runs; sentence(study) and counted(study) for what its paper.toml says in one sentence and for its verdicts; ratio(scene)
-and ledger(step) for what tests/benchmarks has measured."""
+and ledger(step) for what tests/benchmarks has measured, beside(distribution) for what tests/conformance has."""
 
+import json
 from functools import cache
 from pathlib import Path
 
@@ -24,6 +25,7 @@ HERE = Path(__file__).resolve().parent
 OVERVIEW, PAPER = "README.md", "paper.md"
 RESULTS = HERE.parents[2] / "tests" / "benchmarks" / "results"
 QUIET = RESULTS / "epyc-zen5"  # measured on a machine of its own
+ENSEMBLES = HERE.parents[2] / "tests" / "conformance" / "results" / "ensembles"
 
 
 @cache
@@ -72,12 +74,19 @@ def ledger(step):
     return f"{np.sqrt((rows.ledger**2).mean()):.1e}", f"{rows.seconds.median():.1f}"
 
 
+def beside(distribution, code="lammps-newest"):
+    """'-0.091 ± 0.010': another code's mean of a distribution less the engine's, of the same aggregates, ± its standard error."""
+    read = lambda name: json.loads((ENSEMBLES / f"{name}.json").read_text())["samples"][distribution]
+    change = np.subtract(read(code), read("engine"))
+    return f"{change.mean():.3f} ± {change.std(ddof=1) / len(change) ** 0.5:.3f}"
+
+
 def texts():
     """{file name: text (str)} of both documents. jinja2's errors for a template that can't be filled in."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(loader=FileSystemLoader(HERE), undefined=StrictUndefined, keep_trailing_newline=True)
-    known = dict(say=say, sentence=sentence, judged=judged, runs=runs, ratio=ratio, ledger=ledger)
+    known = dict(say=say, sentence=sentence, judged=judged, runs=runs, ratio=ratio, ledger=ledger, beside=beside)
     return {name: environment.get_template(name).render(known) for name in (OVERVIEW, PAPER)}
 
 
