@@ -109,11 +109,16 @@ class Runs:
 
 
 def _shared(first, second, by, only):
-    """Two Runs without those of pairs that only one has, in groups by columns where they share some; only: in all groups."""
-    keys = [list(zip(*(own.table[name].map(_key) for name in by), own._names(own.table))) for own in (first, second)]
+    """Two Runs without those of pairs that only one has, in groups by columns where they share some; only: in all groups. Of averages over
+    points a pair has in both the same of them."""
+    points = lambda own: own.table[own.average].map(_key) if own.average else [None] * len(own.table)
+    keys = [
+        list(zip(*(own.table[name].map(_key) for name in by), points(own), own._names(own.table)))
+        for own in (first, second)
+    ]
     both = set(keys[0]) & set(keys[1])
-    groups = {key[:-1] for key in both}
-    kept = ([key in both or not (only or key[:-1] in groups) for key in own] for own in keys)
+    groups = {key[: len(by)] for key in both}
+    kept = ([key in both or not (only or key[: len(by)] in groups) for key in own] for own in keys)
     return tuple(own.of(own.table[np.array(keep, dtype=bool)]) for own, keep in zip((first, second), kept))
 
 

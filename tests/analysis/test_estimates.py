@@ -121,6 +121,15 @@ def test_the_same_pairs_with_one_thing_changed():
     assert len(runs.where(drag=0).beside("drag", 0, "y", ("size",), ratios)) == 0  # nothing changed
 
 
+def test_pairs_whose_offsets_are_not_all_there_with_a_change_do_not_count():
+    """Pair 2 lacks an offset with drag: what it gave without is left out, too."""
+    own = {(1, 0): (1.0, 3.0), (1, 6): (2.0, 6.0), (2, 0): (50.0, 70.0), (2, 6): (90.0,)}
+    rows = [(pair, drag, x, y) for (pair, drag), values in own.items() for x, y in enumerate(values)]
+    runs = Runs(pandas.DataFrame(rows, columns=["seed", "drag", "square", "y"])).over("square", (0, 1))
+    found = at(runs.beside("drag", 0, "y", (), differences, same_pairs=True), drag=6)
+    assert (found.value, found.pairs) == (2.0, 1)
+
+
 def test_a_mean_over_points_counts_pairs_that_have_all_of_them():
     """Two whose means are 0.5, though every offset differs by 1, have the error of 13 independent points."""
     whole = {seed: {x: seed * x for x in OFFSETS} for seed in (1, 2, 3)}

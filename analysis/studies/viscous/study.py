@@ -49,12 +49,14 @@ def _growth(runs, suffix, over):
     yield Quantity(f"growth{suffix}", f"growth efficiency f_gro, mean over {over}", growth)
     v_fra = along(growth, "velocity", threshold_velocity) if len(growth) else growth
     yield Quantity(f"v_fra{suffix}", f"velocity at which that mean falls through 0 ({over})", v_fra, "m/s")
-    half = runs.estimates(lambda t: [0.5 * _small(sizes) for sizes in t.fragments] / t.grains, CURVE)
+    of_velocity = ("grains", "velocity")
+    more = _with_drag(runs, "growth", of_velocity)
+    half = _with_drag(runs, lambda t: [0.5 * _small(sizes) for sizes in t.fragments] / t.grains, of_velocity)
     with_drag = {
-        "growth efficiency": _drag(growth),
-        "of it half the small fragments": -_drag(half),
-        "the rest": _drag(growth) + _drag(half),
-        "cross-section of merging": _drag(runs.estimates(lambda t: t.growth > MERGED, CURVE)),
+        "growth efficiency": more,
+        "of it half the small fragments": -half,
+        "the rest": more + half,
+        "cross-section of merging": _with_drag(runs, lambda t: t.growth > MERGED, of_velocity),
     }
     meaning = (
         f"what drag changes: 6 ps less without, mean over {over}; small fragments: of {SMALL} grains or fewer; merging: growth "
@@ -70,9 +72,10 @@ def _offsets(runs):
     runs = runs.where(velocity=REFERENCE["velocity"])
     at_offset = runs.estimates("growth", (*POINT, "square"))
     yield Quantity("at_offset", "f_gro at 50.1 m/s", at_offset)
-    yield Quantity("drag_at_offset", "f_gro at 50.1 m/s, 6 ps less without drag", _drag(at_offset))
-    edge = runs.over("square", EDGE).estimates("growth", POINT)
-    yield Quantity("drag_edge", "the same, mean over B_off^2 = 2/12 to 5/12", _drag(edge))
+    drag_at_offset = _with_drag(runs, "growth", ("grains", "square"))
+    yield Quantity("drag_at_offset", "f_gro at 50.1 m/s, 6 ps less without drag", drag_at_offset)
+    drag_edge = _with_drag(runs.over("square", EDGE), "growth", ("grains",))
+    yield Quantity("drag_edge", "the same, mean over B_off^2 = 2/12 to 5/12", drag_edge)
     loss = runs.parts(_over("kinetic_at_start"), (*POINT, "square"), "channel")
     yield Quantity("loss_at_offset", "lost in each way at 50.1 m/s, of K(0)", loss, "%")
 
@@ -82,15 +85,15 @@ def _energies(runs):
     own, at_square = runs.where(**REFERENCE), runs.where(square=REFERENCE["square"])
     largest = own.estimates("largest", POINT)
     yield Quantity("largest", "grains of the largest fragment, 50.1 m/s, B_off^2 = 3/12", largest)
-    yield Quantity("drag_largest", "the same, 6 ps less without drag", _drag(largest))
+    drag_largest = _with_drag(own, "largest", ("grains",))
+    yield Quantity("drag_largest", "the same, 6 ps less without drag", drag_largest)
     loss = own.parts(_over("lost"), POINT, "channel")
     yield Quantity("loss", "lost in each way there, of all that is lost", loss, "%")
     rolling, *others = (select(loss, channel=way) for way in WAYS)
     lead = differences(rolling, reduce(_largest, others))
     yield Quantity("rolling_lead", "rolling less the largest of the other ways", lead, "%")
-    total = own.parts({name: name for name in WAYS if name != "drag"}, POINT, "channel")
-    by_drag = ratios(select(total, viscoelasticTime=MOST_DRAG), select(total, viscoelasticTime=NO_DRAG))
-    yield Quantity("drag_ratio", "lost there with 6 ps over without drag", by_drag)
+    by_drag = {name: _with_drag(own, name, ("grains",), ratios) for name in WAYS if name != "drag"}
+    yield Quantity("drag_ratio", "lost there with 6 ps over without drag", together(by_drag, "channel"))
     at_end = at_square.parts(_over("unit"), CURVE, "channel")
     yield Quantity("loss_per_grain", "lost in each way over N_tot F_c delta_c, B_off^2 = 3/12", at_end)
     per_grain = {symbol: lambda t, name=name: t[name] / (2 * t.grains) for name, symbol in EVENTS.items()}
@@ -163,9 +166,10 @@ def _fitted(means, inside):
     return along(own, "fragment", fragment_exponent) if len(own) else own
 
 
-def _drag(series):
-    """With the most drag less without, of the same pairs."""
-    return differences(select(series, viscoelasticTime=MOST_DRAG), select(series, viscoelasticTime=NO_DRAG))
+def _with_drag(runs, values, by, of=differences):
+    """Values with the most drag less those without (or over them), of the same pairs."""
+    found = runs.beside("viscoelasticTime", NO_DRAG, values, by, of, same_pairs=True)
+    return select(found, viscoelasticTime=MOST_DRAG)
 
 
 def _small(text):
