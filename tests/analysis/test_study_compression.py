@@ -68,6 +68,14 @@ def test_a_mean_is_over_all_clusters_that_went_so_far(tmp_path, capsys):
     assert (pairs[0.0133], pairs[0.49], pairs[0.55], pairs[0.625]) == (3, 3, 1, 1) and min(pairs) == 0.0133
 
 
+def test_a_fit_is_of_the_same_clusters_everywhere(tmp_path, capsys):
+    """Nine times the pressure of a cluster that ends before the bin around 0.1 makes no slope."""
+    made_compression(tmp_path / "a1", 1, power(1.0), states=False)
+    made_compression(tmp_path / "a2", 2, power(9.0), states=False, high=0.11)
+    (n,) = answered(capsys, "compression", tmp_path)[0]["exponent"]
+    assert n["value"] == pytest.approx(3.0, abs=1e-3) and n["pairs"] == 2
+
+
 @pytest.mark.parametrize(
     "name, value, shown, e_roll",  # over r0^3, of K13's
     [

@@ -44,8 +44,8 @@ FULL = (
     + [({**FIDUCIAL, "criticalRolling": rolling}, 10) for rolling in ROLLING]
     + [({**FIDUCIAL, **SILICATE}, 10)]
 )
-# Clusters beside those of the desk, to where K13's law ends: the other half of a run to 0.5 has no claim of the paper.
-TO_LAW = {"strainRate": "3e-7", "finalFilling": "0.11"}
+# Clusters beside those of the desk, to where K13's law ends and the bin around 0.1: the other half of a run to 0.5 has no claim of the paper.
+TO_LAW = {"strainRate": "3e-7", "finalFilling": "0.12"}
 OWN = (
     [({**TO_LAW, "grains": 16384}, range(2, 11))]
     + [({**TO_LAW, "grains": 1024, "strainRate": rate}, range(5, 9)) for rate in ("3e-7", "1e-5")]

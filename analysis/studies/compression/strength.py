@@ -31,9 +31,11 @@ def by_filling(clusters):
     at which all clusters that went so far have a pressure.
 
     `settled`: every cluster of the set is denser than a free one (K13 eq 24) there, boundaries are slower than sound (eqs 26, 27), and contacts connect
-    the cell with its images along all axes, without which it bears no load along some axis."""
+    the cell with its images along all axes, without which it bears no load along some axis. `shared`: all clusters of the set came there, so that a
+    fit along the filling factor is of the same clusters everywhere."""
     of_run = clusters.grainRadius, clusters.time_unit, clusters.rolling_energy, clusters.grain_mass
     static = np.maximum(bcca_filling(clusters.grains), static_from(clusters.strainRate, clusters.grains, *of_run))
+    of_set = clusters.groupby(list(SET)).seed.transform("size")
     scale, spanned = strength_scale(clusters.rolling_energy, clusters.grainRadius), clusters.spanned_from.fillna(0.0)
     parts = []
     for filling, half, pressure, contacts in zip(FILLINGS, HALF_BINS, PRESSURES.values(), COORDINATIONS.values()):
@@ -43,12 +45,14 @@ def by_filling(clusters):
             pressure=clusters[pressure],
             over=clusters[pressure] / compressive_strength(filling, scale),
             coordination=clusters[contacts],
+            of_set=of_set,
             settled=(filling * ROUNDING >= static) & (filling / half * ROUNDING >= spanned),
         )
         parts.append(own[there])
     rows = pandas.concat(parts, ignore_index=True)
     sets = rows.groupby([*SET, "filling"])
     rows["settled"] = sets.settled.transform("all")
+    rows["shared"] = sets.seed.transform("size") == rows.of_set
     return rows[sets.pressure.transform("count") == sets.pressure.transform("size")]
 
 

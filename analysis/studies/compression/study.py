@@ -43,7 +43,7 @@ def quantities(table):
     settled = rows.of(rows.table[rows.table.settled])
     over = rows.estimates("over", (*SET, "filling"))
     yield Quantity("strength", "pressure over K13 eq 25, (E_roll/r0^3) phi^3", over)
-    yield from _power_law(settled.of(settled.table[settled.table.filling <= VALID_TO]))
+    yield from _power_law(settled.of(settled.table[settled.table.shared & (settled.table.filling <= VALID_TO)]))
     yield from _any_filling(settled.where(**ICE))
     yield from _channels(runs)
     dimension = runs.parts(DIMENSIONS, SET, "filling")
