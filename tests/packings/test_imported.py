@@ -235,7 +235,11 @@ def test_what_is_wrong_with_arrays(tmp_path, arrays, message, capsys):
         ("-1.0 0.0 0.0\n1.0 0.0 0.0\n", dict(unit="radius", grainRadius="2e-7"), 2e-7),
         ("0 0 0\n3 0 0\n", dict(unit="radius", radius="1.5"), 1.5e-7),
         ("2 400 300\n# four\n# lines\n# of\n# text\n0 0 0 0 100 0 1\n200 0 0 0 100 0 1\n", {}, 1e-7),
-        ("# ---------\naggregate:\n  length_unit: um\n  positions: [[0, 0, 0], [0.2, 0, 0]]\n  radii: [0.1, 0.1]\n", {}, 1e-7),
+        (
+            "# ---------\naggregate:\n  length_unit: um\n  positions: [[0, 0, 0], [0.2, 0, 0]]\n  radii: [0.1, 0.1]\n",
+            {},
+            1e-7,
+        ),
         ("0.1 7 0 0 0\n0.1 7 0.2 0 0\n", dict(unit="um", names="radius,-,x,y,z"), 1e-7),
         ("0 0 0\n0.205 0 0\n", dict(UM, tolerance="0.06"), 1e-7),
     ],
