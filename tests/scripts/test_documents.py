@@ -155,4 +155,4 @@ def test_the_table_of_studies_is_that_of_their_tables(tmp_path, monkeypatch):
         grains = sum(row.estimate.grains * row.parameters.states for row in found)
         assert float(cells[7].split()[0]) == pytest.approx(grains * BYTES_A_GRAIN * 1e-9, rel=0.2), line
         seen.add((study, cells[2]))
-    assert len(seen) == 12
+    assert len(seen) == 13
