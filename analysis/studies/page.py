@@ -83,7 +83,7 @@ def undecided(table):
 
 
 def filled(text, analysis):
-    """Words with their numbers: {{ say("quantity", column = value) }} gives '54.0 ± 1.0 m/s', or 'not run'. PaperError for a
+    """Words with their numbers: {{ say("quantity", column = value) }} gives '54.0 ± 1.0 m/s (4)', or 'not run'. PaperError for a
     quantity or column that there is not."""
     # slow to load, and the numbers do without it
     from jinja2 import Environment, StrictUndefined, TemplateError
@@ -98,10 +98,13 @@ def filled(text, analysis):
 
 
 def number(results, name, **where):
-    """'54.0 ± 1.0 m/s' (str): a quantity of a definition.Results there, or 'not run'. KeyError for a name that there is not."""
+    """'54.0 ± 1.0 m/s (4)' (str): a quantity of a definition.Results there, or 'not run'. KeyError for a name that there is not."""
     quantity = results[name]
     estimate = quantity.at(**where)
-    return "not run" if estimate is None else f"{quantity.shown(estimate)!r} {quantity.unit}".rstrip()
+    if estimate is None:
+        return "not run"
+    shown = quantity.shown(estimate)
+    return f"{shown!r} {quantity.unit}".rstrip() + shown.text.removeprefix(repr(shown))
 
 
 def _joined(parts):

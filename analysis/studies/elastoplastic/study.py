@@ -93,6 +93,7 @@ def _moduli(runs, grain):
     yield Quantity("offset", "δ_offset", offset, "r")
     yield from _constants(runs, grain, stress, compliance)
     yield from _of_fit(runs, grain, *(select(series, fit=FREE) for series in (stress, compliance, offset)))
+    yield from _restitution(runs, grain, *(select(series, fit=BY_SIZE) for series in (stress, compliance)))
 
 
 def _constants(runs, grain, stress, compliance):
@@ -113,8 +114,7 @@ def _constants(runs, grain, stress, compliance):
 
 
 def _of_fit(runs, grain, *fit):
-    """What the fit of all three (Series of sigma, 1/E* and delta_offset by filling) leaves of the runs, and the coefficient of restitution
-    of such spheres beside that of A24's."""
+    """What the fit of all three (Series of sigma, 1/E* and delta_offset by filling) leaves of the runs."""
     ours = lambda series: series[series.index.get_level_values("filling").isin(fit[0].index)]
 
     def of_model(f, filling, *more):
@@ -127,11 +127,23 @@ def _of_fit(runs, grain, *fit):
         less = lambda e, filling, *place: of_model(lambda model, y: y - model.at(*place)[k], filling, e)
         values = each(ours(runs.estimates(column, POINT)), less)
         yield Quantity(f"{name}_beyond", f"{name} less that of Andrews's spheres, {FREE}", values, unit)
+
+
+def _restitution(runs, grain, stress, compliance):
+    """The coefficient of restitution of Andrews's spheres with the moduli of a fit (Series by filling) and with those of A24."""
     points = runs.estimates("d", ("filling", "velocity"))
-    theirs = points[points.index.get_level_values("filling").isin(fits.PRINTED)]
+    known = lambda fillings: points[points.index.get_level_values("filling").isin(fillings)]
+    spheres = lambda filling: lambda s, c: fits.Aggregates(s, c, 0.0, filling * grain.grain_density, grain.grain_radius)
+    ours = lambda _, filling, v: combine(
+        lambda *moduli: spheres(filling)(*moduli).restitution(v),
+        at(stress, filling=filling),
+        at(compliance, filling=filling),
+    )
     of = {
-        FREE: each(ours(points), lambda _, filling, v: of_model(lambda model: model.restitution(v), filling)),
-        "A24's σ, E*": each(theirs, lambda _, filling, v: exact(fits.printed(filling, grain).restitution(v))),
+        BY_SIZE: each(known(stress.index.get_level_values("filling")), ours),
+        "A24's σ, E*": each(
+            known(fits.PRINTED), lambda _, filling, v: exact(fits.printed(filling, grain).restitution(v))
+        ),
     }
     e = together(of, "fit")
     yield Quantity("andrews", "restitution of Andrews's spheres, and its square", together({"e": e, "e²": e * e}, "of"))
