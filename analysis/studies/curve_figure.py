@@ -131,11 +131,11 @@ def _curves(axes, figure, quantity, series, results):
         return _curve(axes, figure, quantity, series, COLOURS[-1])
     values = sorted(set(series.index.get_level_values(figure.colour)))
     curves = {value: select(series, **{figure.colour: value}) for value in values}
-    numbers = {value: pairs_text(own, results.independent) for value, own in curves.items()}
-    said = figure.panel and len(set(numbers.values())) == 1  # in the panel's title
     colour_of = palette(results, figure.colour)
     for k, (value, own) in enumerate(curves.items()):
-        label = level(figure.colour).label(value) + ("" if said else f", {numbers[value]}")
+        # the title of a panel has it, and a legend is of all panels
+        number = "" if figure.panel else f", {pairs_text(own, results.independent)}"
+        label = level(figure.colour).label(value) + number
         aside = min(figure.apart, MOST_ASIDE / len(curves)) * (k - (len(curves) - 1) / 2)
         _curve(axes, figure, quantity, own, colour_of[value], label, k, aside)
 

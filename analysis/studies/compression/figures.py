@@ -47,7 +47,7 @@ def _every_cluster(results):
         for own in clusters:
             place.plot(own.filling, own.over.where(own.over > 0), color=colours[grains], lw=0.8, alpha=0.6)
         where = settled.loc[grains].index
-        text = f"mean of {len(clusters)} clusters" if len(clusters) > 1 else "1 cluster"
+        text = f"mean of {len(clusters)} clusters at most" if len(clusters) > 1 else "1 cluster"
         points(place, where, [means.loc[grains, filling] for filling in where], colours[grains], text)
         place.set(
             xscale="log", yscale="log", title=level("grains").label(grains), xlabel=level("filling").head(math=True)
@@ -77,7 +77,7 @@ def _shares(name, caption, panel, **where):
 FIGURES = (
     StudyFigure(
         "fig04_strength",
-        "Pressure over eq 25 against filling factor, C_v = 3e-7 (K13 Figs 4, 6). Lines: clusters; points: means where contacts span every cell. "
+        "Pressure over eq 25 against filling factor, C_v = 3e-7 (K13 Figs 4, 6). Lines: clusters; points: means where contacts span every cell (open: one cluster). "
         "Shaded: agreement.",
         _every_cluster,
     ),
