@@ -28,7 +28,7 @@ In brackets: the mean difference from the engine's run with the same aggregates.
 
 
 def cell(found):
-    if "difference" not in found:
+    if found["said"] not in ("agrees", "differs"):
         return "–" if found["said"] == "not modelled" else found["said"]
     size = f"{found['difference']:.0e}" if math.isfinite(found["difference"]) else "does not occur"
     order = "exact" if found["order"] is None else f"order {found['order']:.1f}"

@@ -67,6 +67,40 @@ def test_a_value_that_is_wrong_is_noticed(spoilt):
     assert [case for case, one in found.items() if one["said"] != "agrees"] == ["twisting"]
 
 
+def test_a_case_agrees_only_where_all_is_answered_but_the_ledger():
+    results = json.loads((ROOM / "results/engine.json").read_text())
+    values = results["cases"]["collision"]["values"]
+    values["energy lost as it breaks"] = None
+    assert check.verdicts(results)["collision"]["said"] == "agrees"
+    del values["time of the break"]
+    found = check.verdicts(results)["collision"]
+    assert (found["said"], found["answered"]) == ("incomplete", (5, 7))
+    assert check.in_words(found).startswith("incomplete (5 of 7 answered")
+    values["greatest overlap"][-1] *= 1.001
+    assert check.verdicts(results)["collision"]["said"] == "differs"
+
+
+@pytest.mark.parametrize(
+    "spoil, said",
+    [
+        (lambda cases: cases.update(colision=cases.pop("collision")), "colision: must be one of equilibrium, "),
+        (lambda cases: cases["sliding"]["values"].update(work=[1, 1, 1]), "sliding: work: must be one of force1.y of "),
+        (lambda cases: cases["sliding"].update(steps=[1e-11] * 3), r"sliding: steps \[1e-11, .*: must be two or more"),
+        (lambda cases: cases["sliding"]["steps"].reverse(), "sliding: steps .*the longest first"),
+        (lambda cases: cases["sliding"].update(steps=[1e-11]), r"sliding: steps \[1e-11\]: must be two or more"),
+        (lambda cases: cases["sliding"]["steps"].pop(), "sliding: force1.y of .*: 3 values: must be 2, one a step"),
+        (lambda cases: cases["sliding"].pop("steps"), "KeyError.*: must be a results file"),
+    ],
+)
+def test_results_that_cannot_be_compared_are_refused(tmp_path, spoil, said):
+    results = json.loads((ROOM / "results/engine.json").read_text())
+    spoil(results["cases"])
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(results))
+    with pytest.raises(SystemExit, match=said):
+        check.main(path)
+
+
 def test_the_page_is_that_of_the_results():
     assert (ROOM / "results.md").read_text() == results_page.page()
 
