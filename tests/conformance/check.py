@@ -46,7 +46,9 @@ def checked(question, steps, values, suite):
     errors = [math.nan if v is None else (v - exact) / scale for v in values]
     if not all(map(math.isfinite, errors)):
         return dict(difference=math.inf, order=None, said="does not occur")
-    limit = errors[-1] + (errors[-1] - errors[-2]) / ((steps[-2] / steps[-1]) ** suite["order"] - 1)
+    limit = errors[-1] + (errors[-1] - errors[-2]) / (
+        (steps[-2] / steps[-1]) ** question.get("order", suite["order"]) - 1
+    )
     order = None
     if min(abs(errors[0]), abs(errors[-1])) > ROUNDING:
         order = math.log(abs(errors[0] / errors[-1])) / math.log(steps[0] / steps[-1])

@@ -13,7 +13,7 @@ CODES = ("engine", "functors", "reference_law", "lammps-newest", "lammps", "ligg
 HEAD = """# {suite}, version {version}: results
 
 Made by `make conformance`; [README.md](README.md) says how.
-*Agrees*: every value that a case asks for is within {tolerance:.0e} of the reference when it is extrapolated in the time step with order two.
+*Agrees*: every value that a case asks for is within {tolerance:.0e} of the reference when it is extrapolated in the time step with order two (one where a question says so).
 In brackets stand the largest difference, and the median of the orders with which errors fall (*exact*: the step leaves none).
 Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled.
 """

@@ -16,7 +16,7 @@ import check_ensembles
 import results_page
 from answers import SUITE, answer
 
-SAMPLE = "equilibrium hysteresis sliding rolling twisting two-at-once bond-tension bond-shear".split()
+SAMPLE = "equilibrium hysteresis sliding rolling twisting two-at-once under-load turning-slip bond-tension bond-shear".split()
 LEVELS = 2  # of three
 
 
@@ -32,7 +32,7 @@ def test_the_references_are_what_the_generator_gives():
     quick = [case for case in SUITE["cases"] if case["id"] not in ("free-rotation", "viscous-drag")]
     command = [sys.executable, ROOM / "generator/generate.py", *(case["id"] for case in quick)]
     assert json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout) == quick
-    assert len(SUITE["cases"]) == 20
+    assert len(SUITE["cases"]) == 22
 
 
 @pytest.mark.in_yade
