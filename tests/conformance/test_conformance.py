@@ -150,3 +150,26 @@ def test_what_the_mapping_for_on_dem_names_is_there():
     mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())
     for fields, one in zip(mapping.values(), (JKRMat(), JKRWadaPhys())):
         assert all(hasattr(one, path.rsplit(".")[-1]) for path in fields.values())
+
+
+@pytest.mark.in_yade
+@pytest.mark.parametrize("code", ["engine", "functors"])
+def test_pointers_of_the_mapping_for_on_dem_are_in_the_global_frame(code):
+    """Of a pair whose bodies have an orientation from the start, and then turn."""
+    import yade_codes
+    from yade import O, Quaternion, Vector3
+
+    yade_codes.CODE, steps = code, 100
+    scene = next(case for case in SUITE["cases"] if case["id"] == "two-at-once")["scenes"]["space"]
+    spins = [Vector3(spin) for spin in scene["prescribed"][0]["spin"]]
+    bodies = [O.bodies[i] for i in yade_codes.place(scene, SUITE["materials"])]
+    sys.modules["__main__"].drive = lambda: None
+    for body, spin in zip(bodies, spins):
+        body.state.ori, body.state.angVel = Quaternion(Vector3(1, 2, 3), 1.0), spin
+    O.dt, O.engines = 1e-12, yade_codes.engines({})
+    O.run(steps, True)
+    known = dict(O=O, i=O.interactions[bodies[0].id, bodies[1].id])
+    mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())["jkr_wada_interaction"]
+    for name, spin, start in zip(("pointer1", "pointer2"), spins, (Vector3(1, 0, 0), Vector3(-1, 0, 0))):
+        turned = Quaternion(spin.normalized(), spin.norm() * steps * O.dt) * start
+        assert (eval(mapping[name], known) - turned).norm() < 1e-12
