@@ -2,6 +2,7 @@
 
 import json
 import math
+import random
 from pathlib import Path
 from statistics import mean, stdev
 
@@ -23,8 +24,10 @@ ENSEMBLES = """
 
 Distributions of `ensembles.json` beside samples of new aggregates: mean ± standard error (runs), and the probability of a distance as large by chance.
 Bold: differs (p below {level:.4f}); otherwise the two are not told apart, which is not agreement: the README says what shifts are found.
-In brackets: the mean difference from the engine's run with the same aggregates.
+In brackets: the mean difference from the engine's run with the same aggregates, and the probability of one as large by chance, by exchanging the two within pairs. Bold: differs; same aggregates tell more than two samples do.
+{alike}
 """
+ALIKE = "lammps and lammps-newest give the same for {same} of {all} aggregates: in effect one sample."
 
 
 def cell(found):
@@ -54,13 +57,24 @@ def of_mean(values):
     return f"{mean(values):.3f} ± {stdev(values) / len(values) ** 0.5:.3f}"
 
 
-def of_sample(values, own, found):
+def paired_p(differences):
+    """Probability that the two values of pairs differ as much in the mean, by exchanging them within pairs."""
+    draw, observed = random.Random(1), abs(sum(differences)) * (1 - 1e-12)
+    sums = (sum(draw.choice((x, -x)) for x in differences) for _ in range(check_ensembles.SHUFFLES))
+    return (sum(abs(one) >= observed for one in sums) + 1) / (check_ensembles.SHUFFLES + 1)
+
+
+def of_sample(values, own, found, level):
     """A code's cell of a distribution, beside the engine's own values for the same aggregates."""
     if values is None:
         return "–"
     said = f"{of_mean(values)} ({len(values)})"
-    beside = "" if values == own else f" [{of_mean([one - other for one, other in zip(values, own)])}]"
-    return (f"**{said}**" if found["said"] == "differs" else said) + f", p {found['p']:.2g}{beside}"
+    said = (f"**{said}**" if found["said"] == "differs" else said) + f", p {found['p']:.2g}"
+    if values == own:
+        return said
+    differences = [one - other for one, other in zip(values, own)]
+    p, change = paired_p(differences), of_mean(differences)
+    return f"{said} [{f'**{change}**' if p < level else change}, p {p:.2g}]"
 
 
 def ensembles():
@@ -69,15 +83,17 @@ def ensembles():
     files = {name: ROOM / f"results/ensembles/{name}.json" for name in CODES}
     samples = {name: json.loads(path.read_text())["samples"] for name, path in files.items() if path.exists()}
     found = {name: check_ensembles.compared(its, suite) for name, its in samples.items()}
-    columns = ["distribution", "suite", *samples]
+    columns, level = ["distribution", "suite", *samples], suite["level"] / len(suite["distributions"])
+    pairs = [pair for name, values in samples["lammps"].items() for pair in zip(values, samples["lammps-newest"][name])]
+    alike = ALIKE.format(same=sum(one == other for one, other in pairs), all=len(pairs))
     lines = [
-        ENSEMBLES.format(level=suite["level"] / len(suite["distributions"])),
+        ENSEMBLES.format(level=level, alike=alike),
         row(columns),
         row(["---"] * len(columns)),
     ]
     for given in suite["distributions"]:
         name, own = given["id"], samples["engine"].get(given["id"])
-        cells = [of_sample(samples[code].get(name), own, found[code].get(name)) for code in samples]
+        cells = [of_sample(samples[code].get(name), own, found[code].get(name), level) for code in samples]
         if own:
             lines.append(row([name, f"{of_mean(given['values'])} ({len(given['values'])})", *cells]))
     return lines

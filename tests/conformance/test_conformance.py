@@ -105,6 +105,11 @@ def test_the_page_is_that_of_the_results():
     assert (ROOM / "results.md").read_text() == results_page.page()
 
 
+def test_pairs_that_differ_are_told_from_pairs_that_scatter():
+    assert results_page.paired_p([0.1] * 12) < 0.001
+    assert results_page.paired_p([0.1, -0.1] * 6) > 0.9
+
+
 ENSEMBLES = json.loads(check_ensembles.ENSEMBLES.read_text())
 
 
