@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Makes ensembles.json: the samples of this repository's fused engine.
 
     /usr/bin/python3 generator/ensembles.py RUNS    RUNS: folder of runs that are not in the galleries; what is missing is run
