@@ -16,7 +16,7 @@ HEAD = """# {suite}, version {version}: results
 Made by `make conformance`; [README.md](README.md) says how.
 *Agrees*: every value that a case asks for is within {tolerance:.0e} of the reference when it is extrapolated in the time step with order two (one where a question says so).
 In brackets stand the largest difference, and the median of the orders with which errors fall (*exact*: the step leaves none).
-Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled.
+Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled; not tried: the code has an option that was not used.
 """
 
 ENSEMBLES = """
@@ -30,9 +30,17 @@ In brackets: the mean difference from the engine's run with the same aggregates,
 ALIKE = "lammps and lammps-newest give the same for {same} of {all} aggregates: in effect one sample."
 
 
+NOT_TRIED = "not tried: "
+
+
+def tried_not(found):
+    """Whether a code has an option for a case that its adapter does not use."""
+    return found.get("why", "").startswith(NOT_TRIED)
+
+
 def cell(found):
     if found["said"] not in ("agrees", "differs"):
-        return "–" if found["said"] == "not modelled" else found["said"]
+        return "not tried" if tried_not(found) else "–" if found["said"] == "not modelled" else found["said"]
     size = f"{found['difference']:.0e}" if math.isfinite(found["difference"]) else "does not occur"
     order = "exact" if found["order"] is None else f"order {found['order']:.1f}"
     return f"agrees ({size}, {order})" if found["said"] == "agrees" else f"**{size}**"
@@ -49,7 +57,9 @@ def explained(name, found, why):
     lines += [f"- **aggregates**: {own['aggregates']}."] if "aggregates" in own else []
     missing = [(case, one["why"]) for case, one in found.items() if one["said"] == "not modelled"]
     for reason in dict.fromkeys(reason for _, reason in missing if lines):
-        lines.append(f"- Not modelled, {', '.join(case for case, its in missing if its == reason)}: {reason}.")
+        said = "Not tried" if reason.startswith(NOT_TRIED) else "Not modelled"
+        these = ", ".join(case for case, its in missing if its == reason)
+        lines.append(f"- {said}, {these}: {reason.removeprefix(NOT_TRIED)}.")
     return lines
 
 
