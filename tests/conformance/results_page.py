@@ -2,6 +2,7 @@
 
 import json
 import math
+import random
 from pathlib import Path
 from statistics import mean, stdev
 
@@ -13,9 +14,9 @@ CODES = ("engine", "functors", "reference_law", "lammps-newest", "lammps", "ligg
 HEAD = """# {suite}, version {version}: results
 
 Made by `make conformance`; [README.md](README.md) says how.
-*Agrees*: every value that a case asks for is within {tolerance:.0e} of the reference when it is extrapolated in the time step with order two.
+*Agrees*: every value that a case asks for is within {tolerance:.0e} of the reference when it is extrapolated in the time step with order two (one where a question says so).
 In brackets stand the largest difference, and the median of the orders with which errors fall (*exact*: the step leaves none).
-Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled.
+Bold: the largest difference of a code that differs, relative; why is said below. –: not modelled; not tried: the code has an option that was not used.
 """
 
 ENSEMBLES = """
@@ -23,13 +24,23 @@ ENSEMBLES = """
 
 Distributions of `ensembles.json` beside samples of new aggregates: mean ± standard error (runs), and the probability of a distance as large by chance.
 Bold: differs (p below {level:.4f}); otherwise the two are not told apart, which is not agreement: the README says what shifts are found.
-In brackets: the mean difference from the engine's run with the same aggregates.
+In brackets: the mean difference from the engine's run with the same aggregates, and the probability of one as large by chance, by exchanging the two within pairs. Bold: differs; same aggregates tell more than two samples do.
+{alike}
 """
+ALIKE = "lammps and lammps-newest give the same for {same} of {all} aggregates: in effect one sample."
+
+
+NOT_TRIED = "not tried: "
+
+
+def tried_not(found):
+    """Whether a code has an option for a case that its adapter does not use."""
+    return found.get("why", "").startswith(NOT_TRIED)
 
 
 def cell(found):
-    if "difference" not in found:
-        return "–" if found["said"] == "not modelled" else found["said"]
+    if found["said"] not in ("agrees", "differs"):
+        return "not tried" if tried_not(found) else "–" if found["said"] == "not modelled" else found["said"]
     size = f"{found['difference']:.0e}" if math.isfinite(found["difference"]) else "does not occur"
     order = "exact" if found["order"] is None else f"order {found['order']:.1f}"
     return f"agrees ({size}, {order})" if found["said"] == "agrees" else f"**{size}**"
@@ -46,7 +57,9 @@ def explained(name, found, why):
     lines += [f"- **aggregates**: {own['aggregates']}."] if "aggregates" in own else []
     missing = [(case, one["why"]) for case, one in found.items() if one["said"] == "not modelled"]
     for reason in dict.fromkeys(reason for _, reason in missing if lines):
-        lines.append(f"- Not modelled, {', '.join(case for case, its in missing if its == reason)}: {reason}.")
+        said = "Not tried" if reason.startswith(NOT_TRIED) else "Not modelled"
+        these = ", ".join(case for case, its in missing if its == reason)
+        lines.append(f"- {said}, {these}: {reason.removeprefix(NOT_TRIED)}.")
     return lines
 
 
@@ -54,13 +67,24 @@ def of_mean(values):
     return f"{mean(values):.3f} ± {stdev(values) / len(values) ** 0.5:.3f}"
 
 
-def of_sample(values, own, found):
+def paired_p(differences):
+    """Probability that the two values of pairs differ as much in the mean, by exchanging them within pairs."""
+    draw, observed = random.Random(1), abs(sum(differences)) * (1 - 1e-12)
+    sums = (sum(draw.choice((x, -x)) for x in differences) for _ in range(check_ensembles.SHUFFLES))
+    return (sum(abs(one) >= observed for one in sums) + 1) / (check_ensembles.SHUFFLES + 1)
+
+
+def of_sample(values, own, found, level):
     """A code's cell of a distribution, beside the engine's own values for the same aggregates."""
     if values is None:
         return "–"
     said = f"{of_mean(values)} ({len(values)})"
-    beside = "" if values == own else f" [{of_mean([one - other for one, other in zip(values, own)])}]"
-    return (f"**{said}**" if found["said"] == "differs" else said) + f", p {found['p']:.2g}{beside}"
+    said = (f"**{said}**" if found["said"] == "differs" else said) + f", p {found['p']:.2g}"
+    if values == own:
+        return said
+    differences = [one - other for one, other in zip(values, own)]
+    p, change = paired_p(differences), of_mean(differences)
+    return f"{said} [{f'**{change}**' if p < level else change}, p {p:.2g}]"
 
 
 def ensembles():
@@ -69,15 +93,17 @@ def ensembles():
     files = {name: ROOM / f"results/ensembles/{name}.json" for name in CODES}
     samples = {name: json.loads(path.read_text())["samples"] for name, path in files.items() if path.exists()}
     found = {name: check_ensembles.compared(its, suite) for name, its in samples.items()}
-    columns = ["distribution", "suite", *samples]
+    columns, level = ["distribution", "suite", *samples], suite["level"] / len(suite["distributions"])
+    pairs = [pair for name, values in samples["lammps"].items() for pair in zip(values, samples["lammps-newest"][name])]
+    alike = ALIKE.format(same=sum(one == other for one, other in pairs), all=len(pairs))
     lines = [
-        ENSEMBLES.format(level=suite["level"] / len(suite["distributions"])),
+        ENSEMBLES.format(level=level, alike=alike),
         row(columns),
         row(["---"] * len(columns)),
     ]
     for given in suite["distributions"]:
         name, own = given["id"], samples["engine"].get(given["id"])
-        cells = [of_sample(samples[code].get(name), own, found[code].get(name)) for code in samples]
+        cells = [of_sample(samples[code].get(name), own, found[code].get(name), level) for code in samples]
         if own:
             lines.append(row([name, f"{of_mean(given['values'])} ({len(given['values'])})", *cells]))
     return lines

@@ -16,7 +16,7 @@ import check_ensembles
 import results_page
 from answers import SUITE, answer
 
-SAMPLE = "equilibrium hysteresis sliding rolling twisting two-at-once bond-tension bond-shear".split()
+SAMPLE = "equilibrium hysteresis sliding rolling twisting two-at-once under-load turning-slip bond-tension bond-shear".split()
 LEVELS = 2  # of three
 
 
@@ -32,7 +32,7 @@ def test_the_references_are_what_the_generator_gives():
     quick = [case for case in SUITE["cases"] if case["id"] not in ("free-rotation", "viscous-drag")]
     command = [sys.executable, ROOM / "generator/generate.py", *(case["id"] for case in quick)]
     assert json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout) == quick
-    assert len(SUITE["cases"]) == 20
+    assert len(SUITE["cases"]) == 22
 
 
 @pytest.mark.in_yade
@@ -67,8 +67,47 @@ def test_a_value_that_is_wrong_is_noticed(spoilt):
     assert [case for case, one in found.items() if one["said"] != "agrees"] == ["twisting"]
 
 
+def test_a_case_agrees_only_where_all_is_answered_but_the_ledger():
+    results = json.loads((ROOM / "results/engine.json").read_text())
+    values = results["cases"]["collision"]["values"]
+    values["energy lost as it breaks"] = None
+    assert check.verdicts(results)["collision"]["said"] == "agrees"
+    del values["time of the break"]
+    found = check.verdicts(results)["collision"]
+    assert (found["said"], found["answered"]) == ("incomplete", (5, 7))
+    assert check.in_words(found).startswith("incomplete (5 of 7 answered")
+    values["greatest overlap"][-1] *= 1.001
+    assert check.verdicts(results)["collision"]["said"] == "differs"
+
+
+@pytest.mark.parametrize(
+    "spoil, said",
+    [
+        (lambda cases: cases.update(colision=cases.pop("collision")), "colision: must be one of equilibrium, "),
+        (lambda cases: cases["sliding"]["values"].update(work=[1, 1, 1]), "sliding: work: must be one of force1.y of "),
+        (lambda cases: cases["sliding"].update(steps=[1e-11] * 3), r"sliding: steps \[1e-11, .*: must be two or more"),
+        (lambda cases: cases["sliding"]["steps"].reverse(), "sliding: steps .*the longest first"),
+        (lambda cases: cases["sliding"].update(steps=[1e-11]), r"sliding: steps \[1e-11\]: must be two or more"),
+        (lambda cases: cases["sliding"]["steps"].pop(), "sliding: force1.y of .*: 3 values: must be 2, one a step"),
+        (lambda cases: cases["sliding"].pop("steps"), "KeyError.*: must be a results file"),
+    ],
+)
+def test_results_that_cannot_be_compared_are_refused(tmp_path, spoil, said):
+    results = json.loads((ROOM / "results/engine.json").read_text())
+    spoil(results["cases"])
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(results))
+    with pytest.raises(SystemExit, match=said):
+        check.main(path)
+
+
 def test_the_page_is_that_of_the_results():
     assert (ROOM / "results.md").read_text() == results_page.page()
+
+
+def test_pairs_that_differ_are_told_from_pairs_that_scatter():
+    assert results_page.paired_p([0.1] * 12) < 0.001
+    assert results_page.paired_p([0.1, -0.1] * 6) > 0.9
 
 
 ENSEMBLES = json.loads(check_ensembles.ENSEMBLES.read_text())
@@ -116,3 +155,26 @@ def test_what_the_mapping_for_on_dem_names_is_there():
     mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())
     for fields, one in zip(mapping.values(), (JKRMat(), JKRWadaPhys())):
         assert all(hasattr(one, path.rsplit(".")[-1]) for path in fields.values())
+
+
+@pytest.mark.in_yade
+@pytest.mark.parametrize("code", ["engine", "functors"])
+def test_pointers_of_the_mapping_for_on_dem_are_in_the_global_frame(code):
+    """Of a pair whose bodies have an orientation from the start, and then turn."""
+    import yade_codes
+    from yade import O, Quaternion, Vector3
+
+    yade_codes.CODE, steps = code, 100
+    scene = next(case for case in SUITE["cases"] if case["id"] == "two-at-once")["scenes"]["space"]
+    spins = [Vector3(spin) for spin in scene["prescribed"][0]["spin"]]
+    bodies = [O.bodies[i] for i in yade_codes.place(scene, SUITE["materials"])]
+    sys.modules["__main__"].drive = lambda: None
+    for body, spin in zip(bodies, spins):
+        body.state.ori, body.state.angVel = Quaternion(Vector3(1, 2, 3), 1.0), spin
+    O.dt, O.engines = 1e-12, yade_codes.engines({})
+    O.run(steps, True)
+    known = dict(O=O, i=O.interactions[bodies[0].id, bodies[1].id])
+    mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())["jkr_wada_interaction"]
+    for name, spin, start in zip(("pointer1", "pointer2"), spins, (Vector3(1, 0, 0), Vector3(-1, 0, 0))):
+        turned = Quaternion(spin.normalized(), spin.norm() * steps * O.dt) * start
+        assert (eval(mapping[name], known) - turned).norm() < 1e-12

@@ -66,12 +66,17 @@ def script(scene, materials, steps):
 
 def series_of(scene, materials, steps):
     if scene.get("neck"):
-        raise NotModelled("pair_style granular has no sintered bonds")
+        listed = "bpm/rotational" in help_text()
+        raise NotModelled("not tried: bond_style bpm/rotational" if listed else "no sintered bonds")
     return run([LMP], {"in": script(scene, materials, steps)}, scene, materials, steps)
 
 
+def help_text():
+    return subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout
+
+
 def version():
-    return re.search(r"Simulator - (.+)", subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout)[1]
+    return re.search(r"Simulator - (.+)", help_text())[1]
 
 
 if __name__ == "__main__":

@@ -81,7 +81,9 @@ def series_of(scene, materials, steps):
     c = scene["contact"]
     drag = c["linear_drag"] or c["viscous_drag_per_contact_radius"]
     if scene.get("neck") or "plane" in scene or drag:
-        raise NotModelled("no sintered bonds" if scene.get("neck") else "no such drag" if drag else "planes not tried")
+        raise NotModelled(
+            "no sintered bonds" if scene.get("neck") else "no such drag" if drag else "not tried: fix wall/gran"
+        )
     files = {"in": script(scene, materials, steps), "grains.data": data(scene, materials)}
     return run(["liggghts"], files, scene, materials, steps)
 

@@ -59,7 +59,13 @@ def place(scene, materials):
 def series_of(scene, materials, steps):
     drag = scene["contact"]["linear_drag"] or scene["contact"]["viscous_drag_per_contact_radius"]
     if CODE == "stock" and ("plane" in scene or scene.get("neck") or drag):
-        raise NotModelled("no sintered bonds" if scene.get("neck") else "no such drag" if drag else "planes not tried")
+        raise NotModelled(
+            "not tried: CohFrictPhys with stiffnesses and strengths of bonds"
+            if scene.get("neck")
+            else "no such drag"
+            if drag
+            else "not tried: walls"
+        )
     grains, law = place(scene, materials), dict(linearDamping=scene.get("linear_damping", 0.0))
     law["neck"] = scene.get("neck", 0.0)
     O.dt, O.trackEnergy, O.engines = scene["duration"] / steps, True, engines(law)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Makes ensembles.json: the samples of this repository's fused engine.
 
     /usr/bin/python3 generator/ensembles.py RUNS    RUNS: folder of runs that are not in the galleries; what is missing is run
@@ -80,7 +81,7 @@ def distributions(runs):
 
 def main(runs):
     found = [dict(id=name, scene=scene, measure=measure, values=[float(f"{value:.6g}") for value in values]) for name, scene, measure, values in distributions(Path(runs))]  # fmt: skip
-    suite = dict(suite="JKR-Wada conformance: ensembles", version="1.0.0", licence="CC0-1.0", common=ICE, level=0.01)
+    suite = dict(suite="JKR-Wada conformance: ensembles", version="1.1.0", licence="CC0-1.0", common=ICE, level=0.01)
     path = Path(__file__).resolve().parents[1] / "ensembles.json"
     path.write_text(json.dumps({**suite, "distributions": found}, indent=1) + "\n")
 

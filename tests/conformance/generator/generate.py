@@ -12,15 +12,25 @@ from pathlib import Path
 from bond_cases import bond_bending, bond_break, bond_shear, bond_tension, bond_torsion
 from law import MATERIALS
 from normal_cases import collision, equilibrium, hysteresis, linear_drag, oscillation, plane, sticking, viscous_drag
-from tangential_cases import free_rotation, rolling, sliding, twisting, two_at_once, unlike_materials, unlike_radii
+from tangential_cases import (
+    free_rotation,
+    rolling,
+    sliding,
+    turning_slip,
+    twisting,
+    two_at_once,
+    under_load,
+    unlike_materials,
+    unlike_radii,
+)
 
 FILE = Path(__file__).resolve().parents[1] / "cases.json"
 HEAD = dict(
-    suite="JKR-Wada conformance: two grains", version="1.0.0", licence="CC0-1.0", units="SI", tolerance=1e-6, order=2
+    suite="JKR-Wada conformance: two grains", version="1.1.0", licence="CC0-1.0", units="SI", tolerance=1e-6, order=2
 )
 MAKERS = (
     *(equilibrium, hysteresis, collision, sticking, oscillation, linear_drag, viscous_drag),
-    *(sliding, rolling, twisting, two_at_once, unlike_radii, unlike_materials),
+    *(sliding, rolling, twisting, two_at_once, under_load, turning_slip, unlike_radii, unlike_materials),
     *(bond_tension, bond_shear, bond_bending, bond_torsion, bond_break, plane, free_rotation),
 )
 

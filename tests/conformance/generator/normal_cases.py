@@ -169,7 +169,7 @@ def linear_drag():
     c, speed, end = contact("ice", 1e-7, "ice", 1e-7, 0.05), 4.0, 3e-9
     made = falling(c, speed, end, [3000, 6000, 12000], linear_damping=0.05)
     t, y, questions = exact(GAP) / exact(speed), [U_BIRTH, exact(speed)], []
-    law = "m* d2 delta/dt2 = -F - k_n (m0/t0) d delta/dt, t0 with E*, from delta = 0 with the speed of approach"
+    law = "m* d2 delta/dt2 = -F - k_n (m0/t0) d delta/dt, m0 = 2 m*, t0 with E*, from delta = 0 with the speed of approach"
     for time in (1e-9, 2e-9, 3e-9):
         y = integrate(damped_rate(c), t, exact(time), y, c.t0)
         t, name = exact(time), f"at {time * 1e9:g} ns"
@@ -197,7 +197,7 @@ def viscous_drag():
     turn, top = integrate(by_speed, v0, mpf(0), [birth, U_BIRTH], v0 / 8)
     t, u = integrate(by_speed, mpf(0), -v0 / 20, [turn, top], v0 / 40)
     broken, v = integrate(by_root, u, U_BREAK, [t, -v0 / 20], mpf("0.05"))
-    law = "m* d2 delta/dt2 = -F - (2 T_vis E*/nu^2) a d delta/dt, from delta = 0 to -delta_c"
+    law = "m* d2 delta/dt2 = -F - 2 A E* a d delta/dt, A = mean of T_vis/nu^2 of the two grains, from delta = 0 to -delta_c"
     source, flight = "A22 (5), (7)", dict(scene="scene", kind="break", distance=rounded(c.r1 + c.r2 + c.dc))
     return case(
         "viscous-drag",

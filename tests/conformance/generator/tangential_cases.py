@@ -11,10 +11,10 @@ QUARTER, STEPS = 2e-9, [500, 1000, 2000]  # of a cycle of prescribed spins
 POINTERS = "contact pointers turned with the grains: A24 (A1) to (A8)"
 
 
-def cycle(c, name, formula, source, first, limit, work, spins, materials=("ice", "ice"), components=(), scene="scene"):
-    """Scene of prescribed spins (spin1, spin2 of the first quarter) with a closed cycle, and its questions: components before
-    and at the limit, {component: value} each, and the work of the cycle."""
-    made = pair(c, c.d0, materials, duration=5 * QUARTER, steps=STEPS)
+def cycle(c, name, formula, source, first, limit, work, spins, materials=("ice", "ice"), scene="scene", delta=None):
+    """Scene of prescribed spins (spin1, spin2 of the first quarter) with a closed cycle, at an overlap (None: that of
+    equilibrium), and its questions: components before and at the limit, {component: value} each, and the work of the cycle."""
+    made = pair(c, delta or c.d0, materials, duration=5 * QUARTER, steps=STEPS)
     made["prescribed"] = to_and_fro(QUARTER, **spins)
     early = rounded(exact(QUARTER) / 20, 6)
     questions = [asked(f"{of} of {name} before the limit", at(early, of, scene), value, unit(of), formula, source) for of, value in first.items()]  # fmt: skip
@@ -33,8 +33,8 @@ def turning_rate(angle):
     return rounded(exact(rounded(angle, 6)) / exact(QUARTER))
 
 
-def slid(c, materials=("ice", "ice"), scene="scene"):
-    total, distance = c.r1 + c.r2, c.r1 + c.r2 - c.d0
+def slid(c, materials=("ice", "ice"), scene="scene", delta=None):
+    total, distance = c.r1 + c.r2, c.r1 + c.r2 - (delta or c.d0)
     rate = turning_rate(6 * c.slide / total)
     end, small, least = exact(rate) * exact(QUARTER), exact(rate) * exact(QUARTER) / 20, asin(c.slide / total)
     full = sqrt(total**2 - c.slide**2)
@@ -42,27 +42,27 @@ def slid(c, materials=("ice", "ice"), scene="scene"):
     first, limit = value(total * cos(small), total * sin(small)), value(full, c.slide)
     work = 2 * c.ks * c.slide * full * (2 * end - 2 * least)
     spins = dict(spin1=[0.0, 0.0, rate], spin2=[0.0, 0.0, rate])
-    formula = "F = k_s z zeta/d, z = (r1 + r2) cos theta, zeta = (r1 + r2) sin theta, M1 = r1 k_s zeta cos theta, limit zeta_crit = (2 - nu) a0/(16 pi)"  # fmt: skip
-    return cycle(c, "sliding", formula, "A22 (18), (19); A24 (A1), (A5), (A8)", first, limit, work, spins, materials, scene=scene)  # fmt: skip
+    formula = "F = k_s z zeta/d, z = (r1 + r2) cos theta, zeta = (r1 + r2) sin theta, M1 = r1 k_s zeta cos theta, limit zeta_crit = (G'/G*) a0/(16 pi), (2 - nu) a0/(16 pi) for like materials"  # fmt: skip
+    return cycle(c, "sliding", formula, "A22 (18), (19); A24 (A1), (A5), (A8)", first, limit, work, spins, materials, scene, delta)  # fmt: skip
 
 
-def rolled(c, materials=("ice", "ice"), scene="scene"):
+def rolled(c, materials=("ice", "ice"), scene="scene", delta=None):
     rate = turning_rate(6 * c.roll / (2 * c.R))
     end, small, least = exact(rate) * exact(QUARTER), exact(rate) * exact(QUARTER) / 20, asin(c.roll / (2 * c.R))
     value = lambda theta: {"torque1.z": -c.R * c.kr * 2 * c.R * sin(theta) * cos(theta)}
     work = 2 * c.kr * c.roll * 2 * c.R * cos(least) * (2 * end - 2 * least)
     spins = dict(spin1=[0.0, 0.0, rate], spin2=[0.0, 0.0, -rate])
     formula = "M = R k_r xi cos theta, xi = 2 R sin theta, k_r = 4 F_c/R, limit xi_crit"
-    return cycle(c, "rolling", formula, "A22 (14); A24 (A2), (A6)", value(small), value(least), work, spins, materials, scene=scene)  # fmt: skip
+    return cycle(c, "rolling", formula, "A22 (14); A24 (A2), (A6)", value(small), value(least), work, spins, materials, scene, delta)  # fmt: skip
 
 
-def twisted(c, materials=("ice", "ice"), scene="scene"):
+def twisted(c, materials=("ice", "ice"), scene="scene", delta=None):
     rate = turning_rate(6 * c.twist)
     end, small = exact(rate) * exact(QUARTER), exact(rate) * exact(QUARTER) / 20
     work = 2 * c.kt * c.twist * (2 * end - 2 * c.twist)
     spins, value = dict(spin1=[rate, 0.0, 0.0]), lambda phi: {"torque1.x": -c.kt * phi}
     formula = "M = k_t phi, k_t = (16/3) G' a0^3, limit phi_crit = 1/(16 pi)"
-    return cycle(c, "twisting", formula, "A22 (23), (24); A24 (A4), (A7)", value(small), value(c.twist), work, spins, materials, scene=scene)  # fmt: skip
+    return cycle(c, "twisting", formula, "A22 (23), (24); A24 (A4), (A7)", value(small), value(c.twist), work, spins, materials, scene, delta)  # fmt: skip
 
 
 def sliding():
@@ -80,6 +80,50 @@ def twisting():
 def alone(name, scene_of, title):
     made, questions = scene_of(ICE)
     return case(name, title, [name], {"scene": made}, questions)
+
+
+def under_load():
+    c, scenes, questions = ICE, {}, []
+    for name, scene_of in (("slid", slid), ("rolled", rolled), ("twisted", twisted)):
+        scenes[name], found = scene_of(c, scene=name, delta=3 * c.d0)
+        questions += found
+    for question in questions:
+        question["formula"] += "; the same at every overlap but for d"
+    title = "Sliding, rolling and twisting of grains pressed to three times the equilibrium overlap: stiffnesses and limits do not follow the load"  # fmt: skip
+    return case("under-load", title, ["normal", "sliding", "rolling", "twisting"], scenes, questions)
+
+
+TURN, MIDWAY, END = 2e-9, 3e-9, 1.4e-8  # s
+
+
+def turned_slip(c, scene, limit, length, same):
+    """Both grains turned the same way (or opposite ways), with a displacement of length sin(angle), to twice the limit along y,
+    then by an axis turned by atan(4/3); questions while the held displacement follows, and where it has."""
+    theta, rate = asin(limit / length), turning_rate(2 * limit / length)
+    sign, (wy, wz) = 1 if same else -1, (rounded(exact(rate) * share) for share in (mpf("-0.8"), mpf("0.6")))
+    made = pair(c, c.d0, duration=END, steps=[5600, 11200, 22400])
+    spins = [dict(spin1=spin, spin2=[sign * w for w in spin]) for spin in ([0.0, 0.0, rate], [0.0, wy, wz])]
+    made["prescribed"] = [segment(until, **spin) for until, spin in zip((TURN, END), spins)]
+    wy, wz = exact(wy), exact(wz)
+    way, decay = mp.atan2(-wy, wz), sqrt(wy**2 + wz**2) * cos(theta) / sin(theta)
+    formula = f"{POINTERS}; held at the limit with its direction kept: at beta from y, tan((beta_v - beta)/2) = tan(beta_v/2) exp(-w t cot theta) at the time t after the turn, beta_v the way of the motion, sin theta = limit/{'(r1 + r2)' if same else '(2 R)'}"  # fmt: skip
+    questions = []
+    for name, time in (("as its way turns", MIDWAY), ("after the turn", END)):
+        beta = way - 2 * mp.atan(mp.tan(way / 2) * mp.exp(-decay * (exact(time) - exact(TURN))))
+        n1 = [cos(theta), sin(theta) * cos(beta), sin(theta) * sin(beta)]
+        n2 = [-n1[0], *(-sign * x for x in n1[1:])]
+        questions += all_components(c, n1, n2, 0, f"of {scene} {name}", time, scene, formula, "A24; W07", "yz")
+    for question in questions:
+        if question["measure"]["at"] == MIDWAY:
+            question["order"] = 1
+    return made, [q for q in questions if float(q["value"]) and "torque2" not in q["name"]]  # grain 2 is a mirror image
+
+
+def turning_slip():
+    slides, slid_ = turned_slip(ICE, "sliding", ICE.slide, ICE.r1 + ICE.r2, True)
+    rolls, rolled_ = turned_slip(ICE, "rolling", ICE.roll, 2 * ICE.R, False)
+    title = "A slip whose direction turns: the limit is a circle"
+    return case("turning-slip", title, ["sliding", "rolling"], {"sliding": slides, "rolling": rolls}, slid_ + rolled_)
 
 
 def at_both_limits(c):
@@ -130,6 +174,8 @@ def two_at_once():
 
 def unlike_radii():
     made, questions = both_ways(contact("ice", 1e-7, "ice", 2.5e-7), "scene")
+    for question in questions:
+        question["source"] = question["source"].replace("W07", "W07 with the moves of README.md")
     title = "Grains of 0.1 and 0.25 um, the smaller one turned"
     return case("unlike-radii", title, ["sliding", "rolling"], {"scene": made}, questions)
 

@@ -41,7 +41,7 @@ class jkr_wada_interaction(normal, shear):
     """**[mandatory]** contact pointer of body 1, a unit vector that turns with it, in the global frame, $\\mathbf{n}_1$, [$-$]"""
 
     pointer2: Vector3 = Vector3(0, 0, 0)
-    """**[mandatory]** contact pointer of body 2, $\\mathbf{n}_2$, [$-$]"""
+    """**[mandatory]** contact pointer of body 2, likewise, $\\mathbf{n}_2$, [$-$]"""
 
     twist: float = 0.0
     """**[mandatory]** angle of the twisting spring, $\\phi$, [$-$]"""
@@ -56,4 +56,4 @@ class jkr_wada_interaction(normal, shear):
     """*[optional]* distance of the centres at which a bond is unstrained, [$L$]"""
 
     drag_force: float = 0.0
-    """*[optional]* viscous normal force of the last step, [$F$]"""
+    """*[optional]* viscous normal force of the last step, positive in traction as normal_force is, [$F$]"""
