@@ -5,7 +5,7 @@
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
 # make bench-peers  the page of throughput, tests/benchmarks/results/throughput.md: this law beside YADE's, LAMMPS and LIGGGHTS, which
 #             it installs, and which make bench measures too where they are
-# make conformance  holds this law, LAMMPS and LIGGGHTS against twenty cases of two grains (tests/conformance/results.md)
+# make conformance  holds this law, LAMMPS and LIGGGHTS against cases of two grains (tests/conformance/results.md)
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
 #             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.

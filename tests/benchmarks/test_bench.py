@@ -126,7 +126,7 @@ def test_what_was_measured_stays(tmp_path):
     assert list(Results(tmp_path).moments.moment) == ["flying", "later"]
 
 
-@pytest.mark.parametrize("name", ["bench.md", "epyc-zen5/bench.md", "throughput.md"])
+@pytest.mark.parametrize("name", ["bench.md", "throughput.md"])
 def test_the_page_is_that_of_the_tables(name):
     at = RESULTS / name
     page = (

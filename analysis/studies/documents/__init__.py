@@ -26,7 +26,6 @@ HERE = Path(__file__).resolve().parent
 OVERVIEW, PAPER = "README.md", "paper.md"
 TESTS = HERE.parents[2] / "tests"
 RESULTS = TESTS / "benchmarks" / "results"
-QUIET = RESULTS / "epyc-zen5"  # measured on a machine of its own
 ENSEMBLES = TESTS / "conformance" / "results" / "ensembles"
 
 
@@ -62,7 +61,7 @@ def runs(*studies):
 
 def ratio(scene, code="lammps", threads=2):
     """'8.8 to 12': engine over another code at a scene's slowest and fastest moment (medians of the rounds)."""
-    rows = _table(QUIET / "speed.csv").query("scene == @scene and threads == @threads")
+    rows = _table(RESULTS / "speed.csv").query("scene == @scene and threads == @threads")
     rates = rows.pivot_table(index="moment", columns="code", values="rate", aggfunc="median")
     of_moments = rates.engine / rates[code]
     return f"{of_moments.min():.2g} to {of_moments.max():.2g}"

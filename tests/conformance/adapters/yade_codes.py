@@ -1,7 +1,4 @@
-"""Within YADE, the functors, the fused engine or YADE's stock cohesive law:
-
-yade -n -x adapters/yade_codes.py functors|engine|stock RESULTS.json [CASE ...]
-"""
+"""Within YADE: yade -n -x adapters/yade_codes.py functors|engine|stock RESULTS.json [CASE ...]"""
 
 import os
 import sys
@@ -58,14 +55,10 @@ def place(scene, materials):
 
 def series_of(scene, materials, steps):
     drag = scene["contact"]["linear_drag"] or scene["contact"]["viscous_drag_per_contact_radius"]
-    if CODE == "stock" and ("plane" in scene or scene.get("neck") or drag):
-        raise NotModelled(
-            "not tried: CohFrictPhys with stiffnesses and strengths of bonds"
-            if scene.get("neck")
-            else "no such drag"
-            if drag
-            else "not tried: walls"
-        )
+    bonds = "not tried: CohFrictPhys with stiffnesses and strengths of bonds"
+    for there, why in ((scene.get("neck"), bonds), (drag, "no such drag"), ("plane" in scene, "not tried: walls")):
+        if CODE == "stock" and there:
+            raise NotModelled(why)
     grains, law = place(scene, materials), dict(linearDamping=scene.get("linear_damping", 0.0))
     law["neck"] = scene.get("neck", 0.0)
     O.dt, O.trackEnergy, O.engines = scene["duration"] / steps, True, engines(law)
