@@ -7,6 +7,7 @@ import pandas
 
 from ..measures.outcome import UNDECIDED
 from ..runs.provenance import provenance_lines
+from .estimate import EXACT
 from .paper import PaperError
 from .tables import claims_table, markdown_table, quantity_table, tests_table
 
@@ -65,8 +66,10 @@ def counted(judgements):
     if not judgements:
         return ""
     numbers = Counter(j.state for j in judgements)
+    formulas = sum(j.state == "reproduced" and j.ours.pairs == EXACT for j in judgements)
+    reproduced = f"{numbers['reproduced']} are reproduced" + (f" ({formulas} by formulas alone)" if formulas else "")
     return (
-        f"Of {len(judgements)} comparisons with the paper (a statement at each size, velocity and rule is one) {numbers['reproduced']} are reproduced "
+        f"Of {len(judgements)} comparisons with the paper (a statement at each size, velocity and rule is one) {reproduced} "
         f"and {numbers['contradicted']} contradicted; {numbers['undecided']} are undecided, {numbers['without a test']} without a test, and "
         f"{numbers['not run']} have not run."
     )

@@ -60,7 +60,7 @@ def runs(*studies):
 
 
 def ratio(scene, code="lammps", threads=2):
-    """'8.8 to 12': engine over another code at a scene's slowest and fastest moment (medians of the rounds)."""
+    """'8.8 to 12': engine over another code, least and most over a scene's moments (medians of the rounds)."""
     rows = _table(RESULTS / "speed.csv").query("scene == @scene and threads == @threads")
     rates = rows.pivot_table(index="moment", columns="code", values="rate", aggfunc="median")
     of_moments = rates.engine / rates[code]
