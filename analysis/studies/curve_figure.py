@@ -27,7 +27,7 @@ def palette(results, name):
     indices = (quantity.values.index for quantity in results.quantities.values())
     values = {value for index in indices if name in index.names for value in index.get_level_values(name)}
     if values <= set(CHANNEL_COLOURS):
-        return {value: CHANNEL_COLOURS[value] for value in values}
+        return {value: CHANNEL_COLOURS[value] for value in sorted(values)}
     many = len(values) > len(COLOURS)
     return dict(zip(sorted(values), colormaps["plasma"](np.linspace(0.0, 0.85, len(values))) if many else COLOURS))
 
@@ -137,7 +137,8 @@ def _curves(axes, figure, quantity, series, results):
         number = "" if figure.panel else f", {pairs_text(own, results.independent)}"
         label = level(figure.colour).label(value) + number
         aside = min(figure.apart, MOST_ASIDE / len(curves)) * (k - (len(curves) - 1) / 2)
-        _curve(axes, figure, quantity, own, colour_of[value], label, k, aside)
+        # markers as colours are the same in all panels
+        _curve(axes, figure, quantity, own, colour_of[value], label, list(colour_of).index(value), aside)
 
 
 def _curve(axes, figure, quantity, series, colour, label=None, k=0, aside=0.0):
