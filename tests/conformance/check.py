@@ -67,9 +67,8 @@ def verdict(case, answer, suite):
     if not known:
         return dict(said="incomplete", why="nothing is answered")
     missing = any(q["measure"]["kind"] != "channel" for q in case["asked"] if q["name"] not in known)
-    said = "incomplete" if missing else "agrees"
-    if any(one["said"] != "agrees" for one in known.values()):
-        said = "differs"
+    wrong = any(one["said"] != "agrees" for one in known.values())
+    said = "differs" if wrong else "incomplete" if missing else "agrees"
     worst = max(known, key=lambda name: known[name]["difference"])
     orders = sorted(one["order"] for one in known.values() if one["order"] is not None)
     of_worst = dict(

@@ -92,8 +92,9 @@ def _moduli(runs, grain):
     yield Quantity("compliance", "1/E*; 0: rigid-plastic", compliance, "1/GPa")
     yield Quantity("offset", "δ_offset", offset, "r")
     yield from _constants(runs, grain, stress, compliance)
-    yield from _of_fit(runs, grain, *(select(series, fit=FREE) for series in (stress, compliance, offset)))
-    yield from _restitution(runs, grain, *(select(series, fit=BY_SIZE) for series in (stress, compliance)))
+    of_way = lambda way: tuple(select(series, fit=way) for series in (stress, compliance, offset))
+    yield from _of_fit(runs, grain, of_way(FREE))
+    yield from _restitution(runs, grain, of_way(BY_SIZE))
 
 
 def _constants(runs, grain, stress, compliance):
@@ -113,40 +114,34 @@ def _constants(runs, grain, stress, compliance):
     yield Quantity("poisson", "ν_agg from E* and K_agg (A24 eq 42)", each(compliance, ratio))
 
 
-def _of_fit(runs, grain, *fit):
-    """What the fit of all three (Series of sigma, 1/E* and delta_offset by filling) leaves of the runs."""
-    ours = lambda series: series[series.index.get_level_values("filling").isin(fit[0].index)]
-
-    def of_model(f, filling, *more):
-        """Estimate of f(Aggregates as fitted at a filling, numbers of other estimates)."""
-        density = filling * grain.grain_density
-        g = lambda *numbers: f(fits.Aggregates(*numbers[:3], density, grain.grain_radius), *numbers[3:])
-        return combine(g, *(at(series, filling=filling) for series in fit), *more)
-
+def _of_fit(runs, grain, fit):
+    """What a fit (Series of sigma, 1/E* and delta_offset by filling) leaves of the runs."""
     for k, (column, name, unit) in enumerate(DEPTH_AND_TIME):
-        less = lambda e, filling, *place: of_model(lambda model, y: y - model.at(*place)[k], filling, e)
-        values = each(ours(runs.estimates(column, POINT)), less)
+        less = lambda e, filling, *place: _of_spheres(lambda model, y: y - model.at(*place)[k], grain, fit, filling, e)
+        values = each(_of_fillings(runs.estimates(column, POINT), fit[0]), less)
         yield Quantity(f"{name}_beyond", f"{name} less that of Andrews's spheres, {FREE}", values, unit)
 
 
-def _restitution(runs, grain, stress, compliance):
-    """The coefficient of restitution of Andrews's spheres with the moduli of a fit (Series by filling) and with those of A24."""
+def _restitution(runs, grain, fit):
+    """The coefficient of restitution of Andrews's spheres as in a fit, and with the moduli of A24."""
     points = runs.estimates("d", ("filling", "velocity"))
-    known = lambda fillings: points[points.index.get_level_values("filling").isin(fillings)]
-    spheres = lambda filling: lambda s, c: fits.Aggregates(s, c, 0.0, filling * grain.grain_density, grain.grain_radius)
-    ours = lambda _, filling, v: combine(
-        lambda *moduli: spheres(filling)(*moduli).restitution(v),
-        at(stress, filling=filling),
-        at(compliance, filling=filling),
-    )
-    of = {
-        BY_SIZE: each(known(stress.index.get_level_values("filling")), ours),
-        "A24's σ, E*": each(
-            known(fits.PRINTED), lambda _, filling, v: exact(fits.printed(filling, grain).restitution(v))
-        ),
-    }
-    e = together(of, "fit")
+    ours = lambda _, filling, v: _of_spheres(lambda model: model.restitution(v), grain, fit, filling)
+    theirs = lambda _, filling, v: exact(fits.printed(filling, grain).restitution(v))
+    printed = points[points.index.get_level_values("filling").isin(fits.PRINTED)]
+    e = together({BY_SIZE: each(_of_fillings(points, fit[0]), ours), "A24's σ, E*": each(printed, theirs)}, "fit")
     yield Quantity("andrews", "restitution of Andrews's spheres, and its square", together({"e": e, "e²": e * e}, "of"))
+
+
+def _of_fillings(series, fitted):
+    """The part of a Series at the filling factors of another."""
+    return series[series.index.get_level_values("filling").isin(fitted.index.get_level_values("filling"))]
+
+
+def _of_spheres(f, grain, fit, filling, *more):
+    """Estimate of f(Aggregates as fitted at a filling, numbers of other estimates)."""
+    density = filling * grain.grain_density
+    g = lambda *numbers: f(fits.Aggregates(*numbers[:3], density, grain.grain_radius), *numbers[3:])
+    return combine(g, *(at(series, filling=filling) for series in fit), *more)
 
 
 def _times(runs, grain):
