@@ -9,7 +9,7 @@
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
 #             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.
-# make study-viscous  those of Arakawa et al. (2022), or SIZE=full
+# make study-viscous  those of Arakawa et al. (2022), or SIZE=full; SIZE=own: the paper's size at 50 m/s; SIZE=prediction: 10,000 grains, beside desk's
 # make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full; SIZE=own: clusters of the paper's size to where its law ends
 # make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
 # make study-compressed  collisions of compressed aggregates beside CPE ones
@@ -18,6 +18,7 @@
 # make study-status STUDY=viscous  how far a study is, from another shell
 # make gallery  makes the page above all studies and the paper again, analysis/gallery/README.md and paper.md, and build/paper.pdf
 # make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
+#             (SIZE=own: in runs/viscous-own)
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
 #             without this checkout; make uninstall removes it
 # make image  one file system with YADE, the plugin and the commands dust-..., for machines without Debian or root (root; half an hour):
@@ -347,7 +348,7 @@ JOBS  ?= $(shell nproc)
 STUDIES := $(patsubst analysis/studies/%/study.py,%,$(wildcard analysis/studies/*/study.py))
 STUDY ?= elastoplastic
 table = $(if $(filter atlas,$1),runs/atlas,yade_scripts/studies/$1)-$(SIZE).table
-runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk,-$(SIZE)))
+runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk -prediction,-$(SIZE)))
 # All of them: of two with the same numbers the first counts, and undecided runs of the atlas are run again for longer.
 all-runs = $(if $(filter atlas,$1),$(wildcard runs/atlas-longer)) $(call runs,$1)
 

@@ -31,8 +31,7 @@ include_patterns = [
     "contact_law/engine/*.md",
 ]
 include_patterns += ["tests/*/*.md", "tests/*/results/*.md"]
-untitled = "tests/benchmarks/results/compression_step.md"
-exclude_patterns = ["build", "runs", ".pytest_cache", "tests/*/results/*/*", untitled]
+exclude_patterns = ["build", "runs", ".pytest_cache", "tests/*/results/*/*"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = project

@@ -11,7 +11,7 @@ from yade_scripts.packings.filling import maximum_filling
 from yade_scripts.parameters import ParameterError
 
 AUTO = "auto"
-# Velocity Verlet is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of Arakawa et al. (2024), without drag (measured).
+# The leapfrog is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of Arakawa et al. (2024), without drag (measured).
 STABLE_STEP = 0.4
 SAFETY = STABLE_STEP / 0.5
 # An hour for 50 grains, a week for 6,000: longer than any run on a desk machine.

@@ -1,6 +1,6 @@
 """A paper's claims beside our estimates: reproduced yes, no, or untested.
 
-yes       our 95 % interval lies within the margin that was said before (about a value: the interval of the difference, with the error of
+yes       our 95 % interval lies within the claim's margin (about a value: the interval of the difference, with the error of
           the paper's own runs, taken to scatter as ours; about limits: our own interval)
 no        ours lies beyond it: p < 0.05 after Holm's correction over all tests of the page, with the error of the paper's own runs
 untested  neither, or not run at that size, or not declared a test; `why` says which, and how many pairs would decide"""

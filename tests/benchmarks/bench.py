@@ -8,7 +8,7 @@ throughput.py makes their page).
 Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
 100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
 measured with the same plugin (its commit), machine and settings, are not done again (--again measures anew). Results:
-speed.csv, moments.csv, error.csv (results.py) and bench.md (tables, and whether each target is reached).
+speed.csv, moments.csv, error.csv (results.py) and bench.md (tables).
 --quick measures less, and writes to build/bench; --tiny only shows that it works.
 """
 

@@ -12,7 +12,9 @@ from results import weights
 
 LEFT = {"scene", "scenes", "set", "moment", "code", "weights", "version; skin, newton"}
 TWO = {"one": 1, "two": 2}  # cores
-HEAD = f"""A contact update is one step of one touching contact; rates are in million a second. Two CPE aggregates are of ice
+HEAD = f"""# Speed and error
+
+A contact update is one step of one touching contact; rates are in million a second. Two CPE aggregates are of ice
 (r = 0.1 um, filling 0.4) at 3.16 m/s, with steps of 0.1 t0, unless said. The engine runs in YADE (with what an O.step adds to
 its small steps, but without the scripts' samples). All codes, and one and two threads, are measured in turn, in rounds: rates
 are the median (least - most) of the rounds, ratios are taken within a round first where both were measured in it. ms a step:

@@ -128,6 +128,7 @@ def text():
     origins = "; ".join(f"{name}: {words}" for name, words in COLLISIONS.origins().items() if name != "columns")
     return "\n\n".join(
         [
+            "# Choice of the time step",
             "Largest error of the energy ledger over what `yade_scripts/step_choice.py` has for the 95 % level. "
             f"{len(found)} collisions that met ({len(COLLISIONS.read()) - len(found)} did not), "
             f"{len(COMPRESSIONS.read())} compressions. Data: step_choice.csv, step_choice_compression.csv. "

@@ -1,8 +1,7 @@
 """Writes the tables of the study of Arakawa et al. (2024): python3 yade_scripts/studies/elastoplastic.py
 
 full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every collision, at its default step. desk is a
-selection for two hours on two cores, at twice that step. first is one figure for a first look (Fig. 8, R = 40), some ten
-minutes on two cores. Rows are in the order in which they are
+selection for an evening, at twice that step. first is one figure for a first look (Fig. 8, R = 40), some minutes. Rows are in the order in which they are
 worth having: small aggregates first, and every figure gets its first points early.
 """
 

@@ -3,7 +3,7 @@
     python3 -m analysis.studies.documents PDF
 
 Each is a template of the same name beside this file. In it say("viscous", "drag_largest", grains = 50000) stands for '8600 ± 2100', a quantity of
-a study of the gallery's runs; sentence(study) and counted(study) for what its paper.toml says in one sentence and for its verdicts; ratio(scene)
+a study of the gallery's runs; sentence(study) and judged(studies) for what its paper.toml says in one sentence and for verdicts, runs(studies) for their number; ratio(scene)
 and ledger(step) for what tests/benchmarks has measured, beside(distribution) for what tests/conformance has."""
 
 import json
