@@ -23,17 +23,8 @@ def step_limit(constants, filling):
 
     filling: of a CPE packing, or of one as stiff against turning (equivalent_filling).
 
-    SAFETY times the step at which the first of two vibrations of a CPE packing grows, each an estimate that
-    was compared with runs. All grains turning in phase, against 12 p sliding springs each (p the filling
-    relative to the full lattice's): w^2 = 40 p k_s/m, unstable from w dt = 2 on; runs blew up between 0.45
-    and 0.5 t0 at filling 0.4, 0.4 and 0.45 at 0.6, 0.35 and 0.4 at 0.74. A grain moving against eight of
-    twelve neighbours, each contact at 45 degrees to the motion: w^2 = 8 (k_n + k_s)/m with the drag 8 c/m,
-    taken with the velocity extrapolated from the last two half steps: unstable from w^2 dt^2 + 4 (8 c/m) dt =
-    4 on; runs with T_vis = 6 ps blew up between 0.25 and 0.3 t0 at filling 0.74.
-
-    Bonds vibrate likewise, with k_ss and k_st for k_n and k_s. At necks of 0.2, 0.5 and 0.7 noise broke them from
-    0.15, 0.17 and 0.18 t0 on at filling 0.4 and in a planar packing of filling 0.8, from 0.14, 0.15 and 0.16 at
-    0.7, and from 0.21, 0.23 and 0.24 in BCCA.
+    SAFETY times the step at which the first of two vibrations of a CPE packing grows, of contacts or of bonds: all grains turning in
+    phase, or one moving against its neighbours. contact_law/MODEL.md, "What packings allow", has them, and the runs that blew up.
     """
     mass, contact_radius = 2 * constants["reducedMass"], constants["equilibriumContactRadius"]
     normal_stiffness = 1.2 * constants["pullOffForce"] / constants["equilibriumOverlap"]  # Arakawa et al. (2024), eq 38
