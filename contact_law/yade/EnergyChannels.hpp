@@ -38,7 +38,7 @@ public:
 	void addBoundaryWork(Scene& scene, double work) { add(scene, boundaryWork, work); }
 	void addConstraintWork(Scene& scene, double work) { add(scene, constraintWork, work); }
 
-	// ---- for an engine that replaces ForceResetter, so that nothing empties channels between steps ----
+	// ---- for an engine that has sums of its own ----
 
 	// On what work is done in a scene, apart from a periodic cell's boundaries.
 	struct WorkOn {
@@ -53,19 +53,15 @@ public:
 		const auto values = contact_law::byChannel(energies);
 		for (int channel = 0; channel < count; ++channel) {
 			if (isWork(channel) && !isDone(channel, scene, there)) continue;
-			if (!known && values[channel] != last[channel])
-				scene.energy->add(values[channel] - last[channel], nameOf(channel), ids[channel], perStep(channel));
+			if (perStep(channel))
+				scene.energy->setItem_py(nameOf(channel), values[channel]); // a ForceResetter may have emptied it
+			else if (!known && values[channel] != last[channel])
+				scene.energy->add(values[channel] - last[channel], nameOf(channel), ids[channel]);
 			last[channel] = values[channel];
 		}
 	}
-	// When the engine starts in a scene where others booked before: what they lost stays booked, what they had stored is stored here
-	// from now on.
-	void takeOver(Scene& scene)
-	{
-		for (int channel = 0; channel < count; ++channel)
-			if (perStep(channel) && has(scene, nameOf(channel))) scene.energy->setItem_py(nameOf(channel), 0);
-		last.fill(0);
-	}
+	// When the engine starts in a scene where others booked before: what they lost stays booked.
+	void takeOver() { last.fill(0); }
 	// Whether O.energy has any.
 	static bool areIn(const Scene& scene) { return has(scene, nameOf(0)); }
 

@@ -23,11 +23,11 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRMat, ElastMat,
 		"Adhesive elastic grains that obey the JKR contact law with Wada's tangential springs (Wada et al. 2007; Arakawa et al. 2022, Table 1). "
-		"The defaults of the attributes below are those of water ice; young (7e9 Pa), poisson (0.25) and density (1000 kg/m^3) are YADE's own and must be given.",
+		"The defaults are those of water ice; young (7e9 Pa), poisson (0.25) and density (1000 kg/m^3) are attributes of YADE's own.",
 		((Real, surfaceEnergy, 0.1, Attr::triggerPostLoad, "Surface energy gamma [J/m^2]. A pair takes the geometric mean."))
 		((Real, criticalRolling, 8e-10, Attr::triggerPostLoad, "Rolling displacement xi_crit beyond which grains roll irreversibly [m]. A pair takes the arithmetic mean."))
 		((Real, viscoelasticTime, 0, Attr::triggerPostLoad, "Viscoelastic time T_vis of the normal drag 2 T_vis E*/nu^2 a v [s]; 0: no drag. A pair takes the arithmetic mean of T_vis/nu^2.")),
-		createIndex();
+		createIndex(); young = 7e9;
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(JKRMat, ElastMat);

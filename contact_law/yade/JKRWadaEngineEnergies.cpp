@@ -6,7 +6,7 @@ namespace yade {
 void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking booking)
 {
 	const bool known = booking == Booking::AlreadyInOEnergy;
-	if (!booked) channels.takeOver(*scene); // what other engines had stored is stored here from now on
+	if (!booked) channels.takeOver();
 	booked = true;
 	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics) || !current->grains.planes.empty();
 	current->workOn.outside = current->workOn.outside || !current->outside.empty() || now.externalWork != 0;

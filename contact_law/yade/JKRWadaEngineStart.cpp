@@ -18,6 +18,9 @@ void JKRWadaEngine::requireAlone(const Scene& scene)
 		for (const char* other : { "NewtonIntegrator", "InteractionLoop" })
 			if (engine->getClassName() == other)
 				refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
+		if (engines && engine->getClassName() == "ForceResetter")
+			refuseInEngine(
+			        "ForceResetter comes after this engine in O.engines, and would empty what it writes: must come before");
 		engines += bool(dynamic_cast<const JKRWadaEngine*>(engine.get()));
 	}
 	if (engines > 1)

@@ -9,28 +9,28 @@ namespace yade {
 void ScenePlanes::add(const shared_ptr<Body>& body, int kind)
 {
 	const State& state = *body->state;
-	kept.push_back({ body, body->state, body->shape, body->material.get(), static_cast<const Wall&>(*body->shape).axis, kind, state.pos,
-	        state.vel });
+	kept.push_back({ int(body->getId()), body, body->state, body->shape, body->material.get(),
+	        static_cast<const Wall&>(*body->shape).axis, kind, state.pos, state.vel });
 }
 
 std::vector<contact_law::PlaneInput> ScenePlanes::planes() const
 {
 	std::vector<contact_law::PlaneInput> all;
 	for (const Kept& k : kept)
-		all.push_back({ k.axis, k.kind, int(k.body->getId()), toKernel(k.state->pos), toKernel(k.state->vel) });
+		all.push_back({ k.axis, k.kind, k.id, toKernel(k.state->pos), toKernel(k.state->vel) });
 	return all;
 }
 
 int ScenePlanes::planeOf(int id) const
 {
 	for (int p = 0; p < size(); ++p)
-		if (kept[p].body->getId() == id) return p;
+		if (kept[p].id == id) return p;
 	return -1;
 }
 
 bool ScenePlanes::isThere(const Scene& scene, int plane) const
 {
-	const std::size_t id = kept[plane].body->getId();
+	const std::size_t id = kept[plane].id;
 	return id < scene.bodies->size() && (*scene.bodies)[id] == kept[plane].body;
 }
 
@@ -41,7 +41,7 @@ void ScenePlanes::requireKept(const Scene& scene) const
 		const bool same = isThere(scene, p) && k.body->state == k.state && k.body->shape == k.shape
 		        && k.body->material.get() == k.material && static_cast<const Wall&>(*k.shape).axis == k.axis;
 		if (!same)
-			refuseInEngine(bodyName(k.body->getId())
+			refuseInEngine(bodyName(k.id)
 			        + ", a Wall, was replaced or changed after the start: it must stay as it was; make a new engine");
 	}
 }
@@ -63,7 +63,7 @@ std::string ScenePlanes::tooFast(Real step, Real smallestRadius) const
 {
 	for (const Kept& k : kept)
 		if (!(k.state->vel.norm() * step <= 0.5 * smallestRadius))
-			return bodyName(k.body->getId()) + ", a Wall, moves at " + rounded(k.state->vel.norm())
+			return bodyName(k.id) + ", a Wall, moves at " + rounded(k.state->vel.norm())
 			        + " m/s: must be at most half the smallest radius in a small step";
 	return "";
 }
@@ -86,7 +86,7 @@ void ScenePlanes::write(const contact_law::Dynamics& dynamics, Real ahead)
 void ScenePlanes::push(Scene& scene, const contact_law::Dynamics& dynamics) const
 {
 	for (int p = 0; p < size(); ++p)
-		scene.forces.addForce(kept[p].body->getId(), fromKernel(contact_law::pushOn(dynamics, p)));
+		scene.forces.addForce(kept[p].id, fromKernel(contact_law::pushOn(dynamics, p)));
 }
 
 } // namespace yade

@@ -32,6 +32,7 @@ public:
 
 private:
 	struct Kept {
+		int id; // the body loses its own where it is erased
 		shared_ptr<Body> body;
 		shared_ptr<State> state;
 		shared_ptr<Shape> shape;

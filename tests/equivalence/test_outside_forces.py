@@ -195,7 +195,21 @@ def test_a_force_holds_for_one_step():
     assert O.bodies[0].state.vel[0] == 0
 
 
+def test_a_force_resetter_leaves_the_energies():
+    def end(*before):
+        new_scene(0.1 * unit)
+        converging(27, 1, [ice()], [1e-7])
+        O.engines = [*before, JKRWadaEngine(subSteps=10)]
+        O.run(30, True)
+        return energies()
+
+    assert end(ForceResetter()) == end() and O.energy["kinetic"] > 0 > O.energy["normal"]
+
+
 def test_what_is_refused():
+    two_grains()
+    O.engines = [*O.engines, ForceResetter()]
+    assert refusal().startswith("JKRWadaEngine: ForceResetter comes after this engine in O.engines")
     two_grains()
     O.forces.addF(1, Vector3(float("nan"), 0, 0))
     assert refusal() == "JKRWadaEngine: O.forces has a force or torque on body 1 that is not a finite number"

@@ -115,3 +115,7 @@ def test_in_a_wide_periodic_cell_as_in_the_open():
     end(True)
     O.cell.velGrad = Matrix3(-1e3, 0, 0, 0, 0, 0, 0, 0, 0)
     assert "a Wall: O.cell.velGrad must be zero: planes do not move with a cell" in refusal()
+    end(False)
+    wall = next(b.id for b in O.bodies if isinstance(b.shape, Wall))
+    O.bodies.erase(wall)
+    assert f"body {wall}, a Wall, was replaced or changed" in refusal()
