@@ -5,6 +5,7 @@ import argparse
 import os
 import sys
 import warnings
+from importlib import import_module
 
 from .libraries import require_libraries
 from .signals import ENDING, end_quietly
@@ -13,7 +14,7 @@ if __name__ == "__main__":
     end_quietly(*ENDING)
     require_libraries()
 
-from .commands import complain, export, figures, film, outcome, plot, status, study, summary, verify, view  # noqa: E402
+from .commands import complain, in_one_line  # noqa: E402
 from .printable import printable  # noqa: E402
 from .runs.seal import Unsealed  # noqa: E402
 
@@ -30,7 +31,8 @@ def main(arguments=None):
             warnings.showwarning = (
                 lambda text, kind, *more: complain(text) if kind is Unsealed else shown(text, kind, *more)
             )
-            return options.command(options)
+            of = next(filter(None, (getattr(options, name, None) for name in ("page", "figures", "out", "run"))), "")
+            return in_one_line(lambda: options.command(options), of)
     except BrokenPipeError:
         # The reader (head, less) has gone: nothing is left to say, not even at the interpreter's exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -46,8 +48,8 @@ def _parser():
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for command in (summary, plot, figures, view, film, export, status, verify, study, outcome):
-        command.add_parser(commands)
+    for name in "summary plot figures view film export status verify study outcome".split():
+        import_module(f"analysis.commands.{name}").add_parser(commands)
     return parser
 
 

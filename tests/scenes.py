@@ -212,21 +212,6 @@ def saved_and_loaded(name="saved.yade.gz"):
     O.load(name)
 
 
-def differences_of_instruction_sets(run):
-    """{name: largest difference of a position from that of the portable passes [1e-7 m]} of the sets that this machine has, after run(instructions)."""
-
-    def end(instructions):
-        try:
-            run(instructions)
-        except RuntimeError:
-            return None
-        return positions()
-
-    reference = end("portable")
-    ends = {name: end(name) for name in ("avx2", "avx512")}
-    return {name: float(np.abs(x - reference).max() / 1e-7) for name, x in ends.items() if x is not None}
-
-
 def record(n, *works):
     """Positions (n, bodies, 3) and energies(*works) after each of n steps."""
     tracks, sums = [], []

@@ -27,7 +27,6 @@ NAME = re.compile(r"(\d+)(-held)?")
 BODIES = ("target", "projectile")
 STICKING = KINDS[0]
 AT_END = "{}_at_end"
-DIGITS = 6  # of numbers in the table
 
 
 def _name(run, row):

@@ -5,7 +5,7 @@ more than the target had, over the projectile's mass (the growth efficiency of A
 
     sticking        S   gain of at least STAYS: no less than four fifths of the projectile stay
     bouncing        B1  the two aggregates part again: each side keeps STAYS of the projectile's mass or more, and OWN of what it holds is its
-                        own; with compaction where the filling has risen (compaction below)
+                        own; with compaction where the filling has risen
     mass transfer   B2, F3  neither, and the target is heavier than before
     erosion         F2  the target is not heavier, and keeps at least KEPT of its mass
     fragmentation   F1  it keeps less
@@ -29,11 +29,6 @@ def gain(row):
     0.5
     """
     return (row["largest"] - _target(row)) / (1 - _target(row))
-
-
-def compaction(row):
-    """Filling of the largest piece over the target's before."""
-    return row["filling_largest"] / row["filling_target"]
 
 
 def sticking(row):

@@ -29,19 +29,25 @@ def number(is_right, must_be):
     return of
 
 
-def write_of_run(options, name, write, *refusals):
-    """Exit status of a command that writes one file of options.run: write(RunFolder, Path), to options.out or to `name` in its folder;
-    refusals: what write() raises beside the usual, one line each."""
-    from ..runs.arrays import RunFolderError
+def in_one_line(call, of):
+    """Exit status of call(); what it is refused with, by the file system (at `of` where that names no file) or by us, gets one line."""
+    try:
+        return call()
+    except BrokenPipeError:  # main()'s
+        raise
+    except OSError as error:
+        complain(f"{error.filename or of}: {error.strerror}")
+    except Exception as error:
+        if not type(error).__module__.startswith("analysis."):
+            raise
+        complain(error)
+    return FAILED
+
+
+def write_of_run(options, name, write):
+    """Exit status of a command that writes one file of options.run: write(RunFolder, Path), to options.out or to `name` in its folder."""
     from ..runs.folder import open_run
 
-    try:
-        folder = open_run(options.run)
-        print(printable(write(folder, Path(options.out) if options.out else folder.path / name)))
-    except (RunFolderError, *refusals) as error:
-        complain(error)
-        return FAILED
-    except OSError as error:
-        complain(f"{error.filename or options.run}: {error.strerror}")
-        return FAILED
+    folder = open_run(options.run)
+    print(printable(write(folder, Path(options.out) if options.out else folder.path / name)))
     return 0

@@ -3,7 +3,6 @@
 import argparse
 
 from ..printable import printable
-from . import FAILED, complain
 
 FORMATS = ("vtk", "xyz")
 
@@ -34,21 +33,13 @@ def run(options):
 
     from ..export.extended_xyz import write_xyz
     from ..export.vtk_series import write_vtk
-    from ..runs.arrays import RunFolderError
     from ..runs.folder import open_run
 
     writers = dict(zip(FORMATS, (write_vtk, write_xyz), strict=True))
-    try:
-        folder = open_run(options.run)
-        out = Path(options.out) if options.out else folder.path / "export"
-        for name in FORMATS if options.format == "all" else (options.format,):
-            print(printable(writers[name](folder, out)), flush=True)
-    except RunFolderError as error:
-        complain(error)
-        return FAILED
-    except OSError as error:
-        complain(f"{error.filename or options.out}: {error.strerror}")
-        return FAILED
+    folder = open_run(options.run)
+    out = Path(options.out) if options.out else folder.path / "export"
+    for name in FORMATS if options.format == "all" else (options.format,):
+        print(printable(writers[name](folder, out)), flush=True)
     return 0
 
 

@@ -1,7 +1,5 @@
 """python3 -m analysis figures RUN [--out FOLDER]"""
 
-from . import FAILED, complain
-
 
 def add_parser(commands):
     """Add the command to argparse's subparsers."""
@@ -21,17 +19,9 @@ def run(options):
     # matplotlib is slow to load, and `summary` does without it.
     from ..figures.draw import draw_all
     from ..progress import line_beside_bars
-    from ..runs.arrays import RunFolderError
     from ..runs.folder import open_run
 
-    try:
-        folder = open_run(options.run)
-        for file in draw_all(folder, options.out or folder.path / "figures"):
-            line_beside_bars(file)
-    except RunFolderError as error:
-        complain(error)
-        return FAILED
-    except OSError as error:
-        complain(f"{error.filename or options.run}: {error.strerror}")
-        return FAILED
+    folder = open_run(options.run)
+    for file in draw_all(folder, options.out or folder.path / "figures"):
+        line_beside_bars(file)
     return 0

@@ -36,7 +36,7 @@ def _width(text):
 
 def run(options):
     """Exit status: 0, or 2 when the run could not be read or the film not be written."""
-    from ..export.film import NoFilm, write_film
+    from ..export.film import write_film
 
     write = lambda folder, file: write_film(folder, file, options.rate, options.width, options.along, options.colour)
-    return write_of_run(options, "film.mp4", write, NoFilm)
+    return write_of_run(options, "film.mp4", write)

@@ -1,7 +1,7 @@
 """python3 -m analysis outcome --velocity V --projectile N --target N --filling F [--impact B | averaged] [--maxwell] [--material M]"""
 
 from ..printable import printable_lines
-from . import FAILED, complain, number
+from . import number
 
 
 def add_parser(commands):
@@ -52,12 +52,6 @@ def _impact(text):
 def run(options):
     """Exit status: 0, or 2 with one line on stderr."""
     from ..atlas.query import text
-    from ..runs.table import TableError
 
-    try:
-        answer = text(options)
-    except (ValueError, TableError) as error:
-        complain(error)
-        return FAILED
-    print(printable_lines(answer))
+    print(printable_lines(text(options)))
     return 0

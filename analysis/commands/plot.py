@@ -46,10 +46,8 @@ def run(options):
     """Exit status: 0, or 2 when a run could not be read or nothing be drawn."""
     from pathlib import Path
 
-    from ..arguments import WrongArgument
-    from ..report.plot import CannotPlot, plot
+    from ..report.plot import plot
     from ..report.rows import frame, measure, row
-    from ..runs.named import UnknownName
     from ..runs.write import replacing
 
     file = Path(options.out or f"{options.what}-{options.x}.png")
@@ -63,16 +61,9 @@ def run(options):
         complain(problem)
     if not measured:
         return FAILED
-    try:
-        figure = plot(options.what, frame(measured), options.x, options.by, dict(options.where), logarithmic)
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(file) as out:
-            figure.savefig(out, format="png", dpi=150)
-    except (CannotPlot, UnknownName, WrongArgument) as error:
-        complain(error)
-        return FAILED
-    except OSError as error:
-        complain(f"{error.filename or file}: {error.strerror}")
-        return FAILED
+    figure = plot(options.what, frame(measured), options.x, options.by, dict(options.where), logarithmic)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(file) as out:
+        figure.savefig(out, format="png", dpi=150)
     print(file)
     return FAILED if problems else 0

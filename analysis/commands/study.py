@@ -63,33 +63,25 @@ def _page_file(text):
 def run(options):
     """Exit status: 0, or 2 when a path or run could not be read or nothing was left to analyse."""
     # pandas and scipy take a moment to load, and the parser does without them.
-    from ..runs.arrays import RunFolderError
     from ..studies.analyse import NothingToAnalyse, analyse
-    from ..studies.find import NoSuchStudy, find
-    from ..studies.paper import PaperError
+    from ..studies.find import find
 
     if not options.name:
         return _list()
+    study = find(options.name)
+    if not options.runs:
+        complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
+        return FAILED
+    table = _writes_table(options, study.name)
     try:
-        study = find(options.name)
-        if not options.runs:
-            complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
-            return FAILED
-        table = _writes_table(options, study.name)
         analysis = analyse(study, options.runs)
-        _complain_of(analysis.found)
-        written = _write(analysis, options, table) if options.figures or options.page else None
     except NothingToAnalyse as nothing:
         _complain_of(nothing.found)
         if not nothing.found.problems:
             complain(nothing)
         return FAILED
-    except OSError as error:
-        complain(f"{error.filename or options.page or options.figures}: {error.strerror}")
-        return FAILED
-    except (NoSuchStudy, PaperError, RunFolderError) as error:
-        complain(error)
-        return FAILED
+    _complain_of(analysis.found)
+    written = _write(analysis, options, table) if options.figures or options.page else None
     text = getattr(analysis, FORMATS[options.format])().rstrip("\n")
     print(text if options.format == "csv" else printable_lines(text))
     if written and options.format == "text":

@@ -19,11 +19,9 @@ def add_parser(commands):
 
 def run(options):
     """Exit status: 0, or 2 when the run could not be read or the page not be written."""
-    from ..export.viewer import THREE, NoThree, write_view
+    from ..export.viewer import THREE, write_view
 
     if options.out and not options.out.endswith((".html", ".htm")):
         complain(f"{options.out}: must end in .html")
         return FAILED
-    return write_of_run(
-        options, "view.html", lambda folder, file: write_view(folder, file, options.three or THREE), NoThree
-    )
+    return write_of_run(options, "view.html", lambda folder, file: write_view(folder, file, options.three or THREE))

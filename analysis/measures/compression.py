@@ -113,16 +113,6 @@ def first_compression(time, d, v):
     return first, bool(first is not None and np.nanmax(d) > first.length)
 
 
-def compression_by_aggregate(x, aggregate, aggregate_radius):
-    """d [m] as A24 eq 10, but with the means over the grains that belonged to each aggregate at the start: x (N,) [m],
-    aggregate (N,) 0 or 1.
-
-    >>> compression_by_aggregate(np.array([-2.0, 1.0, 3.0]), np.array([0, 1, 1]), 2.5)
-    1.0
-    """
-    return float(2.0 * aggregate_radius - abs(x[aggregate == 1].mean() - x[aggregate == 0].mean()))
-
-
 def _hermite_top(t, d, v):
     """Highest point (value, time) of the cubic through two samples with slopes, on the interval between
     them."""

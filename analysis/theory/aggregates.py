@@ -42,8 +42,3 @@ def poisson_ratio(young, modulus):
     """nu_agg from E* and K_agg [Pa]: the root of eq 42 between -1 and 1/2."""
     e = np.asarray(young) / modulus
     return (3.0 - np.sqrt(9.0 - 6.0 * e + 4.0 * e**2)) / (2.0 * e)
-
-
-def reduced_young(poisson, modulus):
-    """E* [Pa] from nu_agg and K_agg: eq 42."""
-    return 1.5 * (1.0 - 2.0 * poisson) / (1.0 - poisson**2) * modulus

@@ -37,64 +37,6 @@ def critical_compression(spheres):
     return (np.pi * spheres.yield_stress / (2.0 * spheres.young)) ** 2 * spheres.reduced_radius
 
 
-def return_compression(spheres, largest):
-    """delta_return [m] at which the spheres part again after the largest compression [m]: B24, 0 if
-    elastic."""
-    return np.maximum(largest - critical_compression(spheres), 0.0)
-
-
-def compression_force(delta, spheres):
-    """F [N], positive = repulsive, while the compression delta [m] grows: eqs 23, 26 (B15, B19); 0 apart.
-    E* must be finite."""
-    delta = np.maximum(np.asarray(delta, dtype=float), 0.0)
-    critical = critical_compression(spheres)
-    elastic = 4.0 / 3.0 * spheres.young * np.sqrt(spheres.reduced_radius) * np.minimum(delta, critical) ** 1.5
-    with np.errstate(invalid="ignore"):
-        plastic = np.pi * spheres.reduced_radius * spheres.yield_stress * (delta - critical / 3.0)
-    return np.where(delta <= critical, elastic, plastic)
-
-
-def return_force(delta, largest, spheres):
-    """F [N] while the spheres part after the largest compression [m]: B23; 0 below delta_return."""
-    delta = np.asarray(delta, dtype=float)
-    apart = return_compression(spheres, largest)
-    stretch = np.sqrt(np.maximum(delta - apart, 0.0))
-    return 4.0 / 3.0 * spheres.young * np.sqrt(spheres.reduced_radius) * stretch * (delta + 0.5 * apart)
-
-
-def compression_work(delta, spheres):
-    """-W_comp [J], what compressing the spheres to delta [m] takes: eqs 25, 27."""
-    delta = np.maximum(np.asarray(delta, dtype=float), 0.0)
-    critical = critical_compression(spheres)
-    elastic = 8.0 / 15.0 * spheres.young * np.sqrt(spheres.reduced_radius) * np.minimum(delta, critical) ** 2.5
-    with np.errstate(invalid="ignore"):
-        plastic = (
-            np.pi
-            * spheres.reduced_radius
-            * spheres.yield_stress
-            * (critical**2 / 10.0 - critical * delta / 3.0 + delta**2 / 2.0)
-        )
-    return np.where(delta <= critical, elastic, plastic)
-
-
-def returned_work(delta, largest, spheres):
-    """Work [J] that the force of the return phase still gives from delta [m] to parting: the integral of B23,
-    4/3 E* R*^(1/2) [2/5 y^(5/2) + delta_return y^(3/2)] with y = delta - delta_return."""
-    apart = return_compression(spheres, largest)
-    y = np.maximum(np.asarray(delta, dtype=float) - apart, 0.0)
-    return 4.0 / 3.0 * spheres.young * np.sqrt(spheres.reduced_radius) * (0.4 * y**2.5 + apart * y**1.5)
-
-
-def initial_kinetic_energy(velocity, spheres):
-    """K_ini [J] of the relative motion at velocity [m/s]: eq 29."""
-    return 8.0 * np.pi / 3.0 * spheres.density * velocity**2 * spheres.reduced_radius**3
-
-
-def reduced_mass(spheres):
-    """Mass [kg] of the relative motion: K_ini = 1/2 m v^2 with eq 29."""
-    return 16.0 * np.pi / 3.0 * spheres.density * spheres.reduced_radius**3
-
-
 def elastic_compression(velocity, spheres):
     """delta_max [m] of spheres that never yield: eq 30."""
     return (5.0 * np.pi * spheres.density / spheres.young) ** 0.4 * velocity**0.8 * spheres.reduced_radius
@@ -108,11 +50,6 @@ def plastic_compression(velocity, spheres):
 def elastic_time(velocity, spheres):
     """tau_max [s] of spheres that never yield: eq 32, C_H = 2F1(1/2, 2/5; 7/5; 1) = 1.47."""
     return _HERTZ * elastic_compression(velocity, spheres) / velocity
-
-
-def plastic_time(velocity, spheres):
-    """tau_max [s] in the rigid-plastic limit: eq 33; the same at every velocity."""
-    return 0.5 * np.pi * plastic_compression(velocity, spheres) / velocity
 
 
 def young_if_elastic(ratio, velocity, density):

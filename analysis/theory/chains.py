@@ -32,26 +32,8 @@ def breaking_energy(beta, radius, surface_energy):
     return pi * surface_energy * (beta * radius) ** 2
 
 
-def grains_of_chain(base, radius):
-    """N of a chain of base L [m], S17 eq 14: (L/2R - 1) + L/2R + 1 = L/R.
-
-    >>> grains_of_chain(22.0, 1.0)
-    22.0
-    """
-    return base / radius
-
-
-def contacts_of_chain(grains):
-    """Contacts a grain, S17 eq 16, of chains of N = `grains` > 5/3; it goes to 2 as N grows."""
-    return (6.0 * grains - 6.0) / (3.0 * grains - 5.0)
-
-
 def chain_of_contacts(contacts):
-    """N of the chains of an aggregate with so many contacts a grain (> 2): S17 eq 16 solved for N; inf at 2.
-
-    >>> round(float(chain_of_contacts(contacts_of_chain(12.0))), 9)
-    12.0
-    """
+    """N of the chains of an aggregate with so many contacts a grain (> 2): S17 eq 16 solved for N; inf at 2."""
     contacts = np.asarray(contacts, dtype=float)
     with np.errstate(divide="ignore"):
         found = (5.0 * contacts - 6.0) / (3.0 * contacts - 6.0)
@@ -81,11 +63,6 @@ def sticking_ratio(velocity, grains, beta, radius, young, mass, surface_energy):
     force = largest_force(velocity, grains, beta, radius, young, mass)
     with np.errstate(divide="ignore"):
         return (3.0 * pi * surface_energy * 0.5 * radius / np.asarray(force))[()]
-
-
-def bouncing_velocity(grains, beta, radius, young, mass, surface_energy):
-    """V_c [m/s] from which such aggregates bounce: S17 eq 19 with F_c = F_max; inf for infinite chains."""
-    return sticking_ratio(1.0, grains, beta, radius, young, mass, surface_energy)
 
 
 def stretching_period(pair):

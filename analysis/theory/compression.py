@@ -3,7 +3,6 @@
 K13: Kataoka et al. 2013. T19: Tatsuuma, Kataoka & Tanaka 2019 (arXiv 1902.08356). T23: Tatsuuma et al. 2023 (arXiv
 2306.09259). Of compressed BCCA aggregates of ice there is also aggregates.bcca_strength (A24 eq 44)."""
 
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -35,40 +34,12 @@ def compressive_strength_dense(filling, scale, densest=DENSEST):
     return scale * (1.0 / np.asarray(filling, dtype=float) - 1.0 / densest) ** -3.0
 
 
-def filling_at(pressure, scale, densest=None):
-    """The filling factor at a pressure [Pa]: K13 eq 25 backwards, or T23's formula with `densest`."""
-    inverse = (scale / np.asarray(pressure, dtype=float)) ** (1.0 / 3.0)
-    return 1.0 / inverse if densest is None else 1.0 / (inverse + 1.0 / densest)
-
-
 def tensile_strength(filling, surface_energy, grain_radius):
     """0.6 MPa (gamma/0.1 J/m^2) (r0/0.1 um)^-1 phi^1.8 [Pa], phi before the stretching: T19.
 
     That paper's text was not at hand; Pamdeas (a program for dust in discs, disruption.cpp) quotes the same from it."""
     scale = 6e5 * (surface_energy / 0.1) / (grain_radius / 1e-7)
     return scale * np.asarray(filling, dtype=float) ** 1.8
-
-
-@dataclass(frozen=True)
-class Cluster:
-    """A BCCA cluster as dense as the aggregate that it is a part of: grains, radius r_BCCA [m], force [N] that makes it
-    roll, pressure [Pa]."""
-
-    grains: float
-    radius: float
-    force: float
-    pressure: float
-
-
-def weakest_cluster(filling, energy, grain_radius):
-    """Cluster of the derivation in K13 section 4, eqs 30-34, step by step.
-
-    Its density is the whole's: phi = N (r0/r_BCCA)^3 with r_BCCA = N^(1/2) r0 (33). The force on it does the work E_roll
-    over its radius (31), and is the pressure on its area (30, 32); so P = E_roll/r0^3 phi^3 (34)."""
-    grains = np.asarray(filling, dtype=float) ** -2.0  # eq 33: phi = N^(-1/2)
-    radius = grains**0.5 * grain_radius
-    force = energy / radius
-    return Cluster(grains, radius, force, force / radius**2)
 
 
 def bcca_filling(grains):

@@ -70,15 +70,9 @@ def test_force_lines_are_the_contacts_of_the_slab(run):
         assert to_rgb(axes.get_facecolor()) == (0.0, 0.0, 0.0)
 
 
-def test_grains_are_shown_at_start_maximum_and_end_or_at_the_times_asked_for(run):
-    """The nearest state to each time, once; more than three in two columns."""
+def test_grains_are_shown_at_start_maximum_and_end(run):
     titles = [axes.get_title(loc="left") for axes in grains_figure(run).axes]
     assert titles[0] == "$t$ = 0.0 ns" and titles[-1] == f"$t$ = {run.last.time * 1e9:.1f} ns" and 2 <= len(titles) <= 3
-    times = [run.states.times[k] + 1e-13 for k in (0, 2, 3, 5)]
-    expected = [f"$t$ = {run.states.times[k] * 1e9:.1f} ns" for k in (0, 2, 3, 5)]
-    for make in (grains_figure, forces_figure):
-        figure = make(run, [*times, times[-1]])
-        assert [axes.get_title(loc="left") for axes in figure.axes] == expected
 
 
 def test_fluffy_aggregates_are_shown_whole(run):

@@ -90,16 +90,3 @@ def test_a_body_blocked_and_freed_in_the_middle_of_a_run():
     b.blockedDOFs = ""
     O.run(20, True)
     assert b.vel[0] != kept
-
-
-def test_checkpoint_with_blocked_bodies_continues_to_the_bit():
-    piston(0.1, subSteps=7)
-    O.dt *= 7
-    O.run(40, True)
-    O.save("checkpoint.yade.bz2")
-    O.run(60, True)
-    straight, energy = positions(), dict(O.energy.items())
-    O.load("checkpoint.yade.bz2")
-    O.run(60, True)
-    assert (positions() == straight).all() and energy["constraintWork"] != 0
-    assert dict(O.energy.items()) == pytest.approx(energy, rel=1e-12)

@@ -58,23 +58,3 @@ def test_ledger_of_bonds_in_a_shrinking_cell_closes_with_second_order(homo):
 
     coarse, fine = (rms(closure(step, seed) for seed in range(6)) for step in (0.08, 0.02))
     assert coarse < 2e-2 and coarse / fine > 9
-
-
-def test_same_bits_on_two_threads_and_after_a_checkpoint_and_rounding_on_instruction_sets():
-    def end(save=False, **options):
-        start("like", 1e-3, 2, side=4)
-        engine_of_sub_steps(5, neck=0.4, **options)
-        O.engines[0].prepare()
-        O.run(15, True)
-        if save:
-            O.save("half.yade.gz")
-        O.run(15, True)
-        return positions(), energies(WORK)[WORK]
-
-    x, work = end(save=True)
-    O.load("half.yade.gz")
-    O.run(15, True)
-    for other, done in ((positions(), energies(WORK)[WORK]), end(threads=2)):
-        assert (x == other).all() and done == pytest.approx(work, rel=1e-12)
-    rounding = differences_of_instruction_sets(lambda instructions: end(instructions=instructions))
-    assert sum(broken()) > 10 and all(difference < 1e-9 for difference in rounding.values())

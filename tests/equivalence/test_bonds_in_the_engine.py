@@ -1,4 +1,4 @@
-"""Sintered bonds in JKRWadaEngine: against the functors step by step, threads, instruction sets, checkpoints, O.interactions."""
+"""Sintered bonds in JKRWadaEngine: against the functors step by step, stability, rest."""
 
 import pytest
 from scenes import *
@@ -35,60 +35,6 @@ def test_engine_and_functors_agree_step_by_step(kind):
     assert last["connection"] > 0
     difference, energy = compared(functors, engine)
     assert difference[:100].max() < 1e-11 and difference.max() < 1e-8 and max(energy.values()) < 1e-8
-
-
-@pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
-def test_same_bits_on_one_and_two_threads_and_after_a_checkpoint(kind):
-    def end(threads, save=False):
-        start(kind, count=200, speed=12.0)
-        engine_of_sub_steps(10, neck=NECK, threads=threads)
-        O.run(6, True)
-        if save:
-            O.save("half.xml.gz")
-        O.run(40, True)
-        return positions().tolist(), counts(), energies()
-
-    straight = x, counted, energy = end(1)
-    assert straight == end(2) == end(1, True)
-    O.load("half.xml.gz")
-    O.run(40, True)
-    assert (positions().tolist(), counts()) == (x, counted) and energies() == pytest.approx(energy, rel=1e-12)
-    assert sum(broken()) > 50 and counted["bonds"] > 20
-
-
-def test_instruction_sets_agree_to_rounding():
-    def run(instructions):
-        start()
-        fused(instructions=instructions)
-        O.run(150, True)
-
-    for name, difference in differences_of_instruction_sets(run).items():
-        assert difference < 1e-10, name
-
-
-def test_bonds_go_to_the_functors_and_back():
-    """Functors, engine, functors: as if they had been the functors all along; and O.interactions tells of the bonds."""
-    start()
-    record(201)
-    straight, of_functors = positions(), broken()
-    start()
-    record(60)
-    counted = np.array(broken())
-    fused()
-    record(80)
-    O.engines[0].writeInteractions()
-    bonded = [i for i in O.interactions if i.phys.bonded]
-    assert len(bonded) == O.engines[0].statistics()["bonds"] > 0
-    first = bonded[0]
-    assert first.phys.kn == first.phys.bond.normalStiffness
-    assert abs(first.geom.penetrationDepth) < 1e-8 and first.geom.refR1 == 1e-7
-    counted += broken()
-    O.engines[0].handOver()
-    O.engines = functor_engines(neck=NECK)
-    record(60)
-    counted += broken()
-    assert O.iter == 201 and np.abs(positions() - straight).max() < 1e-8 * 1e-7
-    assert counted.tolist() == of_functors
 
 
 def test_a_bonded_pair_is_unstable_right_above_the_limit():

@@ -40,46 +40,6 @@ def test_grains_far_apart_meet_their_neighbours():
     assert max(abs(functors[name] - engine[name]) for name in CHANNELS) < 1e-9 * engine["kinetic"]
 
 
-@pytest.mark.parametrize("kind,limit", [("like", "held"), ("unlike", "held"), ("drag", "held"), ("unlike", "cut")])
-def test_same_bits_on_one_and_two_threads_and_on_every_run(kind, limit):
-    def end(threads):
-        meeting(kind, count=400)
-        engine_of_sub_steps(10, threads=threads, limit=limit)
-        O.run(120, True)
-        assert O.engines[0].statistics()["events"] > 1000
-        return positions().tolist(), energies()
-
-    assert end(1) == end(2) == end(1)
-
-
-@pytest.mark.parametrize("limit", ["held", "cut"])
-def test_instruction_sets_agree_to_rounding(limit):
-    def run(instructions):
-        meeting("like")
-        fused_engine(instructions=instructions, limit=limit)
-        O.run(200, True)
-
-    for name, difference in differences_of_instruction_sets(run).items():
-        assert difference < 1e-11, name
-
-
-CHECKPOINTS = "like .yade.bz2 held, unlike .xml.gz held, drag .yade.gz held, drag .yade cut"
-
-
-@pytest.mark.parametrize("kind,format,limit", [case.split() for case in CHECKPOINTS.split(", ")])
-def test_checkpoint_continues_to_the_bit(kind, format, limit):
-    meeting(kind, count=100)
-    engine_of_sub_steps(7, limit=limit)
-    O.run(40, True)
-    O.save("checkpoint" + format)
-    O.run(60, True)
-    straight, energy = positions(), energies()
-    O.load("checkpoint" + format)
-    O.run(60, True)
-    assert (positions() == straight).all() and energy["slidingDissipation"] > 0
-    assert energies() == pytest.approx(energy, rel=1e-12)
-
-
 def test_sub_steps_are_steps():
     """Ten O.steps of one small step, and one O.step of ten."""
 

@@ -53,32 +53,6 @@ def test_a_new_order_changes_nothing_but_rounding(kind, neck):
         assert abs(of_functors[name] - of_engine[name]) < 1e-9 * scale, name
 
 
-@pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
-def test_same_bits_on_any_number_of_threads_and_after_a_checkpoint(kind):
-    def state():
-        statistics = O.engines[0].statistics()
-        return positions().tolist(), {name: statistics[name] for name in ("events", "formed", "orders", "domains")}
-
-    def end(threads):
-        new_scene(0.2 * unit)
-        converging(300, 1, *materials_and_radii(kind), speed=12.0)
-        engine_of_sub_steps(50, threads=threads, domains=8)
-        O.run(30, True)
-        if threads == 2:
-            O.save("half.yade.gz")
-        O.run(90, True)
-        return *state(), energies()
-
-    straight = end(1)
-    assert straight == end(2) == end(3) == end(8)
-    O.load("half.yade.gz")
-    O.engines[0].threads = 3
-    O.run(90, True)
-    assert state() == straight[:2]
-    statistics = straight[1]
-    assert statistics["orders"] >= 1 and statistics["domains"] == 8 and statistics["events"] > 1000
-
-
 def dimers_flying_apart():
     """Two dimers each, which close at 2 m/s and touch after some 3,000 steps, while the 60 groups of two fly apart."""
     random = np.random.default_rng(7)

@@ -72,39 +72,6 @@ def test_engine_and_functors_agree_step_by_step(kind, rate, homo, limit):
     assert difference[:100].max() < 1e-12 and difference.max() < 1e-9 and max(energy.values()) < 1e-9
 
 
-@pytest.mark.parametrize("kind,homo", [("unlike", 2), ("drag", 0)])
-def test_same_bits_on_one_and_two_threads_and_steps_are_sub_steps(kind, homo):
-    def end(threads):
-        start(kind, 1e-3, homo, count=343)
-        engine_of_sub_steps(10, threads=threads)
-        O.engines[0].prepare()
-        O.run(50, True)
-        statistics = O.engines[0].statistics()
-        assert statistics["events"] > 1000 and statistics["searches"] > 1
-        return positions().tolist(), energies(WORK)
-
-    assert end(1) == end(2) == end(1)
-
-
-def test_instruction_sets_and_domains_agree_to_rounding():
-    def end(**options):
-        start("drag", 1e-3, 2)
-        fused_engine(**options)
-        O.run(300, True)
-        return positions(), energies(WORK)[WORK]
-
-    reference, work = end(instructions="portable")
-    assert O.engines[0].statistics()["events"] > 50
-    others = [{"instructions": "portable", "domains": 1}, {"instructions": "portable", "domains": 3}]
-    for options in [*others, {"instructions": "avx2"}, {"instructions": "avx512"}]:
-        try:
-            x, done = end(**options)
-        except RuntimeError:  # an instruction set that this machine lacks
-            assert options not in others
-            continue
-        assert np.abs(x - reference).max() < 1e-9 * 1e-7 and done == pytest.approx(work, rel=1e-9)
-
-
 def test_exported_interactions_are_those_of_the_nearest_images():
     start("unlike", 1e-3, 1)
     engine_of_sub_steps(10, exportInteractions=True)

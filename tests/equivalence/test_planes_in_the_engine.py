@@ -67,23 +67,6 @@ def test_handed_over_in_the_middle(kind, first):
     assert np.abs(positions() - straight).max() < (1e-9 if kind == "like" else 1e-6) * 1e-7
 
 
-def test_same_bits_on_one_and_two_threads_and_from_a_checkpoint():
-    def end(threads, saved=False):
-        start(count=343)
-        engine_of_sub_steps(10, threads=threads)
-        O.run(30, True)
-        if saved:
-            saved_and_loaded()
-        O.run(60, True)
-        assert O.engines[0].statistics()["planeContacts"] > 20
-        return positions().tolist(), energies("constraintWork")
-
-    straight = end(1)
-    assert end(2) == straight
-    x, energy = end(2, saved=True)
-    assert x == straight[0] and energy == pytest.approx(straight[1], rel=1e-12)
-
-
 def test_a_plane_moved_or_stopped_by_the_script():
     """Obeyed from the next step on, as by the functors (which see the step before with the velocity set after it)."""
 

@@ -99,30 +99,6 @@ def test_sintered_twice_at_once_a_contact_keeps_the_first_neck(steps):
     assert bonds["functors"] == bonds["engine"] > 5
 
 
-@pytest.mark.parametrize("kind,count,speed", [("like", 125, 20.0), ("unlike", 216, 12.0)])
-def test_same_bits_on_one_and_two_threads_and_after_a_checkpoint(kind, count, speed):
-    def state():
-        return positions().tolist(), counts(), necks()
-
-    def end(threads, save=False):
-        start(kind, count, speed)
-        engine_of_sub_steps(10, threads=threads)
-        O.run(8, True)
-        contact_law.sinter(0.4)
-        O.run(8, True)
-        contact_law.sinter(0.6)
-        if save:
-            O.save("half.yade.gz")
-        O.run(10, True)
-        return state()
-
-    one = end(1)
-    assert one == end(2) == end(1, True)
-    O.load("half.yade.gz")
-    O.run(10, True)
-    assert state() == one and necks() == [0, 0.4, 0.6] and sum(broken()) > 20
-
-
 def test_a_checkpoint_after_sintering_continues_where_losses_are_below_zero():
     """Contacts at rest hold a negative potential: booked as disconnection, it is all that this scene has lost."""
 
@@ -164,6 +140,10 @@ def test_bonds_of_several_necks_go_to_the_functors_and_back():
     run(200, sinterings)
     mine = np.array(broken())
     assert necks()[-2:] == [0.3, 0.5]
+    O.engines[0].writeInteractions()
+    bonded = [i for i in O.interactions if i.phys.bonded]
+    assert len(bonded) == O.engines[0].statistics()["bonds"] > 0
+    assert all(i.phys.kn == i.phys.bond.normalStiffness and i.geom.refR1 == 1e-7 for i in bonded)
     O.engines[0].handOver()
     O.engines = functor_engines(neck=0.5)
     record(40)

@@ -67,13 +67,6 @@ SCENES = {
 
 # ---- edits: texts of a script; {i}, {j}: two grains, {x}, {y}, {z}: numbers from -1 to 1 ----
 
-SETTINGS = "subSteps threads domains instructions linearDamping slidingStiffnessFactor neck sliding rolling twisting limit orientations exportInteractions".split()
-
-
-def same(**other):
-    """An engine with the settings of the present one, but for these."""
-    return JKRWadaEngine(**{**{name: getattr(engine(), name) for name in SETTINGS}, **other})
-
 
 def free_place(y):
     """Where nothing is: beside the grains, as high as the first."""
@@ -194,36 +187,7 @@ O.bodies.append(utils.wall(-1.3e-6, axis=0, material=O.bodies[0].material))
 wall = O.bodies[O.bodies.append(utils.wall(-1.3e-6, axis=1, material=O.bodies[0].material))]; wall.state.vel = (0, 3, 0)
 O.bodies[12].state.vel = (0, 0, {z} / 5)
 """.strip().splitlines()
-# Refused at the next step (what, how it is undone), after which the run is as without.
-REFUSED = """
-O.bodies[{i}].shape.radius *= 2 | O.bodies[{i}].shape.radius /= 2
-O.bodies[{i}].state.mass *= 2 | O.bodies[{i}].state.mass /= 2
-O.bodies[{i}].mask = 2 | O.bodies[{i}].mask = 1
-O.bodies[{i}].bounded = False | O.bodies[{i}].bounded = True
-kept = O.bodies[{i}].material; O.bodies[{i}].material = soft() | O.bodies[{i}].material = kept
-kept = O.bodies[{i}].shape; O.bodies[{i}].shape = Sphere(radius=kept.radius) | O.bodies[{i}].shape = kept
-kept = O.bodies[{i}].state; O.bodies[{i}].state = State() | O.bodies[{i}].state = kept
-O.bodies[0].material.surfaceEnergy *= 2 | O.bodies[0].material.surfaceEnergy /= 2
-O.bodies[0].material.young *= -1 | O.bodies[0].material.young *= -1
-engine().rolling = not engine().rolling | engine().rolling = not engine().rolling
-kept = same(); engine().twisting = not engine().twisting | O.engines = [kept]
-kept = engine().neck; engine().neck = 0.55 | engine().neck = kept
-kept = engine().linearDamping; engine().linearDamping = 0.5 | engine().linearDamping = kept
-engine().slidingStiffnessFactor *= 2 | engine().slidingStiffnessFactor /= 2
-engine().subSteps *= -1 | engine().subSteps *= -1
-engine().threads *= -1 | engine().threads *= -1
-O.dt *= 1024 | O.dt /= 1024
-O.periodic = not O.periodic | O.periodic = not O.periodic
-kept = O.bodies[{i}]; O.bodies.erase({i}) | O.bodies.insertAtId(kept, {i}); engine().exportInteractions = False
-kept = O.bodies[{i}]; O.bodies.erase({i}); O.bodies.insertAtId(utils.sphere((9e-7, 0, 0), 1e-7, material=ice()), {i}) | O.bodies.erase({i}); O.bodies.insertAtId(kept, {i}); engine().exportInteractions = False
-O.bodies.append(utils.facet([(0, 0, 0), (1e-7, 0, 0), (0, 1e-7, 0)], material=O.bodies[0].material)) | O.bodies.erase(len(O.bodies) - 1)
-grain((2e-6, 0, 0), 1e-7, ElastMat()) | O.bodies.erase(len(O.bodies) - 1)
-O.engines += [NewtonIntegrator()] | O.engines = O.engines[:-1]
-O.engines += [JKRWadaEngine()] | O.engines = O.engines[:-1]
-kept = Vector3(O.bodies[{i}].state.vel); O.bodies[{i}].state.vel = Vector3(float("nan"), 0, 0) | O.bodies[{i}].state.vel = kept
-kept = Vector3(O.bodies[{i}].state.pos); O.bodies[{i}].state.pos = Vector3(float("inf"), 0, 0) | O.bodies[{i}].state.pos = kept
-O.forces.addF({i}, Vector3(float("nan"), 0, 0)) | O.forces.reset(False)
-""".strip().splitlines()
+REFUSED = list(UNDONE)  # after which the run is as without
 
 
 def edits_of(rng, scene):

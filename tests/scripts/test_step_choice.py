@@ -4,11 +4,11 @@ import re
 
 import numpy as np
 import pytest
+import step_choice_report as report
 from errors import of_scripts
 from refused import refused
 from running import TINY, collide, messages, read_json
 from scipy.stats import binom
-from step_choice import COLLISIONS, COMPRESSIONS, FILLINGS, met
 
 from yade_scripts import stability
 from yade_scripts import step_choice as rule
@@ -122,48 +122,29 @@ def test_constants_for_estimates_are_the_plugins(case):
     assert {key: plugins["bond"][key] for key in bond} == pytest.approx(bond, rel=1e-12)
 
 
-def below(table, scene, filling=None):
-    """Whether the error of a measured scene (a compression: at a filling) is below the 95 % level."""
-    given = table.given(scene)
-    kind = compression if table is COMPRESSIONS else collision
-    parameters = kind.KIND.parse(given)
-    if filling is not None:
-        parameters = parameters.changed(finalFilling=filling)
-    constants = pair_constants(parameters, neck=getattr(parameters, "neck", 0.0))
-    error = scene["error" if filling is None else f"error{filling:g}"]
-    return error <= expected_error(parameters, constants)
-
-
 def test_the_constants_are_those_of_the_data():
-    """95 % and a little more of the measured collisions that met lie below it, of each set and kind of scene.
+    """95 % and a little more of the measured collisions that met lie below it, of each set and kind of scene; of compressions, at five fillings.
 
     Of the sets of CPE aggregates together that were fitted about 98 % do. Fewer of a set than binom.ppf would be a chance
     of 2 %.
     """
-    found = {}
-    for _, scene in met(COLLISIONS.read()).iterrows():
-        plain = scene["packing"] == "cpe" and not (scene["planar"] or scene["neck"]) and scene["limit"] == "held"
-        kind = "plain" if plain else "sintered" if scene["neck"] else scene["limit"]
-        found.setdefault((kind, scene["set"]), []).append(below(COLLISIONS, scene))
+    collisions, cells = report.collisions(), report.compressions()
+    kind = np.select(
+        [collisions.plain, collisions.neck > 0, collisions.limit == "cut"], ["plain", "sintered", "cut"], "held"
+    )
+    found = dict(list((collisions.over <= 1).groupby([kind, collisions["set"]])))
+    cells = cells.query(f"not ({report.REFUSED}) and stretch == 'no'")
+    found |= {("compressed", name): own <= 1 for name, own in cells.over.groupby(cells["set"])}
     least = {
         ("plain", "grid"): 400,
-        **{(kind, "random"): 90 for kind in ("plain", "sintered", "held")},
         ("cut", "random"): 20,
+        **{("compressed", name): 99 for name in ("grid", "random")},
     }
+    least |= {(kind, "random"): 90 for kind in ("plain", "sintered", "held")}
     assert all(len(found[key]) > number for key, number in least.items())
-    assert 0.95 < np.mean(found["plain", "grid"] + found["plain", "study"]) < 0.99
+    assert 0.95 < np.mean([*found["plain", "grid"], *found["plain", "study"]]) < 0.99
     for name, of_set in found.items():
         assert sum(of_set) >= binom.ppf(0.02, len(of_set), 0.95), name
-
-
-def test_so_are_those_of_compressions():
-    """Of each compression at five fillings, grid and random."""
-    for name in ("grid", "random"):
-        scenes = COMPRESSIONS.read().query("set == @name and stretch == 'no'")
-        scenes = scenes.query("limit == 'held' and material == 'ice'")  # others are refused
-        measured = [scene for _, scene in scenes.iterrows()]
-        kept = [below(COMPRESSIONS, s, filling) for s in measured for filling in FILLINGS]
-        assert len(measured) >= 20 and sum(kept) >= binom.ppf(0.02, len(kept), 0.95), name
 
 
 # Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds.

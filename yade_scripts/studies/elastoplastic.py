@@ -19,16 +19,7 @@ VELOCITIES = range(8)
 
 # {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow
 # collisions of larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
-DESK_SIZES = {
-    (0.4, 40): 20,
-    (0.3, 40): 20,
-    (0.4, 50): 8,
-    (0.3, 50): 8,
-    (0.4, 60): 8,
-    (0.3, 60): 8,
-    (0.4, 80): 3,
-    (0.3, 80): 3,
-}
+DESK_SIZES = {(filling, radius): n for radius, n in {40: 20, 50: 8, 60: 8, 80: 3}.items() for filling in (0.4, 0.3)}
 DESK_VELOCITIES = 6
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
 SLOW = (0, 2)
@@ -106,21 +97,13 @@ Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0. Writte
 
 def write_tables(folder):
     """Write elastoplastic-first.table, elastoplastic-desk.table and elastoplastic-full.table into a folder."""
-    table.write(
-        os.path.join(folder, "elastoplastic-first.table"),
-        rows(first(), "runs/elastoplastic-first", FASTEST_STEP, {}),
-        HEAD.format(which="One figure: Fig. 8 at R = 40."),
-    )
-    table.write(
-        os.path.join(folder, "elastoplastic-desk.table"),
-        rows(desk(), "runs/elastoplastic", FASTEST_STEP, FOLLOWED),
-        HEAD.format(which="A selection."),
-    )
-    table.write(
-        os.path.join(folder, "elastoplastic-full.table"),
-        rows(full(), "runs/elastoplastic-full", 0.1, {}),
-        HEAD.format(which="All of the paper's."),
-    )
+    for size, scenes, runs, step, followed, which in (
+        ("first", first(), "runs/elastoplastic-first", FASTEST_STEP, {}, "One figure: Fig. 8 at R = 40."),
+        ("desk", desk(), "runs/elastoplastic", FASTEST_STEP, FOLLOWED, "A selection."),
+        ("full", full(), "runs/elastoplastic-full", 0.1, {}, "All of the paper's."),
+    ):
+        path = os.path.join(folder, f"elastoplastic-{size}.table")
+        table.write(path, rows(scenes, runs, step, followed), HEAD.format(which=which))
 
 
 if __name__ == "__main__":

@@ -124,28 +124,20 @@ HEAD = """Arakawa et al. (2022), section 2.4: collisions of two equal BPCA aggre
 Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/viscous.py."""
 
 
+# {size: (collisions, run folder, what else the rows have, what the table is)}
+TABLES = {
+    "desk": (desk, "runs/viscous", {}, "Smaller aggregates, and six collisions of the paper's size."),
+    "prediction": (prediction, "runs/viscous", {}, "Larger aggregates, predicted before they ran."),
+    "full": (full, "runs/viscous-full", {}, "All of the paper's."),
+    "own": (own, "runs/viscous-own", FOLLOWED, "The paper's size at 50.1 m/s, to its last time: about the edge of merging first."),
+}  # fmt: skip
+
+
 def write_tables(folder):
-    """Write viscous-desk.table, viscous-prediction.table, viscous-full.table and viscous-own.table into a folder."""
-    table.write(
-        os.path.join(folder, "viscous-desk.table"),
-        rows(desk(), "runs/viscous"),
-        HEAD.format(which="Smaller aggregates, and six collisions of the paper's size."),
-    )
-    table.write(
-        os.path.join(folder, "viscous-prediction.table"),
-        rows(prediction(), "runs/viscous"),
-        HEAD.format(which="Larger aggregates, predicted before they ran."),
-    )
-    table.write(
-        os.path.join(folder, "viscous-full.table"),
-        rows(full(), "runs/viscous-full"),
-        HEAD.format(which="All of the paper's."),
-    )
-    table.write(
-        os.path.join(folder, "viscous-own.table"),
-        rows(own(), "runs/viscous-own", **FOLLOWED),
-        HEAD.format(which="The paper's size at 50.1 m/s, to its last time: about the edge of merging first."),
-    )
+    """Write viscous-SIZE.table of each of TABLES into a folder."""
+    for size, (scenes, runs, more, which) in TABLES.items():
+        path = os.path.join(folder, f"viscous-{size}.table")
+        table.write(path, rows(scenes(), runs, **more), HEAD.format(which=which))
 
 
 if __name__ == "__main__":

@@ -21,14 +21,13 @@ _TEXT = {
 
 
 @styled
-def forces_figure(run, times=None):
+def forces_figure(run):
     """Figure of the contacts as lines between grain centres at up to four states around the largest
     compression, for grains with |z| <= 2 grain radii: magenta F > 0.2 F_c, cyan F < -0.2 F_c, grey others
-    (A24 Fig. 13). times [s]: of the states to show, the nearest of each; None: around t_max. RunFolderError if there is no
-    state."""
+    (A24 Fig. 13). RunFolderError if there is no state."""
     run.start  # says so when there is no state
     unit = run.derived["grainRadius"]
-    states = [run.states[i] for i in _chosen_states(run, times)]
+    states = [run.states[i] for i in _chosen_states(run)]
     window = _window(states, unit)
     columns = 1 if len(states) == 1 else 2
     rows = -(-len(states) // columns)
@@ -58,9 +57,7 @@ def force_kinds(normal_force, pull_off_force):
     return {"compression": compression, "tension": tension, "other": ~(compression | tension)}
 
 
-def _chosen_states(run, times):
-    if times is not None:
-        return sorted({run.states.nearest(time) for time in times})
+def _chosen_states(run):
     maximum = maximum_of_run(run)
     if maximum is None:
         return [0]

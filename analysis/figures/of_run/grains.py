@@ -11,37 +11,29 @@ from ..style import NANO, new_figure, run_title, styled
 
 # More pixels than this across would only cost time: the figure is about 1,300 wide.
 _PIXELS_ACROSS = 1500
-_ONE_COLUMN = 3  # as many panels stand below each other
 _FLUFFY = 0.3  # filling factor below which one sees into aggregates, and a cut leaves pieces that look like fragments
 _LARGEST_VIEW = 2.0  # half height of the view in aggregate sizes: fragments that flew farther are left outside
 
 
 @styled
-def grains_figure(run, times=None):
+def grains_figure(run):
     """Figure of the grains at the start, at the largest compression and at the end (those of them that are
     different states), to one scale in grain radii; aggregates of a filling factor of 0.3 and more are cut along the plane z = 0
-    through the collision axis.
-    times [s]: of the states to show instead, the nearest of each. RunFolderError if there is no state."""
+    through the collision axis. RunFolderError if there is no state."""
     run.start  # says so when there is no state
     unit = run.derived["grainRadius"]
-    chosen = _chosen_states(run, times)
-    states = [run.states[i] for i in chosen]
+    maximum = maximum_of_run(run)
+    middle = [] if maximum is None else [run.states.nearest(maximum.time)]
+    states = [run.states[i] for i in sorted({0, *middle, len(run.states) - 1})]
     window, whole = _window(states, unit), run.parameters.get("filling", 1.0) < _FLUFFY
     pixel = max((window[1] - window[0]) / _PIXELS_ACROSS, 0.02)
-    columns = 1 if len(states) <= _ONE_COLUMN else 2
-    rows = -(-len(states) // columns)
-    width = 8.6 if columns == 1 else 12.0
-    panel = width / columns * 0.88 * (window[3] - window[2]) / (window[1] - window[0])
-    figure = new_figure(width, rows * (panel + 0.35) + 0.75, constrained_layout=True)
-    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for place, state in zip(axes.flat, states):
+    panel = 8.6 * 0.88 * (window[3] - window[2]) / (window[1] - window[0])
+    figure = new_figure(8.6, len(states) * (panel + 0.35) + 0.75, constrained_layout=True)
+    axes = figure.subplots(len(states), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    for place, state in zip(axes, states):
         _draw(place, state, unit, window, pixel, whole)
-    for place in axes.flat[len(states) :]:
-        place.remove()
-    for place in axes[:, 0]:
         place.set_ylabel("$y$  [grain radii]")
-    for column in range(columns):
-        [p for p in axes[:, column] if p.figure][-1].set_xlabel("$x$  [grain radii]")
+    axes[-1].set_xlabel("$x$  [grain radii]")
     figure.get_layout_engine().set(w_pad=0.1)
     figure.suptitle(
         run_title(run, "all grains" if whole else "grains behind the plane $z$ = 0"), fontsize=10, color="0.3"
@@ -50,14 +42,6 @@ def grains_figure(run, times=None):
 
 
 FIGURE, KINDS = grains_figure, (COLLISION.name,)
-
-
-def _chosen_states(run, times):
-    if times is not None:
-        return sorted({run.states.nearest(time) for time in times})
-    maximum = maximum_of_run(run)
-    middle = [] if maximum is None else [run.states.nearest(maximum.time)]
-    return sorted({0, *middle, len(run.states) - 1})
 
 
 def _window(states, unit):
