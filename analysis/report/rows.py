@@ -10,7 +10,7 @@ import pandas
 
 from ..arguments import FLAG, PATH, takes, wrong
 from ..measures.coordination import mean_coordination
-from ..measures.fragments import fragment_labels
+from ..measures.fragments import fragment_labels, heaviest_fragment
 from ..measures.ledger import fractions_at
 from ..measures.pieces import STRUCTURE, structure_of
 from ..progress import progress
@@ -181,11 +181,12 @@ def varied(found):
 
 
 def _largest(state):
-    """{column: value} of LARGEST of the state's largest piece."""
+    """{column: value} of LARGEST of the state's largest piece, by mass."""
     labels = fragment_labels(len(state.radius), state.contact_pairs)
-    own = np.flatnonzero(labels == 0)
+    largest = heaviest_fragment(labels, (state.radius / state.radius.max()) ** 3)
+    own = np.flatnonzero(labels == largest)
     structure = structure_of(state.position, state.radius, [own], state.cell_size)
-    contacts = state.contact_pairs[labels[state.contact_pairs[:, 0]] == 0]
+    contacts = state.contact_pairs[labels[state.contact_pairs[:, 0]] == largest]
     return {
         **{of_largest(name): float(values[0]) for name, values in structure.items()},
         "largest_coordination": mean_coordination(len(own), contacts),
