@@ -64,6 +64,7 @@ def run(options):
     """Exit status: 0, or 2 when a path or run could not be read or nothing was left to analyse."""
     # pandas and scipy take a moment to load, and the parser does without them.
     from ..runs.arrays import RunFolderError
+    from ..runs.named import UnknownName
     from ..studies.analyse import NothingToAnalyse, analyse
     from ..studies.find import NoSuchStudy, find
     from ..studies.paper import PaperError
@@ -86,6 +87,9 @@ def run(options):
         return FAILED
     except OSError as error:
         complain(f"{error.filename or options.page or options.figures}: {error.strerror}")
+        return FAILED
+    except UnknownName as error:
+        complain(f"study {options.name}: {error}")
         return FAILED
     except (NoSuchStudy, PaperError, RunFolderError) as error:
         complain(error)
