@@ -42,6 +42,15 @@ def fragment_masses(labels, mass):
     return np.bincount(labels, weights=mass)
 
 
+def heaviest_fragment(labels, mass):
+    """Number of the fragment with the most mass; of equal ones that with the most grains. Arguments as fragment_masses.
+
+    >>> heaviest_fragment([1, 0, 0], [9.0, 1.0, 2.0])
+    1
+    """
+    return int(np.argmax(fragment_masses(labels, mass)))
+
+
 def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
     """Mask (N,) of the grains that are part of an aggregate at the start: those in a piece, connected within
     their aggregate, that holds at least least_fraction of the aggregate's mass. Grains that a packing left
@@ -60,7 +69,7 @@ def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
 @takes(largest=numbers(), target=numbers(), projectile=numbers(right=POSITIVE))
 def growth_efficiency(largest, target, projectile):
     """f_gro = (N_lar - N_tar)/N_pro from the numbers of grains of the largest fragment, of target and
-    projectile: A22 eq 28.
+    projectile: A22 eq 28. Of grains of unlike size the masses stand for the numbers.
 
     >>> float(growth_efficiency(30, 20, 10))
     1.0

@@ -27,8 +27,8 @@ from .fragments import (
     belongs_to_an_aggregate,
     fragment_labels,
     fragment_masses,
-    fragment_sizes,
     growth_efficiency,
+    heaviest_fragment,
 )
 
 NEVER_MET, STICKING, BOUNCING, FRAGMENTATION = "never met", "sticking", "bouncing", "fragmentation"
@@ -45,9 +45,8 @@ ROUNDING = 1e-9  # four grains of five are STAYS
 @dataclass(frozen=True)
 class Outcome:
     """kind (never met, sticking, bouncing, fragmentation, undecided), restitution (None where there is none, see the module),
-    mass_fractions (f1, f2), largest_fragment [grains, all counted], growth_efficiency (A22 eq 28, all grains, the
-    target being the aggregate with more grains), fragments (their number) and excluded_grains (not counted in the
-    fractions). Of an undecided one why_undecided, in a few words, and seen: the kind that it would be if nothing changed any more;
+    mass_fractions (f1, f2), largest_fragment [grains of the heaviest piece, all counted], growth_efficiency (A22 eq 28 by mass, all
+    grains, the target being the heavier aggregate), fragments (their number) and excluded_grains (not counted in the fractions). Of an undecided one why_undecided, in a few words, and seen: the kind that it would be if nothing changed any more;
     of a collision with a plate mass_on_plate, the fraction that sticks to it (plate.py)."""
 
     kind: str
@@ -151,13 +150,14 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
     if kind == BOUNCING:
         by_aggregate = [pieces[k] for k in np.argsort(shares)]
         ratio = restitution_of_pieces(aggregate, mass, counted, by_aggregate, start_velocity, end_velocity)
-    largest = int(fragment_sizes(labels).max())
+    largest = labels == heaviest_fragment(labels, mass)
+    light, heavy = sorted(np.bincount(aggregate, mass))
     return Outcome(
         kind,
         ratio,
         (f1, f2),
-        largest,
-        growth_efficiency(largest, int(numbers.max()), int(numbers.min())),
+        int(largest.sum()),
+        growth_efficiency(mass[largest].sum(), heavy, light),
         int(labels.max()) + 1,
         int((~counted).sum()),
     )

@@ -20,7 +20,7 @@ from itertools import chain
 import numpy as np
 
 from .decided import EVER, Pieces
-from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes
+from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes, heaviest_fragment
 from .free_flight import pieces_that_can_meet
 from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, STICKING, Outcome, mean_velocity, restitution
 
@@ -75,13 +75,14 @@ def _counted(start):
 def plate_outcome(start, end, met):
     """outcome.Outcome from the states (mappings) at the start and at the end, of grains of one density; met: whether the aggregate touched
     the plate at any time. mass_fractions, fragments and largest_fragment: what lies on the plate is one piece; growth_efficiency: the
-    plate's, the fraction of the grains that lie on it; mass_on_plate: f_on."""
+    plate's, the fraction of the mass of all grains that lies on it; mass_on_plate: f_on."""
     counted, state = _counted(start), with_plate(end)
     labels = fragment_labels(len(counted), state["contact_pairs"])
     mass = (state["radius"] / state["radius"][:-1].max()) ** 3  # so that equal grains add up without rounding
     fractions = fragment_masses(labels, mass * counted) / mass[counted].sum()
     sizes = fragment_sizes(labels)
     sizes[labels[-1]] -= 1
+    of_grains = np.append(mass[:-1], 0.0)
     on = float(fractions[labels[-1]])
     off = np.where(np.arange(len(fractions)) == labels[-1], 0.0, fractions)
     heaviest = int(np.argmax(off))
@@ -96,8 +97,8 @@ def plate_outcome(start, end, met):
         kind,
         ratio,
         (f1, f2),
-        int(sizes.max()),
-        float(sizes[labels[-1]] / (len(counted) - 1)),
+        int(sizes[heaviest_fragment(labels, of_grains)]),
+        float(of_grains[labels == labels[-1]].sum() / of_grains.sum()),
         int((sizes > 0).sum()),
         int((~counted[:-1]).sum()),
         mass_on_plate=on,

@@ -1,5 +1,6 @@
 """A column of a table of runs against another, with error bars over pairs of aggregates."""
 
+import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
@@ -16,11 +17,13 @@ from ..studies.curve_figure import CurveFigure
 from ..studies.definition import Quantity, Results
 from ..studies.estimate import Fraction
 from ..studies.runs import Runs, each
-from .rows import at_end, table, varied
+from .rows import at_end, differing, table, varied
 
 WHATS = "sticking", "largest", "energy"
-SEED, CHANNEL, LARGEST = "seed", "channel", "largest_fraction"
+SEED, CHANNEL, LARGEST, KIND = "seed", "channel", "largest_fraction", "kind"
+FILES = "file", "projectileFile"  # with the seed, what tells pairs of aggregates apart
 APART = 5.0  # points between curves
+LETTERS = 13  # of a title, an inch of the figure
 
 
 class CannotPlot(ValueError):
@@ -61,19 +64,22 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
 
     what: "sticking" (fraction of the runs that stick, with Wilson's 95 % intervals; of the decided ones: those that are undecided, or
     have not ended, widen the interval, counted either way, and are named above, as are those that never met, which are left out),
-    "largest" (mass fraction of the largest piece), "energy" (change of every
-    channel from the start to the end, over K(0)), or any column. x: a column of numbers; by: a column that tells curves (panels, of
-    "energy") apart; where: {column: value} of the runs that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it
-    spans a decade). Bars but of "sticking" are standard errors of the mean over pairs of aggregates, which are told by their seed;
-    open points are single pairs.
+    "largest" (mass fraction of the largest piece), "energy" (change of every channel from the start to the end, over K(0)), or any
+    column. x: a column of numbers; by: a column that tells curves (panels, of "energy") apart; where: {column: value} of the runs
+    that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it spans a decade). Bars but of "sticking" are standard
+    errors of the mean over pairs of aggregates, which are told by their seed and their files; open points are single pairs. Runs of a
+    kind that has no x, or nothing of what is drawn, are left out and counted above.
 
-    CannotPlot (ValueError) where runs differ in parameters beside x, by and the seed; UnknownName (KeyError) for a wrong column.
+    CannotPlot (ValueError) where runs differ in parameters beside x, by, the seed and the files; UnknownName (KeyError) for a wrong
+    column.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
     _require_columns(found, what, [x, *([by] if by else []), *(where or {})])
-    drawn = Runs(found, SEED if SEED in found else RUN)
+    files = [name for name in FILES if name in found and found[name].notna().any()]
+    drawn = Runs(found, SEED if SEED in found else RUN, files)
     for name, value in (where or {}).items():
         drawn = _only(drawn, name, value)
+    asked, drawn = drawn.table, drawn.of(_of_kinds(drawn.table, [x, *_columns(what)]))
     _require_drawable(drawn.table, x, by)
     quantity = _quantity(what, drawn, [x, by] if by else [x])
     if not len(quantity.values):
@@ -82,8 +88,21 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     for axes in figure.axes:
         if axes.get_xlabel() == x:
             axes.set_xlabel(_with_unit(found, x))
-    figure.suptitle(_about(drawn.table, what), fontsize=10)
+    lines = textwrap.wrap(_about(drawn.table, what, asked), int(LETTERS * figure.get_figwidth()))
+    figure.suptitle("\n".join(lines), fontsize=10)
     return figure
+
+
+def _columns(what):
+    """Columns of what is drawn."""
+    return {"sticking": ["outcome"], "largest": [LARGEST], "energy": list(map(at_end, CHANNELS))}.get(what, [what])
+
+
+def _of_kinds(found, columns):
+    """The runs of the kinds that have values in all columns; all of them where no kind has."""
+    having = found[columns].notna().groupby(found[KIND]).any().all(axis=1)
+    kept = found[found[KIND].map(having)]
+    return kept if len(kept) else found
 
 
 def _quantity(what, drawn, by):
@@ -129,12 +148,11 @@ def _require_columns(found, what, named):
     """Raise UnknownName for a name that is no column of a table, CannotPlot where it is none of table()."""
     if what not in (*WHATS, *found.columns):
         raise unknown("table of runs", what, (*WHATS, *found.columns))
-    of_what = {"sticking": [], "largest": [LARGEST], "energy": map(at_end, CHANNELS)}.get(what, [what])
-    own = [SEED if SEED in found else RUN, "outcome", "ended"]
+    own = [SEED if SEED in found else RUN, "outcome", "ended", KIND]
     for name in named:
         if name not in found:
             raise unknown("table of runs", name, found.columns)
-    lacking = [name for name in (*of_what, *own) if name not in found]
+    lacking = [name for name in dict.fromkeys((*_columns(what), *own)) if name not in found]
     if lacking:
         raise CannotPlot(f"table of runs: lacks {', '.join(lacking)}; must be as analysis.table() gives it")
 
@@ -155,12 +173,11 @@ def _require_drawable(found, x, by):
     _require_numbers(found, x)
     if not len(found):
         raise CannotPlot("no run is left")
-    others = [name for name in varied(found) if name not in (x, by, SEED)]
+    if found[KIND].nunique() > 1:
+        raise CannotPlot(f"the runs are of the kinds {', '.join(found[KIND].unique())}: choose where {KIND}")
+    others = [name for name in varied(found) if name not in (x, by, SEED, *FILES)]
     if others and x in found.attrs.get("parameters", ()):
-        values = ", ".join(
-            f"{value:g}" if isinstance(value, float) else str(value) for value in found[others[0]].unique()
-        )
-        raise CannotPlot(f"the runs differ in {', '.join(others)} too: choose by or where ({others[0]} is {values})")
+        raise CannotPlot(differing(found, others, "choose by or where"))
 
 
 def _require_numbers(found, name):
@@ -182,10 +199,12 @@ def _with_unit(found, name):
     return name + (f"  [{unit}]" if unit not in ("", "1") else "")
 
 
-def _about(found, what):
-    """How many runs there are, and how many of them have no outcome that counts, or are left out."""
-    missed = _never_met(found) & (what == "sticking")
-    undecided = int((_undecided(found) & ~missed).sum())
-    text = f"{len(found)} runs" + (f", {missed.sum()} that never met left out" if missed.any() else "")
+def _about(found, what, asked):
+    """How many runs there are, and how many of them never met, have no outcome that counts, or are left out of those asked for."""
+    missed, sticking = _never_met(found), what == "sticking"
+    undecided = int((_undecided(found) & ~(missed & sticking)).sum())
+    others = asked[KIND][~asked[KIND].isin(found[KIND])].value_counts()
+    text = f"{len(found)} runs" + "".join(f", {number} of the kind {kind} left out" for kind, number in others.items())
+    text += f", {missed.sum()} {'that never met left out' if sticking else 'of them never met'}" if missed.any() else ""
     text += f", {undecided} of them undecided or not ended" if undecided else ""
-    return text + ("\n(in the bars, counted either way)" if undecided and what == "sticking" else "")
+    return text + (" (in the bars, counted either way)" if undecided and sticking else "")

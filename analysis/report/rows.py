@@ -10,7 +10,7 @@ import pandas
 
 from ..arguments import FLAG, PATH, takes, wrong
 from ..measures.coordination import mean_coordination
-from ..measures.fragments import fragment_labels
+from ..measures.fragments import fragment_labels, heaviest_fragment
 from ..measures.ledger import fractions_at
 from ..measures.pieces import STRUCTURE, structure_of
 from ..progress import progress
@@ -30,7 +30,11 @@ _BOOKKEEPING = ("out", "overwrite", "resume", "checkpointInterval", "threads", "
 
 RUNS = "a path, a pattern, a RunFolder, or a list of these"
 
-_OF_MATERIAL = ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling")
+# Parameters that follow from another one as a rule.
+_FOLLOWING = dict.fromkeys(
+    ("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling"), "material"
+)
+_FOLLOWING |= dict.fromkeys(("sizeRatio", "sizeFraction", "sizeSpread"), "sizes")
 
 OUTCOME = (
     Column("kind", "", "of run", "O"),
@@ -60,6 +64,7 @@ SERIES = tuple(
 )
 MEASURED = (*OUTCOME, *LARGEST, *COMPRESSION_KEYS, *ENERGIES, *SERIES)
 OF_EQUAL = "d", "v"  # series without a meaning where the aggregates' masses differ
+VALUES = 5  # that are listed, where they differ
 # What is said of a run in one line.
 SHORT = (
     *("outcome", "largest_fraction", "fragments", "growth_efficiency", "mass_on_plate", "restitution", "d_max"),
@@ -157,35 +162,43 @@ def row(run, structure=True):
     }
     numeric = {column.name for column in MEASURED if column.kind == "f"}
     gaps = {name: np.nan for name, value in values.items() if value is None and name in numeric}
-    return {**_parameters(run), **values, **gaps}
+    return {**parameters_of(run), **values, **gaps}
 
 
-def _parameters(run):
-    """{name: value} of a run's parameters; one that was left open and that the run derived has that value."""
-    given = {name: value for name, value in run.parameters.items() if name not in _BOOKKEEPING}
-    return {name: run.derived.get(name) if value is None else value for name, value in given.items()}
+def parameters_of(run):
+    """{name: value} of a run's parameters, as far as they say something of its physics."""
+    return {name: value for name, value in run.settled.items() if name not in _BOOKKEEPING}
 
 
 def varied(found):
-    """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, the
-    duration, and the size of aggregates that are grown or read, or grains of those that are cut."""
+    """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, of the
+    distribution of sizes, the duration, and the size of aggregates that are grown or read, or grains of those that are cut."""
     names = [name for name in found.attrs.get("parameters", ()) if found[name].nunique(dropna=False) > 1]
     packings = set(found.packing) if "packing" in found else set()
     cut, sizes = ("grains", "projectileGrains"), ("filling", "radius")
     sizes = cut if packings == {"cpe"} else () if "cpe" in packings else sizes
-    for name in (*(_OF_MATERIAL if "material" in names else ()), "duration", *sizes):
-        others = ["material"] if name in _OF_MATERIAL else [other for other in names if other != name]
+    for name in (*_FOLLOWING, "duration", *sizes):
+        leading = _FOLLOWING.get(name)
+        others = [other for other in names if (other == leading if leading else other != name)]
         if name in names and others and found.groupby(others, dropna=False)[name].nunique().max() == 1:
             names.remove(name)
     return names
 
 
+def differing(found, names, must):
+    """The line that says in which parameters the rows of a table() differ, and what must be done."""
+    values = [f"{value:g}" if isinstance(value, float) else str(value) for value in found[names[0]].unique()]
+    some = ", ".join(values[:VALUES]) + (", ..." if len(values) > VALUES else "")
+    return f"the runs differ in {', '.join(names)} too: {must} ({names[0]} is {some})"
+
+
 def _largest(state):
-    """{column: value} of LARGEST of the state's largest piece."""
+    """{column: value} of LARGEST of the state's largest piece, by mass."""
     labels = fragment_labels(len(state.radius), state.contact_pairs)
-    own = np.flatnonzero(labels == 0)
+    largest = heaviest_fragment(labels, (state.radius / state.radius.max()) ** 3)
+    own = np.flatnonzero(labels == largest)
     structure = structure_of(state.position, state.radius, [own], state.cell_size)
-    contacts = state.contact_pairs[labels[state.contact_pairs[:, 0]] == 0]
+    contacts = state.contact_pairs[labels[state.contact_pairs[:, 0]] == largest]
     return {
         **{of_largest(name): float(values[0]) for name, values in structure.items()},
         "largest_coordination": mean_coordination(len(own), contacts),

@@ -31,9 +31,9 @@ OUTCOME_KEYS = (
     ),
     Column("why_undecided", "", "why an outcome may still become another one; none of decided ones", "O", gaps=True),
     Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O", gaps=True),
-    Column("largest_fragment", "", "number of grains of the largest piece", gaps=True),
+    Column("largest_fragment", "", "number of grains of the largest piece by mass", gaps=True),
     Column("fragments", "", "number of pieces", gaps=True),
-    Column("growth_efficiency", "1", "(N_largest - N_target)/N_projectile (A22 eq 28); of a plate N_on/N", gaps=True),
+    Column("growth_efficiency", "1", "(m_largest - m_target)/m_projectile (A22 eq 28); of a plate m_on/m", gaps=True),
     Column("mass_on_plate", "1", "of the mass, what sticks to the plate", gaps=True),
 )
 ENERGY_KEYS = (

@@ -35,7 +35,7 @@ class Scene:
         if run.kind.name != self.kind:
             return f"it is a run of the kind {run.kind.name}, {self.name} is {self.kind}"
         for name in self.numbers:
-            value = run.parameters.get(name)
+            value = run.settled.get(name)
             if isinstance(value, bool) or not isinstance(value, (int, float)):
                 return f"its parameter {name} is {value!r}, not a number"
         for name, wanted in self.values.items():

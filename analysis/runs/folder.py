@@ -149,6 +149,11 @@ class RunFolder:
         return run_html(self)
 
     @property
+    def settled(self):
+        """The parameters (dict); one that was left open and that the run derived has that value."""
+        return {name: self.derived.get(name) if value is None else value for name, value in self.parameters.items()}
+
+    @property
     def start(self):
         """The first state; RunFolderError when the run has left none."""
         return self._state(0)

@@ -181,6 +181,9 @@ RUN_KINDS = {kind.name: kind for kind in (COLLISION, COMPRESSION)}
 # Derived constants of run.json that every analysis may divide by.
 POSITIVE_CONSTANTS = ("grainRadius", "pullOffForce")
 
+# Parameters in run.json that are words. A test compares the list with the scripts' own, as below.
+PARAMETER_WORDS = ("packing", "file", "projectileFile", "sizes", "target", "boundary", "stretch", "material", "engine", "limit")
+
 # Units of the parameters in run.json ("1": a ratio) that aren't numbers of things or words; those of scripts of one's own are
 # theirs. A test compares the list with the scripts' own.
 PARAMETER_UNITS = {

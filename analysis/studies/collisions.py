@@ -11,7 +11,7 @@ from ..measures.outcome import BOUNCING, FRAGMENTATION, NEVER_MET, STICKING, UND
 from ..measures.return_phase import largest_return_speed
 from ..runs.arrays import RunFolderError
 from ..runs.collect import Scene
-from ..runs.format import CHANNELS, HISTORY_FILE, LABELS, LOST_CHANNELS
+from ..runs.format import CHANNELS, HISTORY_FILE, LABELS, LOST_CHANNELS, PARAMETER_WORDS
 from ..runs.table import Column
 from .columns import CLOSURE, VELOCITY, group, parameter
 from .definition import NotMeasured, Quantity, Study
@@ -119,9 +119,13 @@ def energy_quantities(runs, by, lost, changes):
 
 def collision_study(title, question, varied, quantities, **values):
     """definition.Study of a question of one's own about collisions: varied: the parameters that differ from run to run, seed among them;
-    quantities: a function of the table of runs, as definition.Study has it; values: parameters that every run has.
+    quantities: a function of the table of runs, as definition.Study has it; values: parameters that every run has. Run folders that
+    differ in another parameter are refused together.
 
     A run's row has the parameters varied, and the columns of OUTCOME and LARGEST."""
-    parameters = [parameter(name, "", "as the table of runs has it") for name in varied]
+    kinds = {name: "O" if name in PARAMETER_WORDS else "f" for name in varied}
+    parameters = [parameter(name, "", "as the table of runs has it", kind) for name, kind in kinds.items()]
     measured = (*parameters, *(() if "velocity" in varied else (VELOCITY,)), OUTCOME, LARGEST)
-    return Study(title, question, Scene(title, values, tuple(varied)), measured, quantities)
+    of_numbers, of_words = (tuple(name for name in varied if kinds[name] == kind) for kind in "fO")
+    scene = Scene(title, values, of_numbers, measured=of_words)
+    return Study(title, question, scene, measured, quantities, alike=True)

@@ -35,7 +35,7 @@ def parameter(name, unit, meaning, kind="f", usual=None, shown=lambda value: val
 
     def of(run):
         try:
-            return shown(_TYPES[kind](run.parameters[name] if usual is None else run.parameters.get(name, usual)))
+            return shown(_TYPES[kind](run.settled[name] if usual is None else run.settled.get(name, usual)))
         except (KeyError, TypeError, ValueError) as error:
             raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
 

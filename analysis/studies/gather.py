@@ -5,11 +5,14 @@ from dataclasses import dataclass, field
 import pandas
 
 from ..progress import progress
+from ..report.rows import differing, frame, parameters_of, varied
 from ..runs.arrays import RunFolderError
 from ..runs.collect import collect
 from ..runs.provenance import joined, provenance
 from ..runs.table import FOLDER, RUN, TableError, make_table, read_table
 from .definition import NotMeasured
+
+LENGTH = "duration", "endWhenApart"  # how long a run is: of two of one collision the longer one counts
 
 
 @dataclass
@@ -27,11 +30,14 @@ class Gathered:
 
 
 def gather(study, paths):
-    """Gathered runs of a study: tables (.csv) are read, then run folders measured. Of two runs with the same numbers in scene.key only the
-    first is counted: counted twice it would make errors too small. Where that is a row of a table, figures that need a run's states
-    take them from the folder of the other."""
+    """Gathered runs of a study: tables (.csv) are read, then run folders measured. Of runs with the same values in scene.key only one is
+    counted, since more would make errors too small: a table's row, of tables the first's, and of folders the longest run. Where a row
+    has a folder too, figures that need a run's states take them from there. Of runs that must be alike and are not none is counted."""
     collection = collect(paths, study.scene)
     found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
+    if unlike := _unlike(study, collection.runs):
+        found.problems.append(unlike)
+        return found
     taken, parts, folders = {}, [], {}
     for file in collection.tables:
         try:
@@ -53,9 +59,24 @@ def gather(study, paths):
     return found
 
 
+def _unlike(study, runs):
+    """What is wrong (one line) with runs that must be alike and differ in parameters beside the study's key; None with others.
+    A parameter that a run of an earlier version lacks is as in the others."""
+    if not (study.alike and runs):
+        return None
+    rows, usual = [parameters_of(run) for run in runs], {}
+    for row in reversed(rows):
+        usual.update(row)
+    found = frame([(run.path, {**usual, **row}) for run, row in zip(runs, rows)])
+    names = [name for name in varied(found) if name not in (*study.scene.key, *LENGTH)]
+    return (
+        differing(found, names, "name them in varied, or give collision_study() one value of each") if names else None
+    )
+
+
 def _measure(study, runs, taken, found, folders):
     """[(RunFolder, {column: value})]; folders takes {key: path} of those that are in a table already."""
-    measured = []
+    measured = {}
     for run in progress(runs, "reading runs"):
         try:
             values = study.measure(run)
@@ -65,16 +86,24 @@ def _measure(study, runs, taken, found, folders):
         except RunFolderError as error:
             found.problems.append(str(error))
             continue
-        twin = taken.setdefault(_key(study, values), run.path)
-        line = f"{run.path}: the same {_listed(study.scene.key)} as {twin}"
-        if twin is run.path:
-            measured.append((run, values))
-        elif isinstance(twin, str):  # a row of a table
-            folders.setdefault(_key(study, values), str(run.path))
-            found.shown.append(f"{line}, counted once")
+        key = _key(study, values)
+        same = f"the same {_listed(study.scene.key)} as"
+        if key in taken:
+            folders.setdefault(key, str(run.path))
+            found.shown.append(f"{run.path}: {same} {taken[key]}, counted once")
+        elif key not in measured:
+            measured[key] = run, values
         else:
-            found.notes.append(f"{line}, left out")
-    return measured
+            short, measured[key] = sorted([(run, values), measured[key]], key=_end)
+            long = measured[key]
+            why = "which is longer, " if _end(short) < _end(long) else ""
+            found.notes.append(f"{short[0].path}: {same} {long[0].path}, {why}left out")
+    return list(measured.values())
+
+
+def _end(measured):
+    """Time of the last sample [s] of a RunFolder, the first of a tuple."""
+    return float(measured[0].history["time"][-1])
 
 
 def _read(study, file, taken):
@@ -97,7 +126,7 @@ def _read(study, file, taken):
 
 
 def _key(study, values):
-    return tuple(f"{values[name]:.9g}" for name in study.scene.key)
+    return tuple(v if isinstance(v := values[name], str) else f"{v:.9g}" for name in study.scene.key)
 
 
 def _listed(names):

@@ -5,7 +5,7 @@ from copy import copy
 import numpy as np
 import pandas
 
-from ..runs.named import suggested
+from ..runs.named import suggested, unknown
 from .estimate import Estimate, Fraction, curve, mean_over_points, stretch, weights_of_pairs
 
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
@@ -15,9 +15,12 @@ class Runs:
     """A table of runs (DataFrame, a row a run), and what is independent in it.
 
     pair        column that names a pair of aggregates
-    population  columns whose values have pairs of their own (the number of grains: pair 1 of 500 is not pair 1 of 2,000)"""
+    population  columns whose values have pairs of their own (the number of grains: pair 1 of 500 is not pair 1 of 2,000)
+
+    UnknownName (KeyError) for a column that the table lacks, here and of `by` below."""
 
     def __init__(self, table, pair="seed", population=()):
+        _columns(table, (pair, *population))
         self.table, self.pair, self.population = table, pair, tuple(population)
         self.average, self.points, self.weights = None, (0,), np.ones(1)
 
@@ -43,7 +46,7 @@ class Runs:
     def estimates(self, values, by):
         """Series of Estimate of the mean over pairs, by the columns `by`: of a column, or of a function table -> (runs,). Runs without
         a value (NaN) don't count."""
-        keys = [self.table[name].map(_key) for name in by]
+        keys = _columns(self.table, by)
         values = pandas.Series(np.asarray(self._values(values), dtype=float), self.table.index)
         point, number = pandas.Series(0, self.table.index), len(self.points)
         if self.average:
@@ -101,7 +104,7 @@ class Runs:
 
     def _names(self, rows):
         """Names of the pairs of a table's rows: with the population, so that they are unique."""
-        columns = [rows[name].map(_key).astype(str) for name in (*self.population, self.pair)]
+        columns = [column.astype(str) for column in _columns(rows, (*self.population, self.pair))]
         return columns[0].str.cat(columns[1:], sep="|") if len(columns) > 1 else columns[0]
 
     def _values(self, values):
@@ -203,10 +206,18 @@ def _groups(own, by, levels=False):
     if not by:
         yield (), own
         return
-    keys = list(by) if levels else [own[name].map(_key) for name in by]
+    keys = list(by) if levels else _columns(own, by)
     how = {"level" if levels else "by": keys if len(keys) > 1 else keys[0]}
     for key, part in own.groupby(**how):
         yield key if isinstance(key, tuple) else (key,), part
+
+
+def _columns(table, names):
+    """Columns of a table, as values that are the same where they are printed so; UnknownName for one that it lacks."""
+    for name in names:
+        if name not in table:
+            raise unknown("table of runs", name, table.columns)
+    return [table[name].map(_key) for name in names]
 
 
 def _key(value):

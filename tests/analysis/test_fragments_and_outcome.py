@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from written_runs import chain, state_arrays
+from written_runs import RADIUS, chain, losing, record, state_arrays, write_run
 
 from analysis.measures.fragments import *
 from analysis.measures.outcome import classify, collision_outcome, restitution
 from analysis.measures.pair_velocities import pair_velocities, root_mean_square
+from analysis.report.rows import row
+from analysis.runs.folder import open_run
 
 
 @pytest.mark.parametrize("contacts", [0, 20, 60, 200])
@@ -97,6 +99,21 @@ def test_unlike_aggregates_are_judged_by_what_the_target_gains(pieces, kind):
     assert outcome.kind == kind
     expected = {"sticking": 0.0, "bouncing": 0.3}.get(kind)
     assert outcome.restitution is expected or outcome.restitution == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "pieces, largest, growth",
+    [((40,), 40, 1.0), ((10, 30), 10, 0.0), ((12, 28), 12, 2 / 30), ((9, 31), 9, -8 / 30)],
+)
+def test_growth_is_by_mass_and_the_heavier_aggregate_is_the_target(tmp_path, pieces, largest, growth):
+    """Ten grains of twice the radius, 80 of 110 masses, and thirty single ones."""
+    start, end = (_state(STILL, *zip(np.cumsum([0, *own]), own)) for own in ((10, 30), pieces))
+    for state in (start, end):
+        state.update(aggregate=np.repeat([0, 1], [10, 30]), radius=RADIUS * np.repeat([2.0, 1.0], [10, 30]))
+    history = losing(np.array([0.0, 1e-9]), touching=1)
+    found = row(open_run(write_run(tmp_path / "run", record(RADIUS), history, [start, {**end, "time": 1e-9}])))
+    assert (found["largest_fragment"], found["growth_efficiency"]) == (largest, pytest.approx(growth, abs=1e-12))
+    assert found["largest_coordination"] == 2.0 * (largest - 1) / largest
 
 
 @pytest.mark.parametrize("moved", [0, 2, -2])

@@ -17,7 +17,9 @@ ENDS = {
 def runs():
     """A table of eight runs at two velocities, in the form of analysis.table."""
     cells = [(velocity, seed, outcome) for velocity, own in ENDS.items() for seed, outcome in enumerate(own)]
-    found = pandas.DataFrame(cells, columns=["velocity", "seed", "outcome"]).assign(run="", impact=0.5, ended=True)
+    found = pandas.DataFrame(cells, columns=["velocity", "seed", "outcome"]).assign(
+        run="", kind="collision", impact=0.5, ended=True
+    )
     found = found.assign(largest_fraction=[0.9, 0.7, 0.5, 0.3, 0.4, 0.2, 0.2, 0.0])
     found.attrs.update(units={"velocity": "m/s", "largest_fraction": "1"}, parameters=["velocity", "seed", "impact"])
     return found
@@ -41,8 +43,45 @@ def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs)
     assert "3 to 4 pairs" in said and "[m/s]" in said
     missed = pandas.concat([runs, runs[:1].assign(seed=9, outcome="never met")], ignore_index=True)
     missed.attrs = runs.attrs
-    *same, said = drawn(plot("sticking", missed))
+    figure = plot("sticking", missed)
+    *same, said = drawn(figure)
     assert same == [points, bars] and "9 runs, 1 that never met left out, 1 of them undecided" in said
+    title = figure._suptitle.get_window_extent()
+    assert 0 <= title.x0 and title.x1 <= figure.bbox.x1
+    assert "9 runs, 1 of them never met, 1 of them undecided" in drawn(plot("largest", missed))[2]
+
+
+def test_pairs_are_told_by_their_files(runs):
+    """Aggregates from files have one seed."""
+    of_files = runs.assign(seed=1, file=[f"a{seed}.npz" for seed in runs.seed], projectileFile="b.npz")
+    of_files.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "file", "projectileFile"]}
+    for what in ("sticking", "largest"):
+        points, bars, said = drawn(plot(what, of_files))
+        assert points == drawn(plot(what, runs))[0] and bars[0][0] < bars[0][1] and "4 pairs" in said
+    assert len(plot("largest", of_files, by="file").axes[0].get_legend_handles_labels()[1]) == 4
+
+
+def test_what_follows_from_what_is_drawn_apart_needs_no_choice(runs):
+    """The ratio of sizes, where it is one."""
+    sizes = runs.assign(sizes=["two", "equal"] * 4, sizeRatio=[3.0, None] * 4)
+    sizes.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "sizes", "sizeRatio"]}
+    assert len(plot("largest", sizes, by="sizes").axes[0].get_legend_handles_labels()[1]) == 2
+    sizes.loc[0, "sizeRatio"] = 2.0
+    with pytest.raises(CannotPlot, match="^the runs differ in sizeRatio too"):
+        plot("largest", sizes, by="sizes")
+
+
+def test_runs_of_a_kind_without_what_is_drawn_are_left_out(runs):
+    cells = {"run": "", "kind": "compression", "ended": True, "seed": [1, 2], "finalFilling": [0.3, 0.4], "time": 1.0}
+    both = pandas.concat([runs.assign(time=2.0), pandas.DataFrame(cells)], ignore_index=True)
+    both.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "finalFilling"]}
+    *same, said = drawn(plot("sticking", both))
+    assert (
+        same == list(drawn(plot("sticking", runs))[:2]) and "8 runs, 2 of the kind compression left out, 1 of" in said
+    )
+    assert drawn(plot("time", both, x="finalFilling"))[0] == [(0.3, 1.0), (0.4, 1.0)]
+    with pytest.raises(CannotPlot, match="^the runs are of the kinds collision, compression: choose where kind$"):
+        plot("time", both, x="seed")
 
 
 def test_equal_curves_stand_beside_each_other(runs):

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas
 import pytest
+from made_collisions import made_run
 from PIL import Image
 from written_runs import two_pairs
 
@@ -78,6 +79,75 @@ def test_a_paper_beside_ones_own_file_is_read(own, capsys):
         said
         == f"analysis: {own / 'paper.toml'}: how many: where: sticking: no level speed; must be one of grains, velocity"
     )
+
+
+@pytest.mark.parametrize(
+    "other, varied, status",
+    [
+        (dict(material="silicate"), "", 2),
+        (dict(material="silicate"), '"material", ', 0),
+        (dict(grains=None), "", 0),  # as the run derived it
+        (dict(duration=9.0, endWhenApart=0), "", 0),
+    ],
+)
+def test_runs_that_differ_are_refused_unless_the_study_names_it(own, capsys, other, varied, status):
+    """The fixture's runs, as those of earlier versions, lack some parameters."""
+    code = (own / "sticking.py").read_text().replace('varied=("', f'varied=({varied}"')
+    (own / "sticking.py").write_text(code)
+    for seed, parameters in ((6, other), (7, {})):
+        usual = {"material": "ice", "duration": 1.0, "endWhenApart": 1}
+        two_pairs(own / "runs" / f"s{seed}", 3.0, seed, derived={"grains": 2}, **{**usual, **parameters})
+    assert run(own, "--json") == status
+    answer = capsys.readouterr()
+    if status:
+        assert answer.err.splitlines()[-1] == (
+            "analysis: the runs differ in material too: name them in varied, or give collision_study() one value of each "
+            "(material is ice, silicate)"
+        )
+    else:
+        sticking = json.loads(answer.out)["quantities"]["sticking"]["rows"]
+        assert [row["pairs"] for row in sticking if row["velocity"] == 3.0] == [6]
+
+
+def test_pairs_of_files_are_told_by_the_files(tmp_path, capsys):
+    """Aggregates from files have one seed; a table of such runs is read again."""
+    code = """
+from analysis.studies.collisions import collision_study, outcome_quantities
+from analysis.studies.runs import Runs
+of = lambda table: outcome_quantities(Runs(table, "file", ("projectileFile",)), ("velocity",))
+STUDY = collision_study("T", "Q?", ("velocity", "file", "projectileFile"), of, packing="file")
+"""
+    (tmp_path / "files.py").write_text(code)
+    for first, second in (("a1", "b1"), ("a2", "b1"), ("a1", None)):
+        files = dict(packing="file", file=first, projectileFile=second)
+        two_pairs(tmp_path / "runs" / f"{first}-{second}", 3.0, 1, **files)
+    assert main(["study", str(tmp_path / "files.py"), str(tmp_path / "runs"), "--format", "csv"]) == 0
+    (tmp_path / "runs.csv").write_text(capsys.readouterr().out)
+    for runs in ("runs", "runs.csv"):
+        assert main(["study", str(tmp_path / "files.py"), str(tmp_path / runs), "--json"]) == 0
+        (sticking,) = json.loads(capsys.readouterr().out)["quantities"]["sticking"]["rows"]
+        assert (sticking["value"], sticking["pairs"]) == (1.0, 3)
+
+
+@pytest.mark.parametrize("short, long", ["ab", "ba"])
+def test_of_two_runs_of_a_collision_the_longer_one_counts(own, capsys, short, long):
+    for name, more in ((short, {}), (long, dict(duration=1.0))):
+        made_run(own / "both" / name, 20, 3.0, 1, grains=2, **more)
+    assert main(["study", str(own / "sticking.py"), str(own / "both"), "--format", "csv"]) == 0
+    said = capsys.readouterr()
+    assert [row.split(",")[0] for row in said.out.splitlines() if row[0] != "#"] == ["run", long]
+    assert (
+        f"both/{short}: the same grains, velocity and seed as {own}/both/{long}, which is longer, left out" in said.err
+    )
+
+
+@pytest.mark.parametrize("column", ["population=", "by="])
+def test_a_column_that_the_runs_lack_is_one_line(own, capsys, column):
+    code = (own / "sticking.py").read_text()
+    (own / "sticking.py").write_text(code.replace(f'{column}("grains"', f'{column}("grain"'))
+    assert run(own) == 2
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert last.startswith(f"analysis: table of runs: no grain (did you mean grains?); must be one of")
 
 
 def test_runs_that_never_met_are_in_no_fraction():

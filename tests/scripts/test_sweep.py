@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from running import PYTHON, TOP, call, collide, environment, read_json, refusal, start, wait_for
 
-from analysis.runs.format import PARAMETER_UNITS
+from analysis.runs.format import PARAMETER_UNITS, PARAMETER_WORDS
 from yade_scripts import collide as from_python
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import ParameterError
@@ -87,6 +87,7 @@ def test_an_interrupted_sweep_leaves_checkpoints(tmp_path):
     assert "KeyboardInterrupt" in errors and read_json(run)["outcome"] == "interrupted"
 
 
-def test_units_of_parameters_are_the_scripts_own():
+def test_units_and_words_of_parameters_are_the_scripts_own():
     columns = {**collision.KIND.parameters.columns(), **compression.KIND.parameters.columns()}
     assert {name: column.unit for name, column in columns.items() if column.unit} == PARAMETER_UNITS
+    assert {name for name, column in columns.items() if column.kind is str} - {"out"} == set(PARAMETER_WORDS)
