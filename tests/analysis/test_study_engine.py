@@ -147,7 +147,7 @@ def test_a_column_that_the_runs_lack_is_one_line(own, capsys, column):
     (own / "sticking.py").write_text(code.replace(f'{column}("grains"', f'{column}("grain"'))
     assert run(own) == 2
     last = capsys.readouterr().err.splitlines()[-1]
-    assert last.startswith(f"analysis: table of runs: no grain (did you mean grains?); must be one of")
+    assert last.startswith("analysis: table of runs: no grain (did you mean grains?); must be one of")
 
 
 def test_runs_that_never_met_are_in_no_fraction():
