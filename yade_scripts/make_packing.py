@@ -9,7 +9,8 @@ The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as
 doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
 
 Other programs' aggregates may be npz, csv, xyz, extended xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, or text of
-DustCollider, FracVAL, PyFracVAL, aggregate_gen or YADE. Their contacts are brought to rest for the grains of `material`.
+DustCollider, FracVAL, PyFracVAL, aggregate_gen or YADE. Their contacts are brought to rest for the grains of `material`; packings and
+states of collisions, RUN/states/NNNNNN.npz, say their own.
 """
 
 import os

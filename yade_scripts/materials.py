@@ -49,11 +49,20 @@ ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al.
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
 
 
+def _values(name):
+    """The properties of a material in words."""
+    return f"{name}: " + ", ".join(f"{key} {value:g}" for key, value in asdict(MATERIALS[name]).items())
+
+
 @dataclass(frozen=True)
 class GrainParameters(Parameters):
     """The grains. Each property is that of `material` unless it is given."""
 
-    material: str = parameter("ice", one_of(list(MATERIALS)), "whose properties the grains have")
+    material: str = parameter(
+        "ice",
+        one_of(list(MATERIALS)),
+        f"whose properties the grains have, each unless it is given below ({'; '.join(map(_values, MATERIALS))})",
+    )
     grainRadius: float | None = parameter(None, POSITIVE, "radius of a grain", "m", usual=GRAINS)
     young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa", usual=YOUNG)
     poisson: float | None = parameter(None, between(0, 0.5), "Poisson's ratio", "1")

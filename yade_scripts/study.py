@@ -189,6 +189,7 @@ def close(study, stop):
     print(
         f"{printable(study.name)}: {len(states)} rows, {done} done, {len(failures)} failed"
         + (f", {len(states) - done - len(failures)} left" if stop.received else "")
+        + study.undecided()
     )
     if stop.received:
         return 128 + stop.received

@@ -43,6 +43,15 @@ def pressure_over(history, width):
     return _work_over_volume(history, compressing(history), width)
 
 
+def pressure_at_end(history, width):
+    """Pressure [Pa] over the last `width` [s], by the work over the volume; of a cell that was stretched the mean of the samples."""
+    last = history["time"] >= history["time"][-1] - width
+    if last.sum() < 2 or not compressing(history).all():
+        return float(history["pressure"][last].mean())
+    work, size = work_on_boundaries(history)[last], volume(history)[last]
+    return float((work[-1] - work[0]) / (size[-1] - size[0]))
+
+
 def tension(history, width):
     """(filling factors (K,), tensions (K,) [Pa]) over successive windows of `width` [s] while the cell is stretched. Along one axis it is the
     stress on that axis, the tangential forces included. Empty without stretching."""

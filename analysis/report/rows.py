@@ -12,12 +12,13 @@ from ..arguments import FLAG, PATH, takes, wrong
 from ..measures.coordination import mean_coordination
 from ..measures.fragments import fragment_labels, heaviest_fragment
 from ..measures.ledger import fractions_at
+from ..measures.periodic_compression import AVERAGED, pressure_at_end
 from ..measures.pieces import STRUCTURE, structure_of
 from ..progress import progress
 from ..runs.arrays import RunFolderError
 from ..runs.collect import run_folders
 from ..runs.folder import RunFolder, open_run
-from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, PARAMETER_UNITS, RUN_KINDS
+from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, PARAMETER_UNITS, RUN_KINDS
 from ..runs.table import FOLDER, RUN, Column, columns_text, described, make_table
 from .summary import COMPRESSION_KEYS, ENERGY_KEYS, OUTCOME_KEYS, summarise
 
@@ -57,8 +58,14 @@ ENERGIES = (
         for c in CHANNEL_TABLE
     ),
 )
+PRESSURE = f"over the last {AVERAGED:g} t0: work on the boundaries over the change of volume, after a stretching mean of the samples"
 SERIES = tuple(
-    Column(final(series.name), series.unit, f"at the end: {series.meaning}", gaps=True)
+    Column(
+        final(series.name),
+        series.unit,
+        PRESSURE if series.name == "pressure" else f"at the end: {series.meaning}",
+        gaps=True,
+    )
     for kind in RUN_KINDS.values()
     for series in kind.series
 )
@@ -154,7 +161,7 @@ def row(run, structure=True):
         **dict(zip(("largest_fraction", "second_fraction"), fractions)),
         **{at_end(channel): of_k.get(channel) for channel in CHANNELS},
         **{
-            final(series.name): None if series.name in without else run.history[series.name][-1]
+            final(series.name): None if series.name in without else _at_end(run, series.name)
             for series in run.kind.series
             if series.name in run.history
         },
@@ -163,6 +170,13 @@ def row(run, structure=True):
     numeric = {column.name for column in MEASURED if column.kind == "f"}
     gaps = {name: np.nan for name, value in values.items() if value is None and name in numeric}
     return {**parameters_of(run), **values, **gaps}
+
+
+def _at_end(run, name):
+    """Last value of a series; a pressure, which oscillates, is a mean."""
+    if run.kind is COMPRESSION and name == "pressure":
+        return pressure_at_end(run.history, AVERAGED * run.derived["timeUnit"])
+    return run.history[name][-1]
 
 
 def parameters_of(run):

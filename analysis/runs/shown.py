@@ -8,7 +8,7 @@ from .format import PARAMETER_UNITS
 # What is said of a run's parameters, as far as it has them.
 TOLD = (
     *("packing", "filling", "radius", "grains", "projectileGrains", "velocity", "impact"),
-    *("material", "viscoelasticTime", "neck", "finalFilling", "strainRate", "seed"),
+    *("material", "grainRadius", "viscoelasticTime", "neck", "finalFilling", "strainRate", "seed"),
 )
 WIDTH = 100
 

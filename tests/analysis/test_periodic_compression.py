@@ -50,6 +50,16 @@ def test_pressure_by_the_work_counts_what_happens_between_samples():
     assert pressures == pytest.approx(SCALE * fillings**3, rel=0.02)
 
 
+def test_the_pressure_at_the_end_is_a_mean():
+    """By the work over the volume, whatever the samples meet; of a cell that was stretched that of the samples."""
+    history = compression()
+    seen = dict(history, pressure=3.0 * history["pressure"])
+    assert pressure_at_end(seen, 1e4) == pytest.approx(SCALE * 0.5**3, rel=0.1)
+    turned = {name: np.append(series, series[-2::-1]) for name, series in seen.items()}
+    turned["time"] = 1e6 + np.append(history["time"] - 1e6, 1e6 - history["time"][-2::-1])
+    assert pressure_at_end(turned, 1e4) == pytest.approx(3 * SCALE * 0.004**3, rel=0.1)
+
+
 def test_coordination_at_fillings_and_bins_to_the_end_of_runs():
     """Of A24 eq 45, whatever the bin's width; to 0.5 and to random close packing, as far as the study's tables go."""
     history = compression()

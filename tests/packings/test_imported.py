@@ -10,6 +10,7 @@ from of_ice import OVERLAP, RADIUS
 from refused import refused
 from running import make_packing
 from scenes import *
+from written_runs import losing, record, state_arrays, write_run
 
 from analysis.export.vtk_xml import poly_data
 from analysis.measures.fragments import fragment_labels
@@ -250,6 +251,26 @@ def test_units_names_and_tolerance(tmp_path, text, given, radius):
     assert packing.radius.tolist() == pytest.approx([radius] * 2, rel=1e-12)
     depth = 2 * radius - np.linalg.norm(np.diff(packing.position, axis=0))
     assert depth == pytest.approx(OVERLAP * (radius / RADIUS) ** (1 / 3), rel=1e-3)
+
+
+def test_a_state_and_a_packing_are_of_the_material_that_they_say(tmp_path):
+    """Grains of silicate, 0.6 um, that were taken for ice have contacts out of rest; a state elsewhere doesn't say what it is of."""
+    made = AggregateParameters.parse(dict(packing="bpca", grains=40, material="silicate"))
+    overlap = equilibrium_overlap(made)
+    packing = make(made, overlap, 0)
+    packings.save(tmp_path / "a.npz", packing)
+    still = 0 * packing.position
+    state = state_arrays(0.0, packing.position, still, np.zeros(40), packings.contacts(packing))
+    state["radius"] = packing.radius
+    run = write_run(tmp_path / "run", {**record(1e-6), "derived": made.as_dict()}, losing(np.array([0, 1e-9])), [state])
+    for file in (tmp_path / "a.npz", run / "states" / "000000.npz"):
+        done = make_packing(tmp_path, "b.npz", f"from={file}")
+        assert done.stdout.endswith("in a run: packing=file file=b.npz material=silicate\n"), done.stderr
+        assert packings.load(tmp_path / "b.npz").parameters["overlap"] == pytest.approx(overlap)
+        assert imported(str(file), dict(material="ice", pieces="largest"))[0].parameters["young"] == 7e9
+    (run / "states" / "000000.npz").rename(tmp_path / "000000.npz")
+    with refused(packings.PackingError, "a state of a run, but ", "must be in RUN/states, or material be given"):
+        imported(str(tmp_path / "000000.npz"), {})
 
 
 def test_the_command_names_the_run_that_takes_the_packing(tmp_path):

@@ -41,6 +41,21 @@ def test_a_run_of_files_is_that_of_their_packings(files):
         assert float(file["characteristic_radius"]) == packings.characteristic_radius(packing)
 
 
+UNLIKE = dict(packing="bpca", grains=40, sizes="two", sizeRatio=3, sizeFraction=0.2)
+
+
+@pytest.mark.parametrize("given, volume", [({**UNLIKE, "seed": 5}, 32 + 8 * 27), (dict(packing="bcca", grains=40), 40)])
+def test_the_filling_of_a_run_is_of_its_grains_volume(given, volume):
+    found, _, _ = place(CollisionParameters.parse(given), OVERLAP)
+    assert found.filling == pytest.approx(volume / found.radius**3, rel=1e-12)
+
+
+def test_a_packing_says_how_unlike_its_grains_are(tmp_path):
+    packings.save(tmp_path / "a.npz", make(CollisionParameters.parse(UNLIKE), OVERLAP, 0))
+    assert UNLIKE.items() <= packings.load(tmp_path / "a.npz").parameters.items()
+    assert "sizes" not in make(CollisionParameters.parse(dict(packing="bcca", grains=4)), OVERLAP, 0).parameters
+
+
 def write(path, position, radius, **parameters):
     np.savez(path, position=position, radius=radius, seed=1, parameters=json.dumps(parameters))
     return str(path)
@@ -51,7 +66,7 @@ def write(path, position, radius, **parameters):
     [
         (PAIR[:1], [RADIUS], "N >= 2"),
         (PAIR * 0.99, [RADIUS] * 2, "grains 0 and 1 overlap by 3.01e-09 m; must be at most 1.1 of the equilibrium"),
-        (PAIR * 6, [6 * RADIUS] * 2, "made of grains of 6e-07 m, not 1e-07 m; must be"),
+        (PAIR * 6, [6 * RADIUS] * 2, "or grainRadius = 6e-07 (one for all packings of a run)"),
     ],
 )
 def test_what_is_wrong_with_a_file(tmp_path, position, radius, message):

@@ -87,15 +87,41 @@ def test_states_have_the_cell(run):
 
 
 def test_it_ends_at_a_pressure(tmp_path):
-    """Averaged over 1000 t0, and long before the largest filling; a cell that is looser than stretching would leave it stays."""
+    """Of the work over the volume in 1000 t0, not before, and long before the largest filling; a cell that is looser than stretching
+    would leave it stays."""
     done = compress(tmp_path, *SMALL, "finalPressure=2e3", "stretch=x", "stretchFilling=0.4", "out=run")
     about, history = read_json(tmp_path, "run", "run.json"), read_arrays(tmp_path, "run", "history.npz")
-    recent = history["time"] >= history["time"][-1] - 1000 * about["derived"]["timeUnit"]
-    last = history["filling"][-1]
-    assert history["pressure"][recent].mean() >= 2e3 and 0.05 < last < 0.4
+    work, size, last = history["boundaryWork"], volume(history), history["filling"][-1]
+    window = int(1000 * about["derived"]["timeUnit"] / np.diff(history["time"])[0] * (1 + 1e-9))
+    before, reached = ((work[k] - work[k - window]) / (size[k] - size[k - window]) for k in (-2, -1))
+    assert before < 2e3 <= reached < 2.1e3 and 0.05 < last < 0.4
+    assert (
+        f"\nended by finalPressure, at a filling of {last:.3g} and {reached:.3g} Pa over the last 1000 t0\n"
+        in done.stdout
+    )
     assert about["parameters"]["finalFilling"] == pytest.approx(0.65, abs=0.005)
     said = f"stretchFilling = 0.4: the pressure was reached at a filling of {last:.3g}; the cell is not stretched"
     assert done.returncode == 0 and messages(done) == [f"compress.py: {said}"] and about["outcome"] == "completed"
+
+
+ENDS = {
+    "finalFilling=0.02": "finalFilling, at a filling of 0.02",
+    "finalFilling=0.02 stretch=x": "stretchFilling, at a filling of 0.0060",
+    "finalFilling=0.02 duration=1e-8": "duration, at a filling of 0.00842",
+    "finalFilling=0.02 boundary=walls duration=1e-8": "duration, at a filling of 0.1",
+}
+
+
+@pytest.mark.parametrize("given", ENDS)
+def test_a_run_says_what_ended_it(tmp_path, given):
+    done = compress(tmp_path, *SMALL, *given.replace("0.02 boundary", "0.3 boundary").split())
+    assert f"\nended by {ENDS[given]}" in done.stdout, done.stderr
+
+
+def test_what_swings_from_the_start_is_no_pressure(tmp_path):
+    """The virial of the first 1000 t0 is 20 Pa, of an aggregate that touches nothing."""
+    _, history = completed(tmp_path, *SMALL, "finalPressure=1")
+    assert history["boundaryWork"][-1] < 0 and history["filling"][-1] < 0.02
 
 
 @pytest.mark.parametrize("axes, grows", [("x", (True, False, False)), ("xyz", (True, True, True))])
@@ -144,6 +170,11 @@ def test_functors_give_the_same_pressure(tmp_path):
 
 WRONG = {
     "finalFilling=0.7": "finalFilling = 0.7: beyond random close packing; must be at most 0.650 for these grains",
+    "finalFilling=30": "finalFilling = 30: must be > initialFilling and at most that of random close packing (0.64, of",
+    "strainRate=1e-3 finalPressure=1e3": "finalPressure = 1000: a mean over 1000 t0, and the compression is over after 729 t0; must be "
+    "left out, or strainRate at most 0.000722",
+    "duration=1e-7 finalPressure=1e3": "finalPressure = 1000: a mean over 1000 t0, and the compression is over after 516 t0; must be "
+    "left out, or duration at least 1.96e-07",
     "finalFilling=1e-5": "finalFilling = 1e-05: must be above the 0.008166 of the start",
     "initialFilling=0.2": "initialFilling = 0.2: ",  # the cluster would touch its images
     "grains=20": "grains = 20: the cell would be too small at a filling of 0.5; must be at least 22, or finalFilling at most 0.452",

@@ -8,6 +8,7 @@ import pytest
 from refused import refused
 
 from analysis import theory
+from analysis.runs.shown import settings
 from yade_scripts import stability
 from yade_scripts.experiments import collision, collision_step
 from yade_scripts.experiments.collision import CollisionParameters
@@ -232,6 +233,14 @@ def test_help_names_every_parameter_once_with_its_unit(parameters):
     assert max(map(len, text.splitlines())) <= 100
     words = "\n  velocity = 3.16228 [m/s]\n      relative velocity of the aggregates; must be > 0\n"
     assert parameters is not CollisionParameters or words in text
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_help_and_summary_tell_what_grains_a_material_has(name):
+    """Those of silicate are six times as large."""
+    radius = {"ice": "1e-07", "silicate": "6e-07"}[name]
+    assert f"{name}: grainRadius {radius}, young" in " ".join(CollisionParameters.help_text().split())
+    assert f"material {name}, grainRadius {radius} m" in settings(parse({"material": name}).as_dict())
 
 
 @pytest.mark.parametrize("name", MATERIALS)

@@ -74,7 +74,7 @@ def test_a_study_of_two_kinds(run, tmp_path):
     script, differs = done.stderr.splitlines()
     assert script == "study.py: nothing: line 4 of both.table: none.py: no such script; the other rows are run"
     assert differs.startswith(f"study.py: other: {run}x: holds an ended run with rate = 0.0003, not 0.0001; must be ")
-    assert done.stdout.splitlines()[-1] == "both: 5 rows, 3 done, 2 failed"
+    assert done.stdout.splitlines()[-1].startswith("both: 5 rows, 3 done, 2 failed; 1 undecided (longer: collide.py ")
     assert open_run(run).parameters["rate"] == 3e-4  # as it was
     kinds = {name: read_json(tmp_path, "runs", name, "run.json")["kind"] for name in ("cell", "collision")}
     assert kinds == {"cell": "shrink", "collision": "collision"}

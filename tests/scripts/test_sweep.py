@@ -70,11 +70,12 @@ def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_run_that_fails_is_named(tmp_path, monkeypatch):
+def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RunsFailed, match=r"^collide-.*v3000.*: the run broke down at t = "):
         from_python(folder="own", radius=5, velocity=[10, 3000], unusual=1, duration=10e-9, stepFraction=0.4)
     assert len(list(tmp_path.glob("own/*/ended"))) == 1
+    assert "\n2 runs; 1 undecided (longer: collide.py continue=FOLDER duration=...)\n" in capsys.readouterr().out
 
 
 def test_an_interrupted_sweep_leaves_checkpoints(tmp_path):

@@ -58,7 +58,9 @@ class CollisionParameters(AggregateParameters, RunParameters):
         None, between(2, MOST_GRAINS), "grains of the projectile, with packing = bcca or bpca (as many as grains)"
     )
     projectileFile: str | None = parameter(
-        None, Check("a packing that make_packing.py wrote", lambda text: text != ""), "the projectile's packing (file)"
+        None,
+        Check("a packing that make_packing.py wrote", lambda text: text != ""),
+        "the projectile's packing (file: the same grains, not turned, so that each meets its own image)",
     )
     neck: float = parameter(
         0.0,
@@ -223,8 +225,9 @@ def _with_size(parameters, pair):
             f"neck = {parameters.neck:g}: given with grains of unlike size in {parameters.file}; must be 0"
         )
     extents = [packings.extent(packing) / parameters.grainRadius for packing in pair]
-    radius, grains = max(extents), pair[int(np.argmax(extents))].grains
-    filling = grains / radius ** (2 if parameters.planar else 3)
+    radius, dimensions = max(extents), 2 if parameters.planar else 3
+    grains = pair[int(np.argmax(extents))].radius / parameters.grainRadius
+    filling = float((grains**dimensions).sum() / radius**dimensions)
     return parameters.changed(radius=radius, filling=filling, grains=pair[0].grains)
 
 

@@ -64,12 +64,18 @@ class CompressionParameters(GrainParameters, RunParameters):
     )
     finalFilling: float | None = parameter(
         None,
-        Check("> initialFilling and at most that of random close packing", lambda x: 0 < x < 1),
+        Check(
+            f"> initialFilling and at most that of random close packing ({RANDOM_CLOSE_PACKING:g}, of grains that overlap a little more)",
+            lambda x: 0 < x < 1,
+        ),
         f"filling factor at which the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)",
         "1",
     )
     finalPressure: float | None = parameter(
-        None, POSITIVE, f"pressure, averaged over {AVERAGED:g} t0, at which it ends if that comes first", "Pa"
+        None,
+        POSITIVE,
+        f"pressure at which it ends if that comes first: work on the boundaries over the change of volume, in the last {AVERAGED:g} t0",
+        "Pa",
     )
     stretch: str = parameter(
         "no", one_of(list(AXES)), "whether and along which axes the cell is stretched afterwards, at the same rate"
@@ -186,13 +192,12 @@ def prepare(parameters, threads):
         return _between_walls(parameters, constants)
     cluster = packings.bcca(parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed)
     edge = _first_edge(parameters, cluster)
-    parameters = parameters.changed(initialFilling=filling_factor(cluster.radius, np.full(3, edge)))
-    _require_order(parameters)
-    if parameters.duration is None:
-        parameters = _with_duration(parameters, constants["timeUnit"])
+    first = filling_factor(cluster.radius, np.full(3, edge))
+    parameters = _with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
     mass = cluster.radius**3 * (4 / 3 * pi * parameters.density)
     rate = shrinking_rate(parameters, constants["timeUnit"])
     material = yade_scene.material_of(parameters)
+    end = Ending(parameters, constants["timeUnit"], rate)
     return Scene(
         parameters=parameters,
         constants=constants,
@@ -202,7 +207,8 @@ def prepare(parameters, threads):
         series=lambda state: series(state, mass),
         law={"linearDamping": parameters.linearDamping},
         energy_is_conserved=parameters.engine == "fused",
-        control=Ending(parameters, constants["timeUnit"], rate),
+        control=end,
+        ended_by=end.ended_by,
         interval=_interval(parameters),
         step_choice=reason_of_step(parameters, constants),
     )
@@ -215,10 +221,7 @@ def _between_walls(parameters, constants):
     on_plate = yade_scene.plane_constants(parameters, linearDamping=parameters.linearDamping)
     layer, edge, height = piston.layer(parameters, constants, on_plate)
     first = filling_factor(layer.radius, [edge, edge, height])
-    parameters = parameters.changed(initialFilling=first)
-    _require_order(parameters)
-    if parameters.duration is None:
-        parameters = _with_duration(parameters, constants["timeUnit"])
+    parameters = _with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
     rate = shrinking_rate(parameters, constants["timeUnit"])
     end = Ending(parameters, constants["timeUnit"], rate)
 
@@ -235,6 +238,7 @@ def _between_walls(parameters, constants):
         series=piston.series,
         law={"linearDamping": parameters.linearDamping},
         control=control,
+        ended_by=end.ended_by,
         interval=_interval(parameters),
         step_choice=reason_of_step(parameters, constants),
     )
@@ -267,10 +271,28 @@ def _first_edge(parameters, cluster):
     return edge
 
 
-def _require_order(parameters):
+def _with_start(parameters, time_unit):
+    """The parameters, with initialFilling, with a duration. Raises ParameterError where nothing, or no pressure, would be reached."""
     if parameters.finalFilling <= parameters.initialFilling:
         raise ParameterError(
             f"finalFilling = {parameters.finalFilling:g}: must be above the {parameters.initialFilling:.4g} of the start"
+        )
+    _require_time_for_pressure(parameters, time_unit)
+    return _with_duration(parameters, time_unit) if parameters.duration is None else parameters
+
+
+def _require_time_for_pressure(parameters, time_unit):
+    """Raise ParameterError where the compression is over before its pressure can be averaged."""
+    if parameters.finalPressure is None:
+        return
+    to_filling = time_to_filling(parameters, time_unit) / time_unit
+    lasts = min(to_filling, (parameters.duration or np.inf) / time_unit)
+    if lasts < AVERAGED:
+        longer = f"duration at least {1.01 * AVERAGED * time_unit:.3g}"
+        slower = f"strainRate at most {0.99 * parameters.strainRate * to_filling / AVERAGED:.3g}"
+        raise ParameterError(
+            f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, and the compression is over after "
+            f"{lasts:.3g} t0; must be left out, or {slower if to_filling < AVERAGED else longer}"
         )
 
 
@@ -294,13 +316,17 @@ def shrinking_rate(parameters, time_unit):
 def longest_duration(parameters, time_unit):
     """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth more,
     before which Ending ends the run."""
-    rate = shrinking_rate(parameters, time_unit)
-    time = log(parameters.finalFilling / parameters.initialFilling) / (parameters.axes * rate)
-    axes = len(AXES[parameters.stretch])
+    time, axes = time_to_filling(parameters, time_unit), len(AXES[parameters.stretch])
     if axes:
         loose = parameters.stretchFilling or LOOSE * parameters.finalFilling
-        time += log(parameters.finalFilling / loose) / (axes * rate)
+        time += log(parameters.finalFilling / loose) / (axes * shrinking_rate(parameters, time_unit))
     return 1.01 * time
+
+
+def time_to_filling(parameters, time_unit):
+    """Time [s] from initialFilling to finalFilling (K13 eq 7)."""
+    rate = parameters.axes * shrinking_rate(parameters, time_unit)
+    return log(parameters.finalFilling / parameters.initialFilling) / rate
 
 
 def _build(cluster, edge, rate, material):

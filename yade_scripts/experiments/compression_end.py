@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from analysis.measures.periodic_compression import AVERAGED, pressure_at_end
 from yade_scripts.parameters.errors import tell
 
 LOOSE = 0.3  # filling at which stretching ends, over that at which it begins; stress is largest at about 0.5 (T19)
-AVERAGED = 1000.0  # t0 over which K13 averages the pressure
+OF_PRESSURE = ("time", "filling", "pressure", "boundaryWork", "constraintWork", "edge_x", "edge_y", "edge_z")
 AXES = {"no": (), "x": (0,), "xyz": (0, 1, 2)}
 
 
@@ -30,7 +31,8 @@ class Ending:
     """Turns the compression into the stretching, and ends the run: Scene.control. time_unit: t0 [s]; rate [1/s]."""
 
     def __init__(self, parameters, time_unit, rate):
-        self.parameters, self.time_unit, self.rate = parameters, time_unit, rate
+        self.parameters, self.rate = parameters, rate
+        self.window = AVERAGED * time_unit
         self._loose = parameters.stretchFilling
 
     def __call__(self, recorder, state):
@@ -57,8 +59,25 @@ class Ending:
         """Whether the final filling or the final pressure is reached."""
         return recorder.recent("filling")[-1] >= self.parameters.finalFilling or self._pressed(recorder)
 
+    def ended_by(self, recorder):
+        """Which parameter ended the run, and where."""
+        filling = recorder.recent("filling")[-1]
+        where = f"at a filling of {filling:.3g}"
+        if not recorder.finished:
+            return f"duration, {where}"
+        if rates().max() > 0:
+            return f"stretchFilling, {where}"
+        if filling >= self.parameters.finalFilling:
+            return f"finalFilling, {where}"
+        return f"finalPressure, {where} and {self._pressure(recorder):.3g} Pa over the last {AVERAGED:g} t0"
+
     def _pressed(self, recorder):
-        limit, window = self.parameters.finalPressure, AVERAGED * self.time_unit
-        if limit is None or recorder.recent("time")[-1] < window:
+        limit = self.parameters.finalPressure
+        if limit is None or recorder.recent("time")[-1] < self.window:
             return False
-        return recorder.recent("pressure", window).mean() >= limit
+        return self._pressure(recorder) >= limit
+
+    def _pressure(self, recorder):
+        """By the work of the grains on the boundaries, which they do not do before the aggregate meets its images: the virial of an
+        aggregate that still swings from the start is not zero."""
+        return pressure_at_end({name: recorder.recent(name, self.window) for name in OF_PRESSURE}, self.window)

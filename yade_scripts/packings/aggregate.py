@@ -36,7 +36,8 @@ class AggregateParameters(GrainParameters):
     filling: float | None = parameter(
         None,
         Check("> 0 and at most what the lattice holds", lambda x: x > 0),
-        "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4)",
+        "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4); of others the sum of (r/R)^3 or (r/R)^2 is found, "
+        "with R from the centre to that of the farthest grain; largest_filling_factor of tables has R = (5/3)^(1/2) R_g",
         "1",
     )
     radius: float | None = parameter(
@@ -170,13 +171,15 @@ def make(parameters, overlap, index):
     """Aggregate number index of a run, around the origin.
 
     parameters: AggregateParameters; overlap: of touching grains of grainRadius [m]. What is made says of which material,
-    so that a run of other grains does not start with contacts out of rest (from_file.py). Raises PackingError.
+    so that a run of other grains does not start with contacts out of rest (from_file.py), and how unlike its grains are. Raises
+    PackingError.
     """
     if parameters.packing == "file":
         return packing_from_file(parameters.file, parameters.grainRadius, overlap, bool(parameters.planar), parameters)
     packing = _made(parameters, overlap, index)
-    material = {name: getattr(parameters, name) for name in OF_CONTACTS}
-    return replace(packing, parameters={**packing.parameters, **material})
+    told = OF_CONTACTS if parameters.sizes == EQUAL else (*OF_CONTACTS, "sizes", *OF_SIZES)
+    about = {name: getattr(parameters, name) for name in told if getattr(parameters, name) is not None}
+    return replace(packing, parameters={**packing.parameters, **about})
 
 
 def _made(parameters, overlap, index):

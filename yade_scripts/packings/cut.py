@@ -48,19 +48,30 @@ class PeriodicState:
 
 def is_periodic_state(path):
     """Whether a file is an .npz with a periodic cell, as the states of a compression are."""
+    return holds(path, "cell_size")
+
+
+def holds(path, name):
+    """Whether a file is an .npz with an array of that name."""
     try:
-        return "cell_size" in array_names(path)
+        return name in array_names(path)
     except RunFolderError:
         return False
 
 
+def record_of_state(path):
+    """run.json of the run that RUN/states/NNNNNN.npz is of, which is as the run left it; raises RunFolderError."""
+    run = os.path.dirname(os.path.dirname(os.path.abspath(path)))
+    record, seal = read_record(run)
+    if seal:
+        seal.require(os.path.relpath(path, run))
+    return record
+
+
 def read_periodic_state(path):
     """PeriodicState of RUN/states/NNNNNN.npz; raises PackingError when it is none."""
-    run = os.path.dirname(os.path.dirname(os.path.abspath(path)))
     try:
-        record, seal = read_record(run)
-        if seal:
-            seal.require(os.path.relpath(path, run))
+        record = record_of_state(path)
         state = read_state(path, COMPRESSION, record.get("format", FORMAT))
         derived = record["derived"]
         overlap = float(derived["equilibriumOverlap"])

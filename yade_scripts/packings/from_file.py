@@ -36,7 +36,7 @@ def _require_radius(path, packing, grain_radius):
     if not np.isclose(made_of, grain_radius, rtol=1e-6, atol=0):
         raise PackingError(
             f"{path}: made of grains of {made_of:g} m, not {grain_radius:g} m; must be a packing of such grains, or "
-            f"grainRadius = {made_of:g}"
+            f"grainRadius = {made_of:g} (one for all packings of a run)"
         )
 
 
@@ -50,7 +50,7 @@ def _require_material(path, made_of, grains):
         if not np.isclose(stored, wanted, rtol=1e-6, atol=0):
             raise PackingError(
                 f"{path}: made of grains with {name} = {stored:g}, not {wanted:g}; must be a packing of such grains, or "
-                f"{name} = {stored:g}"
+                f"{name} = {stored:g} (one for all packings of a run)"
             )
 
 

@@ -13,14 +13,24 @@ from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
 from analysis.measures.fragments import fragment_labels, fragment_sizes
+from analysis.runs.arrays import RunFolderError
 from yade_scripts import materials
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.aggregate import MOST_GRAINS
-from yade_scripts.packings.cut import OF_CONTACTS
+from yade_scripts.packings.cut import OF_CONTACTS, holds, record_of_state
 from yade_scripts.packings.foreign import IN_A_METRE, read_spheres
 from yade_scripts.packings.from_file import DEEPEST
 from yade_scripts.packings.largest_piece import largest_piece
-from yade_scripts.packings.packing import Packing, PackingError, centred, contacts, surface_gaps, touching
+from yade_scripts.packings.packing import (
+    Packing,
+    PackingError,
+    centred,
+    contacts,
+    is_packing,
+    load,
+    surface_gaps,
+    touching,
+)
 from yade_scripts.packings.rest import at_rest, equilibrium_overlaps
 from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, parameter
 
@@ -73,8 +83,8 @@ class Scaled:
 
 def imported(path, texts):
     """(Packing around the origin, lines about how it came about) of a file of another program and {name: text} of
-    ImportParameters. Raises ParameterError and PackingError."""
-    parameters = ImportParameters.parse(texts)
+    ImportParameters. Grains are of the material that the file says, unless one is given. Raises ParameterError and PackingError."""
+    parameters = ImportParameters.parse(texts if "material" in texts else {**_said_material(path), **texts})
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
     scaled = _scaled(path, spheres, parameters, "grainRadius" in texts)
     parameters = parameters.changed(grainRadius=scaled.grain_radius)
@@ -104,14 +114,37 @@ def imported(path, texts):
     return packing, lines
 
 
+def _said_material(path):
+    """{name: value} of OF_CONTACTS, of a state of a run or a packing that make_packing.py wrote; {} of other programs' files."""
+    if is_packing(path):
+        said = load(path).parameters
+    elif not holds(path, "contact_pairs"):
+        return {}
+    else:
+        try:
+            said = dict(record_of_state(path)["derived"])
+        except (RunFolderError, KeyError, TypeError, ValueError) as error:
+            reason = " ".join(str(error).split())
+            raise PackingError(
+                f"{path}: a state of a run, but {reason}; must be in RUN/states, or material be given"
+            ) from None
+    return {name: said[name] for name in OF_CONTACTS if name in said}
+
+
 def grains_of(packing, material=None):
-    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material`."""
-    usual = materials.MATERIALS[material or ImportParameters().material]
+    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material` (the likest one)."""
     made_of = {name: packing.parameters[name] for name in ("grainRadius", *OF_CONTACTS)}
-    others = [
-        f"{name}={x:.10g}" for name, x in made_of.items() if not np.isclose(x, getattr(usual, name), rtol=1e-6, atol=0)
-    ]
-    return [f"material={material}", *others] if material else others
+
+    def others(usual):
+        usual = materials.MATERIALS[usual]
+        return [
+            f"{name}={x:.10g}"
+            for name, x in made_of.items()
+            if not np.isclose(x, getattr(usual, name), rtol=1e-6, atol=0)
+        ]
+
+    found = material or min(materials.MATERIALS, key=lambda name: len(others(name)))
+    return [f"material={found}"] * (material is not None or found != ImportParameters().material) + others(found)
 
 
 def _scaled(path, spheres, parameters, grain_radius_given):

@@ -34,7 +34,8 @@ class Scene:
     energy_is_conserved: whether all channels together are constant (not with moving boundaries and the functors);
     control(recorder, state): called after each sample, may change the scene (a cell's velGrad); True: the run is at its
     end, before `duration` is over. It must follow from the recorder's history, the state and the scene alone, so that
-    a run resumes. interval: small steps between samples, at most;
+    a run resumes. ended_by(recorder): what brought a run to its end, in a few words, or None; interval: small steps between
+    samples, at most;
     step_choice: how stepFraction came about, in one line.
     """
 
@@ -47,6 +48,7 @@ class Scene:
     law: Mapping = field(default_factory=dict)
     energy_is_conserved: bool = True
     control: Callable[[Any, Mapping], bool] = lambda recorder, state: False
+    ended_by: Callable[[Any], str | None] = lambda recorder: None
     interval: int = 50
     step_choice: str = "as given"
 

@@ -161,6 +161,14 @@ def _goes_on(row, run):
     return found[0] is not None and found[1] is None
 
 
+def undecided(rows, states):
+    """'; 3 undecided (...)' of rows whose runs have ended with their outcome open, and so with a checkpoint; or ''."""
+    found = [row for row, state in zip(rows, states) if state.kind == DONE and checkpoint.exists(row.out)]
+    if not found:
+        return ""
+    return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
+
+
 def _stopped(folder, run):
     """(what to say of a run that didn't come to its end, how far its checkpoint is)."""
     if not run:

@@ -50,6 +50,10 @@ class Study:
         states, _ = self.states_with_queue(changed)
         return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
 
+    def undecided(self):
+        """How many of the runs that have ended are undecided, in words; '' where none is."""
+        return rows.undecided(self.rows, self.states())
+
     def has_been_edited(self):
         """Whether the table is another one than that which was read."""
         return _bytes_of(self.table) != self._text

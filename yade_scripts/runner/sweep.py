@@ -37,8 +37,8 @@ def collide(folder="runs", jobs=None, **parameters):
     """Run collisions, and return analysis.table() of them: a row for every combination of the values.
 
     parameters: as collide.py has them (below); a list, range or array stands for several values, None for the default.
-    folder: where the run folders go, named after their parameters; those that are there are resumed, or taken as they are when
-    they have ended. jobs: threads at once (one for each core).
+    folder: where the run folders go, named after their parameters, a duration that is given among them; those that are there are
+    resumed, or taken as they are when they have ended. jobs: threads at once (one for each core).
 
     The rows stand in a table in the folder, which study.py runs too: --status tells how far they are from any shell.
     ParameterError (a ValueError with the line that collide.py has) for a wrong name or value, before anything runs; RunsFailed
@@ -131,31 +131,34 @@ def _run(file, jobs):
         # In a session of its own, so that Ctrl-C reaches it once, and by us.
         study = subprocess.Popen(command, stdout=said, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True)
         try:
-            _wait(study, said.fileno(), of_table)
+            told = _wait(study, said.fileno(), of_table)
         except BaseException:
             study.send_signal(signal.SIGINT)
             study.wait()
             raise
         errors.seek(0)
         lines = [line.removeprefix("study.py: ") for line in errors.read().splitlines()]
+    if of_table.undecided() not in told:
+        print(f"{len(of_table.rows)} runs{of_table.undecided()}")
     if study.returncode:
         more = f", and {len(lines) - TOLD} more" if len(lines) > TOLD else ""
         raise RunsFailed("; ".join(lines[:TOLD]) + more or f"{file}: study.py ended with status {study.returncode}")
 
 
 def _wait(process, said, study):
-    """Show how far the runs are until study.py has ended; its estimate comes first."""
-    told = 0
+    """Show how far the runs are until study.py has ended; its estimate comes first, which is returned."""
+    told = ""
     with bar(len(study.rows), "runs") as shown:
         over = False
         while not over:
             begun = time.monotonic()
             over = process.poll() is not None  # asked first, so that what has ended meanwhile is shown
-            text = os.pread(said, 10_000, told).decode()
-            if told == 0 and "\n" in text:
-                told = len(text.encode())
+            text = "" if told else os.pread(said, 10_000, 0).decode()
+            if "\n" in text:
+                told = text
                 shown.write(text.rstrip("\n"))
             left = study.left()
             shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
             shown.update(sum(state.progress for state in study.states()) - shown.n)
             time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))
+    return told
