@@ -23,13 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .fragments import (
-    belongs_to_an_aggregate,
-    fragment_labels,
-    fragment_masses,
-    growth_efficiency,
-    heaviest_fragment,
-)
+from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses, growth_efficiency, heaviest_fragment
 
 NEVER_MET, STICKING, BOUNCING, FRAGMENTATION = "never met", "sticking", "bouncing", "fragmentation"
 UNDECIDED = "undecided"

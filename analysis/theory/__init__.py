@@ -27,13 +27,7 @@ from .pair_constants import (
     pair_constants,
     time_unit,
 )
-from .sticking import (
-    PairCollision,
-    collide_pair,
-    pair_motion,
-    sticking_velocity,
-    sticking_velocity_without_drag,
-)
+from .sticking import PairCollision, collide_pair, pair_motion, sticking_velocity, sticking_velocity_without_drag
 
 __all__ = [
     "contact_radius_root",

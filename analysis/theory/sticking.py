@@ -135,12 +135,7 @@ def pair_motion(velocity, pair, times):
     times = np.asarray(times, dtype=float) / motion.time
     separation = _event(lambda _, state: state[0])
     path = solve_ivp(
-        motion.forward,
-        (0.0, max(times.max(), 1e-9)),
-        start,
-        events=separation,
-        dense_output=True,
-        **_TOLERANCES,
+        motion.forward, (0.0, max(times.max(), 1e-9)), start, events=separation, dense_output=True, **_TOLERANCES
     )
     h, rate = path.sol(np.minimum(times, path.t[-1]))
     apart = times > path.t[-1]

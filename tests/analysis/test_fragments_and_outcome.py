@@ -102,8 +102,7 @@ def test_unlike_aggregates_are_judged_by_what_the_target_gains(pieces, kind):
 
 
 @pytest.mark.parametrize(
-    "pieces, largest, growth",
-    [((40,), 40, 1.0), ((10, 30), 10, 0.0), ((12, 28), 12, 2 / 30), ((9, 31), 9, -8 / 30)],
+    "pieces, largest, growth", [((40,), 40, 1.0), ((10, 30), 10, 0.0), ((12, 28), 12, 2 / 30), ((9, 31), 9, -8 / 30)]
 )
 def test_growth_is_by_mass_and_the_heavier_aggregate_is_the_target(tmp_path, pieces, largest, growth):
     """Ten grains of twice the radius, 80 of 110 masses, and thirty single ones."""

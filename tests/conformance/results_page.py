@@ -96,11 +96,7 @@ def ensembles():
     columns, level = ["distribution", "suite", *samples], suite["level"] / len(suite["distributions"])
     pairs = [pair for name, values in samples["lammps"].items() for pair in zip(values, samples["lammps-newest"][name])]
     alike = ALIKE.format(same=sum(one == other for one, other in pairs), all=len(pairs))
-    lines = [
-        ENSEMBLES.format(level=level, alike=alike),
-        row(columns),
-        row(["---"] * len(columns)),
-    ]
+    lines = [ENSEMBLES.format(level=level, alike=alike), row(columns), row(["---"] * len(columns))]
     for given in suite["distributions"]:
         name, own = given["id"], samples["engine"].get(given["id"])
         cells = [of_sample(samples[code].get(name), own, found[code].get(name), level) for code in samples]

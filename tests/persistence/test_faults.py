@@ -92,8 +92,7 @@ def test_every_module_that_writes_files_is_known():
 
 
 @pytest.mark.parametrize(
-    "name, every",
-    [("analysis export", 29), ("make_packing", 4), ("analysis view", 3), ("study --slurm", 7)],
+    "name, every", [("analysis export", 29), ("make_packing", 4), ("analysis view", 3), ("study --slurm", 7)]
 )
 def test_no_fault_leaves_half_of_what_a_command_writes(forks, tmp_path, name, every):
     command = next(command for command in COMMANDS if command.name == name)

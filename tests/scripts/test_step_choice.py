@@ -135,11 +135,7 @@ def test_the_constants_are_those_of_the_data():
     found = dict(list((collisions.over <= 1).groupby([kind, collisions["set"]])))
     cells = cells.query(f"not ({report.REFUSED}) and stretch == 'no'")
     found |= {("compressed", name): own <= 1 for name, own in cells.over.groupby(cells["set"])}
-    least = {
-        ("plain", "grid"): 400,
-        ("cut", "random"): 20,
-        **{("compressed", name): 99 for name in ("grid", "random")},
-    }
+    least = {("plain", "grid"): 400, ("cut", "random"): 20, **{("compressed", name): 99 for name in ("grid", "random")}}
     least |= {(kind, "random"): 90 for kind in ("plain", "sintered", "held")}
     assert all(len(found[key]) > number for key, number in least.items())
     assert 0.95 < np.mean([*found["plain", "grid"], *found["plain", "study"]]) < 0.99

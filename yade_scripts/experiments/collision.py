@@ -170,10 +170,7 @@ def prepare(parameters, threads):
     return Scene(
         parameters=parameters,
         constants=constants,
-        derived={
-            **_sizes(aggregate_radius, pair, parameters),
-            **({} if touch is None else {"firstTouch": touch}),
-        },
+        derived={**_sizes(aggregate_radius, pair, parameters), **({} if touch is None else {"firstTouch": touch})},
         aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
         build=lambda: _build(parameters, pair, velocities, material),
         series=lambda state: {

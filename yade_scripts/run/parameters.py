@@ -3,16 +3,7 @@
 import os
 from dataclasses import dataclass
 
-from yade_scripts.parameters import (
-    POSITIVE,
-    SWITCH,
-    Check,
-    ParameterError,
-    Parameters,
-    between,
-    one_of,
-    parameter,
-)
+from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Parameters, between, one_of, parameter
 from yade_scripts.run.file_name import file_name
 from yade_scripts.stability import AUTO, STABLE_STEP
 
@@ -27,8 +18,7 @@ class RunParameters(Parameters):
     stepFraction: float | str = parameter(
         0.1,
         Check(
-            f"> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}",
-            lambda x: 0 < x <= STABLE_STEP,
+            f"> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}", lambda x: 0 < x <= STABLE_STEP
         ),
         f"time step; {AUTO}: the longest that keeps to tolerance",
         "t0",

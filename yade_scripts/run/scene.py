@@ -68,10 +68,7 @@ def pair_constants(grains, neck=0.0, linearDamping=0.0):
     constants = {**functor.pairConstants(*two), "bond": None}
     if neck:
         sintered = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=neck)
-        constants["bond"] = {
-            **sintered.bondConstants(*two),
-            "shrunkRadius": sintered.pairConstants(*two)["radius1"],
-        }
+        constants["bond"] = {**sintered.bondConstants(*two), "shrunkRadius": sintered.pairConstants(*two)["radius1"]}
     return constants
 
 

@@ -355,10 +355,7 @@ def main(arguments):
         except PackingError as error:
             sys.exit(f"atlas.py: {error}")
     else:
-        print(
-            f"atlas.py: must be called with tables, longer, {', '.join(SIZES)}; --help says more",
-            file=sys.stderr,
-        )
+        print(f"atlas.py: must be called with tables, longer, {', '.join(SIZES)}; --help says more", file=sys.stderr)
         sys.exit(2)
 
 

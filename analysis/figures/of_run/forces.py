@@ -13,11 +13,7 @@ _STRONG = 0.2  # of F_c, A24 Fig. 13
 _HALF_SLAB = 2.0  # in grain radii: thin enough to see single chains, thick enough to hold them
 _TIMES = (5 / 6, 1.0, 7 / 6, 4 / 3)  # of t_max: A24 shows 250, 300, 350 and 400 ns beside a t_max of 300 ns
 _KINDS = (("other", "#8f8f8f", 0.5), ("tension", "#00e5ff", 1.3), ("compression", "#ff2bd6", 1.3))
-_TEXT = {
-    "compression": "compression, $F > 0.2\\,F_c$",
-    "tension": "tension, $F < -0.2\\,F_c$",
-    "other": "weaker",
-}
+_TEXT = {"compression": "compression, $F > 0.2\\,F_c$", "tension": "tension, $F < -0.2\\,F_c$", "other": "weaker"}
 
 
 @styled

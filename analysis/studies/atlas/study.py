@@ -163,10 +163,7 @@ def _kinds(table):
 def _fast(runs):
     """Decided runs above SLOW by outcome, below and above the velocity from which most erode."""
     at = variables(runs.table).velocity
-    groups = {
-        f"{SLOW:g} to {ERODING:g} v_break": at.between(SLOW, ERODING),
-        f"above {ERODING:g} v_break": at > ERODING,
-    }
+    groups = {f"{SLOW:g} to {ERODING:g} v_break": at.between(SLOW, ERODING), f"above {ERODING:g} v_break": at > ERODING}
     grouped = _grouped(runs, groups)
     of_kinds = {kind: grouped.fractions(lambda t, kind=kind: t.outcome == kind, BY_GROUP) for kind in KINDS}
     return Quantity("fast", f"decided runs above {SLOW:g} v_break by outcome", together(of_kinds, "outcome"))

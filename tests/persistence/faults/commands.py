@@ -29,10 +29,7 @@ FIGURES = (CurveFigure("sticking", "What sticks.", "sticking", x="velocity", log
 """
 TABLE = "description {}\na {}\n".format(*(" ".join(words) for words in zip(*(cell.split("=") for cell in RUN))))
 # Programs that commands call: a queue of Slurm's in which the one job waits once it has been submitted. (make test-slurm has the real one.)
-PROGRAMS = {
-    "sbatch": 'touch "$0.called"; echo 12',
-    "squeue": 'test -e "${0%squeue}sbatch.called" && echo 12_1 PENDING',
-}
+PROGRAMS = {"sbatch": 'touch "$0.called"; echo 12', "squeue": 'test -e "${0%squeue}sbatch.called" && echo 12_1 PENDING'}
 
 
 def files_below(folder):
