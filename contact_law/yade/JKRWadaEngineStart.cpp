@@ -13,19 +13,19 @@ using contact_law::Dynamics;
 void JKRWadaEngine::requireAlone(const Scene& scene)
 {
 	int engines = 0;
+	bool emptied = false;
 	for (const auto& engine : scene.engines) {
 		if (engine->dead) continue;
 		for (const char* other : { "NewtonIntegrator", "InteractionLoop" })
 			if (engine->getClassName() == other)
 				refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
-		if (engines && engine->getClassName() == "ForceResetter")
-			refuseInEngine(
-			        "ForceResetter comes after this engine in O.engines, and would empty what it writes: must come before");
+		emptied = emptied || (engines && engine->getClassName() == "ForceResetter");
 		engines += bool(dynamic_cast<const JKRWadaEngine*>(engine.get()));
 	}
 	if (engines > 1)
 		refuseInEngine(
 		        "O.engines has " + std::to_string(engines) + " JKRWadaEngines: there must be one, which moves all grains once");
+	if (emptied) refuseInEngine("ForceResetter comes after this engine in O.engines, and would empty what it writes: must come before");
 }
 
 EngineSettings JKRWadaEngine::settings() const

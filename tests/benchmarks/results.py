@@ -55,7 +55,7 @@ class Results:
     def _read(self, name):
         path, self._measured, there = self.folder / f"{name}.csv", None, pd.DataFrame(columns=COLUMNS[name])
         if path.exists():
-            there = pd.read_csv(path, float_precision="round_trip")
+            there = pd.read_csv(path, float_precision="round_trip", dtype={"commit": str})  # which may be digits alone
         # a moment that was measured again comes last in the file
         setattr(self, name, there.sort_values("progress", kind="stable") if name == "moments" else there)
 

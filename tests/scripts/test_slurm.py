@@ -209,7 +209,7 @@ def test_a_signal_to_all_of_the_job_is_not_passed_on(begin, monkeypatch):
     """Passed on, it would end the run, which has handled one, without its checkpoint."""
     monkeypatch.setattr(slurm_task, "ALL_SIGNALLED", 0.2)
     task, running, log = begin("DEAF = True" + STOPS)
-    wait_for(lambda: log.exists() and told(log))
+    wait_for(lambda: log.exists() and told(log) and task._worker.run)
     for process in (task._worker.process.pid, task._worker.run, os.getpid()):
         os.kill(process, signal.SIGTERM)
     assert running.get(60) == 143 and told(log) == ["begun", "TERM"]
