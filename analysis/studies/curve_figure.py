@@ -85,13 +85,16 @@ class CurveFigure:
         columns = min(len(shown), WIDEST)
         drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
         flat = axes.ravel()
+        of_points = []
         for value, place in zip(shown, flat):
             part = series if value is None else select(series, **{self.panel: value})
+            of_points += [place] * (part.index.get_level_values(self.x).nunique() == 1)
             _curves(place, self, quantity, part, results)
             _dress(place, self, value, part, results.independent)
         for place in flat[len(shown) :]:
             place.set_axis_off()
         _share_y(flat[: len(shown)], self.limits or (None, None))
+        _widen(of_points, [place for place in flat[: len(shown)] if place not in of_points])
         for row in axes:
             row[0].set_ylabel(self.y_label or f"{self.y}{quantity.in_unit}")
         _legends(flat)
@@ -123,6 +126,14 @@ def _share_y(places, limits):
     low, high = zip(*(place.get_ylim() for place in places))
     for place in places:
         place.set_ylim(min(low) if limits[0] is None else limits[0], max(high) if limits[1] is None else limits[1])
+
+
+def _widen(of_points, others):
+    """Panels with one value of x have the scale of the others."""
+    if others:
+        low, high = zip(*(place.get_xlim() for place in others))
+        for place in of_points:
+            place.set_xlim(min(low), max(high))
 
 
 def _curves(axes, figure, quantity, series, results):

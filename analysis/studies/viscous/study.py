@@ -16,7 +16,8 @@ from .measure import DISSIPATION, EVENTS, FAST, MEASURED, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
 REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # the collision that A22 shows most
-EDGE = tuple(k / 12 for k in (2, 3, 4, 5))  # B_off^2 about which aggregates begin to merge
+# Twelfths of B_off^2: where growth turns to loss, and beyond.
+SQUARES_OF = {"drag_edge": (2, 3, 4, 5), "drag_beyond": (6, 7, 8, 9)}
 CURVE = ("grains", "viscoelasticTime", "velocity")
 POINT = ("grains", "viscoelasticTime")
 FRAGMENTS_AT = (10**1.7, 100.0)  # m/s: A22 Figs 6 to 8
@@ -47,7 +48,8 @@ def _growth(runs, suffix, over):
     """Growth efficiency and what follows, from means over offsets."""
     growth = runs.estimates("growth", CURVE)
     yield Quantity(f"growth{suffix}", f"growth efficiency f_gro, mean over {over}", growth)
-    v_fra = along(growth, "velocity", threshold_velocity) if len(growth) else growth
+    several = growth[growth.index.droplevel("velocity").duplicated(keep=False)]
+    v_fra = along(several, "velocity", threshold_velocity) if len(several) else several
     yield Quantity(f"v_fra{suffix}", f"velocity at which that mean falls through 0 ({over})", v_fra, "m/s")
     of_velocity = ("grains", "velocity")
     more = _with_drag(runs, "growth", of_velocity)
@@ -74,8 +76,9 @@ def _offsets(runs):
     yield Quantity("at_offset", "f_gro at 50.1 m/s", at_offset)
     drag_at_offset = _with_drag(runs, "growth", ("grains", "square"))
     yield Quantity("drag_at_offset", "f_gro at 50.1 m/s, 6 ps less without drag", drag_at_offset)
-    drag_edge = _with_drag(runs.over("square", EDGE), "growth", ("grains",))
-    yield Quantity("drag_edge", "the same, mean over B_off^2 = 2/12 to 5/12", drag_edge)
+    for name, of in SQUARES_OF.items():
+        change = _with_drag(runs.over("square", [k / 12 for k in of]), "growth", ("grains",))
+        yield Quantity(name, f"the same, mean over B_off^2 = {of[0]}/12 to {of[-1]}/12", change)
     loss = runs.parts(_over("kinetic_at_start"), (*POINT, "square"), "channel")
     yield Quantity("loss_at_offset", "lost in each way at 50.1 m/s, of K(0)", loss, "%")
 
