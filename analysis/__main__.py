@@ -31,8 +31,7 @@ def main(arguments=None):
             warnings.showwarning = (
                 lambda text, kind, *more: complain(text) if kind is Unsealed else shown(text, kind, *more)
             )
-            of = next(filter(None, (getattr(options, name, None) for name in ("page", "figures", "out", "run"))), "")
-            return in_one_line(lambda: options.command(options), of)
+            return in_one_line(options)
     except BrokenPipeError:
         # The reader (head, less) has gone: nothing is left to say, not even at the interpreter's exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

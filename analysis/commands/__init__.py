@@ -29,14 +29,16 @@ def number(is_right, must_be):
     return of
 
 
-def in_one_line(call, of):
-    """Exit status of call(); what it is refused with, by the file system (at `of` where that names no file) or by us, gets one line."""
+def in_one_line(options):
+    """Exit status of a command; what it is refused with, by the file system or by us, gets one line. Where an error of the file system
+    names no file, as a full disk's, it is of what the command writes."""
     try:
-        return call()
+        return options.command(options)
     except BrokenPipeError:  # main()'s
         raise
     except OSError as error:
-        complain(f"{error.filename or of}: {error.strerror}")
+        written = (getattr(options, name, None) for name in ("page", "figures", "out", "run"))
+        complain(f"{error.filename or next(filter(None, written), '')}: {error.strerror}")
     except Exception as error:
         if not type(error).__module__.startswith("analysis."):
             raise

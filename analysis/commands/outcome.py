@@ -1,7 +1,7 @@
 """python3 -m analysis outcome --velocity V --projectile N --target N --filling F [--impact B | averaged] [--maxwell] [--material M]"""
 
 from ..printable import printable_lines
-from . import number
+from . import FAILED, complain, number
 
 
 def add_parser(commands):
@@ -53,5 +53,10 @@ def run(options):
     """Exit status: 0, or 2 with one line on stderr."""
     from ..atlas.query import text
 
-    print(printable_lines(text(options)))
+    try:
+        answer = text(options)
+    except ValueError as error:  # numpy's among them
+        complain(error)
+        return FAILED
+    print(printable_lines(answer))
     return 0

@@ -7,6 +7,7 @@ from written_runs import two_pairs
 
 import analysis
 from analysis.__main__ import main
+from analysis.atlas import query as query_of
 from analysis.atlas import rules
 from analysis.atlas.barrier import barrier
 from analysis.atlas.columns import MEASURED
@@ -198,7 +199,7 @@ def test_a_query_beyond_the_runs_is_an_extrapolation(made):
         assert near.beyond(point(**beyond))[0] > 4 * MARGIN, beyond
 
 
-def test_command_with_the_gallerys_atlas(capsys):
+def test_command_with_the_gallerys_atlas(capsys, monkeypatch):
     query = "outcome --projectile 200 --target 300 --filling 0.3 --velocity"
     ask = lambda options, velocity=1: main(f"{query} {velocity} {options}".split())
     for options in ("", "--impact 0.3", "--maxwell", "--maxwell --impact 0.3"):
@@ -223,6 +224,8 @@ def test_command_with_the_gallerys_atlas(capsys):
         ask("--material lead") == 2
         and capsys.readouterr().err == "analysis: material = lead: must be ice or silicate\n"
     )
+    monkeypatch.setattr(query_of, "read_table", lambda *about: (read_table(*about)[0].head(5),))
+    assert ask("") == 2 and "fill no region" in capsys.readouterr().err
     with pytest.raises(SystemExit, match="2"):
         ask("--impact 3")
     assert "argument --impact: 3: must be 0 to 1, or averaged" in capsys.readouterr().err

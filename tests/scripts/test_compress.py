@@ -108,13 +108,13 @@ ENDS = {
     "finalFilling=0.02": "finalFilling, at a filling of 0.02",
     "finalFilling=0.02 stretch=x": "stretchFilling, at a filling of 0.0060",
     "finalFilling=0.02 duration=1e-8": "duration, at a filling of 0.00842",
-    "finalFilling=0.02 boundary=walls duration=1e-8": "duration, at a filling of 0.1",
+    "finalFilling=0.3 boundary=walls duration=1e-8": "duration, at a filling of 0.1",
 }
 
 
 @pytest.mark.parametrize("given", ENDS)
 def test_a_run_says_what_ended_it(tmp_path, given):
-    done = compress(tmp_path, *SMALL, *given.replace("0.02 boundary", "0.3 boundary").split())
+    done = compress(tmp_path, *SMALL, *given.split())
     assert f"\nended by {ENDS[given]}" in done.stdout, done.stderr
 
 

@@ -138,8 +138,9 @@ def _run(file, jobs):
             raise
         errors.seek(0)
         lines = [line.removeprefix("study.py: ") for line in errors.read().splitlines()]
-    if of_table.undecided() not in told:
-        print(f"{len(of_table.rows)} runs{of_table.undecided()}")
+    undecided = of_table.undecided()
+    if undecided not in told:
+        print(f"{len(of_table.rows)} runs{undecided}")
     if study.returncode:
         more = f", and {len(lines) - TOLD} more" if len(lines) > TOLD else ""
         raise RunsFailed("; ".join(lines[:TOLD]) + more or f"{file}: study.py ended with status {study.returncode}")
