@@ -41,6 +41,7 @@ OUTCOME = (
     Column("kind", "", "of run", "O"),
     Column("ended", "", "whether it came to its planned end; another one is measured as far as it went", "b"),
     Column("time", "s", "of the last sample"),
+    Column("ended_by", "", "what ended a compression: a parameter, and where", "O", gaps=True),
     *(column for column in OUTCOME_KEYS if column.name != "mass_fractions"),
     Column("largest_fraction", "1", "fraction of the mass in the largest piece", gaps=True),
     Column("second_fraction", "1", "in the second largest", gaps=True),

@@ -6,6 +6,7 @@ from ..arguments import Kind, takes
 from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure, work_on_boundaries
 from ..measures.of_run import are_equal, maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
+from ..measures.periodic_compression import AVERAGED, pressure_at_end
 from ..runs.folder import RunFolder
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, LABELS
 from ..runs.shown import WIDTH, settings
@@ -48,12 +49,13 @@ ENERGY_KEYS = (
 @takes(run=Kind("a RunFolder, as open_run() gives", lambda run: isinstance(run, RunFolder)))
 def summarise(run):
     """Numbers of a RunFolder as a dict, SI units, None where a value does not exist: run (path), ended, time (of the last
-    sample), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions) and ENERGY_KEYS. RunFolderError when a
+    sample), ended_by (what ended a compression), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions) and ENERGY_KEYS. RunFolderError when a
     state is missing or damaged."""
     history = run.history
     collision = run.kind is COLLISION
     maximum = maximum_of_run(run) if collision and are_equal(run) else None
     numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
+    numbers["ended_by"] = run.record.get("endedBy")
     numbers.update(_compression(maximum))
     numbers.update(_outcome(run) if collision else dict.fromkeys(_names(OUTCOME_KEYS)))
     numbers["energy_closure"] = (work_closure if run.kind is COMPRESSION else closure)(history)
@@ -102,7 +104,7 @@ def _measures(run, numbers):
     else:
         yield "kind", f"a run of the kind {run.kind.name}"
     if run.kind is COMPRESSION:
-        yield from _compression_measures(run.history)
+        yield from _compression_measures(run, numbers)
     closed, (_, unit) = numbers["energy_closure"], _energy_unit(run, numbers)
     yield "energy closure", (f"undefined: no {unit}" if closed is None else f"{closed:.3g} of {unit}")
 
@@ -114,13 +116,17 @@ def _energy_unit(run, numbers):
     return numbers["initial_kinetic_energy"], "K(0)"
 
 
-def _compression_measures(history):
-    largest = history["filling"].argmax()
+def _compression_measures(run, numbers):
+    history, largest = run.history, run.history["filling"].argmax()
     yield "filling factor", f"{history['filling'][0]:.4g} to {history['filling'][largest]:.4g}"
     if largest + 1 < len(history["filling"]):
         yield "stretched to", f"{history['filling'][-1]:.4g}"
     yield "coordination", f"{history['coordination'][0]:.4g} to {history['coordination'][largest]:.4g}"
-    yield "pressure", f"{history['pressure'][largest]:.4g} Pa at the largest filling factor"
+    pressed = {name: series[: largest + 1] for name, series in history.items()}
+    pressure = pressure_at_end(pressed, AVERAGED * run.derived["timeUnit"])
+    yield "pressure", f"{pressure:.4g} Pa at the largest filling factor, of the work over the last {AVERAGED:g} t0"
+    if numbers["ended_by"]:
+        yield "ended by", numbers["ended_by"]
 
 
 def _collision_measures(run, numbers):

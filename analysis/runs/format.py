@@ -2,7 +2,8 @@
 
 Scripts write what stands here and the analysis reads it. All quantities are in SI units. A folder holds
 
-    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached;
+    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached,
+                        what ended a compression (endedBy);
                         files: names of what the run writes into the folder, by which scripts know it as a run's
     history.npz         time series, arrays (T,)
     states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts; P planes, K contacts with these

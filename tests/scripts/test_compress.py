@@ -114,8 +114,9 @@ ENDS = {
 
 @pytest.mark.parametrize("given", ENDS)
 def test_a_run_says_what_ended_it(tmp_path, given):
-    done = compress(tmp_path, *SMALL, *given.split())
+    done = compress(tmp_path, *SMALL, "out=run", *given.split())
     assert f"\nended by {ENDS[given]}" in done.stdout, done.stderr
+    assert read_json(tmp_path, "run", "run.json")["endedBy"].startswith(ENDS[given])
 
 
 def test_what_swings_from_the_start_is_no_pressure(tmp_path):

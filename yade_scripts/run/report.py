@@ -40,8 +40,8 @@ class Report:
 
     def __init__(self, folder, about, start, earlier=0.0):
         self.folder, self.start = folder, start - earlier
-        self.run = {**about, **made_with(), "hardware": hardware()}
-        self.undecided = self.ended_by = None  # why the run's outcome is; what brought it to its end
+        self.run = {**about, **made_with(), "hardware": hardware(), "endedBy": None}
+        self.undecided = None  # why the run's outcome is
 
     def wall_time(self):
         """Seconds that the run has taken, those before interruptions included."""
@@ -78,8 +78,8 @@ class Report:
         if outcome.startswith("failed"):
             tell(outcome)
         try:
-            if self.ended_by:
-                print(f"ended by {self.ended_by}")
+            if self.run["endedBy"]:
+                print(f"ended by {self.run['endedBy']}")
             if self.undecided:
                 twice = continuing.command(self.folder.path, duration=2 * self.run["parameters"]["duration"])
                 print(f"outcome undecided: {self.undecided}; to continue: {twice}")

@@ -106,7 +106,7 @@ def _carry_out(kind, scene, schedule, folder, begun):
         outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
         recorder.write_history()
         if outcome == "completed":
-            report.undecided, report.ended_by = kind.why_undecided(folder.path), scene.ended_by(recorder)
+            report.undecided, report.run["endedBy"] = kind.why_undecided(folder.path), scene.ended_by(recorder)
         if report.undecided:
             checkpoints.save()
     except (OSError, RuntimeError) as error:  # a folder that can't be written, a scene that YADE can't load
