@@ -72,6 +72,8 @@ class Analysis:
     def csv(self):
         """The table of runs as a file (str)."""
         head = {"study": self.study.name, "provenance": self.found.provenance, "notes": self.notes}
+        if self.study.alike:
+            head["alike"] = self.found.alike
         return table_text(self.found.table, self.study.columns, head)
 
     def text(self):

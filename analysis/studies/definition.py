@@ -82,7 +82,7 @@ class Study:
     measured    (columns.Columns, ...): a row of the table, with the numbers that tell runs apart
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
     independent what counts as one in errors, in the plural: pairs (of aggregates), clusters
-    alike       whether run folders that differ in parameters beside scene.key are refused together
+    alike       whether runs that differ in parameters beside scene.key are refused together
     folder (Path; find() fills it in): the study's, or the file of one's own. name: the folder's, or the file's."""
 
     title: str

@@ -18,11 +18,12 @@ LENGTH = "duration", "endWhenApart"  # how long a run is: of two of one collisio
 @dataclass
 class Gathered:
     """What was found: table (DataFrame, a row a run; None where there is none), provenance (dict), notes (str, one a run
-    left out), problems (str, one a path or run that could not be read), earlier (what tables that were read say of
-    runs left out), shown (str, one a run whose numbers are a table's: its states serve figures)."""
+    left out), alike ({parameter: value} that runs which must be alike share), problems (str, one a path or run that could not be read), earlier
+    (what tables that were read say of runs left out), shown (str, one a run whose numbers are a table's: its states serve figures)."""
 
     table: pandas.DataFrame = None
     provenance: dict = None
+    alike: dict = field(default_factory=dict)
     notes: list = field(default_factory=list)
     problems: list = field(default_factory=list)
     earlier: list = field(default_factory=list)
@@ -35,18 +36,22 @@ def gather(study, paths):
     has a folder too, figures that need a run's states take them from there. Of runs that must be alike and are not none is counted."""
     collection = collect(paths, study.scene)
     found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
-    if unlike := _unlike(study, collection.runs):
-        found.problems.append(unlike)
-        return found
     taken, parts, folders = {}, [], {}
+    rows = [(run.path, parameters_of(run)) for run in collection.runs if study.alike]
     for file in collection.tables:
         try:
-            table, origin, earlier = _read(study, file, taken)
+            table, head, earlier = _read(study, file, taken)
         except TableError as error:
             found.problems.append(str(error))
             continue
-        parts.append((table, origin))
+        parts.append((table, head["provenance"]))
+        rows.append((file, head.get("alike") or {}))
         found.earlier += earlier
+    if study.alike and rows:
+        found.alike, unlike = _alike(study, rows)
+        if unlike:
+            found.problems.append(unlike)
+            return found
     measured = _measure(study, collection.runs, taken, found, folders)
     if measured:
         rows = [(run.path, values) for run, values in measured]
@@ -59,19 +64,18 @@ def gather(study, paths):
     return found
 
 
-def _unlike(study, runs):
-    """What is wrong (one line) with runs that must be alike and differ in parameters beside the study's key; None with others.
-    A parameter that a run of an earlier version lacks is as in the others."""
-    if not (study.alike and runs):
-        return None
-    rows, usual = [parameters_of(run) for run in runs], {}
-    for row in reversed(rows):
+def _alike(study, rows):
+    """({parameter: value} that runs share which must be alike, what is wrong where they differ: one line, or None) of [(path, parameters)] of
+    runs and tables of runs. The study's key may differ; a parameter that a run of an earlier version lacks is as in the others."""
+    usual, own = {}, (*study.scene.key, *LENGTH)
+    for _, row in reversed(rows):
         usual.update(row)
-    found = frame([(run.path, {**usual, **row}) for run, row in zip(runs, rows)])
-    names = [name for name in varied(found) if name not in (*study.scene.key, *LENGTH)]
-    return (
-        differing(found, names, "name them in varied, or give collision_study() one value of each") if names else None
-    )
+    found = frame([(path, {**usual, **row}) for path, row in rows])
+    names = [name for name in varied(found) if name not in own]
+    shared = {name: value for name, value in usual.items() if name not in own}
+    return shared, differing(
+        found, names, "name them in varied, or give collision_study() one value of each"
+    ) if names else None
 
 
 def _measure(study, runs, taken, found, folders):
@@ -107,7 +111,7 @@ def _end(measured):
 
 
 def _read(study, file, taken):
-    """(table, provenance, notes) of a file of an earlier analysis."""
+    """(table, head, notes) of a file of an earlier analysis."""
     table, head = read_table(file, study.columns)
     if head.get("study") != study.name or not isinstance(head.get("provenance"), dict):
         raise TableError(f"{file}: a table of the study {head.get('study')}: must be of {study.name}")
@@ -122,7 +126,7 @@ def _read(study, file, taken):
     if not all(new):
         notes.append(f"runs of {file.name} that are in a table before it, which counts: {new.count(False)}")
     taken.update((key, f"{file}, {run}") for key, run, counts in zip(keys, table[RUN], new) if counts)
-    return table[new], head["provenance"], notes
+    return table[new], head, notes
 
 
 def _key(study, values):

@@ -109,6 +109,21 @@ def test_runs_that_differ_are_refused_unless_the_study_names_it(own, capsys, oth
         assert [row["pairs"] for row in sticking if row["velocity"] == 3.0] == [6]
 
 
+def test_tables_of_unlike_runs_are_refused_together(own, capsys):
+    """Each of them is read, and as one of two with like runs."""
+    made = {}
+    for material, seed in (("ice", 6), ("silicate", 7)):
+        two_pairs(own / material / "run", 3.0, seed, derived={"grains": 2}, material=material)
+        assert main(["study", str(own / "sticking.py"), str(own / material), "--format", "csv"]) == 0
+        made[material] = own / f"{material}.csv"
+        made[material].write_text(capsys.readouterr().out)
+    for first, second in (made.values(), (made["silicate"], own / "ice")):
+        assert main(["study", str(own / "sticking.py"), str(first), str(second), "--json"]) == 2
+        assert "the runs differ in material too: name them in varied" in capsys.readouterr().err.splitlines()[-1]
+    assert main(["study", str(own / "sticking.py"), str(made["ice"]), str(own / "ice"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["provenance"]["runs"] == 1
+
+
 def test_pairs_of_files_are_told_by_the_files(tmp_path, capsys):
     """Aggregates from files have one seed; a table of such runs is read again."""
     code = """
