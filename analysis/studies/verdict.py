@@ -153,14 +153,18 @@ def _interval(claim, ours):
 
 
 def _needed(claim, ours, independent):
-    """How many pairs would decide, with POWER, if the paper is right (within the margin) or ours is (beyond it)."""
+    """How many pairs would decide, with POWER, if the paper is right (within the margin) or ours is (beyond it): more than there are."""
     if isinstance(ours, Fraction):
         return f"{ours.pairs} runs don't decide"
     scatter = ours.error * math.sqrt(ours.pairs)
     low, high = _agreement(claim)
     away = max(low - ours.value, ours.value - high, min(ours.value - low, high - ours.value))
-    reach = (norm.ppf(1 - 0.5 * LEVEL) + norm.ppf(POWER)) * scatter
-    inverse = (away / reach) ** 2 - (1 / claim.runs if claim.value is not None else 0.0)
+    papers = 1 / claim.runs if claim.value is not None else 0.0
+    chances = 1 - 0.5 * LEVEL, POWER
+    inverse = (away / (norm.ppf(chances).sum() * scatter)) ** 2 - papers  # 1 over the number, were it large
     if inverse <= 0:
         return f"no number of {independent} decides: the paper's {claim.runs} scatter by {number_text(scatter)}"
-    return f"some {max(ours.pairs, math.ceil(1 / inverse))} {independent} would decide"
+    needed = max(ours.pairs + 1, math.ceil(1 / inverse))
+    while student.ppf(chances, needed - 1).sum() * scatter * math.sqrt(1 / needed + papers) > away:
+        needed += 1
+    return f"some {needed} {independent} would decide"

@@ -4,7 +4,7 @@
 
 Each is a template of the same name beside this file. In it say("viscous", "drag_largest", grains = 50000) stands for '8600 ± 2100', a quantity of
 a study of the gallery's runs; sentence(study) and judged(studies) for what its paper.toml says in one sentence and for verdicts, runs(studies) for their number; ratio(scene)
-and ledger(step) for what tests/benchmarks has measured, beside(distribution) for what tests/conformance has."""
+and errors(step) for what tests/benchmarks has measured, beside(distribution) for what tests/conformance has."""
 
 import json
 from functools import cache
@@ -67,12 +67,14 @@ def ratio(scene, code="lammps", threads=2):
     return f"{of_moments.min():.2g} to {of_moments.max():.2g}"
 
 
-def ledger(step):
-    """(root mean square of the ledger's error over K(0), seconds a run) at a step [t0] (str, str)."""
-    rows = _table(RESULTS / "error.csv").query(
-        "scene == 'collision' and code == 'engine' and step == @step and ledger == ledger"
-    )
-    return f"{np.sqrt((rows.ledger**2).mean()):.1e}", f"{rows.seconds.median():.1f}"
+def errors(step):
+    """(ledger's error over K(0), d_max less that of the finest step [grain radii], seconds a run) at a step [t0] (str each): root mean squares
+    of a few collisions, and the median."""
+    rows = _table(RESULTS / "error.csv").query("scene == 'collision' and code == 'engine'")
+    of_step = rows[rows.step == step].set_index("sample")
+    change = of_step.d_max - rows[rows.step == rows.step.min()].set_index("sample").d_max
+    squares = (f"{np.sqrt((values**2).mean()):.1e}" for values in (of_step.ledger, change))
+    return *squares, f"{of_step.seconds.median():.1f}"
 
 
 def beside(distribution, code="lammps-newest"):
@@ -87,7 +89,7 @@ def texts():
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(loader=FileSystemLoader(HERE), undefined=StrictUndefined, keep_trailing_newline=True)
-    known = dict(say=say, sentence=sentence, judged=judged, runs=runs, ratio=ratio, ledger=ledger, beside=beside)
+    known = dict(say=say, sentence=sentence, judged=judged, runs=runs, ratio=ratio, errors=errors, beside=beside)
     return {name: environment.get_template(name).render(known) for name in (OVERVIEW, PAPER)}
 
 

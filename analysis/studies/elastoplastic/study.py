@@ -178,7 +178,7 @@ def lateness(rows, weights):
 def _return(runs):
     """What comes back after the largest compression, how collisions end, and where the energy has gone until t_max."""
     share = {"e": lambda t: t.return_speed / t.velocity, "e²": lambda t: (t.return_speed / t.velocity) ** 2}
-    meaning = "largest speed at which the halves part over the collision velocity, and its square, the kinetic energy over K(0)"
+    meaning = "largest speed at which the halves part over the collision velocity, and its square, the kinetic energy over K(0); the first runs don't have it"
     yield Quantity("rebound", meaning, runs.parts(share, POINT, "of"))
     yield Quantity("return_time", "its time", runs.estimates("return_time", POINT), "ns")
     ended = (*POINT, "duration")

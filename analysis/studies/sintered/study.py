@@ -19,6 +19,8 @@ PLAIN = "cut"
 GRAINS = 2048  # of both BCCA aggregates (section 4)
 HALF = 0.5  # of the total mass: what the largest piece must keep for growth (section 5.1)
 CURVE = 4  # velocities or more: with fewer, where it falls to a half lies anywhere between two of them
+# (V_g, beta) of the aggregates in S17's Fig. 15.
+FIVE = (0.0, 0.2), (0.0, 0.7), (1.0, 0.7), (3.0, 0.7), (10.0, 0.7)
 STRONG = 0.65  # beta above which necks are those of S17's fit, 0.7
 LOST = ("rolling_friction", "sliding_friction", "stretching", "necks", "drag")
 MODES = {name: name.removeprefix("brokenBy").lower() for name in BROKEN_BONDS}
@@ -63,6 +65,8 @@ def _sizes(runs):
     """Structure at the start, sizes of the pieces, and the critical velocity for growth."""
     contacts = runs.estimates("contacts", ("setup", "growth_velocity"))
     yield Quantity("contacts", "contacts a grain of the aggregates at the start", contacts)
+    width = runs.estimates("initial_radius", ("setup", "growth_velocity"))
+    yield Quantity("initial_radius", "gyration radius of the aggregates at the start", width, "r")
     fragments = runs.estimates("fragments", POINT)
     yield Quantity("fragments", "fraction of the mass in pieces of less than a quarter of it", fragments)
     less = runs.beside("growth_velocity", 0.0, "fragments", KIND, differences)
@@ -93,10 +97,20 @@ def _necks(runs):
     over = runs.beside("setup", PLAIN, "necks", POINT[1:], ratios)
     yield Quantity("necks_change", f"N_cut/N_t over that with {PLAIN}", over)
     cut = runs.of(runs.table[runs.table.broken > 0])
-    by = ("setup", "growth_velocity", "neck")
-    total = cut.estimates("broken", by)
-    modes = together({mode: ratios(cut.estimates(name, by), total) for name, mode in MODES.items()}, "mode")
+    modes = _modes(cut, ("setup", "growth_velocity", "neck"))
     yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%")
+    rolling = ratios(cut.estimates("brokenByRolling", POINT), cut.estimates("broken", POINT))
+    yield Quantity("rolling_at", "necks broken by rolling, of all that broke at a velocity", rolling, "%")
+    kinds = [alike(runs.table.growth_velocity, v) & alike(runs.table.neck, neck) for v, neck in FIVE]
+    of_all = _modes(runs.of(runs.table[np.logical_or.reduce(kinds)]).where(setup=PLAIN), ("setup",))
+    yield Quantity(
+        "modes_together", "necks broken by each mode, of all in the five kinds of S17's Fig. 15", of_all, "%"
+    )
+
+
+def _modes(runs, by):
+    total = runs.estimates("broken", by)
+    return together({mode: ratios(runs.estimates(name, by), total) for name, mode in MODES.items()}, "mode")
 
 
 def _models(runs):
