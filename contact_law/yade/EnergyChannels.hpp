@@ -1,10 +1,8 @@
 // The energy channels in O.energy, by the names that all of the project uses (kernel/energy_channels.hpp).
 #pragma once
 #include "../kernel/energy_channels.hpp"
-#include <core/EnergyTracker.hpp>
-#include <core/Scene.hpp>
+#include "OncePerStep.hpp"
 #include <array>
-#include <atomic>
 
 namespace yade {
 
@@ -12,20 +10,9 @@ class EnergyChannels {
 public:
 	// EnergyTracker loses its names when it is cleared, and may give them out from one thread only: to be called once a step before
 	// adding. planes: work is done on moving planes.
-	void prepare(Scene& scene, bool planes = false)
+	void prepare(Scene& scene, bool planes)
 	{
-		if (preparedAt == scene.iter) return;
-#pragma omp critical(EnergyChannelsPrepare)
-		if (preparedAt != scene.iter) {
-			for (int channel = 0; channel < count; ++channel) {
-				ids[channel] = -1;
-				if (isWork(channel) && !(scene.isPeriodic && channel == boundaryWork)
-				        && !(planes && channel == constraintWork))
-					continue;
-				scene.energy->add(0., nameOf(channel), ids[channel], perStep(channel));
-			}
-			preparedAt = scene.iter;
-		}
+		prepared(scene, [&] { findIds(scene, planes); });
 	}
 
 	// ---- for the functors: what one contact did, from any thread, after prepare() ----
@@ -48,8 +35,7 @@ public:
 	void set(Scene& scene, const contact_law::Energies& energies, bool known, WorkOn there)
 	{
 		if (!areIn(scene)) last.fill(0); // O.energy is new, or was cleared
-		preparedAt = -2;
-		prepare(scene);
+		findIds(scene, false);
 		const auto values = contact_law::byChannel(energies);
 		for (int channel = 0; channel < count; ++channel) {
 			if (isWork(channel) && !isDone(channel, scene, there)) continue;
@@ -82,6 +68,16 @@ private:
 		return work == boundaryWork ? scene.isPeriodic : work == externalWork ? there.outside : there.blocked;
 	}
 
+	void findIds(Scene& scene, bool planes)
+	{
+		for (int channel = 0; channel < count; ++channel) {
+			ids[channel] = -1;
+			if (isWork(channel) && !(scene.isPeriodic && channel == boundaryWork) && !(planes && channel == constraintWork))
+				continue;
+			scene.energy->add(0., nameOf(channel), ids[channel], perStep(channel));
+		}
+	}
+
 	void add(Scene& scene, int channel, double energy)
 	{
 		static const std::string known; // by its id
@@ -90,7 +86,7 @@ private:
 
 	std::array<int, count> ids {};
 	std::array<double, count> last {};
-	std::atomic<long> preparedAt { -2 };
+	OncePerStep prepared;
 };
 
 } // namespace yade

@@ -140,6 +140,7 @@ void JKRWadaEngine::start(Moment moment, bool again)
 		continueBooking();
 	} else
 		booked = false;
+	if (!again) actedAt = -1; // in another scene
 	// that of the last step: one that was set since is taken by prepare(), or in the next step
 	SceneCell::applyVelocityGradient(*scene, current->dynamics);
 	forgetSaved();

@@ -84,9 +84,7 @@ void refuseInStep(Scene& scene, const std::string& what)
 
 bool SceneShapes::fit(Scene& scene)
 {
-	if (lookedAt == scene.iter) return fine;
-#pragma omp critical(SceneShapesFit)
-	if (lookedAt != scene.iter) {
+	look(scene, [&] {
 		ContactsHolder holder(scene);
 		const std::string fault = holder.onlyInEngine() ? ContactsHolder::refusal : faultOf(scene, anyPlane);
 		fine = fault.empty();
@@ -94,8 +92,7 @@ bool SceneShapes::fit(Scene& scene)
 			refuseInStep(scene, "Law2_ScGeom_JKRWadaPhys_JKRWada: " + fault);
 		else
 			holder.clear(); // those in O.interactions are the functors' from here on
-		lookedAt = scene.iter;
-	}
+	});
 	return fine;
 }
 

@@ -1,7 +1,6 @@
 // What contacts can be made: those of spheres with each other and with planes (Wall). Everything else is refused, by functors and fused engine.
 #pragma once
-#include <core/Scene.hpp>
-#include <atomic>
+#include "OncePerStep.hpp"
 #include <string>
 
 namespace yade {
@@ -28,7 +27,7 @@ public:
 	bool planes() const { return anyPlane; }
 
 private:
-	std::atomic<long> lookedAt { -2 };
+	OncePerStep look;
 	bool fine = true, anyPlane = false;
 };
 

@@ -38,6 +38,19 @@ def test_an_engine_is_refused_in_another_scene(away):
     require_refused({case: ["another scene", "make a new one"] for case in [*CALLS, "O.step()"]}, attempt)
 
 
+def test_an_engine_that_was_handed_over_starts_anew_in_another_scene():
+    """At the iteration that its latest step had there, between two steps here."""
+    chain()
+    O.step()
+    e = engine()
+    e.handOver()
+    chain()
+    O.engines = [e]
+    e.prepare()
+    assert contact_law.snapshot()["time"] == 0
+    e.handOver()
+
+
 def test_interactions_that_a_script_erased_are_written_again():
     """writeInteractions() writes all contacts, whatever was written and erased before; without it O.interactions are the script's own."""
     chain()

@@ -42,13 +42,28 @@ def said(add, changes):
     """What the functors refuse such a scene with, at the latest soon after the step."""
     neck = changes.get("neck", 0)
     new_scene(1e-3 * unit, neck=neck)
-    loop = O.engines[2]
-    bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
-    shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
-    functors = loop.physDispatcher.functors, loop.lawDispatcher.functors
-    O.engines = [O.engines[0], InsertionSortCollider(bounds), InteractionLoop(shapes, *functors), O.engines[3]]
+    take_all_shapes(functors())
     globals()[add](ice(), **{} if neck else changes)
     grain((0, 0, 0.999 * R), R, ice())
+    return said_soon()
+
+
+def functors():
+    return O.engines[2].physDispatcher.functors, O.engines[2].lawDispatcher.functors
+
+
+def take_all_shapes(functors):
+    bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
+    shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
+    O.engines = [
+        ForceResetter(),
+        InsertionSortCollider(bounds),
+        InteractionLoop(shapes, *functors),
+        NewtonIntegrator(damping=0),
+    ]
+
+
+def said_soon():
     try:
         O.step()
         end = time.time() + 10
@@ -66,6 +81,23 @@ def test_refused_in_one_line_by_functors_and_engine(add, changes, line):
     fused_engine(neck=changes.get("neck", 0))
     told = refusal()
     assert line in told and "\n" not in told
+
+
+@pytest.mark.in_yade
+@pytest.mark.parametrize("away", ["O.reset()", "O.switchScene()"])
+def test_functors_that_are_used_again_look_at_the_new_scene(away):
+    """It is at the iteration of the scene before."""
+    new_scene(1e-3 * unit)
+    used = functors()
+    for x in (0, 1.99 * R):
+        grain((x, 0, 0), R, ice())
+    O.step()
+    exec(away)
+    O.dt = 1e-3 * unit
+    take_all_shapes(used)
+    facet(ice())
+    grain((0, 0, 0.999 * R), R, ice())
+    assert "body 0 is a Facet" in said_soon()
 
 
 def said_to_threads():

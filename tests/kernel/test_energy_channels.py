@@ -33,5 +33,28 @@ def test_o_energy_has_the_channels_of_the_scene_and_no_others(scene, work, mover
     O.run(3, True)
     if mover == "functors" and work != "boundaryWork":  # they leave constraintWork and externalWork out
         work = None
-    found = {name for name, _ in O.energy.items()} - {"gravWork"}  # NewtonIntegrator's own
-    assert found == {c.name for c in CHANNEL_TABLE if c.kind != "work"} | ({work} if work else set())
+    assert channels_found() == {c.name for c in CHANNEL_TABLE if c.kind != "work"} | ({work} if work else set())
+
+
+def channels_found():
+    return {name for name, _ in O.energy.items()} - {"gravWork"}  # NewtonIntegrator's own
+
+
+@pytest.mark.parametrize("away", ["O.reset()", "O.switchScene()"])
+def test_a_law_that_is_used_again_books_in_the_new_scene(away):
+    """O.energy is another one there, at the iteration of the scene before."""
+    new_scene(0.1 * unit)
+    loop, normal = O.engines[2], []
+    for scene in range(2):
+        if scene:
+            exec(away)
+            O.dt, O.trackEnergy = 0.1 * unit, True
+            O.engines = functor_engines()
+            used = [d.functors for d in (loop.geomDispatcher, loop.physDispatcher, loop.lawDispatcher)]
+            O.engines = [*O.engines[:2], InteractionLoop(*used), O.engines[3]]
+        for x in (0, 1.985e-7):
+            grain((x, 0, 0), 1e-7, ice())
+        O.step()
+        normal.append(O.energy["normal"])
+    assert channels_found() == {c.name for c in CHANNEL_TABLE if c.kind != "work"}
+    assert normal[0] == normal[1] < 0
