@@ -82,10 +82,12 @@ namespace events {
 		return { before, inStep, inStep ? overlap / (overlap - before) : 0. };
 	}
 
-	// The fraction of the step after which the overlap passed -delta_c.
+	// The fraction of the step after which the overlap passed -delta_c: 0 where it was past it before. (The engine takes a contact of the
+	// functors as it was a small step of its own ago, and theirs may have been longer.)
 	inline double fractionUntilPullOff(const PairConstants<double>& c, double overlapBefore, double opening)
 	{
-		return (overlapBefore + c.pullOffOverlap) / opening;
+		const double left = overlapBefore + c.pullOffOverlap;
+		return left > 0 ? left / opening : 0;
 	}
 
 	// The fraction of a step after which a displacement that goes evenly from `before` to `now` has the length whose square is given.

@@ -103,7 +103,8 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool ag
 	const ContactsHolder holder(*scene);
 	if (!continued && holder.onlyInEngine()) refuseInEngine(ContactsHolder::refusal);
 	const bool inherits = again || (!continued && !inherited.empty()), stepBehind = inherits && inherited.stepBehind;
-	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, threads, stepBehind || holder.isWritten());
+	const bool ofContacts = stepBehind || holder.isWritten() || SceneShapes::functorsActed(*scene);
+	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, threads, ofContacts);
 	SceneCell cell;
 	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);

@@ -18,6 +18,8 @@ public:
 		action();
 		iteration = scene.iter;
 	}
+	// Whether the latest step of this scene had it done.
+	bool wasDone(const Scene& scene) const { return known == scene.energy.get() && iteration == scene.iter - 1; }
 
 private:
 	static constexpr long none = -2;

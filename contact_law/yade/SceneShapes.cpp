@@ -82,9 +82,12 @@ void refuseInStep(Scene& scene, const std::string& what)
 	std::thread([] { PyGILState_Release(PyGILState_Ensure()); }).detach();
 }
 
+OncePerStep SceneShapes::anyLook;
+
 bool SceneShapes::fit(Scene& scene)
 {
 	look(scene, [&] {
+		anyLook(scene, [] {});
 		ContactsHolder holder(scene);
 		const std::string fault = holder.onlyInEngine() ? ContactsHolder::refusal : faultOf(scene, anyPlane);
 		fine = fault.empty();

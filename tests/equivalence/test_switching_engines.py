@@ -49,6 +49,28 @@ def test_functors_then_engine_then_functors_is_one_run(kind, first):
         assert abs(energy - straight_energies[name]) < tolerance * scale, name
 
 
+@pytest.mark.parametrize("sub_steps", [1, 3, 10])
+def test_a_pair_that_comes_apart_is_taken_over_in_every_step(sub_steps):
+    """Beyond pull-off by less than a step, then in the step that broke the contact, then free; with the functors' step, and shorter ones."""
+
+    def speed_after(steps):
+        new_scene(0.2 * unit)
+        grain((0, 0, 0), 1e-7, ice())
+        grain((1.99e-7, 0, 0), 1e-7, ice(), (8, 0, 0))
+        O.run(steps, True)
+        a, b = positions()[:, 0]
+        beyond, touching = b - a - 2e-7 > constants(ice(), 1e-7)["pullOffOverlap"], O.interactions.countReal()
+        if steps < 12:
+            fused_engine(subSteps=sub_steps)
+            O.step()
+        return O.bodies[1].state.vel[0] - O.bodies[0].state.vel[0], beyond, touching
+
+    alone = speed_after(12)[0]
+    # beyond pull-off the half kick of the functors' step has another length than the engine's: first order
+    for steps, touching, tolerance in ((9, 1, 1e-9 if sub_steps == 1 else 0.03), (10, 0, 1e-9), (11, 0, 1e-9)):
+        assert speed_after(steps) == (pytest.approx(alone, rel=tolerance), True, touching)
+
+
 def test_a_saved_scene_of_the_functors_continues_with_the_engine():
     start("unlike")
     O.run(500, True)
