@@ -2,6 +2,7 @@
 // Symbols and sources: MODEL.md. A22 = Arakawa et al. 2022, K13 = Kataoka et al. 2013.
 #pragma once
 #include "cube_root.hpp"
+#include <algorithm>
 #include <cmath>
 
 namespace contact_law {
@@ -119,11 +120,11 @@ inline PairConstants<double> derivePair(
 }
 
 /* Steps from here on are unstable for such a pair, in whatever packing [s] (MODEL.md, "Step limits"): half a time unit, at which collisions were seen to blow
- * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. */
+ * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. NaN where the time unit is. */
 inline double unstableStep(const PairConstants<double>& c)
 {
 	const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
-	return std::fmin(0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : 1e300);
+	return std::min(0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : 1e300);
 }
 
 } // namespace contact_law

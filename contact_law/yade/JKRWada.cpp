@@ -26,9 +26,10 @@ namespace {
 	// One line: what, its value, and what it must be. ValueError in Python.
 	void require(bool fine, const std::string& what, Real value, const char* must)
 	{
+		if (fine) return;
 		std::ostringstream text;
 		text << what << " = " << value << ": must be " << must;
-		if (!fine) throw std::invalid_argument(text.str());
+		throw std::invalid_argument(text.str());
 	}
 	void requirePositive(const std::string& what, Real value, const std::string& unit)
 	{
@@ -147,18 +148,24 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	const auto& second = *YADE_CAST<JKRMat*>(material2.get());
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
 	const bool plane = wallOf(*scene, interaction->getId1());
-	if (plane && neck != 0) refuseInStep(*scene, bondsOfPlanes);
+	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
+	interaction->phys = phys; // InteractionLoop wants one: where the contact is refused, without constants
+	try {
+		if (plane && neck != 0) throw std::invalid_argument(bondsOfPlanes);
+		plane ? requireInRange(second, geometry->refR2, first, planeRadius)
+		      : requireInRange(first, geometry->refR1, second, geometry->refR2);
+	} catch (const std::invalid_argument& refusal) {
+		return refuseInStep(*scene, std::string("Ip2_JKRMat_JKRMat_JKRWadaPhys: ") + refusal.what());
+	}
 	const auto derived = plane
 	        ? contact_law::derivePair(second.forKernel(), geometry->refR2, first.forKernel(), planeRadius, options())
 	        : contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, options(), neck);
-	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
 	phys->setConstants(constants.of(derived));
 	if (neck != 0 && scene->iter < bondsBefore) {
 		const Real own = sinteredEarly > 0 ? sinteredEarly : neck;
 		phys->setBond(
 		        bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, own)));
 	}
-	interaction->phys = phys;
 }
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
@@ -242,6 +249,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 {
 	if (!shapes.fit(*scene)) return true;
 	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
+	if (!phys.constants) return false; // refused by Ip2, which is asked again in the next step
 	const PairConstants<double> constants = phys.constants->forKernel();
 	if (!stepIsBelow(contact_law::unstableStep(constants))) return true;
 	if (std::isinf(constants.radius2)) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);

@@ -150,3 +150,30 @@ def test_functors_refuse_the_same_steps_in_the_same_words(what):
     assert told.partition(" is ")[2] == refusal().partition(" is ")[2]
     touching(0.999 * float(told.split("below ")[1].split(" s")[0]))
     assert refusal() == ""
+
+
+@pytest.mark.parametrize("young", [0.0, -7e9, float("nan")])
+def test_functors_refuse_a_material_in_the_same_words(young):
+    """An attribute of YADE's own, which is not looked at when it is set. Once it is mended they go on."""
+
+    def set_to(young):
+        new_scene(0.1 * unit)
+        material = ice()
+        for x in (0, 1.985e-7):
+            grain((x, 0, 0), 1e-7, material)
+        material.young = young
+        return material
+
+    set_to(young)
+    fused_engine()
+    of_engine = refusal()
+    material = set_to(young)
+    told = refusal()
+    assert "JKRMat: young = " in told and "\n" not in told
+    assert told.partition(": ")[2] == of_engine.partition(": ")[2]
+    material.young = 7e9
+    assert refusal(2) == "" and O.energy["normal"] < 0
+    material.young = young  # which the bonds to come are made of
+    contact_law.sinter(0.5)
+    assert "must be above 0 and below" in refusal(2)
+    assert np.isfinite(positions()).all()
