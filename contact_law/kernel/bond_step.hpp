@@ -52,7 +52,7 @@ namespace bonds {
 			r.pointersMoved = true;
 			r.now = contactForces<mechanisms>(c, r.geometry, h, m.velocity);
 			r.stored = storedEnergy(c, r.now, h.twist);
-			bookDragFraction(c, since, { r.now.drag, r.geometry.overlap }, closing, r.dissipated);
+			bookDragFraction(since, { r.now.drag, r.geometry.overlap }, closing, r.dissipated);
 			ahead.add(since, since / 2, r.geometry, r.now); // springs grow from zero
 			after.add(0.5, 0.5, r.geometry, r.now);
 			released -= total(r.stored) + total(r.dissipated);

@@ -50,23 +50,6 @@ template <class T> inline StoredEnergy<T> storedEnergy(const PairConstants<T>& c
 		rolling::energy(c, f.rollingDisplacement), twisting::energy(c, twist) };
 }
 
-// ---- what drag dissipates ----
-
-// Over a step, of lanes that are `counted`.
-template <class T>
-inline void bookDrag(
-        const PairConstants<T>& c, const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted, DissipationOf<T>& lost)
-{
-	drag::book(c, before, now, counted, lost);
-}
-// Over a fraction of a step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or broke
-// inside the step.
-inline void bookDragFraction(
-        const PairConstants<double>& c, double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
-{
-	drag::bookFraction(c, fraction, at, closing, lost);
-}
-
 // What the springs of a contact give up when it breaks after a fraction of the step (pointers.hpp), added to what disconnection takes.
 template <unsigned mechanisms>
 inline void addSpringRelease(const PairConstants<double>& c, const ContactBefore& before, const ContactForces<double>& f, double twist,

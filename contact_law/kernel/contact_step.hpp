@@ -83,7 +83,7 @@ inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule li
 	const double normalBefore = normal::forceSinceFormation(c, r.stored.normal, closing) + f * r.now.drag;
 	const double impulseBefore = normalBefore * m.dt, impulseAfter = 0.5 * (r.now.normalForce + r.now.drag) * m.dt;
 	r.dissipated.connection = normal::connection(c, impulseBefore, impulseAfter, m.inverseMass);
-	bookDragFraction(c, f, { r.now.drag, g.overlap }, closing, r.dissipated);
+	bookDragFraction(f, { r.now.drag, g.overlap }, closing, r.dissipated);
 	setKicks(m, normalBefore, f / 2, ofCuts, r);
 	return r;
 }
@@ -114,7 +114,7 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	r.workBefore = events::work(m, r.force, r.torque1, r.torque2);
 	r.dissipated.disconnection = normal::disconnection(c, push * m.dt, m.inverseMass);
 	addSpringRelease<mechanisms>(c, before, f, h.twist, fraction, r.dissipated);
-	bookDragFraction(c, fraction, { before.drag, before.overlap }, -opening, r.dissipated);
+	bookDragFraction(fraction, { before.drag, before.overlap }, -opening, r.dissipated);
 	return r;
 }
 

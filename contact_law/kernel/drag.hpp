@@ -22,20 +22,20 @@ namespace drag {
 		return -(c.dragPerContactRadius * contactRadius + c.linearDrag) * dot(velocity, normal);
 	}
 
-	// Dissipated over a step: the mean of the two forces times the way. Only lanes that are `counted` are booked.
-	template <class T>
-	inline void book(const PairConstants<T>&, const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted,
-	        DissipationOf<T>& lost)
-	{
-		lost.drag = lost.drag + choose(counted, T(0.5) * (before.force + now.force) * (now.overlap - before.overlap), T(0.));
-	}
-	// Over a fraction of the step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or
-	// broke inside the step.
-	inline void bookFraction(
-	        const PairConstants<double>&, double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
-	{
-		lost.drag += fraction * at.force * closing;
-	}
-
 } // namespace drag
+
+// Dissipated over a step: the mean of the two forces times the way. Only lanes that are `counted` are booked.
+template <class T>
+inline void bookDrag(
+        const PairConstants<T>&, const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted, DissipationOf<T>& lost)
+{
+	lost.drag = lost.drag + choose(counted, T(0.5) * (before.force + now.force) * (now.overlap - before.overlap), T(0.));
+}
+// Over a fraction of the step of which the overlap changes by `closing`, with the force of one moment: of a contact that formed or
+// broke inside the step.
+inline void bookDragFraction(double fraction, const DragMoment<double>& at, double closing, Dissipation& lost)
+{
+	lost.drag += fraction * at.force * closing;
+}
+
 } // namespace contact_law

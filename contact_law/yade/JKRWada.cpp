@@ -282,23 +282,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
 
 	if (phys.bondToCome && r.touching) sinter(phys, motion, history, r);
-	const Vector3r force = fromKernel(r.force);
-	scene->forces.addForce(interaction->getId1(), force);
-	scene->forces.addForce(interaction->getId2(), -force);
-	scene->forces.addTorque(interaction->getId1(), fromKernel(r.torque1));
-	scene->forces.addTorque(interaction->getId2(), fromKernel(r.torque2));
-	if (scene->trackEnergy) {
-		book(r);
-		// half of the kick a step ago, and what belongs before this instant; the forces of phys are still those on body 2 a step ago
-		const Vector3r kicks = (phys.touching ? -0.5 * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero()))
-		        + fromKernel(r.forceBefore);
-		if (scene->isPeriodic) channels.addBoundaryWork(*scene, dt * kicks.dot(imageVelocity));
-	}
-
-	phys.touching = r.touching;
-	if (!r.touching) return false;
-	phys.set(r.geometry, r.now, history.twist, velocity);
-	phys.current = false;
+	if (!finish(*interaction, phys, motion, history.twist, r)) return false;
 	if (r.pointersMoved) {
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(history.pointers.n2);
@@ -324,24 +308,40 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 	const ContactStepResult r =
 	        contact_law::planeStepWith[mechanismsOf(constants)](constants, limitRule, motion, phys.before(), history);
 
-	const Vector3r force = fromKernel(r.force);
-	scene->forces.addForce(interaction.getId1(), -force);
-	scene->forces.addForce(interaction.getId2(), force);
-	scene->forces.addTorque(interaction.getId2(), fromKernel(r.torque1));
-	if (scene->trackEnergy) {
-		book(r);
-		const Vector3r kicks = (phys.touching ? 0.5 * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero()))
-		        + fromKernel(r.forceBefore);
-		channels.addConstraintWork(*scene, -dt * kicks.dot(wall.vel));
-	}
-	phys.touching = r.touching;
-	if (!r.touching) return false;
-	phys.set(r.geometry, r.now, history.twist, fromKernel(motion.velocity), true);
-	phys.current = false;
+	if (!finish(interaction, phys, motion, history.twist, r)) return false;
 	if (r.pointersMoved) {
 		phys.pointer1 = fromKernel(history.pointers.anchor + foot);
 		phys.pointer2 = grain.ori.conjugate() * fromKernel(history.pointers.n1);
 	}
+	return true;
+}
+
+// What a step did, but for the pointers. Returns whether the contact is there still.
+bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(
+        const Interaction& interaction, JKRWadaPhys& phys, const ContactMotion& motion, Real twist, const ContactStepResult& r)
+{
+	const bool ofPlane = std::isinf(phys.constants->radius2);
+	const int id1 = interaction.getId1(), id2 = interaction.getId2(), grain1 = ofPlane ? id2 : id1, other = ofPlane ? id1 : id2;
+	const Vector3r force = fromKernel(r.force);
+	scene->forces.addForce(grain1, force);
+	scene->forces.addForce(other, -force);
+	scene->forces.addTorque(grain1, fromKernel(r.torque1));
+	if (!ofPlane) scene->forces.addTorque(other, fromKernel(r.torque2));
+	if (scene->trackEnergy) {
+		book(r);
+		// half of the kick a step ago, and what belongs before this instant; the forces of phys are still those on body 2 a step ago
+		const Vector3r before =
+		        phys.touching ? (ofPlane ? 0.5 : -0.5) * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero());
+		const Real work = motion.dt * (before + fromKernel(r.forceBefore)).dot(fromKernel(motion.imageVelocity));
+		if (ofPlane)
+			channels.addConstraintWork(*scene, work);
+		else if (scene->isPeriodic)
+			channels.addBoundaryWork(*scene, work);
+	}
+	phys.touching = r.touching;
+	if (!r.touching) return false;
+	phys.set(r.geometry, r.now, twist, fromKernel(motion.velocity), ofPlane);
+	phys.current = false;
 	return true;
 }
 

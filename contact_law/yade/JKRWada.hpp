@@ -178,6 +178,7 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	bool stepIsBelow(Real unstable) const; // refuses the scene in this step if not
 	void book(const contact_law::ContactStepResult&);
 	bool goPlane(const GenericSpheresContact&, JKRWadaPhys&, const contact_law::PairConstants<double>&, const Interaction&);
+	bool finish(const Interaction&, JKRWadaPhys&, const contact_law::ContactMotion&, Real twist, const contact_law::ContactStepResult&);
 	void sinter(JKRWadaPhys&, const contact_law::ContactMotion&, contact_law::ContactHistory<double>&, contact_law::ContactStepResult&);
 	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion,
 	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, unsigned mechanisms);

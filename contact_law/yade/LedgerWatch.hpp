@@ -1,6 +1,7 @@
 // Notices from the energies that a run is unstable, while all numbers are finite still.
 #pragma once
 #include "../kernel/energy_channels.hpp"
+#include "Refusal.hpp"
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -25,12 +26,12 @@ public:
 		if (!std::isfinite(scale)) return "the energies are not finite";
 		scale = std::max(scale, negligible * contactEnergy);
 		if (lost < lostBefore - lossRegained * scale)
-			return "losses have given back " + text(lostBefore - lost) + " J, which no loss can: the step is too long";
+			return "losses have given back " + rounded(lostBefore - lost, 3) + " J, which no loss can: the step is too long";
 		lostBefore = std::max(lost, lostBefore);
 		if (!known) first = sum;
 		known = true;
 		if (std::abs(sum - first) > sumChanged * scale)
-			return "energy is not conserved (" + text(sum - first) + " J more than before, of " + text(scale)
+			return "energy is not conserved (" + rounded(sum - first, 3) + " J more than before, of " + rounded(scale, 3)
 			        + " J): the step is too long";
 		return "";
 	}
@@ -46,13 +47,6 @@ private:
 
 	// Ledgers of runs that are merely coarse (half a t0, 100 m/s) are off by a few per cent at most.
 	static constexpr double lossRegained = 0.1, sumChanged = 0.5, negligible = 1e-9;
-
-	static std::string text(double number)
-	{
-		char digits[32];
-		std::snprintf(digits, sizeof digits, "%.3g", number);
-		return digits;
-	}
 
 	bool known = false;
 	double first = 0, lostBefore = 0;
