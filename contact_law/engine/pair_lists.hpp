@@ -10,6 +10,14 @@ namespace contact_law {
 
 struct SharedState;
 
+// What a step does for the lists, the same in all domains.
+struct ListWork {
+	bool boxes = false, check = false; // measure boxes and find groups nearby; check the lists
+	bool all = false;                  // check the distances of all pairs: velocities have changed otherwise than by kicks
+	int steps = 0, stepsToNext = 0;    // since the latest check; to the next
+	double moved = 0, across = 0;      // by how much boundaries have moved images since the latest check, and do in a step [m]
+};
+
 class PairLists {
 public:
 	PairLists(SharedState& shared, int begin, int end);
@@ -22,11 +30,9 @@ public:
 	void findNearby(const PeriodicCell&, double reach); // groups with boxes closer than this [m]
 	void searchAnew(const PeriodicCell&); // for all, of grains in a new order: no pair touches until touch() is called for it
 
-	/* The lists `steps` steps after the latest check, to hold for stepsToNext more (fewer when kicks exceed their bounds: then check at once). across: by how much
-	 * boundaries move images in a step [m]. scheduleAll: velocities have changed otherwise than by kicks. */
-	void check(const PeriodicCell&, int steps, int stepsToNext, double across, bool scheduleAll);
-	bool holdToNext() const { return holds; } // otherwise one step only
-	void clearAfterCheck();                   // ranges and bounds begin anew
+	void check(const PeriodicCell&, const ListWork&); // to hold to the next check (when kicks exceed their bounds, that comes at once)
+	bool holdToNext() const { return holds; }         // otherwise one step only
+	void clearAfterCheck();                           // ranges and bounds begin anew
 
 	// ---- distance checks ----
 
