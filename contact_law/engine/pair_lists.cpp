@@ -157,6 +157,13 @@ void PairLists::check(const PeriodicCell& cell, const ListWork& work)
 	}
 }
 
+void PairLists::countAnew()
+{
+	step = 0;
+	for (Group& group : own())
+		group.scheduleAll();
+}
+
 void PairLists::clearAfterCheck()
 {
 	holds = holdsNow;

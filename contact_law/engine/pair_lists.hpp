@@ -36,7 +36,10 @@ public:
 
 	// ---- distance checks ----
 
-	void beginStep() { ++step; }
+	void beginStep()
+	{
+		if (++step == endOfCount) countAnew();
+	}
 	// Pairs that overlap and do not touch, by rising indices; they are checked again in the next step unless touch() is called for them.
 	const std::vector<NeighbourPair>& overlapping(const PeriodicCell&);
 	void touch(int i, int j); // both of some pair of this domain; nothing happens to one that is not listed
@@ -59,6 +62,7 @@ private:
 		Group* end() const { return to; }
 	};
 	Stretch own() const;
+	void countAnew(); // steps from 0 on: runs of more than Group::never steps go on
 	Box boxOf(const Group&) const;
 	void search(Group&, const PeriodicCell&);
 	void gatherCandidates(const Group&, const PeriodicCell&);
@@ -71,9 +75,10 @@ private:
 
 	SharedState& s;
 	int begin, end, firstGroup, endGroup, firstCluster, endCluster;
-	int step = 0;
-	bool holdsNow = false; // by the latest check
-	bool holds = false;    // likewise from clearAfterCheck() on: other threads read it in the part of a step in which check() is called
+	static constexpr int endOfCount = Group::never - 10000;
+	int step = endOfCount - 1000; // so that many runs, not only the longest, pass the end
+	bool holdsNow = false;        // by the latest check
+	bool holds = false; // likewise from clearAfterCheck() on: other threads read it in the part of a step in which check() is called
 	Candidates candidates;
 	std::vector<NeighbourPair> foundPairs, overlaps;
 	struct Scheduled {
