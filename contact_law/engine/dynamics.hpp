@@ -117,7 +117,6 @@ public:
 	int here(int given) const { return indexHere[given]; }
 	int id(int given) const { return ids[given]; } // of a grain, as its owner calls it
 	int grainCount() const { return count; }
-	bool followsOrientations() const { return options.orientations; }
 	int threadCount() const { return std::max(1, std::min(options.threads, domainCount())); }
 	const PeriodicCell& cell() const { return domains[0]->cell; }
 	// What a periodic cell must hold twice along each axis: the largest distance of neighbours in the lists.
