@@ -29,7 +29,7 @@ template <class T> struct CacheLineAllocator {
 };
 template <class T> using Aligned = std::vector<T, CacheLineAllocator<T>>;
 
-// Two cache lines a grain: the first is what contacts read, the second what they add to.
+// Two cache lines a grain: the first is what contacts read, and wz; to the rest of the second they add.
 struct alignas(64) Grain {
 	double x, y, z;    // position now [m]
 	double vx, vy, vz; // velocity through the step before now [m/s]

@@ -11,11 +11,7 @@ namespace contact_law {
 
 class Barrier {
 public:
-	explicit Barrier(int threads_)
-	        : threads(threads_)
-	{
-	}
-	void wait()
+	void wait(int threads) // of as many
 	{
 		if (threads == 1) return;
 		const int round = rounds.load(std::memory_order_acquire);
@@ -47,7 +43,6 @@ private:
 #endif
 	}
 
-	const int threads;
 	alignas(64) std::atomic<int> arrived { 0 };
 	alignas(64) std::atomic<int> rounds { 0 };
 	alignas(64) std::atomic<int> sleepers { 0 };

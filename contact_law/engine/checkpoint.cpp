@@ -8,8 +8,9 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	// 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes; 8: with a sum at the end
-	constexpr int formatNumber = 8;
+	// 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes; 8: with a sum at the end; 9: with counts
+	// of the run before
+	constexpr int formatNumber = 9;
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const SharedState& shared)
 	{
@@ -180,6 +181,7 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 	for (Vec3<double>& by : shared.displaced)
 		transfer(archive, by);
 	transferNumbers(archive, contactUpdates, sizesWhenOrdered, stepsSinceTrial, orders);
+	transferNumbers(archive, countedBefore.contactUpdates, countedBefore.searches, countedBefore.distanceChecks, countedBefore.orders);
 	transfer(archive, shared.convective);
 	for (PlaneInput& plane : shared.planes)
 		transfer(archive, plane.velocity);

@@ -104,7 +104,7 @@ template <class Archive> void transfer(Archive& archive, Dissipation& d)
 }
 template <class Archive> void transfer(Archive& archive, PeriodicCell& cell)
 {
-	for (Vec3<double>* v : { &cell.size, &cell.inverse, &cell.rate, &cell.rateBefore })
+	for (Vec3<double>* v : { &cell.size, &cell.inverse, &cell.rate })
 		transfer(archive, *v);
 }
 template <class Archive> void transfer(Archive& archive, BoundaryWork& work)

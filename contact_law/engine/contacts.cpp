@@ -34,7 +34,7 @@ ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int slo
 		image.shift };
 	n.forces = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
 	n.forces.drag = c.drag;
-	if (!(shared.mechanisms & Sliding)) n.forces.sliding = { 0, 0, 0 };
+	n.forces.keepOnly(shared.mechanisms);
 	return n;
 }
 

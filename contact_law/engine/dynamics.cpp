@@ -246,13 +246,13 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 	const double fastest = fastestThatHolds();
 	shares.each([&](int d) { domains[d]->integrate(); });
 	for (long step = 1; step <= steps; ++step) {
-		barrier.wait();
+		barrier.wait(shares.threads);
 		const VelocityRange range = velocities();
 		if (range.fastestComponent() > fastest) return step - 1;
 		const ListWork lists = listWork(age, range, growth);
 		if (lists.boxes) {
 			shares.each([&](int d) { domains[d]->lists.measureBoxes(); });
-			barrier.wait();
+			barrier.wait(shares.threads);
 		}
 		shares.each([&](int d) {
 			domains[d]->cell.advance(sizeAtEnd - double(steps - step) * growth, rate);
@@ -260,7 +260,7 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 			keepLists(d, lists);
 			domains[d]->addFirstForces();
 		});
-		barrier.wait();
+		barrier.wait(shares.threads);
 		shares.each([&](int d) {
 			if (lists.check) domains[d]->lists.clearAfterCheck();
 			domains[d]->addOtherForces(step < steps);
@@ -299,14 +299,13 @@ long Dynamics::run(long steps, const Vec3<double>* sizeAtEnd)
 long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 {
 	if (velocitiesSet) takeVelocities();
-	const int threads = threadCount();
-	Barrier barrier(threads);
+	Barrier barrier;
 	std::vector<Share> all(domains.size());
 	long made = steps;
 	const Vec3<double> growth = (1. / double(steps)) * (to - cell().size);
-#pragma omp parallel num_threads(threads)
-	{
-		const long here = runThread(steps, growth, to, Shares(all, omp_get_thread_num(), threads), barrier);
+#pragma omp parallel num_threads(threadCount())
+	{ // of fewer threads where OpenMP has no more (OMP_THREAD_LIMIT, OMP_DYNAMIC)
+		const long here = runThread(steps, growth, to, Shares(all, omp_get_thread_num(), omp_get_num_threads()), barrier);
 		if (omp_get_thread_num() == 0) made = here;
 	}
 	contactUpdates += made * contactCount(*this);

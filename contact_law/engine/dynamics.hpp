@@ -37,16 +37,9 @@ void kickEarly(const SharedState&, const EarlyKick&, Grain&, double time);
 struct ListAge {
 	double sinceBoxes = 0; // bound on how far any two grains have come closer since the groups' boxes were measured [m]
 	int sinceCheck = 0;    // steps
+	double moved = 0;      // by how much boundaries have moved images in these [m]
 	int checkAfter = 1;    // steps, or fewer when kicks exceed their bounds
 	bool outdated = false; // grains have been moved otherwise than by steps since
-};
-
-// What a step does for them, the same in all domains.
-struct ListWork {
-	bool boxes = false, check = false,
-	     all = false;               // measure boxes and find groups nearby; check the lists; check the distances of all pairs
-	int steps = 0, stepsToNext = 0; // since the latest check; to the next
-	double across = 0;              // by how much boundaries move images in a step [m]
 };
 
 class Dynamics {
@@ -124,7 +117,6 @@ public:
 	int here(int given) const { return indexHere[given]; }
 	int id(int given) const { return ids[given]; } // of a grain, as its owner calls it
 	int grainCount() const { return count; }
-	bool followsOrientations() const { return options.orientations; }
 	int threadCount() const { return std::max(1, std::min(options.threads, domainCount())); }
 	const PeriodicCell& cell() const { return domains[0]->cell; }
 	// What a periodic cell must hold twice along each axis: the largest distance of neighbours in the lists.

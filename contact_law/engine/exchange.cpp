@@ -17,7 +17,7 @@ void Dynamics::inherit(const Inherited& inherited)
 		if (!inherited.stepBehind || !shared.hasDrag()) return { 0, 0, 0 }; // firstForces() sets it
 		Vec3<double> separation = separationOf(shared.grains[i], shared.grains[j]);
 		const Image image = nearestImage(cell(), separation);
-		return inherited.previous[original[i]] - inherited.previous[original[j]] + image.velocityBefore;
+		return inherited.previous[original[i]] - inherited.previous[original[j]] + image.velocity;
 	};
 	for (const Inherited::One& one : inherited.contacts) {
 		const int a = indexHere[one.first], b = indexHere[one.second], i = std::min(a, b), j = std::max(a, b);

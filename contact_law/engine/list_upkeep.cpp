@@ -43,15 +43,18 @@ ListWork Dynamics::listWork(ListAge& age, const VelocityRange& range, const Vec3
 	const double approach = shared.dt * range.diagonal() + work.across; // an image moves with its cell
 	age.sinceBoxes += approach;
 	++age.sinceCheck;
+	age.moved += work.across; // step by step: the cell's rate may change between two checks
 	const bool early = std::any_of(domains.begin(), domains.end(), [](const auto& domain) { return domain->mustCheck(); });
 	if (!(age.outdated || early || age.sinceCheck >= age.checkAfter)) return work;
 	work.check = true;
 	work.all = age.outdated;
 	work.steps = age.sinceCheck;
+	work.moved = age.moved;
 	work.stepsToNext = int(std::max(1., std::min(mostStepsToCheck, 0.2 * shared.skin / approach)));
 	work.boxes = age.outdated || age.sinceBoxes > 0.5 * boxMargin * shared.largestRadius;
 	if (work.boxes) age.sinceBoxes = 0;
 	age.sinceCheck = 0;
+	age.moved = 0;
 	age.checkAfter = work.stepsToNext;
 	age.outdated = false;
 	return work;
@@ -64,7 +67,7 @@ void Dynamics::keepLists(int d, const ListWork& work)
 		if (d == 0) setMostCells();
 		domain.lists.findNearby(domain.cell, reach() + boxMargin * shared.largestRadius);
 	}
-	if (work.check) domain.lists.check(domain.cell, work.steps, work.stepsToNext, work.across, work.all);
+	if (work.check) domain.lists.check(domain.cell, work);
 }
 
 } // namespace contact_law

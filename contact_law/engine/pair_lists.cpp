@@ -132,7 +132,7 @@ void PairLists::searchAnew(const PeriodicCell& cell)
 	}
 }
 
-void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, double across, bool scheduleAll)
+void PairLists::check(const PeriodicCell& cell, const ListWork& work)
 {
 	holdsNow = true;
 	for (Group& group : own()) {
@@ -143,18 +143,25 @@ void PairLists::check(const PeriodicCell& cell, int steps, int stepsToNext, doub
 			bound.join(s.groups[g].bound);
 			kicks = std::max(kicks, s.groups[g].kickBound);
 		}
-		const double speed = bound.diagonal() + across / s.dt;
-		const double perStep = s.dt * around.diagonal() + across;
-		const double ahead = (stepsToNext - 1) * (perStep + s.dt * 2 * stepsToNext * kicks);
-		group.approach += steps * perStep;
+		const double speed = bound.diagonal() + work.across / s.dt;
+		const double perStep = s.dt * around.diagonal();
+		const double ahead = (work.stepsToNext - 1) * (perStep + work.across + s.dt * 2 * work.stepsToNext * kicks);
+		group.approach += work.steps * perStep + work.moved;
 		if (group.approach + ahead > s.skin)
 			search(group, cell);
-		else if (scheduleAll || kicks > group.kickNearby || speed > group.speedNearby)
+		else if (work.all || kicks > group.kickNearby || speed > group.speedNearby)
 			group.scheduleAll();
 		group.kickNearby = kicks;
 		group.speedNearby = speed;
 		holdsNow = holdsNow && ahead <= s.skin;
 	}
+}
+
+void PairLists::countAnew()
+{
+	step = 0;
+	for (Group& group : own())
+		group.scheduleAll();
 }
 
 void PairLists::clearAfterCheck()

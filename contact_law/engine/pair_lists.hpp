@@ -10,6 +10,14 @@ namespace contact_law {
 
 struct SharedState;
 
+// What a step does for the lists, the same in all domains.
+struct ListWork {
+	bool boxes = false, check = false; // measure boxes and find groups nearby; check the lists
+	bool all = false;                  // check the distances of all pairs: velocities have changed otherwise than by kicks
+	int steps = 0, stepsToNext = 0;    // since the latest check; to the next
+	double moved = 0, across = 0;      // by how much boundaries have moved images since the latest check, and do in a step [m]
+};
+
 class PairLists {
 public:
 	PairLists(SharedState& shared, int begin, int end);
@@ -22,15 +30,16 @@ public:
 	void findNearby(const PeriodicCell&, double reach); // groups with boxes closer than this [m]
 	void searchAnew(const PeriodicCell&); // for all, of grains in a new order: no pair touches until touch() is called for it
 
-	/* The lists `steps` steps after the latest check, to hold for stepsToNext more (fewer when kicks exceed their bounds: then check at once). across: by how much
-	 * boundaries move images in a step [m]. scheduleAll: velocities have changed otherwise than by kicks. */
-	void check(const PeriodicCell&, int steps, int stepsToNext, double across, bool scheduleAll);
-	bool holdToNext() const { return holds; } // otherwise one step only
-	void clearAfterCheck();                   // ranges and bounds begin anew
+	void check(const PeriodicCell&, const ListWork&); // to hold to the next check (when kicks exceed their bounds, that comes at once)
+	bool holdToNext() const { return holds; }         // otherwise one step only
+	void clearAfterCheck();                           // ranges and bounds begin anew
 
 	// ---- distance checks ----
 
-	void beginStep() { ++step; }
+	void beginStep()
+	{
+		if (++step == endOfCount) countAnew();
+	}
 	// Pairs that overlap and do not touch, by rising indices; they are checked again in the next step unless touch() is called for them.
 	const std::vector<NeighbourPair>& overlapping(const PeriodicCell&);
 	void touch(int i, int j); // both of some pair of this domain; nothing happens to one that is not listed
@@ -53,6 +62,7 @@ private:
 		Group* end() const { return to; }
 	};
 	Stretch own() const;
+	void countAnew(); // steps from 0 on: runs of more than Group::never steps go on
 	Box boxOf(const Group&) const;
 	void search(Group&, const PeriodicCell&);
 	void gatherCandidates(const Group&, const PeriodicCell&);
@@ -65,9 +75,10 @@ private:
 
 	SharedState& s;
 	int begin, end, firstGroup, endGroup, firstCluster, endCluster;
-	int step = 0;
-	bool holdsNow = false; // by the latest check
-	bool holds = false;    // likewise from clearAfterCheck() on: other threads read it in the part of a step in which check() is called
+	static constexpr int endOfCount = Group::never - 10000;
+	int step = endOfCount - 1000; // so that many runs, not only the longest, pass the end
+	bool holdsNow = false;        // by the latest check
+	bool holds = false; // likewise from clearAfterCheck() on: other threads read it in the part of a step in which check() is called
 	Candidates candidates;
 	std::vector<NeighbourPair> foundPairs, overlaps;
 	struct Scheduled {

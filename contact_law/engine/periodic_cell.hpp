@@ -8,14 +8,13 @@ namespace contact_law {
 // Grains keep the positions that their motion gives them, in whatever copy of the cell; no contact keeps a shift.
 struct PeriodicCell {
 	bool on = false;
-	Vec3<double> size { 0, 0, 0 }, inverse { 0, 0, 0 };    // now [m], [1/m]; zero in open space, where nothing is shifted
-	Vec3<double> rate { 0, 0, 0 }, rateBefore { 0, 0, 0 }; // d(size)/dt through the last step, and through the one before it [m/s]
+	Vec3<double> size { 0, 0, 0 }, inverse { 0, 0, 0 }; // now [m], [1/m]; zero in open space, where nothing is shifted
+	Vec3<double> rate { 0, 0, 0 };                      // d(size)/dt through the last step [m/s]
 
-	static PeriodicCell box(const Vec3<double>& size, const Vec3<double>& rate) // that has gone at this rate before too
+	static PeriodicCell box(const Vec3<double>& size, const Vec3<double>& rate)
 	{
 		PeriodicCell cell;
 		cell.on = true;
-		cell.advance(size, rate);
 		cell.advance(size, rate);
 		return cell;
 	}
@@ -24,7 +23,6 @@ struct PeriodicCell {
 		if (!on) return;
 		size = newSize;
 		inverse = { 1 / size.x, 1 / size.y, 1 / size.z };
-		rateBefore = rate;
 		rate = newRate;
 	}
 	// Every pair's distance is that of its nearest images, and no grain meets two images of another, in cells of at least twice the reach of a pair.
@@ -36,12 +34,11 @@ struct PeriodicCell {
 
 // The cell as a number type of the kernel needs it; an open scene's makes no shift.
 template <class T> struct Images {
-	Vec3<T> size, inverse, rate, rateBefore;
+	Vec3<T> size, inverse, rate;
 	explicit Images(const PeriodicCell& c)
 	        : size(spread(c.size))
 	        , inverse(spread(c.inverse))
 	        , rate(spread(c.rate))
-	        , rateBefore(spread(c.rateBefore))
 	{
 	}
 
@@ -53,15 +50,14 @@ template <class T> struct Images {
 	{
 		return { -nearest(separation.x * inverse.x), -nearest(separation.y * inverse.y), -nearest(separation.z * inverse.z) };
 	}
-	// What the shift adds to the separation, to the relative velocity, and to that of the step before.
+	// What the shift adds to the separation, and to the relative velocity.
 	Vec3<T> distance(const Vec3<T>& shift) const { return times(shift, size); }
 	Vec3<T> velocity(const Vec3<T>& shift) const { return times(shift, rate); }
-	Vec3<T> velocityBefore(const Vec3<T>& shift) const { return times(shift, rateBefore); }
 };
 
 // For places that compute one pair in whatever scene.
 struct Image {
-	Vec3<double> shift { 0, 0, 0 }, velocity { 0, 0, 0 }, velocityBefore { 0, 0, 0 };
+	Vec3<double> shift { 0, 0, 0 }, velocity { 0, 0, 0 };
 };
 // Brings x1 - x2 to the nearest image.
 inline Image nearestImage(const PeriodicCell& cell, Vec3<double>& separation)
@@ -70,7 +66,7 @@ inline Image nearestImage(const PeriodicCell& cell, Vec3<double>& separation)
 	const Images<double> images(cell);
 	const Vec3<double> s = images.shift(separation);
 	separation = separation + images.distance(s);
-	return { s, images.velocity(s), images.velocityBefore(s) };
+	return { s, images.velocity(s) };
 }
 
 /* What a domain's crossing contacts do against the moving boundaries. An impulse J on the first of two grains does the work J.(v1 - v2) on them; the contact's

@@ -132,8 +132,7 @@ ContactForces<double> PlaneContacts::forcesOf(const PlaneContact& c) const
 	const PlaneHistory<double> history { { { c.n1, g.normal }, c.point - footOf(c) }, c.before.twist };
 	ContactForces<double> f = contactForces<AllSprings>(c.constants, g, history, c.before.velocity);
 	f.drag = c.before.drag;
-	if (!(s.mechanisms & Sliding)) f.sliding = f.slidingDisplacement = { 0, 0, 0 };
-	if (!(s.mechanisms & Rolling)) f.rollingDisplacement = { 0, 0, 0 };
+	f.keepOnly(s.mechanisms);
 	return f;
 }
 

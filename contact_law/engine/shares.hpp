@@ -15,8 +15,8 @@ public:
 	// One of several threads that share out the same domains. Every thread calls each() as often, with a barrier between two calls.
 	Shares(std::vector<Share>& all_, int thread_, int threads_)
 	        : thread(thread_)
-	        , all(all_)
 	        , threads(threads_)
+	        , all(all_)
 	{
 	}
 
@@ -29,7 +29,7 @@ public:
 		++calls;
 	}
 
-	const int thread;
+	const int thread, threads;
 
 private:
 	bool take(int d)
@@ -41,7 +41,6 @@ private:
 	}
 
 	std::vector<Share>& all;
-	const int threads;
 	long calls = 0;
 };
 

@@ -1,17 +1,45 @@
 #include "stability.hpp"
 #include "contacts.hpp"
-#include <set>
+#include "material_list.hpp"
+#include <map>
 
 namespace contact_law {
 
 namespace {
-	// visit(a grain), of each kind
-	template <class Visit> void eachKind(const Dynamics& dynamics, Visit&& visit)
+	struct ByConstants {
+		bool operator()(const Material& a, const Material& b) const
+		{
+			for (const MaterialRow& row : materialList)
+				if (a.*row.member != b.*row.member) return a.*row.member < b.*row.member;
+			return false;
+		}
+	};
+
+	// Of each material the smallest and the largest grain.
+	std::vector<int> extremeGrains(const Dynamics& dynamics)
 	{
 		const SharedState& shared = dynamics.state();
-		std::set<std::pair<int, double>> seen;
-		for (int k = 0; k < dynamics.grainCount(); ++k)
-			if (seen.emplace(shared.kind[k], shared.grainRadius[k]).second) visit(k);
+		std::map<Material, std::pair<int, int>, ByConstants> extremes;
+		for (int k = 0; k < dynamics.grainCount(); ++k) {
+			auto& [smallest, largest] = extremes.emplace(shared.material[shared.kind[k]], std::pair(k, k)).first->second;
+			if (shared.grainRadius[k] < shared.grainRadius[smallest]) smallest = k;
+			if (shared.grainRadius[k] > shared.grainRadius[largest]) largest = k;
+		}
+		std::vector<int> grains;
+		for (const auto& [material, pair] : extremes)
+			grains.insert(grains.end(), { pair.first, pair.second });
+		return grains;
+	}
+
+	/* visit(a grain, another one or itself), of pairs that have the least limit of all. For two materials a contact's limits rise with t0, which goes as
+	 * m*^(1/2) R^(-1/3), and a bond's go as (m* / R)^(1/2) and (I* / R^3)^(1/2). With either radius each of these rises, and beyond some radius falls: the least is at
+	 * an end. */
+	template <class Visit> void eachExtremePair(const Dynamics& dynamics, Visit&& visit)
+	{
+		const std::vector<int> grains = extremeGrains(dynamics);
+		for (std::size_t k = 0; k < grains.size(); ++k)
+			for (std::size_t other = 0; other <= k; ++other)
+				visit(grains[k], grains[other]);
 	}
 }
 
@@ -19,25 +47,25 @@ double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 {
 	const SharedState& shared = dynamics.state();
 	double least = 1e300;
-	eachKind(dynamics, [&](int k) {
-		const Material& m = shared.material[shared.kind[k]];
-		const BondConstants<double> b = deriveBond(m, shared.grainRadius[k], m, shared.grainRadius[k], neck);
-		least = std::min(least, unstableStep(b, 2 * shared.inverseMass[k], shared.inverseInertia[k], shared.inverseInertia[k]));
+	eachExtremePair(dynamics, [&](int i, int j) {
+		const BondConstants<double> b = deriveBond(shared.material[shared.kind[i]], shared.grainRadius[i],
+		        shared.material[shared.kind[j]], shared.grainRadius[j], neck);
+		least = std::min(least,
+		        unstableStep(b, shared.inverseMass[i] + shared.inverseMass[j], shared.inverseInertia[i], shared.inverseInertia[j]));
 	});
 	return least;
 }
 
 double unstableStep(const Dynamics& dynamics)
 {
+	const SharedState& shared = dynamics.state();
 	double least = 1e300;
-	const auto consider = [&least](const PairConstants<double>& c) { least = std::min(least, unstableStep(c)); };
-	eachKind(dynamics, [&](int k) {
-		consider(dynamics.state().constantsOf(k, k));
-		for (int plane = 0; plane < int(dynamics.state().planes.size()); ++plane)
-			consider(dynamics.state().constantsOnPlane(k, plane));
-	});
+	eachExtremePair(dynamics, [&](int i, int j) { least = std::min(least, unstableStep(shared.constantsOf(i, j))); });
+	for (const int k : extremeGrains(dynamics))
+		for (int plane = 0; plane < int(shared.planes.size()); ++plane)
+			least = std::min(least, unstableStep(shared.constantsOnPlane(k, plane)));
 	if (bondCount(dynamics) > 0)
-		for (const double neck : dynamics.state().necks)
+		for (const double neck : shared.necks)
 			least = std::min(least, unstableStepOfBonds(dynamics, neck));
 	return least;
 }

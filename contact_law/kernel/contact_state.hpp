@@ -69,6 +69,12 @@ template <class T> struct ContactForces {
 		const Vec3<T> zero { T(0.), T(0.), T(0.) };
 		return { T(0.), T(0.), zero, zero, zero, T(0.), zero, zero };
 	}
+	// Forces and displacements of no other springs than these; torques stay.
+	void keepOnly(unsigned mechanisms)
+	{
+		if (!(mechanisms & Sliding)) sliding = slidingDisplacement = none().sliding;
+		if (!(mechanisms & Rolling)) rollingDisplacement = none().rollingDisplacement;
+	}
 };
 
 // What the ledger needs of a moment to book drag: the force along the normal, and the overlap along which it works.

@@ -15,9 +15,7 @@ inline Vec3<double> turned(const Vec3<double>& v, const Vec3<double>& turn)
 	return v + (std::sin(angle) / angle) * once + (2 * half * half) * twice;
 }
 
-constexpr double largestSmallTurn = 0.1; // [rad]
-
-// The same for an angle below largestSmallTurn: the series of sin(x)/x and (1 - cos x)/x^2, cut where the rest is below 1e-13.
+// The same for a small angle: the series of sin(x)/x and (1 - cos x)/x^2, cut where the rest is below 1e-13 up to 0.1 rad.
 template <class T> inline Vec3<T> turnedALittle(const Vec3<T>& v, const Vec3<T>& turn)
 {
 	const T s = dot(turn, turn);

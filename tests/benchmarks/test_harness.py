@@ -99,6 +99,13 @@ def test_as_many_threads_as_wanted_give_the_same_bits_and_what_is_printed(folder
     assert end["time"] == pytest.approx(30e-9 + 400 * 0.2 * 1.9365e-10, rel=0.05)
 
 
+def test_fewer_threads_than_asked_for_give_the_same_bits(folder):
+    """As OpenMP may: a limit of its own, or a machine that is busy."""
+    path = files("drag", folder)[1][1]
+    fewer = codes.harness(path, prefix=("env", "OMP_THREAD_LIMIT=1"), timeout=60, steps=50, threads=2)
+    assert fewer[-1]["hash"] == codes.harness(path, steps=50, threads=2)[-1]["hash"]
+
+
 @pytest.mark.parametrize("processor, best", [("Nehalem", "portable"), ("Haswell-noTSX", "avx2")])
 def test_processors_without_the_newest_instructions_run_what_they_have(folder, processor, best):
     """Emulated ones, to which any other instruction is illegal."""

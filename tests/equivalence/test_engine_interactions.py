@@ -63,6 +63,23 @@ def test_interactions_are_those_of_the_functors(kind, steps):
     assert np.abs(np.array(utils.getStress(volume=1e-18)) - stress).max() < 1e-9 * np.abs(stress).max()
 
 
+@pytest.mark.parametrize("left_out", ["sliding", "rolling"])
+def test_springs_that_are_left_out_are_not_stretched(left_out):
+    springs = {left_out: False}
+    meeting("like", **springs)
+    O.run(201, True)
+    functors = contacts()
+    meeting("like")
+    fused_engine(exportInteractions=True, **springs)
+    O.run(200, True)
+    engine = contacts()
+    assert sorted(engine) == sorted(functors) and len(engine) > 10
+    for name in ("sliding", "rolling", "shearForce"):
+        a, b = (np.array([found[pair][name] for pair in sorted(engine)]) for found in (functors, engine))
+        assert np.abs(a - b).max() <= 1e-9 * np.abs(a).max(), name
+        assert a.any() == (name != left_out and (name, left_out) != ("shearForce", "sliding"))
+
+
 def test_interactions_follow_the_contacts_and_stay_the_same_objects():
     meeting("like", count=64)
     engine_of_sub_steps(5, exportInteractions=True)

@@ -195,8 +195,8 @@ def test_a_damaged_checkpoint_is_refused(name, first):
 
     assert loaded(items) == ""
     if name == "savedState":
-        assert "is of format 99, which another version wrote: it must be 8" in loaded(with_number(1, 99))
-        assert "is of format 1, which another version wrote: it must be 8" in loaded(with_number(0, 4))
+        assert "is of format 99, which another version wrote: it must be 9" in loaded(with_number(1, 99))
+        assert "is of format 1, which another version wrote: it must be 9" in loaded(with_number(0, 4))
     damaged = [items[:-1], [*items, items[-1]]]
     for k in range(first, len(items), max(1, len(items) // DAMAGED_NUMBERS)):
         number = float(items[k])

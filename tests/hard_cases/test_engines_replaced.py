@@ -105,6 +105,9 @@ def test_counts_and_losses_go_on_when_grains_are_added():
     engine().prepare()
     after = engine().statistics()
     assert all(after[name] >= before[name] > 0 for name in ("contactUpdates", "events", "formed"))
+    saved_and_loaded()
+    engine().prepare()
+    assert engine().statistics() == after
 
 
 def test_yades_functions_have_contacts_and_forces():

@@ -67,6 +67,67 @@ def test_size_ratio_ten(mover):
     assert closure(4000, 40) < 2e-3 and energies()["connection"] > 0
 
 
+def unstable_step(damping, *pair):
+    """MODEL.md, "Step limits" [s]."""
+    c = constants(*pair, damping=damping)
+    drag = c["dragPerContactRadius"] * c["equilibriumContactRadius"] + c["linearDrag"]
+    return min(0.5 * c["timeUnit"], c["reducedMass"] / drag if drag else np.inf)
+
+
+def refuses_from(limit, make):
+    """Whether a scene, of make(), is refused a step right above the limit, and not one right below."""
+
+    def refused(factor):
+        new_scene(factor * limit)
+        make()
+        return "of these grains is unstable" in refusal()
+
+    return refused(1.001) and not refused(0.999)
+
+
+@BOTH
+@pytest.mark.parametrize("other", [{"viscoelasticTime": 1e-9}, {"surfaceEnergy": 10.0}], ids=lambda other: [*other][0])
+def test_a_step_that_is_unstable_for_unlike_grains_only(mover, other):
+    small, large = (ice(), 1e-7), (ice(**other), 1e-6)
+
+    def touching():
+        grain((0, 0, 0), 1e-6, large[0])
+        grain((1.1e-6 - constants(*small, *large)["equilibriumOverlap"], 0, 0), 1e-7, small[0])
+        if mover == "fused":
+            fused_engine()
+
+    limit = unstable_step(0, *small, *large)
+    assert limit < 0.9 * min(unstable_step(0, *small), unstable_step(0, *large))
+    assert refuses_from(limit, touching)
+
+
+@pytest.mark.parametrize("damping", [0, 0.3])
+def test_the_engine_refuses_from_the_least_limit_of_all_pairs_on(damping):
+    """Of many radii; in every scene a pair of other grains has it."""
+    random = np.random.default_rng(4)
+    for _ in range(12):
+        materials = [
+            JKRMat(
+                young=10 ** random.uniform(8, 11),
+                poisson=0.25,
+                density=10 ** random.uniform(2, 4),
+                surfaceEnergy=10 ** random.uniform(-3, 1),
+                criticalRolling=1e-9,
+                viscoelasticTime=10 ** random.uniform(-13, -9) if k else 0,
+            )
+            for k in range(3)
+        ]
+        kinds = [(material, 1e-7 * 10 ** random.uniform(0, 1.5)) for material in materials for _ in range(5)]
+        limit = min(unstable_step(damping, *one, *other) for one in kinds for other in kinds)
+
+        def far_apart():
+            for k, (material, radius) in enumerate(kinds):
+                grain((1e-5 * k, 0, 0), radius, material)
+            fused_engine(linearDamping=damping)
+
+        assert refuses_from(limit, far_apart)
+
+
 def test_a_million_steps_at_rest():
     """A cluster at equilibrium, given a slow rigid rotation and drift: energy and angular momentum after a million steps are those of the start."""
     from yade_scripts import packings
