@@ -167,7 +167,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 			velocity = choose<Pack>(plain, velocity, load(d.velocity, at));
 			kept = { choose(plain, now.force, before.force), choose(plain, now.overlap, before.overlap) };
 		}
-		bookDrag(c, before, now, plain, lost);
+		bookDrag(before, now, plain, lost);
 		store(velocity, d.velocity, at);
 		kept.force.store(d.drag + at);
 		kept.overlap.store(d.overlap + at);

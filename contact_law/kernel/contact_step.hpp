@@ -58,7 +58,7 @@ inline ContactStepResult keptContact(const PairConstants<double>& c, LimitRule l
 	r.geometry = g;
 	const events::Kicks ofCuts =
 	        evaluateNow<mechanisms>(c, limit, m, before, drag::velocityNow(m.velocity, before.velocity), 0.5, history, r);
-	bookDrag<double>(c, { before.drag, before.overlap }, { r.now.drag, g.overlap }, true, r.dissipated);
+	bookDrag<double>({ before.drag, before.overlap }, { r.now.drag, g.overlap }, true, r.dissipated);
 	setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, ofCuts, r);
 	return r;
 }

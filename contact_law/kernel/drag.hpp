@@ -26,8 +26,7 @@ namespace drag {
 
 // Dissipated over a step: the mean of the two forces times the way. Only lanes that are `counted` are booked.
 template <class T>
-inline void bookDrag(
-        const PairConstants<T>&, const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted, DissipationOf<T>& lost)
+inline void bookDrag(const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted, DissipationOf<T>& lost)
 {
 	lost.drag = lost.drag + choose(counted, T(0.5) * (before.force + now.force) * (now.overlap - before.overlap), T(0.));
 }
