@@ -84,6 +84,7 @@ void JKRWadaEngine::action()
 		makeStep();
 	} catch (...) {
 		before.restore(*scene);
+		SceneForces::takeBack(*scene, *this);
 		scene->subStep = -1;
 		acting.unlock(); // a call that waits for this engine holds Python's lock
 		letPythonWait();
@@ -95,10 +96,10 @@ void JKRWadaEngine::makeStep()
 {
 	requireAlone(*scene);
 	enter(Moment::WithinStep);
-	takeForces();
 	current->cell.require(*scene, current->dynamics);
 	const std::string tooFast = current->grains.planes.tooFast(smallStep, current->dynamics.state().smallestRadius);
 	if (!tooFast.empty()) refuseInEngine(tooFast);
+	takeForces(); // last: it empties O.forces
 	const std::string wrongCell = current->cell.wrong(*scene, current->dynamics, subSteps);
 	if (!wrongCell.empty()) fail(scene->time + scene->dt, wrongCell, "");
 	const contact_law::Vec3<double> cellAtEnd = SceneCell::now(*scene);

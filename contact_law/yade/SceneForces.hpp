@@ -6,6 +6,7 @@
 
 namespace yade {
 
+class Engine;
 class SceneGrains;
 
 class SceneForces {
@@ -14,6 +15,9 @@ public:
 	 * Unless a ForceResetter does it, O.forces is emptied of what is not permanent: forces are held over one O.step. Throws std::runtime_error, with
 	 * one line, when one is not finite. */
 	std::vector<contact_law::OutsideForce> take(Scene&, const SceneGrains&, int threads);
+	/* After a step that was refused: engines before this one add their forces again, so those of now go, and with them what a script has added,
+	 * which cannot be told from them. */
+	static void takeBack(Scene&, const Engine& refused);
 	// Before the first step: what the last step of other engines left is dropped, or refused where it may be someone's wish.
 	static void dropThoseOfOtherEngines(Scene&, const SceneGrains&, int threads, bool ofContacts);
 
