@@ -101,7 +101,10 @@ void JKRWadaEngine::makeStep()
 	if (!tooFast.empty()) refuseInEngine(tooFast);
 	takeForces(); // last: it empties O.forces
 	const std::string wrongCell = current->cell.wrong(*scene, current->dynamics, subSteps);
-	if (!wrongCell.empty()) fail(scene->time + scene->dt, wrongCell, "");
+	if (!wrongCell.empty()) {
+		writeContacts();
+		fail(scene->time + scene->dt, wrongCell, "");
+	}
 	const contact_law::Vec3<double> cellAtEnd = SceneCell::now(*scene);
 	const long made = current->dynamics.run(subSteps, scene->isPeriodic ? &cellAtEnd : nullptr);
 	current->cell.arrive(*scene);
@@ -125,8 +128,13 @@ void JKRWadaEngine::makeStep()
 
 void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 {
+	const bool kept = ContactsHolder(*scene).isWritten();
 	failure = "the run broke down at t = " + text(time) + " s: " + what
-	        + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s" + advice;
+	        + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s, "
+	        + (kept ? "and O.interactions its contacts"
+	                : "but not its contacts' springs (O.interactions does with exportInteractions=True)")
+	        + advice;
+	current->forces.withdraw(*scene);
 	current.reset();
 	ContactsHolder(*scene).clear();
 	refuseInEngine(failure);
