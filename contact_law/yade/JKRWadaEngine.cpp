@@ -61,7 +61,7 @@ void JKRWadaEngine::enter(Moment moment)
 	if (moment == Moment::BetweenSteps) scene = Omega::instance().getScene().get();
 	if (!failure.empty()) refuseInEngine(failure);
 	requireInRange();
-	if (!current) start(moment);
+	if (!current) requireAlone(*scene), start(moment);
 	if (!ContactsHolder(*scene).is(current->name))
 		refuseInEngine("other engines have moved these grains since this engine's last step: make a new engine");
 	current->dynamics.setThreads(threads);
@@ -82,10 +82,12 @@ void JKRWadaEngine::action()
 	const SceneCell::Before before(*scene);
 	try {
 		makeStep();
+		leaveIfReplaced();
 	} catch (...) {
 		before.restore(*scene);
 		SceneForces::takeBack(*scene, *this);
 		scene->subStep = -1;
+		leaveIfReplaced();
 		acting.unlock(); // a call that waits for this engine holds Python's lock
 		letPythonWait();
 		throw;
@@ -218,12 +220,23 @@ void JKRWadaEngine::leave()
 	ContactsHolder(*scene).clear();
 }
 
+bool JKRWadaEngine::isAmong(const std::vector<shared_ptr<Engine>>& engines) const
+{
+	return std::any_of(engines.begin(), engines.end(), [this](const auto& engine) { return engine.get() == this && !engine->dead; });
+}
+
+// A script has set O.engines within this O.step.
+void JKRWadaEngine::leaveIfReplaced()
+{
+	const auto& next = scene->_nextEngines;
+	if (current && !next.empty() && !isAmong(next) && ContactsHolder(*scene).is(current->name)) leave();
+}
+
 void JKRWadaEngine::giveWay()
 {
 	const Scene& now = *Omega::instance().getScene();
-	const auto& engines = now._nextEngines.empty() ? now.engines : now._nextEngines;
-	const auto isThis = [this](const boost::shared_ptr<Engine>& engine) { return engine.get() == this && !engine->dead; };
-	if (std::any_of(engines.begin(), engines.end(), isThis)) return;
+	if (isAmong(now._nextEngines.empty() ? now.engines : now._nextEngines)) return;
+	if (now.subStep >= 0 && !inStep() && isAmong(now.engines)) return; // it acts in this step yet, and leaves then
 	const auto rest = atRest("O.engines was given others");
 	if (!current && !savedState.empty()) {
 		scene = Omega::instance().getScene().get();

@@ -31,6 +31,8 @@ class JKRWadaEngine : public GlobalEngine {
 	void start(Moment, bool again = false); // again: with bodies that were added
 	void startAgain(Moment);
 	void leave();
+	bool isAmong(const std::vector<shared_ptr<Engine>>&) const; // and not dead
+	void leaveIfReplaced();
 	void writeContacts();
 	void continueBooking();
 	void forgetSaved();

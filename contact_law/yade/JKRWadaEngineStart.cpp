@@ -119,7 +119,6 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool ag
 
 void JKRWadaEngine::start(Moment moment, bool again)
 {
-	requireAlone(*scene);
 	const bool continued = !savedState.empty();
 	std::shared_ptr<Run> run;
 	try {
