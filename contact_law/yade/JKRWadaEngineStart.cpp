@@ -125,7 +125,9 @@ void JKRWadaEngine::start(Moment moment, bool again)
 		SceneForces::restorePermanent(*scene, savedForces);
 		run = newRun(moment, again);
 	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
-		refuseInEngine(refusal.what());
+		const std::string what = refusal.what();
+		const bool more = continued && what.rfind("the number of bodies", 0) == 0;
+		refuseInEngine(what + (more ? " until prepare() or the first step; then grains may be appended" : ""));
 	}
 	requireSound(*run);
 	current = run;

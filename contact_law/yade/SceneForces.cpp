@@ -170,13 +170,17 @@ std::vector<Real> SceneForces::permanent(Scene& scene)
 
 void SceneForces::restorePermanent(Scene& scene, const std::vector<Real>& rows)
 {
-	if (rows.empty() || scene.forces.getPermForceUsed()) return;
+	if (rows.empty()) return;
 	contact_law::requireSealed(rows);
+	if (scene.forces.getPermForceUsed())
+		refuseInEngine("permanent forces were set before those of the checkpoint are in O.forces: call restoreForces() right after "
+		               "O.load, or import contact_law before it");
 	for (std::size_t k = 0; k + numbersSaved <= rows.size(); k += numbersSaved) {
 		const Real* row = &rows[k];
 		scene.forces.setPermForce(int(row[0]), Vector3r(row[1], row[2], row[3]));
 		scene.forces.setPermTorque(int(row[0]), Vector3r(row[4], row[5], row[6]));
 	}
+	scene.forces.sync(); // O.forces.permF() shows them
 }
 
 } // namespace yade

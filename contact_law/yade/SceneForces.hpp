@@ -23,7 +23,8 @@ public:
 
 	// Permanent forces (O.forces.setPermF, setPermT), which YADE does not save: a row of seven numbers a body that has one.
 	static std::vector<Real> permanent(Scene&);
-	static void restorePermanent(Scene&, const std::vector<Real>&); // unless there are others
+	// Throws std::runtime_error where others were set meanwhile, std::invalid_argument for damaged rows.
+	static void restorePermanent(Scene&, const std::vector<Real>&);
 
 	/* All that acts on each grain, for YADE's functions, until the next take() or withdraw(). outside: as taken last. With what a script has added
 	 * since. */

@@ -152,10 +152,27 @@ def test_permanent_forces_that_are_saved_before_the_first_step_hold(loaded):
 
     straight = end(False)
     assert end(True) == straight and O.energy["externalWork"] != 0
-    O.load("pushed.xml")
-    O.forces.setPermF(1, Vector3(0, 0, 0))  # what a script sets after loading holds instead
-    O.run(10, True)
-    assert motion() != straight
+
+
+@pytest.mark.parametrize("change", ["O.forces.setPermF(1, Vector3.Zero)", "O.forces.reset(resetAll=True)"])
+def test_permanent_forces_may_be_changed_right_after_loading(change):
+    """As if they were changed in the run that was never saved; the functors have them too."""
+
+    def end(saved):
+        new_scene(unit)
+        cluster(5, 1, [ice()], [1e-7], 1.0, 0)
+        fused_engine(subSteps=10)
+        push()
+        O.run(3, True)
+        if saved:
+            saved_and_loaded("pushed.xml")
+            for k, (force, _) in pushes().items():
+                assert list(O.forces.permF(k)) == list(force)
+        exec(change)
+        O.run(10, True)
+        return motion()
+
+    assert end(True) == end(False)
 
 
 def two_grains(*before):
