@@ -41,8 +41,8 @@ public:
 			if (isWork(channel) && !isDone(channel, scene, there)) continue;
 			if (perStep(channel))
 				scene.energy->setItem_py(nameOf(channel), values[channel]); // a ForceResetter may have emptied it
-			else if (!known && values[channel] != last[channel])
-				scene.energy->add(values[channel] - last[channel], nameOf(channel), ids[channel]);
+			else // of zero too: then O.energy has the channel
+				scene.energy->add(known ? 0 : values[channel] - last[channel], nameOf(channel), ids[channel]);
 			last[channel] = values[channel];
 		}
 	}

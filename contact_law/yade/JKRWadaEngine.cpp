@@ -28,6 +28,7 @@ void JKRWadaEngine::takeChanges(Moment moment)
 	current->grains.eachChange(*scene, orientations, current->dynamics.threadCount(), set);
 	current->grains.planes.takeChanges(*scene, current->dynamics);
 	if (exportInteractions) current->contacts.requireKept(*scene);
+	takeCleared();
 	takeStep();
 }
 

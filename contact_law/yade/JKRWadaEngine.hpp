@@ -37,6 +37,7 @@ class JKRWadaEngine : public GlobalEngine {
 	void continueBooking();
 	void forgetSaved();
 	bool isInOEnergy() const;
+	void takeCleared();
 	static void requireSound(const Run&);
 	static void requireStable(const contact_law::Dynamics&, Real step);
 	static void requireAlone(const Scene&);

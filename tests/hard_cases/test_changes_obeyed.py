@@ -277,6 +277,28 @@ def test_energies_are_those_of_velocities_that_were_set_and_saved():
         assert end(*how) == close_to(straight, "kinetic")
 
 
+@pytest.mark.parametrize("saved", [False, True])
+def test_energies_that_were_cleared_count_anew(saved):
+    """From O.energy.clear() on, as the functors'; what was lost before stays away."""
+
+    def end(cleared):
+        flying_together()
+        O.run(40, True)
+        before = energies()
+        if cleared:
+            O.energy.clear()
+        if saved:
+            saved_and_loaded()
+        O.run(20, True)
+        return before, energies()
+
+    before, straight = end(False)
+    _, anew = end(True)
+    assert before["slidingDissipation"] > 0
+    lost = {name: straight[name] - (before[name] if name in LOST else 0) for name in CHANNELS}
+    assert anew == close_to(lost, "kinetic")
+
+
 @pytest.mark.parametrize("tracked", ["functors", "both"])
 def test_energies_after_the_functors_and_a_checkpoint(tracked):
     """The functors' losses stay booked, and the engine's come on top, whether the engine was saved in between, or asked for energies at the end only."""
