@@ -27,9 +27,23 @@ void JKRWadaEngine::takeChanges(Moment moment)
 	};
 	current->grains.eachChange(*scene, orientations, current->dynamics.threadCount(), set);
 	current->grains.planes.takeChanges(*scene, current->dynamics);
-	if (exportInteractions) current->contacts.requireKept(*scene);
+	if (exportInteractions || moment == Moment::WithinStep) requireContactsKept();
 	takeCleared();
 	takeStep();
+}
+
+// What was written and does not stay goes with the refusal: erasing it needs no undoing.
+void JKRWadaEngine::requireContactsKept()
+{
+	const std::string erased = current->contacts.erased(*scene);
+	if (erased.empty()) return;
+	if (!exportInteractions) withdrawContacts();
+	refuseInEngine(erased);
+}
+
+void JKRWadaEngine::withdrawContacts()
+{
+	if (current->contacts.withdraw(*scene)) ContactsHolder(*scene).set(current->name, false);
 }
 
 void JKRWadaEngine::takeStep()
@@ -123,8 +137,8 @@ void JKRWadaEngine::makeStep()
 	current->grains.planes.push(*scene, current->dynamics);
 	if (exportInteractions)
 		writeContacts();
-	else if (current->contacts.withdraw(*scene))
-		ContactsHolder(*scene).set(current->name, false);
+	else
+		withdrawContacts();
 	if (scene->trackEnergy) writeEnergies(energies);
 	actedAt = scene->iter;
 }

@@ -34,6 +34,8 @@ class JKRWadaEngine : public GlobalEngine {
 	bool isAmong(const std::vector<shared_ptr<Engine>>&) const; // and not dead
 	void leaveIfReplaced();
 	void writeContacts();
+	void withdrawContacts();
+	void requireContactsKept();
 	void continueBooking();
 	void forgetSaved();
 	bool isInOEnergy() const;
@@ -62,7 +64,7 @@ public:
 	void giveWay();
 	void restoreForces();
 	void sinter(Real neck);
-	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
+	bool inStep() const { return scene->subStep >= 0 && actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
 	// For JKRWadaSnapshot, from the first step on: the bodies as they are now, and the contacts by the ids of their bodies.
