@@ -14,7 +14,7 @@ import sys
 
 from .grain_arrays import snapshot  # noqa: F401 (of the package)
 from .sintering import sinter  # noqa: F401
-from .yade_functions import give_way, show_contacts
+from .yade_functions import give_way, restore_forces, show_contacts
 
 TOP = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 with open(os.path.join(TOP, "analysis/VERSION")) as _file:
@@ -100,6 +100,7 @@ def _start():
     names = list(plugin.classNames)
     _publish(yade, names)
     give_way(yade)
+    restore_forces(yade)
     show_contacts(yade, vars(sys.modules["__main__"]))
     return names, plugin.commit, plugin.channels
 

@@ -38,6 +38,23 @@ def give_way(yade):
     yade.wrapper.Omega.engines = property(engines.fget, replace, doc=engines.__doc__)
 
 
+def restore_forces(yade):
+    """O.load and the like bring permanent forces back, which YADE does not save and the engine does."""
+
+    def restoring(load):
+        @functools.wraps(load, assigned=("__doc__", "__name__"))
+        def call(omega, *arguments, **named):
+            load(omega, *arguments, **named)
+            for engine in omega.engines:
+                if isinstance(engine, yade.wrapper.JKRWadaEngine):
+                    engine.restoreForces()
+
+        return call
+
+    for name in ("load", "loadTmp", "reload"):
+        setattr(yade.wrapper.Omega, name, restoring(getattr(yade.wrapper.Omega, name)))
+
+
 def show_contacts(yade, main):
     """yade.utils' functions of contacts have them with the fused engine too; main: the namespace of YADE's scripts."""
     for name in OF_CONTACTS:

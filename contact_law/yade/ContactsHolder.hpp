@@ -32,7 +32,7 @@ public:
 	}
 	static constexpr const char* refusal =
 	        "the contacts of these grains are in another JKRWadaEngine, which has not given way: call its "
-	        "handOver() first, or import contact_law before O.engines is set";
+	        "giveWay() or handOver() first, or import contact_law before O.engines is set";
 
 private:
 	static constexpr const char *key = "contacts=", *also = ", O.interactions";

@@ -31,7 +31,7 @@ public:
 	struct WorkOn {
 		bool blocked = false, outside = false; // blocked degrees of freedom or planes; outside forces
 	};
-	// The channels' values at present. known: O.energy holds them already, from a checkpoint.
+	// The channels' values at present, zeros too. known: O.energy holds them already, from a checkpoint.
 	void set(Scene& scene, const contact_law::Energies& energies, bool known, WorkOn there)
 	{
 		if (!areIn(scene)) last.fill(0); // O.energy is new, or was cleared
@@ -41,8 +41,8 @@ public:
 			if (isWork(channel) && !isDone(channel, scene, there)) continue;
 			if (perStep(channel))
 				scene.energy->setItem_py(nameOf(channel), values[channel]); // a ForceResetter may have emptied it
-			else if (!known && values[channel] != last[channel])
-				scene.energy->add(values[channel] - last[channel], nameOf(channel), ids[channel]);
+			else
+				scene.energy->add(known ? 0 : values[channel] - last[channel], nameOf(channel), ids[channel]);
 			last[channel] = values[channel];
 		}
 	}

@@ -27,8 +27,23 @@ void JKRWadaEngine::takeChanges(Moment moment)
 	};
 	current->grains.eachChange(*scene, orientations, current->dynamics.threadCount(), set);
 	current->grains.planes.takeChanges(*scene, current->dynamics);
-	if (exportInteractions) current->contacts.requireKept(*scene);
+	if (exportInteractions || moment == Moment::WithinStep) requireContactsKept();
+	takeCleared();
 	takeStep();
+}
+
+// What was written and does not stay goes with the refusal: erasing it needs no undoing.
+void JKRWadaEngine::requireContactsKept()
+{
+	const std::string erased = current->contacts.erased(*scene);
+	if (erased.empty()) return;
+	if (!exportInteractions) withdrawContacts();
+	refuseInEngine(erased);
+}
+
+void JKRWadaEngine::withdrawContacts()
+{
+	if (current->contacts.withdraw(*scene)) ContactsHolder(*scene).set(current->name, false);
 }
 
 void JKRWadaEngine::takeStep()
@@ -61,7 +76,7 @@ void JKRWadaEngine::enter(Moment moment)
 	if (moment == Moment::BetweenSteps) scene = Omega::instance().getScene().get();
 	if (!failure.empty()) refuseInEngine(failure);
 	requireInRange();
-	if (!current) start(moment);
+	if (!current) requireAlone(*scene), start(moment);
 	if (!ContactsHolder(*scene).is(current->name))
 		refuseInEngine("other engines have moved these grains since this engine's last step: make a new engine");
 	current->dynamics.setThreads(threads);
@@ -82,9 +97,12 @@ void JKRWadaEngine::action()
 	const SceneCell::Before before(*scene);
 	try {
 		makeStep();
+		leaveIfReplaced();
 	} catch (...) {
 		before.restore(*scene);
+		SceneForces::takeBack(*scene, *this);
 		scene->subStep = -1;
+		leaveIfReplaced();
 		acting.unlock(); // a call that waits for this engine holds Python's lock
 		letPythonWait();
 		throw;
@@ -95,12 +113,15 @@ void JKRWadaEngine::makeStep()
 {
 	requireAlone(*scene);
 	enter(Moment::WithinStep);
-	takeForces();
 	current->cell.require(*scene, current->dynamics);
 	const std::string tooFast = current->grains.planes.tooFast(smallStep, current->dynamics.state().smallestRadius);
 	if (!tooFast.empty()) refuseInEngine(tooFast);
+	takeForces(); // last: it empties O.forces
 	const std::string wrongCell = current->cell.wrong(*scene, current->dynamics, subSteps);
-	if (!wrongCell.empty()) fail(scene->time + scene->dt, wrongCell, "");
+	if (!wrongCell.empty()) {
+		writeContacts();
+		fail(scene->time + scene->dt, wrongCell, "");
+	}
 	const contact_law::Vec3<double> cellAtEnd = SceneCell::now(*scene);
 	const long made = current->dynamics.run(subSteps, scene->isPeriodic ? &cellAtEnd : nullptr);
 	current->cell.arrive(*scene);
@@ -116,16 +137,21 @@ void JKRWadaEngine::makeStep()
 	current->grains.planes.push(*scene, current->dynamics);
 	if (exportInteractions)
 		writeContacts();
-	else if (current->contacts.withdraw(*scene))
-		ContactsHolder(*scene).set(current->name, false);
+	else
+		withdrawContacts();
 	if (scene->trackEnergy) writeEnergies(energies);
 	actedAt = scene->iter;
 }
 
 void JKRWadaEngine::fail(Real time, const std::string& what, const char* advice)
 {
+	const bool kept = ContactsHolder(*scene).isWritten();
 	failure = "the run broke down at t = " + text(time) + " s: " + what
-	        + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s" + advice;
+	        + "; O.bodies hold the last good state, of t = " + text(scene->time) + " s, "
+	        + (kept ? "and O.interactions its contacts"
+	                : "but not its contacts' springs (O.interactions does with exportInteractions=True)")
+	        + advice;
+	current->forces.withdraw(*scene);
 	current.reset();
 	ContactsHolder(*scene).clear();
 	refuseInEngine(failure);
@@ -209,12 +235,23 @@ void JKRWadaEngine::leave()
 	ContactsHolder(*scene).clear();
 }
 
+bool JKRWadaEngine::isAmong(const std::vector<shared_ptr<Engine>>& engines) const
+{
+	return std::any_of(engines.begin(), engines.end(), [this](const auto& engine) { return engine.get() == this && !engine->dead; });
+}
+
+// A script has set O.engines within this O.step.
+void JKRWadaEngine::leaveIfReplaced()
+{
+	const auto& next = scene->_nextEngines;
+	if (current && !next.empty() && !isAmong(next) && ContactsHolder(*scene).is(current->name)) leave();
+}
+
 void JKRWadaEngine::giveWay()
 {
 	const Scene& now = *Omega::instance().getScene();
-	const auto& engines = now._nextEngines.empty() ? now.engines : now._nextEngines;
-	const auto isThis = [this](const boost::shared_ptr<Engine>& engine) { return engine.get() == this && !engine->dead; };
-	if (std::any_of(engines.begin(), engines.end(), isThis)) return;
+	if (isAmong(now._nextEngines.empty() ? now.engines : now._nextEngines)) return;
+	if (now.subStep >= 0 && !inStep() && isAmong(now.engines)) return; // it acts in this step yet, and leaves then
 	const auto rest = atRest("O.engines was given others");
 	if (!current && !savedState.empty()) {
 		scene = Omega::instance().getScene().get();

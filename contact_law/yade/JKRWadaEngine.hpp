@@ -31,10 +31,15 @@ class JKRWadaEngine : public GlobalEngine {
 	void start(Moment, bool again = false); // again: with bodies that were added
 	void startAgain(Moment);
 	void leave();
+	bool isAmong(const std::vector<shared_ptr<Engine>>&) const; // and not dead
+	void leaveIfReplaced();
 	void writeContacts();
+	void withdrawContacts();
+	void requireContactsKept();
 	void continueBooking();
 	void forgetSaved();
 	bool isInOEnergy() const;
+	void takeCleared();
 	static void requireSound(const Run&);
 	static void requireStable(const contact_law::Dynamics&, Real step);
 	static void requireAlone(const Scene&);
@@ -52,13 +57,14 @@ class JKRWadaEngine : public GlobalEngine {
 public:
 	void action() override;
 	void preSave(JKRWadaEngine&);
-	void postSave(JKRWadaEngine&) { forgetSaved(); } // a copy of this engine would start from it
+	void postSave(JKRWadaEngine&);
 	void prepare();
 	void writeInteractions();
 	void handOver();
 	void giveWay();
+	void restoreForces();
 	void sinter(Real neck);
-	bool inStep() const { return actedAt == scene->iter; } // between this engine's action and the end of O.step
+	bool inStep() const { return scene->subStep >= 0 && actedAt == scene->iter; } // between this engine's action and the end of O.step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
 	// For JKRWadaSnapshot, from the first step on: the bodies as they are now, and the contacts by the ids of their bodies.
@@ -100,6 +106,7 @@ public:
 		.def("handOver", &JKRWadaEngine::handOver, "Leave the scene as YADE's own loop leaves it after a step, so that O.engines with the functors continue from here as if they had been there before: bodies a small step further "
 			"(and O.time, O.iter), velocities half a small step behind the positions, contacts in O.interactions, O.dt the small step. Call it between O.steps and put other engines in this one's place.")
 		.def("giveWay", &JKRWadaEngine::giveWay, "Leave the contacts in O.interactions, to whatever moves the grains from here on, unless this engine is among O.engines and not dead. `import contact_law` has this called whenever O.engines is set.")
+		.def("restoreForces", &JKRWadaEngine::restoreForces, "Put the permanent forces of a checkpoint into O.forces, once. `import contact_law` has this called after O.load.")
 		.def("sinter", &JKRWadaEngine::sinter, boost::python::arg("neck"), "All contacts become bonds of this neck now, without strain where the grains are; existing bonds keep their own neck. All grains shrink by the largest neck, "
 			"which is this engine's neck from now on. What the contacts held is booked as disconnection. Call it between two O.steps. contact_law.sinter() calls this, or the functors'.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; planeContacts, those of grains with Walls, which the other numbers leave out; bonds broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name with Energy, in J, in this engine's run); contactUpdates (small steps times contacts, so far), events (contacts that formed or broke, and slips), formed and broken (contacts, bonds not among them), searches (for neighbours, of all grains or as many a part at a time), distanceChecks (of pairs that do not touch), orders (times that grains were put into a new order, because fragments had flown apart), domains, instructions.")

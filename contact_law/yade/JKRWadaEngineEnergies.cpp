@@ -19,8 +19,13 @@ bool JKRWadaEngine::isInOEnergy() const { return booked && EnergyChannels::areIn
 // O.energy holds what this run has booked before it was saved.
 void JKRWadaEngine::continueBooking()
 {
-	booked = isInOEnergy();
-	if (booked) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
+	if (isInOEnergy()) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
+}
+
+// O.energy.clear(): sums count from there on.
+void JKRWadaEngine::takeCleared()
+{
+	if (booked && !isInOEnergy()) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
 }
 
 } // namespace yade

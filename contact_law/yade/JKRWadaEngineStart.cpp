@@ -119,14 +119,15 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool ag
 
 void JKRWadaEngine::start(Moment moment, bool again)
 {
-	requireAlone(*scene);
 	const bool continued = !savedState.empty();
 	std::shared_ptr<Run> run;
 	try {
 		SceneForces::restorePermanent(*scene, savedForces);
 		run = newRun(moment, again);
 	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
-		refuseInEngine(refusal.what());
+		const std::string what = refusal.what();
+		const bool more = continued && what.rfind("the number of bodies", 0) == 0;
+		refuseInEngine(what + (more ? " until prepare() or the first step; then grains may be appended" : ""));
 	}
 	requireSound(*run);
 	current = run;

@@ -1,4 +1,5 @@
 #include "JKRWadaSnapshot.hpp"
+#include "ContactsHolder.hpp"
 #include "JKRWada.hpp"
 #include "JKRWadaEngine.hpp"
 #include "RunningLoop.hpp"
@@ -60,10 +61,12 @@ namespace {
 		append(grains.angularVelocity, spin);
 	}
 
-	const JKRWadaEngine* fusedEngine(const Scene& scene)
+	// That moves the grains; a dead one while it has the contacts.
+	const JKRWadaEngine* fusedEngine(Scene& scene)
 	{
 		for (const auto& engine : scene.engines)
-			if (const auto* fused = dynamic_cast<const JKRWadaEngine*>(engine.get())) return fused;
+			if (const auto* fused = dynamic_cast<const JKRWadaEngine*>(engine.get()))
+				if (!fused->dead || ContactsHolder(scene).isAny()) return fused;
 		return nullptr;
 	}
 

@@ -253,14 +253,14 @@ void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, S
 		write(scene, dynamics, places[k], stage, *held[k]);
 }
 
-void SceneContacts::requireKept(const Scene& scene) const
+std::string SceneContacts::erased(const Scene& scene) const
 {
 	InteractionContainer& there = *scene.interactions;
 	const size_t real = std::count_if(held.begin(), held.end(), [](const auto& interaction) { return interaction->isReal(); });
 	const size_t left = std::min(there.size(), real);
-	if (left < held.size())
-		refuseInEngine("O.interactions has " + std::to_string(left) + " contacts, must be the " + std::to_string(held.size())
-		        + " that were written: this engine's contacts cannot be erased there");
+	if (left == held.size()) return "";
+	return "O.interactions has " + std::to_string(left) + " contacts, must be the " + std::to_string(held.size())
+	        + " that were written: this engine's contacts cannot be erased there";
 }
 
 bool SceneContacts::withdraw(Scene& scene)

@@ -21,8 +21,8 @@ public:
 	using IsThere = std::function<bool(int id)>;
 	void write(Scene&, const contact_law::Dynamics&, Stage, const IsThere& isThere = {});
 
-	// Throws std::runtime_error when a script has erased some of what was written.
-	void requireKept(const Scene&) const;
+	// Empty, or that a script has erased some of what was written.
+	std::string erased(const Scene&) const;
 
 	// Empties O.interactions of what was written before and is no longer so; whether there was anything.
 	bool withdraw(Scene&);

@@ -120,11 +120,22 @@ std::vector<OutsideForce> SceneForces::found(Scene& scene, const SceneGrains& gr
 		const Vector3r &force = scene.forces.getForce(id), &torque = scene.forces.getTorque(id);
 		if (force.isZero(0) && torque.isZero(0)) continue;
 		if (!allFinite(force) || !allFinite(torque))
-			refuseInEngine("O.forces has a force or torque on " + bodyName(id) + " that is not a finite number");
+			refuseInEngine("O.forces has a force or torque on " + bodyName(id)
+			        + " that is not a finite number: must be finite (O.forces.reset(False) clears it; a permanent one must be "
+			          "set to 0 before)");
 		found.push_back({ grain, toKernel(force), toKernel(torque) });
 	}
 	if (!hasForceResetter(scene)) scene.forces.reset(scene.iter);
 	return found;
+}
+
+void SceneForces::takeBack(Scene& scene, const Engine& refused)
+{
+	const auto acts = [](const auto& engine) { return !engine->dead; };
+	const auto first = std::find_if(scene.engines.begin(), scene.engines.end(), acts);
+	if (first == scene.engines.end() || first->get() == &refused) return;
+	scene.forces.sync(); // otherwise reset() leaves what was added since
+	scene.forces.reset(scene.iter);
 }
 
 void SceneForces::dropThoseOfOtherEngines(Scene& scene, const SceneGrains& grains, int threads, bool ofContacts)
@@ -159,13 +170,17 @@ std::vector<Real> SceneForces::permanent(Scene& scene)
 
 void SceneForces::restorePermanent(Scene& scene, const std::vector<Real>& rows)
 {
-	if (rows.empty() || scene.forces.getPermForceUsed()) return;
+	if (rows.empty()) return;
 	contact_law::requireSealed(rows);
+	if (scene.forces.getPermForceUsed())
+		refuseInEngine("permanent forces were set before those of the checkpoint are in O.forces: call restoreForces() right after "
+		               "O.load, or import contact_law before it");
 	for (std::size_t k = 0; k + numbersSaved <= rows.size(); k += numbersSaved) {
 		const Real* row = &rows[k];
 		scene.forces.setPermForce(int(row[0]), Vector3r(row[1], row[2], row[3]));
 		scene.forces.setPermTorque(int(row[0]), Vector3r(row[4], row[5], row[6]));
 	}
+	scene.forces.sync(); // O.forces.permF() shows them
 }
 
 } // namespace yade

@@ -6,6 +6,7 @@
 
 namespace yade {
 
+class Engine;
 class SceneGrains;
 
 class SceneForces {
@@ -14,12 +15,16 @@ public:
 	 * Unless a ForceResetter does it, O.forces is emptied of what is not permanent: forces are held over one O.step. Throws std::runtime_error, with
 	 * one line, when one is not finite. */
 	std::vector<contact_law::OutsideForce> take(Scene&, const SceneGrains&, int threads);
+	/* After a step that was refused: engines before this one add their forces again, so those of now go, and with them what a script has added,
+	 * which cannot be told from them. */
+	static void takeBack(Scene&, const Engine& refused);
 	// Before the first step: what the last step of other engines left is dropped, or refused where it may be someone's wish.
 	static void dropThoseOfOtherEngines(Scene&, const SceneGrains&, int threads, bool ofContacts);
 
 	// Permanent forces (O.forces.setPermF, setPermT), which YADE does not save: a row of seven numbers a body that has one.
 	static std::vector<Real> permanent(Scene&);
-	static void restorePermanent(Scene&, const std::vector<Real>&); // unless there are others
+	// Throws std::runtime_error where others were set meanwhile, std::invalid_argument for damaged rows.
+	static void restorePermanent(Scene&, const std::vector<Real>&);
 
 	/* All that acts on each grain, for YADE's functions, until the next take() or withdraw(). outside: as taken last. With what a script has added
 	 * since. */

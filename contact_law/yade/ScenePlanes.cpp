@@ -6,11 +6,20 @@
 
 namespace yade {
 
+namespace {
+	void requireFinite(const Body& body)
+	{
+		if (!body.state->pos.allFinite() || !body.state->vel.allFinite())
+			refuseInEngine(bodyName(body.getId()) + ", a Wall, has a position or velocity that is not a finite number");
+	}
+}
+
 void ScenePlanes::add(const shared_ptr<Body>& body, int kind)
 {
 	const State& state = *body->state;
+	requireFinite(*body);
 	kept.push_back({ int(body->getId()), body, body->state, body->shape, body->material.get(),
-	        static_cast<const Wall&>(*body->shape).axis, kind, state.pos, state.vel });
+	        static_cast<const Wall&>(*body->shape).axis, body->groupMask, body->flags, kind, state.pos, state.vel });
 }
 
 std::vector<contact_law::PlaneInput> ScenePlanes::planes() const
@@ -39,7 +48,8 @@ void ScenePlanes::requireKept(const Scene& scene) const
 	for (int p = 0; p < size(); ++p) {
 		const Kept& k = kept[p];
 		const bool same = isThere(scene, p) && k.body->state == k.state && k.body->shape == k.shape
-		        && k.body->material.get() == k.material && static_cast<const Wall&>(*k.shape).axis == k.axis;
+		        && k.body->material.get() == k.material && static_cast<const Wall&>(*k.shape).axis == k.axis
+		        && k.body->groupMask == k.mask && k.body->flags == k.flags;
 		if (!same)
 			refuseInEngine(bodyName(k.id)
 			        + ", a Wall, was replaced or changed after the start: it must stay as it was; make a new engine");
@@ -53,6 +63,7 @@ void ScenePlanes::takeChanges(const Scene& scene, contact_law::Dynamics& dynamic
 		Kept& k = kept[p];
 		const std::string fault = faultOf(*k.body, scene, InPeriodic::AtRest);
 		if (!fault.empty()) refuseInEngine(fault);
+		requireFinite(*k.body);
 		if (k.state->pos == k.position && k.state->vel == k.velocity) continue;
 		k.position = k.state->pos, k.velocity = k.state->vel;
 		dynamics.setPlane(p, toKernel(k.position), toKernel(k.velocity));

@@ -37,7 +37,7 @@ private:
 		shared_ptr<State> state;
 		shared_ptr<Shape> shape;
 		const Material* material;
-		int axis, kind;
+		int axis, mask, flags, kind;
 		Vector3r position, velocity; // as written
 	};
 	std::vector<Kept> kept;

@@ -152,10 +152,27 @@ def test_permanent_forces_that_are_saved_before_the_first_step_hold(loaded):
 
     straight = end(False)
     assert end(True) == straight and O.energy["externalWork"] != 0
-    O.load("pushed.xml")
-    O.forces.setPermF(1, Vector3(0, 0, 0))  # what a script sets after loading holds instead
-    O.run(10, True)
-    assert motion() != straight
+
+
+@pytest.mark.parametrize("change", ["O.forces.setPermF(1, Vector3.Zero)", "O.forces.reset(resetAll=True)"])
+def test_permanent_forces_may_be_changed_right_after_loading(change):
+    """As if they were changed in the run that was never saved; the functors have them too."""
+
+    def end(saved):
+        new_scene(unit)
+        cluster(5, 1, [ice()], [1e-7], 1.0, 0)
+        fused_engine(subSteps=10)
+        push()
+        O.run(3, True)
+        if saved:
+            saved_and_loaded("pushed.xml")
+            for k, (force, _) in pushes().items():
+                assert list(O.forces.permF(k)) == list(force)
+        exec(change)
+        O.run(10, True)
+        return motion()
+
+    assert end(True) == end(False)
 
 
 def two_grains(*before):
@@ -191,13 +208,51 @@ def test_a_force_resetter_leaves_the_energies():
     assert end(ForceResetter()) == end() and O.energy["kinetic"] > 0 > O.energy["normal"]
 
 
+BEFORE = {
+    "nothing": lambda: [],
+    "ForceResetter": lambda: [ForceResetter(), ForceEngine(ids=[1], force=(weight(), 0, 0))],
+    "gravity": lambda: [GravityEngine(gravity=(0, 0, -1e9))],
+}
+
+
+@pytest.mark.parametrize("before", BEFORE)
+def test_a_refused_step_adds_no_force(before):
+    """What engines before this one add counts once; a script's force holds in the step that is made, where none stand before it."""
+
+    def end(*refused):
+        new_scene(0.1 * unit)
+        O.bodies.append(utils.wall(-9e-7, axis=2, material=ice()))
+        grain((0, 0, 0), 1e-7, ice())
+        O.engines = [*BEFORE[before](), JKRWadaEngine()]
+        for k in range(4):
+            if before == "nothing":
+                O.forces.addF(1, Vector3(weight(), 0, 0))
+            for change, undo in refused:
+                exec(change)
+                assert refusal() and refusal()
+                exec(undo)
+            O.step()
+        return motion()
+
+    of_settings = "O.engines[-1].subSteps = 0", "O.engines[-1].subSteps = 1"
+    of_planes = "O.bodies[0].state.vel = (0, 0, 1e9)", "O.bodies[0].state.vel = Vector3.Zero"
+    assert end(of_planes, of_settings) == end()
+
+
 def test_what_is_refused():
     two_grains()
     O.engines = [*O.engines, ForceResetter()]
     assert refusal().startswith("JKRWadaEngine: ForceResetter comes after this engine in O.engines")
     two_grains()
     O.forces.addF(1, Vector3(float("nan"), 0, 0))
-    assert refusal() == "JKRWadaEngine: O.forces has a force or torque on body 1 that is not a finite number"
+    words = "O.forces has a force or torque on body 1 that is not a finite number: must be finite (O.forces.reset(False) clears it"
+    assert refusal().startswith(f"JKRWadaEngine: {words}")
+    two_grains()
+    O.forces.setPermF(1, Vector3(float("inf"), 0, 0))
+    assert "a permanent one must be set to 0 before" in refusal()
+    O.forces.setPermF(1, Vector3.Zero)
+    O.forces.reset(False)
+    assert not refusal()
     two_grains()
     O.step()
     O.engines = [JKRWadaEngine()]

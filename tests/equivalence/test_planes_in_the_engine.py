@@ -99,6 +99,23 @@ def test_in_a_wide_periodic_cell_as_in_the_open():
     O.cell.velGrad = Matrix3(-1e3, 0, 0, 0, 0, 0, 0, 0, 0)
     assert "a Wall: O.cell.velGrad must be zero: planes do not move with a cell" in refusal()
     end(False)
-    wall = next(b.id for b in O.bodies if isinstance(b.shape, Wall))
-    O.bodies.erase(wall)
-    assert f"body {wall}, a Wall, was replaced or changed" in refusal()
+    wall = next(b for b in O.bodies if isinstance(b.shape, Wall))
+    changed = f"body {wall.id}, a Wall, was replaced or changed"
+    infinite = f"body {wall.id}, a Wall, has a position or velocity that is not a finite number"
+    for change, undo, words in (
+        ("wall.mask = 2", "wall.mask = 1", changed),
+        ("wall.bounded = not wall.bounded", "wall.bounded = not wall.bounded", changed),
+        ("kept = wall.state.pos; wall.state.pos = (nan, 0, 0)", "wall.state.pos = kept", infinite),
+    ):
+        names = dict(wall=wall, nan=float("nan"))
+        exec(change, names)
+        assert words in refusal()
+        exec(undo, names)
+        assert not refusal()
+    wall.state.vel = (float("nan"), 0, 0)
+    fused_engine()
+    assert infinite in refusal()
+    wall.state.vel = Vector3.Zero
+    O.step()
+    O.bodies.erase(wall.id)
+    assert changed in refusal()

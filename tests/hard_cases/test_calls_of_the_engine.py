@@ -52,7 +52,7 @@ def test_an_engine_that_was_handed_over_starts_anew_in_another_scene():
 
 
 def test_interactions_that_a_script_erased_are_written_again():
-    """writeInteractions() writes all contacts, whatever was written and erased before; without it O.interactions are the script's own."""
+    """writeInteractions() writes all contacts, whatever was written and erased before; without it a step refuses once what was erased."""
     chain()
     steps(20)
     for erase in ("O.interactions.erase(0, 1)", "O.interactions.clear()", "O.interactions.eraseNonReal()"):
@@ -61,6 +61,7 @@ def test_interactions_that_a_script_erased_are_written_again():
         engine().writeInteractions()
         assert O.interactions.countReal() == 3, erase
         run(erase)
+        assert ("cannot be erased there" in said(O.step)) == ("NonReal" not in erase), erase
         O.step()
         assert len(O.interactions) == 0, erase
 
@@ -138,6 +139,24 @@ def test_a_snapshot_has_what_a_script_has_changed():
     assert (again["position"] < 1e-3).all() and again["contact_normal_force"].any()
     O.bodies[2].state = State()
     assert "body 2 was given another state after the start" in said(contact_law.snapshot)
+
+
+def test_a_snapshot_of_the_functors_does_not_mind_a_dead_engine():
+    chain()
+    O.engines = functor_engines()
+    steps(20)
+    without = contact_law.snapshot()
+    O.engines += [JKRWadaEngine(dead=True)]
+    beside = contact_law.snapshot()
+    assert all((beside[name] == without[name]).all() for name in ("position", "velocity"))
+
+
+def test_time_may_be_reset_after_one_step():
+    chain()
+    O.step()
+    O.resetTime()
+    assert contact_law.snapshot()["time"] == 0
+    engine().handOver()
 
 
 def test_a_pyrunner_may_call_the_engine_while_the_loop_runs():

@@ -69,6 +69,38 @@ def test_what_is_saved_before_the_next_step_is_not_lost(change, times, name):
     assert (positions() == loaded).all()
 
 
+@pytest.mark.parametrize("when", ["before O.save", "after O.load"])
+def test_a_grain_that_is_appended_around_a_checkpoint_is_taken_in(when):
+    def end(save):
+        chain(subSteps=5)
+        O.dt *= 5
+        steps(10)
+        if save and when == "after O.load":
+            saved_and_loaded()
+            engine().prepare()
+        grain((2e-7, 2.05e-7, 0), 1e-7, O.bodies[0].material, (0, -2, 0))
+        if save and when == "before O.save":
+            saved_and_loaded()
+        steps(40)
+        return positions(), engine().statistics()["contacts"]
+
+    (x, contacts), (y, same_contacts) = end(True), end(False)
+    assert contacts == same_contacts > 3 and np.abs(x - y).max() < 1e-12 * 1e-7
+
+
+def test_a_loaded_scene_that_is_saved_again_goes_on():
+    chain()
+    steps(10)
+    O.forces.setPermF(1, Vector3(0, 1e-9, 0))
+    O.save("saved.yade")
+    steps(10)
+    straight = positions()
+    O.load("saved.yade")
+    O.save("again.yade")
+    steps(10)
+    assert (positions() == straight).all()
+
+
 def test_an_engine_that_was_saved_and_handed_over_starts_from_the_functors():
     def end(save):
         chain()
@@ -243,6 +275,28 @@ def test_energies_are_those_of_velocities_that_were_set_and_saved():
     straight = end(False, False)
     for how in ((False, True), (True, False), (True, True)):
         assert end(*how) == close_to(straight, "kinetic")
+
+
+@pytest.mark.parametrize("saved", [False, True])
+def test_energies_that_were_cleared_count_anew(saved):
+    """From O.energy.clear() on, as the functors'; what was lost before stays away."""
+
+    def end(cleared):
+        flying_together()
+        O.run(40, True)
+        before = energies()
+        if cleared:
+            O.energy.clear()
+        if saved:
+            saved_and_loaded()
+        O.run(20, True)
+        return before, energies()
+
+    before, straight = end(False)
+    _, anew = end(True)
+    assert before["slidingDissipation"] > 0
+    lost = {name: straight[name] - (before[name] if name in LOST else 0) for name in CHANNELS}
+    assert anew == close_to(lost, "kinetic")
 
 
 @pytest.mark.parametrize("tracked", ["functors", "both"])

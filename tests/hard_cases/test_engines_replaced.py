@@ -54,6 +54,51 @@ def set_behind_the_back(engines):
     plain.fset(O, engines)
 
 
+@pytest.mark.parametrize("place", [0, 1])
+@pytest.mark.parametrize("new", ["functor_engines()", "[JKRWadaEngine(subSteps=5)]"])
+def test_a_pyrunner_may_set_the_engines(new, place):
+    """Standing before the engine, which makes this step yet, as behind it; a refused step in between changes nothing."""
+
+    def end(place, refused=False):
+        strained()
+        old = engine()
+
+        def exchange():
+            O.engines = eval(new)
+            old.subSteps = 0 if refused else old.subSteps
+            O.dt /= 5 if "functor" in new else 1
+
+        sys.modules["__main__"].exchange = exchange
+        runner = PyRunner(command="exchange()", iterPeriod=1, nDo=1, initRun=True)
+        O.engines = [runner, old] if place == 0 else [old, runner]
+        if refused:
+            assert "subSteps = 0" in said(O.step)
+            return None
+        O.step()
+        assert "JKRWadaEngine" in new or O.interactions.countReal() > 20
+        steps(20)
+        return contact_law.snapshot()["contact_pairs"].shape
+
+    assert end(place)[0] > 20
+    if place == 0:
+        end(place, refused=True)
+        steps(3)
+        assert O.interactions.countReal() > 20 or engine().statistics()["contacts"] > 20
+
+
+def test_the_functors_take_a_loaded_scene_over():
+    strained()
+    contacts = engine().statistics()["contacts"]
+    engine().writeInteractions()
+    springs = sum(i.phys.slidingDisplacement.norm() for i in O.interactions)
+    saved_and_loaded()
+    O.engines = functor_engines()
+    assert O.interactions.countReal() == contacts
+    assert sum(i.phys.slidingDisplacement.norm() for i in O.interactions) == pytest.approx(springs, rel=1e-9)
+    O.dt /= 5
+    steps(20)
+
+
 HELD = ["the contacts of these grains are in another JKRWadaEngine", "handOver()"]
 REFUSED = {
     "O.engines[0].dead = True; O.engines += functor_engines(); O.engines[0].dead = False; O.step()": ["is among O.engines too"],

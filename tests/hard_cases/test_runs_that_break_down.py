@@ -96,6 +96,28 @@ def test_after_a_failure_a_checkpoint_holds_the_last_good_state():
     assert end(False) == end(True)
 
 
+def test_after_a_failure_a_new_engine_has_the_contacts_that_were_exported():
+    """As if there had been no failure, with those of O.interactions; without, the message says that springs are lost."""
+
+    def end(fails, export=True):
+        new_scene(0.1 * unit)
+        cluster(12, 1, [ice()], [1e-7], 3.0, 1e7)
+        fused_engine(exportInteractions=export)
+        O.run(200, True)
+        kept, message = Vector3(O.bodies[0].state.vel), ""
+        if fails:
+            O.bodies[0].state.vel = Vector3(1e5, 0, 0)
+            message = refusal()
+            O.bodies[0].state.vel = kept
+        fused_engine()
+        O.run(20, True)
+        return positions(), message
+
+    (x, message), (y, _) = end(True), end(False)
+    assert "and O.interactions its contacts" in message and np.abs(x - y).max() < 1e-12 * 1e-7
+    assert "but not its contacts' springs" in end(True, export=False)[1]
+
+
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 def test_a_collision_that_fails_keeps_its_last_good_state(tmp_path, mover):
     """collide.py with its own guard on the step switched off: exit status 1, the names in run.json, and the last sample before as the last state."""

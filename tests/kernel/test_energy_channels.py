@@ -15,7 +15,13 @@ def test_plugin_and_run_folders_have_the_same_channels():
 
 @pytest.mark.parametrize(
     "scene, work",
-    [("plain", None), ("periodic", "boundaryWork"), ("blocked", "constraintWork"), ("pushed", "externalWork")],
+    [
+        ("plain", None),
+        ("periodic", "boundaryWork"),
+        ("blocked", "constraintWork"),
+        ("pushed", "externalWork"),
+        ("wall", "constraintWork"),
+    ],
 )
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 def test_o_energy_has_the_channels_of_the_scene_and_no_others(scene, work, mover):
@@ -26,12 +32,14 @@ def test_o_energy_has_the_channels_of_the_scene_and_no_others(scene, work, mover
         O.cell.setBox(1e-6, 1e-6, 1e-6)
     grain((5e-7, 5e-7, 5e-7), 1e-7, ice(), velocity=(0, 2, 0), blocked="xyzXYZ" if scene == "blocked" else "")
     grain((5e-7, 6.99e-7, 5e-7), 1e-7, ice(), velocity=(0, 1, 0))
+    if scene == "wall":  # which no grain has met yet
+        O.bodies[O.bodies.append(utils.wall(1e-7, axis=0, material=ice()))].state.vel = (0.1, 0, 0)
     if scene == "pushed":
         O.forces.setPermF(1, Vector3(1e-12, 0, 0))
     if mover == "fused":
         fused_engine()
     O.run(3, True)
-    if mover == "functors" and work != "boundaryWork":  # they leave constraintWork and externalWork out
+    if mover == "functors" and scene in ("blocked", "pushed"):  # they leave these works out
         work = None
     assert channels_found() == {c.name for c in CHANNEL_TABLE if c.kind != "work"} | ({work} if work else set())
 
