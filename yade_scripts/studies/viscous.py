@@ -9,8 +9,8 @@ prediction holds larger aggregates, whose <f_gro> was predicted from those of 50
 (analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size: every second offset first, then the
 others. The predictions are of all 13, which the first block alone does not test.
 
-own is the paper's own size, three pairs with and without drag, followed to the paper's last time: at 50.1 m/s the offsets about the edge of
-merging first, then all 13; then at 63.1 m/s, without drag first, so that v_fra lies between the two.
+own is the paper's own size, with and without drag, followed to the paper's last time: four pairs at 50.1 m/s, the offsets about the edge of
+merging first, then all 13; then three at 63.1 m/s, without drag first, so that v_fra lies between the two.
 """
 
 import os
@@ -34,7 +34,7 @@ DESK = {500: (EXPONENTS, 4), 2000: (range(16, 21), 3)}
 REFERENCE_SEEDS, REFERENCE_PICOSECONDS = 3, (0, 6)  # at the paper's size
 STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for smaller aggregates: its ledger closes to 1e-3 of K(0)
 
-OWN_EXPONENTS = (REFERENCE[1], 18)  # v_fra is 50 to 60 m/s in the paper
+OWN_PAIRS = {REFERENCE[1]: 4, 18: 3}  # by i; v_fra is 50 to 60 m/s in the paper
 EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, of which the desk table has the same pairs
 # Followed to the end, with a shorter step while the aggregates fly through each other: the ledger closes to 1e-4 of K(0).
 FOLLOWED = {"endWhenApart": 0, "stepFraction": 0.2, "impactStepFraction": 0.1}
@@ -90,11 +90,11 @@ def own():
     first, faster = (
         [
             (FULL_GRAINS, twelfths, i, time, seed)
-            for seed in range(1, REFERENCE_SEEDS + 1)
+            for seed in range(1, pairs + 1)
             for twelfths in TWELFTHS
             for time in REFERENCE_PICOSECONDS
         ]
-        for i in OWN_EXPONENTS
+        for i, pairs in OWN_PAIRS.items()
     )
     first.sort(key=lambda scene: (scene[1] not in EDGE, scene[4]))
     return first + sorted(faster, key=lambda scene: scene[3])

@@ -16,7 +16,7 @@ from .measure import DISSIPATION, EVENTS, FAST, MEASURED, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
 REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # the collision that A22 shows most
-# Twelfths of B_off^2: where growth turns to loss, and beyond.
+# Twelfths of B_off^2 over which a mean is taken: chosen before the runs of 50,000 grains, and after the first pair of these.
 SQUARES_OF = {"drag_edge": (2, 3, 4, 5), "drag_beyond": (6, 7, 8, 9)}
 CURVE = ("grains", "viscoelasticTime", "velocity")
 POINT = ("grains", "viscoelasticTime")
