@@ -23,7 +23,7 @@ def run(tmp_path_factory):
     return folder / "run"
 
 
-ABOUT = """format files kind parameters derived versions commit seed hardware wallTime outcome timeReached"""
+ABOUT = """format files kind parameters derived endedBy versions commit seed hardware wallTime outcome timeReached"""
 NOT_GIVEN = """projectileGrains projectileFile impactStepFraction file sizeRatio sizeFraction sizeSpread tolerance"""
 DERIVED = """young poisson surfaceEnergy density criticalRolling viscoelasticTime grainRadius grainMass equilibriumContactRadius
 equilibriumOverlap pullOffOverlap pullOffForce timeUnit timeStep stepChoice steps aggregateRadius grainsPerAggregate firstTouch
