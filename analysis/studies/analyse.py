@@ -57,7 +57,7 @@ class Analysis:
     def notes(self):
         """What the files say of runs left out, without this machine's paths."""
         found = self.found
-        lines = list(found.earlier)
+        lines = list(dict.fromkeys(found.earlier))  # of one table gathered again and again
         if found.notes:
             lines.append(f"{len(found.notes)} runs left out (not ended, not of this study, or with nothing to measure)")
         if found.problems:

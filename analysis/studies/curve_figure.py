@@ -17,7 +17,7 @@ from .runs import alike, select
 # None of them the paper's (figures.panels.PAPER).
 COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
 MARKERS, LINES = "osD^vP", ("-", "--", "-.", ":")
-WIDEST = 3  # panels beside each other
+WIDEST = 3  # panels beside each other; four where there are no more
 MOST_ASIDE = 20.0  # points between the first curve and the last: within the margin of the axes
 
 
@@ -82,7 +82,7 @@ class CurveFigure:
             return None
         shown = list(dict.fromkeys(series.index.get_level_values(self.panel))) if self.panel else [None]
         shown = shown if isinstance(shown[0], str) else sorted(shown, key=lambda value: (value is None, value))
-        columns = min(len(shown), WIDEST)
+        columns = len(shown) if len(shown) <= WIDEST + 1 else WIDEST
         drawn, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
         flat = axes.ravel()
         of_points = []
