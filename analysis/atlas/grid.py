@@ -1,5 +1,6 @@
 """The outcomes on a grid, made from the model, and their fast look-up."""
 
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -23,7 +24,7 @@ AXES = (
     Axis("velocity", "log10", np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.0, 20))),
     Axis("grains", "log10", np.array([1, 8, *SIZES, *(8.0 ** np.arange(5, 9))])),
     Axis("mass_ratio", "log10", np.append(64.0 ** np.arange(-4, -1), RATIOS)),
-    Axis("filling", "linear", np.array([0.02, 0.1, 0.2, 0.3, 0.4, 0.5])),
+    Axis("filling", "linear", np.array([0.002, 0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.56])),
 )
 # Of one impact parameter: sizes and mass ratios of the runs alone.
 IMPACT_AXES = (
@@ -39,20 +40,24 @@ GRAINS = numbers(right=("{} >= 1", lambda x: (x >= 1) & (x < np.inf)))
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
 MOSTLY = 0.5  # inside: below it the errors of the nearest data say nothing
 INTERVALS = "largest_low", "largest_high", "filling_after_low", "filling_after_high"
+PIECES = "largest", "largest_low", "largest_high", "second"
 COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
 Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff of the repository.
 Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of the larger aggregate,
 mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of both){axis}.
-Columns: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the aggregates touch, {impact}
-and averaged over orientations; error: 90 % half width of the most uncertain
-of them; largest, second: mass of the two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest;
+Columns: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the aggregates touch (of fluffy ones
+half of those whose spheres do: data.md), {impact}
+and averaged over orientations and structures: above a filling of 0.35 they are of a mix of close-packed aggregates and compressed ones, which
+bounce far less often; error: 90 % half width of the most uncertain of them, by the decided runs; largest, second: mass of the two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest;
 filling_after: of the largest piece{intervals}; inside: 1 within the convex hull of the runs
 in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther beyond, where values are those of the
-nearest node within; runs: number of runs within {near:g} of the scatter. Between nodes: multilinear in the scaled coordinates; the last axis is the fastest.
+nearest node within; runs: number of runs within {near:g} of the scatter,
+at any impact parameter. Between nodes: multilinear in the scaled coordinates (pieces better as
+(largest (1 + mass_ratio) - 1)/mass_ratio and second (1 + mass_ratio)/mass_ratio); the last axis is the fastest.
 Slow collisions: all {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck; anything else has a chance of {most:.2g} there at most (95 %).
 Slower ones than any run are inside where they would be with that energy; below {contact:.2g} E_break, what making and breaking one contact
-dissipates, aggregates cannot part, and are inside at any size and filling (error 0; filling_after is then a guess where runs is 0).
+dissipates, all runs stuck, and sticking is taken to hold at any size within the axes (error 0; filling_after is then a guess where runs is 0).
 Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
 
 
@@ -116,8 +121,17 @@ def _nearest(axes, points, others):
 
 @lru_cache
 def _table(file, maxwell):
+    """An OutcomeTable whose PIECES are told in the smaller aggregate's mass, those of the largest one less the larger aggregate's: sticking gives 1
+    and bouncing 0 at every mass ratio, and the pieces between nodes are together no more than there was."""
     table = read_outcomes(file)
-    return table.maxwell() if maxwell else table
+    table = table.maxwell() if maxwell else table
+    k = [axis.name for axis in table.axes].index("mass_ratio")
+    ratio = np.expand_dims(table.axes[k].nodes, [j for j in range(len(table.axes)) if j != k])
+    values = table.values.copy()
+    for column in set(PIECES) & set(table.columns):
+        own = table.columns.index(column)
+        values[..., own] = (values[..., own] * (1 + ratio) - (column != "second")) / ratio
+    return replace(table, values=values)
 
 
 @takes(
@@ -150,7 +164,7 @@ def outcome(
     velocity [m/s] (maxwell: root mean square of a Maxwell distribution of speeds), projectile and target: numbers of grains, filling: volume
     filling factor, impact: parameter over the sum of the radii (5/3)^(1/2) R_g (None: averaged, uniform in its square); arrays that broadcast.
     material: ice or silicate, grain_radius [m] (None: 1e-7 of ice, 6e-7 of silicate, as collide() has it): v_break follows from these, and is
-    all that they change; the runs' grains had 1e-7. columns: only these.
+    all that they change; the runs' grains had 1e-7, and rolling and sliding, which go otherwise with the radius, are not scaled. columns: only these.
     `inside` is 1 within the data, less where the answer is an extrapolation: at 0 it is that of the nearest data. Below MOSTLY, 1/2, `error`
     and the ends of intervals are NaN. ValueError for what cannot be, one line."""
     given = {"velocity": velocity, "projectile": projectile, "target": target, "filling": filling}
@@ -166,7 +180,10 @@ def outcome(
     speed = np.asarray(velocity, dtype=float) / breaking_velocity(MATERIALS[material], radius)
     square = {} if impact is None else {"impact_square": np.square(impact, dtype=float)}
     table = _table(file or (FILE if impact is None else IMPACT_FILE), maxwell)
-    found = table.lookup(columns, velocity=speed, grains=large, mass_ratio=small / large, filling=filling, **square)
+    ratio = small / large
+    found = table.lookup(columns, velocity=speed, grains=large, mass_ratio=ratio, filling=filling, **square)
+    for name in set(PIECES) & set(found):
+        found[name] = np.asarray((found[name] * ratio + (name != "second")) / (1 + ratio))
     for name in {"error", *INTERVALS} & set(found):
         found[name][found[INSIDE] < MOSTLY] = np.nan
     return found

@@ -72,7 +72,8 @@ class Model:
     def left(self, points, upto=None):
         """DataFrame of LEFT: means of remains.Remains; one piece where all stick."""
         fade, found = self._fade(points), self.remains.means(points, upto)
-        return found.assign(largest=1 - fade * (1 - found.largest), second=fade * found.second)
+        largest = 1 - fade * (1 - found.largest)
+        return found.assign(largest=largest, second=np.minimum(fade * found.second, 1 - largest))
 
     @cached_property
     def slow(self):

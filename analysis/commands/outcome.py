@@ -10,7 +10,7 @@ def add_parser(commands):
         "outcome",
         help="what becomes of a collision of two aggregates, from the collision atlas",
         description="Probabilities of the outcomes of a collision of two aggregates, and what is left, from the tables of the collision atlas "
-        "(analysis/gallery/atlas). Intervals are of 90 %; there are none where the answer is that of the nearest data.",
+        "(analysis/gallery/atlas). With --impact it has intervals of 90 %; there are none where the answer is that of the nearest data. Above a filling of 0.35 it is of a mix of close-packed and compressed aggregates, which bounce far less often.",
     )
     of_number = {"type": _positive, "required": True, "metavar": "X"}
     parser.add_argument("--velocity", help="relative velocity [m/s]", **of_number)

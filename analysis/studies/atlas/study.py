@@ -175,8 +175,10 @@ def _silicate(runs):
     scatter = points.std(axis=0)
     _, nearest = cKDTree(points[of_ice] / scatter).query(points[~of_ice] / scatter)
     more = runs.table[~of_ice].largest.to_numpy() - runs.table[of_ice].largest.to_numpy()[nearest]
-    found = runs.of(runs.table[~of_ice].assign(more=more, group="silicate than ice")).estimates("more", BY_GROUP)
-    meaning = "mass of the largest piece over the total, less that of the run of ice nearest in v/v_break, size, mass ratio, filling and b^2"
+    fast = variables(runs.table).velocity[~of_ice] > ERODING
+    group = np.where(fast, f"above {ERODING:g} v_break", f"up to {ERODING:g} v_break")
+    found = runs.of(runs.table[~of_ice].assign(more=more, group=group)).estimates("more", BY_GROUP)
+    meaning = "mass of the largest piece of silicate aggregates over the total, less that of the run of ice nearest in v/v_break, size, mass ratio, filling and b^2"
     return Quantity("largest_more", meaning, found)
 
 
