@@ -55,7 +55,7 @@ def barrier_text(name, table):
     if half.empty:
         yield "It is 1/2 nowhere.\n"
         return
-    yield "It is 1/2 or more between these velocities over v_break (in brackets: with p more, and less, by its error; runs: nearby the highest):\n"
+    yield "It is of the runs' mix of structures (compressed aggregates bounce far less often than close-packed ones; above a filling of 0.5 all are close-packed), and 1/2 or more between these velocities over v_break (in brackets: with p more, and less, by its error; runs: nearby the highest):\n"
     yield "| mass ratio | filling | grains | highest | at | runs | from | to |\n|---|---|---|---|---|---|---|---|"
     for row in half.itertuples(index=False):
         edges = " | ".join(_edge(*getattr(row, name)) for name in EDGES)
