@@ -1,6 +1,7 @@
 """What YADE's own calls do in scenes that JKRWadaEngine moves."""
 
 import functools
+import threading
 
 # Of yade.utils: they read O.interactions or O.forces, which the fused engine leaves empty.
 OF_CONTACTS = """
@@ -29,11 +30,14 @@ def give_way(yade):
     engines = yade.wrapper.Omega.engines
 
     def replace(omega, others):
-        before = engines.fget(omega)
+        movers = [engine for engine in engines.fget(omega) if isinstance(engine, yade.wrapper.JKRWadaEngine)]
+        if movers and omega.running and threading.current_thread() is threading.main_thread():
+            raise RuntimeError(
+                "O.engines is set while O.run() is under way: set it after O.pause() or O.wait(), or from a PyRunner"
+            )
         engines.fset(omega, others)
-        for engine in before:
-            if isinstance(engine, yade.wrapper.JKRWadaEngine):
-                engine.giveWay()
+        for engine in movers:
+            engine.giveWay()
 
     yade.wrapper.Omega.engines = property(engines.fget, replace, doc=engines.__doc__)
 

@@ -17,7 +17,7 @@ CREATE_LOGGER(JKRWadaEngine);
 void JKRWadaEngine::takeChanges(Moment moment)
 {
 	current->settings.requireSame(settings());
-	if (current->grains.hasMore(*scene)) startAgain(moment);
+	if (current->grains.hasMore(*scene)) startAgain();
 	const auto set = [this](std::size_t k, const GrainMotion& motion) {
 		if (!finite(motion))
 			refuseInEngine(bodyName(current->grains.idOf(k))
@@ -76,7 +76,7 @@ void JKRWadaEngine::enter(Moment moment)
 	if (moment == Moment::BetweenSteps) scene = Omega::instance().getScene().get();
 	if (!failure.empty()) refuseInEngine(failure);
 	requireInRange();
-	if (!current) requireAlone(*scene), start(moment);
+	if (!current) requireAlone(*scene), start();
 	if (!ContactsHolder(*scene).is(current->name))
 		refuseInEngine("other engines have moved these grains since this engine's last step: make a new engine");
 	current->dynamics.setThreads(threads);
@@ -97,12 +97,11 @@ void JKRWadaEngine::action()
 	const SceneCell::Before before(*scene);
 	try {
 		makeStep();
-		leaveIfReplaced();
+		if (isReplaced(*scene) && holdsContacts(*scene)) leave();
 	} catch (...) {
 		before.restore(*scene);
 		SceneForces::takeBack(*scene, *this);
 		scene->subStep = -1;
-		leaveIfReplaced();
 		acting.unlock(); // a call that waits for this engine holds Python's lock
 		letPythonWait();
 		throw;
@@ -111,6 +110,8 @@ void JKRWadaEngine::action()
 
 void JKRWadaEngine::makeStep()
 {
+	if (current && holdsContacts(*scene))
+		current->forces.withdrawInStep(*scene); // first: engines before this one act again after a refusal
 	requireAlone(*scene);
 	enter(Moment::WithinStep);
 	current->cell.require(*scene, current->dynamics);
@@ -225,11 +226,17 @@ void JKRWadaEngine::handOver()
 }
 
 // Contacts go to O.interactions, where whatever moves the grains from here on finds them, in the state of the bodies as this engine left them.
-void JKRWadaEngine::leave()
+void JKRWadaEngine::leaveContacts()
 {
 	if (EnergyChannels::areIn(*scene)) writeEnergies(current->dynamics.energies());
 	const auto isThere = [this](int id) { return current->grains.hasBody(*scene, id); };
 	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions, isThere);
+	ContactsHolder(*scene).set(current->name, true);
+}
+
+void JKRWadaEngine::leave()
+{
+	leaveContacts();
 	current->forces.withdraw(*scene);
 	current.reset();
 	ContactsHolder(*scene).clear();
@@ -240,39 +247,56 @@ bool JKRWadaEngine::isAmong(const std::vector<shared_ptr<Engine>>& engines) cons
 	return std::any_of(engines.begin(), engines.end(), [this](const auto& engine) { return engine.get() == this && !engine->dead; });
 }
 
-// A script has set O.engines within this O.step.
-void JKRWadaEngine::leaveIfReplaced()
+bool JKRWadaEngine::isReplaced(const Scene& now) const
 {
-	const auto& next = scene->_nextEngines;
-	if (current && !next.empty() && !isAmong(next) && ContactsHolder(*scene).is(current->name)) leave();
+	return !isAmong(
+	        now._nextEngines.empty() ? now.engines : now._nextEngines); // those next: a script has set O.engines within an O.step
+}
+
+bool JKRWadaEngine::inStep() const
+{
+	const Scene& now = *Omega::instance().getScene();
+	return now.subStep >= 0 && actedAt == now.iter;
+}
+
+bool JKRWadaEngine::actsYet() const
+{
+	const Scene& now = *Omega::instance().getScene();
+	return now.subStep >= 0 && !inStep() && isAmong(now.engines);
+}
+
+bool JKRWadaEngine::holdsContacts(Scene& now) const
+{
+	const ContactsHolder holder(now);
+	return current ? current->scene.lock().get() == &now && holder.is(current->name) : holder.isAny() && !savedState.empty();
 }
 
 void JKRWadaEngine::giveWay()
 {
-	const Scene& now = *Omega::instance().getScene();
-	if (isAmong(now._nextEngines.empty() ? now.engines : now._nextEngines)) return;
-	if (now.subStep >= 0 && !inStep() && isAmong(now.engines)) return; // it acts in this step yet, and leaves then
 	const auto rest = atRest("O.engines was given others");
-	if (!current && !savedState.empty()) {
-		scene = Omega::instance().getScene().get();
-		start(Moment::BetweenSteps);
-	}
-	if (current && current->scene.lock().get() == &now && ContactsHolder(*scene).is(current->name)) leave();
+	Scene& now = *Omega::instance().getScene();
+	if (!isReplaced(now) || !holdsContacts(now)) return;
+	scene = &now;
+	if (!current) start();
+	if (actsYet())
+		leaveContacts(); // and leaves then; but YADE does not come to this engine where one before it throws
+	else
+		leave();
 }
 
-// Bodies were added: another run of all bodies, which has the contacts of this one and goes on booking.
-void JKRWadaEngine::startAgain(Moment moment)
+// Bodies were added: another run of all bodies, which has the contacts of this one and goes on booking. This one stays where that is refused.
+void JKRWadaEngine::startAgain()
 {
 	const SceneGrains all(*scene); // refuses bodies that cannot be moved, while nothing is changed
-	const contact_law::Booked before = contact_law::booked(current->dynamics);
-	const EnergyChannels::WorkOn workOn = current->workOn;
-	leave();
+	const std::shared_ptr<Run> before = current;
 	const bool wasBooked = booked;
-	start(moment, true);
-	current->dynamics.continueFrom(before);
+	leaveContacts();
+	start(true);
+	before->forces.withdraw(*scene);
+	current->dynamics.continueFrom(contact_law::booked(before->dynamics));
 	current->watch.motionsChanged(); // what was lost before may be below zero: grains torn apart by a script, sinter()
 	booked = wasBooked;
-	current->workOn = workOn;
+	current->workOn = before->workOn;
 }
 
 void JKRWadaEngine::writeBodies()

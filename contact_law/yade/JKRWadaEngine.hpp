@@ -27,12 +27,14 @@ class JKRWadaEngine : public GlobalEngine {
 	void requireInRange() const;
 	void requireOwnScene() const;
 
-	std::shared_ptr<Run> newRun(Moment, bool again);
-	void start(Moment, bool again = false); // again: with bodies that were added
-	void startAgain(Moment);
+	std::shared_ptr<Run> newRun(bool again);
+	void start(bool again = false); // again: with bodies that were added
+	void startAgain();
 	void leave();
+	void leaveContacts();
 	bool isAmong(const std::vector<shared_ptr<Engine>>&) const; // and not dead
-	void leaveIfReplaced();
+	bool isReplaced(const Scene&) const;
+	bool actsYet() const; // within an O.step, later
 	void writeContacts();
 	void withdrawContacts();
 	void requireContactsKept();
@@ -64,7 +66,8 @@ public:
 	void giveWay();
 	void restoreForces();
 	void sinter(Real neck);
-	bool inStep() const { return scene->subStep >= 0 && actedAt == scene->iter; } // between this engine's action and the end of O.step
+	bool inStep() const;              // between this engine's action and the end of O.step
+	bool holdsContacts(Scene&) const; // those of a checkpoint too, from before the first step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
 	// For JKRWadaSnapshot, from the first step on: the bodies as they are now, and the contacts by the ids of their bodies.

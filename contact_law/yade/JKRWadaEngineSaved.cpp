@@ -25,9 +25,8 @@ void JKRWadaEngine::preSave(JKRWadaEngine&)
 	if (current->scene.lock() != saved) return forgetSaved();
 	scene = saved.get();
 	try { // what cannot be taken in is refused by the next step, here or after loading
-		if (current->grains.hasMore(*scene)) startAgain(Moment::BetweenSteps);
+		if (current->grains.hasMore(*scene)) startAgain();
 	} catch (const std::runtime_error&) {
-		if (!current) return;
 	}
 	// what is saved is that of the state that is saved: a script may have changed it, or not have asked for energies, since the last step
 	if (isInOEnergy()) writeEnergies(current->dynamics.energies());

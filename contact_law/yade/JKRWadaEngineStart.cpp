@@ -85,7 +85,7 @@ namespace {
 }
 
 // The grains of the scene, with contacts from the checkpoint, from O.interactions, or where they overlap.
-std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool again)
+std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(bool again)
 {
 	SceneGrains grains(*scene);
 	if (grains.size() == 0) refuseInEngine("there are no spheres");
@@ -106,7 +106,7 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool ag
 	const bool ofContacts = stepBehind || holder.isWritten() || SceneShapes::functorsActed(*scene);
 	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, threads, ofContacts);
 	SceneCell cell;
-	options.cell = cell.start(*scene, moment, stepBehind, options.dt);
+	options.cell = cell.start(*scene, actsYet() ? Moment::WithinStep : Moment::BetweenSteps, stepBehind, options.dt);
 	options.convective = SceneCell::convective(*scene);
 	options.planes = grains.planes.planes();
 	const auto onset = stepBehind ? Dynamics::Onset::AStepAgo : inherits ? Dynamics::Onset::Before : Dynamics::Onset::Now;
@@ -117,17 +117,16 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(Moment moment, bool ag
 	return continued ? started(savedState) : inherits ? started(inherited) : started();
 }
 
-void JKRWadaEngine::start(Moment moment, bool again)
+void JKRWadaEngine::start(bool again)
 {
+	if (!again) actedAt = -1; // in another scene
 	const bool continued = !savedState.empty();
 	std::shared_ptr<Run> run;
 	try {
 		SceneForces::restorePermanent(*scene, savedForces);
-		run = newRun(moment, again);
+		run = newRun(again);
 	} catch (const std::invalid_argument& refusal) { // the engine's, which knows nothing of YADE
-		const std::string what = refusal.what();
-		const bool more = continued && what.rfind("the number of bodies", 0) == 0;
-		refuseInEngine(what + (more ? " until prepare() or the first step; then grains may be appended" : ""));
+		refuseInEngine(refusal.what());
 	}
 	requireSound(*run);
 	current = run;
@@ -142,7 +141,6 @@ void JKRWadaEngine::start(Moment moment, bool again)
 		continueBooking();
 	} else
 		booked = false;
-	if (!again) actedAt = -1; // in another scene
 	// that of the last step: one that was set since is taken by prepare(), or in the next step
 	SceneCell::applyVelocityGradient(*scene, current->dynamics);
 	forgetSaved();

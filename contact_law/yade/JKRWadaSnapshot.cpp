@@ -1,5 +1,4 @@
 #include "JKRWadaSnapshot.hpp"
-#include "ContactsHolder.hpp"
 #include "JKRWada.hpp"
 #include "JKRWadaEngine.hpp"
 #include "RunningLoop.hpp"
@@ -61,13 +60,16 @@ namespace {
 		append(grains.angularVelocity, spin);
 	}
 
-	// That moves the grains; a dead one while it has the contacts.
+	// That moves the grains; otherwise a dead one that has the contacts.
 	const JKRWadaEngine* fusedEngine(Scene& scene)
 	{
-		for (const auto& engine : scene.engines)
-			if (const auto* fused = dynamic_cast<const JKRWadaEngine*>(engine.get()))
-				if (!fused->dead || ContactsHolder(scene).isAny()) return fused;
-		return nullptr;
+		const JKRWadaEngine* dead = nullptr;
+		for (const auto& engine : scene.engines) {
+			const auto* fused = dynamic_cast<const JKRWadaEngine*>(engine.get());
+			if (fused && !fused->dead) return fused;
+			if (fused && fused->holdsContacts(scene)) dead = fused;
+		}
+		return dead;
 	}
 
 	void appendAsItIs(Grains& grains, const Body& body)

@@ -102,16 +102,15 @@ void SceneForces::withdraw(Scene& scene)
 	before.clear(), after.clear();
 }
 
-std::vector<OutsideForce> SceneForces::take(Scene& scene, const SceneGrains& grains, int threads)
+void SceneForces::withdrawInStep(Scene& scene)
 {
 	if (hasForceResetter(scene))
 		before.clear(), after.clear(); // they are gone
 	else
 		withdraw(scene);
-	return found(scene, grains, threads);
 }
 
-std::vector<OutsideForce> SceneForces::found(Scene& scene, const SceneGrains& grains, int threads)
+std::vector<OutsideForce> SceneForces::take(Scene& scene, const SceneGrains& grains, int threads)
 {
 	std::vector<OutsideForce> found;
 	if (!anyForce(scene, scene.bodies->size(), threads)) return found;
@@ -142,7 +141,7 @@ void SceneForces::dropThoseOfOtherEngines(Scene& scene, const SceneGrains& grain
 {
 	if (scene.iter == 0 || hasForceResetter(scene)) return;
 	if (!ofContacts) {
-		for (const OutsideForce& f : found(scene, grains, threads)) {
+		for (const OutsideForce& f : take(scene, grains, threads)) {
 			const OutsideForce permanent = permanentOn(scene, grains.idOf(f.grain));
 			if (f == OutsideForce { f.grain, permanent.force, permanent.torque }) continue;
 			refuseInEngine("O.forces has a force or torque on " + bodyName(grains.idOf(f.grain))
@@ -172,6 +171,7 @@ void SceneForces::restorePermanent(Scene& scene, const std::vector<Real>& rows)
 {
 	if (rows.empty()) return;
 	contact_law::requireSealed(rows);
+	if (scene.forces.getPermForceUsed() && permanent(scene) == rows) return; // another engine of the checkpoint has restored them
 	if (scene.forces.getPermForceUsed())
 		refuseInEngine("permanent forces were set before those of the checkpoint are in O.forces: call restoreForces() right after "
 		               "O.load, or import contact_law before it");

@@ -154,6 +154,20 @@ def test_permanent_forces_that_are_saved_before_the_first_step_hold(loaded):
     assert end(True) == straight and O.energy["externalWork"] != 0
 
 
+@pytest.mark.parametrize("stepped", [False, True])
+def test_two_engines_one_of_them_dead_restore_the_same_permanent_forces(stepped):
+    new_scene(unit)
+    cluster(5, 1, [ice()], [1e-7], 1.0, 0)
+    O.engines = [JKRWadaEngine(dead=True, subSteps=10), JKRWadaEngine(subSteps=10)]
+    push()
+    if stepped:
+        O.step()
+    saved_and_loaded("pushed.xml")
+    for k, (force, _) in pushes().items():
+        assert list(O.forces.permF(k)) == list(force)
+    O.step()
+
+
 @pytest.mark.parametrize("change", ["O.forces.setPermF(1, Vector3.Zero)", "O.forces.reset(resetAll=True)"])
 def test_permanent_forces_may_be_changed_right_after_loading(change):
     """As if they were changed in the run that was never saved; the functors have them too."""
@@ -215,15 +229,17 @@ BEFORE = {
 }
 
 
+@pytest.mark.parametrize("export", [False, True])
 @pytest.mark.parametrize("before", BEFORE)
-def test_a_refused_step_adds_no_force(before):
+def test_a_refused_step_adds_no_force(before, export):
     """What engines before this one add counts once; a script's force holds in the step that is made, where none stand before it."""
 
     def end(*refused):
         new_scene(0.1 * unit)
         O.bodies.append(utils.wall(-9e-7, axis=2, material=ice()))
-        grain((0, 0, 0), 1e-7, ice())
-        O.engines = [*BEFORE[before](), JKRWadaEngine()]
+        for k in range(2):
+            grain((1.99e-7 * k, 0, 0), 1e-7, O.bodies[0].material)
+        O.engines = [*BEFORE[before](), JKRWadaEngine(exportInteractions=export)]
         for k in range(4):
             if before == "nothing":
                 O.forces.addF(1, Vector3(weight(), 0, 0))
@@ -236,7 +252,10 @@ def test_a_refused_step_adds_no_force(before):
 
     of_settings = "O.engines[-1].subSteps = 0", "O.engines[-1].subSteps = 1"
     of_planes = "O.bodies[0].state.vel = (0, 0, 1e9)", "O.bodies[0].state.vel = Vector3.Zero"
-    assert end(of_planes, of_settings) == end()
+    of_forces = "O.forces.setPermF(1, Vector3(np.inf, 0, 0))", "O.forces.setPermF(1, Vector3.Zero)"
+    straight = end()
+    assert end(of_planes, of_settings) == straight
+    assert before == "nothing" or end(of_forces) == straight
 
 
 def test_what_is_refused():

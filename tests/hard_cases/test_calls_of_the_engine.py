@@ -119,7 +119,13 @@ def test_calls_while_the_loop_runs_are_refused():
         if message:
             raise RuntimeError(message)
 
-    calls = [*CALLS, "e.statistics()", "O.save('while_running.yade')"]
+    calls = [
+        *CALLS,
+        "e.statistics()",
+        "e.giveWay()",
+        "O.engines = [JKRWadaEngine(subSteps=50)]",
+        "O.save('while_running.yade')",
+    ]
     require_refused({call: ["while O.run() is under way"] for call in calls}, attempt)
     assert not any(at_rest.values()), at_rest
 
@@ -149,6 +155,19 @@ def test_a_snapshot_of_the_functors_does_not_mind_a_dead_engine():
     O.engines += [JKRWadaEngine(dead=True)]
     beside = contact_law.snapshot()
     assert all((beside[name] == without[name]).all() for name in ("position", "velocity"))
+
+
+@pytest.mark.parametrize("dead", [0, 1])
+def test_a_snapshot_does_not_mind_a_dead_engine_beside_the_other(dead):
+    chain()
+    O.engines = [JKRWadaEngine(dead=k == dead) for k in range(2)]
+    steps(2)
+    assert len(contact_law.snapshot()["contact_pairs"]) == 3
+    O.engines[1 - dead].dead = True  # it has them still, loaded too
+    assert len(contact_law.snapshot()["contact_pairs"]) == 3
+    there = positions()
+    saved_and_loaded()
+    assert (contact_law.snapshot()["position"] == there).all()
 
 
 def test_time_may_be_reset_after_one_step():

@@ -88,6 +88,34 @@ def test_a_grain_that_is_appended_around_a_checkpoint_is_taken_in(when):
     assert contacts == same_contacts > 3 and np.abs(x - y).max() < 1e-12 * 1e-7
 
 
+@pytest.mark.parametrize("saved", [False, True])
+@pytest.mark.parametrize("refused", ["too deep", "too small for the step"])
+def test_a_grain_that_is_refused_and_erased_leaves_no_trace(refused, saved):
+    """Nor in a checkpoint with it, which can be written."""
+
+    def end(appended):
+        flying_together()
+        O.dt *= 4
+        O.run(40, True)
+        if appended:
+            deep = refused == "too deep"
+            place = O.bodies[0].state.pos + Vector3(0, 1e-8, 0) if deep else Vector3(2e-6, 0, 0)
+            grain(place, 1e-7 if deep else 1e-8, O.bodies[0].material)
+            for _ in range(2):
+                if saved:
+                    saved_and_loaded()
+                else:
+                    assert ("overlap" if deep else "small step") in said(O.step)
+            O.bodies.erase(27)
+        O.run(20, True)
+        counts = engine().statistics()
+        motion = [(*b.state.pos, *b.state.vel, *b.state.angVel) for b in O.bodies]
+        return motion, [counts[name] for name in ("contacts", "contactUpdates", "events", "formed")], energies()
+
+    (motion, counts, booked), (x, n, e) = end(False), end(True)
+    assert motion == x and counts == n and e == close_to(booked, "kinetic") and booked["slidingDissipation"] > 0
+
+
 def test_a_loaded_scene_that_is_saved_again_goes_on():
     chain()
     steps(10)

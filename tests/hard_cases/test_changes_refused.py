@@ -58,7 +58,7 @@ CHANGES_AFTER_LOADING = {
     "O.periodic = True": ["O.periodic is another than in the checkpoint: it must be 0"],
     "O.bodies.erase(1)": ["the number of bodies is another than in the checkpoint: it must be 4"],
     "O.bodies.erase(1); grain((9e-7, 0, 0), 1e-7, O.bodies[0].material)": ["the id of body 2 is another than in the checkpoint: it must be 1"],
-    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=O.bodies[0].material))": ["the number of bodies is another than in the checkpoint: it must be 4 until prepare() or the first step"],
+    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=O.bodies[0].material))": ["the number of bodies is another than in the checkpoint: it must be 4"],
     "O.dt *= 10": ["the small step O.dt/subSteps is", "must be above 0 and below"],
 }  # fmt: skip
 

@@ -86,6 +86,46 @@ def test_a_pyrunner_may_set_the_engines(new, place):
         assert O.interactions.countReal() > 20 or engine().statistics()["contacts"] > 20
 
 
+@pytest.mark.parametrize("place", ["in the PyRunner", "in the PyRunner, saved", "afterwards"])
+@pytest.mark.parametrize("new", ["functor_engines()", "[JKRWadaEngine(subSteps=5)]"])
+def test_a_pyrunner_that_raises_loses_no_contacts(new, place):
+    """YADE does not come to the engine behind it in that step; nor after O.load, where the others are next."""
+    strained()
+    contacts = engine().statistics()["contacts"]
+
+    def exchange():
+        if "PyRunner" in place:
+            O.engines = eval(new)
+        if "saved" in place:
+            O.save("within.yade")
+        raise ValueError("of a script")
+
+    sys.modules["__main__"].exchange = exchange
+    O.engines = [PyRunner(command="exchange()", iterPeriod=1, nDo=1, initRun=True), engine()]
+    assert "of a script" in said(O.step)
+    if place == "afterwards":
+        O.engines = eval(new)
+    elif "saved" in place:
+        O.load("within.yade")
+    assert O.interactions.countReal() == contacts
+    O.dt /= 5 if "functor" in new else 1
+    steps(3)
+    assert len(contact_law.snapshot()["contact_pairs"]) > 20
+
+
+def test_an_engine_that_was_refused_in_another_scene_gives_way_in_its_own():
+    chain()
+    steps(20)
+    e = engine()
+    O.switchScene()
+    grain((0, 0, 0), 1e-7, ice())
+    O.engines = [e]
+    assert "another scene" in said(O.step)
+    O.switchScene()
+    O.engines = functor_engines()
+    assert O.interactions.countReal() == 3
+
+
 def test_the_functors_take_a_loaded_scene_over():
     strained()
     contacts = engine().statistics()["contacts"]
@@ -139,6 +179,35 @@ def test_grains_that_are_added_meet_the_others(periodic):
     (x, e, formed), (y, f, formed_late) = end(False), end(True)
     assert formed == formed_late > 0 and np.abs(x - y).max() < 1e-7 * 1e-7
     assert abs(sum(e.values()) - sum(f.values())) < 1e-7 * e["kinetic"]
+
+
+@pytest.mark.parametrize("call", ["O.save('within.yade')", "engine().prepare()", "engine().writeInteractions()"])
+def test_a_pyrunner_may_append_a_grain_and_call_the_engine_in_a_cell_that_deforms(call):
+    """Before the engine's turn the cell is a step ahead of the grains: as if nothing had been called."""
+
+    def end(call):
+        chain()
+        periodic_cell(3e-6, 3e-6, 3e-6, velocity_gradient=(-1e5, 0, 0))
+
+        def append():
+            if O.iter == 5:
+                grain((1e-6, 1e-6, 1e-6), 1e-7, O.bodies[0].material)
+                exec(call.replace("engine()", "O.engines[1]"))
+
+        sys.modules["__main__"].append = append
+        O.engines = [PyRunner(command="append()", iterPeriod=1, initRun=True), engine()]
+        steps(20)
+        ends = [positions()]
+        if "save" in call:
+            O.load("within.yade")
+            while O.iter < 20:
+                O.step()
+            ends.append(positions())
+        return ends
+
+    (straight,) = end("")
+    for called in end(call):
+        assert np.abs(called - straight).max() < 1e-12 * 1e-7
 
 
 def test_counts_and_losses_go_on_when_grains_are_added():
