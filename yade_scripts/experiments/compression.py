@@ -10,7 +10,17 @@ from analysis.measures.virial import contact_pressure, filling_factor, kinetic_p
 from analysis.runs.format import COMPRESSION
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments import piston
-from yade_scripts.experiments.compression_end import AVERAGED, AXES, LOOSE, Ending, deform, rates
+from yade_scripts.experiments.compression_end import (
+    AVERAGED,
+    AXES,
+    LOOSE,
+    Ending,
+    deform,
+    longest_duration,
+    rates,
+    shrinking_rate,
+    with_start,
+)
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
@@ -193,7 +203,7 @@ def prepare(parameters, threads):
     cluster = packings.bcca(parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed)
     edge = _first_edge(parameters, cluster)
     first = filling_factor(cluster.radius, np.full(3, edge))
-    parameters = _with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
+    parameters = with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
     mass = cluster.radius**3 * (4 / 3 * pi * parameters.density)
     rate = shrinking_rate(parameters, constants["timeUnit"])
     material = yade_scene.material_of(parameters)
@@ -221,7 +231,7 @@ def _between_walls(parameters, constants):
     on_plate = yade_scene.plane_constants(parameters, linearDamping=parameters.linearDamping)
     layer, edge, height = piston.layer(parameters, constants, on_plate)
     first = filling_factor(layer.radius, [edge, edge, height])
-    parameters = _with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
+    parameters = with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
     rate = shrinking_rate(parameters, constants["timeUnit"])
     end = Ending(parameters, constants["timeUnit"], rate)
 
@@ -269,64 +279,6 @@ def _first_edge(parameters, cluster):
             f"{parameters.seed}"
         ) from None
     return edge
-
-
-def _with_start(parameters, time_unit):
-    """The parameters, with initialFilling, with a duration. Raises ParameterError where nothing, or no pressure, would be reached."""
-    if parameters.finalFilling <= parameters.initialFilling:
-        raise ParameterError(
-            f"finalFilling = {parameters.finalFilling:g}: must be above the {parameters.initialFilling:.4g} of the start"
-        )
-    _require_time_for_pressure(parameters, time_unit)
-    return _with_duration(parameters, time_unit) if parameters.duration is None else parameters
-
-
-def _require_time_for_pressure(parameters, time_unit):
-    """Raise ParameterError where the compression is over before its pressure can be averaged."""
-    if parameters.finalPressure is None:
-        return
-    to_filling = time_to_filling(parameters, time_unit) / time_unit
-    lasts = min(to_filling, (parameters.duration or np.inf) / time_unit)
-    if lasts < AVERAGED:
-        longer = f"duration at least {1.01 * AVERAGED * time_unit:.3g}"
-        slower = f"strainRate at most {0.99 * parameters.strainRate * to_filling / AVERAGED:.3g}"
-        raise ParameterError(
-            f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, and the compression is over after "
-            f"{lasts:.3g} t0; must be left out, or {slower if to_filling < AVERAGED else longer}"
-        )
-
-
-def _with_duration(parameters, time_unit):
-    duration = longest_duration(parameters, time_unit)
-    step = parameters.stepFraction
-    if duration > stability.MOST_STEPS * step * time_unit:
-        steps = duration / (step * time_unit)
-        raise ParameterError(
-            f"strainRate = {parameters.strainRate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
-            f"{parameters.strainRate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
-        )
-    return parameters.changed(duration=duration)
-
-
-def shrinking_rate(parameters, time_unit):
-    """Of lengths L = L0 exp(-rate t) [1/s] (K13 eq 7)."""
-    return 2 * parameters.strainRate / time_unit
-
-
-def longest_duration(parameters, time_unit):
-    """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth more,
-    before which Ending ends the run."""
-    time, axes = time_to_filling(parameters, time_unit), len(AXES[parameters.stretch])
-    if axes:
-        loose = parameters.stretchFilling or LOOSE * parameters.finalFilling
-        time += log(parameters.finalFilling / loose) / (axes * shrinking_rate(parameters, time_unit))
-    return 1.01 * time
-
-
-def time_to_filling(parameters, time_unit):
-    """Time [s] from initialFilling to finalFilling (K13 eq 7)."""
-    rate = parameters.axes * shrinking_rate(parameters, time_unit)
-    return log(parameters.finalFilling / parameters.initialFilling) / rate
 
 
 def _build(cluster, edge, rate, material):

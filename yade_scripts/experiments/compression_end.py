@@ -1,8 +1,12 @@
-"""When a compression turns into the stretching, and when it ends; how the cell is made to deform (K13 section 2)."""
+"""How long a compression lasts, when it turns into the stretching, and when it ends; how the cell is made to deform (K13 section 2)."""
+
+from math import log
 
 import numpy as np
 
 from analysis.measures.periodic_compression import AVERAGED, pressure_at_end
+from yade_scripts import stability
+from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import tell
 
 LOOSE = 0.3  # filling at which stretching ends, over that at which it begins; stress is largest at about 0.5 (T19)
@@ -81,3 +85,61 @@ class Ending:
         """By the work of the grains on the boundaries, which they do not do before the aggregate meets its images: the virial of an
         aggregate that still swings from the start is not zero."""
         return pressure_at_end({name: recorder.recent(name, self.window) for name in OF_PRESSURE}, self.window)
+
+
+def with_start(parameters, time_unit):
+    """The parameters, with initialFilling, with a duration. Raises ParameterError where nothing, or no pressure, would be reached."""
+    if parameters.finalFilling <= parameters.initialFilling:
+        raise ParameterError(
+            f"finalFilling = {parameters.finalFilling:g}: must be above the {parameters.initialFilling:.4g} of the start"
+        )
+    _require_time_for_pressure(parameters, time_unit)
+    return _with_duration(parameters, time_unit) if parameters.duration is None else parameters
+
+
+def _require_time_for_pressure(parameters, time_unit):
+    """Raise ParameterError where the compression is over before its pressure can be averaged."""
+    if parameters.finalPressure is None:
+        return
+    to_filling = time_to_filling(parameters, time_unit) / time_unit
+    lasts = min(to_filling, (parameters.duration or np.inf) / time_unit)
+    if lasts < AVERAGED:
+        longer = f"duration at least {1.01 * AVERAGED * time_unit:.3g}"
+        slower = f"strainRate at most {0.99 * parameters.strainRate * to_filling / AVERAGED:.3g}"
+        raise ParameterError(
+            f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, and the compression is over after "
+            f"{lasts:.3g} t0; must be left out, or {slower if to_filling < AVERAGED else longer}"
+        )
+
+
+def _with_duration(parameters, time_unit):
+    duration = longest_duration(parameters, time_unit)
+    step = parameters.stepFraction
+    if duration > stability.MOST_STEPS * step * time_unit:
+        steps = duration / (step * time_unit)
+        raise ParameterError(
+            f"strainRate = {parameters.strainRate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
+            f"{parameters.strainRate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
+        )
+    return parameters.changed(duration=duration)
+
+
+def shrinking_rate(parameters, time_unit):
+    """Of lengths L = L0 exp(-rate t) [1/s] (K13 eq 7)."""
+    return 2 * parameters.strainRate / time_unit
+
+
+def longest_duration(parameters, time_unit):
+    """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth more,
+    before which Ending ends the run."""
+    time, axes = time_to_filling(parameters, time_unit), len(AXES[parameters.stretch])
+    if axes:
+        loose = parameters.stretchFilling or LOOSE * parameters.finalFilling
+        time += log(parameters.finalFilling / loose) / (axes * shrinking_rate(parameters, time_unit))
+    return 1.01 * time
+
+
+def time_to_filling(parameters, time_unit):
+    """Time [s] from initialFilling to finalFilling (K13 eq 7)."""
+    rate = parameters.axes * shrinking_rate(parameters, time_unit)
+    return log(parameters.finalFilling / parameters.initialFilling) / rate
