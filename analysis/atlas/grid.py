@@ -14,7 +14,7 @@ from ..theory.pair_constants import GRAIN_RADII
 from .columns import breaking_velocity
 from .neighbours import MARGIN, NEAR, ONE_CONTACT, Neighbours
 from .outcome_table import INSIDE, Axis, OutcomeTable, read_outcomes
-from .rules import KINDS
+from .rules import KINDS, gain
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 FILE, IMPACT_FILE, RUNS_FILE = (FOLDER / name for name in ("outcomes.txt", "outcomes-impact.txt", "runs.csv"))
@@ -40,7 +40,7 @@ GRAINS = numbers(right=("{} >= 1", lambda x: (x >= 1) & (x < np.inf)))
 PROBABILITIES = tuple(f"p_{kind}" for kind in KINDS)
 MOSTLY = 0.5  # inside: below it the errors of the nearest data say nothing
 INTERVALS = "largest_low", "largest_high", "filling_after_low", "filling_after_high"
-PIECES = "largest", "largest_low", "largest_high", "second"
+GAINING = "largest", "largest_low", "largest_high"
 COLUMNS = (*PROBABILITIES, "error", "largest", "second", "fragment_index", "filling_after", "inside", "runs")
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
 Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff of the repository.
@@ -121,16 +121,20 @@ def _nearest(axes, points, others):
 
 @lru_cache
 def _table(file, maxwell):
-    """An OutcomeTable whose PIECES are told in the smaller aggregate's mass, those of the largest one less the larger aggregate's: sticking gives 1
-    and bouncing 0 at every mass ratio, and the pieces between nodes are together no more than there was."""
+    """An OutcomeTable with pieces in the smaller aggregate's mass, GAINING by rules.gain(): sticking gives 1 and bouncing 0 at every mass ratio, and
+    the pieces between nodes are together no more than there was."""
     table = read_outcomes(file)
     table = table.maxwell() if maxwell else table
-    k = [axis.name for axis in table.axes].index("mass_ratio")
-    ratio = np.expand_dims(table.axes[k].nodes, [j for j in range(len(table.axes)) if j != k])
+    mesh = np.meshgrid(*(axis.nodes for axis in table.axes), indexing="ij", sparse=True)
+    ratio = {axis.name: nodes for axis, nodes in zip(table.axes, mesh)}.get("mass_ratio")
+    if ratio is None:  # which lookup() says
+        return table
     values = table.values.copy()
-    for column in set(PIECES) & set(table.columns):
-        own = table.columns.index(column)
-        values[..., own] = (values[..., own] * (1 + ratio) - (column != "second")) / ratio
+    for k, name in enumerate(table.columns):
+        if name in GAINING:
+            values[..., k] = gain({"mass_ratio": ratio, "largest": values[..., k]})
+        elif name == "second":
+            values[..., k] *= (1 + ratio) / ratio
     return replace(table, values=values)
 
 
@@ -182,8 +186,9 @@ def outcome(
     table = _table(file or (FILE if impact is None else IMPACT_FILE), maxwell)
     ratio = small / large
     found = table.lookup(columns, velocity=speed, grains=large, mass_ratio=ratio, filling=filling, **square)
-    for name in set(PIECES) & set(found):
-        found[name] = np.asarray((found[name] * ratio + (name != "second")) / (1 + ratio))
+    share = ratio / (1 + ratio)
+    for name in {*GAINING, "second"} & set(found):
+        found[name] = np.asarray(found[name] * share + (0 if name == "second" else 1 - share))
     for name in {"error", *INTERVALS} & set(found):
         found[name][found[INSIDE] < MOSTLY] = np.nan
     return found

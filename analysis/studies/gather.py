@@ -36,8 +36,7 @@ def gather(study, paths):
     has a folder too, figures that need a run's states take them from there. Of runs that must be alike and are not none is counted."""
     collection = collect(paths, study.scene)
     found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
-    taken, parts, folders = {}, [], {}
-    rows = [(run.path, parameters_of(run)) for run in collection.runs if study.alike]
+    taken, parts, folders, shared = {}, [], {}, []
     for file in collection.tables:
         try:
             table, head, earlier = _read(study, file, taken)
@@ -45,10 +44,11 @@ def gather(study, paths):
             found.problems.append(str(error))
             continue
         parts.append((table, head["provenance"]))
-        rows.append((file, head.get("alike") or {}))
+        shared.append((file, head.get("alike") or {}))
         found.earlier += earlier
-    if study.alike and rows:
-        found.alike, unlike = _alike(study, rows)
+    shared += [(run.path, parameters_of(run)) for run in collection.runs if study.alike]
+    if study.alike and shared:
+        found.alike, unlike = _alike(study, shared)
         if unlike:
             found.problems.append(unlike)
             return found
@@ -72,10 +72,9 @@ def _alike(study, rows):
         usual.update(row)
     found = frame([(path, {**usual, **row}) for path, row in rows])
     names = [name for name in varied(found) if name not in own]
+    advice = "name them in varied, or give collision_study() one value of each"
     shared = {name: value for name, value in usual.items() if name not in own}
-    return shared, differing(
-        found, names, "name them in varied, or give collision_study() one value of each"
-    ) if names else None
+    return shared, differing(found, names, advice) if names else None
 
 
 def _measure(study, runs, taken, found, folders):

@@ -122,6 +122,9 @@ def test_tables_of_unlike_runs_are_refused_together(own, capsys):
         assert "the runs differ in material too: name them in varied" in capsys.readouterr().err.splitlines()[-1]
     assert main(["study", str(own / "sticking.py"), str(made["ice"]), str(own / "ice"), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["provenance"]["runs"] == 1
+    (own / "nothing").mkdir()
+    assert main(["study", str(own / "sticking.py"), str(own / "nothing")]) == 2
+    assert "nothing: no run folder" in capsys.readouterr().err
 
 
 def test_pairs_of_files_are_told_by_the_files(tmp_path, capsys):

@@ -171,11 +171,12 @@ def _fast(runs):
 
 def _silicate(runs):
     """Largest piece of each run of silicate less that of the nearest one of ice."""
-    points, of_ice = scaled(variables(runs.table)), (runs.table.material == "ice").to_numpy()
+    at, of_ice = variables(runs.table), (runs.table.material == "ice").to_numpy()
+    points = scaled(at)
     scatter = points.std(axis=0)
     _, nearest = cKDTree(points[of_ice] / scatter).query(points[~of_ice] / scatter)
     more = runs.table[~of_ice].largest.to_numpy() - runs.table[of_ice].largest.to_numpy()[nearest]
-    fast = variables(runs.table).velocity[~of_ice] > ERODING
+    fast = at.velocity[~of_ice] > ERODING
     group = np.where(fast, f"above {ERODING:g} v_break", f"up to {ERODING:g} v_break")
     found = runs.of(runs.table[~of_ice].assign(more=more, group=group)).estimates("more", BY_GROUP)
     meaning = "mass of the largest piece of silicate aggregates over the total, less that of the run of ice nearest in v/v_break, size, mass ratio, filling and b^2"
