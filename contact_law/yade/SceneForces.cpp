@@ -171,10 +171,11 @@ void SceneForces::restorePermanent(Scene& scene, const std::vector<Real>& rows)
 {
 	if (rows.empty()) return;
 	contact_law::requireSealed(rows);
-	if (scene.forces.getPermForceUsed() && permanent(scene) == rows) return; // another engine of the checkpoint has restored them
-	if (scene.forces.getPermForceUsed())
+	if (scene.forces.getPermForceUsed()) {
+		if (permanent(scene) == rows) return; // another engine of the checkpoint has restored them
 		refuseInEngine("permanent forces were set before those of the checkpoint are in O.forces: call restoreForces() right after "
 		               "O.load, or import contact_law before it");
+	}
 	for (std::size_t k = 0; k + numbersSaved <= rows.size(); k += numbersSaved) {
 		const Real* row = &rows[k];
 		scene.forces.setPermForce(int(row[0]), Vector3r(row[1], row[2], row[3]));

@@ -5,6 +5,7 @@ from changes import *
 
 pytestmark = pytest.mark.in_yade
 STEPS = 60  # before and after the change
+SUCCESSORS = {"functors": functor_engines, "JKRWadaEngine": lambda: [JKRWadaEngine(subSteps=5)]}
 
 
 def strained():
@@ -55,7 +56,7 @@ def set_behind_the_back(engines):
 
 
 @pytest.mark.parametrize("place", [0, 1])
-@pytest.mark.parametrize("new", ["functor_engines()", "[JKRWadaEngine(subSteps=5)]"])
+@pytest.mark.parametrize("new", SUCCESSORS)
 def test_a_pyrunner_may_set_the_engines(new, place):
     """Standing before the engine, which makes this step yet, as behind it; a refused step in between changes nothing."""
 
@@ -64,7 +65,7 @@ def test_a_pyrunner_may_set_the_engines(new, place):
         old = engine()
 
         def exchange():
-            O.engines = eval(new)
+            O.engines = SUCCESSORS[new]()
             old.subSteps = 0 if refused else old.subSteps
             O.dt /= 5 if "functor" in new else 1
 
@@ -87,7 +88,7 @@ def test_a_pyrunner_may_set_the_engines(new, place):
 
 
 @pytest.mark.parametrize("place", ["in the PyRunner", "in the PyRunner, saved", "afterwards"])
-@pytest.mark.parametrize("new", ["functor_engines()", "[JKRWadaEngine(subSteps=5)]"])
+@pytest.mark.parametrize("new", SUCCESSORS)
 def test_a_pyrunner_that_raises_loses_no_contacts(new, place):
     """YADE does not come to the engine behind it in that step; nor after O.load, where the others are next."""
     strained()
@@ -95,7 +96,7 @@ def test_a_pyrunner_that_raises_loses_no_contacts(new, place):
 
     def exchange():
         if "PyRunner" in place:
-            O.engines = eval(new)
+            O.engines = SUCCESSORS[new]()
         if "saved" in place:
             O.save("within.yade")
         raise ValueError("of a script")
@@ -104,7 +105,7 @@ def test_a_pyrunner_that_raises_loses_no_contacts(new, place):
     O.engines = [PyRunner(command="exchange()", iterPeriod=1, nDo=1, initRun=True), engine()]
     assert "of a script" in said(O.step)
     if place == "afterwards":
-        O.engines = eval(new)
+        O.engines = SUCCESSORS[new]()
     elif "saved" in place:
         O.load("within.yade")
     assert O.interactions.countReal() == contacts

@@ -215,7 +215,7 @@ def test_functors_refuse_the_same_steps_in_the_same_words(what):
 
 @pytest.mark.parametrize("young", [0.0, -7e9, float("nan")])
 def test_functors_refuse_a_material_in_the_same_words(young):
-    """An attribute of YADE's own, which is not looked at when it is set. Once it is mended they go on."""
+    """An attribute of YADE's own, which is not looked at when it is set. Once it is in range they go on."""
 
     def set_to(young):
         new_scene(0.1 * unit)
