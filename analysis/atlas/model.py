@@ -97,10 +97,6 @@ class Model:
         """Factor (n,) of whatever is not sticking: 1 from the energy of slow() on, 0 at half of it and below."""
         return np.clip(1 + np.log2(energy(points).to_numpy() / self.slow.energy), 0.0, 1.0)
 
-    def left(self, points, chances, upto=None):
-        """DataFrame of remains.LEFT_BY_KIND and LEFT: means of remains.Remains, of the largest pieces by the chances (n, 5) of KINDS."""
-        return self.remains.means(points, chances, upto)
-
     @cached_property
     def slow(self):
         """neighbours.Slow of these runs."""
