@@ -151,13 +151,12 @@ def _kinds(table):
     """{name: mask (runs,)} of the kinds of pairs of which the page tells how often they bounce."""
     at = variables(table)
     contacts = table[["coordination_target", "coordination_projectile"]].max(axis=1)
-    equal = (at.filling > COMPACT) & (at.mass_ratio > HALF)
+    equal = (at.mass_ratio > HALF) & (table.impact < HALF)
     return {
         "compressed of filling 0.35 to 0.45": (table.structure == "compressed") & at.filling.between(0.35, 0.45),
         "fewer than 6 contacts": contacts < MANY_CONTACTS,
         "6 contacts or more": contacts >= MANY_CONTACTS,
-        "equal and dense": equal,
-        "equal, dense and head-on": equal & (table.impact < HALF),
+        **{f"equal and head-on, {name}": equal & (table.aggregates == name) for name in STRUCTURES},
         **{f"structure {name}": table.structure == name for name in sorted(set(table.structure))},
     }
 
