@@ -128,6 +128,11 @@ def arrays(folder):
     return {name: read_arrays(folder, name) for name in names}
 
 
+def states(folder):
+    """[{name: array}] of a run folder's states, in their order."""
+    return [read_arrays(folder, "states", name) for name in sorted(os.listdir(folder / "states"))]
+
+
 def same_bits(one, other):
     """Whether two run folders hold the same files with the same arrays."""
     one, other = arrays(one), arrays(other)
