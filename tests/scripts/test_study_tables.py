@@ -142,16 +142,6 @@ def test_viscous_holds_the_papers_runs():
     assert odd == sorted(odd) and sum(odd) == 2 * 2 * 4 * 6 and len(predicted) == len(of_size) + 1
 
 
-@pytest.mark.parametrize("name, number, hours", [("compression-desk", 65, 12), ("compression-full", 140, 300)])
-def test_compression_takes_the_hours_that_the_makefile_tells(monkeypatch, name, number, hours):
-    """At 40 million contact updates a second."""
-    monkeypatch.chdir(TOP)
-    found = rows.read(os.path.join(STUDIES, f"{name}.table"))
-    assert len(found) == number and {row.kind.name for row in found} == {COMPRESSION.name}
-    seconds = sum(row.estimate.contacts * row.estimate.steps for row in found) / 4e7
-    assert 0.5 * hours < seconds / 3600 < hours
-
-
 def test_sintered_full_holds_the_papers_runs():
     """S17 section 4 and the captions of Figs 8 to 15, ten seeds each."""
     full = runs("sintered-full")
