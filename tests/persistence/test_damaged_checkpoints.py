@@ -8,6 +8,7 @@ from faults.commands import OTHER, RECORDER, RUN, arrays
 from faults.forks import END_BEFORE
 
 RESUME = RUN + ("resume=1",)
+STATE = "states/000001.npz"
 
 
 def killed(forks, folder, arguments, checkpoints=4):
@@ -54,9 +55,13 @@ def with_nan(rows):
 
 
 def change_state(run, **changed):
-    with np.load(run / "states" / "000001.npz") as archive:
+    with np.load(run / STATE) as archive:
         held = {**archive, **changed}
-    np.savez(run / "states" / "000001.npz", **held)
+    np.savez(run / STATE, **held)
+
+
+def cut(file, length):
+    file.write_bytes(file.read_bytes()[:length])
 
 
 # What is replaced in the text about the rows, by what, and what is said of it.
@@ -79,10 +84,7 @@ DAMAGE = {
         f"a bit of the scene at {where}": (lambda run, other, where=where: flip(scene_of(run), where), "scene-4.yade: ")
         for where in (0.001, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999)
     },
-    "half a scene": (
-        lambda run, other: scene_of(run).write_bytes(scene_of(run).read_bytes()[:2000]),
-        "scene-4.yade: 2000 bytes, SHA-256",
-    ),
+    "half a scene": (lambda run, other: cut(scene_of(run), 2000), "scene-4.yade: 2000 bytes, SHA-256"),
     "another run's scene": (lambda run, other: shutil.copy(scene_of(other), scene_of(run)), "scene-4.yade: "),
     "no scene": (lambda run, other: scene_of(run).unlink(), "not a checkpoint ([Errno 2]"),
     "rows cut": (lambda run, other: change_rows(run, lambda rows: rows[:-1]), "recorder.npz: rows have the shape (4, "),
@@ -90,21 +92,12 @@ DAMAGE = {
     "NaN in rows": (lambda run, other: change_rows(run, with_nan), "recorder.npz: "),
     "a number in rows": (lambda run, other: change_rows(run, lambda rows: rows * (1 + 1e-15)), "recorder.npz: "),
     "words as rows": (lambda run, other: change_rows(run, lambda rows: rows.astype(str)), "recorder.npz: "),
-    "half a recorder": (
-        lambda run, other: (run / RECORDER).write_bytes((run / RECORDER).read_bytes()[:900]),
-        "not a checkpoint (",
-    ),
-    "a state missing": (lambda run, other: (run / "states" / "000001.npz").unlink(), "000001.npz: missing"),
+    "half a recorder": (lambda run, other: cut(run / RECORDER, 900), "not a checkpoint ("),
+    "a state missing": (lambda run, other: (run / STATE).unlink(), "000001.npz: missing"),
     "all states missing": (lambda run, other: shutil.rmtree(run / "states"), "000000.npz: missing"),
-    "half a state": (
-        lambda run, other: (run / "states" / "000001.npz").write_bytes(b"half"),
-        "000001.npz: damaged, or not an .npz file",
-    ),
+    "half a state": (lambda run, other: (run / STATE).write_bytes(b"half"), "000001.npz: damaged, or not an .npz"),
     "a state of another time": (lambda run, other: change_state(run, time=1.0), "000001.npz: of 1 s; must be of"),
-    "a state of another kind": (
-        lambda run, other: change_state(run, aggregate=np.zeros(3, int)),
-        "'aggregate' has the",
-    ),
+    "a state of another kind": (lambda run, other: change_state(run, aggregate=np.zeros(3, int)), "'aggregate' has"),
 }
 
 

@@ -16,6 +16,7 @@ from analysis.studies.columns import flat
 
 ACTIONS = {"ends before": END_BEFORE, "ends halfway": END_HALFWAY, "disk full from": DISK_FULL}
 STOPPED = 143
+ENDED_RUN = {"ended", "history.npz", "run.json", "states"}
 # A study of one's own, as analysis/STUDIES.md has it, and a table for the runner: what commands read beside runs.
 OWN = """
 from analysis.studies.collisions import collision_study, outcome_quantities
@@ -68,7 +69,7 @@ class Trial:
             shutil.copytree(self._out, self._kept, symlinks=True)
         self._before = command.content(self._out)
         self.calls = self._made(command.arguments)
-        self.whole, self._names = command.content(self._out), self._names_of_a_run()
+        self.whole = command.content(self._out)
 
     def _made(self, arguments):
         """The calls without a fault."""
@@ -85,10 +86,6 @@ class Trial:
         (self.folder / "bin/sbatch.called").unlink(missing_ok=True)
         if kept.exists():
             shutil.copytree(kept, self._out, symlinks=True)
-
-    def _names_of_a_run(self):
-        """What stands in the folder of a run, to the last name."""
-        return self.command.content is ended_runs and sorted(path.name for path in self._out.iterdir())
 
     def cases(self, every=None, offset=0):
         """Case of each fault at every so many calls (None: as the command says); halfway only in writes."""
@@ -139,10 +136,10 @@ class Trial:
         wrong = []
         if content != self.whole or again.status and found != self.whole:
             wrong.append(f"again: exit status {again.status}: {again.lines[-1:]}")
-        elif self._names_of_a_run() != self._names:
-            wrong.append(f"again: leaves {self._names_of_a_run()}")
+        names = {path.name for path in self._out.iterdir()}
         left = [path.name for path in self._out.rglob("*") if is_unfinished(path.name)]
-        return wrong + ([f"leaves {left}"] if left else [])
+        left += names - ENDED_RUN if "ended" in names else []
+        return wrong + ([f"again: leaves {left}"] if left else [])
 
 
 def _checkpoints(calls):
