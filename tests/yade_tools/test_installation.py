@@ -6,16 +6,14 @@ import os
 import signal
 import subprocess
 import sys
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from running import small_disk
+from running import small_disk, wait_for, waits_for_a_lock
 
 TOP = Path(__file__).resolve().parents[2]
 INSTALLER = str(TOP / "contact_law/installation.py")
 COMMANDS = ("dust-analysis", "dust-collide", "dust-compress", "dust-packing", "dust-study")
-WAIT = 3  # s in which an installation gets far
 SMALL = ("grains=30", "packing=bpca", "velocity=20", "duration=2e-9", "stepFraction=0.1")
 
 
@@ -205,8 +203,7 @@ def test_an_installation_waits_for_another_one(tmp_path):
     first = subprocess.Popen([sys.executable, *stopped, *command], stdout=subprocess.DEVNULL)
     assert os.WIFSTOPPED(os.waitpid(first.pid, os.WUNTRACED)[1])
     second = subprocess.Popen([sys.executable, *command], stdout=subprocess.DEVNULL)
-    with suppress(subprocess.TimeoutExpired):
-        second.wait(WAIT)
+    wait_for(lambda: waits_for_a_lock(second.pid) or second.poll() is not None)
     first.send_signal(signal.SIGCONT)
     assert (first.wait(), second.wait()) == (0, 0)
     assert installation("uninstall", tmp_path).returncode == 0
