@@ -1,11 +1,11 @@
 """yade_scripts/compress.py as a user runs it: K13's cell, its pressure and ledger, its ends, stretching, wrong parameters."""
 
 import os
+from functools import partial
 
 import numpy as np
 import pytest
-from running import COMPRESS, call, messages, read_arrays, read_json, refusal, states
-from running import completed as run_completed
+from running import COMPRESS, call, completed, messages, read_arrays, read_json, refusal, states
 from scipy.integrate import trapezoid
 
 from analysis.runs.format import CHANNELS
@@ -13,14 +13,11 @@ from yade_scripts.experiments.compression import KIND, typical_first_filling
 from yade_scripts.run.agreement import difference
 
 SMALL = ("grains=64", "strainRate=1e-4", "stepFraction=0.2", "threads=1")
+completed = partial(completed, script=COMPRESS)
 
 
 def compress(folder, *arguments):
     return call(folder, "yade", "-n", "-x", COMPRESS, *arguments)
-
-
-def completed(folder, *arguments):
-    return run_completed(folder, *arguments, script=COMPRESS)
 
 
 @pytest.fixture(scope="module")

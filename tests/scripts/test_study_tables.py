@@ -19,14 +19,8 @@ from yade_scripts.studies import atlas, compressed, compression, elastoplastic, 
 TABLES = sorted(name for name in os.listdir(STUDIES) if name.endswith(".table"))
 PATHS = [os.path.join(STUDIES, name) for name in TABLES]
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
-WRITTEN = {
-    elastoplastic: ("elastoplastic-desk", "elastoplastic-first", "elastoplastic-full"),
-    viscous: ("viscous-desk", "viscous-full", "viscous-own", "viscous-prediction"),
-    compression: ("compression-desk", "compression-full", "compression-own"),
-    sintered: ("sintered-beyond", "sintered-desk", "sintered-full"),
-    compressed: ("compressed-cells", "compressed-desk"),
-    atlas: ("atlas-cells-full", "atlas-cells"),
-}
+WRITE_TABLES = (elastoplastic, viscous, compression, sintered, compressed, atlas)
+BY_HAND = ("elastoplastic-prediction.table", "elastoplastic-referee.table")
 VELOCITIES = {10 ** (0.1 * i) for i in range(8)}
 
 
@@ -42,10 +36,13 @@ def offsets(parameters):
     return round(parameters.impact**2 * 12, 9)
 
 
-@pytest.mark.parametrize("script", WRITTEN, ids=lambda script: script.__name__.rpartition(".")[2])
+@pytest.mark.parametrize("script", WRITE_TABLES, ids=lambda script: script.__name__.rpartition(".")[2])
 def test_committed_tables_are_what_the_script_writes(tmp_path, script):
     script.write_tables(tmp_path)
-    assert sorted(os.listdir(tmp_path)) == [f"{name}.table" for name in WRITTEN[script]]
+    study = script.__name__.rpartition(".")[2]
+    assert sorted(os.listdir(tmp_path)) == [
+        name for name in TABLES if name.startswith(f"{study}-") and name not in BY_HAND
+    ]
     for path in tmp_path.iterdir():
         assert Path(STUDIES, path.name).read_text() == path.read_text(), f"{path.name}: run {script.__name__}"
 
