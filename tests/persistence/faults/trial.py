@@ -112,6 +112,7 @@ class Trial:
         wrong += [f"half of {len(half)} files, such as {half[0]}"] if half else []
         if ACTIONS[fault] == DISK_FULL:
             wrong += wrong_on_a_full_disk(done)
+            wrong += ["exit status 0, but not all is there"] if done.status == 0 and found != self.whole else []
         elif done.status != -9 and not (stop and done.status == STOPPED):  # stopped before that call
             wrong.append(f"exit status {done.status}: {done.lines}")
         written = len(_checkpoints(done.calls[: call.number - 1]))
