@@ -40,12 +40,15 @@ def test_a_folder_that_was_begun_or_emptied_halfway_can_be_used(trial_of):
     assert not [case for case in cases if case.wrong]
 
 
+@pytest.mark.parametrize(
+    "scenario, file, names", [(RESUMED, "heartbeat", {"link", "rename", "unlink"}), (NEW, "ended", {"write", "rename"})]
+)
 @pytest.mark.parametrize("fault", ["ends before", "disk full from"])
-def test_no_fault_at_the_heartbeat_of_a_resumed_run(trial_of, fault):
-    """Every call that makes, replaces or removes one of its files."""
-    trial = trial_of(RESUMED)
-    calls = [call for call in trial.calls if "heartbeat" in call.path]
-    assert {call.name for call in calls} >= {"link", "rename", "unlink"}
+def test_no_fault_at_a_small_file(trial_of, scenario, file, names, fault):
+    """Every call that makes, replaces or removes one: heartbeats, and the mark of the end."""
+    trial = trial_of(scenario)
+    calls = [call for call in trial.calls if file in call.path]
+    assert {call.name for call in calls} >= names
     cases = [trial.case(call, fault) for call in calls]
     assert not [case for case in cases if case.wrong]
 
