@@ -118,7 +118,7 @@ def scenes_in(folder):
     """[(name and moment, file)] of small scenes: drag, a periodic cell, bonds that break."""
     run(["make", "build/harness"], cwd=TOP)
     for name, scene in SMALL.items():
-        moments.make(name, scene, folder, say=lambda *_, **__: None)
+        moments.make(name, scene, folder)
     return [(f"{n}, {m}", moments.path_of(n, m, scene, folder)) for n, scene in SMALL.items() for m in scene.moments]
 
 
