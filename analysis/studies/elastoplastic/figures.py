@@ -11,8 +11,8 @@ from ..curve_figure import MARKERS, CurveFigure, pairs_text, points
 from ..definition import StudyFigure
 from ..grains import PAPERS
 from ..snapshot_figure import SnapshotFigure
-from .andrews_fit import PRINTED, VELOCITY, at_velocity, degenerate_curve, printed
-from .study import FREE, in_grain_radii
+from .andrews_fit import PRINTED, VELOCITY, degenerate_curve, printed
+from .study import FREE
 
 GRAIN = SimpleNamespace(grain_density=ICE.density, grain_radius=PAPERS["ice"]["grainRadius"])
 SNAPSHOTS = (0.0, 150e-9, 500e-9)  # s
@@ -104,10 +104,8 @@ def _andrews(axes, panel):
 
 def _collisions(results):
     """The first pair of A24's denser aggregates of a size whose states can be kept."""
-    table = in_grain_radii(results.table)
-    own = table[at_velocity(table) & (table.radius == SNAPSHOTS_RADIUS) & (table.filling == 0.4)]
-    own = own[own.run == f"f0.4-R{SNAPSHOTS_RADIUS:g}-i5-s1"]
-    for row in own.itertuples():
+    table = results.table
+    for row in table[table.run == f"f0.4-R{SNAPSHOTS_RADIUS:g}-i5-s1"].itertuples():
         yield row, f"$\\phi$ = 0.4, $R$ = {SNAPSHOTS_RADIUS:g} $r$, 3.16 m/s", SNAPSHOTS
 
 

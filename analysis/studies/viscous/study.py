@@ -7,10 +7,10 @@ import pandas
 
 from ...measures.fragments import cumulative_cross_section, cumulative_grains
 from ...runs.collect import Scene
+from ..curves import threshold_velocity
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
-from ..runs import Runs, alike, along, differences, ratios, select, together
-from ..threshold import threshold_velocity
+from ..runs import Runs, along, differences, ratios, select, together
 from .growth import LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fragment_exponent, offset_weights
 from .measure import DISSIPATION, EVENTS, FAST, MEASURED, sizes_from_text
 
@@ -114,7 +114,7 @@ def _fragments(runs):
     own = runs.where(grains=50_000, **REFERENCE)
     single = own.of(_by_size(own.table, cumulative_grains)).estimates("value", (*POINT, "fragment"))
     yield Quantity("grains_in_fragments_full", "N_cum(<= N) of 50,000 grains each, 50.1 m/s, B_off^2 = 3/12", single)
-    table = runs.table[np.logical_or.reduce([alike(runs.table.velocity, v) for v in FRAGMENTS_AT])]
+    table = runs.where(velocity=FRAGMENTS_AT).table
     runs = runs.over("square", SQUARES, offset_weights)
     found = {"grains_in_fragments": cumulative_grains, "cross_section": cumulative_cross_section}
     grains, section = (runs.of(_by_size(table, f)).estimates("value", (*CURVE, "fragment")) for f in found.values())
