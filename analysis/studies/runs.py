@@ -33,7 +33,7 @@ class Runs:
 
     def where(self, which=None, /, **values):
         """The runs with these values in their columns (as alike() has it), of those for which which(table) is true."""
-        table = self.table if which is None else self.table[which(self.table)]
+        table = self.table if which is None else self.table[np.asarray(which(self.table), dtype=bool)]
         for name, value in values.items():
             table = table[alike(table[name], value)]
         return self.of(table)

@@ -89,9 +89,7 @@ FIGURES = (
     CurveFigure(
         "fig11_structure",
         "Fractal dimension between 3 and 10 grain radii, C_v = 3e-7 (K13 Fig. 11 draws N(< r) beside 2 and 3).",
-        "dimension",
-        "filling",
-        "grains",
+        *("dimension", "filling", "grains"),
         where=SLOW,
         logarithmic="x",
         y_label="$D$",
@@ -101,10 +99,7 @@ FIGURES = (
     CurveFigure(
         "whole_range",
         "Pressure of K13's ice over the formula of Tatsuuma et al. (2023) for any filling factor.",
-        "dense",
-        "filling",
-        "strainRate",
-        "grains",
+        *("dense", "filling", "strainRate", "grains"),
         STEP,
         "x",
         r"$P$ over $(E_{roll}/r_0^3)(1/\phi - 1/0.74)^{-3}$",
@@ -114,8 +109,7 @@ FIGURES = (
     CurveFigure(
         "tension",
         "Largest tension while a cell of 1,024 grains is stretched along one axis.",
-        "tensile",
-        "finalFilling",
+        *("tensile", "finalFilling"),
         where={**THOUSAND, "stretched_axes": 1},
         logarithmic="xy",
         y_label="tensile strength  [kPa]",

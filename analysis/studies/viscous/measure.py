@@ -26,6 +26,8 @@ REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # m/s, B_off^2: the collisi
 EVENTS = {"formed": "N_con", "broken": "N_cut"}  # contacts, and A22's names of their numbers
 LATER = {"gaps": True, "absent": np.nan}  # of a column that the first runs don't have
 FAST = 10.0  # m/s: A22 section 5.1 counts the pairs beyond
+PAIR_SPEED = f"largest rms over the states of v_rel of pairs nearer than {NEAR:g} r (50.1 m/s, 3/12)"
+FAST_PAIRS = f"the same of the number that approach, or that part, faster than {FAST:g} m/s; over N_tot"
 
 
 def _grains(run):
@@ -127,18 +129,8 @@ MEASURED = (
     ),
     group(
         _largest_of_pairs,
-        Column(
-            "pair_speed",
-            "m/s",
-            f"largest rms over the states of v_rel of pairs nearer than {NEAR:g} r (50.1 m/s, 3/12)",
-            gaps=True,
-        ),
-        Column(
-            "fast_pairs",
-            "",
-            f"the same of the number that approach, or that part, faster than {FAST:g} m/s; over N_tot",
-            **LATER,
-        ),
+        Column("pair_speed", "m/s", PAIR_SPEED, gaps=True),
+        Column("fast_pairs", "", FAST_PAIRS, **LATER),
     ),
     CLOSURE,
     END,
