@@ -178,12 +178,11 @@ def each(series, f):
 def at(series, **where):
     """The one Estimate or Fraction of a Series at these values of its levels (numbers to SAME); None where there is none. KeyError for a
     level that it lacks, ValueError where several are left."""
-    chosen, known = np.ones(len(series), dtype=bool), [name for name in series.index.names if name is not None]
-    for name, value in where.items():
+    known = [name for name in series.index.names if name is not None]
+    for name in where:
         if name not in known:
             raise KeyError(f"no level {name}{suggested(name, known)}")
-        chosen &= alike(series.index.get_level_values(name), value)
-    left = series[chosen]
+    left = select(series, **where)
     if len(left) > 1:
         raise ValueError(f"{where}: {len(left)} estimates: must be one, by {', '.join(known)}")
     return left.iloc[0] if len(left) else None

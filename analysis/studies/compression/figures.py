@@ -61,17 +61,18 @@ def _every_cluster(results):
 
 
 def _over_eq_25(name, caption, colour, panel="", **where):
-    own = {**THOUSAND, **where, colour: None, panel: None}
-    own, label = {key: value for key, value in own.items() if value is not None}, "$P$ over eq 25"
-    return CurveFigure(name, caption + NOTE, "strength", "filling", colour, panel, own, "xy", label, paper=_eq_25)
+    drawn, where = ("strength", "filling", colour, panel), _others({**THOUSAND, **where}, colour, panel)
+    return CurveFigure(name, caption + NOTE, *drawn, where, "xy", "$P$ over eq 25", paper=_eq_25)
 
 
 def _shares(name, caption, panel, **where):
-    where = {**THOUSAND, "since": 0.0, **where}
-    where.pop(panel)
-    return CurveFigure(
-        name, caption, "shares", "until", "channel", panel, where, "x", "part of all dissipated  [%]", (0.0, 100.0)
-    )
+    drawn, where = ("shares", "until", "channel", panel), _others({**THOUSAND, "since": 0.0, **where}, panel)
+    return CurveFigure(name, caption, *drawn, where, "x", "part of all dissipated  [%]", (0.0, 100.0))
+
+
+def _others(where, *drawn):
+    """The values of levels that are not drawn, without those that are left open."""
+    return {name: value for name, value in where.items() if name not in drawn and value is not None}
 
 
 FIGURES = (

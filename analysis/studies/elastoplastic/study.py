@@ -90,10 +90,9 @@ def _constants(runs, grain, stress, compliance):
     ratio = each(stress, lambda e, filling, fit: e / bcca_strength(filling))
     yield Quantity("over_quasistatic", "σ over that of quasistatic compression of BCCA aggregates (A24 eq 44)", ratio)
     counted = runs.estimates("inner_coordination", ("filling",))
-    sites = lambda filling: cpe_coordination(filling, grain.grain_radius, grain.overlap)
-    bulk = lambda filling: bulk_modulus(
-        filling, sites(filling), grain.grain_radius, grain.overlap, grain.pull_off_force
-    )
+    lengths = grain.grain_radius, grain.overlap
+    sites = lambda filling: cpe_coordination(filling, *lengths)
+    bulk = lambda filling: bulk_modulus(filling, sites(filling), *lengths, grain.pull_off_force)
     both = {"counted inside": counted, "A24 eq 39": each(counted, lambda _, filling: exact(sites(filling)))}
     yield Quantity("coordination", "contacts of a grain", together(both, "how"))
     modulus = each(counted, lambda _, filling: exact(bulk(filling)))
@@ -137,9 +136,8 @@ def _times(runs, grain):
     for filling, own in runs.table[runs.table.filling.isin(fits.PRINTED)].groupby("filling"):
         model = fits.printed(filling, grain)
         d, t = model.at(own.radius, own.velocity)
-        parts.append(
-            own.assign(deeper=own.d - d, late=own.t_max - t, tau=own.t_max - model.time_of_contact(own.velocity))
-        )
+        tau = own.t_max - model.time_of_contact(own.velocity)
+        parts.append(own.assign(deeper=own.d - d, late=own.t_max - t, tau=tau))
     beside = runs.of(pandas.concat(parts) if parts else runs.table[:0].assign(deeper=0.0, late=0.0, tau=0.0))
     yield Quantity("deeper", "d_max less that of A24's fitted model", beside.estimates("deeper", POINT), "r")
     yield Quantity("late", "t_max less that of A24's fitted model", beside.estimates("late", POINT), "ns")
