@@ -8,7 +8,7 @@ from written_runs import MASS, PAIR, RADIUS, chain, losing, record, state_arrays
 from analysis import theory
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
-from analysis.studies.threshold import threshold_velocity
+from analysis.studies.curves import threshold_velocity
 from analysis.studies.viscous.growth import SQUARES as TWELFTHS
 from analysis.studies.viscous.growth import fragment_exponent, offset_weights
 from analysis.studies.viscous.measure import sizes_from_text
