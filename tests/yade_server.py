@@ -1,11 +1,12 @@
 """One YADE that has started, and runs scripts in processes forked from it: a start takes longer than most scripts.
 
-In YADE: `yade -n -x yade_server.py REQUESTS ANSWERS` reads one request a line from the file descriptor REQUESTS ({"script", "folder",
-"timeout", "arguments"}: a Python file, where to run it, seconds or 0, what follows the file in sys.argv), runs it as YADE's own main
-script would be, and writes a line to ANSWERS: its status as subprocess has it, a signal's number negative. What the script prints is
-in FOLDER/stdout and FOLDER/stderr.
+In YADE: `yade -n -x yade_server.py REQUESTS ANSWERS MODULE...` imports the modules, reads one request a line from the file descriptor
+REQUESTS ({"script", "folder", "timeout", "arguments"}: a Python file, where to run it, seconds or 0, what follows the file in sys.argv),
+runs it as YADE's own main script would be, and writes a line to ANSWERS: its status as subprocess has it, a signal's number negative.
+What the script prints is in FOLDER/stdout and FOLDER/stderr.
 """
 
+import importlib
 import json
 import os
 import signal
@@ -19,9 +20,10 @@ with suppress(ImportError):  # what many tests import: once, before they are for
 
 
 class YadeServer:
-    """The one YADE of this process, started when it is first asked."""
+    """A YADE that is started when it is first asked, with modules that scripts need, in this environment (None: of this process)."""
 
-    def __init__(self):
+    def __init__(self, modules=(), environment=None):
+        self.modules, self.environment = modules, environment
         self.process = None
 
     def run(self, script, folder, timeout=0, arguments=()):
@@ -36,11 +38,17 @@ class YadeServer:
             raise RuntimeError("the YADE that scripts are forked from has ended")
         return int(answer)
 
+    def close(self):
+        """End YADE."""
+        if self.process:
+            self.requests.close()
+            self.process.wait(timeout=30)
+
     def _start(self):
         (theirs, ours), (answers, to_us) = os.pipe(), os.pipe()
-        command = ["yade", "-n", "-x", "-j1", os.path.abspath(__file__), str(theirs), str(to_us)]
-        quiet = subprocess.DEVNULL
-        self.process = subprocess.Popen(command, pass_fds=(theirs, to_us), stdin=quiet, stdout=quiet, stderr=quiet)
+        command = ["yade", "-n", "-x", "-j1", os.path.abspath(__file__), str(theirs), str(to_us), *self.modules]
+        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+        self.process = subprocess.Popen(command, pass_fds=(theirs, to_us), env=self.environment, **pipes)
         os.close(theirs)
         os.close(to_us)
         self.requests, self.answers = os.fdopen(ours, "w"), os.fdopen(answers)
@@ -82,4 +90,7 @@ def run(script, folder, timeout, arguments):
 
 
 if __name__ == "__main__":
+    sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+    for name in sys.argv[3:]:
+        importlib.import_module(name)
     serve(os.fdopen(int(sys.argv[1])), os.fdopen(int(sys.argv[2]), "w"))

@@ -94,12 +94,11 @@ def outcome_quantities(runs, by):
     """Quantities of a runs.Runs with the columns of OUTCOME, by the columns `by`: fractions of the runs that stick, bounce and break, of those
     that met, with undecided ones apart, and the mean restitution of those that bounce."""
     undecided = lambda table: table.outcome == UNDECIDED
-    met = runs.of(runs.table[runs.table.outcome != NEVER_MET])
+    met = runs.where(lambda table: table.outcome != NEVER_MET)
     for name, kind in (("sticking", STICKING), ("bouncing", BOUNCING), ("breaking", FRAGMENTATION)):
         values = met.fractions(lambda table, kind=kind: table.outcome == kind, by, undecided)
         yield Quantity(name, f"runs that end in {kind}", values)
-    bounced = runs.of(runs.table[runs.table.outcome == BOUNCING])
-    restitution = bounced.estimates("restitution", by)
+    restitution = runs.where(outcome=BOUNCING).estimates("restitution", by)
     yield Quantity("restitution", "coefficient of restitution of runs that bounce", restitution)
     (largest,) = LARGEST.columns
     if largest.name in runs.table:

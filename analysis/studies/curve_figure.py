@@ -12,7 +12,7 @@ from ..figures.panels import legend, letter, panels
 from ..figures.style import styled
 from ..runs.format import COLOURS as CHANNEL_COLOURS
 from .levels import level
-from .runs import alike, select
+from .runs import select
 
 # None of them the paper's (figures.panels.PAPER).
 COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
@@ -77,7 +77,7 @@ class CurveFigure:
     def draw(self, results):
         """The Figure of definition.Results; None where there is nothing to draw."""
         quantity = results[self.y]
-        series = _chosen(quantity.values, self.where)
+        series = select(quantity.values, **self.where)
         if not len(series):
             return None
         shown = list(dict.fromkeys(series.index.get_level_values(self.panel))) if self.panel else [None]
@@ -109,16 +109,6 @@ def _legends(flat):
     for place in flat:
         if place is most or not named(place) <= named(most):
             legend(place, fontsize=8)
-
-
-def _chosen(series, where):
-    """The part of a Series with these values of levels; a level given a tuple of values is kept."""
-    single = {name: value for name, value in where.items() if not isinstance(value, tuple)}
-    for name, values in where.items():
-        if isinstance(values, tuple):
-            own = series.index.get_level_values(name)
-            series = series[np.logical_or.reduce([alike(own, value) for value in values])]
-    return select(series, **single)
 
 
 def _share_y(places, limits):

@@ -1,6 +1,7 @@
 """Groups of a table of runs, and estimates of each."""
 
 from copy import copy
+from functools import reduce
 
 import numpy as np
 import pandas
@@ -30,10 +31,12 @@ class Runs:
         found.table = table
         return found
 
-    def where(self, **values):
-        """The runs with these values in their columns (numbers to SAME)."""
-        chosen = np.logical_and.reduce([alike(self.table[name], value) for name, value in values.items()])
-        return self.of(self.table[chosen])
+    def where(self, which=None, /, **values):
+        """The runs with these values in their columns (as alike() has it), of those for which which(table) is true."""
+        table = self.table if which is None else self.table[np.asarray(which(self.table), dtype=bool)]
+        for name, value in values.items():
+            table = table[alike(table[name], value)]
+        return self.of(table)
 
     def over(self, column, points, rule=None):
         """The same, with each pair averaged over a column (offsets, say) before the pairs are. points: the values that a pair must have
@@ -63,12 +66,17 @@ class Runs:
         """Series of estimates of several things, {label: column or function}, by the columns `by` and `level`: the label."""
         return together({label: self.estimates(values, by) for label, values in of.items()}, level)
 
+    def shares(self, of, total, by, level):
+        """The same over the estimates of a total (a column or function)."""
+        total = self.estimates(total, by)
+        return together({label: ratios(self.estimates(values, by), total) for label, values in of.items()}, level)
+
     def beside(self, level, reference, values, by, of, same_pairs=False):
         """Series of of(estimates, estimates) (differences, ratios), by the columns `by` and `level`: of `values` at every other value of a
         column, and at its reference. Of the pairs that both have in a group; where they share none, of all, unless it must be the
         same_pairs."""
-        same, found = alike(self.table[level], reference), {}
-        plain, others = self.of(self.table[same]), self.of(self.table[~same])
+        plain, found = self.where(**{level: reference}), {}
+        others = self.where(lambda table: ~alike(table[level], reference))
         for value in sorted(set(others.table[level])) or [reference]:
             first, second = _shared(others.where(**{level: value}), plain, by, same_pairs)
             found[value] = of(first.estimates(values, by), second.estimates(values, by))
@@ -157,6 +165,11 @@ def together(of, level):
     return joined.reorder_levels([*joined.index.names[1:], level])
 
 
+def finite(series):
+    """The estimates of a Series that have a value: fits have none with too few runs."""
+    return series[[bool(np.isfinite(estimate.value)) for estimate in series]]
+
+
 def each(series, f):
     """Series of f(estimate, *its values of the levels)."""
     return pandas.Series([f(own, *key) for key, own in keyed(series)], series.index, dtype=object)
@@ -165,32 +178,33 @@ def each(series, f):
 def at(series, **where):
     """The one Estimate or Fraction of a Series at these values of its levels (numbers to SAME); None where there is none. KeyError for a
     level that it lacks, ValueError where several are left."""
-    chosen, known = np.ones(len(series), dtype=bool), [name for name in series.index.names if name is not None]
-    for name, value in where.items():
+    known = [name for name in series.index.names if name is not None]
+    for name in where:
         if name not in known:
             raise KeyError(f"no level {name}{suggested(name, known)}")
-        chosen &= alike(series.index.get_level_values(name), value)
-    left = series[chosen]
+    left = select(series, **where)
     if len(left) > 1:
         raise ValueError(f"{where}: {len(left)} estimates: must be one, by {', '.join(known)}")
     return left.iloc[0] if len(left) else None
 
 
 def select(series, **where):
-    """The part of a Series at these values of some levels, without these levels."""
+    """The part of a Series at these values of some levels, without these levels; one of which a tuple of values is wanted stays."""
     for name, value in where.items():
         series = series[alike(series.index.get_level_values(name), value)]
-    left = [name for name in series.index.names if name not in where]
-    return series.droplevel(list(where)) if left else series
+    single = [name for name, value in where.items() if not isinstance(value, tuple)]
+    return series.droplevel(single) if len(single) < series.index.nlevels else series
 
 
 def alike(values, wanted):
-    """Whether values (n,) are printed as wanted (a number or (n,) numbers, or a word): booleans (n,).
+    """Whether values, one or (n,), are printed as wanted: a number or (n,) numbers, a word, or a tuple, for one of these.
 
-    >>> alike([50.1, 0.0], 10**1.7).tolist(), alike(["a", "b"], "b").tolist()
-    ([True, False], [False, True])
+    >>> alike([50.1, 0.0], 10**1.7).tolist(), alike(["a", "b"], "b").tolist(), alike([1, 2], (2, 3)).tolist()
+    ([True, False], [False, True], [False, True])
     """
     values = np.asarray(values)
+    if isinstance(wanted, tuple):
+        return reduce(np.logical_or, (alike(values, one) for one in wanted), np.zeros(values.shape, dtype=bool))
     if values.dtype.kind not in "fiub" or isinstance(wanted, str):
         return values == wanted
     return np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
@@ -227,7 +241,5 @@ def _key(value):
 def _series(found, by):
     if not by:
         return pandas.Series(list(found.values()), dtype=object)
-    if not found:
-        return pandas.Series([], pandas.MultiIndex.from_arrays([[]] * len(by), names=list(by)), dtype=object)
     index = pandas.MultiIndex.from_tuples(list(found), names=list(by))
     return pandas.Series(list(found.values()), index, dtype=object)

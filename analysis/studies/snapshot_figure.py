@@ -1,6 +1,6 @@
 """Snapshots of collisions, from run folders or from the few states that a gallery keeps of them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Callable
 
 import numpy as np
@@ -8,7 +8,6 @@ import numpy as np
 from ..figures.collision_view import draw_view, reach
 from ..figures.panels import panels
 from ..figures.style import styled
-from ..measures.fragments import fragment_labels
 from ..runs.arrays import read_arrays
 from ..runs.table import NoRunFolder, run_folder
 
@@ -18,13 +17,12 @@ FULL = 32_000  # of an int16
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A state: time [s], position (N,3) [m], radius (N,) [m], aggregate (N,) int, piece (N,) int: number of its fragment, 0 the largest."""
+    """A state: time [s], position (N,3) [m], radius (N,) [m], aggregate (N,) int."""
 
     time: float
     position: np.ndarray
     radius: np.ndarray
     aggregate: np.ndarray
-    piece: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ class SnapshotFigure:
         for places, (title, states, unit) in zip(axes, rows):
             for place, state in zip(places, states):
                 centre = state.position.mean(axis=0)
-                half = 1.05 * reach(Snapshot(state.time, state.position - centre, *(None,) * 3), self.held) / unit
+                half = 1.05 * reach(replace(state, position=state.position - centre), self.held) / unit
                 draw_view(place, state, unit, half, centre=centre)
                 _scale_bar(place, half)
             for place in places[len(states) :]:
@@ -64,18 +62,14 @@ def states_of(results, row, times):
     comes from a folder is remembered in results.snapshots, to be kept."""
     if isinstance(row.folder, str):
         run = run_folder(row)
-        found = [_snapshot(run.states[k]) for k in sorted({run.states.nearest(time) for time in times})]
+        states = [run.states[k] for k in sorted({run.states.nearest(time) for time in times})]
+        found = [Snapshot(float(own.time), own.position, own.radius, own.aggregate) for own in states]
         results.snapshots[row.run] = found
         return found
     file = results.kept / f"{row.run}.npz" if results.kept else None
     if file is None or not file.is_file():
         raise NoRunFolder(row.run)
     return read_snapshots(file)
-
-
-def _snapshot(state):
-    piece = fragment_labels(len(state.position), state.contact_pairs)
-    return Snapshot(float(state.time), state.position, state.radius, state.aggregate, piece)
 
 
 def write_snapshots(file, snapshots):
@@ -89,16 +83,15 @@ def write_snapshots(file, snapshots):
         position=np.rint(positions / unit).astype(np.int16),
         radius=snapshots[0].radius.astype(np.float32),
         aggregate=snapshots[0].aggregate.astype(np.uint8),
-        piece=np.array([own.piece for own in snapshots]).astype(np.uint16),
     )
 
 
 def read_snapshots(file):
     """[Snapshot] that write_snapshots wrote; RunFolderError where the file is damaged."""
-    kept = read_arrays(file, ("time", "unit", "position", "radius", "aggregate", "piece"))
+    kept = read_arrays(file, ("time", "unit", "position", "radius", "aggregate"))
     radius, aggregate = kept["radius"].astype(float), kept["aggregate"].astype(int)
-    parts = zip(kept["time"], kept["position"] * float(kept["unit"]), kept["piece"])
-    return [Snapshot(float(time), place, radius, aggregate, piece.astype(int)) for time, place, piece in parts]
+    positions = kept["position"] * float(kept["unit"])
+    return [Snapshot(float(time), place, radius, aggregate) for time, place in zip(kept["time"], positions)]
 
 
 def _scale_bar(axes, half):

@@ -1,6 +1,7 @@
 """Run folders for the tests of the analysis: two grains from theory, two small clusters, and a study."""
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,14 @@ STUDIES = Path(__file__).resolve().parents[2] / "analysis/STUDIES.md"
 
 @pytest.fixture(scope="session")
 def pair_folder(tmp_path_factory):
-    """(path, impact velocity, PairCollision) of two grains that bounce."""
-    path = tmp_path_factory.mktemp("pair") / "run"
-    velocity, collision = pair_run(path)
-    return path, velocity, collision
+    """Path of a run folder of two grains that bounce."""
+    return pair_run(tmp_path_factory.mktemp("pair") / "run")
+
+
+@pytest.fixture
+def run(pair_folder, tmp_path):
+    """A folder of its own of that run."""
+    return shutil.copytree(pair_folder, tmp_path / "run")
 
 
 @pytest.fixture(scope="session")

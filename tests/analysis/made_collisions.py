@@ -2,7 +2,7 @@
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from written_runs import RADIUS, losing, record, state_arrays, write_run
+from written_runs import RADIUS, facing, losing, record, write_run
 
 from analysis.theory.andrews import Spheres, critical_compression
 
@@ -50,14 +50,8 @@ def made_run(path, size, velocity, seed, sticks=False, settles=True, stretch=1.0
     own = dict(kinetic=kinetic, slidingDissipation=1e-15 * velocity**2 - kinetic, contacts=2 + touching)
     history = losing(time, touching=touching, d=d, v=v, **own)
     shown = (*range(0, 401, 50), *range(401, len(time)))
-    states = [_state(time[k], d[k], v[k], size, bool(touching[k])) for k in shown]
+    two = dict(one=[[0, 0, 0], [0, 2 * RADIUS, 0]], pairs=[[0, 1]], reach=size * RADIUS)
+    states = [facing(time[k], d[k], v[k], **two, touching=touching[k]) for k in shown]
     scene = dict(packing="cpe", material="ice", filling=FILLING, radius=size, velocity=velocity, seed=seed)
     about = record(size * RADIUS, {**scene, "impact": 0.0, "stepFraction": 0.1, **parameters})
     return write_run(path, about, history, states)
-
-
-def _state(time, d, v, size, touching):
-    x = size * RADIUS - 0.5 * d
-    position = [[-x, 0, 0], [-x, 2 * RADIUS, 0], [x, 0, 0], [x, 2 * RADIUS, 0]]
-    velocity = [[v / 2, 0, 0]] * 2 + [[-v / 2, 0, 0]] * 2
-    return state_arrays(time, position, velocity, [0, 0, 1, 1], [[0, 1], [2, 3]] + [[0, 2]] * touching)

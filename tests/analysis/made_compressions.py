@@ -1,7 +1,7 @@
 """Made-up run folders of compressions, with the pressure that is wanted."""
 
 import numpy as np
-from written_runs import PAIR, RADIUS, record, state_arrays, write_run
+from written_runs import PAIR, RADIUS, cubic_lattice, record, state_arrays, write_run
 
 from analysis.runs.format import COMPRESSION
 from analysis.theory import SILICATE
@@ -56,14 +56,12 @@ def made_compression(path, seed, pressure, states=True, stretched=False, low=0.0
 
 def _states(history):
     """At fillings of 0.003 and 0.0101, where the cell is not connected along z yet, 0.0305 and 0.102."""
-    site = np.stack(np.meshgrid(*3 * [np.arange(8)], indexing="ij"), axis=-1).reshape(-1, 3)
-    neighbour = (site[:, None] + np.eye(3, dtype=int)) % 8 @ (64, 8, 1)
-    pairs = np.stack([np.repeat(np.arange(GRAINS), 3), neighbour.ravel()], axis=1)
-    within_z = np.repeat(site[:, 2] < 7, 3) | (np.arange(3 * GRAINS) % 3 < 2)
+    connected, loose = cubic_lattice(8), cubic_lattice(8, axes=(0, 1))
     for number, row in enumerate(np.searchsorted(history["filling"][:3000], (0.003, 0.0101, 0.0305, 0.102))):
+        site, pairs = connected if number > 1 else loose
         edge = history["edge_x"][row]
         still = np.zeros((GRAINS, 3)), np.zeros(GRAINS, int)
-        state = state_arrays(history["time"][row], site * edge / 8, *still, pairs if number > 1 else pairs[within_z])
+        state = state_arrays(history["time"][row], site * edge / 8, *still, pairs)
         yield {**state, "cell_size": np.full(3, edge)}
 
 

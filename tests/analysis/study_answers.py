@@ -12,8 +12,8 @@ def quantities(text):
 
 
 def answered(capsys, study, folder):
-    """({quantity: [row]}, number of runs that count, what is said of others) of a folder of runs."""
-    assert main(["study", study, str(folder), "--json"]) == 0
+    """({quantity: [row]}, number of runs that count, what is said of others) of a folder or table of runs."""
+    assert main(["study", str(study), str(folder), "--json"]) == 0
     out, err = capsys.readouterr()
     return quantities(out), json.loads(out)["provenance"]["runs"], err
 

@@ -19,11 +19,7 @@ CASES = {
 }
 
 
-@pytest.fixture(params=CASES, ids=str)
-def spheres(request):
-    return CASES[request.param]
-
-
+@pytest.mark.parametrize("spheres", CASES.values(), ids=CASES)
 def test_closed_forms_agree_with_the_integrated_force(spheres):
     there, back = integrated(V, spheres)
     assert andrews.largest_compression(V, spheres) == pytest.approx(there[1][-1], rel=1e-8)

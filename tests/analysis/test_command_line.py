@@ -2,18 +2,18 @@
 
 import json
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
-from written_runs import seal
+from written_runs import PAIR, PAIR_VELOCITY, seal
 
 from analysis.figures.draw import figures_of
 from analysis.report.rows import row
 from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNELS
+from analysis.theory import collide_pair
 
 TOP = Path(__file__).resolve().parents[2]
 
@@ -26,19 +26,19 @@ def analyse(*arguments):
 
 
 def test_json_of_one_run_is_an_object_of_several_a_list_in_their_order(pair_folder, cluster_folder):
-    path, velocity, collision = pair_folder
-    done = analyse("summary", "--json", path)
+    collision = collide_pair(PAIR_VELOCITY, PAIR)
+    done = analyse("summary", "--json", pair_folder)
     numbers = json.loads(done.stdout)
     assert done.returncode == 0 and done.stderr == "" and KEYS <= set(numbers)
-    assert numbers["run"] == str(path) and numbers["outcome"] == "bouncing" and numbers["largest_fragment"] == 1
+    assert numbers["run"] == str(pair_folder) and numbers["outcome"] == "bouncing" and numbers["largest_fragment"] == 1
     assert numbers["restitution"] == pytest.approx(collision.restitution, rel=1e-9)
     assert numbers["d_max"] == pytest.approx(collision.largest_overlap - 2e-7, rel=1e-6)
     assert 0.3 < numbers["t_max"] / collision.duration < 0.5
     assert numbers["energy_closure"] < 1e-9
     assert numbers["disconnection"] == pytest.approx(4 / 45 * 3.969e-17, rel=1e-4)
-    done = analyse("summary", pair_folder[0], cluster_folder, "--json")
+    done = analyse("summary", pair_folder, cluster_folder, "--json")
     runs = json.loads(done.stdout)
-    assert [r["run"] for r in runs] == [str(pair_folder[0]), str(cluster_folder)]
+    assert [r["run"] for r in runs] == [str(pair_folder), str(cluster_folder)]
     assert runs[1]["outcome"] == "sticking" and runs[1]["growth_efficiency"] == 1.0
 
 
@@ -53,20 +53,12 @@ def test_the_table_has_units_every_channel_and_the_numbers_of_the_json(cluster_f
 
 
 def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folder, cluster_folder, tmp_path):
-    done = analyse("summary", "--long", pair_folder[0], tmp_path / "none", cluster_folder)
+    done = analyse("summary", "--long", pair_folder, tmp_path / "none", cluster_folder)
     assert done.returncode == 2
     assert done.stderr == f"analysis: {tmp_path / 'none'}: no such folder\n"
-    assert f"run {pair_folder[0]}" in done.stdout and f"run {cluster_folder}" in done.stdout
-    listed = analyse("summary", "--json", pair_folder[0], tmp_path / "none")
-    assert listed.returncode == 2 and [r["run"] for r in json.loads(listed.stdout)] == [str(pair_folder[0])]
-    alone = analyse("summary", "--json", tmp_path)
-    assert (alone.returncode, alone.stdout, alone.stderr.count("\n")) == (2, "", 1) and "run.json" in alone.stderr
-
-
-@pytest.fixture
-def run(pair_folder, tmp_path):
-    """A folder of its own of the pair's run."""
-    return shutil.copytree(pair_folder[0], tmp_path / "run")
+    assert f"run {pair_folder}" in done.stdout and f"run {cluster_folder}" in done.stdout
+    listed = analyse("summary", "--json", pair_folder, tmp_path / "none")
+    assert listed.returncode == 2 and [r["run"] for r in json.loads(listed.stdout)] == [str(pair_folder)]
 
 
 def change(run, names, to=np.zeros_like):

@@ -7,7 +7,8 @@ import subprocess
 
 import numpy as np
 import pytest
-from written_runs import RADIUS, losing, record, state_arrays, write_run
+from running import small_disk
+from written_runs import RADIUS, facing, losing, record, write_run
 
 from analysis.__main__ import main
 from analysis.figures.grain_colours import AGGREGATE_COLOURS
@@ -18,8 +19,8 @@ needs_ffmpeg = pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is 
 @pytest.fixture
 def run(tmp_path):
     """Two grains, one of each aggregate, that draw near along x in four states."""
-    time, x = np.arange(4) * 1e-9, (8 - 2 * np.arange(4)) * RADIUS
-    states = [state_arrays(t, [(-x, 0, 0), (x, 0, 0)], np.zeros((2, 3)), [0, 1]) for t, x in zip(time, x)]
+    time = np.arange(4) * 1e-9
+    states = [facing(t, d, 0.0) for t, d in zip(time, (4 * np.arange(4) - 16) * RADIUS)]
     return write_run(tmp_path / "run", record(1e-6), losing(time), states)
 
 
@@ -53,17 +54,11 @@ def test_every_state_is_a_frame_with_the_grains_in_their_places(run):
 
 @needs_ffmpeg
 def test_a_full_disk_keeps_the_film_that_was_there(run, tmp_path, capsys):
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=12k", "tmpfs", disk], capture_output=True).returncode:
-        pytest.skip("a file system of its own can't be mounted")
-    try:
+    with small_disk(tmp_path / "disk", "12k") as disk:
         (disk / "film.gif").write_bytes(b"before")
         assert main(["film", str(run), "--out", str(disk / "film.gif")]) == 2
         assert re.search("must have room on the disk|No space left", capsys.readouterr().err)  # newer ffmpegs say it
         assert [(path.name, path.read_bytes()) for path in disk.iterdir()] == [("film.gif", b"before")]
-    finally:
-        subprocess.run(["umount", disk], check=True)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,10 @@
-"""What the analysis is like in a notebook: names, what a run shows, wrong names, pickles, tables of runs and of fragments."""
+"""What the analysis is like in a notebook: names, examples, what a run shows, pickles, tables of runs and of fragments."""
 
+import doctest
 import pickle
+import pkgutil
 import subprocess
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +16,7 @@ from analysis.runs.arrays import RunFolderError
 from analysis.runs.format import CHANNELS
 
 TOP = Path(__file__).resolve().parents[2]
+MODULES = [m.name for m in pkgutil.walk_packages(analysis.__path__, "analysis.") if m.name != "analysis.__main__"]
 
 
 @pytest.fixture(scope="module")
@@ -28,6 +32,11 @@ def test_what_there_is_is_there_and_documented():
     found = "import sys, analysis; print([m for m in ('numpy', 'scipy', 'pandas', 'matplotlib') if m in sys.modules])"
     done = subprocess.run(["/usr/bin/python3", "-c", found], cwd=TOP, capture_output=True, text=True)
     assert done.stdout == "[]\n", done.stderr  # importing it loads nothing else
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings(name):
+    assert doctest.testmod(import_module(name)).failed == 0
 
 
 def test_runs_and_states_are_a_few_lines_pickle_and_have_fragments(run):
@@ -48,7 +57,7 @@ def test_runs_and_states_are_a_few_lines_pickle_and_have_fragments(run):
 
 def test_a_table_has_a_row_a_run(run, pair_folder, tmp_path):
     (tmp_path / "logs").mkdir()
-    for number, folder in enumerate((run.path, pair_folder[0])):
+    for number, folder in enumerate((run.path, pair_folder)):
         (tmp_path / f"r{number}").symlink_to(folder)
     found = table(f"{tmp_path}/**")
     numbers = analysis.summarise(run)

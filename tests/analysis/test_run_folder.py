@@ -20,9 +20,9 @@ from analysis.runs.format import CHANNELS, COLLISION
 
 
 @pytest.fixture
-def folder(pair_folder, tmp_path):
+def folder(run):
     """One without sums: what its files themselves tell of damage."""
-    return unseal(shutil.copytree(pair_folder[0], tmp_path / "run"))
+    return unseal(run)
 
 
 def _change_record(folder, change):

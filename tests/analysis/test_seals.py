@@ -17,11 +17,6 @@ from analysis.studies.definition import GALLERY
 FILES = ("run.json", "history.npz", "states/000000.npz", "states/000002.npz", "ended")
 
 
-@pytest.fixture
-def run(pair_folder, tmp_path):
-    return shutil.copytree(pair_folder[0], tmp_path / "run")
-
-
 def flip(file, other):
     data = bytearray(file.read_bytes())
     data[2 * len(data) // 5] ^= 4
@@ -100,7 +95,7 @@ def test_sha256sum_reads_the_same(run):
     assert b"history.npz: FAILED" in subprocess.run(check, cwd=run, capture_output=True).stdout
 
 
-def test_runs_without_sums_are_read_with_one_line(run, pair_folder, capsys):
+def test_runs_without_sums_are_read_with_one_line(run, capsys):
     for name in ("a", "b"):
         unseal(shutil.copytree(run, run.parent / "runs" / name))
     everything(run.parent / "runs" / "a")

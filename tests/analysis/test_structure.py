@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from written_runs import cubic_lattice
 
 from analysis.measures.loops import loops
 from analysis.measures.percolation import spanned_axes
@@ -11,15 +12,12 @@ from analysis.measures.structure import fractal_dimension, grains_within
 SHELLS = {0.5: 1, 1.2: 7, 1.5: 19, 1.8: 27, 2.1: 33, 2.3: 57, 2.5: 81, 2.9: 93}
 
 
-def lattice(cells):
-    return np.stack(np.meshgrid(*3 * [np.arange(cells)], indexing="ij"), axis=-1).reshape(-1, 3).astype(float)
-
-
 def test_simple_cubic_lattice_with_images():
     """The same for any cell, also where the distance reaches over several images, and wherever the positions are."""
     for cells in (1, 2, 3, 5):
-        moved = lattice(cells) + [7.25, -3.0, 0.1] + float(cells) * np.arange(cells**3)[:, None]
-        for position in (lattice(cells), moved):
+        lattice, _ = cubic_lattice(cells)
+        moved = lattice + [7.25, -3.0, 0.1] + float(cells) * np.arange(cells**3)[:, None]
+        for position in (lattice, moved):
             assert grains_within(position, list(SHELLS), 3 * [float(cells)]).tolist() == list(SHELLS.values())
 
 
@@ -31,7 +29,7 @@ def test_open_space_few_origins_and_the_dimensions_of_plane_and_space():
     plane = np.stack(np.meshgrid(np.arange(60), np.arange(60), [0]), axis=-1).reshape(-1, 3).astype(float)
     distance = np.array([10.5, 25.5])
     assert fractal_dimension(distance, grains_within(plane, distance, [60, 60, 1e3]))[0] == pytest.approx(2, abs=0.05)
-    space = grains_within(lattice(30), distance, 3 * [30.0], origins=5)
+    space = grains_within(cubic_lattice(30)[0], distance, 3 * [30.0], origins=5)
     assert fractal_dimension(distance, space)[0] == pytest.approx(3, abs=0.05)
 
 
@@ -42,23 +40,10 @@ def test_loops_of_a_lattice_and_what_hangs_on_it():
     assert loops(12, pairs[5:6]) == (0, 0) and loops(3, []) == (0, 0)
 
 
-SIDE = 4
-
-
-def connected_lattice(axes):
-    """(position, pairs, cell): a cubic lattice in its cell, connected with its images along these axes."""
-    site, pairs = lattice(SIDE), []
-    for k, place in enumerate(site.astype(int)):
-        for axis in range(3):
-            if place[axis] == SIDE - 1 and axis not in axes:
-                continue
-            pairs.append((k, int((place + np.eye(3, dtype=int)[axis]) % SIDE @ (SIDE**2, SIDE, 1))))
-    return site, np.array(pairs), np.full(3, float(SIDE))
-
-
 @pytest.mark.parametrize("axes", [(), (0,), (1, 2), (0, 1, 2)])
 def test_lattices_connected_along_some_axes(axes):
-    position, pairs, cell = connected_lattice(axes)
+    position, pairs = cubic_lattice(4, axes)
+    cell = np.full(3, 4.0)
     assert spanned_axes(position, pairs, cell) == len(axes)
     # Wherever the grains are: the same network.
     image = np.random.default_rng(1).integers(-2, 3, position.shape)

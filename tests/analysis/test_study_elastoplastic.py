@@ -1,5 +1,4 @@
-"""Tests of the study of elastoplastic aggregates (Arakawa et al. 2024): made runs whose answers are known, the fits against closed forms and
-scipy's, and the gallery's numbers."""
+"""The study of elastoplastic aggregates (Arakawa et al. 2024): made runs whose answers are known, fits against closed forms and scipy's."""
 
 from types import SimpleNamespace
 

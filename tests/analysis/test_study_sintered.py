@@ -1,5 +1,4 @@
-"""Tests of the study of sintered aggregates (Sirono & Ueno 2017): what is measured of made runs whose answers are known, which runs stand
-beside each other, and both models against closed forms."""
+"""The study of sintered aggregates (Sirono & Ueno 2017): made runs whose answers are known, and both models against closed forms."""
 
 import numpy as np
 import pandas

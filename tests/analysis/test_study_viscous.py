@@ -1,5 +1,4 @@
-"""Tests of the study of viscous drag (Arakawa et al. 2022): what is measured of made runs whose answers are known, which runs count, and
-means over offsets, thresholds and fits against closed forms."""
+"""The study of viscous drag (Arakawa et al. 2022): made runs whose answers are known; means, thresholds, fits against closed forms."""
 
 import numpy as np
 import pytest
@@ -9,10 +8,10 @@ from written_runs import MASS, PAIR, RADIUS, chain, losing, record, state_arrays
 from analysis import theory
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
-from analysis.studies.threshold import threshold_velocity
+from analysis.studies.curves import threshold_velocity
 from analysis.studies.viscous.growth import SQUARES as TWELFTHS
 from analysis.studies.viscous.growth import fragment_exponent, offset_weights
-from analysis.studies.viscous.measure import sizes_from_text, sizes_text
+from analysis.studies.viscous.measure import sizes_from_text
 from analysis.studies.viscous.study import STUDY
 
 GRAINS, V_FRA = 30, 55.0
@@ -133,7 +132,7 @@ def test_rounded_numbers_are_those_of_the_grid(tmp_path, capsys):
     assert runs == 2 and "b: the same grains, impact, velocity" in said
 
 
-def test_weights_are_exact_for_one_and_for_the_square_and_sizes_are_text_and_back():
+def test_weights_are_exact_for_one_and_for_the_square():
     squares = np.array(TWELFTHS)
     weights = offset_weights(squares)
     assert weights.sum() == pytest.approx(1, rel=1e-14)  # <1> = 1
@@ -142,8 +141,9 @@ def test_weights_are_exact_for_one_and_for_the_square_and_sizes_are_text_and_bac
     assert offset_weights(uneven) @ (3 - 2 * uneven) == pytest.approx(2, rel=1e-14)
     # of B^4 the trapezoidal rule has the error h^2/6
     assert weights @ squares**2 - 1 / 3 == pytest.approx(1 / 12**2 / 6, rel=1e-9)
-    sizes = np.random.default_rng(1).integers(1, 9, 50)
-    assert sorted(sizes_from_text(sizes_text(sizes))) == sorted(sizes)
+
+
+def test_a_text_that_is_no_sizes():
     with pytest.raises(ValueError):
         sizes_from_text("3 fragments")
 

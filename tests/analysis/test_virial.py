@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from written_runs import cubic_lattice
 
 from analysis.measures.virial import *
 
@@ -10,8 +11,8 @@ A = 2e-7
 
 def test_stress_of_one_axis_is_the_force_on_a_face_and_sliding_does_not_press():
     """Springs along x only: the stress is the force through a plane across x over its area (crystals of contacts: tests/physics)."""
-    site = np.stack(np.meshgrid(*3 * [np.arange(3)], indexing="ij"), axis=-1).reshape(-1, 3)
-    pairs = np.column_stack([np.arange(27), (site + [1, 0, 0]) % 3 @ (9, 3, 1)])
+    site, pairs = cubic_lattice(3)
+    pairs = pairs[::3]
     force = np.tile([-2e-9, 0, 0], (27, 1))  # on the first: pushed back from its neighbour ahead
     stress = contact_stress(A * site, pairs, force, np.full(3, 3 * A))
     assert stress[0, 0] == pytest.approx(9 * 2e-9 / (3 * A) ** 2, rel=1e-12)

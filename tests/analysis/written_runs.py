@@ -13,6 +13,7 @@ from yade_scripts import packings
 
 RADIUS = 1e-7
 PAIR = pair_constants(ICE, RADIUS)
+PAIR_VELOCITY = 8.0  # of pair_run
 MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS**3
 
 
@@ -32,6 +33,16 @@ def record(aggregate_radius, parameters=None, **others):
 def chain(start, number):
     """Contact pairs of so many grains in a row, from this one on."""
     return [[k, k + 1] for k in range(start, start + number - 1)]
+
+
+def cubic_lattice(side, axes=(0, 1, 2)):
+    """(sites (N,3) in spacings, contact pairs (M,2)) of a simple cubic lattice that fills its cell, connected with its images along
+    these axes."""
+    site = np.argwhere(np.ones(3 * [side]))
+    ahead = (site[:, None] + np.eye(3, dtype=int)) % side @ (side**2, side, 1)
+    pairs = np.stack([np.repeat(np.arange(side**3), 3), ahead.ravel()], axis=1)
+    along = np.tile(np.arange(3), side**3)
+    return site.astype(float), pairs[(site.ravel() < side - 1) | np.isin(along, axes)]
 
 
 def losing(time, energy=0.0, lost={}, touching=0, **series):
@@ -78,8 +89,8 @@ def unseal(path):
     return path
 
 
-def state_arrays(time, position, velocity, aggregate, pairs=(), force=None):
-    """A state's dict; position, velocity (N,3), aggregate (N,), pairs (M,2), force (M,)."""
+def state_arrays(time, position, velocity, aggregate, pairs=()):
+    """A state's dict; position, velocity (N,3), aggregate (N,), pairs (M,2)."""
     position = np.asarray(position, dtype=float)
     pairs = np.asarray(pairs, dtype=int).reshape(-1, 2)
     return {
@@ -90,17 +101,16 @@ def state_arrays(time, position, velocity, aggregate, pairs=(), force=None):
         "radius": np.full(len(position), RADIUS),
         "aggregate": np.asarray(aggregate, dtype=int),
         "contact_pairs": pairs,
-        "contact_normal_force": np.zeros(len(pairs)) if force is None else np.asarray(force, dtype=float),
+        "contact_normal_force": np.zeros(len(pairs)),
         "contact_bonded": np.zeros(len(pairs), dtype=bool),
     }
 
 
-def pair_run(path, velocity=8.0, samples=201):
-    """Two grains that bounce, from the closed equation of motion (A22 eq 30); returns (velocity,
-    PairCollision)."""
-    collision = collide_pair(velocity, PAIR)
-    time = np.linspace(0.0, 1.5 * collision.duration, samples)
-    overlap, rate = pair_motion(velocity, PAIR, time)
+def pair_run(path):
+    """A run folder of two grains that bounce, from the closed equation of motion (A22 eq 30). Returns the path."""
+    collision = collide_pair(PAIR_VELOCITY, PAIR)
+    time = np.linspace(0.0, 1.5 * collision.duration, 201)
+    overlap, rate = pair_motion(PAIR_VELOCITY, PAIR, time)
     apart = np.isnan(rate)
     after = time - collision.duration
     overlap = np.where(apart, -PAIR.pull_off_overlap - collision.rebound_velocity * after, overlap)
@@ -109,20 +119,25 @@ def pair_run(path, velocity=8.0, samples=201):
         "kinetic": 0.5 * PAIR.reduced_mass * rate**2,
         "normal": np.where(apart, 0.0, normal_energy(overlap, PAIR)),
         # The contact exists from the first sample on: what it took is part of the start.
-        "connection": np.full(samples, -normal_energy(0.0, PAIR)),
+        "connection": np.full(201, -normal_energy(0.0, PAIR)),
         "disconnection": np.where(apart, normal_energy(-PAIR.pull_off_overlap, PAIR), 0.0),
     }
     history = losing(time, touching=~apart, contacts=(~apart).astype(int), d=overlap - 2 * RADIUS, v=rate, **energies)
-    states = [_pair_state(time[k], overlap[k], rate[k], not apart[k]) for k in (0, samples // 3, samples - 1)]
-    write_run(path, record(0.0), history, states)
-    return velocity, collision
+    states = [facing(time[k], overlap[k] - 2 * RADIUS, rate[k], touching=not apart[k]) for k in (0, 67, 200)]
+    for k, state in zip((0, 67, 200), states):
+        state["contact_normal_force"][:] = normal_force(overlap[k], PAIR)
+    return write_run(path, record(0.0), history, states)
 
 
-def _pair_state(time, overlap, rate, touching):
-    x = RADIUS - 0.5 * overlap
-    position, velocity = [[-x, 0, 0], [x, 0, 0]], [[rate / 2, 0, 0], [-rate / 2, 0, 0]]
-    contact = ([[0, 1]], [normal_force(overlap, PAIR)]) if touching else ([], [])
-    return state_arrays(time, position, velocity, [0, 1], *contact)
+def facing(time, d, v, one=((0, 0, 0),), pairs=(), reach=0.0, touching=False):
+    """A state's dict: an aggregate `one` (N,3) with contact pairs (M,2) and of radius `reach`, and another like it, at the compression
+    length d and the mutual velocity v; touching: their first grains do."""
+    grains, shift = len(one), np.array([reach - 0.5 * d, 0, 0])
+    pairs = np.reshape(pairs, (-1, 2))
+    contacts = np.concatenate([pairs, pairs + grains, [[0, grains]] if touching else np.empty((0, 2))])
+    position = np.concatenate([one - shift, one + shift])
+    moving = np.repeat([[v / 2, 0, 0], [-v / 2, 0, 0]], grains, axis=0)
+    return state_arrays(time, position, moving, np.repeat([0, 1], grains), contacts)
 
 
 def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, derived={}, **parameters):
@@ -156,12 +171,9 @@ def meeting(path, about, one, pairs, velocity, lost, away=0.0, sticks=True, ende
     kinetic = energy * (v / velocity) ** 2
     energies = {"kinetic": kinetic, **{name: part * (energy - kinetic) for name, part in lost.items()}}
     history = losing(time, touching=touching, contacts=2 * len(pairs) + touching, d=d, v=v, **energies)
-    within, kept = np.concatenate([pairs, np.add(pairs, grains)]), []
+    kept, reach = [], about["derived"]["aggregateRadius"]
     for k in np.linspace(0, 400, states).astype(int):
-        shift = np.array([about["derived"]["aggregateRadius"] - 0.5 * d[k], 0, 0])
-        moving = np.repeat([[v[k] / 2, 0, 0], [-v[k] / 2, 0, 0]], grains, axis=0)
-        now = np.concatenate([within, [[0, grains]]]) if touching[k] else within
-        force = random.normal(size=len(now)) * PAIR.pull_off_force
-        position = np.concatenate([one - shift, one + shift])
-        kept.append(state_arrays(time[k], position, moving, np.repeat([0, 1], grains), now, force))
+        state = facing(time[k], d[k], v[k], one, pairs, reach, touching[k])
+        force = random.normal(size=len(state["contact_pairs"])) * PAIR.pull_off_force
+        kept.append({**state, "contact_normal_force": force})
     return write_run(path, about, history, kept, ended)

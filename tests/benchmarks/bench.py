@@ -1,20 +1,20 @@
 """Speed and error of this law's codes and of others', on the scenes of the bench and of the papers, in one report.
 
-    /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report] [--again]
+    /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report]
 
 --scene: names, or groups of them: bench (sizes, unlike grains, moments of collisions, and the error against the step:
 a collision), papers (moments of the papers' runs), peers (all codes, on a collision and an aggregate that rings:
 throughput.py makes their page).
 Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
 100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
-measured with the same plugin (its commit), machine and settings, are not done again (--again measures anew). Results:
-speed.csv, moments.csv, error.csv (results.py) and bench.md (tables).
+measured with the same plugin (its commit), machine and settings, are not done again. Results: speed.csv, moments.csv,
+error.csv (results.py) and bench.md (tables).
 --quick measures less, and writes to build/bench; --tiny only shows that it works.
 """
 
 import argparse
 import sys
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from measured_on import RESULTS, TOP, built_commit, machine
@@ -29,22 +29,21 @@ import settings
 import speed
 from results import Results
 
-from yade_scripts.run.progress import progress_bar
-
 PARTS = ("make", "measure", "report")
+say = partial(print, "bench:", flush=True)
 
 
 def arguments(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    size = parser.add_mutually_exclusive_group()
-    for name, what in (("quick", "a shortened version"), ("tiny", "as little as shows that it works")):
-        size.add_argument(f"--{name}", action="store_const", dest="size", const=name, help=what)
+    parser.add_argument("--quick", action="store_const", dest="size", const="QUICK", help="a shortened version")
+    parser.add_argument(
+        "--tiny", action="store_const", dest="size", const="TINY", help="as little as shows that it works"
+    )
     parser.add_argument("--scene", default="bench", help="scenes, or groups: bench, papers, peers")
     parser.add_argument("--only", default=",".join(PARTS), help="parts to do: " + ",".join(PARTS))
-    parser.add_argument("--again", action="store_true", help="measure again what has been measured")
     parser.add_argument("--out", type=Path, help="folder for the results")
     given = parser.parse_args(words)
-    given.settings = getattr(settings, (given.size or "full").upper())
+    given.settings = getattr(settings, given.size or "FULL")
     known = groups(given.settings)
     given.scene = [name for word in given.scene.split(",") for name in known.get(word, [word])]
     given.only = given.only.split(",")
@@ -58,35 +57,29 @@ def arguments(words=None):
 
 def groups(how):
     """{name of a group: names of scenes, and of the errors' scenes}"""
-    collision, ringing, meeting = errors.scenes(how)
-    own = [*measured_scenes.bench(how), collision]
-    return {"bench": own, "papers": [*measured_scenes.PAPERS], "peers": ["peers", ringing, meeting]}
+    own = [*measured_scenes.bench(how), "collision"]
+    return {"bench": own, "papers": [*measured_scenes.PAPERS], "peers": ["peers", *errors.FOLLOWED]}
 
 
-def measure_speed(scenes, how, results, again):
+def measure_speed(scenes, how, results):
     """Make and measure what is not done, one batch after the other."""
     wanted = {"commit": built_commit(), "cpu": machine()["cpu"], "settings": how.text()}
-    again = again or wanted["commit"].endswith("-changed")
+    changed = wanted["commit"].endswith("-changed")
     start = cache(lambda name: moments.make(name, scenes[name], say=say))
     for batch in speed.batches(scenes):
-        if again or not all(results.is_done(name, moment, **wanted) for name, _, moment in batch):
+        if changed or not all(results.is_done(name, moment, **wanted) for name, _, moment in batch):
             starts = {name: start(name) for name, _, _ in batch}
-            with progress_bar(speed.count_of(batch, how), unit="measurement") as progress:
-                results.put(**speed.measure(batch, starts, how, progress.update))
+            results.put(**speed.measure(batch, starts, how))
             say(f"{', '.join(f'{name} {moment}' for name, _, moment in batch)}: measured")
 
 
-def measure_errors(names, how, results, again):
+def measure_errors(names, how, results):
     of = {"cpu": machine()["cpu"], "commit": built_commit()[:7]}
     for name in names:
         there = results.error[results.error.scene == name]
-        if again or not len(there) or any(there[key].iloc[0] != value for key, value in of.items()):
+        if not len(there) or any(there[key].iloc[0] != value for key, value in of.items()):
             say(f"error of {name} against the step")
             results.put(error=[{**row, **of} for row in errors.measure(name, how)])
-
-
-def say(words, **how):
-    print(f"bench: {words}", **{"flush": True, **how})
 
 
 def main():
@@ -101,8 +94,8 @@ def main():
         for code in sorted({code for scene in scenes.values() for code in scene.codes}):
             if reason := codes.missing(code):
                 say(f"without {code}: {reason}")
-        measure_speed(scenes, how, results, given.again)
-        measure_errors([name for name in given.scene if name not in known], how, results, given.again)
+        measure_speed(scenes, how, results)
+        measure_errors([name for name in given.scene if name not in known], how, results)
     if "report" in given.only:
         if not len(results.speed) + len(results.error):
             sys.exit(f"bench: {given.out} holds no measurement: must be measured first (--only measure)")

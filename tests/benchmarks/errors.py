@@ -10,7 +10,6 @@ recorded as that, in its own words.
 import json
 import sys
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
 import codes
@@ -34,42 +33,21 @@ FOLLOWED, INTERVAL = ("ringing", "meeting"), 0.5e-9  # by all codes; s, from a m
 RINGING_RATE = 2e5  # 1/s: 0.4 m/s at the surface; no contact is made, broken or slips
 FIRST_GAP, PAIRS = 2e-9, 100
 FILLINGS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
+MEETING = f"{PAIRS} pairs that meet and part"
+TITLES = {"collision": "collision", "ringing": "an aggregate that rings", "meeting": MEETING}
 FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
 
 
-@dataclass(frozen=True)
-class ErrorScene:
-    """title; parameters as collide.py has them (None: pairs of grains); steps [t0], or small steps between
-    moments; number of samples: seeds from 1 on, or moments."""
-
-    title: str
-    parameters: dict
-    steps: tuple
-    samples: int
-
-
-def scenes(settings):
-    """{name: ErrorScene}"""
-    collision = {"radius": settings.error_radius, "duration": settings.error_duration}
-    radius, moments, small_steps = settings.rung
-    return {
-        "collision": ErrorScene("collision", collision, settings.error_steps, settings.seeds),
-        "ringing": ErrorScene("an aggregate that rings", {**CPE, "radius": radius}, small_steps, moments),
-        "meeting": ErrorScene(f"{PAIRS} pairs that meet and part", None, settings.met, moments),
-    }
-
-
 def measure(name, settings):
-    """Rows of error.csv of an ErrorScene."""
-    scene = scenes(settings)[name]
-    found = followed(name, scene, settings) if name in FOLLOWED else runs(scene)
+    """Rows of error.csv of one of TITLES."""
+    found = followed(name, settings) if name in FOLLOWED else runs(settings)
     return [{"scene": name, "code": "engine", **row} for row in found]
 
 
-def runs(scene):
-    """A row for each step and seed."""
-    seeds = range(1, scene.samples + 1)
-    asked = [{**scene.parameters, "stepFraction": step, "seed": seed} for step in scene.steps for seed in seeds]
+def runs(settings):
+    """A row for each step and seed of a collision."""
+    given, seeds = {"radius": settings.error_radius, "duration": settings.error_duration}, range(1, settings.seeds + 1)
+    asked = [{**given, "stepFraction": step, "seed": seed} for step in settings.error_steps for seed in seeds]
     for one, found in zip(asked, of_scripts(asked), strict=True):
         found["refused"] = found.pop("failed", None)
         yield {"step": one["stepFraction"], "sample": one["seed"], **found}
@@ -111,18 +89,20 @@ def _of_run(place):
     return {"ledger": error[-1] / work[-1], "byFilling": by_filling, "seconds": seconds}
 
 
-def followed(name, scene, settings):
+def followed(name, settings):
     """A row for each code that is here and step, the finest first."""
     given, time_unit = CollisionParameters.parse({}), pair_constants(ICE, GRAIN_RADIUS).time_unit
+    radius, moments, small_steps = settings.rung
     if name == "ringing":
-        made = starts.rung(starts.of(Scene("", "collision", scene.parameters)), RINGING_RATE)
+        made = starts.rung(starts.of(Scene("", "collision", {**CPE, "radius": radius})), RINGING_RATE)
     else:
         made = starts.pairs(FIRST_GAP + 6e-11 * np.arange(PAIRS), PAIR_SPEED, given, INTERVAL)
+        small_steps = settings.met
     for code in (code for code in EVERY if not codes.missing(code, made)):
         finest = None
-        for each in scene.steps:
+        for each in small_steps:
             made.head["step"] = INTERVAL / each
-            found = _follow(code, made, scene.samples, each, settings)
+            found = _follow(code, made, moments, each, settings)
             kinetic, energy = np.array(found["kinetic"]), found.get("energy")
             finest = finest or (kinetic, found["seconds"] / each)
             row = {"code": code, "step": round(INTERVAL / each / time_unit, 4), "sample": 0}

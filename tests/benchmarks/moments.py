@@ -18,9 +18,7 @@ from analysis.measures.virial import filling_factor
 
 FOLDER = TOP / "build/bench/scenes"
 FAST_STRAIN = 1e-5  # 1/t0: at which the denser cells are made
-RELAXED = (
-    3000.0  # t0 at the paper's own rate before a denser cell is measured: what the fast making stirred up dies down
-)
+RELAXED = 3000.0  # t0 at the paper's own rate before a denser cell is measured, in which what was stirred up dies down
 LARGE = 1e6  # bytes of a scene's file from which on two threads pay
 
 
@@ -32,7 +30,7 @@ def path_of(name, moment, scene, folder=FOLDER):
     return folder / f"{name}-{moment.replace(' ', '')}-{key}.scene"
 
 
-def make(name, scene, folder=FOLDER, say=print):
+def make(name, scene, folder=FOLDER, say=lambda words: None):
     """Start of a Scene, whose moments all have their files afterwards; what is there is not made again."""
     start = starts.of(scene)
     paths = {moment: path_of(name, moment, scene, folder) for moment in scene.moments}
@@ -50,7 +48,7 @@ def _make_collision(scene, start, paths, say):
     here = begin
     for moment, path in later:
         if not path.exists():
-            say(f"making {path.name}", flush=True)
+            say(f"making {path.name}")
             advance(here, path, (scene.moments[moment] - time) / start.step, start.together)
         here, time = path, scene.moments[moment]
     begin.unlink()
@@ -66,7 +64,7 @@ def _make_cells(scene, start, paths, say):
         if filling is None:
             _save(path, start.scene)
             continue
-        say(f"making {path.name}", flush=True)
+        say(f"making {path.name}")
         relaxing, slowed = RELAXED * start.time_unit, path.with_suffix(".own")
         growth = log(filling / filling_of(scene_file.load(here)))
         growth += 3 * own[0] * relaxing  # less what the relaxation brings

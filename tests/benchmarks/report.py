@@ -39,7 +39,7 @@ def text(results, settings):
         "Speed": (speed(results, scenes), of_codes(results)),
         "Lists, events and memory": (counts(results, scenes), OF_COUNTS),
         "Whole runs": (solution(results, scenes), OF_SOLUTION),
-        "Error against the time step": (errors_by_step(results, settings), of_errors(results, settings)),
+        "Error against the time step": (errors_by_step(results), of_errors(results, settings)),
     }
     there = {title: section for title, section in sections.items() if len(section[0])}
     parts = [f"## {title}\n\n{markdown(rows)}\n\n{note}".rstrip() for title, (rows, note) in there.items()]
@@ -170,12 +170,11 @@ def curves(results):
     return {(s, q): errors.curve(rows, q) for s, rows in scenes for q in names if rows[q].notna().any()}
 
 
-def errors_by_step(results, settings):
-    rows, titles = [], {name: scene.title for name, scene in errors.scenes(settings).items()}
-    by_step = {key: dict(zip(*curve)) for key, curve in curves(results).items()}
+def errors_by_step(results):
+    rows, by_step = [], {key: dict(zip(*curve)) for key, curve in curves(results).items()}
     for (name, step), runs in results.error.groupby(["scene", "step"]):
         found = {words: by_step.get((name, quantity), {}).get(step) for quantity, words in QUANTITIES.items()}
-        row = {"scene": titles[name], "step [t0]": f"{step:g}", "runs": len(runs)}
+        row = {"scene": errors.TITLES[name], "step [t0]": f"{step:g}", "runs": len(runs)}
         row |= {words: None if error is None else f"{error:.1e}" for words, error in found.items()}
         rows.append(row | {"seconds a run": "refused" if runs.refused.notna().any() else number(runs.seconds.mean())})
     return pd.DataFrame(rows).dropna(axis=1, how="all")

@@ -83,19 +83,15 @@ class Results:
             self._measured = dict(list(measured.groupby(["scene", "moment", "code", "threads"])))
         return self._measured.get(where, self.speed[:0])
 
-    def rates(self, *where):
-        """Contact updates a second of each round (Series)."""
-        return self.of(*where).rate
-
     def rate(self, *where):
-        """Spread, None where nothing was measured."""
-        rates = self.rates(*where)
+        """Spread of the contact updates a second, None where nothing was measured."""
+        rates = self.of(*where).rate
         return Spread.of(rates) if len(rates) else None
 
     def ratio(self, first, second):
         """Spread of the ratio of two rates, None where one was not measured: within each round of what was measured together
         (a moment, or the scenes of one moment), else of any round of one and any of the other."""
-        a, b = self.rates(*first), self.rates(*second)
+        a, b = self.of(*first).rate, self.of(*second).rate
         if not len(a) or not len(b):
             return None
         several = set(self.moments.scene[self.moments.scene.duplicated()])
@@ -115,13 +111,13 @@ class Results:
         known = {name: rows for name, rows in every if name in scenes and len(rows) > 1}
         return {name: rows for name, rows in known.items() if set(rows.moment) == set(scenes[name].moments)}
 
-    def minutes(self, moments, code, threads, of=statistics.median):
-        """Of a whole run with its small step; moments: rows of whole(); of: function of the ms a step of a moment's rounds.
-        None where a moment has none."""
+    def minutes(self, moments, code, threads):
+        """Of a whole run with its small step, by the medians of the rounds; moments: rows of whole(). None where a moment has
+        none."""
         each = [self.milliseconds(row.scene, row.moment, code, threads) for row in moments.itertuples()]
         if not all(len(one) for one in each):
             return None
-        mean = sum(weight * of(one) for weight, one in zip(weights(moments), each))
+        mean = sum(weight * one.median() for weight, one in zip(weights(moments), each))
         return mean * moments.runSteps.iloc[0] / 60e3
 
 

@@ -12,6 +12,7 @@ import scene_file
 from measured_on import fraction_of_others, machine
 
 from analysis.measures.fragments import fragment_labels
+from analysis.progress import progress
 
 SUMMED = ("searches", "distanceChecks", "events", "formed", "broken", "contactUpdates", "energyChange", "boundaryWork")
 
@@ -87,27 +88,18 @@ def rate(answer):
     return answer["contacts"] * answer["steps"] / answer["seconds"]
 
 
-def measure(batch, begun, settings, done, folder=moments.FOLDER):
-    """{"speed": rows, "moments": rows} (results.py) of a batch whose files are there.
-
-    begun: {name of the scene: its starts.Start}; done() is called after each of count_of(batch, settings) measurements.
-    """
+def measure(batch, begun, settings, folder=moments.FOLDER):
+    """{"speed": rows, "moments": rows} (results.py) of a batch whose files are there; begun: {scene's name: starts.Start}."""
     others = 0.0
     with ExitStack() as stack:
         places = [Place(*one, begun[one[0]], settings, folder, stack) for one in batch]
+        each = [(place, code, n) for place in places for code in place.scene.codes for n in codes.threads_of(code)]
         for turn in range(settings.rounds):
             others = max(others, fraction_of_others())
-            for place in places:
-                for code, threads in ((code, n) for code in place.scene.codes for n in codes.threads_of(code)):
-                    if codes.CODES[code].law or turn < settings.peer_rounds:
-                        place.measure(code, threads)
-                    done()
+            for place, code, threads in progress(each, f"round {turn + 1} of {settings.rounds}"):
+                if codes.CODES[code].law or turn < settings.peer_rounds:
+                    place.measure(code, threads)
         return {
             "speed": [row for place in places for row in place.rows()],
             "moments": [place.about(others) for place in places],
         }
-
-
-def count_of(batch, settings):
-    """Measurements of a batch, those of peers that are missing among them."""
-    return settings.rounds * sum(len(codes.threads_of(code)) for _, scene, _ in batch for code in scene.codes)

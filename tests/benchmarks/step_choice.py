@@ -1,12 +1,10 @@
 """The ledger's error against the step in scenes of every kind, and the constants of yade_scripts/step_choice.py from it.
 
-    python3 tests/benchmarks/step_choice.py            measure the scenes that have no error, fit, write results
-    python3 tests/benchmarks/step_choice.py --fit      fit and write from the results that are there
-    python3 tests/benchmarks/step_choice.py --again    measure all scenes anew (two hours on one core), but those of the set
-                                                       study, which are runs of a study
+    python3 tests/benchmarks/step_choice.py      measures the scenes that have no error, fits, writes results
 
 The scenes are the lines of results/step_choice.csv (collisions) and results/step_choice_compression.csv: their set (grid,
-study, random), the parameters that they give, and the errors that were measured; a new one is a line without an error. The
+study, random), the parameters that they give, and the errors that were measured; a new one is a line without an error (all
+of them, but the study's, which are runs of a study: two hours on one core). The
 constants are fitted to grids of scenes and the study's runs; random scenes between and beyond only judge them. Writes these
 tables after every few scenes, and results/step_choice.md (fit and scatter).
 """
@@ -57,12 +55,12 @@ class Table:
         errors = scenes[[*self.errors]].apply(lambda column: column.map(shown))
         self.path.write_text(text + scenes.assign(**errors).to_csv(index=False))
 
-    def measure(self, again=False):
-        """Measure the scenes that have no error, or all; those that fail keep none, and are named."""
+    def measure(self):
+        """Measure the scenes that have no error; those that fail keep none, and are named."""
         from errors import of_scripts
 
         scenes, about = self.read(), machine()
-        numbers = list(scenes.index[scenes["set"] != "study" if again else scenes.error.isna()])
+        numbers = list(scenes.index[scenes.error.isna()])
         for start in range(0, len(numbers), CHUNK):
             print(f"{self.path.stem}: {start} of {len(numbers)} scenes", flush=True)
             chunk = numbers[start : start + CHUNK]
@@ -84,17 +82,15 @@ def met(scenes):
     return scenes[scenes.error > NEVER_MET]
 
 
-def main(options):
-    if unknown := options - {"--fit", "--again"}:
-        sys.exit(f"step_choice.py: {min(unknown)}: must be --fit or --again")
+def main():
     import step_choice_report as report
 
-    for table in (COLLISIONS, COMPRESSIONS) if "--fit" not in options else ():
-        table.measure("--again" in options)
+    for table in (COLLISIONS, COMPRESSIONS):
+        table.measure()
     text = report.text()
     (RESULTS / "step_choice.md").write_text(text)
     print(text)
 
 
 if __name__ == "__main__":
-    main(set(sys.argv[1:]))
+    main()

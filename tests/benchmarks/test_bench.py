@@ -71,11 +71,9 @@ def test_half_a_time_unit_is_shown_as_refused(tiny):
 
 
 def test_moments_are_measured(tmp_path):
-    start, results, measured = moments.make("cell", CELL, tmp_path, say=lambda *_, **__: None), Results(tmp_path), []
-    batches = speed.batches({"cell": CELL})
-    for batch in batches:
-        results.put(**speed.measure(batch, {"cell": start}, LITTLE, lambda: measured.append(1), tmp_path))
-    assert len(measured) == sum(speed.count_of(batch, LITTLE) for batch in batches)
+    start, results = moments.make("cell", CELL, tmp_path), Results(tmp_path)
+    for batch in speed.batches({"cell": CELL}):
+        results.put(**speed.measure(batch, {"cell": start}, LITTLE, tmp_path))
     table = results.moments.set_index("moment")
     assert list(table.index) == ["start", "denser"]
     assert (table.grains == 128).all() and table.contacts.between(127, 400).all()
@@ -106,7 +104,7 @@ def test_what_is_done_is_not_measured_again(tiny, monkeypatch):
     results, commit = Results(tiny[1]), tiny[2].moments.commit[0].removesuffix("-changed")
     results.put(moments=results.moments.assign(commit=commit).to_dict("records"))
     monkeypatch.setattr(bench, "built_commit", lambda: commit)
-    bench.measure_speed(measured_scenes.bench(TINY), TINY, results, again=False)
+    bench.measure_speed(measured_scenes.bench(TINY), TINY, results)
     assert list(results.speed.seconds.dropna()) == list(tiny[2].speed.seconds.dropna())
     place, about = {"scene": "cpe-4", "moment": "flying"}, {"commit": commit, "settings": TINY.text()}
     assert results.is_done(**place, **about)
@@ -128,10 +126,8 @@ def test_what_was_measured_stays(tmp_path):
 
 @pytest.mark.parametrize("name", ["bench.md", "throughput.md"])
 def test_the_page_is_that_of_the_tables(name):
-    at = RESULTS / name
-    page = (
-        throughput.text(Results(at.with_suffix(""))) if "throughput" in name else report.text(Results(at.parent), FULL)
-    )
+    throughputs = lambda: throughput.text(Results(throughput.FOLDER))
+    page = throughputs() if name == "throughput.md" else report.text(Results(RESULTS), FULL)
     assert (RESULTS / name).read_text() == page
     for table in page.split("\n\n"):
         assert len({line.count("|") for line in table.splitlines() if line.startswith("|")}) <= 1
@@ -184,12 +180,6 @@ def test_time_to_solution_weighs_the_moments(tmp_path):
     assert weights(whole) == pytest.approx([0.1, 0.3, 0.6])
     assert results.minutes(whole, "engine", 1) == pytest.approx(10_000 * 2.2 / 60e3)
     assert results.minutes(whole, "lammps", 1) is None and results.whole(measured_scenes.PAPERS) == {}
-
-
-def test_the_fitted_order_of_an_error():
-    steps = np.array(FULL.error_steps[:-1])
-    slope, wrong = errors.order(steps, 3e-3 * steps**2 * np.where(steps > errors.FITTED[1], 10, 1))
-    assert slope == pytest.approx(2) and wrong < 1e-6
 
 
 PERF = """

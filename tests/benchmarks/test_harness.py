@@ -40,7 +40,7 @@ def folder(tmp_path_factory):
 def files(name, folder):
     """[(moment, its file)] of one of SMALL, made when missing."""
     scene = SMALL[name]
-    moments.make(name, scene, folder, say=lambda *_, **__: None)
+    moments.make(name, scene, folder)
     return [(moment, moments.path_of(name, moment, scene, folder)) for moment in scene.moments]
 
 
@@ -90,7 +90,7 @@ def test_as_many_threads_as_wanted_give_the_same_bits_and_what_is_printed(folder
     hashes = {codes.harness(path, steps=200, domains=8, threads=n)[-1]["hash"] for n in (1, 2, 3, 8)}
     assert len(hashes) == 1
     assert codes.harness(path, steps=250, domains=8)[-1]["hash"] not in hashes
-    how = {"steps": 100, "threads": "1,2", "rounds": 2, "domains": 4, "instructions": "portable"}
+    how = {"steps": 100, "threads": "1,2,1,2", "domains": 4, "instructions": "portable"}
     *measured, end = codes.harness(files("drag", folder)[1][1], **how)
     assert [m["threads"] for m in measured] == [1, 2, 1, 2]
     assert all(m["msPerStep"] > 0 and m["steps"] == 100 and m["contacts"] > 500 for m in measured)

@@ -13,7 +13,7 @@ from measured_on import RESULTS, TOP
 
 sys.path.insert(0, str(TOP))
 from codes import CODES
-from errors import FOLLOWED, INTERVAL, PAIR_SPEED, PAIRS, RINGING_RATE
+from errors import FOLLOWED, INTERVAL, MEETING, PAIR_SPEED, PAIRS, RINGING_RATE
 from matplotlib.figure import Figure
 from measured_scenes import EVERY, all_scenes
 from report import markdown, measured_on, of_codes, spread
@@ -62,9 +62,7 @@ def table(results):
 def draw(results, path):
     figure = Figure((9, 3.8), layout="constrained")
     both = figure.subplots(1, 2, sharex=True, sharey=True)
-    for axes, scene, title in zip(
-        both, FOLLOWED, ("An aggregate that rings: springs alone", f"{PAIRS} pairs that meet and part")
-    ):
+    for axes, scene, title in zip(both, FOLLOWED, ("An aggregate that rings: springs alone", MEETING)):
         for code in EVERY:
             error, seconds = costs(results, scene, code)
             axes.loglog(seconds, error, "o-", ms=4, color=COLOURS[code], label=CODES[code].name)

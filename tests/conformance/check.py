@@ -46,9 +46,8 @@ def checked(question, steps, values, suite):
     errors = [math.nan if v is None else (v - exact) / scale for v in values]
     if not all(map(math.isfinite, errors)):
         return dict(difference=math.inf, order=None, said="does not occur")
-    limit = errors[-1] + (errors[-1] - errors[-2]) / (
-        (steps[-2] / steps[-1]) ** question.get("order", suite["order"]) - 1
-    )
+    falls = (steps[-2] / steps[-1]) ** question.get("order", suite["order"])
+    limit = errors[-1] + (errors[-1] - errors[-2]) / (falls - 1)
     order = None
     if min(abs(errors[0]), abs(errors[-1])) > ROUNDING:
         order = math.log(abs(errors[0] / errors[-1])) / math.log(steps[0] / steps[-1])
@@ -71,9 +70,8 @@ def verdict(case, answer, suite):
     said = "differs" if wrong else "incomplete" if missing else "agrees"
     worst = max(known, key=lambda name: known[name]["difference"])
     orders = sorted(one["order"] for one in known.values() if one["order"] is not None)
-    of_worst = dict(
-        difference=known[worst]["difference"], order=orders[len(orders) // 2] if orders else None, worst=worst
-    )
+    order = orders[len(orders) // 2] if orders else None
+    of_worst = dict(difference=known[worst]["difference"], order=order, worst=worst)
     return dict(said=said, answered=(len(known), len(found)), questions=found, **of_worst)
 
 

@@ -28,19 +28,19 @@ In brackets: the mean difference from the engine's run with the same aggregates,
 {alike}
 """
 ALIKE = "lammps and lammps-newest give the same for {same} of {all} aggregates: in effect one sample."
-
-
 NOT_TRIED = "not tried: "
 
 
-def tried_not(found):
-    """Whether a code has an option for a case that its adapter does not use."""
-    return found.get("why", "").startswith(NOT_TRIED)
+def stored(folder):
+    """{code: what its file in a folder holds}"""
+    files = {name: folder / f"{name}.json" for name in CODES}
+    return {name: json.loads(path.read_text()) for name, path in files.items() if path.exists()}
 
 
 def cell(found):
     if found["said"] not in ("agrees", "differs"):
-        return "not tried" if tried_not(found) else "–" if found["said"] == "not modelled" else found["said"]
+        not_tried = found.get("why", "").startswith(NOT_TRIED)
+        return "not tried" if not_tried else "–" if found["said"] == "not modelled" else found["said"]
     size = f"{found['difference']:.0e}" if math.isfinite(found["difference"]) else "does not occur"
     order = "exact" if found["order"] is None else f"order {found['order']:.1f}"
     return f"agrees ({size}, {order})" if found["said"] == "agrees" else f"**{size}**"
@@ -90,8 +90,7 @@ def of_sample(values, own, found, level):
 def ensembles():
     """Lines of the table of aggregates, distribution against code."""
     suite = json.loads(check_ensembles.ENSEMBLES.read_text())
-    files = {name: ROOM / f"results/ensembles/{name}.json" for name in CODES}
-    samples = {name: json.loads(path.read_text())["samples"] for name, path in files.items() if path.exists()}
+    samples = {name: results["samples"] for name, results in stored(ROOM / "results/ensembles").items()}
     found = {name: check_ensembles.compared(its, suite) for name, its in samples.items()}
     columns, level = ["distribution", "suite", *samples], suite["level"] / len(suite["distributions"])
     pairs = [pair for name, values in samples["lammps"].items() for pair in zip(values, samples["lammps-newest"][name])]
@@ -112,8 +111,7 @@ def row(cells):
 def page():
     """The text of results.md."""
     suite, why = json.loads(CASES.read_text()), json.loads((ROOM / "differences.json").read_text())
-    files = {name: ROOM / f"results/{name}.json" for name in CODES}
-    of = {name: json.loads(path.read_text()) for name, path in files.items() if path.exists()}
+    of = stored(ROOM / "results")
     found = {name: verdicts(results, suite) for name, results in of.items()}
     lines = [HEAD.format(**suite), row(["case", *of]), "|---|" + "---|" * len(of)]
     for case in suite["cases"]:

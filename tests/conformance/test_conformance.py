@@ -22,9 +22,8 @@ LEVELS = 2  # of three
 
 def sampled(series_of):
     """Cases of the sample that differ, in words."""
-    found = {
-        c["id"]: check.verdict(c, answer(c, series_of, LEVELS), SUITE) for c in SUITE["cases"] if c["id"] in SAMPLE
-    }
+    cases = {case["id"]: case for case in SUITE["cases"]}
+    found = {name: check.verdict(cases[name], answer(cases[name], series_of, LEVELS), SUITE) for name in SAMPLE}
     return {name: check.in_words(one) for name, one in found.items() if one["said"] != "agrees"}
 
 
@@ -47,13 +46,10 @@ def test_this_law_agrees(code):
 def test_the_toy_is_told_where_it_agrees(tmp_path):
     subprocess.run([sys.executable, ROOM / "toy/toy.py", ROOM / "cases.json", tmp_path / "toy.json"], check=True)
     found = check.verdicts(json.loads((tmp_path / "toy.json").read_text()))
-    assert {name for name, one in found.items() if one["said"] == "agrees"} == {
-        "equilibrium",
-        "hysteresis",
-        "oscillation",
-    }
-    assert {name for name, one in found.items() if one["said"] == "differs"} == {"collision", "sticking", "linear-drag"}
-    assert max(found[name]["difference"] for name in ("collision", "sticking", "linear-drag")) < 2e-3
+    said = lambda word: {name: one for name, one in found.items() if one["said"] == word}
+    assert set(said("agrees")) == {"equilibrium", "hysteresis", "oscillation"}
+    assert set(said("differs")) == {"collision", "sticking", "linear-drag"}
+    assert max(one["difference"] for one in said("differs").values()) < 2e-3
     assert check.main(tmp_path / "toy.json") == 1
 
 
@@ -140,20 +136,17 @@ def test_samples_are_compared(tmp_path, capsys):
         check_ensembles.main(path)
 
 
-def test_the_mapping_for_on_dem_has_every_field():
-    mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())
-    source = (ROOM / "on_dem/jkr_wada.py").read_text()
-    for name, fields in mapping.items():
-        own = source.split(f"class {name}(")[1].split("\nclass ")[0]
-        assert set(re.findall(r"^    (\w+): ", own, re.M)) == set(fields)
+MAPPING = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())
 
 
 @pytest.mark.in_yade
-def test_what_the_mapping_for_on_dem_names_is_there():
+def test_the_mapping_for_on_dem_has_every_field_and_what_it_names_is_there():
     from yade.wrapper import JKRMat, JKRWadaPhys
 
-    mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())
-    for fields, one in zip(mapping.values(), (JKRMat(), JKRWadaPhys())):
+    source = (ROOM / "on_dem/jkr_wada.py").read_text()
+    for (name, fields), one in zip(MAPPING.items(), (JKRMat(), JKRWadaPhys())):
+        own = source.split(f"class {name}(")[1].split("\nclass ")[0]
+        assert set(re.findall(r"^    (\w+): ", own, re.M)) == set(fields)
         assert all(hasattr(one, path.rsplit(".")[-1]) for path in fields.values())
 
 
@@ -174,7 +167,6 @@ def test_pointers_of_the_mapping_for_on_dem_are_in_the_global_frame(code):
     O.dt, O.engines = 1e-12, yade_codes.engines({})
     O.run(steps, True)
     known = dict(O=O, i=O.interactions[bodies[0].id, bodies[1].id])
-    mapping = json.loads((ROOM / "on_dem/yade_mapping.json").read_text())["jkr_wada_interaction"]
     for name, spin, start in zip(("pointer1", "pointer2"), spins, (Vector3(1, 0, 0), Vector3(-1, 0, 0))):
         turned = Quaternion(spin.normalized(), spin.norm() * steps * O.dt) * start
-        assert (eval(mapping[name], known) - turned).norm() < 1e-12
+        assert (eval(MAPPING["jkr_wada_interaction"][name], known) - turned).norm() < 1e-12

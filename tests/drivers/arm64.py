@@ -1,6 +1,6 @@
 """The engine of a 64-bit ARM beside this machine's: the same bits, without vectors. Run by `make test-arm64`.
 
-    python3 tests/drivers/arm64.py [--out FILE]      some minutes; most is compiling
+    python3 tests/drivers/arm64.py      some minutes; most is compiling
 
 The last commit is cloned into build/arm64 and compiled there by Debian's cross compiler, without YADE; qemu runs it. Scenes are made with this machine's
 own build. (A whole ARM system with YADE in it, emulated as well: make test-debian SYSTEMS=bookworm-arm64.)
@@ -8,7 +8,6 @@ An emulator that runs on x86 orders memory as x86 does: what a race of threads w
 Exit status: 0 when all bits are the same, otherwise 1.
 """
 
-import argparse
 import json
 import os
 import sys
@@ -18,7 +17,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks"), str(HERE.parent)]
 import numpy as np
 import scene_file
-from debian_systems import CannotBegin, run
+from debian_systems import last_commit_in, run, write_page
 from measured_on import TOP, machine
 from sanitizers import scenes_in
 
@@ -34,15 +33,6 @@ Each scene runs 1000 small steps here and there, without vectors ("portable"); t
 | scene | threads | contacts at the end | hash here | on ARM | numbers of the last state that differ |
 |---|---:|---:|---|---|---:|
 """
-
-
-def compile_for_arm():
-    """build/harness of the last commit, in the clone."""
-    if not CLONE.exists():
-        run(["git", "clone", "-q", TOP, CLONE])
-    run(["git", "fetch", "-q", TOP, "HEAD"], cwd=CLONE)
-    run(["git", "checkout", "-q", "--detach", "FETCH_HEAD"], cwd=CLONE)
-    run(["make", f"-j{os.cpu_count()}", f"CXX={COMPILER}", "build/harness"], cwd=CLONE)
 
 
 def end_of(harness, scene, threads, out):
@@ -71,22 +61,13 @@ def rows(folder):
             yield row, here["hash"] == there["hash"] and count == 0
 
 
-def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=HERE / "results" / "arm64.md", help="default: %(default)s")
-    options = parser.parse_args(arguments)
-    try:
-        compile_for_arm()
-        version, emulator = (run([name, "--version"]).stdout.splitlines()[0] for name in (COMPILER, EMULATED[0]))
-        text, same = HEAD.format(version=version, emulator=emulator, **machine()), True
-        for row, good in rows(CLONE / "build"):
-            text, same = f"{text}{row}\n", same and good
-            options.out.write_text(text)
-    except CannotBegin as error:
-        print(f"arm64.py: {error}", file=sys.stderr)
-        return 1
-    return 0 if same else 1
+def main():
+    last_commit_in(CLONE)
+    run(["make", f"-j{os.cpu_count()}", f"CXX={COMPILER}", "build/harness"], cwd=CLONE)
+    version, emulator = (run([name, "--version"]).stdout.splitlines()[0] for name in (COMPILER, EMULATED[0]))
+    head = HEAD.format(version=version, emulator=emulator, **machine())
+    return 0 if write_page(HERE / "results/arm64.md", head, rows(CLONE / "build")) else 1
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

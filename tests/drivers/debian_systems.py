@@ -1,7 +1,6 @@
 """Fresh Debian systems, in each a clean clone, in it the README's commands. Run by `make test-debian`, as root.
 
     python3 tests/drivers/debian_systems.py bookworm trixie      [--commands 'make demo' ...]
-    python3 tests/drivers/debian_systems.py resolute=ADDRESS     Ubuntu's, from its archive at this address
     python3 tests/drivers/debian_systems.py bookworm-arm64       of another processor, emulated where this one is none
                                                                  (Debian's qemu-user-static and binfmt-support)
 
@@ -9,7 +8,7 @@ A system is made by debootstrap with the mirror of this system's apt, and remove
 process namespaces of its own.
 What is tested is the last commit. Writes results/debian.md: system, versions, result and time of each command; systems
 that are not tried keep their lines.
-Exit status: 0 when every command of every system succeeded, otherwise 1; 2 when it could not begin.
+Exit status: 0 when every command of every system succeeded, otherwise 1.
 """
 
 import argparse
@@ -38,17 +37,12 @@ VERSIONS = {
 }
 
 
-class CannotBegin(Exception):
-    """The message is one line: what is missing."""
-
-
 @dataclass
 class System:
     """A Debian system in a folder; what has been found out about it."""
 
     name: str  # suite, or suite-architecture
     folder: Path
-    ubuntu: str = ""  # address of its archive; "": Debian
     commit: str = "unknown"
     versions: dict = field(default_factory=dict)
     results: list = field(default_factory=list)  # (command, what became of it, seconds)
@@ -57,10 +51,12 @@ class System:
         """Debootstrap, packages that come before the clone, and the clone."""
         self.folder.mkdir()
         suite, _, architecture = self.name.partition("-")
+        options = ["--variant=minbase"]
         if architecture:
             emulate()
-        options = self._of_ubuntu() + ([f"--arch={architecture}"] if architecture else [])
-        run(["debootstrap", *options, suite, str(self.folder), self.ubuntu or mirror, *self._script(suite)])
+            options.append(f"--arch={architecture}")
+        known = Path("/usr/share/debootstrap/scripts", suite).exists()  # otherwise it is younger than debootstrap
+        run(["debootstrap", *options, suite, str(self.folder), mirror, *([] if known else ["sid"])])
         (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
         # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
         (self.folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
@@ -68,15 +64,6 @@ class System:
         clone = self.folder / CLONE.lstrip("/")
         run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
         self.commit = run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
-
-    def _of_ubuntu(self):
-        """Options of debootstrap. Debian doesn't have Ubuntu's keys; apt inside checks all further packages with its own."""
-        return ["--variant=minbase", *(["--components=main,universe", "--no-check-gpg"] if self.ubuntu else [])]
-
-    def _script(self, suite):
-        """How debootstrap makes a suite that is younger than itself."""
-        known = Path("/usr/share/debootstrap/scripts", suite).exists()
-        return [] if known else ["gutsy" if self.ubuntu else "sid"]
 
     def inside(self, command, check=False):
         """CompletedProcess of a shell command within the system, with processes, mounts and nothing of this one's
@@ -102,18 +89,31 @@ class System:
                 self.versions[name] = self.inside(ask).stdout.strip() or "not installed"
             yield
 
-    @property
-    def succeeded(self):
-        return all(not result.startswith("failed") for _, result, _ in self.results)
-
 
 def run(command, check=True, **more):
-    """CompletedProcess; CannotBegin with its last line when it fails."""
+    """CompletedProcess; ends the program with the command's last line when it fails."""
     done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, **more)
     if check and done.returncode:
         lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        raise CannotBegin(f"{' '.join(map(str, command[:4]))}: {lines[-1] if lines else done.returncode}")
+        sys.exit(f"{' '.join(map(str, command[:4]))}: {lines[-1] if lines else done.returncode}")
     return done
+
+
+def last_commit_in(clone):
+    """Clone the repository, or bring the clone to its last commit."""
+    if not clone.exists():
+        run(["git", "clone", "-q", TOP, clone])
+    run(["git", "fetch", "-q", TOP, "HEAD"], cwd=clone)
+    run(["git", "checkout", "-q", "--detach", "FETCH_HEAD"], cwd=clone)
+
+
+def write_page(path, head, rows):
+    """Write head and rows (pairs of a line and whether all was well) as they come: whether all was well with each."""
+    text, good = head, True
+    for line, well in rows:
+        text, good = f"{text}{line}\n", good and well
+        path.write_text(text)
+    return good
 
 
 def emulate():
@@ -145,7 +145,7 @@ def mirror_of_this_system():
     for address, _, suite in archives():
         if "-" not in suite:
             return address
-    raise CannotBegin("apt has no Debian archive among its sources")
+    sys.exit("apt has no Debian archive among its sources")
 
 
 def commands_of_the_readme():
@@ -154,71 +154,43 @@ def commands_of_the_readme():
     return [line.split("#")[0].strip() for line in block.strip().splitlines()]
 
 
-def of_before(file, systems):
-    """(lines of the table in a file that are of none of these systems, lines below the table)."""
-    lines = file.read_text().splitlines() if file.exists() else []
-    rows = [i for i, line in enumerate(lines) if line.startswith("|")]
-    names = [f"| {name} |" for name in ("system", *(system.name for system in systems))]
-    others = [lines[i] for i in rows if lines[i].startswith("| ") and not lines[i].startswith(tuple(names))]
-    return others, lines[rows[-1] + 1 :] if rows else []
-
-
-def table(systems, others, below):
-    """The page that the repository keeps; others: lines of systems that are not tried now; below: lines under the table."""
+def table(systems, before):
+    """The page that the repository keeps; before: the text that it was, of which lines of other systems stay."""
     cores = len(os.sched_getaffinity(0))
     about = f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
     about += f"{' and '.join(BASE)} added; the first command installs all other packages. "
     about += "Those of another processor than this machine's ran emulated."
     head = "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |"
-    lines = [
-        "# Fresh Debian systems",
-        "",
-        about,
-        "",
-        head,
-        "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|",
-        *others,
-    ]
+    lines = ["# Fresh Debian systems", "", about, "", head, "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|"]
+    names = tuple(f"| {name} |" for name in ("system", *(system.name for system in systems)))
+    lines += [line for line in before.splitlines() if line.startswith("| ") and not line.startswith(names)]
     for system in systems:
         for command, result, seconds in system.results:
             versions = " | ".join(system.versions.values())
             lines.append(f"| {system.name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
-    return "\n".join([*lines, *below]) + "\n"
+    return "\n".join(lines) + "\n"
 
 
-def parse_arguments(arguments):
+def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    words = "Debian's, of another processor too, or Ubuntu's with its archive"
-    parser.add_argument("names", nargs="+", metavar="SUITE[-ARCHITECTURE][=ADDRESS]", help=words)
+    parser.add_argument("names", nargs="+", metavar="SUITE[-ARCHITECTURE]")
     parser.add_argument("--commands", nargs="+", metavar="COMMAND", help="instead of the README's")
     parser.add_argument("--out", type=Path, default=RESULTS, help="where the table goes (default: %(default)s)")
-    return parser.parse_args(arguments)
-
-
-def main(arguments):
-    options = parse_arguments(arguments)
-    scratch = None
-    try:
-        if os.geteuid() != 0:
-            raise CannotBegin("must be run as root: debootstrap and chroot need it (sudo make test-debian)")
-        if not shutil.which("debootstrap"):
-            raise CannotBegin("debootstrap: not installed; must be there (apt-get install debootstrap)")
-        scratch = Path(tempfile.mkdtemp(prefix="debian-", dir="/var/tmp"))
-        mirror, commands = mirror_of_this_system(), options.commands or commands_of_the_readme()
-        systems = []
-        for name, _, address in (each.partition("=") for each in options.names):
-            systems.append(System(name, scratch / name, address))
+    options = parser.parse_args()
+    if os.geteuid() != 0:
+        sys.exit("must be run as root: debootstrap and chroot need it (sudo make test-debian)")
+    if not shutil.which("debootstrap"):
+        sys.exit("debootstrap: not installed; must be there (apt-get install debootstrap)")
+    before = options.out.read_text() if options.out.exists() else ""
+    mirror, commands, systems = mirror_of_this_system(), options.commands or commands_of_the_readme(), []
+    with tempfile.TemporaryDirectory(prefix="debian-", dir="/var/tmp") as scratch:
+        for name in options.names:
+            systems.append(System(name, Path(scratch, name)))
             systems[-1].make(mirror)
             for _ in systems[-1].try_commands(commands):
-                options.out.write_text(table(systems, *of_before(options.out, systems)))
-    except CannotBegin as error:
-        print(f"debian_systems.py: {error}", file=sys.stderr)
-        return 2
-    finally:
-        if scratch:
-            shutil.rmtree(scratch)
-    return 0 if all(system.succeeded for system in systems) else 1
+                options.out.write_text(table(systems, before))
+    return int(any(result.startswith("failed") for system in systems for _, result, _ in system.results))
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -1,6 +1,6 @@
 """The sanitizers of addresses, undefined behaviour and threads on the engine, the kernel, the functors and checkpoints. Run by `make test-sanitizers`.
 
-    python3 tests/drivers/sanitizers.py [--out FILE]      a quarter of an hour on two cores
+    python3 tests/drivers/sanitizers.py      a quarter of an hour on two cores
 
 The last commit is cloned into build/sanitizers and compiled there once for each trial. Scenes of the harness are made with the ordinary build.
 Compiled by clang, as g++ takes more than ten times as long for the engine's passes; what sees YADE's types by g++, as YADE was. Threads are looked at in
@@ -9,19 +9,19 @@ a finding.
 Exit status: 0 when nothing was found and all passed, otherwise 1.
 """
 
-import argparse
 import os
 import subprocess
 import sys
 import tempfile
 import time
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks"), str(HERE.parent)]
 import moments
-from debian_systems import CannotBegin, run
+from debian_systems import last_commit_in, run, write_page
 from measured_on import TOP, machine
 from test_harness import SMALL
 
@@ -61,11 +61,8 @@ class Trial:
         return FOLDER / self.sanitize
 
     def make(self, goal):
-        """Clone the last commit, or bring the clone to it, and compile what make calls `goal`."""
-        if not self.clone.exists():
-            run(["git", "clone", "-q", TOP, self.clone])
-        run(["git", "fetch", "-q", TOP, "HEAD"], cwd=self.clone)
-        run(["git", "checkout", "-q", "--detach", "FETCH_HEAD"], cwd=self.clone)
+        """Compile what make calls `goal`, of the last commit."""
+        last_commit_in(self.clone)
         how = [f"SANITIZE={self.sanitize}", f"CXX={COMPILER}", "YADE_CXX=g++"]
         run(["make", f"-j{os.cpu_count()}", *how, goal], cwd=self.clone)
 
@@ -80,9 +77,8 @@ class Trial:
                 "TSAN_OPTIONS": f"{log}:ignore_noninstrumented_modules=1",
             }
             begun = time.monotonic()
-            done = subprocess.run(
-                command, cwd=self.clone, env={**os.environ, **own, **more}, capture_output=True, text=True
-            )
+            environment = {**os.environ, **own, **more}
+            done = subprocess.run(command, cwd=self.clone, env=environment, capture_output=True, text=True)
             found = "".join(file.read_text(errors="replace") for file in sorted(Path(folder).glob("found*")))
         count = sum(found.count(words) for words in FINDINGS)
         lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
@@ -100,15 +96,9 @@ class Trial:
         self.make("build/harness")
         for name, path in scenes:
             for instructions in ("portable", ""):
-                command = [
-                    "build/harness",
-                    str(path),
-                    "steps=200",
-                    "threads=1,2,4",
-                    "domains=8",
-                    f"instructions={instructions}",
-                ]
-                yield self.row(f"harness, {name}, {instructions or 'the best instruction set'}", command)
+                how = ["steps=200", "threads=1,2,4", "domains=8", f"instructions={instructions}"]
+                what = f"harness, {name}, {instructions or 'the best instruction set'}"
+                yield self.row(what, ["build/harness", str(path), *how])
 
     def tests(self):
         """Rows for the kernel's probe and for files of tests inside YADE, with the sanitizer's library in front of all others."""
@@ -128,28 +118,16 @@ def scenes_in(folder):
     """[(name and moment, file)] of small scenes: drag, a periodic cell, bonds that break."""
     run(["make", "build/harness"], cwd=TOP)
     for name, scene in SMALL.items():
-        moments.make(name, scene, folder, say=lambda *_, **__: None)
+        moments.make(name, scene, folder)
     return [(f"{n}, {m}", moments.path_of(n, m, scene, folder)) for n, scene in SMALL.items() for m in scene.moments]
 
 
-def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=HERE / "results" / "sanitizers.md", help="default: %(default)s")
-    options = parser.parse_args(arguments)
+def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
-    version = run([COMPILER, "--version"]).stdout.splitlines()[0]
-    text, good = HEAD.format(version=version, **machine()), True
-    try:
-        scenes = scenes_in(FOLDER)
-        for rows in (THREADS.harness(scenes), MEMORY.harness(scenes), MEMORY.tests()):
-            for row, passed in rows:
-                text, good = f"{text}{row}\n", good and passed
-                options.out.write_text(text)
-    except CannotBegin as error:
-        print(f"sanitizers.py: {error}", file=sys.stderr)
-        return 1
-    return 0 if good else 1
+    version, scenes = run([COMPILER, "--version"]).stdout.splitlines()[0], scenes_in(FOLDER)
+    rows = chain(THREADS.harness(scenes), MEMORY.harness(scenes), MEMORY.tests())
+    return 0 if write_page(HERE / "results/sanitizers.md", HEAD.format(version=version, **machine()), rows) else 1
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

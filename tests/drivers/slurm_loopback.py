@@ -4,7 +4,7 @@ import os
 import socket
 import subprocess
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 CONFIGURATION = """ClusterName=loopback
@@ -38,8 +38,8 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 STARTING = 60  # s
 
 
-class NoSlurm(Exception):
-    """Slurm can't be run here; the message is one line."""
+class NoSlurm(SystemExit):
+    """Slurm can't be run here: ends the program with one line."""
 
 
 class Loopback:
@@ -78,11 +78,10 @@ class Loopback:
         for daemon in reversed(self._daemons):
             daemon.terminate()
         for daemon in self._daemons:
-            try:
+            with suppress(subprocess.TimeoutExpired):
                 daemon.wait(timeout=20)
-            except subprocess.TimeoutExpired:
-                daemon.kill()
-                daemon.wait()
+            daemon.kill()
+            daemon.wait()
 
     def ask(self, *command):
         """What a command prints; raises NoSlurm when it fails."""
@@ -131,11 +130,6 @@ MUNGE_FILES = {"key-file": "key", "socket": "socket", "pid-file": "pid", "log-fi
 
 
 def _free_ports(number):
-    sockets = [socket.socket() for _ in range(number)]
-    try:
-        for one in sockets:
-            one.bind(("127.0.0.1", 0))
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(number)]
         return [one.getsockname()[1] for one in sockets]
-    finally:
-        for one in sockets:
-            one.close()

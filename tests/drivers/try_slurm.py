@@ -1,12 +1,11 @@
 """A dozen rows as a job array of Debian's Slurm on this machine, and the same rows by the local runner; writes results/slurm.md.
 
-    python3 tests/drivers/try_slurm.py [--out FILE]      root; some five minutes on two cores
+    python3 tests/drivers/try_slurm.py      root; some five minutes on two cores
 
 One row fails, one is killed, and the task of all is requeued and meets its time limit. Exit status: 0 when all was as it must be,
 otherwise 1, with one line on stderr for each that was not.
 """
 
-import argparse
 import os
 import signal
 import subprocess
@@ -181,30 +180,22 @@ def _same_end(one, other):
     return outcomes[0] == outcomes[1] and same_bits(one, other)
 
 
-def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=HERE / "results" / "slurm.md")
-    options = parser.parse_args(arguments)
+def main():
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))  # not without ending Slurm
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         for name in ("slurm", "study"):
             Path(folder, name).mkdir()
-        try:
-            with Loopback(Path(folder, "slurm")) as node:
-                version = node.ask("sinfo", "--version").split()[-1]
-                trial = Trial(node, Path(folder, "study"))
-                try_all(trial)
-        except NoSlurm as error:
-            sys.exit(f"try_slurm.py: {error}")
-    wrong = [f"{what}: {found}, not {wanted}" for what, found, wanted in trial.rows if found != wanted]
-    options.out.parent.mkdir(exist_ok=True)
+        with Loopback(Path(folder, "slurm")) as node:
+            version = node.ask("sinfo", "--version").split()[-1]
+            trial = Trial(node, Path(folder, "study"))
+            try_all(trial)
     head = HEAD.format(**machine(), slurm=version, minutes=(time.monotonic() - begun) / 60)
-    options.out.write_text(head + "".join(f"| {what} | {found} | {wanted} |\n" for what, found, wanted in trial.rows))
-    for line in wrong:
-        print(f"try_slurm.py: {line}", file=sys.stderr)
-    return int(bool(wrong))
+    lines = "".join(f"| {what} | {found} | {wanted} |\n" for what, found, wanted in trial.rows)
+    (HERE / "results/slurm.md").write_text(head + lines)
+    wrong = [f"{what}: {found}, not {wanted}" for what, found, wanted in trial.rows if found != wanted]
+    return "\n".join(wrong) or 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -11,11 +11,9 @@ import shutil
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-from debian_systems import CannotBegin, archives, run
+from debian_systems import TOP, archives, run
 
-TOP = Path(__file__).resolve().parents[2]
 FOLDER = TOP / "build/yade-tree"
 SOURCE, CLONE = FOLDER / "source", FOLDER / "clone"
 CHECKS = (
@@ -46,7 +44,7 @@ def fetch(version):
     subprocess.run(["apt-get", *options, "-q", "source", "--download-only", "yade"], cwd=apt, capture_output=True)
     files = [file for file in apt.glob(f"yade_{version}.orig.tar.*") if file.suffix != ".asc"]
     if not files:
-        raise CannotBegin(f"yade {version}: Debian's archive has no source of it")
+        sys.exit(f"yade {version}: Debian's archive has no source of it")
     unpacked = FOLDER / "unpacked"
     shutil.rmtree(unpacked, ignore_errors=True)
     unpacked.mkdir()
@@ -55,23 +53,18 @@ def fetch(version):
 
 
 def main():
-    try:
-        version = installed_version()
-        FOLDER.mkdir(parents=True, exist_ok=True)
-        fetch(version)
-        shutil.rmtree(CLONE, ignore_errors=True)
-        run(["git", "clone", "-q", TOP, CLONE])
-        begun = time.monotonic()
-        run(["make", f"YADE_INCLUDE={SOURCE}"], cwd=CLONE)
-        print(f"compiled against the headers of YADE {version}: {time.monotonic() - begun:.0f} s", flush=True)
-        environment = {name: value for name, value in os.environ.items() if name != "YADE_PREFIX"}
-        for command in CHECKS:
-            print(run(command, cwd=CLONE, env=environment).stdout.strip().splitlines()[-1], flush=True)
-    except CannotBegin as error:
-        print(f"yade_tree.py: {error}", file=sys.stderr)
-        return 1
-    return 0
+    version = installed_version()
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    fetch(version)
+    shutil.rmtree(CLONE, ignore_errors=True)
+    run(["git", "clone", "-q", TOP, CLONE])
+    begun = time.monotonic()
+    run(["make", f"YADE_INCLUDE={SOURCE}"], cwd=CLONE)
+    print(f"compiled against the headers of YADE {version}: {time.monotonic() - begun:.0f} s", flush=True)
+    environment = {name: value for name, value in os.environ.items() if name != "YADE_PREFIX"}
+    for command in CHECKS:
+        print(run(command, cwd=CLONE, env=environment).stdout.strip().splitlines()[-1], flush=True)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

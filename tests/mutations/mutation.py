@@ -6,7 +6,6 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 TOP = HERE.parents[1]
-ROOMS = ("kernel", "engine", "run_layer", "analysis")
 
 
 @dataclass(frozen=True)
@@ -31,12 +30,10 @@ class Mutation:
         path.write_text(source.replace(self.code, self.becomes))
 
 
-def read(rooms=ROOMS):
-    """[Mutation] of the tables of these rooms."""
+def read():
+    """[Mutation] of all tables."""
     found = []
-    for room in rooms:
-        with open(HERE / f"{room}.toml", "rb") as file:
-            for row in tomllib.load(file)["mutation"]:
-                row.setdefault("plugin", room == "engine")
-                found.append(Mutation(**{**row, "room": room, "tests": tuple(row["tests"])}))
+    for room in ("kernel", "engine", "run_layer", "analysis"):
+        for row in tomllib.loads((HERE / f"{room}.toml").read_text())["mutation"]:
+            found.append(Mutation(**{"plugin": room == "engine", **row, "room": room, "tests": tuple(row["tests"])}))
     return found

@@ -1,8 +1,8 @@
 """Breaks copies of the code, one slip each, and asks whether the tests notice; writes results/mutations.md.
 
-    python3 tests/mutations/run_mutations.py [WORD ...] [-j JOBS] [--out FILE]
+    python3 tests/mutations/run_mutations.py [WORD ...] [-j JOBS]
 
-WORD: only mutations with one of these in their room, file or description; their results are printed, and not written without --out.
+WORD: only mutations with one of these in their room, file or description; their results are printed, and not written.
 First the expected tests run on unchanged code, where they must pass.
 Exit status: 0 when all were caught, otherwise 1.
 """
@@ -98,7 +98,6 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("words", nargs="*", metavar="WORD")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--out", type=Path)
     options = parser.parse_args(arguments)
     begun, about = time.monotonic(), machine()
     chosen = [m for m in read() if not options.words or any(w in f"{m.room} {m.file} {m.wrong}" for w in options.words)]
@@ -114,10 +113,9 @@ def main(arguments):
             print(rows[-1], end="", flush=True)
             missed += not result.test
     print(f"{len(chosen) - missed} of {len(chosen)} were noticed")
-    out = options.out or (None if options.words else HERE / "results" / "mutations.md")
-    if out:
-        out.parent.mkdir(exist_ok=True)
-        out.write_text(HEAD.format(**about, minutes=(time.monotonic() - begun) / 60) + "".join(rows))
+    if not options.words:
+        head = HEAD.format(**about, minutes=(time.monotonic() - begun) / 60)
+        (HERE / "results/mutations.md").write_text(head + "".join(rows))
     return 1 if missed else 0
 
 

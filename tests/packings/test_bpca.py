@@ -9,7 +9,6 @@ from scipy.stats import kstest
 from yade_scripts import packings
 from yade_scripts.materials import pair_constants
 from yade_scripts.packings import grain_sizes
-from yade_scripts.packings.aggregate import AggregateParameters, make
 
 UNLIKE = {"two": dict(sizes="two", ratio=2.5, fraction=0.3), "lognormal": dict(sizes="lognormal", spread=0.4)}
 
@@ -86,15 +85,6 @@ def test_radii_that_were_asked_for():
         low, high = grain_sizes.radius_range(options["sizes"], RADIUS, options.get("ratio"), options.get("spread"))
         drawn = unlike_radii(name, 5000)
         assert low <= drawn.min() and drawn.max() <= high
-
-
-def test_parameters_give_the_same_aggregate_and_sizes():
-    plain = make(AggregateParameters.parse(dict(packing="bpca", grains=200, seed=3)), OVERLAP, 0)
-    assert np.array_equal(plain.position, packings.bpca(200, RADIUS, OVERLAP, 3).position)
-    cells = dict(packing="bpca", grains=200, seed=3, sizes="two", sizeRatio=2, sizeFraction=0.25)
-    unlike = make(AggregateParameters.parse(cells), OVERLAP, 0)
-    assert np.count_nonzero(unlike.radius == 2 * RADIUS) == 50
-    assert np.array_equal(unlike.radius, make(AggregateParameters.parse(cells), OVERLAP, 0).radius)
 
 
 def test_characteristic_radius_is_that_of_a22():

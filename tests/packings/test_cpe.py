@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 from of_ice import OVERLAP, RADIUS, SPACING
 from refused import refused
+from scipy.stats import ks_2samp, kstest
 
 from analysis.measures.fragments import fragment_labels
 from yade_scripts import packings
+from yade_scripts.packings import lattice
+from yade_scripts.packings.aggregate import AggregateParameters, make
 
 
 def ice(filling=0.4, relative_radius=20, seed=1, index=0):
     return packings.cpe(filling, relative_radius * RADIUS, RADIUS, OVERLAP, seed, index)
 
 
-bpca, bcca = (partial(make, 400, RADIUS, OVERLAP) for make in (packings.bpca, packings.bcca))
+bpca, bcca = (partial(grown, 400, RADIUS, OVERLAP) for grown in (packings.bpca, packings.bcca))
 
 
 @pytest.mark.parametrize(
@@ -29,18 +32,17 @@ def test_number_of_grains_is_filling_times_the_cubed_radius(filling, relative_ra
     assert packing.position.shape == (grains, 3) and np.all(packing.radius == RADIUS)
 
 
-@pytest.mark.parametrize("make", [ice, bpca, bcca])
-def test_same_seed_and_index_same_aggregate(make):
-    one = make(seed=5, index=0).position
-    assert np.array_equal(one, make(seed=5, index=0).position)
+def of_parameters(seed, index):
+    cells = dict(packing="bpca", grains=200, seed=seed, sizes="two", sizeRatio=2, sizeFraction=0.25)
+    return make(AggregateParameters.parse(cells), OVERLAP, index)
+
+
+@pytest.mark.parametrize("make_one", [ice, bpca, bcca, of_parameters])
+def test_same_seed_and_index_same_aggregate(make_one):
+    one, again = (make_one(seed=5, index=0) for _ in range(2))
+    assert np.array_equal(one.position, again.position) and np.array_equal(one.radius, again.radius)
     for other in (dict(seed=6, index=0), dict(seed=5, index=1)):
-        assert not np.allclose(one[1:], make(**other).position[1:])
-
-
-def test_streams_are_those_that_a_seed_sequence_spawns():
-    for index, spawned in enumerate(np.random.SeedSequence(7).spawn(2)):
-        expected = np.random.default_rng(spawned).random(5)
-        assert np.array_equal(packings.random_stream(7, index).random(5), expected)
+        assert not np.allclose(one.position[1:], make_one(**other).position[1:])
 
 
 def test_all_centres_lie_in_the_sphere_of_two_hundred_thousand_in_seconds():
@@ -117,3 +119,44 @@ def test_the_largest_piece_is_what_hangs_together():
     assert all(tuple(position) in rows for position in piece.position)
     assert fragment_labels(piece.grains, packings.contacts(piece)).max() == 0
     assert packings.largest_piece(piece).grains == piece.grains
+
+
+# ---- orientation and place of the lattice are uniform: tests at 99.9 % confidence each, of fixed seeds ----
+
+
+def test_orientation_is_uniform():
+    """x^4 + y^4 + z^4 of each axis in the lattice's own frame is distributed as that of random directions.
+
+    That is the lowest function that sees the orientation of a cubic lattice whichever of its 24 equal orientations is
+    counted. From the six directions of contacts, u = (1, +/-1, 0)/sqrt 2 and so on: the sum of (u.e)^4 is (3 - that)/2.
+    """
+    found = 3 - 2 * np.array([(_bond_directions(seed) ** 4).sum(axis=0) for seed in range(1500)])
+    random = np.random.default_rng(1).normal(size=(3, 100_000))
+    expected = (random**4).sum(axis=0) / (random**2).sum(axis=0) ** 2
+    p_values = [ks_2samp(of_axis, expected).pvalue for of_axis in found.T]
+    assert min(p_values) > 1e-3 / len(p_values)
+
+
+def _bond_directions(seed):
+    """The six directions (6,3) along which grains touch."""
+    packing = ice(0.5, 5, seed)
+    pairs = packings.contacts(packing)
+    directions = (packing.position[pairs[:, 1]] - packing.position[pairs[:, 0]]) / SPACING
+    distinct = []
+    for direction in directions:
+        if all(abs(direction @ other) < 0.9 for other in distinct):
+            distinct.append(direction)
+    assert len(distinct) == 6
+    return np.array(distinct)
+
+
+def test_centre_is_uniform_in_the_unit_cell():
+    """The lattice's primitive coordinates of a site, modulo one, are uniform."""
+    primitive = SPACING / np.sqrt(2) * np.array([[0, 1, 1], [1, 0, 1], [1, 1, 0]])
+    site = np.array(
+        [lattice._lattice_in_sphere(SPACING, 3 * RADIUS, packings.random_stream(seed, 0))[0] for seed in range(1000)]
+    )
+    phase = np.linalg.solve(primitive.T, site.T) % 1
+    p_values = [kstest(component, "uniform").pvalue for component in phase]
+    p_values += [kstest((phase[i] + phase[j]) % 1, "uniform").pvalue for i, j in ((0, 1), (0, 2), (1, 2))]
+    assert min(p_values) > 1e-3 / len(p_values)

@@ -7,8 +7,8 @@ from of_ice import ICE, OVERLAP
 from of_ice import SPACING as APART
 from running import COMPRESS, completed, make_packing
 from scenes import *
+from written_runs import cubic_lattice
 
-from analysis.runs.format import CHANNELS
 from yade_scripts import packings
 from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
 
@@ -16,11 +16,9 @@ from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
 def pressed_lattice(noise=0.0):
     """A simple cubic lattice in its cell, neighbours closer than at rest by a strain of 0.004, sites moved by `noise` [m]."""
     side, edge = 8, APART * (1 - 0.004)
-    site = np.stack(np.meshgrid(*3 * [np.arange(side)], indexing="ij"), axis=-1).reshape(-1, 3)
-    row = {tuple(s): k for k, s in enumerate(site)}
-    pairs = [(row[tuple(s)], row[tuple((s + n) % side)]) for s in site for n in np.eye(3, dtype=int)]
+    site, pairs = cubic_lattice(side)
     position = edge * site + noise * np.random.default_rng(1).normal(size=site.shape)
-    return PeriodicState(position, np.full(len(site), 1e-7), np.array(pairs), np.full(3, side * edge), OVERLAP)
+    return PeriodicState(position, np.full(len(site), 1e-7), pairs, np.full(3, side * edge), OVERLAP)
 
 
 def overlaps(packing):
@@ -105,15 +103,3 @@ def test_what_moves_when_a_cut_sphere_is_set_free(run):
     assert np.abs(before["contact_normal_force"]).max() < 5e-3 * c["pullOffForce"]
     assert np.linalg.norm(after["position"] - before["position"], axis=1).max() < 5e-3 * 1e-7
     assert kinetic < 1e-5 * c["pullOffForce"] * c["pullOffOverlap"] * packing.grains
-
-
-def test_cut_spheres_collide(run, tmp_path):
-    """collide.py packing=file takes two of them; until they meet nothing moves in them."""
-    files = [str(tmp_path / name) for name in ("d.npz", "e.npz")]
-    assert make_packing(run, *files, last_state(run), "radius=6", "seed=4").returncode == 0
-    given = ("packing=file", f"file={files[0]}", f"projectileFile={files[1]}")
-    _, history = completed(tmp_path, *given, "velocity=3", "duration=5e-9", "threads=1")
-    assert np.ptp(history["contacts"]) == 0 and history["contacts"][0] > 100
-    total = sum(history[name] for name in CHANNELS)
-    assert np.abs(total - total[0]).max() < 1e-9 * history["kinetic"][0]
-    assert np.ptp(history["kinetic"]) < 1e-4 * history["kinetic"][0]

@@ -1,13 +1,14 @@
 """One YADE from which the runs of a module are forked."""
 
 import os
-import shutil
 import tempfile
+from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 import pytest
 from faults.forks import Forks
-from faults.scenarios import Bench
+from faults.trial import Trial
 
 
 @pytest.fixture(scope="session")
@@ -19,18 +20,15 @@ def forks():
 
 
 @pytest.fixture(scope="session")
-def bench(forks):
+def trial_of(forks):
+    """trial_of(command) -> its Trial, made once."""
     with fast_folder() as folder:
-        yield Bench(forks, folder)
+        yield cache(lambda command: Trial(forks, command, tempfile.mkdtemp(dir=folder)))
 
 
-class fast_folder:
+@contextmanager
+def fast_folder():
     """A temporary folder in memory where there is such a place: fsync is free there."""
-
-    def __enter__(self):
-        memory = "/dev/shm"
-        self.path = tempfile.mkdtemp(dir=memory if os.access(memory, os.W_OK) else None)
-        return Path(self.path)
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.path, ignore_errors=True)
+    memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+    with tempfile.TemporaryDirectory(dir=memory, ignore_cleanup_errors=True) as folder:
+        yield Path(folder)

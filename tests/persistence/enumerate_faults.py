@@ -1,6 +1,6 @@
 """Tries faults at the file-system calls of every command that writes files (faults/), and writes results/faults.md.
 
-    python3 tests/persistence/enumerate_faults.py [NAME ...] [-j JOBS] [--out FILE]      an hour on two cores
+    python3 tests/persistence/enumerate_faults.py [NAME ...] [-j JOBS]      an hour on two cores
 
 NAME: lines of the table, by default all; the others stay as they are. Exit status: 0 when all was right, otherwise 1, with
 one line on stderr for each case.
@@ -13,13 +13,15 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks")]
+TESTS = HERE.parent
+sys.path[:0] = map(str, (HERE.parents[1], HERE, TESTS, TESTS / "scripts", TESTS / "benchmarks"))
 from conftest import fast_folder
-from faults.commands import COMMANDS, WRITERS, Trial
+from faults.commands import COMMANDS, SCENARIOS, WRITERS
 from faults.forks import DISK_FULL, Forks
-from faults.scenarios import ACTIONS, SCENARIOS, Bench, enumerated, enumerated_stops
+from faults.trial import ACTIONS, Trial
 from measured_on import machine
 
+PAGE = HERE / "results" / "faults.md"
 STOPS = "collide: a new run, SIGTERM in its third checkpoint"
 HEAD = """# Faults, one at each file-system call
 
@@ -43,29 +45,20 @@ Of the modules that write files (faults/commands.py has all) these have no line 
 """
 
 
+NAMES = [command.name for command in COMMANDS]
+NAMES.insert(len(SCENARIOS), STOPS)
+
+
 def tried(name):
     """(name, calls, of how many one is tried, [Case]) of a line of the table."""
-    command = next((command for command in COMMANDS if command.name == name), None)
     with fast_folder() as folder:
         forks = Forks(folder)
-        if command:
-            (folder / "trial").mkdir()
-            trial = Trial(forks, command, folder / "trial")
-            found = len(trial.calls), command.every, list(trial.cases())
-        else:
-            bench = Bench(forks, folder)
-            scenario = next((s for s in SCENARIOS if of_collide(s) == name), None)
-            cases = list(enumerated(bench, scenario) if scenario else enumerated_stops(bench, 2))
-            found = len(bench.calls(scenario or SCENARIOS[0])), 1, cases
+        (folder / "trial").mkdir()
+        command = next((command for command in COMMANDS if command.name == name), SCENARIOS[0])
+        trial = Trial(forks, command, folder / "trial")
+        cases = list(trial.stops(2) if name == STOPS else trial.cases())
         forks.close()
-    return name, *found
-
-
-def of_collide(scenario):
-    return f"collide: {scenario.name}"
-
-
-NAMES = [*map(of_collide, SCENARIOS), STOPS, *(command.name for command in COMMANDS)]
+    return name, len(trial.calls), command.every, cases
 
 
 def line(name, calls, every, cases, commit):
@@ -73,12 +66,6 @@ def line(name, calls, every, cases, commit):
     full = sum(ACTIONS[case.fault] == DISK_FULL for case in cases)
     right = sum(not case.wrong for case in cases)
     return f"| {name} | {calls} | {every} | {len(cases) - full} | {full} | {right} of {len(cases)} | {commit} |\n"
-
-
-def lines_of(file):
-    """{name: line} of a table that is there."""
-    lines = file.read_text().splitlines(keepends=True) if file.exists() else []
-    return {text.split(" | ")[0].removeprefix("| "): text for text in lines if text.startswith("| ")}
 
 
 def page(lines, about):
@@ -92,7 +79,6 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--out", type=Path, default=HERE / "results" / "faults.md")
     options = parser.parse_args(arguments)
     for name in set(options.names) - set(NAMES):
         parser.error(f"{name}: must be one of {', '.join(NAMES)}")
@@ -101,15 +87,13 @@ def main(arguments):
         for name, *found in pool.map(tried, options.names or NAMES):
             text = line(name, *found, about["commit"])
             print(text, end="", flush=True)
-            wrong += [
-                f"{case.scenario}: {case.fault} call {case.call}: {'; '.join(case.wrong)}"
-                for case in found[-1]
-                if case.wrong
-            ]
-            lines = {**lines_of(options.out), name: text}
-            options.out.write_text(page(lines, about))
+            wrong += [case for case in found[-1] if case.wrong]
+            there = (text for text in PAGE.read_text().splitlines(keepends=True) if text.startswith("| "))
+            lines = {**{text.split(" | ")[0].removeprefix("| "): text for text in there}, name: text}
+            PAGE.write_text(page(lines, about))
     for case in wrong:
-        print(f"enumerate_faults.py: {case}", file=sys.stderr)
+        words = f"{case.command}: {case.fault} call {case.call}: {'; '.join(case.wrong)}"
+        print(f"enumerate_faults.py: {words}", file=sys.stderr)
     return 1 if wrong else 0
 
 

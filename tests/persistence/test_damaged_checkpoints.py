@@ -4,10 +4,11 @@ import shutil
 
 import numpy as np
 import pytest
+from faults.commands import OTHER, RECORDER, RUN, arrays
 from faults.forks import END_BEFORE
-from faults.scenarios import OTHER, RECORDER, RUN, arrays
 
 RESUME = RUN + ("resume=1",)
+STATE = "states/000001.npz"
 
 
 def killed(forks, folder, arguments, checkpoints=4):
@@ -42,10 +43,10 @@ def flip(file, where):
     file.write_bytes(bytes(data))
 
 
-def change_rows(run, change):
-    """Write recorder.npz again with other rows."""
+def change_rows(run, change, about=str):
+    """Write recorder.npz again with other rows, and another text about them."""
     with np.load(run / RECORDER) as archive:
-        np.savez(run / RECORDER, rows=change(archive["rows"].copy()), about=archive["about"])
+        np.savez(run / RECORDER, rows=change(archive["rows"].copy()), about=about(archive["about"]))
 
 
 def with_nan(rows):
@@ -54,20 +55,36 @@ def with_nan(rows):
 
 
 def change_state(run, **changed):
-    with np.load(run / "states" / "000001.npz") as archive:
+    with np.load(run / STATE) as archive:
         held = {**archive, **changed}
-    np.savez(run / "states" / "000001.npz", **held)
+    np.savez(run / STATE, **held)
+
+
+def cut(file, length):
+    file.write_bytes(file.read_bytes()[:length])
+
+
+# What is replaced in the text about the rows, by what, and what is said of it.
+ABOUT = {
+    "another commit": ('"commit": "', '"commit": "0', "written by the plugin of commit 0"),
+    "another YADE": ('"yade": "', '"yade": "1', "written by YADE 1"),
+    "other columns": ('"drag", ', "", "of a history with other columns"),
+    "another kind": ('"kind": "collision"', '"kind": "toy"', "of a run with kind = toy, not collision"),
+    "a text that is no JSON": (": ", "", "not a checkpoint ("),
+}
+
+
+def with_text(before, after):
+    return lambda run, other: change_rows(run, np.copy, lambda about: str(about).replace(before, after))
 
 
 DAMAGE = {
+    **{name: (with_text(before, after), message) for name, (before, after, message) in ABOUT.items()},
     **{
         f"a bit of the scene at {where}": (lambda run, other, where=where: flip(scene_of(run), where), "scene-4.yade: ")
         for where in (0.001, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999)
     },
-    "half a scene": (
-        lambda run, other: scene_of(run).write_bytes(scene_of(run).read_bytes()[:2000]),
-        "scene-4.yade: 2000 bytes, SHA-256",
-    ),
+    "half a scene": (lambda run, other: cut(scene_of(run), 2000), "scene-4.yade: 2000 bytes, SHA-256"),
     "another run's scene": (lambda run, other: shutil.copy(scene_of(other), scene_of(run)), "scene-4.yade: "),
     "no scene": (lambda run, other: scene_of(run).unlink(), "not a checkpoint ([Errno 2]"),
     "rows cut": (lambda run, other: change_rows(run, lambda rows: rows[:-1]), "recorder.npz: rows have the shape (4, "),
@@ -75,21 +92,12 @@ DAMAGE = {
     "NaN in rows": (lambda run, other: change_rows(run, with_nan), "recorder.npz: "),
     "a number in rows": (lambda run, other: change_rows(run, lambda rows: rows * (1 + 1e-15)), "recorder.npz: "),
     "words as rows": (lambda run, other: change_rows(run, lambda rows: rows.astype(str)), "recorder.npz: "),
-    "half a recorder": (
-        lambda run, other: (run / RECORDER).write_bytes((run / RECORDER).read_bytes()[:900]),
-        "not a checkpoint (",
-    ),
-    "a state missing": (lambda run, other: (run / "states" / "000001.npz").unlink(), "000001.npz: missing"),
+    "half a recorder": (lambda run, other: cut(run / RECORDER, 900), "not a checkpoint ("),
+    "a state missing": (lambda run, other: (run / STATE).unlink(), "000001.npz: missing"),
     "all states missing": (lambda run, other: shutil.rmtree(run / "states"), "000000.npz: missing"),
-    "half a state": (
-        lambda run, other: (run / "states" / "000001.npz").write_bytes(b"half"),
-        "000001.npz: damaged, or not an .npz file",
-    ),
+    "half a state": (lambda run, other: (run / STATE).write_bytes(b"half"), "000001.npz: damaged, or not an .npz"),
     "a state of another time": (lambda run, other: change_state(run, time=1.0), "000001.npz: of 1 s; must be of"),
-    "a state of another kind": (
-        lambda run, other: change_state(run, aggregate=np.zeros(3, int)),
-        "'aggregate' has the",
-    ),
+    "a state of another kind": (lambda run, other: change_state(run, aggregate=np.zeros(3, int)), "'aggregate' has"),
 }
 
 
@@ -106,6 +114,17 @@ def test_a_damaged_checkpoint_is_one_line_and_removes_nothing(forks, originals, 
     done = forks.run(RESUME, run)
     assert done.status == 2 and len(done.lines) == 1, done
     assert done.lines[0].startswith("collide.py: run/") and message in done.lines[0] and "must be" in done.lines[0]
+    assert content(run) == before
+
+
+def test_a_run_with_a_checkpoint_starts_again_only_when_asked_nor_resumes_as_another(forks, run):
+    before = content(run)
+    for arguments, message in (
+        (RUN, "holds a run that was stopped, with a checkpoint; must be another folder, or resume=1 (to continue it)"),
+        (RESUME + OTHER, "run/checkpoint: of a run with seed = 1, not 2; must be the same"),
+    ):
+        done = forks.run(arguments, run)
+        assert done.status == 2 and len(done.lines) == 1 and message in done.lines[0], done
     assert content(run) == before
 
 

@@ -1,4 +1,4 @@
-"""Checkpoints of JKRWadaEngine in a shrinking periodic cell resume to the same bits, and scenes change between engine and functors there."""
+"""Between functors and JKRWadaEngine in a shrinking periodic cell; checkpoints there: equivalence/test_one_run.py."""
 
 import pytest
 from scenes import *
@@ -11,9 +11,7 @@ def start(homo, drag, rate=1e-3):
     O.engines[2].loopOnSortedInteractions = True
     random = np.random.default_rng(2)
     size = np.array([8.1e-7, 8.2e-7, 8.3e-7])
-    O.periodic = True
-    O.cell.setBox(*size)
-    O.cell.homoDeform = homo
+    periodic_cell(*size, homo=homo)
     for k in range(64):
         site = np.array([k % 4, k // 4 % 4, k // 16]) + 0.5 + 0.005 * random.normal(size=3)
         x = size * site / 4 + size * random.integers(-1, 2, size=3)
@@ -21,16 +19,18 @@ def start(homo, drag, rate=1e-3):
     O.cell.velGrad = Matrix3(-rate / unit, 0, 0, 0, -0.7 * rate / unit, 0, 0, 0, -0.4 * rate / unit)
 
 
-def state():
-    return positions(), np.array([b.state.vel for b in O.bodies]), np.array([b.state.angVel for b in O.bodies])
-
-
 @pytest.mark.parametrize("homo,drag", [(0, 0.0), (0, 2e-12), (1, 0.0), (2, 0.0)])
 def test_functors_then_engine_then_functors_is_one_run(homo, drag):
-    """To rounding, with one small step in an O.step (with more, the engine's cell goes along chords of YADE's exponential). NewtonIntegrator keeps the velocity gradient that it gave the grains; a new one must be told (prevVelGrad)."""
+    """To rounding, with one small step in an O.step (with more, the engine's cell goes along chords of YADE's exponential).
+    NewtonIntegrator keeps the velocity gradient that it gave the grains; a new one must be told (prevVelGrad)."""
     start(homo, drag)
     O.run(400, True)
-    straight, contacts, size, work = state(), O.interactions.countReal(), O.cell.hSize[0, 0], O.energy["boundaryWork"]
+    straight, contacts, size, work = (
+        np.array(motion()),
+        O.interactions.countReal(),
+        O.cell.hSize[0, 0],
+        O.energy["boundaryWork"],
+    )
     start(homo, drag)
     O.run(200, True)
     fused_engine()
@@ -43,7 +43,7 @@ def test_functors_then_engine_then_functors_is_one_run(homo, drag):
     assert O.time / O.dt == pytest.approx(400, rel=1e-12) and O.cell.hSize[0, 0] == size
     assert O.interactions.countReal() == contacts > 8
     # with drag, grains whose contacts formed or broke in the functors' last step are taken over to second order only
-    for a, b in zip(state(), straight):
-        assert np.abs(a - b).max() < (1e-4 if drag else 1e-9) * np.abs(b).max()
+    differences, scale = (np.abs(x).max(axis=(0, 2)) for x in (np.array(motion()) - straight, straight))
+    assert np.all(differences < (1e-4 if drag else 1e-9) * scale)
     if homo < 2:  # the functors know nothing of the convective term's work
         assert O.energy["boundaryWork"] == pytest.approx(work, rel=1e-4)

@@ -110,6 +110,11 @@ def process_writing(folder):
         return next((int(lock[4]) for lock in held if lock[5].endswith(":" + inode)), None)
 
 
+def waits_for_a_lock(pid):
+    with open("/proc/locks") as locks:
+        return any("->" in lock and f" {pid} " in lock for lock in locks)
+
+
 def stop_midway(folder, arguments, number=signal.SIGKILL, script=COLLIDE, after=0.0):
     """The process of a run, in the folder run, that was sent a signal `after` seconds after its first checkpoint, before its end."""
     process = start(folder, "yade", "-n", "-x", script, *arguments, "out=run")
@@ -126,6 +131,11 @@ def arrays(folder):
     """{file: {name: array}} of a run folder."""
     names = ["history.npz"] + [os.path.join("states", name) for name in sorted(os.listdir(folder / "states"))]
     return {name: read_arrays(folder, name) for name in names}
+
+
+def states(folder):
+    """[{name: array}] of a run folder's states, in their order."""
+    return [read_arrays(folder, "states", name) for name in sorted(os.listdir(folder / "states"))]
 
 
 def same_bits(one, other):

@@ -2,7 +2,6 @@
 
 import os
 import shlex
-import shutil
 import signal
 
 import numpy as np
@@ -23,23 +22,6 @@ KINDS = {
     "piston": (COMPRESS, "boundary=walls grains=300 strainRate=1e-4 threads=1 finalFilling=0.3", 0.5),
     "a user's own": (SHRINK, "duration=200e-9 rate=3e-5 threads=1", 0.0),
 }  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def straight(tmp_path_factory):
-    """The folder of the run without a stop."""
-    folder = tmp_path_factory.mktemp("straight")
-    completed(folder, *RUN)
-    assert not (folder / "run" / "checkpoint").exists()
-    return folder / "run"
-
-
-@pytest.fixture(scope="module")
-def killed(tmp_path_factory):
-    """A folder whose run/ was killed by SIGKILL."""
-    folder = tmp_path_factory.mktemp("killed")
-    assert stop_midway(folder, [*RUN, OFTEN]).returncode == -signal.SIGKILL
-    return folder
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -72,39 +54,6 @@ def test_yades_own_loop_resumes_to_rounding(tmp_path):
     assert np.array_equal(one["contacts"], other["contacts"])
     for name in ("kinetic", "normal", "connection", "d", "v"):
         assert np.allclose(one[name], other[name], rtol=0, atol=1e-6 * np.abs(one[name]).max()), name
-
-
-DAMAGED = {
-    "commit": ('"commit": "', '"commit": "0', "written by the plugin of commit 0"),
-    "yade": ('"yade": "', '"yade": "1', "written by YADE 1"),
-    "columns": ('"drag", ', "", "of a history with other columns"),
-    "kind": ('"kind": "collision"', '"kind": "toy"', "of a run with kind = toy, not collision"),
-    "cut off": (": ", "", "not a checkpoint ("),
-}
-
-
-@pytest.mark.parametrize("what", DAMAGED)
-def test_a_checkpoint_that_cannot_be_used_gives_one_line(killed, tmp_path, what):
-    text, becomes, message = DAMAGED[what]
-    shutil.copytree(killed / "run", tmp_path / "run")
-    path = tmp_path / "run" / "checkpoint" / "recorder.npz"
-    held = read_arrays(path)
-    np.savez(path, rows=held["rows"], about=str(held["about"]).replace(text, becomes))
-    line = refusal(collide(tmp_path, *RUN, "out=run", "resume=1"))
-    assert line.startswith(f"collide.py: run/checkpoint: {message}") and "must be " in line
-
-
-def test_a_run_with_a_checkpoint_starts_again_only_when_asked(straight, killed, tmp_path):
-    """Nor does it resume with other parameters."""
-    shutil.copytree(killed / "run", tmp_path / "run")
-    before = sorted(os.listdir(tmp_path / "run"))
-    line = refusal(collide(tmp_path, *RUN, "out=run", "resume=1", "seed=2"))
-    assert line.startswith("collide.py: run/checkpoint: of a run with seed = 1, not 2; must be the same")
-    line = refusal(collide(tmp_path, *RUN, "out=run"))
-    assert "holds a run that was stopped" in line and "resume=1" in line and "overwrite=1" in line
-    assert sorted(os.listdir(tmp_path / "run")) == before
-    completed(tmp_path, *RUN, "overwrite=1")
-    assert same_bits(tmp_path / "run", straight) and not (tmp_path / "run" / "checkpoint").exists()
 
 
 def test_a_run_that_ended_decided_does_not_go_on(tmp_path):
@@ -151,7 +100,6 @@ def test_an_interrupted_run_leaves_what_it_had_and_prints_what_continues(tmp_pat
     assert process.returncode == status and "run folder: run (interrupted, " in process.output
     assert sorted(os.listdir(tmp_path / "run")) == ["checkpoint", "history.npz", "run.json", "states"]
     history = read_arrays(tmp_path, "run", "history.npz")
-    last = read_arrays(tmp_path, "run", "states", sorted(os.listdir(tmp_path / "run" / "states"))[-1])
-    assert last["time"] == history["time"][-1] > 0
+    assert states(tmp_path / "run")[-1]["time"] == history["time"][-1] > 0
     command = next(line for line in process.output.splitlines() if line.startswith("to continue: "))
     assert call(tmp_path, *shlex.split(command)[2:]).returncode == 0 and (tmp_path / "run" / "ended").exists()

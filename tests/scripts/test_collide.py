@@ -1,11 +1,10 @@
 """collide.py run for real: what a run folder holds, what is refused."""
 
 import os
-import shutil
 
 import numpy as np
 import pytest
-from running import TINY, collide, completed, messages, read_arrays, read_json, refusal
+from running import TINY, collide, completed, messages, read_arrays, read_json, refusal, states
 
 from analysis.runs.format import CHANNELS, COLLISION
 from analysis.runs.verify import verify_run
@@ -66,11 +65,10 @@ def test_history_has_every_series(run):
 
 def test_states_agree_with_the_history(run):
     history = read_arrays(run, "history.npz")
-    names = sorted(os.listdir(run / "states"))
-    assert names == [f"{number:06d}.npz" for number in range(22)]
-    states = [read_arrays(run, "states", name) for name in names]
-    assert states[0]["time"] == 0 and states[-1]["time"] == history["time"][-1]
-    for state in states:
+    assert sorted(os.listdir(run / "states")) == [f"{number:06d}.npz" for number in range(22)]
+    all_states = states(run)
+    assert all_states[0]["time"] == 0 and all_states[-1]["time"] == history["time"][-1]
+    for state in all_states:
         (row,) = np.flatnonzero(history["time"] == state["time"])
         for name in ("position", "velocity", "angular_velocity"):
             assert state[name].shape == (52, 3)
@@ -88,7 +86,7 @@ def test_states_agree_with_the_history(run):
 
 def test_starts_at_rest_within_each_aggregate(run):
     """Kinetic energy 2 (1/2) M (v/2)^2, no force in any contact, nothing stored or lost but in the normal."""
-    about, start = read_json(run, "run.json"), read_arrays(run, "states", "000000.npz")
+    about, start = read_json(run, "run.json"), states(run)[0]
     history = read_arrays(run, "history.npz")
     mass = about["derived"]["grainsPerAggregate"] * about["derived"]["grainMass"]
     velocity = about["parameters"]["velocity"]
@@ -103,14 +101,11 @@ def test_starts_at_rest_within_each_aggregate(run):
     assert np.all(start["position"][:26, 0] < 0) and np.all(start["position"][26:, 0] > 0)
 
 
-def test_a_run_that_has_ended_is_kept_unless_asked(run, tmp_path):
-    run = shutil.copytree(run, tmp_path / "run")
+def test_a_run_that_has_ended_is_kept_unless_asked(run):
     before = os.stat(run / "run.json").st_mtime_ns
-    line = refusal(collide(tmp_path, *TINY, "out=run"))
+    line = refusal(collide(run.parent, *TINY, "out=run"))
     assert line == "collide.py: out = run: holds a run that has ended; must be another folder, or overwrite=1"
     assert os.stat(run / "run.json").st_mtime_ns == before
-    about, _ = completed(tmp_path, *TINY, "overwrite=1", "seed=2")
-    assert about["seed"] == 2 and (run / "ended").exists() and len(os.listdir(run / "states")) == 22
 
 
 @pytest.mark.parametrize("arguments", [("radius=4",), ("packing=bcca", "grains=64")], ids=["cpe", "bcca"])
@@ -134,10 +129,7 @@ WRONG = {
     "filling=0.76": "filling = 0.76: more than the lattice holds; must be at most 0.7519",
     "neck=0.2 stepFraction=0.2": "stepFraction = 0.2: unstable at this neck, filling and drag; must be at most 0.119 [t0]",
     "neck=0.123": "neck = 0.123: no thicker than a contact that is not sintered; must be 0 (not sintered), or above 0.1237 and",
-    "velocity=1 stepFraction=auto tolerance=1e-7": "tolerance = 1e-07: would take a step of ",
     "threads=2 engine=functors": "threads = 2: YADE was started with 1; must be ",
-    "out=/dev/null/run": "out = /dev/null/run: Not a directory; must be a folder that can be written",
-    "out=.": "out = .: exists and is no run folder; must be ",
     "density=1e300 unusual=1": "density = 1e+300 kg/m^3: must be 1e-07 to 2.3e+13 kg/m^3 also with unusual=1",
     "surfaceEnergy=1e4 unusual=1": "grainRadius = 1e-07: contacts at rest have a radius of ",
     "table=rows.table:3": "velocity = fast: not a finite number; must be > 0 [m/s]",

@@ -1,4 +1,4 @@
-"""Collisions of BPCA aggregates as a user runs them (oblique, with drag, of unlike sizes, from files, their early end), impactStepFraction, and
+"""Collisions of BPCA aggregates as a user runs them (oblique, with drag, of unlike sizes, their early end), impactStepFraction, and
 the law's parameters `limit` and slidingStiffnessFactor."""
 
 import numpy as np
@@ -9,11 +9,8 @@ from analysis.measures.ledger import closure_history
 from analysis.measures.of_run import outcome_of_run
 from analysis.runs.folder import open_run
 from analysis.runs.provenance import provenance
-from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
 
-OVERLAP = equilibrium_overlap(MATERIALS["ice"])
 TINY = ("packing=bpca", "grains=40", "velocity=40", "stepFraction=0.2", "threads=1")
 
 
@@ -49,14 +46,6 @@ def test_unlike_grains_and_unlike_aggregates(tmp_path):
     assert np.bincount(state.aggregate).tolist() == [40, 20] and set(np.unique(state.radius)) == {1e-7, 1.5e-7}
     momentum = (state.radius**3)[:, None] * state.velocity
     assert np.abs(momentum.sum(axis=0)).max() < 1e-9 * np.abs(momentum).sum()
-
-
-def test_aggregates_from_files(tmp_path):
-    for name, grains, index in (("a", 30, 0), ("b", 20, 1)):
-        packings.save(tmp_path / f"{name}.npz", packings.bpca(grains, 1e-7, OVERLAP, 3, index))
-    files = ("packing=file", "file=a.npz", "projectileFile=b.npz")
-    run, _ = completed(tmp_path, *files, "velocity=30", "threads=1", "duration=2e-8")
-    assert (run["parameters"]["grains"], run["derived"]["projectileGrains"]) == (30, 20)
 
 
 RUN = ("radius=8", "velocity=30", "duration=400e-9", "threads=1", "stepFraction=0.2", "states=3")

@@ -1,6 +1,5 @@
 """What a command gets wrong at its start, as one types it, and the one line that says so (values of parameters: test_parameters.py)."""
 
-import argparse
 import shlex
 import sys
 
@@ -12,16 +11,6 @@ from analysis.studies.documents.__main__ import main as documents
 from yade_scripts import make_packing, study
 from yade_scripts.parameters.errors import one_line_errors
 
-
-def choices(*names):
-    """They as argparse prints them, with quotes or without: that changed in Python 3.12 and after."""
-    parser = argparse.ArgumentParser(exit_on_error=False)
-    parser.add_argument("one", choices=names)
-    with pytest.raises(argparse.ArgumentError) as refused:
-        parser.parse_args(["no"])
-    return "(choose from " + ", ".join(map(repr if repr(names[0]) in str(refused.value) else str, names))
-
-
 TABLES = {
     "commas.table": "packing,grains,velocity\nbcca,20,3\n",
     "column.table": "packing grains velocty\nbcca 20 3\nbcca 20 4\n",
@@ -31,7 +20,6 @@ TABLES = {
     "same.table": "packing grains velocity out\nbcca 20 3 runs/a\nbcca 20 4 runs/a\n",
     "text.txt": "hello\n",
     "mine.npz": "hello\n",
-    "unit.table": "velocity\n3 m/s\n",
     "runs.csv": "a,b\n",
     "no.json": "{}",
     "run.pvd": "<?xml version='1.0'?><VTKFile type='Collection'><Collection/></VTKFile>\n",
@@ -53,13 +41,13 @@ MISTAKES = {
         [f"analysis film empty --rate {rate}" for rate in ("nan", "fast", "1000")], "must be from 0.1 to 120"
     ),
     "analysis film empty --width 9.5": "argument --width: 9.5: must be a whole number from 160 to 3840",
-    "analysis film empty --colour blue": "invalid choice: 'blue' " + choices("aggregate"),
+    "analysis film empty --colour blue": "argument --colour: invalid choice: 'blue' (choose from ",
     "analysis view empty --out a.txt": "a.txt: must end in .html",
     "analysis study mine.py empty": "mine.py: defines no STUDY; must be as analysis/STUDIES.md says",
     "analysis study typo.py empty": "typo.py: NameError at line 2: name 'y' is not defined; must define STUDY",
     "analysis study syntax.py empty": "syntax.py: SyntaxError at line 1: ",
-    "analysis film empty --along xy": "invalid choice: 'xy' " + choices("x", "y", "z") + ")",
-    "analysis export empty --format ply": "invalid choice: 'ply' " + choices("vtk", "xyz", "all") + ")",
+    "analysis film empty --along xy": "argument --along: invalid choice: 'xy' (choose from ",
+    "analysis export empty --format ply": "argument --format: invalid choice: 'ply' (choose from ",
     "analysis plot sticking empty": "empty: no run folder (run.json) there",
     "analysis status nowhere": "nowhere: no such folder",
     "analysis study viscos empty": "no study viscos (did you mean viscous?); must be one of atlas, ",
@@ -73,11 +61,9 @@ MISTAKES = {
     "analysis verify empty": "empty: no run folder (run.json) there",
     "analysis status text.txt": "text.txt: is not a folder",
     "analysis study text.txt empty": "no study text.txt; must be one of atlas, ",
-    "analysis summary empty --jsn": "unrecognized arguments: --jsn",
     "analysis outcome --velocity -5 --projectile 2 --target 5 --filling .1": "-5: must be a number > 0",
-    "analysis summry empty": "invalid choice: 'summry' " + choices("summary") + ", ",
+    "analysis summry empty": "invalid choice: 'summry' (choose from ",
     "analysis summary": "the following arguments are required: RUNS",
-    "analysis figures a b": "unrecognized arguments: b",
     "analysis": "the following arguments are required: command",
     "documents": "documents: must be called with the file of the PDF",
     "study commas.table": "commas.table: line 1 has commas; names and values must be parted by blanks",
@@ -91,18 +77,13 @@ MISTAKES = {
     "study latin.table": "latin.table: has bytes that are not UTF-8; must be a table",
     "study text.txt": "text.txt: no rows; must be a line of names, then rows of values",
     "study empty": "empty: is no regular file; must be one",
-    "study nowhere.table": "nowhere.table: No such file or directory; must be a table",
     "study": "the following arguments are required: TABLE",
     "study cells.table -j 0": "-j = 0: must be 1 or more",
-    "study unit.table": "unit.table: line 2 has 2 cells; must be 1, one for each name",
-    "study cells.table column.table": "unrecognized arguments: column.table",
-    "study cells.table -j 2.5": "argument -j/--jobs: invalid int value: '2.5'",
     "make_packing": "0 files given; must be one or two to write, a.npz b.npz (names without =), or --help",
     "make_packing a.npz b.npz c.npz radius=3": "3 files given; must be one or two",
     "make_packing a.npz --seed 3": "--seed: not understood; must be name=value, or --help",
     "make_packing a.npz from=run.pvd": "with their radii, such as state_NNNNNN/grains.vtp of an export",
     "make_packing a.npz from= unit=um": "from = : must be a file",
-    "make_packing a.npz packing=bcca grains=1e9": "grains = 1e9: must be 2 to 5000000",
     "make_packing a.npz packing=bcca grains=10 filling=0.4": "filling = 0.4: given with packing = bcca",
     "make_packing a.npz from=empty unit=um": "empty: is no regular file; must be one",
     "make_packing mine.npz radius=3": "mine.npz: is there, and no packing; must be a new file, or a packing to replace",

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 from refused import refused
-from running import Terminal, wait_for
+from running import Terminal, wait_for, waits_for_a_lock
 
 from analysis.runs.running import being_written, locked_inodes
 from yade_scripts.parameters.errors import InputError
@@ -114,11 +114,9 @@ def test_a_folder_in_use_is_refused_until_the_run_is_gone(tmp_path):
 
 
 LOCKS = """1: FLOCK  ADVISORY  WRITE 1234 08:01:131 0 EOF
-1: -> FLOCK  ADVISORY  WRITE 5678 08:01:131 0 EOF
+1: -> FLOCK  ADVISORY  WRITE 5678 08:01:77 0 EOF
 2: POSIX  ADVISORY  READ 1111 00:1a:17 128 128
-3: -> FLOCK  ADVISORY  READ 99 fd:01:77 0 EOF
 4: FLOCK  ADVISORY  READ -1 fd:01:4026531992 0 EOF
-5: LEASE  ACTIVE    READ 12 08:01:55 0 EOF
 """
 
 
@@ -130,7 +128,7 @@ def test_a_process_that_waits_for_a_lock_does_not_hold_it(tmp_path):
     script = "import fcntl, os, sys; print(flush=True); fcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX)"
     with subprocess.Popen([sys.executable, "-c", script, path], stdout=subprocess.PIPE) as waiting:
         waiting.stdout.readline()
-        wait_for(lambda: any("->" in lock and f" {waiting.pid} " in lock for lock in open("/proc/locks")))
+        wait_for(lambda: waits_for_a_lock(waiting.pid))
         assert being_written(path) and not being_written(str(tmp_path))
         waiting.kill()
     os.close(folder._lock)

@@ -1,10 +1,8 @@
 """collide.py with necks and in a plane: the columns neck and planar, packing bcca, contact_bonded, the channel bondBreaking."""
 
-import os
-
 import numpy as np
 import pytest
-from running import completed, read_arrays, read_json
+from running import completed, read_arrays, read_json, states
 
 from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS, CHANNELS
@@ -20,10 +18,6 @@ def run(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     completed(folder, *PLANAR, f"engine={request.param}")
     return folder / "run"
-
-
-def states(run):
-    return [read_arrays(run, "states", name) for name in sorted(os.listdir(run / "states"))]
 
 
 def test_bonds_break_new_contacts_are_none_and_a_plane_stays_one_to_the_bit(run):

@@ -8,10 +8,8 @@ from multiprocessing.pool import ThreadPool
 import pytest
 from running import PYTHON, TOP, study, wait_for
 
-from analysis.runs import running
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows, slurm, slurm_task
-from yade_scripts.runner.batch import StudyFolder
 from yade_scripts.runner.cost import typical_seconds
 from yade_scripts.runner.log import failure
 
@@ -31,34 +29,6 @@ exec {PYTHON} {TOP}/yade_scripts/runner/slurm_task.py runs/logs/three/slurm-1/ro
 """
 
 
-@pytest.fixture
-def commands(program, monkeypatch):
-    """sbatch, which writes its arguments to a file and names job 12, then 13; squeue, by which all their tasks wait."""
-    program("sbatch", 'echo "$@" >> sbatch; echo $((11 + $(wc -l < sbatch)))')
-    program("squeue", 'for task in 1 2; do echo "$4_$task PENDING"; done')
-    monkeypatch.setattr(running, "_ANSWERS", {})
-
-
-@pytest.fixture
-def call(tmp_path, monkeypatch, capsys):
-    """study.py with arguments, in this process: (exit status, stdout, stderr). It needs no lock here."""
-    interrupt = signal.getsignal(signal.SIGINT)
-    from yade_scripts import study as study_script
-
-    signal.signal(signal.SIGINT, interrupt)  # a script's own, since the import
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(StudyFolder, "lock", lambda folder: os.makedirs(folder.path, exist_ok=True))
-
-    def called(*arguments):
-        try:
-            status = study_script.main(list(arguments))
-        except SystemExit as end:
-            status = end.code
-        return status, *capsys.readouterr()
-
-    return called
-
-
 def write_table(folder, text=TABLE, name="three.table"):
     (folder / name).write_text(text)
 
@@ -73,14 +43,17 @@ def test_the_script_of_an_array(tmp_path):
     assert os.listdir(tmp_path) == ["three.table"]
 
 
-def test_what_waits_in_the_queue_is_shown_and_not_submitted_again(tmp_path, commands, call):
+def test_what_waits_in_the_queue_is_shown_and_not_submitted_again(tmp_path, program):
+    """sbatch writes its arguments to a file and names job 12, then 13; squeue says that all their tasks wait."""
+    program("sbatch", 'echo "$@" >> sbatch; echo $((11 + $(wc -l < sbatch)))')
+    program("squeue", 'for task in 1 2; do echo "$4_$task PENDING"; done')
     write_table(tmp_path)
     log = tmp_path / "runs" / "logs" / "three" / "a.log"  # of an earlier failure
     log.parent.mkdir(parents=True)
     log.write_text("collide.py: no\nJOB SUMMARY\nstatus  : 256 (FAILED)\n")
-    status, output, errors = call("three.table", "--slurm", "--", "--time=5", "--partition=long")
-    assert (status, errors) == (1, REFUSED)
-    assert output.splitlines() == [
+    done = study(tmp_path, "three.table", "--slurm", "--", "--time=5", "--partition=long")
+    assert (done.returncode, done.stderr) == (1, REFUSED)
+    assert done.stdout.splitlines() == [
         "Slurm job 12: 2 rows in 1 tasks, 1 threads each",
         "Slurm job 13: 1 rows in 1 tasks, 2 threads each",
         "three: 4 rows, 0 done, 0 running, 1 failed, 0 in the queue before, 3 submitted",
@@ -92,12 +65,12 @@ def test_what_waits_in_the_queue_is_shown_and_not_submitted_again(tmp_path, comm
     assert "--array=1-1\n" in (tmp_path / script.format(1)).read_text()
     found = rows.read(tmp_path / "runs" / "logs" / "three" / "slurm-1" / "rows.table")
     assert [(row.name, row.out) for row in found] == [("a", "runs/a"), ("c", "runs/c")]
-    status = call("three.table", "--status")[1].splitlines()
+    status = study(tmp_path, "three.table", "--status").stdout.splitlines()
     notes = {"a": "12_1", "b": "13_1", "c": "12_1"}
     assert [line.split()[:2] for line in status[:3]] == [["waiting", name] for name in notes]
     assert all(line.endswith(f"Slurm job {task} pending") for line, task in zip(status, notes.values()))
     write_table(tmp_path, TABLE + "more 5 13 1 runs/more\n")
-    again = call("three.table", "--slurm")[1].splitlines()
+    again = study(tmp_path, "three.table", "--slurm").stdout.splitlines()
     assert again[-1].endswith("1 failed, 3 in the queue before, 1 submitted")
 
 
@@ -125,18 +98,19 @@ NOT_SUBMITTED = {
 
 
 @pytest.mark.parametrize("arguments", NOT_SUBMITTED)
-def test_what_cannot_be_submitted_is_one_line(tmp_path, program, call, arguments):
+def test_what_cannot_be_submitted_is_one_line(tmp_path, program, arguments):
     program("sbatch", "echo Batch job submission failed: no such partition >&2; exit 1")
     write_table(tmp_path, ONE, arguments.split()[0])
-    status, _, errors = call(*arguments.split())
-    assert status == 2 and NOT_SUBMITTED[arguments] in errors.splitlines()[-1]
+    done = study(tmp_path, *arguments.split())
+    assert done.returncode == 2 and NOT_SUBMITTED[arguments] in done.stderr.splitlines()[-1]
 
 
-def test_without_slurm_it_is_one_line(tmp_path, monkeypatch, call):
+def test_without_slurm_it_is_one_line(tmp_path, monkeypatch):
     write_table(tmp_path, ONE)
     monkeypatch.setenv("PATH", str(tmp_path))
-    status, _, errors = call("three.table", "--slurm")
-    assert (status, errors) == (2, "study.py: sbatch: not found; must be on a machine that submits to Slurm\n")
+    done = study(tmp_path, "three.table", "--slurm")
+    assert done.returncode == 2
+    assert done.stderr == "study.py: sbatch: not found; must be on a machine that submits to Slurm\n"
 
 
 STOPS = """

@@ -6,16 +6,14 @@ import os
 import signal
 import subprocess
 import sys
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from running import small_disk
+from running import small_disk, wait_for, waits_for_a_lock
 
 TOP = Path(__file__).resolve().parents[2]
 INSTALLER = str(TOP / "contact_law/installation.py")
 COMMANDS = ("dust-analysis", "dust-collide", "dust-compress", "dust-packing", "dust-study")
-WAIT = 3  # s in which an installation gets far
 SMALL = ("grains=30", "packing=bpca", "velocity=20", "duration=2e-9", "stepFraction=0.1")
 
 
@@ -26,44 +24,33 @@ def installation(action, prefix, base=None, within=()):
     return subprocess.run(command, capture_output=True, text=True, env=environment)
 
 
-# installation.py with a function that ends the process at a call, counted from 0.
-KILLED = """
+# installation.py with a function that sends the process a signal at a call, counted from 0.
+SIGNALLED = """
 import os, pathlib, runpy, shutil, sys
-place, name, calls = {"copy2": shutil, "rmdir": os, "unlink": pathlib.Path}, sys.argv[1], int(sys.argv[2])
+place, name, calls, number = {"copy2": shutil, "rmdir": os, "unlink": pathlib.Path}, sys.argv[1], *map(int, sys.argv[2:4])
 own = getattr(place[name], name)
-def ends(*arguments, **more):
+def signalled(*arguments, **more):
     global calls
     calls -= 1
-    return own(*arguments, **more) if calls >= 0 else os.kill(os.getpid(), 9)
-setattr(place[name], name, ends)
+    calls == -1 and os.kill(os.getpid(), number)
+    return own(*arguments, **more)
+setattr(place[name], name, signalled)
 if name == "rmdir":
-    pathlib.Path.rmdir = ends
-sys.argv = sys.argv[3:]
+    pathlib.Path.rmdir = signalled
+sys.argv = sys.argv[4:]
 runpy.run_path(sys.argv[0], run_name="__main__")
 """
+
+
+def signalled(function, calls, number):
+    """What Python is given before the installer."""
+    return "-c", SIGNALLED, function, str(calls), str(int(number))
 
 
 def killed(action, prefix, function, calls):
     """An installation or removal that is killed at so many calls of a function."""
-    done = installation(action, prefix, within=("-c", KILLED, function, str(calls)))
+    done = installation(action, prefix, within=signalled(function, calls, signal.SIGKILL))
     assert done.returncode == -signal.SIGKILL, done.stderr
-
-
-# installation.py that waits for a line of stdin when it has copied half.
-WAITS = """
-import runpy, shutil, sys
-copy2, calls = shutil.copy2, 0
-def waits(*arguments, **more):
-    global calls
-    calls += 1
-    if calls == 100:
-        print("half", flush=True)
-        sys.stdin.readline()
-    return copy2(*arguments, **more)
-shutil.copy2 = waits
-sys.argv = sys.argv[1:]
-runpy.run_path(sys.argv[0], run_name="__main__")
-"""
 
 
 def refused(done, words):
@@ -155,11 +142,13 @@ def test_no_link_of_an_installation_leads_to_the_checkout(installed):
 
 
 def test_installing_again_and_removing_leave_nothing_behind(tmp_path):
+    """Nor a command that a killed installation has half written."""
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin/other").write_text("another program")
     for action in ("install", "install"):
         assert installation(action, tmp_path).returncode == 0
     assert {file.name for file in (tmp_path / "bin").iterdir()} == {*COMMANDS, "other"}
+    (tmp_path / "bin/.dust-study.0123abcd.unfinished").write_text("#!/bin")
     assert installation("uninstall", tmp_path).returncode == 0
     assert [path for path in tmp_path.rglob("*") if path.is_file() or path.is_symlink()] == [tmp_path / "bin/other"]
     refused(installation("uninstall", tmp_path), "")
@@ -190,42 +179,35 @@ def test_only_what_was_installed_is_removed(tmp_path):
 
 @pytest.mark.parametrize("again", ["install", "uninstall"])
 def test_a_killed_installation_is_cleaned_up_by_the_next_call(tmp_path, again):
-    """What it has copied goes; files beside and below it that it did not make stay."""
-    mine = tmp_path / "lib/.contact_law.notes.unfinished/mine"
+    """What it has copied goes; files in, beside and below its folder that it did not make stay."""
+    lib, mine = tmp_path / "lib", tmp_path / "lib/.contact_law.notes.unfinished/mine"
     mine.parent.mkdir(parents=True)
     mine.write_text("mine")
     for calls in (0, 20):
         killed("install", tmp_path, "copy2", calls)
-    left = set((tmp_path / "lib").glob(".contact_law.*")) - {mine.parent}
-    assert len(left) == 1  # the second has removed the first's
-    assert list(left.pop().rglob("*.py"))
+    (left,) = set(lib.glob(".contact_law.*")) - {mine.parent}  # the second has removed the first's
+    inside = next(left.rglob("*.py")).with_name("mine.py")
+    inside.write_text("mine")
     done = installation(again, tmp_path)
     assert done.returncode == 0 if again == "install" else "no installation there" in done.stderr
-    assert list((tmp_path / "lib").glob(".contact_law.*")) == [mine.parent] and mine.read_text() == "mine"
-    assert (tmp_path / "lib/contact_law/installed.json").exists() == (again == "install")
+    kept = [path for folder in lib.glob(".contact_law.*") for path in folder.rglob("*")]
+    assert set(kept) == {mine, inside, *(path for path in inside.parents if left in path.parents)}
+    assert mine.read_text() == inside.read_text() == "mine"
+    assert (lib / "contact_law/installed.json").exists() == (again == "install")
 
 
 def test_an_installation_waits_for_another_one(tmp_path):
     """And doesn't take the other's half for one that was left."""
-    pipes = dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    first = subprocess.Popen([sys.executable, "-c", WAITS, INSTALLER, "install", str(tmp_path)], text=True, **pipes)
-    assert first.stdout.readline() == "half\n"
-    second = subprocess.Popen([sys.executable, INSTALLER, "install", str(tmp_path)], stdout=subprocess.DEVNULL)
-    with suppress(subprocess.TimeoutExpired):
-        second.wait(WAIT)
-    first.communicate("\n")
-    assert (first.returncode, second.wait()) == (0, 0)
+    stopped = signalled("copy2", 100, signal.SIGSTOP)
+    command = [INSTALLER, "install", str(tmp_path)]
+    first = subprocess.Popen([sys.executable, *stopped, *command], stdout=subprocess.DEVNULL)
+    assert os.WIFSTOPPED(os.waitpid(first.pid, os.WUNTRACED)[1])
+    second = subprocess.Popen([sys.executable, *command], stdout=subprocess.DEVNULL)
+    wait_for(lambda: waits_for_a_lock(second.pid) or second.poll() is not None)
+    first.send_signal(signal.SIGCONT)
+    assert (first.wait(), second.wait()) == (0, 0)
     assert installation("uninstall", tmp_path).returncode == 0
     assert [path for path in tmp_path.rglob("*") if not path.is_dir()] == []
-
-
-def test_a_file_in_the_folder_of_a_killed_installation_is_kept(tmp_path):
-    killed("install", tmp_path, "copy2", 5)
-    (left,) = (tmp_path / "lib").glob(".contact_law.*")
-    mine = next(left.rglob("analysis")) / "mine.py"
-    mine.write_text("mine")
-    assert installation("install", tmp_path).returncode == 0
-    assert [path for path in left.rglob("*") if path.is_file()] == [mine]
 
 
 @pytest.mark.parametrize("function, calls", [("unlink", 30), ("rmdir", 3)])
@@ -237,14 +219,6 @@ def test_a_killed_removal_does_not_stand_in_the_way(tmp_path, function, calls):
     done = installation("uninstall", tmp_path)
     assert done.returncode == 0 or "no installation there" in done.stderr
     assert not list(tmp_path.rglob("contact_law*"))
-
-
-def test_a_command_that_a_killed_installation_has_half_written_is_removed(tmp_path):
-    assert installation("install", tmp_path).returncode == 0
-    half = tmp_path / "bin/.dust-study.0123abcd.unfinished"
-    half.write_text("#!/bin")
-    assert installation("uninstall", tmp_path).returncode == 0
-    assert not half.exists()
 
 
 def test_a_full_disk_is_told_in_a_line_and_leaves_nothing(tmp_path):

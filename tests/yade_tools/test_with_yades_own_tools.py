@@ -15,10 +15,8 @@ IN_YADE = pytest.mark.in_yade
 def test_a_contact_moves_with_a_deforming_cell():
     """In a cell that shrinks, a pair at rest relative to the mean flow across the boundary closes at the flow's rate."""
     new_scene(0.02 * unit)
-    O.periodic = True
-    O.cell.setBox(2e-6, 2e-6, 2e-6)
     rate = -1e5
-    O.cell.velGrad = Matrix3(rate, 0, 0, 0, 0, 0, 0, 0, 0)
+    periodic_cell(2e-6, 2e-6, 2e-6, velocity_gradient=(rate, 0, 0))
     for x in (1e-7 - 0.1e-9, 2e-6 - 1e-7 + 0.1e-9):
         grain((x, 1e-6, 1e-6), 1e-7, ice(viscoelasticTime=1e-12), blocked="xyzXYZ")  # YADE adds the mean flow
     O.run(2, True)

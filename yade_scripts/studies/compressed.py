@@ -12,6 +12,7 @@ until that is so. A pair comes from one cell, in two places and orientations, wh
 
 import os
 import sys
+from itertools import product
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOP = os.path.dirname(os.path.dirname(HERE))
@@ -20,7 +21,7 @@ from analysis.progress import progress
 from yade_scripts import packings
 from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
-from yade_scripts.run import table
+from yade_scripts.studies import table_script
 
 CELLS, PACKINGS, COLLISIONS = "runs/compressed-cells", "runs/compressed-packings", "runs/compressed"
 FILLINGS, PAIRS = (0.4, 0.3), 10
@@ -30,6 +31,11 @@ TOLERANCE, PLACES = 0.01, 200  # of the filling; places tried
 EXPONENTS = (5, 0, 10)  # i of 10^(0.1 i) m/s
 DURATION = "8e-7"  # s: compressed aggregates turn around later than CPE ones
 STEP, CELL_STEP = 0.2, 0.3  # t0
+
+
+def pairs():
+    """[(filling, seed)] of all pairs."""
+    return [(filling, seed) for seed in range(1, PAIRS + 1) for filling in FILLINGS]
 
 
 def cell(filling, seed):
@@ -71,40 +77,37 @@ def cell_rows():
     """Rows of the cells' table."""
     row = {"!SCRIPT": "yade_scripts/compress.py", "grains": GRAINS, "strainRate": RATE, "stepFraction": CELL_STEP}
     found = []
-    for seed in range(1, PAIRS + 1):
-        for filling in FILLINGS:
-            own = {"finalFilling": f"{filling:g}", "states": 2, "seed": seed, "threads": 1, "out": cell(filling, seed)}
-            found.append({"description": f"f{filling:g}-s{seed}", **row, **own})
+    for filling, seed in pairs():
+        own = {"finalFilling": f"{filling:g}", "states": 2, "seed": seed, "threads": 1, "out": cell(filling, seed)}
+        found.append({"description": f"f{filling:g}-s{seed}", **row, **own})
     return found
 
 
 def collision_rows():
     """Rows of the collisions' table: each pair of both kinds after the other."""
     found = []
-    for i in EXPONENTS:
-        for seed in range(1, PAIRS + 1):
-            for filling in FILLINGS:
-                files = [packing_file(filling, seed, index) for index in (0, 1)]
-                for kind, given in (
-                    ("cpe", dict(packing="cpe", filling=filling, radius=RADIUS, seed=seed)),
-                    ("compressed", dict(packing="file", file=files[0], projectileFile=files[1])),
-                ):
-                    name = f"{kind}-f{filling:g}-i{i}-s{seed}"
-                    last = dict(duration=DURATION, stepFraction=STEP, threads=1, out=f"{COLLISIONS}/{name}")
-                    found.append({"description": name, **given, "velocity": f"10**(0.1*{i})", **last})
+    for i, (filling, seed) in product(EXPONENTS, pairs()):
+        files = [packing_file(filling, seed, index) for index in (0, 1)]
+        cpe = {"packing": "cpe", "filling": filling, "radius": RADIUS, "seed": seed}
+        compressed = {"packing": "file", "file": files[0], "projectileFile": files[1]}
+        for kind, given in (("cpe", cpe), ("compressed", compressed)):
+            name = f"{kind}-f{filling:g}-i{i}-s{seed}"
+            last = {"duration": DURATION, "stepFraction": STEP, "threads": 1, "out": f"{COLLISIONS}/{name}"}
+            found.append({"description": name, **given, "velocity": f"10**(0.1*{i})", **last})
     return found
+
+
+CELL_HEAD = """Cells that are compressed, out of which spheres are cut (Oshiro et al. 2025).
+Units: strainRate: 1/t0; stepFraction: t0."""
+HEAD = """CPE and compressed aggregates of the same filling and size, head-on.
+Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0."""
 
 
 def write_tables(folder):
     """Write compressed-cells.table and compressed-desk.table into a folder."""
-    written = "Written by yade_scripts/studies/compressed.py."
-    head = f"Cells that are compressed, out of which spheres are cut (Oshiro et al. 2025).\nUnits: strainRate: 1/t0; stepFraction: t0. {written}"
-    table.write(os.path.join(folder, "compressed-cells.table"), cell_rows(), head)
-    head = (
-        "CPE and compressed aggregates of the same filling and size, head-on.\n"
-        f"Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0. {written}"
+    table_script.write(
+        folder, "compressed", "{which}", {"cells": (cell_rows(), CELL_HEAD), "desk": (collision_rows(), HEAD)}
     )
-    table.write(os.path.join(folder, "compressed-desk.table"), collision_rows(), head)
 
 
 def main(arguments):
@@ -113,9 +116,8 @@ def main(arguments):
     elif arguments == ["cut"]:
         os.chdir(TOP)
         os.makedirs(PACKINGS, exist_ok=True)
-        pairs = [(filling, seed) for filling in FILLINGS for seed in range(1, PAIRS + 1)]
         try:
-            for filling, seed in progress(pairs, "cutting spheres"):
+            for filling, seed in progress(pairs(), "cutting spheres"):
                 cut_pair(filling, seed)
         except PackingError as error:
             sys.exit(f"compressed.py: {error}")

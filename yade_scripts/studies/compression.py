@@ -13,7 +13,6 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.run import table
 from yade_scripts.studies import table_script
 
 # t0; K13 takes 0.1. The pressure, by the work of the boundaries, is that at a step of 0.05 to 1 % below a filling of 0.1 and to
@@ -68,35 +67,28 @@ def rows(sets, folder):
     """A table's rows of [(parameters, number of clusters or their seeds)]: first one cluster of every set, then the others."""
     found = []
     for parameters, seeds in sets:
+        row = {"!SCRIPT": "yade_scripts/compress.py", "material": "ice", "stepFraction": STEP, **parameters}
         for seed in range(1, seeds + 1) if isinstance(seeds, int) else seeds:
-            description = name(parameters, seed)
-            row = {
-                "description": description,
-                "!SCRIPT": "yade_scripts/compress.py",
-                "material": "ice",
-                "stepFraction": STEP,
-                **parameters,
-                "seed": seed,
-                "threads": 1,
-                "out": f"{folder}/{description}",
-            }
-            found.append(row)
+            own = name(parameters, seed)
+            found.append({"description": own, **row, "seed": seed, "threads": 1, "out": f"{folder}/{own}"})
     return sorted(found, key=lambda row: row["seed"] > 1)
 
 
 HEAD = """Kataoka et al. (2013), Figs 4 to 13: static compression of BCCA clusters in periodic cells. {which}
-Units: strainRate: 1/t0; criticalRolling: m; stepFraction: t0. Written by yade_scripts/studies/compression.py."""
+Units: strainRate: 1/t0; criticalRolling: m; stepFraction: t0."""
 
 
 def write_tables(folder):
     """Write compression-desk.table, compression-full.table and compression-own.table into a folder."""
-    for which, sets, runs, what in (
-        ("desk", DESK, "runs/compression", "A selection, and cells stretched again."),
-        ("full", FULL, "runs/compression-full", "All of the paper's."),
-        ("own", OWN, "runs/compression-own", "More clusters, the paper's size among them, up to where its law ends."),
-    ):
-        path = os.path.join(folder, f"compression-{which}.table")
-        table.write(path, rows(sets, runs), HEAD.format(which=what))
+    tables = {
+        "desk": (rows(DESK, "runs/compression"), "A selection, and cells stretched again."),
+        "full": (rows(FULL, "runs/compression-full"), "All of the paper's."),
+        "own": (
+            rows(OWN, "runs/compression-own"),
+            "More clusters, the paper's size among them, up to where its law ends.",
+        ),
+    }
+    table_script.write(folder, "compression", HEAD, tables)
 
 
 if __name__ == "__main__":

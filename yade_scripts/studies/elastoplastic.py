@@ -7,19 +7,20 @@ worth having: small aggregates first, and every figure gets its first points ear
 
 import os
 import sys
+from itertools import product
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.run import table
 from yade_scripts.studies import table_script
 
 FASTEST_STEP = 0.2  # t0; the ledger closes to 5e-4 of the kinetic energy or better
 REFERENCE = 5  # i of the velocity 10^0.5 m/s at which sizes are compared (Figs 5 to 7)
 VELOCITIES = range(8)
+FILLINGS = (0.4, 0.3)
 
 # {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow
 # collisions of larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
-DESK_SIZES = {(filling, radius): n for radius, n in {40: 20, 50: 8, 60: 8, 80: 3}.items() for filling in (0.4, 0.3)}
+DESK_SIZES = {(filling, radius): n for radius, n in {40: 20, 50: 8, 60: 8, 80: 3}.items() for filling in FILLINGS}
 DESK_VELOCITIES = 6
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
 SLOW = (0, 2)
@@ -34,34 +35,24 @@ FIRST_LOOK = (1, 3, 5, 7)  # i of the velocities of the table first
 
 def desk():
     """[(filling, radius, i, seed)] of the small study."""
-    sizes = [
-        (filling, radius, REFERENCE, seed)
-        for (filling, radius), seeds in DESK_SIZES.items()
-        for seed in range(1, seeds + 1)
-    ]
-    velocities = [
-        (filling, 40, i, seed)
-        for seed in range(1, DESK_VELOCITIES + 1)
-        for filling in (0.4, 0.3)
-        for i in VELOCITIES
-        if i != REFERENCE
-    ]
-    slow = [
-        (filling, radius, i, seed)
-        for (filling, radius), seeds in DESK_SLOW.items()
-        for i in SLOW
-        for seed in range(1, seeds + 1)
-    ]
-    return sorted(sizes + velocities + slow, key=lambda row: (row[3] > FIRST, row[1], row[3]))
+    sizes = [(*size, REFERENCE, seed) for size, seeds in DESK_SIZES.items() for seed in range(1, seeds + 1)]
+    scenes = product(range(1, DESK_VELOCITIES + 1), FILLINGS, VELOCITIES)
+    velocities = [(filling, 40, i, seed) for seed, filling, i in scenes if i != REFERENCE]
+    slow = [(*size, i, seed) for size, seeds in DESK_SLOW.items() for i in SLOW for seed in range(1, seeds + 1)]
+    return sorted(sizes + velocities + slow, key=_order)
 
 
 def full():
     """[(filling, radius, i, seed)] of all of the paper's runs."""
-    sizes = {(filling, radius, REFERENCE) for filling in (0.4, 0.3) for radius in (40, 50, 60, 70, 80)}
-    velocities = {(filling, radius, i) for filling in (0.4, 0.3) for radius in (40, 80) for i in VELOCITIES}
-    scenes = sorted(sizes | velocities, key=lambda scene: (scene[1], -scene[0], scene[2]))
-    rows = [(*scene, seed) for scene in scenes for seed in range(1, 11)]
-    return sorted(rows, key=lambda row: (row[3] > FIRST, row[1], row[3]))
+    scenes = {*product(FILLINGS, (40, 50, 60, 70, 80), (REFERENCE,)), *product(FILLINGS, (40, 80), VELOCITIES)}
+    scenes = sorted(scenes, key=lambda scene: (scene[1], -scene[0], scene[2]))
+    return sorted(((*scene, seed) for scene in scenes for seed in range(1, 11)), key=_order)
+
+
+def _order(scene):
+    """That in which collisions are worth having."""
+    _, radius, _, seed = scene
+    return seed > FIRST, radius, seed
 
 
 def first():
@@ -69,7 +60,7 @@ def first():
     return [(0.4, 40, i, seed) for seed in range(1, FIRST + 1) for i in FIRST_LOOK]
 
 
-def rows(scenes, folder, step, followed):
+def rows(scenes, folder, step=FASTEST_STEP, followed={}):
     """A table's rows, with run folders FOLDER/fFILLING-RRADIUS-iI-sSEED; followed: {(radius, i): duration} of
     those that have another than DURATION."""
     found = []
@@ -92,18 +83,17 @@ def rows(scenes, folder, step, followed):
 
 
 HEAD = """Arakawa et al. (2024), section 3 and Figs 4 to 9: head-on collisions of equal CPE aggregates of ice grains. {which}
-Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0. Written by yade_scripts/studies/elastoplastic.py."""
+Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0."""
 
 
 def write_tables(folder):
     """Write elastoplastic-first.table, elastoplastic-desk.table and elastoplastic-full.table into a folder."""
-    for size, scenes, runs, step, followed, which in (
-        ("first", first(), "runs/elastoplastic-first", FASTEST_STEP, {}, "One figure: Fig. 8 at R = 40."),
-        ("desk", desk(), "runs/elastoplastic", FASTEST_STEP, FOLLOWED, "A selection."),
-        ("full", full(), "runs/elastoplastic-full", 0.1, {}, "All of the paper's."),
-    ):
-        path = os.path.join(folder, f"elastoplastic-{size}.table")
-        table.write(path, rows(scenes, runs, step, followed), HEAD.format(which=which))
+    tables = {
+        "first": (rows(first(), "runs/elastoplastic-first"), "One figure: Fig. 8 at R = 40."),
+        "desk": (rows(desk(), "runs/elastoplastic", followed=FOLLOWED), "A selection."),
+        "full": (rows(full(), "runs/elastoplastic-full", step=0.1), "All of the paper's."),
+    }
+    table_script.write(folder, "elastoplastic", HEAD, tables)
 
 
 if __name__ == "__main__":

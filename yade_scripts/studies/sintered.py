@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.run import table
 from yade_scripts.studies import table_script
 
 GRAINS = 1024
@@ -177,24 +176,21 @@ def rows(size):
 
 
 HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {which}
-Ten seeds a point where the paper has five runs. {cost}
 Compacted aggregates (packing = file) come from sintered_growth.py, which make study-sintered runs first.
 The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates (one collision at V_g)
 after they have come to rest; ordinary contacts cut their springs at the limits (limit = cut, section 3.2) and
 slide with the spring of eqs 11 and 12 as printed (slidingStiffnessFactor = 2); 20,000 periods of the stretching
 vibration, 1.22 ns each, is the longest duration, 10,000 above 10 m/s (no largest piece changed later in 21 runs), and
 a run ends earlier when no pieces can meet again; grains in contact at the end are one piece.
-Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/sintered.py."""
+Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFraction: t0."""
 # Wall time of a row [s]: mean of 160 rows of the desk's BCCA aggregates (3.17 core hours), one thread each, on a busy machine.
 # 198 later rows, 108 of compacted aggregates among them, took 34 s each on a newer AMD EPYC with both cores busy.
 ROW = 71.3
-GROWTH = {"desk": "one", "full": "three", "beyond": "less than one"}  # core hours to grow the aggregates
-WHICH = {
-    "desk": "A selection.",
-    "full": "All of the paper's.",
-    "beyond": "What the desk's runs leave open: compacted aggregates in space, springs held at the limits (limit = held), xi_crit = "
-    "30 Angstrom.",
-}
+LEFT = "What the desk's runs leave open: compacted aggregates in space, springs held at the limits (limit = held), xi_crit = 30 Angstrom."
+# What a table is, and how many core hours it takes to grow its aggregates.
+WHICH = {"desk": ("A selection.", "one"), "full": ("All of the paper's.", "three"), "beyond": (LEFT, "less than one")}
+COST = """{which}
+Ten seeds a point where the paper has five runs. Some {hours:.0f} core hours (71 s a row, the mean of 160 rows of BCCA aggregates on a busy machine), and {growth} to grow the aggregates."""
 
 
 def core_hours(size):
@@ -204,13 +200,10 @@ def core_hours(size):
 
 def write_tables(folder):
     """Write sintered-desk.table, sintered-full.table and sintered-beyond.table into a folder."""
-    for size, which in WHICH.items():
-        cost = (
-            f"Some {core_hours(size):.0f} core hours (71 s a row, the mean of 160 rows of BCCA aggregates on a busy machine), and "
-            f"{GROWTH[size]} to grow the aggregates."
-        )
-        path = os.path.join(folder, f"sintered-{size}.table")
-        table.write(path, rows(size), HEAD.format(which=which, cost=cost))
+    tables = {}
+    for size, (which, growth) in WHICH.items():
+        tables[size] = rows(size), COST.format(which=which, hours=core_hours(size), growth=growth)
+    table_script.write(folder, "sintered", HEAD, tables)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,16 @@
 """What the scripts that write the tables of a study have in common."""
 
+import os
 import sys
+
+from yade_scripts.run import table
+
+
+def write(folder, study, head, tables):
+    """Write STUDY-SIZE.table of each of {size: (rows, what it is)} into a folder; head: lines for all, in which {which} is what one is."""
+    for size, (rows, which) in tables.items():
+        lines = f"{head.format(which=which)} Written by yade_scripts/studies/{study}.py."
+        table.write(os.path.join(folder, f"{study}-{size}.table"), rows, lines)
 
 
 def main(write_tables, folder, description):

@@ -15,10 +15,10 @@ merging first, then all 13; then three at 63.1 m/s, without drag first, so that 
 
 import os
 import sys
+from itertools import product
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.run import table
 from yade_scripts.studies import table_script
 
 TWELFTHS = range(13)  # B_off^2 in twelfths
@@ -45,40 +45,33 @@ PREDICTED_GRAINS, PREDICTED_SEEDS, PREDICTED_EXPONENTS = 10_000, 2, range(17, 21
 EVERY_SECOND, THE_OTHERS = TWELFTHS[::2], TWELFTHS[1::2]
 
 
-def grid(grains, exponents, seed):
-    """[(grains, twelfths, i, picoseconds, seed)] of every B_off, speed and T_vis."""
-    return [
-        (grains, twelfths, i, time, seed) for i in reversed(exponents) for time in PICOSECONDS for twelfths in TWELFTHS
-    ]
+def grid(grains, exponents, seeds, times=PICOSECONDS):
+    """[(grains, twelfths, i, picoseconds, seed)] of every B_off, speed and T_vis, seed by seed."""
+    places = product(seeds, reversed(exponents), times, TWELFTHS)
+    return [(grains, twelfths, i, time, seed) for seed, i, time, twelfths in places]
 
 
 def desk():
     """Collisions of the desk table: every seed in turn, the paper's size first, then size by size."""
     scenes = []
-    most = max(seeds for _, seeds in DESK.values())
-    for seed in range(1, most + 1):
+    for seed in range(1, max(seeds for _, seeds in DESK.values()) + 1):
         if seed <= REFERENCE_SEEDS:
             scenes += [(FULL_GRAINS, *REFERENCE, time, seed) for time in REFERENCE_PICOSECONDS]
         for grains, (exponents, seeds) in DESK.items():
-            scenes += grid(grains, exponents, seed) if seed <= seeds else []
+            scenes += grid(grains, exponents, [seed]) if seed <= seeds else []
     return scenes
 
 
 def full():
     """Collisions of the paper, those of Fig. 1 first."""
-    scenes = grid(FULL_GRAINS, EXPONENTS, 1)
-    return sorted(scenes, key=lambda scene: scene[1:3] != REFERENCE)
+    return sorted(grid(FULL_GRAINS, EXPONENTS, [1]), key=lambda scene: scene[1:3] != REFERENCE)
 
 
 def prediction():
     """Collisions that were predicted, without drag and with the most: of every second offset head-on ones first, then seed by seed, and
     one of the paper's size; then the offsets between, seed by seed."""
-    scenes = [
-        scene
-        for seed in range(1, PREDICTED_SEEDS + 1)
-        for scene in grid(PREDICTED_GRAINS, PREDICTED_EXPONENTS, seed)
-        if scene[3] in REFERENCE_PICOSECONDS
-    ]
+    seeds = range(1, PREDICTED_SEEDS + 1)
+    scenes = grid(PREDICTED_GRAINS, PREDICTED_EXPONENTS, seeds, REFERENCE_PICOSECONDS)
     first = [scene for scene in scenes if scene[1] in EVERY_SECOND]
     first = sorted([*first, (FULL_GRAINS, 0, REFERENCE[1], 0, 1)], key=lambda scene: scene[1] > 0)
     return first + [scene for scene in scenes if scene[1] in THE_OTHERS]
@@ -88,15 +81,9 @@ def own():
     """Collisions of the paper's size: at 50.1 m/s offsets about the edge of merging first, pair by pair, then the others; at 63.1 m/s pair by
     pair, those without drag first."""
     first, faster = (
-        [
-            (FULL_GRAINS, twelfths, i, time, seed)
-            for seed in range(1, pairs + 1)
-            for twelfths in TWELFTHS
-            for time in REFERENCE_PICOSECONDS
-        ]
-        for i, pairs in OWN_PAIRS.items()
+        grid(FULL_GRAINS, [i], range(1, pairs + 1), REFERENCE_PICOSECONDS) for i, pairs in OWN_PAIRS.items()
     )
-    first.sort(key=lambda scene: (scene[1] not in EDGE, scene[4]))
+    first.sort(key=lambda scene: (scene[1] not in EDGE, scene[4], scene[1]))
     return first + sorted(faster, key=lambda scene: scene[3])
 
 
@@ -127,23 +114,21 @@ def rows(scenes, folder, **others):
 
 
 HEAD = """Arakawa et al. (2022), section 2.4: collisions of two equal BPCA aggregates of ice grains, B_off^2 = 0 to 1. {which}
-Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0. Written by yade_scripts/studies/viscous.py."""
-
-
-# {size: (collisions, run folder, what else the rows have, what the table is)}
-TABLES = {
-    "desk": (desk, "runs/viscous", {}, "Smaller aggregates, and six collisions of the paper's size."),
-    "prediction": (prediction, "runs/viscous", {}, "Larger aggregates, predicted before they ran."),
-    "full": (full, "runs/viscous-full", {}, "All of the paper's."),
-    "own": (own, "runs/viscous-own", FOLLOWED, "The paper's size at 50.1 and 63.1 m/s, to its last time."),
-}  # fmt: skip
+Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0."""
 
 
 def write_tables(folder):
-    """Write viscous-SIZE.table of each of TABLES into a folder."""
-    for size, (scenes, runs, more, which) in TABLES.items():
-        path = os.path.join(folder, f"viscous-{size}.table")
-        table.write(path, rows(scenes(), runs, **more), HEAD.format(which=which))
+    """Write viscous-SIZE.table into a folder, SIZE: desk, prediction, full, own."""
+    tables = {
+        "desk": (rows(desk(), "runs/viscous"), "Smaller aggregates, and six collisions of the paper's size."),
+        "prediction": (rows(prediction(), "runs/viscous"), "Larger aggregates, predicted before they ran."),
+        "full": (rows(full(), "runs/viscous-full"), "All of the paper's."),
+        "own": (
+            rows(own(), "runs/viscous-own", **FOLLOWED),
+            "The paper's size at 50.1 and 63.1 m/s, to its last time.",
+        ),
+    }
+    table_script.write(folder, "viscous", HEAD, tables)
 
 
 if __name__ == "__main__":

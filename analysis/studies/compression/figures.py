@@ -61,17 +61,18 @@ def _every_cluster(results):
 
 
 def _over_eq_25(name, caption, colour, panel="", **where):
-    own = {**THOUSAND, **where, colour: None, panel: None}
-    own, label = {key: value for key, value in own.items() if value is not None}, "$P$ over eq 25"
-    return CurveFigure(name, caption + NOTE, "strength", "filling", colour, panel, own, "xy", label, paper=_eq_25)
+    drawn, where = ("strength", "filling", colour, panel), _others({**THOUSAND, **where}, colour, panel)
+    return CurveFigure(name, caption + NOTE, *drawn, where, "xy", "$P$ over eq 25", paper=_eq_25)
 
 
 def _shares(name, caption, panel, **where):
-    where = {**THOUSAND, "since": 0.0, **where}
-    where.pop(panel)
-    return CurveFigure(
-        name, caption, "shares", "until", "channel", panel, where, "x", "part of all dissipated  [%]", (0.0, 100.0)
-    )
+    drawn, where = ("shares", "until", "channel", panel), _others({**THOUSAND, "since": 0.0, **where}, panel)
+    return CurveFigure(name, caption, *drawn, where, "x", "part of all dissipated  [%]", (0.0, 100.0))
+
+
+def _others(where, *drawn):
+    """The values of levels that are not drawn, without those that are left open."""
+    return {name: value for name, value in where.items() if name not in drawn and value is not None}
 
 
 FIGURES = (
@@ -89,9 +90,7 @@ FIGURES = (
     CurveFigure(
         "fig11_structure",
         "Fractal dimension between 3 and 10 grain radii, C_v = 3e-7 (K13 Fig. 11 draws N(< r) beside 2 and 3).",
-        "dimension",
-        "filling",
-        "grains",
+        *("dimension", "filling", "grains"),
         where=SLOW,
         logarithmic="x",
         y_label="$D$",
@@ -101,10 +100,7 @@ FIGURES = (
     CurveFigure(
         "whole_range",
         "Pressure of K13's ice over the formula of Tatsuuma et al. (2023) for any filling factor.",
-        "dense",
-        "filling",
-        "strainRate",
-        "grains",
+        *("dense", "filling", "strainRate", "grains"),
         STEP,
         "x",
         r"$P$ over $(E_{roll}/r_0^3)(1/\phi - 1/0.74)^{-3}$",
@@ -114,8 +110,7 @@ FIGURES = (
     CurveFigure(
         "tension",
         "Largest tension while a cell of 1,024 grains is stretched along one axis.",
-        "tensile",
-        "finalFilling",
+        *("tensile", "finalFilling"),
         where={**THOUSAND, "stretched_axes": 1},
         logarithmic="xy",
         y_label="tensile strength  [kPa]",

@@ -4,6 +4,7 @@ import numpy as np
 import pandas
 
 from ...theory.compression import bcca_filling, compressive_strength, static_from, strength_scale
+from ..curves import power
 from ..grains import grains_text
 from .curve import FILLINGS, HALF_BINS
 from .measure import COORDINATIONS, PRESSURES
@@ -56,14 +57,8 @@ def by_filling(clusters):
 
 
 def exponent(filling, over):
-    """n of P ~ phi^n (K13 eq 23) from P over phi^3, over (..., K) at filling factors (K,): least squares of the logarithms; NaN where one is not
-    positive.
-
-    >>> float(exponent([0.01, 0.1], [2.0, 2.0]))
-    3.0
-    """
-    away = np.log(filling) - np.log(filling).mean()
-    return 3.0 + _log(over) @ away / (away @ away)
+    """n of P ~ phi^n (K13 eq 23) from P over phi^3, over (..., K) at filling factors (K,): curves.power()."""
+    return 3.0 + power(filling, over)
 
 
 def level(filling, over):
@@ -72,7 +67,8 @@ def level(filling, over):
     >>> float(level([0.01, 0.1], [1.0, 4.0]).round(9))
     2.0
     """
-    return np.exp(_log(over).mean(axis=-1))
+    over = np.asarray(over, dtype=float)
+    return np.exp(np.log(np.where(over > 0, over, np.nan)).mean(axis=-1))
 
 
 def with_bins(fit, start=np.inf):
@@ -83,8 +79,3 @@ def with_bins(fit, start=np.inf):
         return fit(filling, over) if known else np.full(np.shape(over)[:-1], np.nan)
 
     return fitted
-
-
-def _log(over):
-    over = np.asarray(over, dtype=float)
-    return np.log(np.where(over > 0, over, np.nan))

@@ -1,6 +1,5 @@
 """The study of K13's compressions: which quantities the runs tell. A cluster, named by its seed, is compressed in several sets of its size."""
 
-import numpy as np
 import pandas
 
 from ...runs.collect import Scene
@@ -9,7 +8,7 @@ from ...theory.aggregates import bcca_coordination
 from ...theory.compression import compressive_strength_dense, strength_scale, tensile_strength
 from ..definition import Quantity, Study
 from ..grains import OF_GRAINS
-from ..runs import Runs, along, ratios, select, together
+from ..runs import Runs, along, finite, ratios, select, together
 from .measure import DIMENSIONS, ENERGIES, ENERGY_FILLINGS, MEASURED, NUMBERS, TWISTING
 from .strength import SET, VALID_TO, by_filling, exponent, furthest, level, named, with_bins
 
@@ -40,10 +39,10 @@ def quantities(table):
     clusters = furthest(table)
     runs = Runs(clusters, "seed", ("grains",))
     rows = runs.of(by_filling(clusters))
-    settled = rows.of(rows.table[rows.table.settled])
+    settled = rows.where(lambda t: t.settled)
     over = rows.estimates("over", (*SET, "filling"))
     yield Quantity("strength", "pressure over K13 eq 25, (E_roll/r0^3) phi^3", over)
-    yield from _power_law(settled.of(settled.table[settled.table.shared & (settled.table.filling <= VALID_TO)]))
+    yield from _power_law(settled.where(lambda t: t.shared & (t.filling <= VALID_TO)))
     yield from _any_filling(settled.where(**ICE))
     yield from _channels(runs)
     dimension = runs.parts(DIMENSIONS, SET, "filling")
@@ -62,8 +61,7 @@ def _power_law(runs):
         yield Quantity(name, f"{meaning}, fitted up to {VALID_TO:g}", along(over, "filling", with_bins(fit)))
         begun = lambda start: along(over[fillings >= start], "filling", with_bins(fit, start))
         values = together({start: begun(start) for start in sorted(set(fillings))}, "start")
-        values = values[[np.isfinite(estimate.value) for estimate in values]]
-        yield Quantity(f"{name}_from", "the same, fitted from this filling factor on", values)
+        yield Quantity(f"{name}_from", "the same, fitted from this filling factor on", finite(values))
     changes = {}
     for name, (column, value) in FIDUCIAL.items():
         others = tuple(own for own in by if own != column)
@@ -90,8 +88,7 @@ def _channels(runs):
     lost_between = lambda a, b: {way: lost(names, b) - lost(names, a) for way, names in WAYS.items()}
     spans = [table.assign(since=a, until=b, **lost_between(a, b)) for a, b in SPANS]
     rows = runs.of(pandas.concat(spans, ignore_index=True))
-    total = rows.estimates(lambda t: sum(t[way] for way in WAYS), by)
-    shares = together({way: ratios(rows.estimates(way, by), total) for way in WAYS}, "channel")
+    shares = rows.shares({way: way for way in WAYS}, lambda t: sum(t[way] for way in WAYS), by, "channel")
     yield Quantity("shares", "part of all that is dissipated between two filling factors", shares, "%")
     twisting, rolling = (select(shares, channel=way, since=0.0, until=VALID_TO) for way in ("twisting", "rolling"))
     over = ratios(twisting, rolling)

@@ -3,12 +3,10 @@ line on stderr."""
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
-from ...commands import FAILED, complain
+from ...commands import FAILED, complain, in_one_line
 from ...report.pdf import NoPdf
-from ...runs.arrays import RunFolderError
-from ..analyse import NothingToAnalyse
-from ..paper import PaperError
 from . import write
 
 
@@ -16,17 +14,15 @@ def main(arguments):
     if len(arguments) != 1:
         complain("documents: must be called with the file of the PDF")
         return FAILED
+    return in_one_line(SimpleNamespace(command=_write, out=Path(arguments[0])))
+
+
+def _write(options):
     try:
-        write(Path(arguments[0]))
-    except OSError as error:
-        complain(f"{error.filename or arguments[0]}: {error.strerror}")
+        write(options.out)
     except NoPdf as error:
-        complain(f"{arguments[0]}: {error}")
-    except (NothingToAnalyse, PaperError, RunFolderError) as error:
-        complain(error)
-    else:
-        return 0
-    return FAILED
+        raise NoPdf(f"{options.out}: {error}") from None
+    return 0
 
 
 if __name__ == "__main__":

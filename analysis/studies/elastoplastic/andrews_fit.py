@@ -12,11 +12,11 @@ import numpy as np
 from ...statistics import smoothed_scatter
 from ...theory import andrews
 from ..estimate import ROUNDING
+from ..runs import alike
 from .levenberg import least_squares
 
 VELOCITY = 10**0.5  # m/s, at which A24 compares sizes; printed as 3.2 m/s
 FEWEST_VELOCITIES = 3  # of a size that A24's way takes the moduli from
-SAME = 1e-3  # relative, of velocities
 
 
 @dataclass(frozen=True)
@@ -83,15 +83,10 @@ def size_line(rows, weights):
     return np.stack([c1, -intercept, offset_of_line(c1, -intercept), 2.0 * c1, c1 * 60.0 + intercept], axis=1)
 
 
-def at_velocity(rows, velocity=VELOCITY):
-    """Mask of the rows at a velocity [m/s]."""
-    return (rows.velocity / velocity - 1.0).abs() < SAME
-
-
 def papers_way(rows, weights):
     """(B, 3): sigma_plastic [Pa], 1/E* [1/Pa] and delta_offset [grain radii] as A24 finds them: the offset from d_max against size at one
     velocity (eq 18), then the moduli from d_max and t_max of the sizes that have several velocities (section 4.3.3)."""
-    at = at_velocity(rows).to_numpy()
+    at = alike(rows.velocity, VELOCITY)
     if rows[at].radius.nunique() < 2:
         return np.full((len(weights), 3), np.nan)
     offset = size_line(rows[at], weights[:, at])[:, 2]

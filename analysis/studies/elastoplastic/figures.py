@@ -1,5 +1,6 @@
 """Figures of the study: A24's own, and what the packings and the velocity change."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,13 +12,15 @@ from ..curve_figure import MARKERS, CurveFigure, pairs_text, points
 from ..definition import StudyFigure
 from ..grains import PAPERS
 from ..snapshot_figure import SnapshotFigure
-from .andrews_fit import PRINTED, VELOCITY, at_velocity, degenerate_curve, printed
-from .study import FREE, in_grain_radii
+from .andrews_fit import PRINTED, VELOCITY, degenerate_curve, printed
+from .study import FREE
 
 GRAIN = SimpleNamespace(grain_density=ICE.density, grain_radius=PAPERS["ice"]["grainRadius"])
 SNAPSHOTS = (0.0, 150e-9, 500e-9)  # s
 SNAPSHOTS_RADIUS = 40.0  # grain radii: a size whose states can be kept
 SIZES = (40.0, 60.0, 80.0)  # that have several velocities
+OF_SIZE = {"d_max": "$d_{max}$  [$r$]", "t_max": "$t_{max}$  [ns]"}
+OF_SIZE |= {"deeper": "$d_{max}$ less A24's model  [$r$]", "late": "$t_{max}$ less A24's model  [ns]"}
 CHANNELS_SHOWN = ("slidingDissipation", "rollingDissipation", "twistingDissipation", "normal", "sliding", "connection")
 OF_VELOCITY = {"x": "velocity", "colour": "radius", "panel": "filling", "logarithmic": "x"}
 
@@ -31,22 +34,19 @@ def size_figure(results):
     figure, axes = panels(2, 2, 5.0, 3.4)
     fillings = sorted(set(sizes.get_level_values("filling")), reverse=True)
     radii = np.linspace(0.0, 1.1 * max(sizes.get_level_values("radius")), 50)
-    for k, name in enumerate(("d_max", "t_max", "deeper", "late")):
-        place, scale, beside = axes.ravel()[k], results[name].scale, k > 1
+    for k, (place, (name, label)) in enumerate(zip(axes.ravel(), OF_SIZE.items())):
+        scale, beside = results[name].scale, k > 1
         for number, filling in enumerate(fillings):
             own = results.series(name, velocity=VELOCITY, filling=filling)
-            label = None if k else f"$\\phi$ = {filling:g}, {pairs_text(own)} a size"
+            pairs = None if k else f"$\\phi$ = {filling:g}, {pairs_text(own)} a size"
             x = own.index.to_numpy() + (number - 0.5) * beside
-            points(place, x, own.to_list(), OURS, label, MARKERS[number], "", scale)
+            points(place, x, own.to_list(), OURS, pairs, MARKERS[number], "", scale)
             if filling in PRINTED and not beside:
                 model = printed(filling, GRAIN).at(radii, VELOCITY)[k] / scale
                 place.plot(radii, model, "--", color=PAPER, lw=1.2, label=None if number else "A24's fitted model")
         if beside:
             place.axhline(0.0, ls="--", color=PAPER, lw=1.2)
-        name = ("$d_{max}$", "$t_{max}$")[k % 2] + (" less A24's model" if beside else "")
-        place.set_ylabel(f"{name}  [{('$r$', 'ns')[k % 2]}]")
-        place.set_xlabel("$R$  [$r$]")
-        place.set_xlim(30.0 if beside else 0.0, radii[-1])
+        place.set(xlabel="$R$  [$r$]", ylabel=label, xlim=(30.0 if beside else 0.0, radii[-1]))
     legend(axes[0, 0], fontsize=9)
     letter(axes, "")
     return figure
@@ -72,8 +72,7 @@ def moduli_figure(results):
             place.plot(*curve, "--", color=PAPER, lw=1.2, label=f"A24: $\\delta_{{max}}/R^*$ = {ratio:g}")
             point = [[theirs], [1.0 / young]] / units
             place.plot(*point, "*", ms=13, mfc="none", color=PAPER, label="A24's fit")
-        place.set_xlabel(r"yield stress $\sigma_{plastic}$  [MPa]")
-        place.set_ylabel("$1/E^*$  [1/GPa];  0: rigid-plastic")
+        place.set(xlabel=r"yield stress $\sigma_{plastic}$  [MPa]", ylabel="$1/E^*$  [1/GPa];  0: rigid-plastic")
         place.set_title(f"$\\phi$ = {filling:g}", fontsize=10)
         place.set_ylim(-0.05 * place.get_ylim()[1], None)
         legend(place, fontsize=8, loc="lower right")
@@ -81,17 +80,13 @@ def moduli_figure(results):
     return figure
 
 
-def _model_of_velocity(number, scale):
-    """Draws d_max (number 0) or t_max (1) of A24's fitted model, in that unit, at the smallest and the largest of SIZES."""
-
-    def draw(axes, panel):
-        velocity = np.geomspace(*axes.get_xlim(), 60)
-        for radius in (SIZES[0], SIZES[-1]) if panel["filling"] in PRINTED else ():
-            value = printed(panel["filling"], GRAIN).at(radius, velocity)[number]
-            label = "A24's fitted model, $R$ = 40, 80 $r$" if radius == SIZES[0] else None
-            axes.plot(velocity, value / scale, "--", color=PAPER, lw=1.2, label=label)
-
-    return draw
+def _model(axes, panel, number, scale):
+    """d_max (number 0) or t_max (1) of A24's fitted model against velocity, in that unit, at the smallest and the largest of SIZES."""
+    velocity = np.geomspace(*axes.get_xlim(), 60)
+    for radius in (SIZES[0], SIZES[-1]) if panel["filling"] in PRINTED else ():
+        value = printed(panel["filling"], GRAIN).at(radius, velocity)[number]
+        label = "A24's fitted model, $R$ = 40, 80 $r$" if radius == SIZES[0] else None
+        axes.plot(velocity, value / scale, "--", color=PAPER, lw=1.2, label=label)
 
 
 def _andrews(axes, panel):
@@ -104,10 +99,8 @@ def _andrews(axes, panel):
 
 def _collisions(results):
     """The first pair of A24's denser aggregates of a size whose states can be kept."""
-    table = in_grain_radii(results.table)
-    own = table[at_velocity(table) & (table.radius == SNAPSHOTS_RADIUS) & (table.filling == 0.4)]
-    own = own[own.run == f"f0.4-R{SNAPSHOTS_RADIUS:g}-i5-s1"]
-    for row in own.itertuples():
+    table = results.table
+    for row in table[table.run == f"f0.4-R{SNAPSHOTS_RADIUS:g}-i5-s1"].itertuples():
         yield row, f"$\\phi$ = 0.4, $R$ = {SNAPSHOTS_RADIUS:g} $r$, 3.16 m/s", SNAPSHOTS
 
 
@@ -129,7 +122,7 @@ FIGURES = (
         "d_max",
         where={"radius": SIZES},
         y_label="$d_{max}$  [$r$]",
-        paper=_model_of_velocity(0, 1.0),
+        paper=partial(_model, number=0, scale=1.0),
         **OF_VELOCITY,
     ),
     CurveFigure(
@@ -139,7 +132,7 @@ FIGURES = (
         where={"radius": SIZES},
         y_label="$t_{max}$  [ns]",
         limits=(100.0, 800.0),
-        paper=_model_of_velocity(1, 1e-9),
+        paper=partial(_model, number=1, scale=1e-9),
         **OF_VELOCITY,
     ),
     StudyFigure(
@@ -160,8 +153,7 @@ FIGURES = (
     CurveFigure(
         "sticking",
         "Fraction of collisions followed for 3 µs that stick, φ = 0.4. Bars: 95 % intervals (Wilson).",
-        "sticking",
-        "velocity",
+        *("sticking", "velocity"),
         panel="radius",
         where={"duration": 3e-6, "filling": 0.4},
         logarithmic="x",
@@ -172,10 +164,7 @@ FIGURES = (
     CurveFigure(
         "energy",
         "Where the energy has gone until the largest compression, R = 40 r.",
-        "energy",
-        "velocity",
-        "channel",
-        "filling",
+        *("energy", "velocity", "channel", "filling"),
         where={"radius": 40.0, "channel": CHANNELS_SHOWN},
         logarithmic="x",
         y_label="change  [% of $K(0)$]",
@@ -185,8 +174,7 @@ FIGURES = (
     CurveFigure(
         "zones",
         "Correlation of d_max with the filling of the zones that meet, at 3.16 m/s: 20, 8, 16, 5, 10 pairs.",
-        "zones_by_size",
-        "radius",
+        *("zones_by_size", "radius"),
         panel="filling",
         where={"number": "correlation"},
         y_label="correlation",

@@ -11,7 +11,7 @@ from ...theory.andrews import stress_if_rigid, young_if_elastic
 from ..collisions import HEAD_ON_ICE, energy_quantities, outcome_quantities
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
-from ..runs import Runs, at, differences, each, select, together
+from ..runs import Runs, differences, each, finite, select, together
 from . import andrews_fit as fits
 from .measure import MEASURED, UNCHANGED
 from .zones import FEWEST_PAIRS, zone_correlation
@@ -28,7 +28,7 @@ def quantities(table):
     table = in_grain_radii(table)
     same = np.logical_and.reduce([table[name] == usual for name, usual in UNCHANGED.items()])
     runs, grain = Runs(once(table[same]), "seed", PAIR), table.iloc[0]  # all of one material
-    one_velocity = runs.of(runs.table[fits.at_velocity(runs.table)])
+    one_velocity = runs.where(velocity=fits.VELOCITY)
     yield Quantity("d_max", "largest compression length", runs.estimates("d", POINT), "r")
     yield Quantity("t_max", "its time", runs.estimates("t_max", POINT), "ns")
     yield from _sizes(one_velocity, grain)
@@ -54,47 +54,35 @@ def once(table):
     return table.sort_values("duration", kind="stable").drop_duplicates([*POINT, "seed"], keep="last").sort_index()
 
 
-def finite(series):
-    """The estimates of a Series that have a value: fits have none with too few runs."""
-    return series[[bool(np.isfinite(estimate.value)) for estimate in series]]
-
-
 def _sizes(runs, grain):
     """The straight line of d_max against size at A24's velocity, and what follows from its delta_max/R*."""
-    several = runs.of(runs.table[runs.table.groupby("filling").radius.transform("nunique") > 1])
+    several = runs.where(lambda t: t.groupby("filling").radius.transform("nunique") > 1)
     line = several.fit(fits.size_line, ("c1", "c2", "δ_offset", "δ_max/R*", "d_max at 60 r"), ("filling",), fitted=2)
-    yield Quantity(
-        "line",
-        "d_max = c1 R - c2 at 3.2 m/s (A24 eq 14), δ_offset and δ_max/R* (eqs 18, 19); lengths in grain radii",
-        line,
-    )
+    meaning = "d_max = c1 R - c2 at 3.2 m/s (A24 eq 14), δ_offset and δ_max/R* (eqs 18, 19); lengths in grain radii"
+    yield Quantity("line", meaning, line)
     ends = {
         "σ, rigid-plastic": lambda x, rho: stress_if_rigid(x, fits.VELOCITY, rho),
         "E*, elastic": lambda x, rho: young_if_elastic(x, fits.VELOCITY, rho),
         "σ, from which elastic": lambda x, rho: fits.elastic_stress(x, young_if_elastic(x, fits.VELOCITY, rho)),
     }
     ratio = select(line, number="δ_max/R*")
-    values = {
-        name: each(ratio, lambda e, filling, f=f: combine(lambda x: f(x, filling * grain.grain_density), e))
-        for name, f in ends.items()
-    }
-    yield Quantity(
-        "ends", "ends of the curve of (σ, E*) with that δ_max/R* (A24 Fig. 10)", together(values, "end"), "MPa"
-    )
+    end = lambda f: each(ratio, lambda e, filling: combine(lambda x: f(x, filling * grain.grain_density), e))
+    values = together({name: end(f) for name, f in ends.items()}, "end")
+    yield Quantity("ends", "ends of the curve of (σ, E*) with that δ_max/R* (A24 Fig. 10)", values, "MPa")
 
 
 def _moduli(runs, grain):
     """Yield stress, E* and delta_offset of Andrews's spheres."""
     ways = {BY_SIZE: fits.papers_way, PAPERS: fits.papers_offset, FREE: fits.fit_moduli}
     found = together({way: runs.fit(f, NUMBERS, ("filling",)) for way, f in ways.items()}, "fit")
-    stress, compliance, offset = (select(finite(found), number=number) for number in NUMBERS)
+    found = finite(found)
+    stress, compliance, offset = (select(found, number=number) for number in NUMBERS)
     yield Quantity("stress", "yield stress σ", stress, "MPa")
     yield Quantity("compliance", "1/E*; 0: rigid-plastic", compliance, "1/GPa")
     yield Quantity("offset", "δ_offset", offset, "r")
     yield from _constants(runs, grain, stress, compliance)
-    of_way = lambda way: tuple(select(series, fit=way) for series in (stress, compliance, offset))
-    yield from _of_fit(runs, grain, of_way(FREE))
-    yield from _restitution(runs, grain, of_way(BY_SIZE))
+    yield from _of_fit(runs, grain, select(found, fit=FREE))
+    yield from _restitution(runs, grain, select(found, fit=BY_SIZE))
 
 
 def _constants(runs, grain, stress, compliance):
@@ -102,10 +90,9 @@ def _constants(runs, grain, stress, compliance):
     ratio = each(stress, lambda e, filling, fit: e / bcca_strength(filling))
     yield Quantity("over_quasistatic", "σ over that of quasistatic compression of BCCA aggregates (A24 eq 44)", ratio)
     counted = runs.estimates("inner_coordination", ("filling",))
-    sites = lambda filling: cpe_coordination(filling, grain.grain_radius, grain.overlap)
-    bulk = lambda filling: bulk_modulus(
-        filling, sites(filling), grain.grain_radius, grain.overlap, grain.pull_off_force
-    )
+    lengths = grain.grain_radius, grain.overlap
+    sites = lambda filling: cpe_coordination(filling, *lengths)
+    bulk = lambda filling: bulk_modulus(filling, sites(filling), *lengths, grain.pull_off_force)
     both = {"counted inside": counted, "A24 eq 39": each(counted, lambda _, filling: exact(sites(filling)))}
     yield Quantity("coordination", "contacts of a grain", together(both, "how"))
     modulus = each(counted, lambda _, filling: exact(bulk(filling)))
@@ -115,10 +102,10 @@ def _constants(runs, grain, stress, compliance):
 
 
 def _of_fit(runs, grain, fit):
-    """What a fit (Series of sigma, 1/E* and delta_offset by filling) leaves of the runs."""
+    """What a fit (Series of NUMBERS by filling) leaves of the runs."""
     for k, (column, name, unit) in enumerate(DEPTH_AND_TIME):
         less = lambda e, filling, *place: _of_spheres(lambda model, y: y - model.at(*place)[k], grain, fit, filling, e)
-        values = each(_of_fillings(runs.estimates(column, POINT), fit[0]), less)
+        values = each(_at_fillings_of(fit, runs.estimates(column, POINT)), less)
         yield Quantity(f"{name}_beyond", f"{name} less that of Andrews's spheres, {FREE}", values, unit)
 
 
@@ -127,21 +114,20 @@ def _restitution(runs, grain, fit):
     points = runs.estimates("d", ("filling", "velocity"))
     ours = lambda _, filling, v: _of_spheres(lambda model: model.restitution(v), grain, fit, filling)
     theirs = lambda _, filling, v: exact(fits.printed(filling, grain).restitution(v))
-    printed = points[points.index.get_level_values("filling").isin(fits.PRINTED)]
-    e = together({BY_SIZE: each(_of_fillings(points, fit[0]), ours), "A24's σ, E*": each(printed, theirs)}, "fit")
+    printed = select(points, filling=tuple(fits.PRINTED))
+    e = together({BY_SIZE: each(_at_fillings_of(fit, points), ours), "A24's σ, E*": each(printed, theirs)}, "fit")
     yield Quantity("andrews", "restitution of Andrews's spheres, and its square", together({"e": e, "e²": e * e}, "of"))
 
 
-def _of_fillings(series, fitted):
-    """The part of a Series at the filling factors of another."""
-    return series[series.index.get_level_values("filling").isin(fitted.index.get_level_values("filling"))]
+def _at_fillings_of(fit, series):
+    return select(series, filling=tuple(fit.index.unique("filling")))
 
 
 def _of_spheres(f, grain, fit, filling, *more):
     """Estimate of f(Aggregates as fitted at a filling, numbers of other estimates)."""
     density = filling * grain.grain_density
     g = lambda *numbers: f(fits.Aggregates(*numbers[:3], density, grain.grain_radius), *numbers[3:])
-    return combine(g, *(at(series, filling=filling) for series in fit), *more)
+    return combine(g, *select(fit, filling=filling), *more)
 
 
 def _times(runs, grain):
@@ -150,29 +136,25 @@ def _times(runs, grain):
     for filling, own in runs.table[runs.table.filling.isin(fits.PRINTED)].groupby("filling"):
         model = fits.printed(filling, grain)
         d, t = model.at(own.radius, own.velocity)
-        parts.append(
-            own.assign(deeper=own.d - d, late=own.t_max - t, tau=own.t_max - model.time_of_contact(own.velocity))
-        )
+        tau = own.t_max - model.time_of_contact(own.velocity)
+        parts.append(own.assign(deeper=own.d - d, late=own.t_max - t, tau=tau))
     beside = runs.of(pandas.concat(parts) if parts else runs.table[:0].assign(deeper=0.0, late=0.0, tau=0.0))
     yield Quantity("deeper", "d_max less that of A24's fitted model", beside.estimates("deeper", POINT), "r")
     yield Quantity("late", "t_max less that of A24's fitted model", beside.estimates("late", POINT), "ns")
-    line = beside.of(beside.table[fits.at_velocity(beside.table)])
-    line = line.fit(lateness, ("as they are", "with A24's d_max"), ("filling",))
+    means = "as they are", "with A24's d_max"
+    line = beside.where(velocity=fits.VELOCITY).fit(lateness, means, ("filling",))
     yield Quantity("late_mean", "the same at 3.2 m/s, mean over the pairs of all sizes", line, "ns")
-    several = beside.table.groupby(list(PAIR)).velocity.transform("nunique") >= fits.FEWEST_VELOCITIES
-    trend = select(
-        beside.of(beside.table[several]).fit(fits.time_exponent, ("exponent",), PAIR, fitted=2), number="exponent"
-    )
+    several = lambda t: t.groupby(list(PAIR)).velocity.transform("nunique") >= fits.FEWEST_VELOCITIES
+    trend = beside.where(several).fit(fits.time_exponent, ("exponent",), PAIR, fitted=2)
     meaning = "exponent of τ_max (with A24's δ_offset) as a power of the velocity; 0: rigid-plastic, -0.2: elastic"
-    yield Quantity("trend", meaning, finite(trend))
+    yield Quantity("trend", meaning, finite(select(trend, number="exponent")))
 
 
 def lateness(rows, weights):
     """(B, 2): means of late, as it is and where deeper is 0: by a straight line through all pairs."""
     late = rows.late.to_numpy()
-    return np.stack(
-        [weights @ late / weights.sum(axis=1), fits.straight_line(rows.deeper.to_numpy(), late, weights)[1]], 1
-    )
+    _, with_papers_depth = fits.straight_line(rows.deeper.to_numpy(), late, weights)
+    return np.stack([weights @ late / weights.sum(axis=1), with_papers_depth], axis=1)
 
 
 def _return(runs):
@@ -182,8 +164,7 @@ def _return(runs):
     yield Quantity("rebound", meaning, runs.parts(share, POINT, "of"))
     yield Quantity("return_time", "its time", runs.estimates("return_time", POINT), "ns")
     ended = (*POINT, "duration")
-    wanted = ("sticking", "restitution")
-    yield from (own for own in outcome_quantities(runs, ended) if own.name in wanted)
+    yield from (own for own in outcome_quantities(runs, ended) if own.name in ("sticking", "restitution"))
     together_at_end = runs.fractions(lambda t: t.outcome.isin((STICKING, UNDECIDED)), ended)
     yield Quantity("in_one_piece", "runs in one piece when they end (A24: at 1 µs)", together_at_end)
     yield from energy_quantities(runs, POINT, "dissipated", "energy")

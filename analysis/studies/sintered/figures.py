@@ -26,7 +26,7 @@ def _said(axes, panel, x):
     label = "S17's words"
     for claim in read_paper(Path(__file__).parent)[1]:
         where = claim.where
-        if where.get("setup") != "held" or any(not alike([where.get(n, np.nan)], v)[0] for n, v in panel.items()):
+        if where.get("setup") != "held" or not all(alike(where.get(n, np.nan), v) for n, v in panel.items()):
             continue
         if claim.quantity == "growth_limit" and x == "velocity":
             axes.plot([claim.value], [0.5], "x", color=PAPER, markersize=10, mew=2, label=label)

@@ -1,14 +1,12 @@
 """The study of S17's collisions: which quantities the runs tell. A pair of aggregates collides at every velocity, beta and rule."""
 
-import numpy as np
-
 from ...measures.outcome import BOUNCING, UNDECIDED
 from ...runs.collect import Scene
 from ...runs.format import BROKEN_BONDS
 from ..collisions import outcome_quantities
+from ..curves import threshold_velocity
 from ..definition import Quantity, Study
-from ..runs import Runs, alike, along, differences, ratios, select, together
-from ..threshold import threshold_velocity
+from ..runs import Runs, alike, along, differences, finite, ratios, select
 from .measure import LABELS, MEASURED, TIMES
 from .models import chain_ratio, fit_necks, papers_necks
 
@@ -23,7 +21,7 @@ CURVE = 4  # velocities or more: with fewer, where it falls to a half lies anywh
 FIVE = (0.0, 0.2), (0.0, 0.7), (1.0, 0.7), (3.0, 0.7), (10.0, 0.7)
 STRONG = 0.65  # beta above which necks are those of S17's fit, 0.7
 LOST = ("rolling_friction", "sliding_friction", "stretching", "necks", "drag")
-MODES = {name: name.removeprefix("brokenBy").lower() for name in BROKEN_BONDS}
+MODES = {name.removeprefix("brokenBy").lower(): name for name in BROKEN_BONDS}
 
 
 def quantities(table):
@@ -40,7 +38,7 @@ def quantities(table):
     )
     # A compacted aggregate grows from the first half of the BCCA aggregate of its seed: one pair.
     runs = Runs(table, "packing_seed", ("planar",))
-    sintered = runs.of(table[table.neck > 0])
+    sintered = runs.where(lambda t: t.neck > 0)
     yield from outcome_quantities(runs, POINT)
     yield from _sizes(runs)
     yield from _necks(sintered)
@@ -53,9 +51,9 @@ def _setup(row):
     special = {
         "held": not row.cut,
         "space": not row.planar,
-        f"{row.criticalRolling * 1e10:g} Å": not alike([row.criticalRolling], 2e-10)[0],
+        f"{row.criticalRolling * 1e10:g} Å": not alike(row.criticalRolling, 2e-10),
         f"{row.viscoelasticTime * 1e12:g} ps": row.viscoelasticTime,
-        f"k_s {row.sliding_factor / 2:g}": not alike([row.sliding_factor], 2.0)[0],
+        f"k_s {row.sliding_factor / 2:g}": not alike(row.sliding_factor, 2.0),
         f"{row.grains / 2:g} grains": not row.growth_velocity and row.grains != GRAINS,
     }
     return ", ".join(name for name, is_so in special.items() if is_so) or PLAIN
@@ -81,8 +79,7 @@ def _sizes(runs):
     yield Quantity("largest_change", f"fraction of the mass in the largest piece, less that with {PLAIN}", less)
     bcca = select(largest, growth_velocity=0.0)
     curves = bcca.groupby(level=["setup", "neck"]).filter(lambda curve: len(curve) >= CURVE)
-    critical = along(curves - HALF, "velocity", threshold_velocity)
-    critical = critical[[np.isfinite(estimate.value) for estimate in critical]]
+    critical = finite(along(curves - HALF, "velocity", threshold_velocity))
     yield Quantity("growth_limit", "velocity at which the mean largest piece of BCCA falls to a half", critical, "m/s")
 
 
@@ -96,26 +93,20 @@ def _necks(runs):
     yield Quantity("necks_compacted", "N_cut/N_t over that of BCCA aggregates", over)
     over = runs.beside("setup", PLAIN, "necks", POINT[1:], ratios)
     yield Quantity("necks_change", f"N_cut/N_t over that with {PLAIN}", over)
-    cut = runs.of(runs.table[runs.table.broken > 0])
-    modes = _modes(cut, ("setup", "growth_velocity", "neck"))
+    cut = runs.where(lambda t: t.broken > 0)
+    modes = cut.shares(MODES, "broken", ("setup", "growth_velocity", "neck"), "mode")
     yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%")
     rolling = ratios(cut.estimates("brokenByRolling", POINT), cut.estimates("broken", POINT))
     yield Quantity("rolling_at", "necks broken by rolling, of all that broke at a velocity", rolling, "%")
-    kinds = [alike(runs.table.growth_velocity, v) & alike(runs.table.neck, neck) for v, neck in FIVE]
-    of_all = _modes(runs.of(runs.table[np.logical_or.reduce(kinds)]).where(setup=PLAIN), ("setup",))
-    yield Quantity(
-        "modes_together", "necks broken by each mode, of all in the five kinds of S17's Fig. 15", of_all, "%"
-    )
-
-
-def _modes(runs, by):
-    total = runs.estimates("broken", by)
-    return together({mode: ratios(runs.estimates(name, by), total) for name, mode in MODES.items()}, "mode")
+    five = runs.where(lambda t: [kind in FIVE for kind in zip(t.growth_velocity, t.neck)], setup=PLAIN)
+    of_all = five.shares(MODES, "broken", ("setup",), "mode")
+    meaning = "necks broken by each mode, of all in the five kinds of S17's Fig. 15"
+    yield Quantity("modes_together", meaning, of_all, "%")
 
 
 def _models(runs):
     """S17's two models of sintered aggregates: broken necks against energy, bouncing against force; and loops of grains."""
-    law = runs.of(runs.table[runs.table.neck > STRONG]).fit(fit_necks, ("amplitude", "exponent"), ("setup",))
+    law = runs.where(lambda t: t.neck > STRONG).fit(fit_necks, ("amplitude", "exponent"), ("setup",))
     meaning = "N_cut/N_t = amplitude (E_k/E_sint)^exponent of aggregates with beta = 0.7: maximum likelihood of counts"
     yield Quantity("necks_law", meaning, law)
     contacts = runs.table.groupby(list(POINT)).contacts.transform("mean").where(runs.table.growth_velocity > 0)
@@ -123,8 +114,8 @@ def _models(runs):
     of_model, by = runs.of(runs.table.assign(force_ratio=ratio)[ratio > 0]), ("setup", "growth_velocity", "neck")
     line = runs.estimates("over_line", (*by, "energy_ratio"))
     yield Quantity("necks_at_energy", "broken necks over S17's line against E_k/E_sint", line, listed=False)
-    bounced, undecided = (lambda t, kind=kind: t.outcome == kind for kind in (BOUNCING, UNDECIDED))
-    bounced = of_model.fractions(bounced, (*by, "force_ratio"), undecided)
+    undecided = lambda t: t.outcome == UNDECIDED
+    bounced = of_model.fractions(lambda t: t.outcome == BOUNCING, (*by, "force_ratio"), undecided)
     meaning = "runs that bounce against F_c/F_max of the chain model (S17 eq 19), which says that they do below 1"
     yield Quantity("bouncing_at_force", meaning, bounced)
     loops = runs.where(growth_velocity=0.0, neck=0.7, velocity=10.0)

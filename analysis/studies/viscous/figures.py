@@ -34,7 +34,6 @@ def _collisions(results):
 
 
 OF_SIZE = {"x": "velocity", "colour": "viscoelasticTime", "panel": "grains", "logarithmic": "x"}
-AT_WAYS = {"x": "velocity", "colour": "viscoelasticTime", "panel": "channel", "logarithmic": "xy"}
 
 FIGURES = (
     SnapshotFigure(
@@ -63,10 +62,7 @@ FIGURES = (
     CurveFigure(
         "fig02_at_offset",
         "A22 Fig. 2: growth efficiency at 50.1 m/s against the offset (open points: one pair).",
-        "at_offset",
-        "square",
-        "viscoelasticTime",
-        "grains",
+        *("at_offset", "square", "viscoelasticTime", "grains"),
         where={"grains": (500, 2000, 10_000, 50_000)},
         y_label="$f_{gro}$",
         level_line=0.0,
@@ -75,10 +71,7 @@ FIGURES = (
     CurveFigure(
         "fig07_grains",
         "A22 Fig. 7: grains in fragments of at most N grains, 50.1 m/s, mean over 13 offsets.",
-        "grains_in_fragments",
-        "fragment",
-        "viscoelasticTime",
-        "grains",
+        *("grains_in_fragments", "fragment", "viscoelasticTime", "grains"),
         where={"velocity": 50.1},
         logarithmic="xy",
         paper=_inverse,
@@ -87,19 +80,16 @@ FIGURES = (
     CurveFigure(
         "fig14_at_end",
         "A22 Fig. 14: energy lost in each way by the end, over N_tot F_c δ_c, B_off² = 3/12, 2,000 grains.",
-        "loss_per_grain",
+        *("loss_per_grain", "velocity", "viscoelasticTime", "channel"),
         where={"grains": 2000},
+        logarithmic="xy",
         y_label=r"$E_{dis}/(N_{tot} F_c \delta_c)$",
         limits=(0.5, None),
-        **AT_WAYS,
     ),
     CurveFigure(
         "fig15_events",
         "A22 Fig. 15: contacts formed and broken over all grains, B_off² = 3/12, 2,000 grains.",
-        "events",
-        "velocity",
-        "viscoelasticTime",
-        "event",
+        *("events", "velocity", "viscoelasticTime", "event"),
         where={"grains": 2000},
         logarithmic="xy",
         level_line=1.0,
@@ -108,10 +98,7 @@ FIGURES = (
     CurveFigure(
         "drag",
         "What drag changes, 6 ps less without, of means over 13 offsets.",
-        "drag",
-        "velocity",
-        "grains",
-        "part",
+        *("drag", "velocity", "grains", "part"),
         logarithmic="x",
         level_line=0.0,
         y_label="difference of means",
@@ -119,9 +106,7 @@ FIGURES = (
     CurveFigure(
         "size",
         "Head-on growth efficiency against the size of the aggregates, without drag.",
-        "head_on",
-        "grains",
-        "velocity",
+        *("head_on", "grains", "velocity"),
         where={"viscoelasticTime": 0.0},
         logarithmic="x",
         level_line=1.0,

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ..curves import power
+
 SQUARES = tuple(i / 12 for i in range(13))  # B_off^2 of A22
 SMALL = 10  # grains of a fragment that counts as small
 MERGED = 0.5  # f_gro above which two aggregates have merged; two remnants have some 0, all in one piece is 1
@@ -21,12 +23,5 @@ def offset_weights(squares):
 
 
 def fragment_exponent(numbers, grains):
-    """alpha of N_cum(<= N) = c N^(2 - alpha)/(2 - alpha) (A22 eq 41): least squares of the logarithms of grains (..., G) against
-    numbers (G,); NaN where one of them is not positive, and with fewer than three."""
-    x, y = np.log(np.asarray(numbers, dtype=float)), np.asarray(grains, dtype=float)
-    if len(x) < 3:
-        return np.full(y.shape[:-1], np.nan)[()]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        y = np.log(np.where(y > 0, y, np.nan))
-    away = x - x.mean()
-    return 2.0 - (y @ away) / (away @ away)
+    """alpha of N_cum(<= N) = c N^(2 - alpha)/(2 - alpha) (A22 eq 41), from grains (..., G) in fragments of at most numbers (G,)."""
+    return 2.0 - power(numbers, grains)

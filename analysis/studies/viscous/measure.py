@@ -13,6 +13,7 @@ from ...theory import Material, pair_constants, sticking_velocity
 from ..columns import CLOSURE, END, GRAIN_RADIUS, MET, SEED, group, one, parameter
 from ..definition import NotMeasured
 from ..grains import require_papers_grains
+from ..runs import alike
 from .grid import offset_of_grid, time_of_grid, velocity_of_grid
 
 # A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
@@ -21,11 +22,12 @@ DISSIPATION = ("rollingDissipation", "slidingDissipation", "twistingDissipation"
 # r_c that the aggregates' centres go until A22's last time, 6.34 us, in its slowest collisions: 10^1.3 m/s, r_c = 72.27 r of 1e-7 m.
 RADII_TRAVELLED = 10**1.3 * 6.34e-6 / 72.27e-7
 ENOUGH = 0.9  # of these: r_c scatters from pair to pair
-REFERENCE_VELOCITY, REFERENCE_SQUARE = 10**1.7, 3 / 12  # m/s, B_off^2: the collision that A22 shows most
-SAME = 1e-6  # relative, of the grid
+REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # m/s, B_off^2: the collision that A22 shows most
 EVENTS = {"formed": "N_con", "broken": "N_cut"}  # contacts, and A22's names of their numbers
 LATER = {"gaps": True, "absent": np.nan}  # of a column that the first runs don't have
 FAST = 10.0  # m/s: A22 section 5.1 counts the pairs beyond
+PAIR_SPEED = f"largest rms over the states of v_rel of pairs nearer than {NEAR:g} r (50.1 m/s, 3/12)"
+FAST_PAIRS = f"the same of the number that approach, or that part, faster than {FAST:g} m/s; over N_tot"
 
 
 def _grains(run):
@@ -52,34 +54,23 @@ def _characteristic_radius(run):
 
 
 def _fragments(run, row):
-    """NotMeasured where the run is too short for them to be final."""
-    _require_final(run, row)
+    """NotMeasured where the run is too short for them to be final: where it ended with its duration before the aggregates' centres would have
+    gone as many r_c as in the paper's slowest collisions. Runs that ended because nothing could meet any more are final."""
+    time, duration = float(run.history["time"][-1]), run.parameters.get("duration")
+    least = ENOUGH * RADII_TRAVELLED * row["characteristic_radius"] / row["velocity"]
+    if duration is not None and time >= 0.999 * float(duration) and time < least:
+        said = f"lasts {time:.3g} s, too short for final fragments: must be {least:.3g} s or more"
+        raise NotMeasured(f"{run.path}: {said}")
     sizes = fragment_sizes(fragment_labels(len(run.last.radius), run.last.contact_pairs))
     largest = int(sizes.max())
     return largest, growth_efficiency(largest, row["grains"], row["grains"]), sizes_text(sizes)
 
 
-def _require_final(run, row):
-    """NotMeasured where a run ended with its duration before the aggregates' centres would have gone as many r_c as in the
-    paper's slowest collisions; runs that ended because nothing could meet any more are final."""
-    time, duration = float(run.history["time"][-1]), run.parameters.get("duration")
-    if duration is None or time < 0.999 * float(duration):
-        return
-    least = ENOUGH * RADII_TRAVELLED * row["characteristic_radius"] / row["velocity"]
-    if time < least:
-        raise NotMeasured(
-            f"{run.path}: lasts {time:.3g} s, too short for final fragments: must be {least:.3g} s or more"
-        )
-
-
-def is_reference(row):
-    """Whether it is the collision that A22 shows most: 50.1 m/s, B_off^2 = 3/12; row: mapping, measured."""
-    return abs(row["velocity"] / REFERENCE_VELOCITY - 1) < SAME and abs(row["impact"] ** 2 - REFERENCE_SQUARE) < SAME
-
-
-def largest_of_pairs(run):
+def _largest_of_pairs(run, row):
     """(largest root mean square of v_rel [m/s], largest number of pairs that approach or part faster than FAST over N_tot) of pairs nearer
-    than NEAR over the states of a RunFolder (A22 Fig. 12, section 5.1)."""
+    than NEAR over the states (A22 Fig. 12, section 5.1); NaN for other collisions than REFERENCE, since all states are read."""
+    if not alike([row["velocity"], row["impact"] ** 2], np.array(list(REFERENCE.values()))).all():
+        return np.nan, np.nan
     distance, states = NEAR * run.derived["grainRadius"], range(len(run.states))
     arrays = (run.states.arrays(k, ("position", "velocity")) for k in states)
     values = [pair_velocities(own["position"], own["velocity"], distance) for own in arrays]
@@ -137,19 +128,9 @@ MEASURED = (
         *(Column(name, "", f"{symbol}: contacts {name}", gaps=True) for name, symbol in EVENTS.items()),
     ),
     group(
-        lambda run, row: largest_of_pairs(run) if is_reference(row) else (np.nan, np.nan),
-        Column(
-            "pair_speed",
-            "m/s",
-            f"largest rms over the states of v_rel of pairs nearer than {NEAR:g} r (50.1 m/s, 3/12)",
-            gaps=True,
-        ),
-        Column(
-            "fast_pairs",
-            "",
-            f"the same of the number that approach, or that part, faster than {FAST:g} m/s; over N_tot",
-            **LATER,
-        ),
+        _largest_of_pairs,
+        Column("pair_speed", "m/s", PAIR_SPEED, gaps=True),
+        Column("fast_pairs", "", FAST_PAIRS, **LATER),
     ),
     CLOSURE,
     END,

@@ -3,19 +3,17 @@
 from functools import reduce
 
 import numpy as np
-import pandas
 
 from ...measures.fragments import cumulative_cross_section, cumulative_grains
 from ...runs.collect import Scene
+from ..curves import threshold_velocity
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
-from ..runs import Runs, alike, along, differences, ratios, select, together
-from ..threshold import threshold_velocity
+from ..runs import Runs, along, differences, ratios, select, together
 from .growth import LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fragment_exponent, offset_weights
-from .measure import DISSIPATION, EVENTS, FAST, MEASURED, sizes_from_text
+from .measure import DISSIPATION, EVENTS, FAST, MEASURED, REFERENCE, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
-REFERENCE = {"velocity": 10**1.7, "square": 3 / 12}  # the collision that A22 shows most
 # Twelfths of B_off^2 over which a mean is taken: chosen before the runs of 50,000 grains, and after the first pair of these.
 SQUARES_OF = {"drag_edge": (2, 3, 4, 5), "drag_beyond": (6, 7, 8, 9)}
 CURVE = ("grains", "viscoelasticTime", "velocity")
@@ -53,17 +51,16 @@ def _growth(runs, suffix, over):
     yield Quantity(f"v_fra{suffix}", f"velocity at which that mean falls through 0 ({over})", v_fra, "m/s")
     of_velocity = ("grains", "velocity")
     more = _with_drag(runs, "growth", of_velocity)
-    half = _with_drag(runs, lambda t: [0.5 * _small(sizes) for sizes in t.fragments] / t.grains, of_velocity)
+    small = lambda t: [cumulative_grains(sizes_from_text(sizes), [SMALL])[0] for sizes in t.fragments]
+    half = _with_drag(runs, lambda t: 0.5 * np.array(small(t)) / t.grains, of_velocity)
     with_drag = {
         "growth efficiency": more,
         "of it half the small fragments": -half,
         "the rest": more + half,
         "cross-section of merging": _with_drag(runs, lambda t: t.growth > MERGED, of_velocity),
     }
-    meaning = (
-        f"what drag changes: 6 ps less without, mean over {over}; small fragments: of {SMALL} grains or fewer; merging: growth "
-        f"efficiency above {MERGED:g}"
-    )
+    parts = f"small fragments: of {SMALL} grains or fewer; merging: growth efficiency above {MERGED:g}"
+    meaning = f"what drag changes: 6 ps less without, mean over {over}; {parts}"
     yield Quantity(f"drag{suffix}", meaning, together(with_drag, "part"))
 
 
@@ -114,7 +111,7 @@ def _fragments(runs):
     own = runs.where(grains=50_000, **REFERENCE)
     single = own.of(_by_size(own.table, cumulative_grains)).estimates("value", (*POINT, "fragment"))
     yield Quantity("grains_in_fragments_full", "N_cum(<= N) of 50,000 grains each, 50.1 m/s, B_off^2 = 3/12", single)
-    table = runs.table[np.logical_or.reduce([alike(runs.table.velocity, v) for v in FRAGMENTS_AT])]
+    table = runs.where(velocity=FRAGMENTS_AT).table
     runs = runs.over("square", SQUARES, offset_weights)
     found = {"grains_in_fragments": cumulative_grains, "cross_section": cumulative_cross_section}
     grains, section = (runs.of(_by_size(table, f)).estimates("value", (*CURVE, "fragment")) for f in found.values())
@@ -153,13 +150,10 @@ def _largest(first, second):
 
 def _by_size(table, cumulative):
     """The table with a row for each number of grains `fragment`, and the cumulative(sizes, numbers) of each run there as value."""
-    parts = []
-    for grains, runs in table.groupby("grains"):
-        numbers = np.unique(np.geomspace(1, 2 * grains, 60).round().astype(int))
-        values = [cumulative(sizes_from_text(text), numbers) for text in runs.fragments]
-        place = np.repeat(np.arange(len(runs)), len(numbers))
-        parts.append(runs.iloc[place].assign(fragment=np.tile(numbers, len(runs)), value=np.concatenate(values)))
-    return pandas.concat(parts, ignore_index=True) if parts else table.assign(fragment=0, value=0.0)
+    numbers = [np.unique(np.geomspace(1, 2 * grains, 60).round().astype(int)) for grains in table.grains]
+    values = [cumulative(sizes_from_text(text), own) for text, own in zip(table.fragments, numbers)]
+    rows = table.assign(fragment=numbers, value=values).explode(["fragment", "value"], ignore_index=True)
+    return rows.astype({"fragment": int, "value": float})
 
 
 def _fitted(means, inside):
@@ -173,11 +167,6 @@ def _with_drag(runs, values, by, of=differences):
     """Values with the most drag less those without (or over them), of the same pairs."""
     found = runs.beside("viscoelasticTime", NO_DRAG, values, by, of, same_pairs=True)
     return select(found, viscoelasticTime=MOST_DRAG)
-
-
-def _small(text):
-    sizes = sizes_from_text(text)
-    return sizes[sizes <= SMALL].sum()
 
 
 STUDY = Study(

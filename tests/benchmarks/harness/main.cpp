@@ -17,7 +17,6 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
 
   steps=500       small steps of one measurement
   threads=1       threads, or several by turns: threads=1,2
-  rounds=1        measurements with each
   domains=0       parts that the grains are divided into; 0: by their number
   instructions=   avx512, avx2, portable; empty: the best that this machine has
   together=50     small steps in one call of the engine, as subSteps of JKRWadaEngine
@@ -26,60 +25,49 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
   control=        fifo of perf record --delay=-1 --control fifo:NAME, which then samples the measurements only
 )";
 
-struct Settings {
-	std::string scene;
-	std::vector<long> threads { 1 };
-	std::map<std::string, long> numbers { { "steps", 500 }, { "rounds", 1 }, { "domains", 0 }, { "together", 50 }, { "warm", 0 } };
-	std::map<std::string, std::string> words { { "instructions", "" }, { "out", "" }, { "control", "" } };
-	long operator[](const char* name) const { return numbers.at(name); }
-};
-
 long wholeNumber(const std::string& name, const std::string& text, long least)
 {
-	std::size_t used = 0;
-	long number = least - 1;
-	try {
-		number = std::stol(text, &used);
-	} catch (const std::exception&) {
-	}
-	if (used != text.size() || text.empty() || number < least || number > 1000000000)
+	std::istringstream digits(text);
+	long number = 0;
+	if (!(digits >> number && digits.eof()) || number < least || number > 1000000000)
 		throw std::invalid_argument(name + " = " + text + ": must be a whole number of at least " + std::to_string(least));
 	return number;
 }
 
+struct Settings {
+	std::string scene;
+	std::map<std::string, std::string> words { { "steps", "500" }, { "threads", "1" }, { "domains", "0" }, { "instructions", "" },
+		{ "together", "50" }, { "warm", "0" }, { "out", "" }, { "control", "" } };
+
+	const std::string& operator[](const char* name) const { return words.at(name); }
+
+	long number(const char* name, long least = 1) const { return wholeNumber(name, words.at(name), least); }
+	std::vector<long> threads() const
+	{
+		std::vector<long> found;
+		std::istringstream parts(words.at("threads") + ',');
+		for (std::string part; std::getline(parts, part, ',');)
+			found.push_back(wholeNumber("threads", part, 1));
+		return found;
+	}
+};
+
 void take(Settings& settings, const std::string& argument)
 {
 	const std::size_t equals = argument.find('=');
-	const std::string name = argument.substr(0, equals), value = equals == std::string::npos ? "" : argument.substr(equals + 1);
+	const auto known = settings.words.find(argument.substr(0, equals));
 	if (equals == std::string::npos && settings.scene.empty())
 		settings.scene = argument;
-	else if (settings.numbers.count(name))
-		settings.numbers[name] = wholeNumber(name, value, name == "domains" || name == "warm" ? 0 : 1);
-	else if (settings.words.count(name))
-		settings.words[name] = value;
-	else if (name == "threads") {
-		settings.threads.clear();
-		std::istringstream parts(value + ',');
-		for (std::string part; std::getline(parts, part, ',');)
-			settings.threads.push_back(wholeNumber(name, part, 1));
-	} else
+	else if (equals != std::string::npos && known != settings.words.end())
+		known->second = argument.substr(equals + 1);
+	else
 		throw std::invalid_argument(argument + ": no such parameter; build/harness --help lists them");
 }
-
-struct Counted { // since the start
-	contact_law::Dynamics::Counters counters;
-	contact_law::Counts counts;
-	explicit Counted(const contact_law::Dynamics& dynamics)
-	        : counters(dynamics.counters())
-	        , counts(contact_law::counts(dynamics))
-	{
-	}
-};
 
 // Tells perf to begin or to end sampling.
 void tell(const Settings& settings, const char* command)
 {
-	const std::string& path = settings.words.at("control");
+	const std::string& path = settings["control"];
 	if (path.empty()) return;
 	std::ofstream control(path);
 	control << command << std::endl;
@@ -90,36 +78,30 @@ void measure(harness::Run& run, const Settings& settings, long threads)
 {
 	contact_law::Dynamics& dynamics = run.dynamics();
 	dynamics.setThreads(int(threads));
-	const Counted before(dynamics);
+	const long steps = settings.number("steps"), together = settings.number("together");
 	const double contacts = contact_law::contactCount(dynamics);
 	tell(settings, "enable");
 	const auto start = std::chrono::steady_clock::now();
-	run.run(settings["steps"], settings["together"]);
+	run.run(steps, together);
 	const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 	tell(settings, "disable");
-	const Counted after(dynamics);
 	const double mean = 0.5 * (contacts + contact_law::contactCount(dynamics));
-	std::printf("{\"threads\": %d, \"steps\": %ld, \"msPerStep\": %.6g, \"contacts\": %.1f, \"contactUpdatesPerSecond\": %.5g, "
-	            "\"searches\": %.4g, \"distanceChecks\": %ld, \"events\": %ld, \"formed\": %ld, \"broken\": %ld}\n",
-	        dynamics.threadCount(), settings["steps"], 1e3 * seconds / double(settings["steps"]), mean,
-	        mean * double(settings["steps"]) / seconds, after.counters.searches - before.counters.searches,
-	        after.counters.distanceChecks - before.counters.distanceChecks, after.counts.events - before.counts.events,
-	        after.counts.formed - before.counts.formed, after.counts.broken - before.counts.broken);
+	std::printf("{\"threads\": %d, \"steps\": %ld, \"msPerStep\": %.6g, \"contacts\": %.1f, \"contactUpdatesPerSecond\": %.5g}\n",
+	        dynamics.threadCount(), steps, 1e3 * seconds / double(steps), mean, mean * double(steps) / seconds);
 	std::fflush(stdout);
 }
 
 void runScene(const Settings& settings)
 {
 	if (settings.scene.empty()) throw std::invalid_argument("no scene: must be given first; build/harness --help says more");
-	harness::Run run(
-	        harness::readScene(settings.scene), int(settings["domains"]), int(settings.threads[0]), settings.words.at("instructions"));
+	const std::vector<long> threads = settings.threads();
+	harness::Run run(harness::readScene(settings.scene), int(settings.number("domains", 0)), int(threads[0]), settings["instructions"]);
 	const double energy = run.totalEnergy(), kinetic = run.kineticEnergy();
-	run.run(settings["warm"], settings["together"]);
-	for (long round = 0; round < settings["rounds"]; ++round)
-		for (const long threads : settings.threads)
-			measure(run, settings, threads);
+	run.run(settings.number("warm", 0), settings.number("together"));
+	for (const long each : threads)
+		measure(run, settings, each);
 	const harness::Scene end = run.sceneNow();
-	if (const std::string& out = settings.words.at("out"); !out.empty()) harness::writeScene(out, end);
+	if (const std::string& out = settings["out"]; !out.empty()) harness::writeScene(out, end);
 	std::printf("{\"grains\": %zu, \"contacts\": %zu, \"time\": %.9g, \"energyChange\": %.6g, \"kinetic\": %.6g, \"instructions\": "
 	            "\"%s\", \"domains\": %zu, "
 	            "\"hash\": \"%016llx\"}\n",

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from answers import SUITE
 from lammps import LMP, contact_words, version
-from lammps_family import LENGTH, TIME, left_by
+from lammps_family import LENGTH, TIME, grains_file, left_by
 
 ROOM = Path(__file__).resolve().parents[1]
 TOP = ROOM.parents[1]
@@ -47,21 +47,14 @@ run {steps}
 """
 
 
-def grains_file(state, reach):
-    """A data file in LAMMPS's units."""
-    x, v = state.position / LENGTH, state.velocity * TIME / LENGTH
-    edges = "".join(f"{-reach!r} {reach!r} {axis}lo {axis}hi\n" for axis in "xyz")
-    atoms = "".join(f"{k} 1 2.0 1.0 {' '.join(map(repr, row))}\n" for k, row in enumerate(x.tolist(), 1))
-    speeds = "".join(f"{k} {' '.join(map(repr, row))} 0 0 0\n" for k, row in enumerate(v.tolist(), 1))
-    return f"grains\n\n{len(x)} atoms\n1 atom types\n\n{edges}\nAtoms\n\n{atoms}\nVelocities\n\n{speeds}"
-
-
 def contacts_at_end(state, contact, time):
     """Pairs of grains (M, 2) that touch at a time [s]: between which LAMMPS has a force."""
     steps = round(time / (STEP * contact["time_unit"]))
     reach = 50 + (np.abs(state.position).max() + 3 * np.abs(state.velocity).max() * time) / LENGTH
     filled = SCRIPT.format(contact=contact_words(contact), step=time / TIME / steps, steps=steps)
-    files = {"grains": grains_file(state, float(reach)), "in": filled}
+    alike = ([one] * len(state.position) for one in (1, 2.0, 1.0))
+    motion = (x.tolist() for x in (state.position, state.velocity, 0 * state.velocity))
+    files = {"grains": grains_file(float(reach), *alike, *motion), "in": filled}
     rows = np.loadtxt(left_by([LMP], files, f"contacts.{steps}").splitlines(), skiprows=9, ndmin=2)
     return rows[rows[:, 3] != 0, 1:3].astype(int) - 1
 

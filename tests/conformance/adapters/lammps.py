@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 from answers import NotModelled, main
-from lammps_family import COLUMNS, DENSITY, HEAVY, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, run, runs, words
+from lammps_family import COLUMNS, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, grains_of, run, runs, words
 
 LMP = os.environ.get("LMP", "lmp")
 SCRIPT = """units lj
@@ -19,9 +19,7 @@ atom_style sphere
 boundary f f f
 newton off
 comm_modify vel yes
-region box block -10 10 -10 10 -10 10
-create_box 1 box
-{grains}
+read_data grains.data
 pair_style granular
 pair_coeff * * {contact}
 {plane}
@@ -48,27 +46,19 @@ def contact_words(c):
     return " ".join([*words, "damping", kind])
 
 
-def script(scene, materials, steps):
-    step, lines = scene["duration"] / steps, []
-    for k, g in enumerate(scene["grains"], 1):
-        density = materials[g["material"]]["density"] / DENSITY * (HEAVY if "prescribed" in scene else 1)
-        lines.append(f"create_atoms 1 single {words(g['position'], LENGTH)}\ngroup g{k} id {k}")
-        lines.append(
-            f"set atom {k} diameter {2 * g['radius'] / LENGTH!r} density {density!r} omega {words(g['spin'], 1 / TIME)}"
-        )
-        lines.append(f"velocity g{k} set {words(g['velocity'], LENGTH / TIME)} sum no")
-    contact = contact_words(scene["contact"])
+def script(scene, steps):
+    step, contact = scene["duration"] / steps, contact_words(scene["contact"])
     plane = f"fix plane all wall/gran granular {contact} xplane 0 NULL" if "plane" in scene else ""
-    spin = lambda k, w: f"set atom {k} omega {words(w, 1 / TIME)}"
-    texts = dict(grains="\n".join(lines), contact=contact, plane=plane, runs="\n".join(runs(scene, step, spin)))
-    return SCRIPT.format(step=step / TIME, columns=COLUMNS, **texts)
+    commands = "\n".join(runs(scene, step, lambda k, w: f"set atom {k} omega {words(w, 1 / TIME)}"))
+    return SCRIPT.format(step=step / TIME, columns=COLUMNS, contact=contact, plane=plane, runs=commands)
 
 
 def series_of(scene, materials, steps):
     if scene.get("neck"):
         listed = "bpm/rotational" in help_text()
         raise NotModelled("not tried: bond_style bpm/rotational" if listed else "no sintered bonds")
-    return run([LMP], {"in": script(scene, materials, steps)}, scene, materials, steps)
+    files = {"in": script(scene, steps), "grains.data": grains_of(scene, materials, (1, 1))}
+    return run([LMP], files, scene, materials, steps)
 
 
 def help_text():

@@ -18,8 +18,27 @@ def words(vector, unit=1.0):
     return " ".join(repr(x / unit) for x in vector)
 
 
+def grains_file(reach, kinds, diameters, densities, position, velocity, spin):
+    """Of read_data, for grains in a box of this reach; SI units but for diameters and densities."""
+    edges, atoms, moving = "".join(f"{-reach!r} {reach!r} {axis}lo {axis}hi\n" for axis in "xyz"), "", ""
+    each = zip(kinds, diameters, densities, position, velocity, spin)
+    for k, (kind, diameter, density, x, v, w) in enumerate(each, 1):
+        atoms += f"{k} {kind} {diameter!r} {density!r} {words(x, LENGTH)}\n"
+        moving += f"{k} {words(v, LENGTH / TIME)} {words(w, 1 / TIME)}\n"
+    return f"grains\n\n{k} atoms\n{max(kinds)} atom types\n\n{edges}\nAtoms\n\n{atoms}\nVelocities\n\n{moving}"
+
+
+def grains_of(scene, materials, kinds):
+    """The same of a scene."""
+    grains, heavy = scene["grains"], HEAVY if "prescribed" in scene else 1
+    densities = [materials[g["material"]]["density"] / DENSITY * heavy for g in grains]
+    motion = ([g[name] for g in grains] for name in ("position", "velocity", "spin"))
+    return grains_file(10, kinds, [2 * g["radius"] / LENGTH for g in grains], densities, *motion)
+
+
 def runs(scene, step, spin):
     """Commands that set prescribed motion, and run. spin(k, vector): the one that sets a spin."""
+    yield from (f"group g{k} id {k}" for k in range(1, len(scene["grains"]) + 1))
     done = 0
     for segment in scene.get("prescribed", [dict(until=scene["duration"], velocity=[])]):
         for k, v in enumerate(segment["velocity"], 1):

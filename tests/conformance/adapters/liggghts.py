@@ -11,7 +11,7 @@ import tempfile
 from math import pi, sqrt
 
 from answers import NotModelled, main
-from lammps_family import COLUMNS, DENSITY, HEAVY, LENGTH, PRESSURE, TIME, run, runs, words
+from lammps_family import COLUMNS, PRESSURE, TIME, grains_of, run, runs, words
 
 SCRIPT = """units si
 atom_style granular
@@ -33,8 +33,6 @@ pair_style gran model hertz tangential history cohesion sjkr rolling_friction ep
 pair_coeff * *
 timestep {step!r}
 fix move all nve/sphere
-group g1 id 1
-group g2 id 2
 dump all all custom 1 grains.dump {columns}
 dump_modify all sort id format "%d {format}" first yes
 thermo 1000000
@@ -56,35 +54,13 @@ def script(scene, materials, steps):
     return SCRIPT.format(**texts, step=step / TIME, columns=COLUMNS, format="%.17g " * 15, runs="\n".join(runs(scene, step, spin)))  # fmt: skip
 
 
-def data(scene, materials):
-    """Of read_data: type, diameter, density, position; velocity, spin."""
-    rows = [
-        "grains",
-        "",
-        "2 atoms",
-        "2 atom types",
-        "",
-        *(f"-10 10 {axis}lo {axis}hi" for axis in "xyz"),
-        "",
-        "Atoms",
-        "",
-    ]
-    moving = ["", "Velocities", ""]
-    for k, g in enumerate(scene["grains"], 1):
-        density = materials[g["material"]]["density"] / DENSITY * (HEAVY if "prescribed" in scene else 1)
-        rows.append(f"{k} {k} {2 * g['radius'] / LENGTH!r} {density!r} {words(g['position'], LENGTH)}")
-        moving.append(f"{k} {words(g['velocity'], LENGTH / TIME)} {words(g['spin'], 1 / TIME)}")
-    return "\n".join([*rows, *moving, ""])
-
-
 def series_of(scene, materials, steps):
     c = scene["contact"]
     drag = c["linear_drag"] or c["viscous_drag_per_contact_radius"]
     if scene.get("neck") or "plane" in scene or drag:
-        raise NotModelled(
-            "no sintered bonds" if scene.get("neck") else "no such drag" if drag else "not tried: fix wall/gran"
-        )
-    files = {"in": script(scene, materials, steps), "grains.data": data(scene, materials)}
+        why = "no sintered bonds" if scene.get("neck") else "no such drag" if drag else "not tried: fix wall/gran"
+        raise NotModelled(why)
+    files = {"in": script(scene, materials, steps), "grains.data": grains_of(scene, materials, (1, 2))}
     return run(["liggghts"], files, scene, materials, steps)
 
 

@@ -14,13 +14,9 @@ CHANNELS = {"connection": "connection", "disconnection": "disconnection", "bond 
 
 def material(given):
     """With the attributes of JKRMat."""
-    names = dict(
-        surfaceEnergy="surface_energy", criticalRolling="critical_rolling", viscoelasticTime="viscoelastic_time"
-    )
-    return {
-        **{name: given[name] for name in ("young", "poisson", "density")},
-        **{our: given[name] for our, name in names.items()},
-    }
+    others = {"surfaceEnergy": "surface_energy", "criticalRolling": "critical_rolling"}
+    others |= {"viscoelasticTime": "viscoelastic_time", **{name: name for name in ("young", "poisson", "density")}}
+    return {our: given[name] for our, name in others.items()}
 
 
 def series_of(scene, materials, steps):

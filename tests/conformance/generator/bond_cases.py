@@ -91,9 +91,8 @@ def gone_after_the_break():
     beta = exact(BETA)
     x = beta**2 / (2 * (1 - beta))
     h = x / (1 + x)
-    profile = lambda y: (beta + x - sqrt(x**2 - y**2)) ** 2 - (
-        1 - (1 - y) ** 2
-    )  # fillet less sphere, y from the mid-plane
+    # fillet less sphere, y from the mid-plane
+    profile = lambda y: (beta + x - sqrt(x**2 - y**2)) ** 2 - (1 - (1 - y) ** 2)
     volume = 2 * pi * mp.quad(profile, [0, h])
     shrunk = (1 - 2 * volume / (mpf(4) / 3 * pi)) ** (mpf(1) / 3)
     return ICE.r1 + ICE.r2 - START - 2 * shrunk * ICE.r1 > 0

@@ -135,10 +135,7 @@ def bond(name, r, beta):
     a, x = beta * r, beta**2 / (2 * (1 - beta))  # S17 (1), x in r
     d, G = 2 * r * x / (1 + x), m.young / (2 * (1 + m.poisson))  # S17 (2)
     b = SimpleNamespace(r1=r, r2=r, R=r / 2, kn=pi * a**2 * m.young / d, ks=pi * a**2 * G / d)  # S17 (3), (4)
-    b.kr, b.kt = (
-        pi * a**4 * m.young / (4 * d) / b.R**2,
-        pi * a**4 * G / (2 * d),
-    )  # S17 (5) on xi; polar moment of the disk
+    b.kr, b.kt = pi * a**4 * m.young / (4 * d) / b.R**2, pi * a**4 * G / (2 * d)  # S17 (5) on xi; polar moment
     b.work = pi * a**2 * m.surface_energy  # S17 (6)
     b.m = mpf(2) / 3 * pi * m.density * r**3
     return b

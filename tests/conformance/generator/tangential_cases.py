@@ -196,11 +196,10 @@ def unlike_materials():
 
 
 def check_limits(c, n, n1, n2, phi):
-    """(sizes of the displacements over their limits), all of which must be below 1."""
+    """Springs must be well within their limits."""
     zeta, xi, _ = displacements(c, n, n1, n2)
     shares = sqrt(dot(zeta, zeta)) / c.slide, sqrt(dot(xi, xi)) / c.roll, abs(phi) / c.twist
     assert max(shares) < mpf("0.9"), f"beyond its limits: {[float(s) for s in shares]}"
-    return shares
 
 
 def free_rate(c):

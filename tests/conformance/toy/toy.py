@@ -43,9 +43,8 @@ def run(scene, steps):
         else:
             v += h / 2 * F / c["reduced_mass"]
             x += h * v
-            F, touching, u = force(
-                x, v + h / 2 * F / c["reduced_mass"], touching, u
-            )  # drag at a velocity that is foreseen
+            foreseen = v + h / 2 * F / c["reduced_mass"]  # for the drag
+            F, touching, u = force(x, foreseen, touching, u)
             v += h / 2 * F / c["reduced_mass"]
     return rows
 
@@ -82,9 +81,8 @@ def measured(what, rows_of, scenes):
     if what["kind"] == "value" and "at" in what:
         return rows[round(what["at"] / rows[1][0])][COLUMNS[what["of"]]] / what.get("over", 1.0)
     if what["kind"] == "value":
-        return interpolated(
-            rows, COLUMNS[what["of"]], COLUMNS[what["when"]], what["equals"], what["after"], what["before"]
-        )
+        columns = COLUMNS[what["of"]], COLUMNS[what["when"]]
+        return interpolated(rows, *columns, what["equals"], what["after"], what["before"])
     if what["kind"] == "separated":
         return float(rows[-1][1] < 0 and rows[-1][3] == 0)
     if what["kind"] == "break":

@@ -1,33 +1,21 @@
 """Every command that writes files, ended or with a full disk at its file-system calls: which, and what must hold afterwards."""
 
+import json
 import re
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable
 
-from faults.forks import DISK_FULL, END_HALFWAY
-from faults.scenarios import ACTIONS, OTHER, RESUME, RUN, Case, arrays, wrong_on_a_full_disk
+import numpy as np
 
-from analysis.atlas.columns import MEASURED
-from analysis.atlas.grid import RUNS_FILE
-from analysis.runs.table import read_table, table_text
 from analysis.runs.write import is_unfinished
-from analysis.studies.columns import flat
 
-# A study of one's own, as analysis/STUDIES.md has it, and a table for the runner: what commands read beside runs.
-OWN = """
-from analysis.studies.collisions import collision_study, outcome_quantities
-from analysis.studies.curve_figure import CurveFigure
-from analysis.studies.runs import Runs
-
-def quantities(table):
-    return outcome_quantities(Runs(table, pair="seed", population=()), by=("velocity",))
-
-STUDY = collision_study(title="T", question="Q?", varied=("velocity", "seed"), quantities=quantities)
-FIGURES = (CurveFigure("sticking", "What sticks.", "sticking", x="velocity", logarithmic="x"),)
-"""
-TABLE = "description {}\na {}\n".format(*(" ".join(words) for words in zip(*(cell.split("=") for cell in RUN))))
+COLLIDE = "yade_scripts/collide.py"
+# Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.
+RUN = ("radius=2", "velocity=30", "impact=1", "duration=1e-10", "states=4", "threads=1", "checkpointInterval=1e-9")
+OTHER = ("seed=2",)  # of a run that was in the folder before
+RESUME, OVERWRITE = "resume=1", "overwrite=1"
+RECORDER = "checkpoint/recorder.npz"
 # Programs that commands call: a queue of Slurm's in which the one job waits once it has been submitted. (make test-slurm has the real one.)
 PROGRAMS = {"sbatch": 'touch "$0.called"; echo 12', "squeue": 'test -e "${0%squeue}sbatch.called" && echo 12_1 PENDING'}
 
@@ -49,6 +37,15 @@ def submitted(folder):
     return found
 
 
+def arrays(run):
+    """{file: {name: bytes}} of history and states, and the outcome."""
+    found = {}
+    for file in [run / "history.npz", *sorted((run / "states").glob("*"))]:
+        with np.load(file) as archive:
+            found[file.name] = {name: archive[name].tobytes() for name in archive.files}
+    return found, json.loads((run / "run.json").read_text())["outcome"]
+
+
 def ended_runs(folder):
     """{path: arrays} of the runs at or below a folder that are marked as ended."""
     return {str(mark.parent.relative_to(folder)): arrays(mark.parent) for mark in Path(folder).rglob("ended")}
@@ -56,14 +53,18 @@ def ended_runs(folder):
 
 @dataclass(frozen=True)
 class Command:
-    """arguments: of the call that meets the fault; before: of one whose files are there then, for it to replace (None: none are).
-    Called in a folder with the runs `run` and `other`, own.py and t.table, and PROGRAMS on PATH. watched: what it writes into, a folder; content: of what
-    must be whole; every: of how many calls one is tried, where there are many, or each takes long."""
+    """arguments: of the call that meets the fault; before: of one whose files are there then, for it to replace (None: none are),
+    a run that is killed when it has written so many checkpoints (0: it ends); again: of calls afterwards, each alone, which must end
+    as without a fault (by default the same call). Called in a folder with the runs `run` and `other`, own.py and t.table, and PROGRAMS on
+    PATH. watched: what it writes into, a folder; content: of what must be whole; every: of how many calls one is tried, where there
+    are many, or each takes long."""
 
     name: str
-    program: str  # as fork_server.py has it
+    program: str  # a script's path in the repository, or a module
     arguments: tuple
     before: tuple = None
+    checkpoints: int = 0
+    again: tuple = ()
     watched: str = "out"
     content: Callable = files_below
     every: int = 1
@@ -81,16 +82,29 @@ def _of_analysis(words, before="", every=1):
     )
 
 
+def _of_collide(name, arguments, again=(), before=None, checkpoints=0):
+    """A run in the folder out."""
+    place = lambda given: (*given, "out=out")
+    before = before and place(before)
+    return Command(
+        f"collide: {name}", COLLIDE, place(arguments), before, checkpoints, tuple(map(place, again)), content=ended_runs
+    )
+
+
+REPLACE = RUN + (OVERWRITE,)
+SCENARIOS = (
+    _of_collide("a new run", RUN, [RUN + (RESUME,)]),
+    _of_collide("a resumed run", RUN + (RESUME,), before=RUN, checkpoints=3),
+    _of_collide(
+        "a run that replaces an ended one", REPLACE, [REPLACE, RUN + (RESUME,), REPLACE + (RESUME,)], before=RUN + OTHER
+    ),
+    _of_collide("a run that replaces a killed one", REPLACE, before=RUN + OTHER, checkpoints=3),
+)
 COMPRESSION = ("grains=20", "finalFilling=0.2", "strainRate=1e-3", "threads=1", "states=3", RESUME, "out=out")
 COMMANDS = (
+    *SCENARIOS,
     Command("compress", "yade_scripts/compress.py", COMPRESSION, content=ended_runs),
-    Command(
-        "collide, sintered",
-        "yade_scripts/collide.py",
-        (*RUN, "neck=0.2", RESUME, "out=out"),
-        content=ended_runs,
-        every=3,
-    ),
+    Command("collide, sintered", COLLIDE, (*RUN, "neck=0.2", RESUME, "out=out"), content=ended_runs, every=3),
     Command(
         "make_packing",
         "yade_scripts/make_packing.py",
@@ -140,71 +154,3 @@ WRITERS = {
     "yade_scripts/runner/slurm.py": "study --slurm",
     "yade_scripts/runner/batch.py": "study",
 }
-
-
-class Trial:
-    """One command in a folder of its own. forks: faults.forks.Forks."""
-
-    def __init__(self, forks, command, folder):
-        self._forks, self.command, self._folder = forks, command, Path(folder)
-        self._out, self._kept = self._folder / command.watched, self._folder / "before"
-        for name, more in (("run", ()), ("other", OTHER)):
-            assert forks.run(RUN + more, self._folder / name).status == 0
-        (self._folder / "own.py").write_text(OWN)
-        (self._folder / "t.table").write_text(TABLE)
-        (self._folder / "bin").mkdir()
-        for name, line in PROGRAMS.items():
-            (self._folder / "bin" / name).write_text(f"#!/bin/sh\n{line}\n")
-            (self._folder / "bin" / name).chmod(0o755)
-        self._out.mkdir()
-        if command.watched == "atlas":
-            _part_of_the_atlas(self._out)
-        if command.before is not None:
-            self._made(command.before)
-        shutil.copytree(self._out, self._kept, symlinks=True)
-        before = command.content(self._out)
-        self.calls = self._made(command.arguments)
-        self._whole = before, command.content(self._out)
-
-    def _made(self, arguments):
-        """The calls without a fault."""
-        done = self._call(arguments)
-        assert done.status == 0, done.lines
-        return done.calls
-
-    def _call(self, arguments, *fault):
-        return self._forks.call(self.command.program, arguments, self._out, *fault)
-
-    def cases(self, every=None):
-        """Case of each fault at every so many calls (None: as the command says); halfway only in writes."""
-        for call in self.calls[:: every or self.command.every]:
-            for fault in ACTIONS:
-                if ACTIONS[fault] != END_HALFWAY or call.name in ("write", "sendfile"):
-                    yield self._case(call, fault)
-
-    def _case(self, call, fault):
-        shutil.rmtree(self._out)
-        (self._folder / "bin/sbatch.called").unlink(missing_ok=True)
-        shutil.copytree(self._kept, self._out, symlinks=True)
-        done = self._call(self.command.arguments, call.number, ACTIONS[fault])
-        found, wrong = self.command.content(self._out), []
-        half = [path for path in found if found[path] not in [each.get(path) for each in self._whole]]
-        wrong += [f"half of {len(half)} files, such as {half[0]}"] if half else []
-        if ACTIONS[fault] == DISK_FULL:
-            wrong += wrong_on_a_full_disk(done)
-        elif done.status != -9:
-            wrong.append(f"exit status {done.status}: {done.lines}")
-        again = self._call(self.command.arguments)
-        while any("is being run by another process" in line for line in again.lines):  # the killed one's workers
-            again = self._call(self.command.arguments)
-        if self.command.content(self._out) != self._whole[1] or again.status and found != self._whole[1]:
-            wrong.append(f"again: exit status {again.status}: {again.lines[-1:]}")
-        left = [path.name for path in self._out.rglob("*") if is_unfinished(path.name)]
-        return Case(self.command.name, fault, str(call), wrong + ([f"leaves {left}"] if left else []))
-
-
-def _part_of_the_atlas(folder):
-    """A twelfth of its table of runs: the model takes a minute of each call."""
-    columns = flat(MEASURED)
-    table, head = read_table(RUNS_FILE, columns)
-    (folder / "runs.csv").write_text(table_text(table[::12], columns, head))

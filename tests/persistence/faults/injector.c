@@ -124,14 +124,6 @@ OPEN(openat64, at, path, (at, path, flags, mode), int at, const char* path)
 FOPEN(fopen)
 FOPEN(fopen64)
 
-int mkdirat(int at, const char* path, mode_t mode)
-{
-	NEXT(mkdirat);
-	if (counted_at("mkdir", at, path, 1) == FAIL) FULL(-1);
-	return next(at, path, mode);
-}
-int mkdir(const char* path, mode_t mode) { return mkdirat(AT_FDCWD, path, mode); }
-
 // ---- writing ----
 
 // ALL: the call itself, PART: the call for half of the bytes; after that half the process ends, or the disk is full.
@@ -169,42 +161,23 @@ OF_DESCRIPTOR(fchmod, 0, (descriptor, mode), int descriptor, mode_t mode)
 
 // ---- names ----
 
-#define OF_NAME(name, AT, PASS, ...) \
+// Renamed and linked files are counted by the new name.
+#define OF_NAME(name, AS, ROOM, AT, PASS, ...) \
 	int name(__VA_ARGS__) \
 	{ \
 		NEXT(name); \
-		counted_at(#name, AT, path, 0); \
+		if (counted_at(AS, AT, path, ROOM) == FAIL) FULL(-1); \
 		return next PASS; \
 	}
-OF_NAME(chmod, AT_FDCWD, (path, mode), const char* path, mode_t mode)
-OF_NAME(fchmodat, at, (at, path, mode, flags), int at, const char* path, mode_t mode, int flags)
-OF_NAME(truncate, AT_FDCWD, (path, length), const char* path, off_t length)
-OF_NAME(unlink, AT_FDCWD, (path), const char* path)
-OF_NAME(unlinkat, at, (at, path, flags), int at, const char* path, int flags)
-OF_NAME(rmdir, AT_FDCWD, (path), const char* path)
-
-// Counted by the new name.
-int rename(const char* from, const char* path)
-{
-	NEXT(rename);
-	counted_at("rename", AT_FDCWD, path, 0);
-	return next(from, path);
-}
-int renameat(int from_at, const char* from, int at, const char* path)
-{
-	NEXT(renameat);
-	counted_at("rename", at, path, 0);
-	return next(from_at, from, at, path);
-}
-int link(const char* from, const char* path)
-{
-	NEXT(link);
-	counted_at("link", AT_FDCWD, path, 0);
-	return next(from, path);
-}
-int linkat(int from_at, const char* from, int at, const char* path, int flags)
-{
-	NEXT(linkat);
-	counted_at("link", at, path, 0);
-	return next(from_at, from, at, path, flags);
-}
+OF_NAME(mkdir, "mkdir", 1, AT_FDCWD, (path, mode), const char* path, mode_t mode)
+OF_NAME(mkdirat, "mkdir", 1, at, (at, path, mode), int at, const char* path, mode_t mode)
+OF_NAME(chmod, "chmod", 0, AT_FDCWD, (path, mode), const char* path, mode_t mode)
+OF_NAME(fchmodat, "fchmodat", 0, at, (at, path, mode, flags), int at, const char* path, mode_t mode, int flags)
+OF_NAME(truncate, "truncate", 0, AT_FDCWD, (path, length), const char* path, off_t length)
+OF_NAME(unlink, "unlink", 0, AT_FDCWD, (path), const char* path)
+OF_NAME(unlinkat, "unlinkat", 0, at, (at, path, flags), int at, const char* path, int flags)
+OF_NAME(rmdir, "rmdir", 0, AT_FDCWD, (path), const char* path)
+OF_NAME(rename, "rename", 0, AT_FDCWD, (from, path), const char* from, const char* path)
+OF_NAME(renameat, "rename", 0, at, (from_at, from, at, path), int from_at, const char* from, int at, const char* path)
+OF_NAME(link, "link", 0, AT_FDCWD, (from, path), const char* from, const char* path)
+OF_NAME(linkat, "link", 0, at, (from_at, from, at, path, flags), int from_at, const char* from, int at, const char* path, int flags)

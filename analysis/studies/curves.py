@@ -1,4 +1,4 @@
-"""Where a quantity falls through 0."""
+"""Numbers that curves have: where one falls through 0, and which power it follows."""
 
 import numpy as np
 
@@ -20,3 +20,17 @@ def threshold_velocity(velocities, values):
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         crossing = np.exp(log[k] + (log[k + 1] - log[k]) * above / (above - below))
     return np.where(falls.any(axis=-1), crossing, np.nan)[()]
+
+
+def power(x, y):
+    """n of y ~ x^n: least squares of the logarithms of y (..., K) against those of x (K,); NaN where one of y is not positive, and with fewer
+    than three.
+
+    >>> float(power([1.0, 2.0, 4.0], [3.0, 12.0, 48.0]).round(9))
+    2.0
+    """
+    x, y = np.log(np.asarray(x, dtype=float)), np.asarray(y, dtype=float)
+    if len(x) < 3:
+        return np.full(y.shape[:-1], np.nan)[()]
+    away = x - x.mean()
+    return np.log(np.where(y > 0, y, np.nan)) @ away / (away @ away)
