@@ -13,7 +13,7 @@ from .rules import KINDS
 from .variables import FEATURES, of_structure, variables
 
 LABELS = {
-    TOUCHING: "of pairs with b < 1 so many touch",
+    TOUCHING: "fraction of such pairs that touch",
     "largest": "largest piece, of the mass",
     "second": "second largest",
     "fragment_index": "n of dN/dm ~ m^-n of all but the largest",

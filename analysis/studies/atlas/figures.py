@@ -105,7 +105,7 @@ FIGURES = (
     StudyFigure(
         "sticking",
         "Fraction of collisions that stick, averaged over impact parameters. Dots: decided runs that were not chosen, in a band of filling φ and velocity "
-        f"(ice: v_break = 3.8 m/s), with 95 % intervals; lines: the tables of outcomes at {GRAINS} grains and a mass ratio of 1/4, with its error; dotted: extrapolated.",
+        f"(ice: v_break = 3.8 m/s), with 95 % intervals; lines: the tables of outcomes at {GRAINS} grains and a mass ratio of 1/4, with their errors; dotted: extrapolated.",
         sticking,
     ),
     StudyFigure(
