@@ -88,12 +88,19 @@ def total_energy(*works):
     return sum(energies(*works).values())
 
 
-def largest_change(steps, *works, step=lambda: O.step()):
-    """How far the sum of all channels and these works gets, in so many calls of step(), from what it is now [J]."""
+def steps(number):
+    """So many calls of O.step: O.run() waits long for its thread."""
+    for _ in range(number):
+        O.step()
+
+
+def largest_change(looks, *works, every=1, step=lambda: O.step()):
+    """How far the sum of all channels and these works gets from what it is now [J]: looked at so often, each time after `every` calls of step()."""
     first = total_energy(*works)
     largest = 0
-    for _ in range(steps):
-        step()
+    for _ in range(looks):
+        for _ in range(every):
+            step()
         largest = max(largest, abs(total_energy(*works) - first))
     return largest
 
@@ -168,14 +175,6 @@ def set_free(packing, material):
         O.run(10, True)
         kinetic.append(energies()["kinetic"])
     return before, contact_law.snapshot(), max(kinetic)
-
-
-def threshold(is_above, low, high):
-    """The number between two others from which on is_above(number) is true, to 2e-4 of it."""
-    while high - low > 2e-4 * low:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if is_above(middle) else (middle, high)
-    return 0.5 * (low + high)
 
 
 def said(call):

@@ -16,12 +16,6 @@ def engine():
     return O.engines[0]
 
 
-def steps(number):
-    """So many calls of O.step."""
-    for _ in range(number):
-        O.step()
-
-
 def run(text, **names):
     """Execute a script's text, which sees these names, and those here."""
     exec(text, {**globals(), **names})

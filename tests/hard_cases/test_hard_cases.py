@@ -17,12 +17,9 @@ def start(step, mover="fused", sub_steps=1):
 
 def closure(steps, every):
     """Largest change of the energy sum, over the first kinetic energy."""
-    sums = []
-    sys.modules["__main__"].look = lambda: sums.append((total_energy(), energies()["kinetic"]))
-    O.engines += [PyRunner(command="look()", iterPeriod=every)]
-    O.run(steps, True)
-    e, k = np.array(sums).T
-    return np.abs(e - e[0]).max() / k[0]
+    O.step()
+    kinetic = energies()["kinetic"]
+    return largest_change(steps // every, every=every) / kinetic
 
 
 @BOTH

@@ -26,11 +26,6 @@ def start(mover, step, count, held=0):
         fused_engine(neck=NECK)
 
 
-def steps(number):
-    for _ in range(number):
-        O.step()  # O.run() waits long for its thread
-
-
 def sampled(quantity, stride, number):
     """A quantity after every stride-th step."""
     found = []
