@@ -211,10 +211,11 @@ def saved_and_loaded(name="saved.yade.gz"):
     O.load(name)
 
 
-def record(n, *works):
-    """Positions (n, bodies, 3) and energies(*works) after each of n steps."""
+def record(n, *works, before=lambda k: None):
+    """Positions (n, bodies, 3) and energies(*works) after each of n steps; before(k) is called ahead of step k."""
     tracks, sums = [], []
-    for _ in range(n):
+    for k in range(n):
+        before(k)
         O.step()
         tracks.append(positions())
         sums.append(energies(*works))

@@ -20,14 +20,7 @@ def necks():
 
 def run(steps, sinterings):
     """record(steps) with sinterings: {before step: neck}."""
-    tracks, sums = [], []
-    for step in range(steps):
-        if step in sinterings:
-            contact_law.sinter(sinterings[step])
-        (x,), (energy,) = record(1)
-        tracks.append(x)
-        sums.append(energy)
-    return np.array(tracks), sums
+    return record(steps, before=lambda k: k in sinterings and contact_law.sinter(sinterings[k]))
 
 
 @pytest.mark.parametrize(

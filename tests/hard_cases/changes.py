@@ -67,5 +67,5 @@ UNDONE = {
     "O.engines += [JKRWadaEngine()] | O.engines = O.engines[:-1]": ["O.engines has 2 JKRWadaEngines: there must be one"],
     'kept = Vector3(O.bodies[{i}].state.vel); O.bodies[{i}].state.vel = Vector3(float("nan"), 0, 0) | O.bodies[{i}].state.vel = kept': ["body 2 was given a position, orientation or velocity that is not a finite number"],
     'kept = Vector3(O.bodies[{i}].state.pos); O.bodies[{i}].state.pos = Vector3(float("inf"), 0, 0) | O.bodies[{i}].state.pos = kept': ["body 2 was given a position, orientation or velocity that is not a finite number"],
-    'O.forces.addF({i}, Vector3(float("nan"), 0, 0)) | O.forces.reset(False)': ["O.forces has a force or torque on body 2 that is not a finite number"],
+    'O.forces.addF({i}, Vector3(float("nan"), 0, 0)) | O.forces.reset(False)': ["O.forces has a force or torque on body 2 that is not a finite number: must be finite (O.forces.reset(False) clears it"],
 }  # fmt: skip
