@@ -200,6 +200,11 @@ def motion():
     return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel)] for b in O.bodies]
 
 
+def all_states():
+    """motion() of all grains, their blocked degrees of freedom and orientations."""
+    return [[*moved, b.state.blockedDOFs, list(b.state.ori)] for moved, b in zip(motion(), O.bodies)]
+
+
 def counts():
     """The engine's, without what the lists of neighbours do."""
     found = O.engines[0].statistics()

@@ -68,30 +68,6 @@ def test_a_bonded_pair_is_unstable_right_above_the_limit():
             grow(1.015, engine)
 
 
-def test_a_bonded_pair_of_unlike_grains_has_a_limit_of_its_own():
-    """A large, stiff grain makes the bond of a small one stiffer than among its like. Engine and functors refuse a step from there on."""
-    small, large = (ice(), 1e-7), (ice(young=7e10), 1e-6)
-
-    def limit(one, other):
-        b = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=NECK).bondConstants(*one, *other)
-        mass, inertia = (lambda r: 4 / 3 * np.pi * 1000 * r**3), (lambda r: 0.4 * mass(r) * r**2)
-        turning = sum(1 / mass(r) + r**2 / inertia(r) for _, r in (one, other))  # 7 G > 2 E: the fastest vibration
-        return 2 / np.sqrt(b["slidingStiffness"] * turning)
-
-    def refused(step, engine):
-        new_scene(step, neck=NECK)
-        grain((0, 0, 0), 1e-6, large[0])
-        grain((1.099e-6, 0, 0), 1e-7, small[0])
-        if engine == "fused":
-            fused()
-        return "of these grains is unstable" in refusal()
-
-    bonded = limit(small, large)
-    assert bonded < 0.8 * min(limit(small, small), limit(large, large))
-    for engine in ("functors", "fused"):
-        assert refused(1.001 * bonded, engine) and not refused(0.999 * bonded, engine)
-
-
 def test_bonded_grains_at_rest_stay_there():
     """All energies are rounding then, and no reason to stop the run."""
     start(count=60, speed=0.0)

@@ -11,18 +11,14 @@ from scenes import *
 pytestmark = pytest.mark.in_yade
 
 
-def everything():
-    return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel), list(b.state.ori)] for b in O.bodies]
-
-
 def breaks_down(most):
     """What a run is stopped with within `most` O.steps, and the time [s] that it names; bodies and O.time are those before."""
     for _ in range(most):
-        before, time, message = everything(), O.time, refusal()
+        before, time, message = all_states(), O.time, refusal()
         if message:
             break
     assert message and "\n" not in message
-    assert before == everything() and time == O.time and refusal() == message
+    assert before == all_states() and time == O.time and refusal() == message
     assert f"O.bodies hold the last good state, of t = {time:.3g}"[:45] in message
     return message, float(re.search(r"broke down at t = (\S+) s", message).group(1))
 
@@ -83,15 +79,15 @@ def test_after_a_failure_a_checkpoint_holds_the_last_good_state():
         if saved_before:
             O.save("early.yade.gz")
         O.run(200, True)
-        good, kept = (everything(), contacts()), Vector3(O.bodies[0].state.vel)
+        good, kept = (all_states(), contacts()), Vector3(O.bodies[0].state.vel)
         O.bodies[0].state.vel = Vector3(1e5, 0, 0)
         message = refusal()
         assert "body 0 moves at 1e+05 m/s" in message and len(set(re.findall(r"body \d+", message))) > 1
         O.bodies[0].state.vel = kept
         saved_and_loaded("good.yade.gz")
-        assert (everything(), contacts()) == good and len(good[1]) > 3
+        assert (all_states(), contacts()) == good and len(good[1]) > 3
         O.run(50, True)
-        return everything(), energies()
+        return all_states(), energies()
 
     assert end(False) == end(True)
 
