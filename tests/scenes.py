@@ -31,22 +31,31 @@ def constants(material1, radius1, material2=None, radius2=None, damping=0, slidi
 
 
 def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
-    return [
-        ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=verlet),
-        InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
-            [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)],
-            [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)],
-        ),
-        NewtonIntegrator(damping=0),
-    ]
+    """With all of YADE's shapes that meet spheres, of which the law refuses facets and boxes."""
+    bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
+    shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
+    pairs = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)
+    loop = InteractionLoop(shapes, [pairs], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)])
+    return [ForceResetter(), InsertionSortCollider(bounds, verletDist=verlet), loop, NewtonIntegrator(damping=0)]
 
 
-def new_scene(dt, **options):
+def engines_around(loop):
+    """functor_engines() with the functors of an InteractionLoop that was used."""
+    dispatchers = loop.geomDispatcher, loop.physDispatcher, loop.lawDispatcher
+    engines = functor_engines()
+    engines[2] = InteractionLoop(*(dispatcher.functors for dispatcher in dispatchers))
+    return engines
+
+
+def new_scene(dt, mover="functors", **options):
+    """An empty scene with functor_engines(), or ("fused") the engine with the same options and its own."""
     O.reset()
     O.dt, O.trackEnergy = dt, True
-    O.engines = functor_engines(**options)
+    if mover == "functors":
+        O.engines = functor_engines(**options)
+    else:
+        names = {"damping": "linearDamping", "sliding_factor": "slidingStiffnessFactor"}
+        fused_engine(**{names.get(name, name): value for name, value in options.items()})
 
 
 def grain(position, radius, material, velocity=(0, 0, 0), spin=(0, 0, 0), blocked=""):

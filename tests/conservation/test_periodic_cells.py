@@ -11,14 +11,13 @@ WORK = "boundaryWork"
 
 def start(step, homo, drag=0.0, seed=1, rate=3e-4):
     """27 grains in a cell that shrinks by 2.4 to 1 per cent an axis in 80 t0, under the fused engine."""
-    new_scene(step * unit)
+    new_scene(step * unit, "fused")
     random = np.random.default_rng(seed)
     size = np.array([6.12e-7, 6.2e-7, 6.3e-7])
     periodic_cell(*size, homo=homo, velocity_gradient=-rate / unit * np.array([1, 0.7, 0.4]))
     for k in range(27):
         x = size * (np.array([k % 3, k // 3 % 3, k // 9]) + 0.5 + 0.005 * random.normal(size=3)) / 3
         grain(x, 1e-7, ice(viscoelasticTime=drag), 3 * random.normal(size=3), 2e7 * random.normal(size=3))
-    fused_engine()
     O.engines[0].prepare()
 
 

@@ -58,8 +58,7 @@ def test_interactions_are_those_of_the_functors(kind, steps, springs, zero):
     O.run(1, True)
     functors = contacts()
     stress = sum(np.outer(c["normalForce"] + c["shearForce"], x[a] - x[b]) for (a, b), c in functors.items()) / 1e-18
-    meeting(kind)
-    fused_engine(exportInteractions=True, orientations=True, **springs)
+    meeting(kind, mover="fused", exportInteractions=True, orientations=True, **springs)
     O.run(steps, True)
     engine = contacts()
     order = [(i.id1, i.id2) for i in O.interactions]

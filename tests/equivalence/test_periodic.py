@@ -7,9 +7,9 @@ pytestmark = pytest.mark.in_yade
 WORK = "boundaryWork"
 
 
-def start(kind, rate, homo, count=27, limit="held"):
+def start(kind, rate, homo, count=27, **options):
     """Grains on a loose lattice that fills the cell, shrinking by `rate` a time unit, and each with some velocity and spin; some lie in other periods."""
-    new_scene(0.1 * unit, limit=limit)
+    new_scene(0.1 * unit, **options)
     materials, radii = KINDS[kind]
     random = np.random.default_rng(1)
     side = int(round(count ** (1 / 3)))
@@ -54,8 +54,7 @@ def test_engine_and_functors_agree_step_by_step(kind, rate, homo, limit):
             whole = (np.array(b.state.vel) + mean) * (1 + gradient * O.dt) / (1 + gradient * O.dt / 2)
             b.state.vel = Vector3(whole - mean)
     functors, functor_sizes = record_with_sizes(301)
-    start(kind, rate, homo, limit=limit)
-    fused_engine(limit=limit)
+    start(kind, rate, homo, mover="fused", limit=limit)
     O.engines[0].prepare()
     engine, sizes = record_with_sizes(300)
     last = engine[1][-1]
@@ -87,8 +86,7 @@ def test_a_look_at_the_contacts_does_not_move_the_cell(homo):
     """writeInteractions() before the first step, or the first step after loading, leaves a velocity gradient that was set for when it would hold without the call."""
 
     def end(look=None):
-        start("like", 1e-3, homo)
-        fused_engine()
+        start("like", 1e-3, homo, mover="fused")
         if look == "first":
             O.engines[0].writeInteractions()
         O.run(20, True)

@@ -3,13 +3,12 @@
 from scenes import *
 
 
-def chain(count=4, speed=0.1, **options):
+def chain(count=4, speed=0.1, mover="fused", **options):
     """Touching grains in a row that vibrate, under the fused engine."""
-    new_scene(0.1 * unit)
+    new_scene(0.1 * unit, mover, **options)
     d = 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
     for k in range(count):
         grain((k * d, 0, 0), 1e-7, ice() if k == 0 else O.bodies[0].material, (0, speed * (-1) ** k, 0))
-    fused_engine(**options)
 
 
 def engine():

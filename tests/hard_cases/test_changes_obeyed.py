@@ -8,10 +8,8 @@ pytestmark = pytest.mark.in_yade
 
 def flying_together(**options):
     """27 grains that collide, under the fused engine: five small steps each O.step."""
-    new_scene(0.1 * unit)
+    new_scene(0.5 * unit, "fused", subSteps=5, **options)
     converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-    fused_engine(subSteps=5, **options)
-    O.dt *= 5
 
 
 def close_to(energies, unit):
@@ -133,9 +131,7 @@ def test_an_engine_that_was_saved_and_handed_over_starts_from_the_functors():
 @pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0.02, 0, 0), (-8.0, 1.0, 0), (0, 30.0, 0)])
 def test_a_touching_body_may_be_moved(mover, by):
     """Its contacts break when they are torn apart, with either way of moving, and the grains stay where one can find them."""
-    chain()
-    if mover == "functors":
-        O.engines = functor_engines()
+    chain(mover=mover)
     steps(200)
     before = energies()
     O.bodies[3].state.pos += Vector3(*by) * 1e-7
@@ -155,11 +151,9 @@ def test_a_bonded_body_may_be_torn_away(mover, by):
     """Its bond is let go as it was: what it held is booked, to the first order of the step, and nothing is thrown."""
 
     def torn(step):
-        new_scene(step * unit, neck=0.3)
+        new_scene(step * unit, mover, neck=0.3)
         for k in range(4):
             grain((k * 1.999e-7, 0, 0), 1e-7, O.bodies[0].material if k else ice(), (0, 0.1 * (-1) ** k, 0))
-        if mover == "fused":
-            fused_engine(neck=0.3)
         steps(int(20 / step))
         before = energies()
         O.bodies[3].state.pos += Vector3(*by) * 1e-7
@@ -206,12 +200,10 @@ def test_a_moved_body_leaves_its_neighbours_as_the_functors_have_it():
     """Torn away in the middle of a run with drag: the loss that is booked is the functors', to the first order of the one small step by which forces lag."""
 
     def torn(mover, step):
-        chain()
+        chain(mover=mover)
         O.dt *= step
         for b in O.bodies:
             b.material.viscoelasticTime = 1e-12
-        if mover == "functors":
-            O.engines = functor_engines()
         steps(int(20 / step))
         before = energies()
         O.bodies[3].state.pos += Vector3(0, 0.3e-7, 0)

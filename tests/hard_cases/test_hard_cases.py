@@ -11,10 +11,9 @@ BOTH = pytest.mark.parametrize("mover", ["fused", "functors"])
 
 def start(step, mover="fused", sub_steps=1):
     """An empty scene with a small step [t0]."""
-    new_scene(step * unit)
-    if mover == "fused":
-        fused_engine(subSteps=sub_steps)
-        O.dt *= sub_steps
+    new_scene(step * unit, mover)
+    if sub_steps > 1:
+        engine_of_sub_steps(sub_steps)
 
 
 def closure(steps, every):
@@ -103,13 +102,11 @@ def test_a_step_that_is_unstable_for_unlike_grains_only(mover, name, value, neck
     def touching():
         grain((0, 0, 0), 1e-6, large[0])
         grain((1.1e-6 - constants(*small, *large)["equilibriumOverlap"], 0, 0), 1e-7, small[0])
-        if mover == "fused":
-            fused_engine(neck=neck)
 
     unstable = partial(unstable_step_of_a_bond, neck) if neck else partial(unstable_step, 0)
     limit = unstable(*small, *large)
     assert limit < 0.8 * min(unstable(*small, *small), unstable(*large, *large))
-    assert refuses_from(limit, touching, neck=neck)
+    assert refuses_from(limit, touching, mover=mover, neck=neck)
 
 
 @pytest.mark.parametrize("damping", [0, 0.3])
@@ -134,9 +131,8 @@ def test_the_engine_refuses_from_the_least_limit_of_all_pairs_on(damping):
         def far_apart():
             for k, (material, radius) in enumerate(kinds):
                 grain((1e-5 * k, 0, 0), radius, material)
-            fused_engine(linearDamping=damping)
 
-        assert refuses_from(limit, far_apart)
+        assert refuses_from(limit, far_apart, mover="fused", damping=damping)
 
 
 def test_a_million_steps_at_rest():

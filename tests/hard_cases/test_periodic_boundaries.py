@@ -9,10 +9,8 @@ pytestmark = pytest.mark.in_yade
 
 def box(size, mover="fused", **options):
     """An empty periodic cell with edges `size` [m]."""
-    new_scene(0.1 * unit)
+    new_scene(0.1 * unit, mover, **options)
     periodic_cell(*size, homo=0)
-    if mover == "fused":
-        fused_engine(**options)
 
 
 def shrinking(rate):

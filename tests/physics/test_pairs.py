@@ -9,8 +9,8 @@ pytestmark = pytest.mark.in_yade
 R = 1e-7  # of a grain of ice [m]
 SOFT = Material(3e9, 0.33, 1300.0, 0.05, 1.1e-9)  # soft() of scenes.py
 PLANE = np.inf
-# What the grain meets, a grain or a plane, and whether under the fused engine.
-AGAINST = pytest.mark.parametrize("radius2, fused", [(R, False), (PLANE, False), (PLANE, True)])
+# Radius of what the grain meets, and what moves them.
+AGAINST = pytest.mark.parametrize("radius2, mover", [(R, "functors"), (PLANE, "functors"), (PLANE, "fused")])
 
 
 def touching():
@@ -18,18 +18,16 @@ def touching():
     return counts["contacts"] + counts["planeContacts"] if counts else O.interactions.countReal()
 
 
-def rebound(speed, step, gap, material, other=None, radius2=R, fused=False):
+def rebound(speed, step, gap, material, other=None, radius2=R, mover="functors"):
     """Speed of separation after a head-on collision with a grain or a plane, 0 when they stick."""
     other = other or material
     time_unit = constants(material, R, other, radius2)["timeUnit"]
-    new_scene(step * time_unit)
+    new_scene(step * time_unit, mover)
     if radius2 == PLANE:
         O.bodies.append(utils.wall(0, axis=0, material=other))
     else:
         grain((-radius2, 0, 0), radius2, other)
     grain((R + gap, 0, 0), R, material, (-speed, 0, 0))
-    if fused:
-        fused_engine()
     while O.time < 200 * time_unit and (O.time < 2 * gap / speed or touching()):
         steps(int(1 / step))
     return 0.0 if touching() else O.bodies[1].state.vel[0] - O.bodies[0].state.vel[0]
@@ -49,12 +47,12 @@ def viscous(time):
 
 
 @AGAINST
-def test_sticking_velocity_without_drag(radius2, fused):
+def test_sticking_velocity_without_drag(radius2, mover):
     """[2 (8/15 2^(2/3) + 4/45) F_c delta_c/m*]^(1/2) (A22 eqs 9, 10), 5.95 m/s for ice of 0.1 um; of a plane R = r and m* = m."""
     c = pair_constants(ICE, R, ICE, radius2)
     closed = np.sqrt(2 * (8 / 15 * 2 ** (2 / 3) + 4 / 45) * c.pull_off_force * c.pull_off_overlap / c.reduced_mass)
     assert radius2 == PLANE or closed == pytest.approx(5.95, abs=0.005)
-    assert sticking(0.02, closed, ice(), ice(), radius2, fused) == pytest.approx(closed, rel=1e-3)
+    assert sticking(0.02, closed, ice(), ice(), radius2, mover) == pytest.approx(closed, rel=1e-3)
 
 
 @pytest.mark.parametrize("picoseconds", [1, 3, 6])
@@ -67,7 +65,7 @@ def test_sticking_velocity_with_drag(picoseconds):
 
 @AGAINST
 @pytest.mark.parametrize("kind", ["elastic", "viscous", "unlike"])
-def test_rebound_converges_with_second_order(kind, radius2, fused):
+def test_rebound_converges_with_second_order(kind, radius2, mover):
     """Rebound speed against a closed form (elastic) or an independent integration. Contacts form and break anywhere within a step, so the error at
     one step scatters: root mean square over twelve gaps. Events that are not located in time would give first order (ratio 2)."""
     speed, time = (40.0, 2e-12) if kind == "viscous" else (9.0, 0.0)
@@ -79,7 +77,7 @@ def test_rebound_converges_with_second_order(kind, radius2, fused):
     gaps = 2e-9 + 1e-10 * np.arange(12) / 1.7
 
     def error(step):
-        return rms(rebound(speed, step, gap, material, other, radius2, fused) / exact - 1 for gap in gaps)
+        return rms(rebound(speed, step, gap, material, other, radius2, mover) / exact - 1 for gap in gaps)
 
     coarse, fine = error(0.1), error(0.0125)
     assert coarse < 1e-2 and fine < 2e-4 and coarse / fine > 3.2**3  # second order gives 64, first order 8

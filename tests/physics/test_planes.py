@@ -84,7 +84,7 @@ def test_driven_past_the_limit(mode, limit):
 VELOCITY, SPIN = np.array([1.7, 0.6, -12.0]), np.array([1e8, -0.7e8, 2e8])
 
 
-def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.003, first=True, fused=None, **options):
+def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.003, first=True, **options):
     """(velocity, spin r) of a grain that has met a plane (appended before it or after) obliquely, and the closure after it over K(0).
     Vectors are given for a plane across z, below the grain, and turned with it."""
     turn = np.roll(np.eye(3), axis - 2, axis=0) if side > 0 else np.roll(np.diag([1.0, -1, -1]), axis - 2, axis=0)
@@ -98,8 +98,6 @@ def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.
             plane(ice(), axis, 0.0, drift)
         else:
             grain(turn @ (0, 0, -radius2), radius2, ice(), blocked="xyzXYZ")
-    if fused is not None:
-        fused_engine(**fused)
     O.step()
     sums = []
     for _ in range(int(20 / step)):
@@ -130,7 +128,7 @@ def test_a_plane_is_the_limit_of_a_huge_sphere(limit):
 
 
 OF_FUNCTORS = [dict(), dict(limit="cut"), dict(damping=0.02), MOVING, dict(rolling=False)]
-OF_ENGINE = [dict(fused=dict(linearDamping=0.02)), dict(fused=dict(limit="cut"), **MOVING)]
+OF_ENGINE = [dict(mover="fused", damping=0.02), dict(mover="fused", limit="cut", **MOVING)]
 
 
 @pytest.mark.parametrize("options", OF_FUNCTORS + OF_ENGINE)
