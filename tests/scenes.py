@@ -48,9 +48,9 @@ def engines_around(loop):
 
 
 def new_scene(dt, mover="functors", **options):
-    """An empty scene with functor_engines(), or ("fused") the engine with the same options and its own."""
+    """An empty scene with functor_engines(), or ("fused") the engine with the same options and its own; dt: the small step."""
     O.reset()
-    O.dt, O.trackEnergy = dt, True
+    O.dt, O.trackEnergy = dt * options.get("subSteps", 1), True
     if mover == "functors":
         O.engines = functor_engines(**options)
     else:

@@ -72,7 +72,7 @@ def test_ledger_of_sustained_slip_has_second_order():
 
 def test_contacts_formed_less_contacts_broken_is_the_change_of_their_number():
     """Grains that fly together and partly apart again; across the border of two domains too, and after a checkpoint."""
-    new_scene(5 * unit, "fused", subSteps=50)
+    new_scene(0.1 * unit, "fused", subSteps=50)
     converging(64, 4, [ice()], [1e-7], speed=12.0)
     O.engines[0].prepare()
     first = O.engines[0].statistics()["contacts"]

@@ -95,8 +95,7 @@ def test_calls_while_the_loop_runs_are_refused():
     def attempt(text):
         new_scene(0.1 * unit)
         converging(125, 1, [ice()], [1e-7])
-        fused_engine(subSteps=50)
-        O.dt *= 50
+        engine_of_sub_steps(50)
         e = engine()
         # Once a scene, and not at once: with ForceResetter alone YADE itself now and then ends with SIGSEGV otherwise.
         O.run(-1)

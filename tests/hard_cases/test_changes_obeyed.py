@@ -8,7 +8,7 @@ pytestmark = pytest.mark.in_yade
 
 def flying_together(**options):
     """27 grains that collide, under the fused engine: five small steps each O.step."""
-    new_scene(0.5 * unit, "fused", subSteps=5, **options)
+    new_scene(0.1 * unit, "fused", subSteps=5, **options)
     converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
 
 
@@ -28,7 +28,6 @@ def test_what_a_script_sets_after_loading_holds(orientations):
         O.bodies[3].state.ori = Quaternion((0, 1, 0), 0.3)
 
     chain(subSteps=7, orientations=orientations)
-    O.dt *= 7
     steps(20)
     O.save("saved.yade.gz")
     unchanged = all_states()
@@ -48,7 +47,6 @@ def test_what_a_script_sets_after_loading_holds(orientations):
 def test_what_is_saved_before_the_next_step_is_not_lost(change, times, name):
     """What a script has set since the last step; and a checkpoint that is saved again before its first step, and goes on."""
     chain(subSteps=5)
-    O.dt *= 5
     steps(10)
     if change:
         O.bodies[1].state.vel = Vector3(3, -1, 2)
@@ -68,7 +66,6 @@ def test_what_is_saved_before_the_next_step_is_not_lost(change, times, name):
 def test_a_grain_that_is_appended_around_a_checkpoint_is_taken_in(when):
     def end(save):
         chain(subSteps=5)
-        O.dt *= 5
         steps(10)
         if save and when == "after O.load":
             saved_and_loaded()
@@ -264,8 +261,7 @@ def test_energies_are_those_of_velocities_that_were_set_and_saved():
     def end(written, saved):
         new_scene(0.1 * unit)
         cluster(4, 1, [ice()], [1e-7], 1.0, 0)
-        fused_engine(subSteps=5)
-        O.dt *= 5
+        engine_of_sub_steps(5)
         O.run(5, True)
         for b in O.bodies:
             b.state.vel = 3 * b.state.vel
@@ -311,8 +307,7 @@ def test_energies_after_the_functors_and_a_checkpoint(tracked):
         new_scene(0.1 * unit)
         converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
         steps(150)
-        fused_engine(subSteps=5)
-        O.dt *= 5
+        engine_of_sub_steps(5)
         O.trackEnergy = tracked == "both"
         for k in range(20):
             O.step()

@@ -9,11 +9,9 @@ pytestmark = pytest.mark.in_yade
 BOTH = pytest.mark.parametrize("mover", ["fused", "functors"])
 
 
-def start(step, mover="fused", sub_steps=1):
+def start(step, mover="fused", **options):
     """An empty scene with a small step [t0]."""
-    new_scene(step * unit, mover)
-    if sub_steps > 1:
-        engine_of_sub_steps(sub_steps)
+    new_scene(step * unit, mover, **options)
 
 
 def closure(steps, every):
@@ -139,7 +137,7 @@ def test_a_million_steps_at_rest():
     """A cluster at equilibrium, given a slow rigid rotation and drift: energy and angular momentum after a million steps are those of the start."""
     from yade_scripts import packings
 
-    start(0.1, sub_steps=1000)
+    start(0.1, subSteps=1000)
     c = constants(ice(), 1e-7)
     w = np.array([1e4, 2e4, -1e4])
     for x in packings.cpe(0.4, 4e-7, 1e-7, c["equilibriumOverlap"], 1, 0).position:

@@ -36,8 +36,7 @@ def test_an_unstable_step_is_stopped_while_all_numbers_are_finite(step, drag, ra
     new_scene(step * unit)
     for x in packings.cpe(0.4, 6e-7, 1e-7, constants(ice(), 1e-7)["equilibriumOverlap"], 1, 0).position:
         grain(x, 1e-7, ice(viscoelasticTime=drag), -rate * x)
-    fused_engine(subSteps=50)
-    O.dt *= 50
+    engine_of_sub_steps(50)
     message, when = breaks_down(100)
     assert np.isfinite(positions()).all() and O.time < when <= O.time + O.dt * (1 + 1e-12)
     assert expected in message and "contact" in message and len(re.findall(r"body \d+", message)) >= 2

@@ -122,8 +122,7 @@ def test_no_contact_is_missed_when_steps_become_longer(number):
     def end(load):
         new_scene(0.02 * unit)
         converging(64, 3, [ice()], [1e-7], speed=8.0)
-        fused_engine(subSteps=10)
-        O.dt *= 10
+        engine_of_sub_steps(10)
         steps(number)
         formed = engine().statistics()["formed"]
         O.dt *= 20
@@ -193,7 +192,6 @@ def test_a_step_changed_and_changed_back_leaves_everything():
 
     def end(change):
         chain(subSteps=4)
-        O.dt *= 4
         for _ in range(30):
             O.step()
             change()
