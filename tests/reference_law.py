@@ -277,11 +277,8 @@ class Scene:
             return [(p, normal, part)]
         kicks, taken = {}, {}
         for mode, (then, trial, cut, acting, fraction) in ways.items():
-            k, now, kicks[mode] = (
-                getattr(c, STIFFNESS[mode]),
-                by_mode(c, p)[mode],
-                (of_mode(c, mode, acting), 0.0, fraction),
-            )
+            k, now = getattr(c, STIFFNESS[mode]), by_mode(c, p)[mode]
+            kicks[mode] = of_mode(c, mode, acting), 0.0, fraction
             *_, square, work = self.impulse(dt, [kicks[mode]])
             taken[mode] = k / 2 * (then @ trial - now @ now) - work
             if cut:
@@ -376,12 +373,9 @@ class Scene:
         lost = sum(k / 2 * np.dot(then, now) for k, then, now in modes)
         g = 1.0  # fraction of the step after which the first mode held the breaking energy
         for k, then, now in (mode for mode, energy in zip(modes, p.held) if energy > b.breaking):
-            s, along, missing = (
-                np.dot(now - then, now - then),
-                np.dot(then, now - then),
-                2 * b.breaking / k - np.dot(then, then),
-            )
-            g = min(g, (sqrt(along**2 + s * missing) - along) / s if missing > 0 else 0.0)
+            way, missing = now - then, 2 * b.breaking / k - np.dot(then, then)
+            squared, along = np.dot(way, way), np.dot(then, way)
+            g = min(g, (sqrt(along**2 + squared * missing) - along) / squared if missing > 0 else 0.0)
         before, after = [(p, (g - 0.5) * p.normal, g - 0.5)], []
         c, closing = self.constants[p.i, p.j][0], p.delta - old.delta
         q = SimpleNamespace(**{**vars(p), "bonded": False, "delta": c.r1 + c.r2 - p.distance})

@@ -31,22 +31,31 @@ def constants(material1, radius1, material2=None, radius2=None, damping=0, slidi
 
 
 def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
-    return [
-        ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=verlet),
-        InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
-            [Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)],
-            [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)],
-        ),
-        NewtonIntegrator(damping=0),
-    ]
+    """With all of YADE's shapes that meet spheres, of which the law refuses facets and boxes."""
+    bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
+    shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
+    pairs = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)
+    loop = InteractionLoop(shapes, [pairs], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)])
+    return [ForceResetter(), InsertionSortCollider(bounds, verletDist=verlet), loop, NewtonIntegrator(damping=0)]
 
 
-def new_scene(dt, **options):
+def engines_around(loop):
+    """functor_engines() with the functors of an InteractionLoop that was used."""
+    dispatchers = loop.geomDispatcher, loop.physDispatcher, loop.lawDispatcher
+    engines = functor_engines()
+    engines[2] = InteractionLoop(*(dispatcher.functors for dispatcher in dispatchers))
+    return engines
+
+
+def new_scene(dt, mover="functors", **options):
+    """An empty scene with functor_engines(), or ("fused") the engine with the same options and its own; dt: the small step."""
     O.reset()
-    O.dt, O.trackEnergy = dt, True
-    O.engines = functor_engines(**options)
+    O.dt, O.trackEnergy = dt * options.get("subSteps", 1), True
+    if mover == "functors":
+        O.engines = functor_engines(**options)
+    else:
+        names = {"damping": "linearDamping", "sliding_factor": "slidingStiffnessFactor"}
+        fused_engine(**{names.get(name, name): value for name, value in options.items()})
 
 
 def grain(position, radius, material, velocity=(0, 0, 0), spin=(0, 0, 0), blocked=""):
@@ -88,12 +97,19 @@ def total_energy(*works):
     return sum(energies(*works).values())
 
 
-def largest_change(steps, *works, step=lambda: O.step()):
-    """How far the sum of all channels and these works gets, in so many calls of step(), from what it is now [J]."""
+def steps(number):
+    """So many calls of O.step: O.run() waits long for its thread."""
+    for _ in range(number):
+        O.step()
+
+
+def largest_change(looks, *works, every=1, step=lambda: O.step()):
+    """How far the sum of all channels and these works gets from what it is now [J]: looked at so often, each time after `every` calls of step()."""
     first = total_energy(*works)
     largest = 0
-    for _ in range(steps):
-        step()
+    for _ in range(looks):
+        for _ in range(every):
+            step()
         largest = max(largest, abs(total_energy(*works) - first))
     return largest
 
@@ -170,14 +186,6 @@ def set_free(packing, material):
     return before, contact_law.snapshot(), max(kinetic)
 
 
-def threshold(is_above, low, high):
-    """The number between two others from which on is_above(number) is true, to 2e-4 of it."""
-    while high - low > 2e-4 * low:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if is_above(middle) else (middle, high)
-    return 0.5 * (low + high)
-
-
 def said(call):
     """What a call is refused with, or ''."""
     try:
@@ -201,6 +209,11 @@ def motion():
     return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel)] for b in O.bodies]
 
 
+def all_states():
+    """motion() of all grains, their blocked degrees of freedom and orientations."""
+    return [[*moved, b.state.blockedDOFs, list(b.state.ori)] for moved, b in zip(motion(), O.bodies)]
+
+
 def counts():
     """The engine's, without what the lists of neighbours do."""
     found = O.engines[0].statistics()
@@ -212,10 +225,11 @@ def saved_and_loaded(name="saved.yade.gz"):
     O.load(name)
 
 
-def record(n, *works):
-    """Positions (n, bodies, 3) and energies(*works) after each of n steps."""
+def record(n, *works, before=lambda k: None):
+    """Positions (n, bodies, 3) and energies(*works) after each of n steps; before(k) is called ahead of step k."""
     tracks, sums = [], []
-    for _ in range(n):
+    for k in range(n):
+        before(k)
         O.step()
         tracks.append(positions())
         sums.append(energies(*works))

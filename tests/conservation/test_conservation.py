@@ -18,11 +18,8 @@ def start(step, kinds, drag=0.0, seed=5, limit="held"):
 def closure(step, *scene):
     """The largest change of the energies' sum in 60 t0 over the first kinetic energy."""
     start(step, *scene)
-    first, kinetic, worst = total_energy(), energies()["kinetic"], [0.0]
-    sys.modules["__main__"].watch = lambda: worst.append(abs(total_energy() - first) / kinetic)
-    O.engines += [PyRunner(command="watch()", iterPeriod=max(1, int(round(0.5 / step))))]
-    O.run(int(round(60 / step)), True)
-    return max(worst)
+    kinetic = energies()["kinetic"]
+    return largest_change(120, every=round(0.5 / step)) / kinetic
 
 
 @pytest.mark.parametrize("limit", ["held", "cut"])
@@ -51,9 +48,7 @@ def test_momentum_and_angular_momentum_to_rounding(kinds, limit):
 def test_ledger_closes_with_second_order(kinds, drag, limit):
     """Root mean square over six clusters of the largest closure error over the initial kinetic energy, at two steps a factor 4 apart: second order
     gives 16, order 3/2 gives 8, first order 4. With drag the last steps before pull-off, where the contact radius shrinks as a square root, leave order 3/2."""
-    coarse, fine = (
-        np.sqrt(np.mean([closure(step, kinds, drag, seed, limit) ** 2 for seed in range(6)])) for step in (0.1, 0.025)
-    )
+    coarse, fine = (rms(closure(step, kinds, drag, seed, limit) for seed in range(6)) for step in (0.1, 0.025))
     assert coarse < 5e-4 and coarse / fine > (6 if drag else 9)
 
 
@@ -71,21 +66,19 @@ def test_ledger_of_sustained_slip_has_second_order():
         assert step < 0.1 or energies()["slidingDissipation"] > 0.3 * scale  # most of the slip's energy is lost
         return (total_energy() - start) / scale
 
-    coarse, fine = (np.sqrt(np.mean([error(step, a) ** 2 for a in (0.3, 1.1, 2.5)])) for step in (0.1, 0.0125))
+    coarse, fine = (rms(error(step, angle) for angle in (0.3, 1.1, 2.5)) for step in (0.1, 0.0125))
     assert coarse / fine > 30
 
 
 def test_contacts_formed_less_contacts_broken_is_the_change_of_their_number():
     """Grains that fly together and partly apart again; across the border of two domains too, and after a checkpoint."""
-    new_scene(5 * unit)
-    fused_engine(subSteps=50)
+    new_scene(0.1 * unit, "fused", subSteps=50)
     converging(64, 4, [ice()], [1e-7], speed=12.0)
     O.engines[0].prepare()
     first = O.engines[0].statistics()["contacts"]
     O.run(21, True)
     before = O.engines[0].statistics()
-    O.save("middle.yade")
-    O.load("middle.yade")
+    saved_and_loaded()
     O.engines[0].prepare()
     assert O.engines[0].statistics() == before
     O.run(39, True)

@@ -7,12 +7,10 @@ pytestmark = pytest.mark.in_yade
 STORED = ("normal", "sliding", "rolling", "twisting")
 
 
-def closure(step, seed, engine):
+def closure(step, seed, mover):
     """Largest change of the sum of energies over the first kinetic energy in 8 t0, with sintering at half of the time; what happens there is checked."""
-    new_scene(step * unit)
+    new_scene(step * unit, mover)
     cluster(8, seed, [ice()], [1e-7], speed=4.0, spin=3e7)
-    if engine == "fused":
-        fused_engine()
     record(2)
     first, kinetic, momentum = total_energy(), energies()["kinetic"], momenta()
     half = int(round(4 / step))
@@ -20,7 +18,7 @@ def closure(step, seed, engine):
     before = energies()
     contact_law.sinter(0.5)
     after = energies()
-    if engine == "fused":  # which closes to rounding across the call itself, that takes what the contacts held
+    if mover == "fused":  # which closes to rounding across the call itself, that takes what the contacts held
         assert abs(sum(after.values()) - sum(before.values())) < 1e-12 * kinetic
         assert [after[mode] for mode in STORED] == pytest.approx([0, 0, 0, 0], abs=1e-12 * kinetic)
         held, lost = sum(before[mode] for mode in STORED), after["disconnection"] - before["disconnection"]
@@ -32,15 +30,15 @@ def closure(step, seed, engine):
     return max(abs(sum(one.values()) - first) for one in sums) / kinetic
 
 
-@pytest.mark.parametrize("engine", ["functors", "fused"])
-def test_ledger_closes_with_second_order_and_momenta_stay(engine):
+@pytest.mark.parametrize("mover", ["functors", "fused"])
+def test_ledger_closes_with_second_order_and_momenta_stay(mover):
     """Root mean square over six clusters of the largest closure error, at steps a factor 4 apart: second order gives 16, first order 4."""
-    coarse, fine = (np.sqrt(np.mean([closure(step, seed, engine) ** 2 for seed in range(6)])) for step in (0.1, 0.025))
+    coarse, fine = (rms(closure(step, seed, mover) for seed in range(6)) for step in (0.1, 0.025))
     assert coarse < 5e-3 and coarse / fine > 9
 
 
-@pytest.mark.parametrize("engine", ["functors", "fused"])
-def test_bonds_are_made_as_the_contacts_are_and_new_contacts_are_of_shrunk_grains(engine):
+@pytest.mark.parametrize("mover", ["functors", "fused"])
+def test_bonds_are_made_as_the_contacts_are_and_new_contacts_are_of_shrunk_grains(mover):
     """A pair out of equilibrium and turned against each other is at rest after sintering; a third grain then meets it at 2R', not at 2R."""
 
     def stop():
@@ -50,22 +48,20 @@ def test_bonds_are_made_as_the_contacts_are_and_new_contacts_are_of_shrunk_grain
     def contacts():
         return len(contact_law.snapshot()["contact_pairs"])
 
-    new_scene(0.05 * unit)
+    new_scene(0.05 * unit, mover)
     distance = 2e-7 - 0.3 * constants(ice(), 1e-7)["equilibriumOverlap"]
     grain((0, 0, 0), 1e-7, ice(), spin=(3e7, 2e7, 1e7))
     grain((distance, 0, 0), 1e-7, ice())
     grain((distance / 2, 2.2e-7, 0), 1e-7, ice(), velocity=(0, -2, 0))
-    if engine == "fused":
-        fused_engine()
     record(20)
     stop()
     contact_law.sinter(0.6)
-    if engine == "functors":
+    if mover == "functors":
         O.step()  # takes hold
         stop()
     place = positions()[:2]
     record(100)
-    assert np.abs(positions()[:2] - place).max() < (1e-9 if engine == "fused" else 1e-5) * 1e-7
+    assert np.abs(positions()[:2] - place).max() < (1e-9 if mover == "fused" else 1e-5) * 1e-7
     assert contacts() == 1
     while contacts() == 1 and O.iter < 6000:
         O.step()

@@ -62,7 +62,7 @@ def test_work_of_a_moving_wall_is_booked():
         O.engines[0].prepare()
         wall = [k for k, b in enumerate(O.bodies) if b.state.vel[2] < 0]
         x = positions()[wall]
-        worst = largest_change(40, "constraintWork", step=lambda: O.run(round(1.5 / step), True))
+        worst = largest_change(40, "constraintWork", every=round(1.5 / step))
         assert np.abs(positions()[wall] - x - np.array([0.2, 0, -2]) * O.time).max() < 1e-9 * 1e-7
         return worst / (c["pullOffForce"] * c["pullOffOverlap"])
 

@@ -7,9 +7,9 @@ pytestmark = pytest.mark.in_yade
 WORK = "boundaryWork"
 
 
-def start(kind="like", rate=0.0, homo=0, step=0.05, seed=1, side=3, speed=12.0):
+def start(kind="like", rate=0.0, homo=0, step=0.05, seed=1, side=3, speed=12.0, mover="functors"):
     """A cubic lattice of touching grains that closes on itself through the boundaries, some of them in other periods; each with some velocity and spin."""
-    new_scene(step * unit, neck=0.4)
+    new_scene(step * unit, mover, neck=0.4)
     materials, radii = ([ice(), soft()], [1e-7, 1.1e-7]) if kind == "unlike" else KINDS[kind]
     random = np.random.default_rng(seed)
     size = np.full(3, side * 1.985 * np.mean(radii))
@@ -29,8 +29,7 @@ def test_engine_and_functors_agree_step_by_step(kind, rate, homo):
     side = 4 if kind == "unlike" else 3
     start(kind, rate, homo, side=side)
     functors, of_functors = record(201, WORK), broken()
-    start(kind, rate, homo, side=side)
-    fused_engine(neck=0.4)
+    start(kind, rate, homo, side=side, mover="fused")
     O.engines[0].prepare()
     bonds = O.engines[0].statistics()["bonds"]
     engine, of_engine = record(200, WORK), broken()
@@ -48,8 +47,7 @@ def test_ledger_of_bonds_in_a_shrinking_cell_closes_with_second_order(homo):
     """Root mean square over six scenes of the largest closure error over the first kinetic energy, at steps a factor 4 apart: second order gives 16, first order 4."""
 
     def closure(step, seed):
-        start("like", 1e-3, homo, step, seed)
-        fused_engine(neck=0.4)
+        start("like", 1e-3, homo, step, seed, mover="fused")
         O.engines[0].prepare()
         kinetic = energies()["kinetic"]
         worst = largest_change(round(12 / step), WORK) / kinetic

@@ -7,16 +7,12 @@ pytestmark = pytest.mark.in_yade
 NECK = 0.5
 
 
-def start(kind="like", count=27, speed=20.0):
+def start(kind="like", count=27, speed=20.0, mover="functors"):
     """A bonded cluster whose grains fly towards its middle."""
-    new_scene(0.05 * unit, neck=NECK)
+    new_scene(0.05 * unit, mover, neck=NECK)
     cluster(count, 1, *KINDS[kind], speed=speed, spin=1e7 * speed)
     for body in O.bodies:
         body.state.vel -= 0.5 * speed * body.state.pos / 2e-7
-
-
-def fused(**options):
-    fused_engine(neck=NECK, **options)
 
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
@@ -24,8 +20,7 @@ def test_engine_and_functors_agree_step_by_step(kind):
     """27 bonded grains break up: bonds of every mode, contacts that form, slips. Rounding grows as trajectories part."""
     start(kind)
     functors, of_functors = record(301), broken()
-    start(kind)
-    fused()
+    start(kind, mover="fused")
     engine, of_engine = record(300), broken()
     statistics, last = O.engines[0].statistics(), engine[1][-1]
     assert sum(of_engine) > 8 and np.abs(np.subtract(of_engine, of_functors)).sum() <= 1
@@ -43,13 +38,11 @@ def test_a_bonded_pair_is_unstable_right_above_the_limit():
     b = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=NECK).bondConstants(ice(), 1e-7, ice(), 1e-7)
     m = ice().density * 4 / 3 * np.pi * 1e-21
 
-    def grow(factor, engine, told=None):
+    def grow(factor, mover, told=None):
         limit = 2 * (m / 7 / b["slidingStiffness"]) ** 0.5
-        new_scene(factor * limit, neck=NECK)
+        new_scene(factor * limit, mover, neck=NECK)
         for x in (0, 1.99e-7):
             grain((x, 0, 0), 1e-7, ice(), spin=(0, 0, 1))
-        if engine == "fused":
-            fused()
         if told:
             before, after = (
                 PyRunner(command=f"O.dt = {step * limit!r}", iterPeriod=1, initRun=True) for step in (told, factor)
@@ -61,42 +54,17 @@ def test_a_bonded_pair_is_unstable_right_above_the_limit():
             worst = max(worst, abs(O.bodies[0].state.angVel[2]))
         return worst
 
-    assert max(grow(0.985, engine) for engine in ("functors", "fused")) < 20
+    assert max(grow(0.985, mover) for mover in ("functors", "fused")) < 20
     assert grow(1.015, "functors", told=0.985) > 1e6
-    for engine in ("functors", "fused"):
+    for mover in ("functors", "fused"):
         with pytest.raises(RuntimeError, match="every packing of these grains is unstable"):
-            grow(1.015, engine)
-
-
-def test_a_bonded_pair_of_unlike_grains_has_a_limit_of_its_own():
-    """A large, stiff grain makes the bond of a small one stiffer than among its like. Engine and functors refuse a step from there on."""
-    small, large = (ice(), 1e-7), (ice(young=7e10), 1e-6)
-
-    def limit(one, other):
-        b = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=NECK).bondConstants(*one, *other)
-        mass, inertia = (lambda r: 4 / 3 * np.pi * 1000 * r**3), (lambda r: 0.4 * mass(r) * r**2)
-        turning = sum(1 / mass(r) + r**2 / inertia(r) for _, r in (one, other))  # 7 G > 2 E: the fastest vibration
-        return 2 / np.sqrt(b["slidingStiffness"] * turning)
-
-    def refused(step, engine):
-        new_scene(step, neck=NECK)
-        grain((0, 0, 0), 1e-6, large[0])
-        grain((1.099e-6, 0, 0), 1e-7, small[0])
-        if engine == "fused":
-            fused()
-        return "of these grains is unstable" in refusal()
-
-    bonded = limit(small, large)
-    assert bonded < 0.8 * min(limit(small, small), limit(large, large))
-    for engine in ("functors", "fused"):
-        assert refused(1.001 * bonded, engine) and not refused(0.999 * bonded, engine)
+            grow(1.015, mover)
 
 
 def test_bonded_grains_at_rest_stay_there():
     """All energies are rounding then, and no reason to stop the run."""
     start(count=60, speed=0.0)
-    O.dt *= 50
-    fused(subSteps=50)
+    engine_of_sub_steps(50, neck=NECK)
     before = positions()
     record(20)
     assert np.abs(positions() - before).max() < 1e-12 * 1e-7

@@ -12,8 +12,7 @@ def test_engine_and_functors_agree_step_by_step(kind, limit):
     """27 grains fly together: contacts form, slip and break. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
     meeting(kind, limit=limit)
     functors = record(401)
-    meeting(kind)
-    fused_engine(limit=limit)
+    meeting(kind, mover="fused", limit=limit)
     engine = record(400)
     last = engine[1][-1]
     assert O.engines[0].statistics()["events"] > 100
@@ -25,16 +24,14 @@ def test_engine_and_functors_agree_step_by_step(kind, limit):
 def test_grains_far_apart_meet_their_neighbours():
     """Stragglers 10^5 radii away, many more cells apart than there are grains: those of the crowd find each other as they do without them."""
 
-    def end(fused):
-        meeting("like")
+    def end(mover):
+        meeting("like", mover=mover)
         for k in range(6):
             grain(1e-2 * np.eye(3)[k % 3] * (1 if k < 3 else -0.7), 1e-7, ice(), velocity=(0, 0, 20))
-        if fused:
-            fused_engine()
-        O.run(300 + (not fused), True)  # functors: O.energy belongs to the positions before the step
+        O.run(300 + (mover == "functors"), True)  # functors: O.energy belongs to the positions before the step
         return energies()
 
-    functors, engine = end(False), end(True)
+    functors, engine = end("functors"), end("fused")
     statistics = O.engines[0].statistics()
     assert statistics["events"] > 50 and statistics["searches"] > 0
     assert max(abs(functors[name] - engine[name]) for name in CHANNELS) < 1e-9 * engine["kinetic"]

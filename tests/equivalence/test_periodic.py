@@ -7,9 +7,9 @@ pytestmark = pytest.mark.in_yade
 WORK = "boundaryWork"
 
 
-def start(kind, rate, homo, count=27, limit="held"):
+def start(kind, rate, homo, count=27, **options):
     """Grains on a loose lattice that fills the cell, shrinking by `rate` a time unit, and each with some velocity and spin; some lie in other periods."""
-    new_scene(0.1 * unit, limit=limit)
+    new_scene(0.1 * unit, **options)
     materials, radii = KINDS[kind]
     random = np.random.default_rng(1)
     side = int(round(count ** (1 / 3)))
@@ -28,14 +28,9 @@ def cell_size():
 
 
 def record_with_sizes(n):
-    """record(n) of one step after the other, and the cell's sizes (n, 3)."""
-    tracks, sums, sizes = [], [], []
-    for _ in range(n):
-        (x,), (energy,) = record(1, WORK)
-        tracks.append(x)
-        sums.append(energy)
-        sizes.append(cell_size())
-    return (np.array(tracks), sums), np.array(sizes)
+    """record(n), and the cell's sizes (n, 3) ahead of each step."""
+    sizes = []
+    return record(n, WORK, before=lambda k: sizes.append(cell_size())), np.array(sizes)
 
 
 AT_REST = [("like", 0, 2, "held"), ("unlike", 0, 0, "held")]
@@ -59,14 +54,13 @@ def test_engine_and_functors_agree_step_by_step(kind, rate, homo, limit):
             whole = (np.array(b.state.vel) + mean) * (1 + gradient * O.dt) / (1 + gradient * O.dt / 2)
             b.state.vel = Vector3(whole - mean)
     functors, functor_sizes = record_with_sizes(301)
-    start(kind, rate, homo, limit=limit)
-    fused_engine(limit=limit)
+    start(kind, rate, homo, mover="fused", limit=limit)
     O.engines[0].prepare()
     engine, sizes = record_with_sizes(300)
     last = engine[1][-1]
     assert O.engines[0].statistics()["events"] > 50 and last["connection"] > 0 and last["slidingDissipation"] > 0
     assert (last[WORK] != 0) == (rate != 0)
-    assert np.abs(functor_sizes[1:] - sizes).max() < 1e-12 * 1e-7
+    assert np.abs(functor_sizes[2:] - sizes[1:]).max() < 1e-12 * 1e-7
     left_out = {"kinetic", *([WORK] if homo else [])} if rate else set()
     difference, energy = compared(functors, engine, {*CHANNELS, WORK} - left_out)
     assert difference[:100].max() < 1e-12 and difference.max() < 1e-9 and max(energy.values()) < 1e-9
@@ -85,12 +79,6 @@ def test_exported_interactions_are_those_of_the_nearest_images():
         assert abs(a.shape.radius + b.shape.radius - distance - i.geom.penetrationDepth) < 1e-12 * 1e-7
         crossing += any(i.cellDist)
     assert crossing > 5
-    shot = contact_law.snapshot()
-    apart = shot["position"][shot["contact_pairs"][:, 0]] - shot["position"][shot["contact_pairs"][:, 1]]
-    apart -= size * np.round(apart / size)
-    of_normal_forces = -(np.linalg.norm(apart, axis=1) * shot["contact_normal_force"]).sum() / size.prod()
-    stress = np.array(utils.getStress(O.cell.volume)).reshape(3, 3)
-    assert np.trace(stress) == pytest.approx(of_normal_forces, rel=1e-6)  # sliding forces have no part in the trace
 
 
 @pytest.mark.parametrize("homo", [0, 1, 2])
@@ -98,8 +86,7 @@ def test_a_look_at_the_contacts_does_not_move_the_cell(homo):
     """writeInteractions() before the first step, or the first step after loading, leaves a velocity gradient that was set for when it would hold without the call."""
 
     def end(look=None):
-        start("like", 1e-3, homo)
-        fused_engine()
+        start("like", 1e-3, homo, mover="fused")
         if look == "first":
             O.engines[0].writeInteractions()
         O.run(20, True)

@@ -33,8 +33,7 @@ def test_engine_and_functors_agree_step_by_step(kind, limit):
     walls = start(kind, limit=limit)
     functors = record(401, "constraintWork")
     touching, forces = on_planes(), [np.array(O.forces.f(wall)) for wall in walls]
-    start(kind)
-    fused_engine(limit=limit)
+    start(kind, mover="fused", limit=limit)
     engine = record(400, "constraintWork")
     difference, energy = compared(functors, engine, [*CHANNELS, "constraintWork"])
     assert difference[:100].max() < 1e-12 and difference.max() < 1e-9 and max(energy.values()) < 1e-9
@@ -70,26 +69,23 @@ def test_handed_over_in_the_middle(kind, first):
 def test_a_plane_moved_or_stopped_by_the_script():
     """Obeyed from the next step on, as by the functors (which see the step before with the velocity set after it)."""
 
-    def end(fused):
-        rest, piston = start()
-        if fused:
-            fused_engine()
+    def end(mover):
+        rest, piston = start(mover=mover)
         O.run(100, True)
         O.bodies[piston].state.vel = (0, 0, 3)
         O.bodies[rest].state.pos += Vector3(-1e-9, 0, 0)
         O.run(100, True)
         return positions(), positions()[[rest, piston]]
 
-    (x, planes), (y, same_planes) = end(False), end(True)
+    (x, planes), (y, same_planes) = end("functors"), end("fused")
     assert (planes == same_planes).all() and np.abs(x - y).max() < 3e-10
 
 
 def test_in_a_wide_periodic_cell_as_in_the_open():
     def end(periodic):
-        start()
+        start(mover="fused")
         if periodic:
             periodic_cell(1e-5, 1e-5, 1e-5)
-        fused_engine()
         O.run(150, True)
         assert O.engines[0].statistics()["planeContacts"] > 4
         return positions()

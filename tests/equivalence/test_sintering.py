@@ -20,14 +20,7 @@ def necks():
 
 def run(steps, sinterings):
     """record(steps) with sinterings: {before step: neck}."""
-    tracks, sums = [], []
-    for step in range(steps):
-        if step in sinterings:
-            contact_law.sinter(sinterings[step])
-        (x,), (energy,) = record(1)
-        tracks.append(x)
-        sums.append(energy)
-    return np.array(tracks), sums
+    return record(steps, before=lambda k: k in sinterings and contact_law.sinter(sinterings[k]))
 
 
 @pytest.mark.parametrize(
@@ -44,8 +37,7 @@ def test_engine_and_functors_agree_through_two_sinterings(kind, speed, sintering
     in one scene. The second-order part of `disconnection` that the functors leave out stays a constant."""
     start(kind, speed=speed, **options)
     functors, of_functors = run(301, sinterings), broken()
-    start(kind, speed=speed, **options)
-    fused_engine(limit=options.get("limit", "held"))
+    start(kind, speed=speed, mover="fused", **options)
     engine, of_engine = run(300, sinterings), broken()
     assert necks() == [0, *sorted(sinterings.values())] and O.engines[0].neck == max(sinterings.values())
     assert sum(of_functors) > 8 and np.abs(np.subtract(of_functors, of_engine)).sum() <= 1
@@ -65,11 +57,9 @@ def test_engine_and_functors_agree_through_two_sinterings(kind, speed, sintering
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_sintering_at_the_start_is_a_start_with_a_neck(kind):
-    start(kind, grains=cluster)
-    fused_engine(neck=0.4)
+    start(kind, grains=cluster, mover="fused", neck=0.4)
     bonded, e_bonded = run(150, {})
-    start(kind, grains=cluster)
-    fused_engine()
+    start(kind, grains=cluster, mover="fused")
     sintered, e_sintered = run(150, {0: 0.4})
     assert sum(broken()) > 3
     assert np.abs(bonded - sintered).max() < 1e-10 * 1e-7
@@ -81,30 +71,27 @@ def test_sintering_at_the_start_is_a_start_with_a_neck(kind):
 def test_sintered_twice_at_once_a_contact_keeps_the_first_neck(steps):
     """Before the first step, and on a running scene: with no step between, the second call finds bonds of the first already."""
     bonds = {}
-    for mover in ("functors", "engine"):
-        start(grains=converging if steps else cluster, speed=20.0 if steps else 1.0)
-        if mover == "engine":
-            fused_engine()
+    for mover in ("functors", "fused"):
+        start(grains=converging if steps else cluster, speed=20.0 if steps else 1.0, mover=mover)
         record(steps)
         contact_law.sinter(0.3)
         contact_law.sinter(0.5)
         O.step()
         neck = contact_law.snapshot()["contact_neck"]
         bonds[mover] = np.count_nonzero(neck)
-        owner = O.engines[0] if mover == "engine" else O.engines[2].physDispatcher.functors[0]
+        owner = O.engines[0] if mover == "fused" else O.engines[2].physDispatcher.functors[0]
         assert set(neck[neck > 0].tolist()) == {0.3} and owner.neck == 0.5
         if mover == "functors":  # R' of the largest neck
             radii = [i.phys.constants.radius1 / 1e-7 for i in O.interactions if i.isReal]
             assert radii == pytest.approx([0.9806] * len(radii), rel=1e-4)
-    assert bonds["functors"] == bonds["engine"] > 5
+    assert bonds["functors"] == bonds["fused"] > 5
 
 
 def test_a_checkpoint_after_sintering_continues_where_losses_are_below_zero():
     """Contacts at rest hold a negative potential: booked as disconnection, it is all that this scene has lost."""
 
     def end(saved):
-        start(grains=cluster, speed=0.1)
-        fused_engine()
+        start(grains=cluster, speed=0.1, mover="fused")
         run(20, {10: 0.5})
         if saved:
             saved_and_loaded()
@@ -118,9 +105,8 @@ def test_a_checkpoint_after_sintering_continues_where_losses_are_below_zero():
 
 def test_grains_sintered_while_they_are_pressed_together_get_that_energy_back():
     """Contacts far beyond equilibrium hold more than their bonds do when these break: bondBreaking falls, all channels together stay, and the run goes on."""
-    new_scene(0.02 * unit)
+    new_scene(0.02 * unit, "fused")
     converging(27, 0, [ice()], [1e-7], speed=25)
-    fused_engine()
     record(62)
     before = energies()
     contact_law.sinter(0.2)
@@ -135,8 +121,7 @@ def test_bonds_of_several_necks_go_to_the_functors_and_back():
     start()
     straight, _ = run(281, sinterings)
     counted = broken()
-    start()
-    fused_engine()
+    start(mover="fused")
     run(200, sinterings)
     mine = np.array(broken())
     assert necks()[-2:] == [0.3, 0.5]
@@ -156,11 +141,9 @@ def test_bonds_of_several_necks_go_to_the_functors_and_back():
     assert np.abs(positions() - straight[280]).max() < 1e-7 * 1e-7 and mine.tolist() == counted
 
 
-@pytest.mark.parametrize("mover", ["functors", "engine"])
+@pytest.mark.parametrize("mover", ["functors", "fused"])
 def test_necks_that_cannot_be_are_refused(mover):
-    start(count=8)
-    if mover == "engine":
-        fused_engine()
+    start(count=8, mover=mover)
     O.run(5, True)
     for neck in (0, 0.8, float("nan")):
         with refused((RuntimeError, ValueError), "sinter(): neck = ", "must be > 0 and up to 0.7"):

@@ -3,23 +3,16 @@
 from scenes import *
 
 
-def chain(count=4, speed=0.1, **options):
+def chain(count=4, speed=0.1, mover="fused", **options):
     """Touching grains in a row that vibrate, under the fused engine."""
-    new_scene(0.1 * unit)
+    new_scene(0.1 * unit, mover, **options)
     d = 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
     for k in range(count):
         grain((k * d, 0, 0), 1e-7, ice() if k == 0 else O.bodies[0].material, (0, speed * (-1) ** k, 0))
-    fused_engine(**options)
 
 
 def engine():
     return O.engines[0]
-
-
-def steps(number):
-    """So many calls of O.step."""
-    for _ in range(number):
-        O.step()
 
 
 def run(text, **names):
@@ -73,5 +66,5 @@ UNDONE = {
     "O.engines += [JKRWadaEngine()] | O.engines = O.engines[:-1]": ["O.engines has 2 JKRWadaEngines: there must be one"],
     'kept = Vector3(O.bodies[{i}].state.vel); O.bodies[{i}].state.vel = Vector3(float("nan"), 0, 0) | O.bodies[{i}].state.vel = kept': ["body 2 was given a position, orientation or velocity that is not a finite number"],
     'kept = Vector3(O.bodies[{i}].state.pos); O.bodies[{i}].state.pos = Vector3(float("inf"), 0, 0) | O.bodies[{i}].state.pos = kept': ["body 2 was given a position, orientation or velocity that is not a finite number"],
-    'O.forces.addF({i}, Vector3(float("nan"), 0, 0)) | O.forces.reset(False)': ["O.forces has a force or torque on body 2 that is not a finite number"],
+    'O.forces.addF({i}, Vector3(float("nan"), 0, 0)) | O.forces.reset(False)': ["O.forces has a force or torque on body 2 that is not a finite number: must be finite (O.forces.reset(False) clears it"],
 }  # fmt: skip

@@ -13,29 +13,20 @@ DAMAGED_NUMBERS = int(os.environ.get("DAMAGED_NUMBERS", 20))  # of a checkpoint,
 CALLS = ["e.writeInteractions()", "e.handOver()", "e.prepare()", "contact_law.snapshot()"]
 
 
-def test_calls_after_a_body_was_erased_are_refused():
+ELSEWHERE = ["O.reset()", "O.switchScene()", "O.reset(); chain()", "O.switchScene(); chain()"]
+CHANGED = {"O.bodies.erase(1)": ["body 1 was erased after the start"]}
+CHANGED |= {f"{away}; O.engines = [e]": ["another scene", "make a new one"] for away in ELSEWHERE}
+
+
+@pytest.mark.parametrize("change", CHANGED)
+def test_calls_after_a_body_was_erased_and_in_another_scene_are_refused(change):
     def attempt(text):
         chain()
         steps(20)
-        e = engine()
-        O.bodies.erase(1)
-        run(text, e=e)
+        run(f"{change}; {text}", e=engine())
 
-    cases = [*CALLS, "e.exportInteractions = True; O.step()"]
-    require_refused({case: ["body 1 was erased after the start"] for case in cases}, attempt)
-
-
-@pytest.mark.parametrize("away", ["O.reset()", "O.switchScene()", "O.reset(); chain()", "O.switchScene(); chain()"])
-def test_an_engine_is_refused_in_another_scene(away):
-    def attempt(text):
-        chain()
-        steps(20)
-        e = engine()
-        run(away)
-        O.engines = [e]
-        run(text, e=e)
-
-    require_refused({case: ["another scene", "make a new one"] for case in [*CALLS, "O.step()"]}, attempt)
+    calls = [*CALLS, "O.step()", "e.exportInteractions = True; O.step()"]
+    require_refused({call: CHANGED[change] for call in calls}, attempt)
 
 
 def test_an_engine_that_was_handed_over_starts_anew_in_another_scene():
@@ -104,8 +95,7 @@ def test_calls_while_the_loop_runs_are_refused():
     def attempt(text):
         new_scene(0.1 * unit)
         converging(125, 1, [ice()], [1e-7])
-        fused_engine(subSteps=50)
-        O.dt *= 50
+        engine_of_sub_steps(50)
         e = engine()
         # Once a scene, and not at once: with ForceResetter alone YADE itself now and then ends with SIGSEGV otherwise.
         O.run(-1)

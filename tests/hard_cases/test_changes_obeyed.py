@@ -6,17 +6,10 @@ from changes import *
 pytestmark = pytest.mark.in_yade
 
 
-def all_states():
-    states = [b.state for b in O.bodies]
-    return [[list(s.pos), list(s.vel), list(s.angVel), s.blockedDOFs, list(s.ori)] for s in states]
-
-
 def flying_together(**options):
     """27 grains that collide, under the fused engine: five small steps each O.step."""
-    new_scene(0.1 * unit)
+    new_scene(0.1 * unit, "fused", subSteps=5, **options)
     converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-    fused_engine(subSteps=5, **options)
-    O.dt *= 5
 
 
 def close_to(energies, unit):
@@ -35,7 +28,6 @@ def test_what_a_script_sets_after_loading_holds(orientations):
         O.bodies[3].state.ori = Quaternion((0, 1, 0), 0.3)
 
     chain(subSteps=7, orientations=orientations)
-    O.dt *= 7
     steps(20)
     O.save("saved.yade.gz")
     unchanged = all_states()
@@ -53,27 +45,27 @@ def test_what_a_script_sets_after_loading_holds(orientations):
 @pytest.mark.parametrize("change", [False, True])
 @pytest.mark.parametrize("times, name", [(1, "saved.xml.bz2"), (2, "saved.yade.gz")])
 def test_what_is_saved_before_the_next_step_is_not_lost(change, times, name):
-    """What a script has set since the last step; and a checkpoint that is saved again before its first step."""
+    """What a script has set since the last step; and a checkpoint that is saved again before its first step, and goes on."""
     chain(subSteps=5)
-    O.dt *= 5
     steps(10)
     if change:
         O.bodies[1].state.vel = Vector3(3, -1, 2)
+        O.forces.setPermF(1, Vector3(0, 1e-9, 0))
     O.save("straight.yade")
+    steps(10)
+    straight = positions()
+    O.load("straight.yade")
     for _ in range(times):
         saved_and_loaded(name)
+    O.save("again.yade")
     steps(10)
-    loaded = positions()
-    O.load("straight.yade")
-    steps(10)
-    assert (positions() == loaded).all()
+    assert (positions() == straight).all()
 
 
 @pytest.mark.parametrize("when", ["before O.save", "after O.load"])
 def test_a_grain_that_is_appended_around_a_checkpoint_is_taken_in(when):
     def end(save):
         chain(subSteps=5)
-        O.dt *= 5
         steps(10)
         if save and when == "after O.load":
             saved_and_loaded()
@@ -116,19 +108,6 @@ def test_a_grain_that_is_refused_and_erased_leaves_no_trace(refused, saved):
     assert motion == x and counts == n and e == close_to(booked, "kinetic") and booked["slidingDissipation"] > 0
 
 
-def test_a_loaded_scene_that_is_saved_again_goes_on():
-    chain()
-    steps(10)
-    O.forces.setPermF(1, Vector3(0, 1e-9, 0))
-    O.save("saved.yade")
-    steps(10)
-    straight = positions()
-    O.load("saved.yade")
-    O.save("again.yade")
-    steps(10)
-    assert (positions() == straight).all()
-
-
 def test_an_engine_that_was_saved_and_handed_over_starts_from_the_functors():
     def end(save):
         chain()
@@ -149,9 +128,7 @@ def test_an_engine_that_was_saved_and_handed_over_starts_from_the_functors():
 @pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0.02, 0, 0), (-8.0, 1.0, 0), (0, 30.0, 0)])
 def test_a_touching_body_may_be_moved(mover, by):
     """Its contacts break when they are torn apart, with either way of moving, and the grains stay where one can find them."""
-    chain()
-    if mover == "functors":
-        O.engines = functor_engines()
+    chain(mover=mover)
     steps(200)
     before = energies()
     O.bodies[3].state.pos += Vector3(*by) * 1e-7
@@ -171,11 +148,9 @@ def test_a_bonded_body_may_be_torn_away(mover, by):
     """Its bond is let go as it was: what it held is booked, to the first order of the step, and nothing is thrown."""
 
     def torn(step):
-        new_scene(step * unit, neck=0.3)
+        new_scene(step * unit, mover, neck=0.3)
         for k in range(4):
             grain((k * 1.999e-7, 0, 0), 1e-7, O.bodies[0].material if k else ice(), (0, 0.1 * (-1) ** k, 0))
-        if mover == "fused":
-            fused_engine(neck=0.3)
         steps(int(20 / step))
         before = energies()
         O.bodies[3].state.pos += Vector3(*by) * 1e-7
@@ -222,12 +197,10 @@ def test_a_moved_body_leaves_its_neighbours_as_the_functors_have_it():
     """Torn away in the middle of a run with drag: the loss that is booked is the functors', to the first order of the one small step by which forces lag."""
 
     def torn(mover, step):
-        chain()
+        chain(mover=mover)
         O.dt *= step
         for b in O.bodies:
             b.material.viscoelasticTime = 1e-12
-        if mover == "functors":
-            O.engines = functor_engines()
         steps(int(20 / step))
         before = energies()
         O.bodies[3].state.pos += Vector3(0, 0.3e-7, 0)
@@ -288,8 +261,7 @@ def test_energies_are_those_of_velocities_that_were_set_and_saved():
     def end(written, saved):
         new_scene(0.1 * unit)
         cluster(4, 1, [ice()], [1e-7], 1.0, 0)
-        fused_engine(subSteps=5)
-        O.dt *= 5
+        engine_of_sub_steps(5)
         O.run(5, True)
         for b in O.bodies:
             b.state.vel = 3 * b.state.vel
@@ -335,8 +307,7 @@ def test_energies_after_the_functors_and_a_checkpoint(tracked):
         new_scene(0.1 * unit)
         converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
         steps(150)
-        fused_engine(subSteps=5)
-        O.dt *= 5
+        engine_of_sub_steps(5)
         O.trackEnergy = tracked == "both"
         for k in range(20):
             O.step()

@@ -92,7 +92,7 @@ OUT_OF_RANGE = {
 
 
 def test_attributes_out_of_range_are_refused():
-    require_refused(OUT_OF_RANGE, lambda text: run(f"chain({text}); O.step()"))
+    require_refused(OUT_OF_RANGE, lambda text: run(f"chain(); fused_engine({text}); O.step()"))
 
 
 SCENES = {

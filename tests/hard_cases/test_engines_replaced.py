@@ -236,10 +236,8 @@ def test_yades_functions_have_contacts_and_forces():
     }
     found = {}
     for mover in ("functors", "fused"):
-        chain()
+        chain(mover=mover)
         O.dt /= 10
-        if mover == "functors":
-            O.engines = functor_engines()
         steps(400)
         found[mover] = {name: function() for name, function in functions.items()}
     for name in functions:

@@ -19,11 +19,9 @@ def named(springs):
 def test_engine_and_functors_agree_and_the_ledger_closes(springs, limit):
     """27 grains fly together, in four ways: the ledger's error (root mean square) is of second order."""
 
-    def fly(step, steps, seed, fused=True):
-        new_scene(step * unit, limit=limit, **springs)
+    def fly(step, steps, seed, mover="fused"):
+        new_scene(step * unit, mover, limit=limit, **springs)
         converging(27, seed, [ice(), soft()], [1e-7, 1.6e-7])
-        if fused:
-            fused_engine(limit=limit, **springs)
         return record(steps)
 
     def error(step, seed):
@@ -31,7 +29,7 @@ def test_engine_and_functors_agree_and_the_ledger_closes(springs, limit):
         total = np.array([sum(one.values()) for one in ledger])
         return np.max(np.abs(total - total[0])) / ledger[0]["kinetic"]
 
-    functors, _ = fly(0.1, 401, 1, fused=False)
+    functors, _ = fly(0.1, 401, 1, "functors")
     engine, ledger = fly(0.1, 400, 1)
     difference = np.abs(functors[:400] - engine).max(axis=(1, 2)) / 1e-7
     assert difference[:100].max() < 1e-12 and difference.max() < 1e-9
@@ -42,16 +40,14 @@ def test_engine_and_functors_agree_and_the_ledger_closes(springs, limit):
 
 
 @LIMITS
-@pytest.mark.parametrize("how", ["functors", "engine"])
-def test_grains_without_rolling_resistance_turn_on_each_other_without_end(how, limit):
+@pytest.mark.parametrize("mover", ["functors", "fused"])
+def test_grains_without_rolling_resistance_turn_on_each_other_without_end(mover, limit):
     """Two unlike grains in contact that turn like gears, twice round: nothing slows them down and nothing is lost."""
-    new_scene(0.1 * unit, rolling=False, limit=limit)
+    new_scene(0.1 * unit, mover, rolling=False, limit=limit)
     r1, r2, rate = 1e-7, 1.6e-7, 5e7
     overlap = constants(ice(), r1, ice(), r2)["equilibriumOverlap"]
     grain((0, 0, 0), r1, ice(), spin=(0, 0, rate))
     grain((r1 + r2 - overlap, 0, 0), r2, ice(), spin=(0, 0, -rate * r1 / r2))
-    if how == "engine":
-        fused_engine(rolling=False, limit=limit)
     O.run(int(2 * 2 * np.pi / rate / O.dt), True)
     spins = np.array([b.state.angVel[2] / rate for b in O.bodies])
     assert np.abs(spins - [1, -1 / 1.6]).max() < 1e-3

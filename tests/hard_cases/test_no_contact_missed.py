@@ -40,8 +40,7 @@ def most_overlapping(steps, before_each=lambda k: None):
 def test_grains_that_meet_and_fly_apart(speed, steps, radii):
     new_scene(0.1 * unit)
     converging(400, 2, [ice()], radii, speed=speed)
-    fused_engine(domains=4, threads=2, subSteps=23)
-    O.dt *= 23
+    engine_of_sub_steps(23, domains=4, threads=2)
     assert most_overlapping(steps) > 400
     assert speed < 60 or O.engines[0].statistics()["orders"] >= 1
 
@@ -55,8 +54,7 @@ def test_a_shrinking_cell_whose_rate_jumps():
     for site in np.ndindex(7, 7, 7):
         place = edge * (np.array(site) + 0.5) / 7 + 2e-8 * random.normal(size=3)
         grain(place, 1e-7, ice(), 0.3 * random.normal(size=3))
-    fused_engine(domains=3, threads=2, subSteps=20)
-    O.dt *= 20
+    engine_of_sub_steps(20, domains=3, threads=2)
 
     def jump(k):
         rate = -[0, 2e6, 1e7, 0, 4e7, -1e7][k // 10 % 6]

@@ -9,10 +9,8 @@ pytestmark = pytest.mark.in_yade
 
 def box(size, mover="fused", **options):
     """An empty periodic cell with edges `size` [m]."""
-    new_scene(0.1 * unit)
+    new_scene(0.1 * unit, mover, **options)
     periodic_cell(*size, homo=0)
-    if mover == "fused":
-        fused_engine(**options)
 
 
 def shrinking(rate):
@@ -64,7 +62,6 @@ def test_neighbours_are_found_in_cells_of_few_grains():
 
 def test_a_shrinking_cell_stops_the_run_before_it_is_too_small():
     box((6e-7, 8e-7, 8e-7), subSteps=10)
-    O.dt *= 10
     grain((1e-7, 0, 0), 1e-7, ice())
     O.cell.velGrad = shrinking(1e-4)
     message = refusal(steps=1000)

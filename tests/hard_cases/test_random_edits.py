@@ -350,11 +350,9 @@ def failure(scene, sequence):
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_no_trace_is_left_of_what_is_neutral_or_refused_and_undone(scene):
-    edits = [
-        (kind, text) for kind, texts in (("neutral", NEUTRAL), ("refused", REFUSED)) for text in possible(texts, scene)
-    ]
-    for k, (kind, text) in enumerate(edits):
-        edits[k] = kind, text.format(i=k % 12)
+    edits = [("neutral", text) for text in possible(NEUTRAL, scene)]
+    edits += [("refused", text) for text in possible(REFUSED, scene)]
+    edits = [(kind, text.format(i=k % 12)) for k, (kind, text) in enumerate(edits)]
     failures = [failure(scene, edits[k : k + 8]) for k in range(0, len(edits), 8)]
     assert not any(failures), "\n".join(failures)
 

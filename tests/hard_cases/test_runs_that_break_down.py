@@ -11,18 +11,14 @@ from scenes import *
 pytestmark = pytest.mark.in_yade
 
 
-def everything():
-    return [[list(b.state.pos), list(b.state.vel), list(b.state.angVel), list(b.state.ori)] for b in O.bodies]
-
-
 def breaks_down(most):
     """What a run is stopped with within `most` O.steps, and the time [s] that it names; bodies and O.time are those before."""
     for _ in range(most):
-        before, time, message = everything(), O.time, refusal()
+        before, time, message = all_states(), O.time, refusal()
         if message:
             break
     assert message and "\n" not in message
-    assert before == everything() and time == O.time and refusal() == message
+    assert before == all_states() and time == O.time and refusal() == message
     assert f"O.bodies hold the last good state, of t = {time:.3g}"[:45] in message
     return message, float(re.search(r"broke down at t = (\S+) s", message).group(1))
 
@@ -40,8 +36,7 @@ def test_an_unstable_step_is_stopped_while_all_numbers_are_finite(step, drag, ra
     new_scene(step * unit)
     for x in packings.cpe(0.4, 6e-7, 1e-7, constants(ice(), 1e-7)["equilibriumOverlap"], 1, 0).position:
         grain(x, 1e-7, ice(viscoelasticTime=drag), -rate * x)
-    fused_engine(subSteps=50)
-    O.dt *= 50
+    engine_of_sub_steps(50)
     message, when = breaks_down(100)
     assert np.isfinite(positions()).all() and O.time < when <= O.time + O.dt * (1 + 1e-12)
     assert expected in message and "contact" in message and len(re.findall(r"body \d+", message)) >= 2
@@ -69,6 +64,20 @@ def test_grains_that_overlap_too_far_at_the_start_are_refused(apart, overlap):
     assert words in refusal() and positions()[:, 0].tolist() == [0, 5e-7, 5e-7 + apart]
 
 
+def cluster_of_12(**options):
+    new_scene(0.1 * unit, "fused", **options)
+    cluster(12, 1, [ice()], [1e-7], 3.0, 1e7)
+
+
+def failure():
+    """What a step is refused with in which a grain is far too fast; its velocity is then what it was."""
+    kept = Vector3(O.bodies[0].state.vel)
+    O.bodies[0].state.vel = Vector3(1e5, 0, 0)
+    message = refusal()
+    O.bodies[0].state.vel = kept
+    return message
+
+
 def test_after_a_failure_a_checkpoint_holds_the_last_good_state():
     """Bodies, contacts and energies; and nothing of the engine's arrays of an O.save long before the failure."""
 
@@ -76,22 +85,17 @@ def test_after_a_failure_a_checkpoint_holds_the_last_good_state():
         return [(i.id1, i.id2, i.phys.twist, list(i.phys.slidingDisplacement)) for i in O.interactions]
 
     def end(saved_before):
-        new_scene(0.1 * unit)
-        cluster(12, 1, [ice()], [1e-7], 3.0, 1e7)
-        fused_engine(exportInteractions=True)
+        cluster_of_12(exportInteractions=True)
         O.run(30, True)
         if saved_before:
             O.save("early.yade.gz")
         O.run(200, True)
-        good, kept = (everything(), contacts()), Vector3(O.bodies[0].state.vel)
-        O.bodies[0].state.vel = Vector3(1e5, 0, 0)
-        message = refusal()
+        good, message = (all_states(), contacts()), failure()
         assert "body 0 moves at 1e+05 m/s" in message and len(set(re.findall(r"body \d+", message))) > 1
-        O.bodies[0].state.vel = kept
         saved_and_loaded("good.yade.gz")
-        assert (everything(), contacts()) == good and len(good[1]) > 3
+        assert (all_states(), contacts()) == good and len(good[1]) > 3
         O.run(50, True)
-        return everything(), energies()
+        return all_states(), energies()
 
     assert end(False) == end(True)
 
@@ -100,15 +104,9 @@ def test_after_a_failure_a_new_engine_has_the_contacts_that_were_exported():
     """As if there had been no failure, with those of O.interactions; without, the message says that springs are lost."""
 
     def end(fails, export=True):
-        new_scene(0.1 * unit)
-        cluster(12, 1, [ice()], [1e-7], 3.0, 1e7)
-        fused_engine(exportInteractions=export)
+        cluster_of_12(exportInteractions=export)
         O.run(200, True)
-        kept, message = Vector3(O.bodies[0].state.vel), ""
-        if fails:
-            O.bodies[0].state.vel = Vector3(1e5, 0, 0)
-            message = refusal()
-            O.bodies[0].state.vel = kept
+        message = failure() if fails else ""
         fused_engine()
         O.run(20, True)
         return positions(), message

@@ -42,25 +42,9 @@ def said(add, changes):
     """What the functors refuse such a scene with, at the latest soon after the step."""
     neck = changes.get("neck", 0)
     new_scene(1e-3 * unit, neck=neck)
-    take_all_shapes(functors())
     globals()[add](ice(), **{} if neck else changes)
     grain((0, 0, 0.999 * R), R, ice())
     return said_soon()
-
-
-def functors():
-    return O.engines[2].physDispatcher.functors, O.engines[2].lawDispatcher.functors
-
-
-def take_all_shapes(functors):
-    bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
-    shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
-    O.engines = [
-        ForceResetter(),
-        InsertionSortCollider(bounds),
-        InteractionLoop(shapes, *functors),
-        NewtonIntegrator(damping=0),
-    ]
 
 
 def said_soon():
@@ -88,13 +72,13 @@ def test_refused_in_one_line_by_functors_and_engine(add, changes, line):
 def test_functors_that_are_used_again_look_at_the_new_scene(away):
     """It is at the iteration of the scene before."""
     new_scene(1e-3 * unit)
-    used = functors()
+    loop = O.engines[2]
     for x in (0, 1.99 * R):
         grain((x, 0, 0), R, ice())
     O.step()
     exec(away)
     O.dt = 1e-3 * unit
-    take_all_shapes(used)
+    O.engines = engines_around(loop)
     facet(ice())
     grain((0, 0, 0.999 * R), R, ice())
     assert "body 0 is a Facet" in said_soon()

@@ -111,9 +111,7 @@ def test_contacts_form_and_break_in_steps_between_others():
         assert counts["formed"] == counts["broken"] == 1
         return touching, (total_energy() - start) / kinetic, max(jumps)
 
-    coarse, fine = (
-        np.sqrt(np.mean(np.square([errors(base, k / 16) for k in range(16)]), axis=0)) for base in (0.16, 0.04)
-    )
+    coarse, fine = (rms(errors(base, k / 16) for k in range(16)) for base in (0.16, 0.04))
     assert (coarse < (5e-3, 2e-3, 1e-2)).all() and (coarse / fine > (9, 6, 10)).all()
 
 
@@ -124,8 +122,7 @@ def test_no_contact_is_missed_when_steps_become_longer(number):
     def end(load):
         new_scene(0.02 * unit)
         converging(64, 3, [ice()], [1e-7], speed=8.0)
-        fused_engine(subSteps=10)
-        O.dt *= 10
+        engine_of_sub_steps(10)
         steps(number)
         formed = engine().statistics()["formed"]
         O.dt *= 20
@@ -168,7 +165,7 @@ def test_the_ledger_closes_with_second_order(drag):
     errors = []
     for base in (0.1, 0.025):
         happened = []
-        errors.append(np.sqrt(np.mean([closure(base, seed) ** 2 for seed in range(6)])))
+        errors.append(rms(closure(base, seed) for seed in range(6)))
         assert (np.sum(happened, axis=0) > 0).all()
     coarse, fine = errors
     assert coarse < 2e-3 and coarse / fine > (6 if drag else 9)
@@ -195,7 +192,6 @@ def test_a_step_changed_and_changed_back_leaves_everything():
 
     def end(change):
         chain(subSteps=4)
-        O.dt *= 4
         for _ in range(30):
             O.step()
             change()

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 HERE = Path(__file__).resolve().parent
-ICE = (7e9, 0.25, 1000.0, 0.1, 0.8e-9, 0.0)
-SILICATE = (54e9, 0.17, 2650.0, 0.02, 2e-9, 0.0)
-VISCOUS = (3e9, 0.33, 1300.0, 0.05, 1.1e-9, 4e-12)
+MATERIALS = {
+    "ice": (7e9, 0.25, 1000.0, 0.1, 0.8e-9, 0.0),
+    "silicate": (54e9, 0.17, 2650.0, 0.02, 2e-9, 0.0),
+    "viscous": (3e9, 0.33, 1300.0, 0.05, 1.1e-9, 4e-12),
+}
 
 
 def array(values):
@@ -20,9 +22,9 @@ def array(values):
 
 
 class Kernel:
-    """The C++ kernel by way of ctypes; vectors are arrays of 3, SI units."""
+    """The C++ kernel by way of ctypes; vectors are arrays of 3, SI units, materials names."""
 
-    ice, silicate, viscous = ICE, SILICATE, VISCOUS
+    materials = MATERIALS
 
     def __init__(self, library):
         self.library = library
@@ -34,23 +36,13 @@ class Kernel:
         return getattr(self.library, function)().decode().split()
 
     def call(self, name, *arguments):
-        converted = [
-            a.ctypes.data_as(ctypes.c_void_p)
-            if isinstance(a, np.ndarray)
-            else ctypes.c_int(a)
-            if isinstance(a, int)
-            else ctypes.c_double(a)
-            for a in arguments
-        ]
-        getattr(self.library, name)(*converted)
+        as_c = {int: ctypes.c_int, float: ctypes.c_double, np.ndarray: lambda a: a.ctypes.data_as(ctypes.c_void_p)}
+        getattr(self.library, name)(*(as_c[type(a)](a) for a in arguments))
 
-    def constants(self, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7, damping=0.0, sliding=1.0):
+    def constants(self, material1="ice", radius1=1e-7, material2="ice", radius2=1e-7, damping=0.0, sliding=1.0):
         out = np.empty(len(self.constant_names))
-        self.call(
-            "pairConstants",
-            *(array(material1), float(radius1), array(material2), float(radius2)),
-            *(float(damping), float(sliding), out),
-        )
+        one, other = array(MATERIALS[material1]), array(MATERIALS[material2])
+        self.call("pairConstants", one, radius1, other, radius2, float(damping), float(sliding), out)
         return SimpleNamespace(array=out, **dict(zip(self.constant_names, out)))
 
     def cube_root(self, x):
@@ -75,12 +67,13 @@ class Kernel:
 
     def neck(self, beta):
         out = np.empty(4)
-        self.call("neckGeometry", float(beta), out)
+        self.call("neckGeometry", beta, out)
         return SimpleNamespace(fillet=out[0], length=out[1], volume=out[2], shrunk_radius=out[3])
 
-    def bond_constants(self, beta, material1=ICE, radius1=1e-7, material2=ICE, radius2=1e-7):
+    def bond_constants(self, beta, material1="ice", radius1=1e-7, material2="ice", radius2=1e-7):
         out = np.empty(len(self.bond_constant_names))
-        self.call("bondConstants", array(material1), float(radius1), array(material2), float(radius2), float(beta), out)
+        one, other = array(MATERIALS[material1]), array(MATERIALS[material2])
+        self.call("bondConstants", one, radius1, other, radius2, beta, out)
         return SimpleNamespace(array=out, **dict(zip(self.bond_constant_names, out)))
 
     def bond(self, constants, rest, separation, n1, n2, twist=0.0):
@@ -105,22 +98,8 @@ class Kernel:
 @pytest.fixture(scope="session")
 def kernel(tmp_path_factory):
     library = tmp_path_factory.mktemp("kernel") / "kernel_probe.so"
-    subprocess.run(
-        [
-            os.environ.get("CXX", "g++"),  # and PROBE_FLAGS: tests/drivers/sanitizers.py
-            "-std=c++17",
-            "-O2",
-            "-ffp-contract=off",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-fPIC",
-            "-shared",
-            *os.environ.get("PROBE_FLAGS", "").split(),
-            str(HERE / "kernel_probe.cpp"),
-            "-o",
-            str(library),
-        ],
-        check=True,
-    )
+    compiler = os.environ.get("CXX", "g++")
+    flags = "-std=c++17 -O2 -ffp-contract=off -Wall -Wextra -Werror -fPIC -shared".split()
+    flags += os.environ.get("PROBE_FLAGS", "").split()  # tests/drivers/sanitizers.py
+    subprocess.run([compiler, *flags, str(HERE / "kernel_probe.cpp"), "-o", str(library)], check=True)
     return Kernel(ctypes.CDLL(str(library)))

@@ -26,18 +26,15 @@ def test_plugin_and_run_folders_have_the_same_channels():
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 def test_o_energy_has_the_channels_of_the_scene_and_no_others(scene, work, mover):
     """All channels of the law in every scene; the works only where the scene has what they are done on. Either way of moving."""
-    new_scene(0.1 * unit)
+    new_scene(0.1 * unit, mover)
     if scene == "periodic":
-        O.periodic = True
-        O.cell.setBox(1e-6, 1e-6, 1e-6)
+        periodic_cell(1e-6, 1e-6, 1e-6)
     grain((5e-7, 5e-7, 5e-7), 1e-7, ice(), velocity=(0, 2, 0), blocked="xyzXYZ" if scene == "blocked" else "")
     grain((5e-7, 6.99e-7, 5e-7), 1e-7, ice(), velocity=(0, 1, 0))
     if scene == "wall":  # which no grain has met yet
         O.bodies[O.bodies.append(utils.wall(1e-7, axis=0, material=ice()))].state.vel = (0.1, 0, 0)
     if scene == "pushed":
         O.forces.setPermF(1, Vector3(1e-12, 0, 0))
-    if mover == "fused":
-        fused_engine()
     O.run(3, True)
     if mover == "functors" and scene in ("blocked", "pushed"):  # they leave these works out
         work = None
@@ -57,9 +54,7 @@ def test_a_law_that_is_used_again_books_in_the_new_scene(away):
         if scene:
             exec(away)
             O.dt, O.trackEnergy = 0.1 * unit, True
-            O.engines = functor_engines()
-            used = [d.functors for d in (loop.geomDispatcher, loop.physDispatcher, loop.lawDispatcher)]
-            O.engines = [*O.engines[:2], InteractionLoop(*used), O.engines[3]]
+            O.engines = engines_around(loop)
         for x in (0, 1.985e-7):
             grain((x, 0, 0), 1e-7, ice())
         O.step()

@@ -1,37 +1,30 @@
-"""The kernel against closed forms and finite differences: constants, normal law, forces as gradients, limits."""
+"""The kernel against the theory of analysis/, closed forms and finite differences: constants, normal law, forces as gradients, limits."""
 
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from contact_states import force_and_torques, states, unit
 from scipy.spatial.transform import Rotation
 
-PULL_OFF = (9 / 16) ** (1 / 3)
-
-
-def unit(v):
-    return np.asarray(v) / np.linalg.norm(v)
-
+from analysis import theory
 
 # --- constants -----------------------------------------------------------------------------------
 
+KINDS = [("ice", 1e-7, "ice", 1e-7), ("ice", 1e-7, "viscous", 4e-7), ("silicate", 6e-7, "ice", 2e-7)]
+PLANE = ("viscous", 1e-7, "ice", np.inf)
 
-def test_constants_of_ice_are_those_of_model(kernel):
-    c = kernel.constants()
-    expected = dict(
-        equilibriumContactRadius=12.3712e-9,
-        equilibriumOverlap=1.02031e-9,
-        pullOffForce=47.1239e-9,
-        slidingStiffness=79.176,
-        rollingStiffness=3.7699,
-        twistingStiffness=1.41372e-14,
-        criticalSliding=0.43071e-9,
-        timeUnit=1.936e-10,
-    )
+
+@pytest.mark.parametrize("kind", [*KINDS, ("silicate", 6e-7, "silicate", 6e-7), PLANE])
+def test_constants_are_those_of_theory(kernel, kind):
+    """Which tests/analysis/test_theory.py holds to the papers' numbers; of a plane R = r and m* = m."""
+    material1, radius1, material2, radius2 = kind
+    one, other = (theory.Material(*kernel.materials[name]) for name in (material1, material2))
+    found = kernel.constants(*kind, damping=0.02)
+    expected = vars(theory.pair_constants(one, radius1, other, radius2, linear_damping=0.02))
     for name, value in expected.items():
-        digits = len(f"{value:e}".split("e")[0].rstrip("0").replace(".", ""))
-        assert getattr(c, name) == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits)), name
+        first, *words = name.split("_")
+        assert getattr(found, first + "".join(map(str.capitalize, words))) == pytest.approx(value, rel=1e-13), name
 
 
 def test_a_cube_root_is_the_nearest_number(kernel):
@@ -44,31 +37,10 @@ def test_a_cube_root_is_the_nearest_number(kernel):
     assert kernel.cube_root(0.0) == 0 and kernel.cube_root(np.inf) == np.inf and np.isnan(kernel.cube_root(np.nan))
 
 
-def test_energies_of_table_2_of_a22(kernel):
-    c = kernel.constants()
-    u0, force0, energy0 = kernel.normal_law([1.0])
-    unit_energy = c.pullOffForce * c.pullOffOverlap
-    table = {
-        "F_c delta_c": (unit_energy, 4.0e-17),
-        "E_break": (unit_energy * (4 / 45 - energy0[0]), 6.1e-17),
-        "E_r,crit": (c.rollingStiffness * c.criticalRolling**2 / 2, 1.2e-18),
-        "E_roll": (c.rollingStiffness * c.criticalRolling * np.pi * c.reducedRadius, 4.7e-16),
-        "E_s,crit": (c.slidingStiffness * c.criticalSliding**2 / 2, 7.3e-18),
-        "E_slide": (
-            c.slidingStiffness * c.criticalSliding * np.pi * c.reducedRadius,
-            5.4e-15,
-        ),  # misprinted in A22: model.md
-        "E_t,crit": (c.twistingStiffness * c.criticalTwisting**2 / 2, 2.8e-18),
-        "E_twist": (c.twistingStiffness * c.criticalTwisting * np.pi / 2, 4.4e-16),
-    }
-    for name, (ours, printed) in table.items():
-        assert float(f"{ours:.1e}") == printed, name
-
-
 def test_sliding_as_s17_prints_it(kernel):
     """F_nt = G a0^2/(2 pi) at u_nt = (2 - nu) a0/(16 pi): S17 eqs 11 and 12. Only the stiffness changes."""
     ours, printed = kernel.constants(), kernel.constants(sliding=2)
-    young, poisson = kernel.ice[:2]
+    young, poisson = kernel.materials["ice"][:2]
     shear, a0 = young / (2 * (1 + poisson)), printed.equilibriumContactRadius
     assert printed.criticalSliding == pytest.approx((2 - poisson) * a0 / (16 * np.pi), rel=1e-14)
     assert printed.slidingStiffness * printed.criticalSliding == pytest.approx(shear * a0**2 / (2 * np.pi), rel=1e-14)
@@ -76,103 +48,50 @@ def test_sliding_as_s17_prints_it(kernel):
     assert changed == ["slidingStiffness"]
 
 
-def test_time_unit_and_rolling_energy_of_silicate(kernel):
-    c = kernel.constants(kernel.silicate, 6e-7, kernel.silicate, 6e-7)
-    assert c.timeUnit == pytest.approx(1.71e-9, rel=3e-3)
-    assert c.rollingStiffness * c.criticalRolling * np.pi * c.reducedRadius == pytest.approx(1.42e-15, rel=4e-3)
-
-
-def test_unlike_pair_is_symmetric_and_between_its_kinds(kernel):
-    ab = kernel.constants(kernel.ice, 1e-7, kernel.viscous, 3e-7, 0.02)
-    ba = kernel.constants(kernel.viscous, 3e-7, kernel.ice, 1e-7, 0.02)
-    assert np.allclose(ab.array[2:], ba.array[2:], rtol=1e-14)
-    like = kernel.constants(kernel.viscous, 2e-7, kernel.viscous, 2e-7)
-    assert like.criticalSliding == pytest.approx((2 - 0.33) * like.equilibriumContactRadius / (16 * np.pi), rel=1e-14)
-    assert like.dragPerContactRadius == pytest.approx(2 * 4e-12 * like.reducedYoung / 0.33**2, rel=1e-14)
-
-
 # --- normal law ----------------------------------------------------------------------------------
 
 
-def test_contact_radius_root_against_bisection(kernel):
-    overlaps = np.concatenate(
-        [-PULL_OFF + 10.0 ** np.arange(-14.0, -1), np.linspace(-0.8, 4, 200), [4.0000001, 10, 100, 1e4]]
-    )
-    u, _, _ = kernel.normal_law(overlaps)
-    for overlap, found in zip(overlaps, u):
-        exact = brentq(lambda x: 3 * x**4 - 2 * x - overlap, 6 ** (-1 / 3), 100, xtol=1e-15, rtol=1e-15)
-        # near pull-off the root itself is known only to the square root of the overlap's rounding
-        known = max(4e-15 * exact, 1e-15 / max(abs(12 * exact**3 - 2), 1e-8))
-        assert abs(found - exact) < known, overlap
-
-
-def test_normal_force_is_the_slope_of_its_energy(kernel):
-    overlap = np.linspace(-0.8, 6, 341)
-    h = 1e-4
-    _, force, _ = kernel.normal_law(overlap)
-    difference = kernel.normal_law(overlap + h)[2] - kernel.normal_law(overlap - h)[2]
-    # F_c per delta0 against F_c delta_c per delta0: the slope times delta_c/delta0
-    slope = difference / (2 * h) * PULL_OFF
-    assert np.allclose(slope[overlap > -0.7], force[overlap > -0.7], rtol=0, atol=2e-6)
-
-
-def test_energies_at_connection_and_pull_off(kernel):
-    _, force, energy = kernel.normal_law([0.0, -PULL_OFF, 1.0])
-    assert energy[0] == pytest.approx(-8 / 15 * 2 ** (2 / 3), rel=1e-14)
-    assert energy[1] == pytest.approx(4 / 45, rel=1e-7)
-    assert force == pytest.approx([-8 / 9, -5 / 9, 0], abs=1e-7)
+def test_normal_law_is_that_of_theory(kernel):
+    """Whose root is exact to the last digits and whose energy is the integral of its force (tests/analysis/test_theory.py)."""
+    near = -theory.jkr.PULL_OFF_OVERLAP + np.r_[0, 10.0 ** np.arange(-14.0, -1)]
+    overlap = np.concatenate([near, np.linspace(-0.8, 6, 341), [4.0000001, 10, 100, 1e4]])
+    u, force, energy = kernel.normal_law(overlap)
+    exact = theory.contact_radius_root(overlap)
+    # near pull-off the root itself is known only to the square root of the overlap's rounding
+    known = np.maximum(4e-15 * exact, 1e-15 / np.maximum(np.abs(12 * exact**3 - 2), 1e-8))
+    assert (np.abs(u - exact) < known).all()
+    for found, expected in ((force, theory.normalised_force(overlap)), (energy, theory.normalised_energy(overlap))):
+        assert found == pytest.approx(expected, rel=1e-6, abs=1e-7)
+        away = overlap > -0.8
+        assert found[away] == pytest.approx(expected[away], rel=1e-13, abs=1e-13)
 
 
 # --- forces and torques --------------------------------------------------------------------------
 
 
-def states(seed, count):
-    """Random contacts: separation direction, pointers a little off the axis, twist, orientation of everything."""
-    random = np.random.default_rng(seed)
-    for _ in range(count):
-        axis = unit(random.normal(size=3))
-        n1, n2 = unit(-axis + 0.02 * random.normal(size=3)), unit(axis + 0.02 * random.normal(size=3))
-        yield axis, n1, n2, random.normal() * 0.02, random.uniform(-0.7, 3), random
-
-
-KINDS = [("ice", 1e-7, "ice", 1e-7), ("ice", 1e-7, "viscous", 4e-7), ("silicate", 6e-7, "ice", 2e-7)]
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_forces_and_torques_are_minus_the_gradient_of_the_energy(kernel, kind):
-    c = kernel.constants(getattr(kernel, kind[0]), kind[1], getattr(kernel, kind[2]), kind[3])
-    for axis, n1, n2, twist, overlap, _ in states(1, 20):
-        x = (c.radius1 + c.radius2 - overlap * c.equilibriumOverlap) * axis
+    c = kernel.constants(*kind)
+    random = np.random.default_rng(1)
+    for axis, n1, n2, twist in states(random, 20):
+        x = (c.radius1 + c.radius2 - random.uniform(-0.7, 3) * c.equilibriumOverlap) * axis
         at = kernel.contact(c, x, n1, n2, twist=twist)
-
-        def energy(move=np.zeros(3), turn1=np.zeros(3), turn2=np.zeros(3)):
-            n = unit(x + move)
-            grown = twist + np.dot(turn1 - turn2, n)  # dphi = (w1 - w2).n dt
-            return kernel.contact(
-                c, x + move, kernel.turn(n1, turn1), kernel.turn(n2, turn2), twist=grown
-            ).energies.sum()
-
-        for i in range(3):
-            e = np.eye(3)[i]
-            h, angle = 1e-4 * c.equilibriumOverlap, 1e-5
-            assert -(energy(move=h * e) - energy(move=-h * e)) / (2 * h) == pytest.approx(
-                at.force[i], abs=2e-6 * c.pullOffForce
-            )
-            size = np.linalg.norm(at.torque1) + c.pullOffForce * c.equilibriumOverlap
-            assert -(energy(turn1=angle * e) - energy(turn1=-angle * e)) / (2 * angle) == pytest.approx(
-                at.torque1[i], abs=2e-6 * size
-            )
-            assert -(energy(turn2=angle * e) - energy(turn2=-angle * e)) / (2 * angle) == pytest.approx(
-                at.torque2[i], abs=2e-6 * size
-            )
+        energy = lambda x, n1, n2, twist: kernel.contact(c, x, n1, n2, twist=twist).energies.sum()
+        move, turn = 1e-4 * c.equilibriumOverlap, 1e-5
+        force, torque1, torque2 = force_and_torques(kernel, energy, x, n1, n2, twist, move, turn)
+        size = np.linalg.norm(at.torque1) + c.pullOffForce * c.equilibriumOverlap
+        assert force == pytest.approx(at.force, abs=2e-6 * c.pullOffForce)
+        assert torque1 == pytest.approx(at.torque1, abs=2e-6 * size)
+        assert torque2 == pytest.approx(at.torque2, abs=2e-6 * size)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_net_torque_and_rotation_and_exchange_symmetry(kernel, kind):
-    c = kernel.constants(getattr(kernel, kind[0]), kind[1], getattr(kernel, kind[2]), kind[3])
-    exchanged = kernel.constants(getattr(kernel, kind[2]), kind[3], getattr(kernel, kind[0]), kind[1])
-    for axis, n1, n2, twist, overlap, random in states(2, 50):
-        x = (c.radius1 + c.radius2 - overlap * c.equilibriumOverlap) * axis
+    c, exchanged = kernel.constants(*kind), kernel.constants(*kind[2:], *kind[:2])
+    assert np.allclose(c.array[2:], exchanged.array[2:], rtol=1e-14, atol=0)
+    random = np.random.default_rng(2)
+    for axis, n1, n2, twist in states(random, 50):
+        x = (c.radius1 + c.radius2 - random.uniform(-0.7, 3) * c.equilibriumOverlap) * axis
         v = random.normal(size=3)
         at = kernel.contact(c, x, n1, n2, v, twist)
         rounding = 2.2e-16 * (
@@ -194,7 +113,7 @@ def test_no_net_torque_and_rotation_and_exchange_symmetry(kernel, kind):
 
 
 def test_drag_opposes_motion_and_has_the_coefficient_of_a22_eq_7(kernel):
-    c = kernel.constants(kernel.viscous, 1e-7, kernel.viscous, 1e-7, 0.01)
+    c = kernel.constants("viscous", 1e-7, "viscous", 1e-7, 0.01)
     axis = unit([1.0, 2, -1])
     for overlap in (-0.5, 0.0, 1.0, 3.0):
         u, _, _ = kernel.normal_law([overlap])
@@ -214,7 +133,7 @@ def test_drag_opposes_motion_and_has_the_coefficient_of_a22_eq_7(kernel):
 @pytest.mark.parametrize("which", [0, 1])
 def test_returning_reaches_the_limit_and_leaves_the_other_displacement(kernel, kind, which):
     """Errors must fall as the square of the pointers' angles: halving them quarters the errors."""
-    c = kernel.constants(getattr(kernel, kind[0]), kind[1], getattr(kernel, kind[2]), kind[3])
+    c = kernel.constants(*kind)
     r1, r2, R = c.radius1, c.radius2, c.reducedRadius
 
     def errors(size, seed):
@@ -227,22 +146,22 @@ def test_returning_reaches_the_limit_and_leaves_the_other_displacement(kernel, k
             return z - np.dot(z, axis) * axis
 
         def roll(a, b):
-            d = R * (a + b)
+            return R * (a + b)
+
+        def roll_across(a, b):
+            d = roll(a, b)
             return d - np.dot(d, axis) * axis
 
-        mine, other = (slide, roll) if which == 0 else (roll, slide)
-        target = slide if which == 0 else lambda a, b: R * (a + b)
-        limit = 0.6 * np.linalg.norm(target(n1, n2))
+        returned, other = ((slide, roll_across), (roll, slide))[which]
+        limit = 0.6 * np.linalg.norm(returned(n1, n2))
         m1, m2 = kernel.return_to_limit(c, axis, n1, n2, which, limit)
         assert np.linalg.norm(m1) == pytest.approx(1, abs=1e-15) and np.linalg.norm(m2) == pytest.approx(1, abs=1e-15)
         return (
-            abs(np.linalg.norm(target(m1, m2)) - limit) / limit,
+            abs(np.linalg.norm(returned(m1, m2)) - limit) / limit,
             np.linalg.norm(other(m1, m2) - other(n1, n2)) / limit,
-            np.linalg.norm(mine(m1, m2)) / limit,
         )
 
-    coarse = np.mean([errors(0.02, seed)[:2] for seed in range(40)], axis=0)
-    fine = np.mean([errors(0.01, seed)[:2] for seed in range(40)], axis=0)
+    coarse, fine = (np.mean([errors(size, seed) for seed in range(40)], axis=0) for size in (0.02, 0.01))
     # relative errors are first order or better in the angles; absolute ones therefore second
     assert np.all(coarse < 0.05) and np.all(fine < 0.55 * coarse)
 

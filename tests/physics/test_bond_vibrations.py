@@ -14,21 +14,14 @@ INERTIA = 0.4 * MASS * RADIUS**2
 DISTANCE = 1.99e-7  # of bonded grains' centres [m]
 LEVER = 2 * RADIUS / DISTANCE  # sliding displacement a transverse one: zeta0 has the radii, its direction the distance
 NECK = 0.5
-MOVERS = ["functors", "engine"]
+MOVERS = ["functors", "fused"]
 
 
 def start(mover, step, count, held=0):
     """A row of bonded grains along x, the first `held` of them without freedom; step in t0."""
-    new_scene(step * unit, neck=NECK)
+    new_scene(step * unit, mover, neck=NECK)
     for k in range(count):
         grain((DISTANCE * k, 0, 0), 1e-7, ice(), blocked="xyzXYZ" if k < held else "")
-    if mover == "engine":
-        fused_engine(neck=NECK)
-
-
-def steps(number):
-    for _ in range(number):
-        O.step()  # O.run() waits long for its thread
 
 
 def sampled(quantity, stride, number):
@@ -59,18 +52,11 @@ def frequency(signal, interval):
 K_STRETCH, K_SLIDE, K_TILT, K_TWIST = stiffnesses(NECK)
 SPEED, SPIN = 1e-3, 1e4  # m/s, 1/s: far below what bends the geometry
 ACROSS = (0, -2 * LEVER * INERTIA / (MASS * RADIUS) * SPIN, 0)
+SLIDES = LEVER**2 / MASS + RADIUS**2 / INERTIA
 # Two free grains, 1 and 2: initial relative velocity and spins of the mode (sliding: without angular momentum), what is watched, omega^2.
 PAIR_MODES = {
     "stretching": ((SPEED, 0, 0), (0, 0, 0), (0, 0, 0), "vel", 0, -1, 2 * K_STRETCH / MASS),
-    "sliding": (
-        ACROSS,
-        (0, 0, SPIN),
-        (0, 0, SPIN),
-        "angVel",
-        2,
-        1,
-        2 * K_SLIDE * (LEVER**2 / MASS + RADIUS**2 / INERTIA),
-    ),
+    "sliding": (ACROSS, (0, 0, SPIN), (0, 0, SPIN), "angVel", 2, 1, 2 * K_SLIDE * SLIDES),
     "rolling": ((0, 0, 0), (0, 0, SPIN), (0, 0, -SPIN), "angVel", 2, -1, 2 * K_TILT / INERTIA),
     "twisting": ((0, 0, 0), (SPIN, 0, 0), (-SPIN, 0, 0), "angVel", 0, -1, 2 * K_TWIST / INERTIA),
 }

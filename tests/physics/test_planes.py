@@ -1,14 +1,13 @@
-"""Grains on planes (YADE's Wall), with the functors and the fused engine, against closed forms and an independent integration, and against a huge second sphere."""
+"""Grains on planes (YADE's Wall), with the functors and the fused engine, against closed forms and a huge second sphere (rebounds: test_pairs.py)."""
 
 import pytest
 from scenes import *
 
-from analysis.theory import ICE, Material, collide_pair, pair_constants
+from analysis.theory import ICE, pair_constants
 
 pytestmark = pytest.mark.in_yade
 R = 1e-7  # of the grains [m]
 STILL, MOVING = (0, 0, 0), dict(plane_velocity=(3.0, 1.0, 8.0))
-SOFT = Material(3e9, 0.33, 1300.0, 0.05, 1.1e-9)  # soft() of scenes.py
 ICY = pair_constants(ICE, R, ICE, np.inf)
 
 
@@ -42,46 +41,6 @@ def test_equilibrium_and_pull_off():
     assert np.abs(np.array(forces[:-2]) / c.pull_off_force - exact).max() < 1e-4
     assert min(forces) == pytest.approx(-c.pull_off_force, rel=1e-6)
     assert overlaps[-2] > -c.pull_off_overlap > overlaps[-1] - rise
-
-
-def rebound(speed, step, gap, fused, material, other):
-    """Velocity with which a grain leaves a plane of another material, 0 when it sticks."""
-    new_scene(step * ICY.time_unit)
-    plane(other)
-    grain((0.3 * R, 0, R + gap), R, material, (0, 0, -speed))
-    if fused:
-        fused_engine()
-    O.run(int((gap / speed + 60 * ICY.time_unit) / O.dt), True)
-    touching = O.engines[0].statistics()["planeContacts"] if fused else O.interactions.countReal()
-    return 0.0 if touching else O.bodies[1].state.vel[2]
-
-
-@pytest.mark.parametrize("fused", [False, True])
-def test_sticking_velocity(fused):
-    """[2 (8/15 2^(2/3) + 4/45) F_c delta_c/m]^(1/2) (A22 eqs 9, 10 with R = r and m* = m)."""
-    c = ICY
-    closed = np.sqrt(2 * (8 / 15 * 2 ** (2 / 3) + 4 / 45) * c.pull_off_force * c.pull_off_overlap / c.reduced_mass)
-    found = threshold(lambda speed: rebound(speed, 0.02, 2e-9, fused, ice(), ice()) > 0, 0.9 * closed, 1.1 * closed)
-    assert found == pytest.approx(closed, rel=1e-3)
-
-
-@pytest.mark.parametrize("fused", [False, True])
-@pytest.mark.parametrize("kind", ["elastic", "viscous", "unlike"])
-def test_rebound_converges_with_second_order(kind, fused):
-    """Against an independent integration; root mean square over gaps, as of pairs (test_pairs.py)."""
-    speed, time, other = dict(elastic=(9.0, 0, ICE), viscous=(40.0, 2e-12, ICE), unlike=(9.0, 0, SOFT))[kind]
-    drag = dict(viscoelastic_time=time)
-    pair = pair_constants(Material(**{**vars(ICE), **drag}), R, Material(**{**vars(other), **drag}), np.inf)
-    material = ice(viscoelasticTime=time)
-    materials = material, soft() if kind == "unlike" else material
-    exact = collide_pair(speed, pair).rebound_velocity
-
-    def error(step):
-        gaps = 2e-9 + 1e-10 * np.arange(12) / 1.7
-        return rms(rebound(speed, step, gap, fused, *materials) / exact - 1 for gap in gaps)
-
-    coarse, fine = error(0.1), error(0.0125)
-    assert coarse < 1e-2 and fine < 2e-4 and coarse / fine > 3.2**3  # second order gives 64, first order 8
 
 
 @pytest.mark.parametrize("limit", ["held", "cut"])
@@ -125,7 +84,7 @@ def test_driven_past_the_limit(mode, limit):
 VELOCITY, SPIN = np.array([1.7, 0.6, -12.0]), np.array([1e8, -0.7e8, 2e8])
 
 
-def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.003, first=True, fused=None, **options):
+def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.003, first=True, **options):
     """(velocity, spin r) of a grain that has met a plane (appended before it or after) obliquely, and the closure after it over K(0).
     Vectors are given for a plane across z, below the grain, and turned with it."""
     turn = np.roll(np.eye(3), axis - 2, axis=0) if side > 0 else np.roll(np.diag([1.0, -1, -1]), axis - 2, axis=0)
@@ -139,8 +98,6 @@ def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.
             plane(ice(), axis, 0.0, drift)
         else:
             grain(turn @ (0, 0, -radius2), radius2, ice(), blocked="xyzXYZ")
-    if fused is not None:
-        fused_engine(**fused)
     O.step()
     sums = []
     for _ in range(int(20 / step)):
@@ -171,7 +128,7 @@ def test_a_plane_is_the_limit_of_a_huge_sphere(limit):
 
 
 OF_FUNCTORS = [dict(), dict(limit="cut"), dict(damping=0.02), MOVING, dict(rolling=False)]
-OF_ENGINE = [dict(fused=dict(linearDamping=0.02)), dict(fused=dict(limit="cut"), **MOVING)]
+OF_ENGINE = [dict(mover="fused", damping=0.02), dict(mover="fused", limit="cut", **MOVING)]
 
 
 @pytest.mark.parametrize("options", OF_FUNCTORS + OF_ENGINE)
