@@ -21,7 +21,7 @@ from .variables import CLOSE_PACKED, GROWN, LEFT, STRUCTURES
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 RUNS_FILE = FOLDER / "runs.csv"
 SIZES, RATIOS = np.geomspace(64, 4096, 7), np.geomspace(1 / 64, 1.0, 4)  # of the runs
-FILLINGS = {GROWN: (0.002, 0.02, 0.1, 0.2, 0.3, 0.4, 0.48), CLOSE_PACKED: (0.2, 0.3, 0.4, 0.5, 0.56)}
+FILLINGS = {GROWN: (0.002, 0.02, 0.1, 0.2, 0.3, 0.4, 0.48), CLOSE_PACKED: (0.25, 0.3, 0.4, 0.5, 0.56)}
 VELOCITY = Axis("velocity", "log10", np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.0, 20)))
 # Beyond the runs only what is slow is known: the nodes there are few.
 BEYOND_SIZES, BEYOND_RATIOS = (
