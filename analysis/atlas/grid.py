@@ -24,10 +24,8 @@ SIZES, RATIOS = np.geomspace(64, 4096, 7), np.geomspace(1 / 64, 1.0, 4)  # of th
 FILLINGS = {GROWN: (0.002, 0.02, 0.1, 0.2, 0.3, 0.4, 0.48), CLOSE_PACKED: (0.25, 0.3, 0.4, 0.5, 0.56)}
 VELOCITY = Axis("velocity", "log10", np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.0, 20)))
 # Beyond the runs only what is slow is known: the nodes there are few.
-BEYOND_SIZES, BEYOND_RATIOS = (
-    np.array([1, 8, *SIZES, *(8.0 ** np.arange(5, 9))]),
-    np.append(64.0 ** np.arange(-4, -1), RATIOS),
-)
+BEYOND_SIZES = np.array([1, 8, *SIZES, *(8.0 ** np.arange(5, 9))])
+BEYOND_RATIOS = np.append(64.0 ** np.arange(-4, -1), RATIOS)
 SMALLEST, LARGEST = GRAIN_RADII
 RADIUS = f"{{}} of {SMALLEST:g} to {LARGEST:g} [m]", lambda x: (x >= SMALLEST) & (x <= LARGEST)
 GRAINS = numbers(right=("{} >= 1", lambda x: (x >= 1) & (x < np.inf)))

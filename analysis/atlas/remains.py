@@ -23,7 +23,7 @@ LEVEL = 0.9  # of all intervals
 CHUNK = 500  # queries at once, which bounds memory
 SIDES = "gained", "lost"  # parts of `largest`
 PIECES = *SIDES, "second", "eroded"
-GROWN = "largest", "second", "filling_after"  # what the trees are grown for
+TRAINED = "largest", "second", "filling_after"  # what the trees are grown for
 # What the larger aggregate gains or loses where that is the outcome.
 OF_KIND = {"gain_mass_transfer": "mass_transfer", "loss_erosion": "erosion", "largest_fragmentation": "fragmentation"}
 
@@ -45,7 +45,7 @@ class Remains:
 
     @cached_property
     def _trees(self):
-        return _Trees(self.points, self.own[list(GROWN)])
+        return _Trees(self.points, self.own[list(TRAINED)])
 
     def means(self, points, chances, upto=None):
         """DataFrame of LEFT and OF_KIND, means at variables() points with the chances (n, 5) of KINDS; upto: as Model.probabilities has it.
@@ -102,7 +102,7 @@ class Remains:
         distributions that the others foretell."""
         ranks = pandas.DataFrame(np.nan, index=self.runs.index, columns=list(LEFT))
         for others, own in folds(len(self.runs)):
-            trees = _Trees(self.points[others], self.own[list(GROWN)].iloc[others])
+            trees = _Trees(self.points[others], self.own[list(TRAINED)].iloc[others])
             weights = trees.weights([self.points[own]])
             for name in LEFT:
                 is_known, values = self.known[name].to_numpy(), self.own[name].to_numpy()

@@ -155,7 +155,9 @@ def test_pieces_follow_from_the_probabilities(made):
         point(velocity=[0.3, 5.0], mass_ratio=0.5), np.array([[0.9, 0, 0, 0.1, 0], [0.2, 0, 0, 0.8, 0]])
     )
     assert told.largest.tolist() == pytest.approx([0.95, 0.6]) and told.second.tolist() == pytest.approx([0.01, 0.08])
-    assert told.loss_erosion.tolist() == pytest.approx([0.5, 0.5])  # of 2/3 of the mass 1/2 is left, of the smaller one's 1/3 a half is lost
+    assert told.loss_erosion.tolist() == pytest.approx(
+        [0.5, 0.5]
+    )  # of 2/3 of the mass 1/2 is left, of the smaller one's 1/3 a half is lost
 
 
 def test_runs_that_never_met_or_are_undecided(made):

@@ -42,7 +42,8 @@ def table_of(probabilities, speeds=20, inside=1.0, touching=1.0):
     )
     grid = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")
     columns = dict(zip(KINDS, probabilities(*grid)))
-    columns |= {"p_touching": touching, "gain_mass_transfer": 0.4, "fragment_index": 2.0, "inside": inside}
+    columns |= {"p_touching": touching, "gain_mass_transfer": 0.4, "loss_erosion": 1.0, "largest_fragmentation": 0.3}
+    columns |= {"fragment_index": 2.0, "inside": inside}
     values = np.stack(np.broadcast_arrays(*columns.values(), grid[0])[:-1], -1)
     return OutcomeTable(axes, tuple(columns), values)
 
@@ -137,12 +138,17 @@ def test_grains_of_another_size_than_meant(sim, options):
 
 
 def test_refusals(sim):
+    made = table_of(smooth)
     for options, says in (
         ({"outside": "mine"}, "outside = mine: must be clamp or dustpy"),
         ({"grain_radius": 0.1}, "grain_radius = 0.1: must be a number of 1e-09 to 0.001"),
+        (
+            {"outcomes": OutcomeTable(made.axes, made.columns[1:], made.values[..., 1:])},
+            "no column p_sticking; must be",
+        ),
         ({"outcomes": "nosuch.txt"}, "nosuch.txt: No such file or directory; must be a table of outcomes"),
     ):
         with pytest.raises(ValueError, match=says):
-            use_atlas(sim, **{"outcomes": table_of(smooth), **options})
+            use_atlas(sim, **{"outcomes": made, **options})
     with pytest.raises(ValueError, match="must be called after sim.initialize()"):
         use_atlas(dustpy.Simulation(verbosity=0), table_of(smooth))

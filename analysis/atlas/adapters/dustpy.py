@@ -14,8 +14,9 @@ import numpy as np
 
 from ...arguments import FLAG, PATH, Kind, number, one_of, takes
 from ...theory import GRAIN_RADIUS, MATERIALS, interaction_energies, pair_constants
-from ..grid import MOSTLY, RADIUS, TOUCHING
-from ..outcome_table import INSIDE, OutcomeTable, read_outcomes
+from ..grid import MOSTLY, PROBABILITIES, RADIUS, TOUCHING
+from ..outcome_table import INSIDE, OutcomeTable, OutcomeTableError, read_outcomes
+from ..remains import OF_KIND
 
 PER_NODE = 4  # speeds between two nodes of the table at which a pair's probabilities are kept
 CM, GRAM, GRAM_PER_CM3 = 100.0, 1000.0, 1e-3  # of one m, kg, kg/m^3
@@ -82,6 +83,8 @@ def mean_fragment_index(table):
 
 
 def _columns(table):
+    if missing := [name for name in (*PROBABILITIES, TOUCHING, *OF_KIND) if name not in table.columns]:
+        raise OutcomeTableError(f"table of outcomes: no column {missing[0]}; must be one that this version makes")
     return {name: table.values[..., k] for k, name in enumerate(table.columns)}
 
 
