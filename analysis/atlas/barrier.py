@@ -20,7 +20,7 @@ def barrier(table):
         if known.sum() < 2:
             continue
         speed = np.log(axes["velocity"][known])
-        p, error, runs = (at[name][known, j, k, m] for name in ("p_bouncing", "error", "runs"))
+        p, error, runs = (at[name][known, j, k, m] for name in ("p_bouncing", "error_bouncing", "runs"))
         top = int(p.argmax())
         row = {"mass_ratio": axes["mass_ratio"][k], "filling": axes["filling"][m], "grains": axes["grains"][j]}
         row |= {"p": p[top], "error": error[top], "velocity": np.exp(speed[top]), "runs": int(runs[top])}
@@ -55,7 +55,7 @@ def barrier_text(name, table):
     if half.empty:
         yield "It is 1/2 nowhere.\n"
         return
-    yield "It is of the runs' mix of structures (compressed aggregates bounce far less often than close-packed ones; above a filling of 0.5 all are close-packed), and 1/2 or more between these velocities over v_break (in brackets: with p more, and less, by its error; runs: nearby the highest):\n"
+    yield "It is 1/2 or more between these velocities over v_break (in brackets: with p more, and less, by its error; runs: nearby the highest):\n"
     yield "| mass ratio | filling | grains | highest | at | runs | from | to |\n|---|---|---|---|---|---|---|---|"
     for row in half.itertuples(index=False):
         edges = " | ".join(_edge(*getattr(row, name)) for name in EDGES)

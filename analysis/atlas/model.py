@@ -1,7 +1,8 @@
 """A model of the outcomes, fitted to the table of runs: scikit-learn's, in variables without dimensions.
 
 Probabilities: logistic regression on polynomials of third order of FEATURES, its regularisation chosen by cross-validation; errors
-from fits with random weights of the runs (the Bayesian bootstrap, Rubin 1981). What is left: remains.Remains.
+from fits with random weights of the runs (the Bayesian bootstrap, Rubin 1981), which undecided runs join with one outcome or another.
+What is left: remains.Remains.
 
 Fitted are runs whose aggregates touched and whose outcome is decided, but for the held-out ones; runs of all materials together."""
 
@@ -10,14 +11,17 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from ..measures.outcome import NEVER_MET, UNDECIDED
 from .neighbours import ONE_CONTACT, slow
 from .remains import LEVEL, Remains
-from .rules import KINDS
-from .variables import SEED, energy, fit_and_held_out, folds, offsets, scaled, variables
+from .rules import KINDS, outcome
+from .variables import FIT, SEED, energy, fit_and_held_out, folds, offsets, scaled, variables
 
 MEMBERS = 40  # fits with random weights
 ORDER = 3  # measured best: scores.py
 STRENGTHS = 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation, tried
+STRENGTH = 3.0  # as best() chooses it
+STICKING, BOUNCING = KINDS[:2]
 
 
 class NoLearning(Exception):
@@ -38,15 +42,39 @@ class Model:
         _require_learning()
         self.runs, _ = fit_and_held_out(table)
         self.points, self.members = scaled(variables(self.runs)), members
+        self.of_fit = table[table.split == FIT]  # also what never met, or is undecided
 
     @cached_property
     def _classifiers(self):
+        """The fit to the decided runs, and members: fits with random weights to all that touched, undecided ones with an outcome of _guessed()."""
         from sklearn.base import clone
 
-        fit = best(self.points, self.runs.outcome)
-        draws = np.random.default_rng(SEED).exponential(size=(self.members, len(self.runs)))
-        weights = [np.ones(len(self.runs)), *draws]
-        return [clone(fit).fit(self.points, self.runs.outcome, fit__sample_weight=w) for w in weights]
+        fit, random = best(self.points, self.runs.outcome), np.random.default_rng(SEED)
+        still_open = self.of_fit[self.of_fit.outcome == UNDECIDED]
+        points = np.concatenate([self.points, scaled(variables(still_open))])
+        found = [clone(fit).fit(self.points, self.runs.outcome)]
+        for _ in range(self.members):
+            outcomes = np.concatenate([self.runs.outcome, _guessed(still_open, random)])
+            weights = random.exponential(size=len(points))
+            found.append(clone(fit).fit(points, outcomes, fit__sample_weight=weights))
+        return found
+
+    @cached_property
+    def _meeting(self):
+        """Fit to whether aggregates touch, and ends of the runs' coordinates but for the velocity, as it is geometry. None where all touch."""
+        touched, points = self.of_fit.outcome != NEVER_MET, scaled(variables(self.of_fit))[:, 1:]
+        if touched.all():
+            return None
+        return classifier(STRENGTH, order=2).fit(points, touched), points.min(axis=0), points.max(axis=0)
+
+    def touching(self, points, upto=None):
+        """Probability (n,) that aggregates touch whose impact parameter is b < 1; points, upto: as probabilities() has them. Beyond the runs that
+        of the nearest end."""
+        if self._meeting is None:
+            return np.ones(len(points))
+        fit, *ends = self._meeting
+        several = offsets(scaled(points), upto)
+        return np.mean([fit.predict_proba(np.clip(at[:, 1:], *ends))[:, 1] for at in several], axis=0)
 
     def probabilities(self, points, upto=None):
         """(probabilities (n, 5) of rules.KINDS, half widths (n, 5) of their intervals of LEVEL) of variables() points; upto: averaged over
@@ -69,12 +97,6 @@ class Model:
         """Factor (n,) of whatever is not sticking: 1 from the energy of slow() on, 0 at half of it and below."""
         return np.clip(1 + np.log2(energy(points).to_numpy() / self.slow.energy), 0.0, 1.0)
 
-    def left(self, points, upto=None):
-        """DataFrame of LEFT: means of remains.Remains; one piece where all stick."""
-        fade, found = self._fade(points), self.remains.means(points, upto)
-        largest = 1 - fade * (1 - found.largest)
-        return found.assign(largest=largest, second=np.minimum(fade * found.second, 1 - largest))
-
     @cached_property
     def slow(self):
         """neighbours.Slow of these runs."""
@@ -84,6 +106,14 @@ class Model:
     def remains(self):
         """remains.Remains of these runs."""
         return Remains(self.runs)
+
+
+def _guessed(rows, random):
+    """Outcomes (n,) of undecided rows: as it looked at the end of the run, or else sticking, and where it looked so, bouncing; how often, drawn
+    anew each time."""
+    seen = np.array([outcome(row) for row in rows.to_dict("records")], dtype=object)
+    other = np.where(seen == STICKING, BOUNCING, STICKING)
+    return np.where(random.uniform(size=len(rows)) < random.uniform(), seen, other)
 
 
 def classifier(strength, order=ORDER):

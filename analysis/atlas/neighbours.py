@@ -40,39 +40,42 @@ def slow(runs):
 
 
 class Neighbours:
-    """Of the decided rows of a table of runs, in `runs`: distances in the coordinates of variables.scaled(), but for the impact parameter, each in
-    units of its scatter among the runs. ValueError where they fill no region."""
+    """Of the decided rows of a table of runs, in `runs`: distances in the coordinates of variables.scaled(), each in units of its scatter among
+    the runs; without the impact parameter where a query is averaged over it. ValueError where they fill no region."""
 
     def __init__(self, table):
         self.runs = decided(table).reset_index(drop=True)
         self.slow = slow(self.runs[self.runs.split == FIT])
-        points = scaled(variables(self.runs))[:, :-1]
+        points = scaled(variables(self.runs))
         self.scatter = points.std(axis=0)
-        self.tree = cKDTree(points / self.scatter)
+        place = points / self.scatter
+        self.tree, self.tree_of_impact = cKDTree(place[:, :-1]), cKDTree(place)
         try:
             self.faces = ConvexHull(self.tree.data).equations
         except (QhullError, ValueError):
-            raise ValueError(
-                f"{len(points)} runs: fill no region in {points.shape[1]} variables; must be more"
-            ) from None
+            raise ValueError(f"{len(points)} runs: fill no region in {self.tree.m} variables; must be more") from None
 
-    def nearest(self, points):
-        """Rows (n, NEAREST) of `runs` that are nearest to variables() points."""
-        return self.tree.query(self._place(points), NEAREST)[1]
+    def nearest(self, points, averaged):
+        """Rows (n, NEAREST) of `runs` that are nearest to variables() points; averaged: at any impact parameter."""
+        return self._tree(averaged).query(self._place(points, averaged), NEAREST)[1]
 
     def beyond(self, points):
         """Distance (n,) of variables() points beyond the convex hull of the runs, negative inside of it; above MARGIN a query is an extrapolation.
 
-        Where all runs stick, slower collisions do: those below `slow.energy` are where they would be with that energy. Those below
-        ONE_CONTACT cannot part, by conservation of energy: nowhere are they beyond."""
+        Where all runs stick, slower collisions are taken to: those below `slow.energy` are where they would be with that energy, and those below
+        ONE_CONTACT beyond nowhere."""
         own = energy(points)
         faster = points.assign(velocity=points.velocity * np.sqrt(np.maximum(self.slow.energy / own, 1.0)))
-        found = (self._place(faster) @ self.faces[:, :-1].T + self.faces[:, -1]).max(axis=1)
+        found = (self._place(faster, True) @ self.faces[:, :-1].T + self.faces[:, -1]).max(axis=1)
         return np.where(own < ONE_CONTACT, np.minimum(found, 0.0), found)
 
-    def within(self, points):
-        """Number (n,) of runs at no more than NEAR."""
-        return self.tree.query_ball_point(self._place(points), NEAR, return_length=True)
+    def within(self, points, averaged):
+        """Number (n,) of runs at no more than NEAR; averaged: at any impact parameter."""
+        return self._tree(averaged).query_ball_point(self._place(points, averaged), NEAR, return_length=True)
 
-    def _place(self, points):
-        return scaled(points)[:, :-1] / self.scatter
+    def _tree(self, averaged):
+        return self.tree if averaged else self.tree_of_impact
+
+    def _place(self, points, averaged):
+        place = scaled(points) / self.scatter
+        return place[:, :-1] if averaged else place

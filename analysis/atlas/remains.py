@@ -5,6 +5,8 @@ forests, Meinshausen 2006), of numbers in units that carry over to other sizes: 
 over its own; the second largest piece over the projectile's mass; the filling over that before. Intervals are calibrated: the part of the distribution that they take is that which holds
 LEVEL of the fitted runs when each is foretold from the others (distributional conformal prediction, Chernozhukov et al. 2021).
 
+Means of the largest pieces are those of each outcome's runs, by the probabilities of the outcomes: with these they are consistent.
+
 Three quarters of the collisions may leave one piece. No interval that such a run ends can hold a chosen part of the runs, so the intervals of
 the largest and second largest piece are of collisions that leave more than one."""
 
@@ -13,15 +15,17 @@ from functools import cached_property
 import numpy as np
 import pandas
 
+from .rules import KINDS
 from .variables import LEFT, SEED, folds, left, offsets, scaled, variables
 
 TREES, LEAF = 100, 3  # of the forest, and runs in a leaf of it
 LEVEL = 0.9  # of all intervals
 CHUNK = 500  # queries at once, which bounds memory
-SIDES, GROWN = (
-    ("gained", "lost"),
-    ("largest", "second", "filling_after"),
-)  # parts of `largest`; what the trees are grown for
+SIDES = "gained", "lost"  # parts of `largest`
+PIECES = *SIDES, "second", "eroded"
+TRAINED = "largest", "second", "filling_after"  # what the trees are grown for
+# What the larger aggregate gains or loses where that is the outcome.
+OF_KIND = {"gain_mass_transfer": "mass_transfer", "loss_erosion": "erosion", "largest_fragmentation": "fragmentation"}
 
 
 class Remains:
@@ -34,41 +38,63 @@ class Remains:
         gained, lost = more.clip(lower=0) / (1 - share), more.clip(upper=0) / share
         filling = self.runs.filling_largest / variables(self.runs).filling
         second = self.runs.second / (1 - share)
-        self.own = left(self.runs).assign(
-            largest=gained + lost, second=second, filling_after=filling, gained=gained, lost=lost
-        )
-        of_parts = dict.fromkeys(("largest", "second", *SIDES), several)
+        pieces = {"gained": gained, "lost": lost, "second": second, "eroded": -lost / self.runs.mass_ratio}
+        self.own = left(self.runs).assign(largest=gained + lost, filling_after=filling, **pieces)
+        of_parts = dict.fromkeys(("largest", *PIECES), several)
         self.known = self.own.notna().assign(**of_parts)
 
     @cached_property
     def _trees(self):
-        return _Trees(self.points, self.own[list(GROWN)])
+        return _Trees(self.points, self.own[list(TRAINED)])
 
-    def means(self, points, upto=None):
-        """DataFrame of LEFT, means at variables() points; upto: as Model.probabilities has it."""
-        return self._told(points, upto, lambda name, weights, own: weights @ own, self.own.notna())
+    def means(self, points, chances, upto=None):
+        """DataFrame of LEFT and OF_KIND, means at variables() points with the chances (n, 5) of KINDS; upto: as Model.probabilities has it.
+
+        gain_mass_transfer and loss_erosion: what the larger aggregate gains or loses over the smaller one's mass; largest_fragmentation: the
+        largest piece over the larger aggregate's mass; each where that is the outcome."""
+        parts = []
+        for rows, here, weights in self._chunks(points, upto):
+            of_kinds = [self._pieces(kind, weights) for kind in KINDS]
+            pieces = sum(p[:, None] * own for p, own in zip(chances[rows].T, of_kinds))
+            told = {name: np.matmul(*self._distribution(name, weights)) for name in LEFT[2:]}
+            found = _in_table(pieces.assign(**told), here)
+            found["second"] = np.minimum(found.second, 1 - found.largest)
+            transfer, erosion, fragmentation = (of_kinds[KINDS.index(kind)] for kind in OF_KIND.values())
+            values = transfer.gained, erosion.eroded, 1 + fragmentation.lost
+            parts.append(found.assign(**dict(zip(OF_KIND, values))))
+        return pandas.concat(parts, ignore_index=True)
+
+    def _pieces(self, kind, weights):
+        """DataFrame (n, PIECES), means of the runs of that outcome; 0 where there are none."""
+        rows = (self.runs.outcome == kind).to_numpy()
+        return pandas.DataFrame(_shares(weights[:, rows]) @ self.own.loc[rows, list(PIECES)].to_numpy(), columns=PIECES)
 
     def intervals(self, points):
         """DataFrame of NAME_low and NAME_high for LEFT: ends of the intervals that hold LEVEL of such runs."""
-        found = []
-        for end, sign in (("low", -1), ("high", 1)):
-            reach = lambda name: self.reach["largest" if name in SIDES else name]
-            at = lambda name, weights, own: _quantiles(weights, own, 0.5 + sign * reach(name))
-            found.append(self._told(points, None, at, self.known).add_suffix(f"_{end}"))
-        return pandas.concat(found, axis=1)
-
-    def _told(self, points, upto, tell, known):
-        """DataFrame of tell(name, weights (n, k) of the known runs, their numbers (k,)) for LEFT, in the units of the table."""
         parts = []
-        for start in range(0, len(points), CHUNK):
-            here = points.iloc[start : start + CHUNK]
-            weights = self._trees.weights(offsets(scaled(here), upto))
-            found = {}
-            for name in (*SIDES, *LEFT[1:]):
-                rows = known[name].to_numpy()
-                found[name] = tell(name, _shares(weights[:, rows]), self.own[name].to_numpy()[rows])
-            parts.append(_in_table(pandas.DataFrame(found), here.reset_index(drop=True)))
+        for _, here, weights in self._chunks(points):
+            ends = []
+            for end, sign in (("low", -1), ("high", 1)):
+                reach = lambda name: self.reach["largest" if name in SIDES else name]
+                at = {
+                    name: _quantiles(*self._distribution(name, weights), 0.5 + sign * reach(name))
+                    for name in (*SIDES, *LEFT[1:])
+                }
+                ends.append(_in_table(pandas.DataFrame(at), here).add_suffix(f"_{end}"))
+            parts.append(pandas.concat(ends, axis=1))
         return pandas.concat(parts, ignore_index=True)
+
+    def _chunks(self, points, upto=None):
+        """(slice, points there, weights (n, runs)) of parts of the points, as memory bounds them."""
+        for start in range(0, len(points), CHUNK):
+            rows = slice(start, start + CHUNK)
+            here = points.iloc[rows].reset_index(drop=True)
+            yield rows, here, self._trees.weights(offsets(scaled(here), upto))
+
+    def _distribution(self, name, weights):
+        """(weights (n, k) of sum 1 of the runs that have that number, their numbers (k,))."""
+        rows = self.known[name].to_numpy()
+        return _shares(weights[:, rows]), self.own[name].to_numpy()[rows]
 
     @cached_property
     def reach(self):
@@ -76,7 +102,7 @@ class Remains:
         distributions that the others foretell."""
         ranks = pandas.DataFrame(np.nan, index=self.runs.index, columns=list(LEFT))
         for others, own in folds(len(self.runs)):
-            trees = _Trees(self.points[others], self.own[list(GROWN)].iloc[others])
+            trees = _Trees(self.points[others], self.own[list(TRAINED)].iloc[others])
             weights = trees.weights([self.points[own]])
             for name in LEFT:
                 is_known, values = self.known[name].to_numpy(), self.own[name].to_numpy()

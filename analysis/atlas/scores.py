@@ -6,22 +6,56 @@ import numpy as np
 import pandas
 from scipy.spatial import cKDTree
 
-from .model import Model, best, chances, classifier, is_kind
+from .grid import PROBABILITIES
+from .model import STRENGTH, Model, best, chances, classifier, is_kind
 from .rules import KINDS
-from .variables import SEED, decided, fit_and_held_out, folds, left, scaled, variables
+from .variables import (
+    FEATURES,
+    SEED,
+    STRUCTURES,
+    decided,
+    fit_and_held_out,
+    folds,
+    left,
+    of_structure,
+    scaled,
+    variables,
+)
 
 NEIGHBOURS, BINS = 5, 10
-STRENGTH = 3.0  # of the atlas's own regularisation, as best() chooses it
-STRUCTURES = np.array(["bcca", "bpca", "cpe", "compressed"])
-ATLAS, CROSSED, HELD = "the atlas", "cross-validated", "held out"
+ATLAS, TABLES = "the atlas", "its tables at each impact parameter"
+CROSSED, HELD = "cross-validated", "held out"
 SEEN = 1e-3  # least probability in log losses
 CONSTANT = 1.0  # counts shared out among the kinds, so that what was not seen is not impossible
 
 
 def of_atlas(train, test):
-    """(probabilities (n, 5) of KINDS, intervals of LEFT) of Model for the rows of test."""
-    model, points = Model(train, members=0), variables(test)
-    return model.probabilities(points)[0], model.remains.intervals(points)
+    """(probabilities (n, 5) of KINDS, intervals of LEFT) of the Model of each structure for the rows of test."""
+    test = test.reset_index(drop=True)
+    p, intervals = np.zeros((len(test), len(KINDS))), []
+    for structure in STRUCTURES:
+        own = of_structure(test, structure)
+        if len(own):
+            model, points = Model(of_structure(train, structure), members=0), variables(own)
+            p[own.index] = model.probabilities(points)[0]
+            intervals.append(model.remains.intervals(points).set_index(own.index))
+    return p, pandas.concat(intervals).sort_index()
+
+
+def of_tables(tables, test):
+    """Probabilities (n, 5) of KINDS for the rows of test by {structure: OutcomeTable at each impact parameter}."""
+    test = test.reset_index(drop=True)
+    p = np.zeros((len(test), len(KINDS)))
+    for structure, table in tables.items():
+        own = of_structure(test, structure)
+        found = table.lookup(PROBABILITIES, **{name: variables(own)[name] for name in FEATURES})
+        p[own.index] = np.column_stack([found[name] for name in PROBABILITIES])
+    return p
+
+
+def of_all_structures(train, test):
+    """One Model of all structures together."""
+    return Model(train, members=0).probabilities(variables(test))[0], None
 
 
 def of_nearest(train, test):
@@ -78,9 +112,9 @@ def _forest(points, outcomes):
 
 PREDICTORS = {
     ATLAS: of_atlas,
-    "with contacts a grain": of_learning(_alike, lambda t: t[["coordination_target", "coordination_projectile"]]),
-    "with the structure": of_learning(_alike, lambda t: t.structure.to_numpy()[:, None] == STRUCTURES),
-    "with the material": of_learning(_alike, lambda t: t.material == "silicate"),
+    "one, with contacts a grain": of_learning(_alike, lambda t: t[["coordination_target", "coordination_projectile"]]),
+    "one, with the material": of_learning(_alike, lambda t: t.material == "silicate"),
+    "one for all structures": of_all_structures,
     "second order": of_learning(partial(best, order=2)),
     "gradient boosting": of_learning(_boosted),
     "random forest": of_learning(_forest),
@@ -127,35 +161,38 @@ def mean_miss(p, outcome):
     return float(np.average((bins.p - bins.observed).abs(), weights=bins.number))
 
 
-def scores(table):
+def scores(table, tables):
     """DataFrame (a row a predictor and set of runs): number, brier, its difference to the atlas's and the error of that, log_loss, mean_miss, and of
-    the atlas the fractions of the runs within the intervals of LEFT (of_largest: of those that leave more than one piece). table: of runs; sets:
-    held out (fitted to all others), and cross-validated (of the others)."""
+    the atlas the fractions of the runs within the intervals of LEFT (of_largest: of those that leave more than one piece). table: of runs; tables: as
+    of_tables() has them; sets: held out (fitted to all others), and cross-validated (of the others)."""
     fit, held = fit_and_held_out(table)
     parts, order = folds(len(fit)), np.concatenate([own for _, own in folds(len(fit))])
-    found, reference = [], {}
+    told = []
     for name, of in PREDICTORS.items():
-        crossed = [of(fit.iloc[others], fit.iloc[own]) for others, own in parts]
-        for runs, told, rows in ((CROSSED, crossed, fit.iloc[order]), (HELD, [of(fit, held)], held)):
-            p = np.concatenate([part for part, _ in told])
-            squares = _squares(p, rows.outcome)
-            more = squares - reference.setdefault(runs, squares)
-            row = {"predictor": name, "runs": runs, "number": len(rows), "brier": squares.mean()}
-            row |= {"more": more.mean(), "error": more.std() / len(more) ** 0.5} if name != ATLAS else {}
-            row |= {"log_loss": log_loss(p, rows.outcome), "mean_miss": mean_miss(p, rows.outcome)}
-            if told[0][1] is not None:
-                row |= within(pandas.concat([rest for _, rest in told], ignore_index=True), rows)
-            found.append(row)
+        told.append((name, HELD, [of(fit, held)], held))
+        told.append((name, CROSSED, [of(fit.iloc[others], fit.iloc[own]) for others, own in parts], fit.iloc[order]))
+    told.insert(2, (TABLES, HELD, [(of_tables(tables, held), None)], held))
+    found, reference = [], {}
+    for name, runs, parts, rows in told:
+        p = np.concatenate([part for part, _ in parts])
+        squares = _squares(p, rows.outcome)
+        more = squares - reference.setdefault(runs, squares)
+        row = {"predictor": name, "runs": runs, "number": len(rows), "brier": squares.mean()}
+        row |= {"more": more.mean(), "error": more.std() / len(more) ** 0.5} if name != ATLAS else {}
+        row |= {"log_loss": log_loss(p, rows.outcome), "mean_miss": mean_miss(p, rows.outcome)}
+        if parts[0][1] is not None:
+            row |= within(pandas.concat([rest for _, rest in parts], ignore_index=True), rows)
+        found.append(row)
     return pandas.DataFrame(found).sort_values("runs", kind="stable")
 
 
 def foretold(table, before):
     """DataFrame (a row for all runs, and for those of a structure): decided runs of the numbers from `before` on, as observed and as Model tells
     them from the earlier ones: by KINDS "observed (told)", their number, brier and mean_miss. table: of runs."""
-    later = decided(table[table.number >= before])
-    model, found = Model(table[table.number < before], members=0), []
+    later, found = decided(table[table.number >= before]).reset_index(drop=True), []
+    of_later = of_atlas(table[table.number < before], later)[0] if len(later) else None
     for name, runs in (("all", later), *later.groupby("structure")) if len(later) else ():
-        p, seen = model.probabilities(variables(runs))[0], is_kind(runs.outcome)
+        p, seen = of_later[runs.index], is_kind(runs.outcome)
         counts = {kind: f"{n} ({told:.0f})" for kind, n, told in zip(KINDS, seen.sum(axis=0), p.sum(axis=0))}
         of_all = {"brier": _squares(p, runs.outcome).mean(), "miss": mean_miss(p, runs.outcome)}
         found.append({"runs": name, "number": len(runs), **counts, **of_all})

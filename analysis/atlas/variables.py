@@ -11,6 +11,9 @@ CHOSEN = range(3_000, 10_000)  # `number` of the rows that were chosen by a mode
 OFFSETS = (np.arange(8) + 0.5) / 8  # b^2 over its largest, of averages
 FOLDS, SEED = 5, 1  # of cross-validation
 LEFT = ("largest", "second", "fragment_index", "filling_after")
+# Each has a model and tables of its own: of the same filling, close-packed aggregates bounce several times as often.
+STRUCTURES = {"grown": ("bcca", "bpca", "compressed"), "close-packed": ("cpe",)}
+GROWN, CLOSE_PACKED = STRUCTURES
 
 
 def variables(table):
@@ -60,6 +63,11 @@ def drawn(table):
     """The rows that were drawn without regard to the model: their fractions are those of the space that they were drawn from. All others, the
     rows of CHOSEN that are not held out, are where a model was the least sure."""
     return table[~table.number.isin(CHOSEN) | (table.split == HELD_OUT)]
+
+
+def of_structure(table, structure):
+    """The rows of one of STRUCTURES."""
+    return table[table.structure.isin(STRUCTURES[structure])]
 
 
 def touching(table):

@@ -10,7 +10,7 @@ def add_parser(commands):
         "outcome",
         help="what becomes of a collision of two aggregates, from the collision atlas",
         description="Probabilities of the outcomes of a collision of two aggregates, and what is left, from the tables of the collision atlas "
-        "(analysis/gallery/atlas). With --impact it has intervals of 90 %; there are none where the answer is that of the nearest data. Above a filling of 0.35 it is of a mix of close-packed and compressed aggregates, which bounce far less often.",
+        "(analysis/gallery/atlas). With --impact it has intervals of 90 %; there are none where the answer is that of the nearest data.",
     )
     of_number = {"type": _positive, "required": True, "metavar": "X"}
     parser.add_argument("--velocity", help="relative velocity [m/s]", **of_number)
@@ -29,6 +29,11 @@ def add_parser(commands):
     )
     parser.add_argument(
         "--maxwell", action="store_true", help="velocity is the root mean square of a Maxwell distribution of speeds"
+    )
+    parser.add_argument(
+        "--structure",
+        default="grown",
+        help="grown: by hits of grains and clusters, or compressed; close-packed: a dense packing without some of its grains, which bounces far more often",
     )
     parser.add_argument("--material", default="ice", help="of the grains, ice or silicate")
     parser.add_argument(

@@ -11,14 +11,14 @@ from analysis.atlas import query as query_of
 from analysis.atlas import rules
 from analysis.atlas.barrier import barrier
 from analysis.atlas.columns import MEASURED, breaking_velocity
-from analysis.atlas.grid import AXES, COLUMNS, INTERVALS, PROBABILITIES, outcome_grid
+from analysis.atlas.grid import COLUMNS, ERRORS, INTERVALS, PROBABILITIES, outcome_axes, outcome_grid
 from analysis.atlas.make import read_runs
 from analysis.atlas.neighbours import MARGIN, Neighbours
 from analysis.atlas.outcome_table import Axis, OutcomeTable, read_outcomes, write_outcomes
 from analysis.atlas.power_law import power_law_index
 from analysis.atlas.remains import Remains
 from analysis.atlas.scores import within
-from analysis.atlas.variables import energy, fit_and_held_out, variables
+from analysis.atlas.variables import GROWN, STRUCTURES, energy, fit_and_held_out, of_structure, variables
 from analysis.runs.table import make_table, read_table, table_text
 from analysis.studies.columns import flat, row_of
 from analysis.studies.definition import NotMeasured
@@ -105,7 +105,13 @@ POINT = {"v_break": 1.0, "grains_target": 300.0, "filling_target": 0.2, "filling
 
 
 def point(**own):
-    return variables(pandas.DataFrame([{**POINT, "velocity": 5.0, "mass_ratio": 0.2, "impact": 0.5, **own}]))
+    """variables() of one point, or of several where a value is a list."""
+    return variables(
+        pandas.DataFrame(
+            {**POINT, "velocity": 5.0, "mass_ratio": 0.2, "impact": 0.5, **own},
+            index=[0] if all(np.isscalar(value) for value in own.values()) else None,
+        )
+    )
 
 
 def test_model_of_made_runs(made, tmp_path):
@@ -115,37 +121,69 @@ def test_model_of_made_runs(made, tmp_path):
     p, width = fitted.probabilities(variables(made))
     assert np.abs(p[:, 0] - 1 / (1 + (made.velocity / 5) ** 3)).mean() < 0.05 and p.sum(axis=1) == pytest.approx(1)
     assert 0.005 < width[:, 0].mean() < 0.2
-    left = fitted.left(point(velocity=0.2)).iloc[0]
-    assert left.largest > 0.97 and left.fragment_index == pytest.approx(2.0)
     assert fitted.probabilities(point(velocity=1e-3))[0][0, 0] == 1
     assert fitted.slow.number == (energy(variables(made)) < fitted.slow.energy).sum()
     assert fitted.slow.most == pytest.approx(3 / fitted.slow.number, rel=0.1)  # the rule of three
     file = tmp_path / "outcomes.txt"
-    write_outcomes(file, outcome_grid(fitted, "0"))
+    write_outcomes(file, outcome_grid(fitted, GROWN, "0"))
     found = analysis.outcome(5 * 3.8231, 60, [300, 3e6], 0.2, file=file)
     assert sum(found[name] for name in PROBABILITIES) == pytest.approx(1, abs=1e-4)
     assert found["p_sticking"][0] == pytest.approx(0.5, abs=0.2) and found["inside"].tolist() == [1.0, 0.0]
-    assert found["error"][0] > 0 and np.isnan(found["error"][1])
+    assert all(found[name][0] > 0 and np.isnan(found[name][1]) for name in (ERRORS[0], ERRORS[3]))
     assert read_outcomes(file).columns == COLUMNS
     file = tmp_path / "outcomes-impact.txt"
-    write_outcomes(file, outcome_grid(fitted, "0", None))
+    write_outcomes(file, outcome_grid(fitted, GROWN, "0", None))
     of_each = analysis.outcome(5 * 3.8231, 60, 300, 0.2, impact=[0, 0.6, 1], file=file)
     assert of_each["p_sticking"] == pytest.approx(0.5, abs=0.25) and np.ptp(of_each["p_sticking"]) > 0
-    node = {"velocity": AXES[0].nodes[-4], "grains": 512, "mass_ratio": 1 / 4, "filling": 0.2, "impact_square": 0.25}
+    node = {
+        "velocity": outcome_axes(GROWN, True)[0].nodes[-4],
+        "grains": 512,
+        "mass_ratio": 1 / 4,
+        "filling": 0.2,
+        "impact_square": 0.25,
+    }
     on_node = {name: float(value) for name, value in read_outcomes(file).lookup(INTERVALS, **node).items()}
     assert on_node.pop("inside") == 1
     ends = fitted.remains.intervals(pandas.DataFrame([node])).iloc[0]
     assert on_node == pytest.approx(ends[[*INTERVALS]].to_dict(), abs=1e-4)
 
 
+def test_pieces_follow_from_the_probabilities(made):
+    """Of runs of one mass ratio that leave all or half: whatever the chances, the means are those of the outcomes."""
+    pytest.importorskip("sklearn")
+    told = Remains(made.assign(mass_ratio=0.5)).means(
+        point(velocity=[0.3, 5.0], mass_ratio=0.5), np.array([[0.9, 0, 0, 0.1, 0], [0.2, 0, 0, 0.8, 0]])
+    )
+    assert told.largest.tolist() == pytest.approx([0.95, 0.6]) and told.second.tolist() == pytest.approx([0.01, 0.08])
+    assert told.loss_erosion.tolist() == pytest.approx(
+        [0.5, 0.5]
+    )  # of 2/3 of the mass 1/2 is left, of the smaller one's 1/3 a half is lost
+
+
+def test_runs_that_never_met_or_are_undecided(made):
+    """The first are known by their impact parameter; the second, which may have stuck or bounced, are in the errors alone."""
+    model = pytest.importorskip("analysis.atlas.model")
+    pytest.importorskip("sklearn")
+    missed = made.assign(outcome=np.where(made.impact > 0.7, "never met", made.outcome))
+    fitted = model.Model(missed, members=0)
+    assert fitted.touching(point(impact=[0.3, 0.95])) == pytest.approx([1, 0], abs=0.02)
+    assert fitted.touching(point(), upto=1.0) == pytest.approx(0.49, abs=0.03)
+    still_open = made[made.velocity.between(3, 8)][::2].assign(outcome="undecided", own=1.0)
+    fits = [model.Model(table, members=20) for table in (made, pandas.concat([made, still_open]))]
+    (p, width), (same, wider) = (fit.probabilities(point()) for fit in fits)
+    bouncing = rules.KINDS.index("bouncing")
+    assert same == pytest.approx(p) and width[0, bouncing] == 0 and 0.02 < wider[0, bouncing] < 0.2
+
+
 def test_what_earlier_runs_foretell_of_later_ones(made):
     """Of 300 runs from the others: told as the known chance says, and counted as they ended; each structure's apart."""
     scores = pytest.importorskip("analysis.atlas.scores")
     pytest.importorskip("sklearn")
-    table = made.assign(number=made.index, structure=np.where(made.index < 500, "bcca", "cpe"))
+    table = made.assign(number=made.index, structure=np.where(made.index % 3, "bcca", "cpe"))
     found = scores.foretold(table, 300).set_index("runs")
     assert found.number.to_dict() == {"all": 300, "bcca": 200, "cpe": 100}
-    for name, rows in (("all", made[300:]), ("cpe", made[500:]), ("bcca", made[300:500])):
+    later = table[300:]
+    for name, rows in (("all", later), *later.groupby("structure")):
         stuck, told = map(float, found.sticking[name].strip(")").split(" ("))
         expected = (1 / (1 + (rows.velocity / 5) ** 3)).sum()
         assert stuck == (rows.outcome == "sticking").sum() and told == pytest.approx(expected, abs=0.06 * len(rows))
@@ -172,12 +210,17 @@ def test_intervals_hold_their_part():
 
 def surface(low, high):
     """OutcomeTable whose p_bounce is above 1/2 between two velocities."""
-    axes = (Axis("velocity", "log10", np.geomspace(0.1, 10, 41)), *AXES[1:])
+    axes = (Axis("velocity", "log10", np.geomspace(0.1, 10, 41)), *outcome_axes(GROWN, False)[1:])
     shape = tuple(len(axis.nodes) for axis in axes)
     log = np.log(axes[0].nodes)
     p = 0.5 + 0.2 * np.minimum(log - np.log(low), np.log(high) - log).clip(-2, 2)
     p = np.broadcast_to(p[:, None, None, None], shape)
-    columns = {"p_bouncing": p, "error": np.full(shape, 0.1), "inside": np.ones(shape), "runs": np.full(shape, 5.0)}
+    columns = {
+        "p_bouncing": p,
+        "error_bouncing": np.full(shape, 0.1),
+        "inside": np.ones(shape),
+        "runs": np.full(shape, 5.0),
+    }
     return OutcomeTable(axes, tuple(columns), np.stack(list(columns.values()), axis=-1))
 
 
@@ -192,7 +235,10 @@ def test_surface_of_bouncing():
 
 def test_a_query_beyond_the_runs_is_an_extrapolation(made):
     near, of_half = Neighbours(made), Neighbours(made[::2])
-    assert near.beyond(point())[0] < 0 and near.within(point())[0] > 1
+    assert (
+        near.beyond(point())[0] < 0
+        and near.within(point(), averaged=True)[0] > near.within(point(), averaged=False)[0] > 0
+    )
     at = variables(made[1::2])
     assert np.mean(of_half.beyond(at) <= MARGIN) > 0.9  # of 300 runs; corners of their box are beyond
     for grains in (300, 1e6):  # slower than any run, and below one contact's energy
@@ -201,20 +247,25 @@ def test_a_query_beyond_the_runs_is_an_extrapolation(made):
         assert near.beyond(point(**beyond))[0] > 4 * MARGIN, beyond
 
 
-def test_the_gallerys_table_tells_pieces_of_held_out_runs():
-    """Between its nodes too: the intervals of the largest piece hold nine of ten runs that leave several (0.85: three standard errors less), and
+def test_the_gallerys_tables_tell_pieces_of_held_out_runs():
+    """Between their nodes too: the intervals of the largest piece hold nine of ten runs that leave several (0.85: three standard errors less), and
     no more mass comes out than there was. Half of the BCCA aggregates are fluffier than a filling of 0.02."""
-    _, held = fit_and_held_out(read_runs())
-    at, several = variables(held), (held.pieces > 1).to_numpy()
-    grains, speed = at.grains.to_numpy(), at.velocity.to_numpy() * breaking_velocity(ICE, GRAIN_RADIUS["ice"])
-    impact = np.sqrt(at.impact_square).to_numpy()
-    told = analysis.outcome(speed, at.mass_ratio.to_numpy() * grains, grains, at.filling.to_numpy(), impact=impact)
-    assert np.all(told["largest"] + told["second"] < 1 + 1e-5)
-    inside = told["inside"] == 1
-    holds = (told["largest_low"] <= held.largest) & (held.largest <= told["largest_high"])
-    assert holds[inside & several].mean() > 0.85 and (inside & several).sum() > 250
-    fluffy = (at.filling < 0.02) & (at.grains >= 64)
-    assert inside[fluffy].mean() > 0.9 and fluffy.sum() > 50
+    _, all_held = fit_and_held_out(read_runs())
+    holds = []
+    for structure in STRUCTURES:
+        held = of_structure(all_held, structure)
+        at, several = variables(held), held.pieces > 1
+        speed, small = at.velocity * breaking_velocity(ICE, GRAIN_RADIUS["ice"]), at.mass_ratio * at.grains
+        pair = (of.to_numpy() for of in (speed, small, at.grains, at.filling))
+        told = analysis.outcome(*pair, impact=np.sqrt(at.impact_square).to_numpy(), structure=structure)
+        assert np.all(told["largest"] + told["second"] < 1 + 1e-5)
+        inside = told["inside"] == 1
+        within = (told["largest_low"] <= held.largest) & (held.largest <= told["largest_high"])
+        holds.append(within[inside & several])
+        fluffy = (at.filling < 0.02) & (at.grains >= 64)
+        assert structure != GROWN or inside[fluffy].mean() > 0.9 and fluffy.sum() > 50
+    holds = np.concatenate(holds)
+    assert holds.mean() > 0.85 and len(holds) > 250
 
 
 def test_command_with_the_gallerys_atlas(capsys, monkeypatch):

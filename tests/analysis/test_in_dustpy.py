@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from analysis.atlas.adapters.dustpy import fragments_of, use_atlas
-from analysis.atlas.grid import FILE
+from analysis.atlas.grid import outcomes_file
 from analysis.atlas.outcome_table import Axis, OutcomeTable
+from analysis.atlas.variables import GROWN
 from analysis.theory import ICE, interaction_energies, pair_constants
 
 dustpy = pytest.importorskip("dustpy", reason="DustPy is not installed; make test-dustpy has it")
@@ -31,7 +32,7 @@ def sim():
     return sim
 
 
-def table_of(probabilities, speeds=20, inside=1.0):
+def table_of(probabilities, speeds=20, inside=1.0, touching=1.0):
     """OutcomeTable: probabilities(v, n, q, f) -> of KINDS; v is over v_break."""
     axes = (
         Axis("velocity", "log10", np.geomspace(0.01, 100, speeds)),
@@ -40,8 +41,11 @@ def table_of(probabilities, speeds=20, inside=1.0):
         Axis("filling", "linear", np.array([0.05, 0.3, 0.5])),
     )
     grid = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")
-    values = [*probabilities(*grid), np.full(grid[0].shape, 2.0), np.full(grid[0].shape, inside)]
-    return OutcomeTable(axes, (*KINDS, "fragment_index", "inside"), np.stack(np.broadcast_arrays(*values), -1))
+    columns = dict(zip(KINDS, probabilities(*grid)))
+    columns |= {"p_touching": touching, "gain_mass_transfer": 0.4, "loss_erosion": 1.0, "largest_fragmentation": 0.3}
+    columns |= {"fragment_index": 2.0, "inside": inside}
+    values = np.stack(np.broadcast_arrays(*columns.values(), grid[0])[:-1], -1)
+    return OutcomeTable(axes, tuple(columns), values)
 
 
 def smooth(v, n, q, f):
@@ -65,7 +69,7 @@ def test_probabilities_of_the_table(sim, filling):
     if filling != "same":
         sim.dust.fill[...] = np.linspace(0.1, 0.4, 5)[:, None]
         sim.update()
-    table = table_of(smooth)
+    table = table_of(smooth, touching=0.8)
     use_atlas(sim, table, speeds="rms")
     frag, stick = np.asarray(sim.dust.p.frag), np.asarray(sim.dust.p.stick)
     grain = 4 / 3 * pi * 1e-21 * 1000  # kg
@@ -79,8 +83,8 @@ def test_probabilities_of_the_table(sim, filling):
             filling=float(np.asarray(sim.dust.fill)[r, 0]),
         )
         transfer = found["p_mass_transfer"]
-        np.testing.assert_allclose(stick[r], found["p_sticking"] + 0.7 * transfer, atol=1e-9)
-        np.testing.assert_allclose(1 - stick[r] - frag[r], found["p_bouncing"], atol=1e-9)
+        np.testing.assert_allclose(stick[r], 0.8 * (found["p_sticking"] + 0.7 * transfer), atol=1e-9)
+        np.testing.assert_allclose(1 - stick[r] - frag[r], 0.8 * found["p_bouncing"] + 0.2, atol=1e-9)
     for p in (frag, stick):
         assert not p[[0, -1]].any() and np.array_equal(p, p.swapaxes(1, 2)) and p.min() >= 0
     assert (frag + stick).max() <= 1
@@ -126,7 +130,7 @@ def test_grains_of_another_size_than_meant(sim, options):
     """Of 1e-5, 0.1 um in cm, or of silicate by default, all aggregates of the start would be less than one: said in one line."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        use_atlas(sim, FILE, **options)
+        use_atlas(sim, outcomes_file(GROWN, of_impact=False), **options)
     lines = [str(each.message) for each in said if "use_atlas" in str(each.message)]
     assert len(lines) == bool(options) and all(
         re.match(r"use_atlas: \d+% of the .* m; report\(\) says", line) for line in lines
@@ -134,12 +138,17 @@ def test_grains_of_another_size_than_meant(sim, options):
 
 
 def test_refusals(sim):
+    made = table_of(smooth)
     for options, says in (
         ({"outside": "mine"}, "outside = mine: must be clamp or dustpy"),
         ({"grain_radius": 0.1}, "grain_radius = 0.1: must be a number of 1e-09 to 0.001"),
+        (
+            {"outcomes": OutcomeTable(made.axes, made.columns[1:], made.values[..., 1:])},
+            "no column p_sticking; must be",
+        ),
         ({"outcomes": "nosuch.txt"}, "nosuch.txt: No such file or directory; must be a table of outcomes"),
     ):
         with pytest.raises(ValueError, match=says):
-            use_atlas(sim, **{"outcomes": table_of(smooth), **options})
+            use_atlas(sim, **{"outcomes": made, **options})
     with pytest.raises(ValueError, match="must be called after sim.initialize()"):
         use_atlas(dustpy.Simulation(verbosity=0), table_of(smooth))

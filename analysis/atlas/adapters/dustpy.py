@@ -14,13 +14,11 @@ import numpy as np
 
 from ...arguments import FLAG, PATH, Kind, number, one_of, takes
 from ...theory import GRAIN_RADIUS, MATERIALS, interaction_energies, pair_constants
-from ..grid import MOSTLY, RADIUS
-from ..outcome_table import INSIDE, OutcomeTable, read_outcomes
+from ..grid import MOSTLY, PROBABILITIES, RADIUS, TOUCHING
+from ..outcome_table import INSIDE, OutcomeTable, OutcomeTableError, read_outcomes
+from ..remains import OF_KIND
 
 PER_NODE = 4  # speeds between two nodes of the table at which a pair's probabilities are kept
-# By the atlas's rules the target gains 0 to 0.8 of the projectile's mass, say 0.4; in DustPy it gains 1 where they stick, and -1 where
-# it is eroded (excavatedMass = 1).
-TRANSFERRED = (1 + 0.4) / 2
 CM, GRAM, GRAM_PER_CM3 = 100.0, 1000.0, 1e-3  # of one m, kg, kg/m^3
 
 
@@ -67,12 +65,14 @@ def use_atlas(
 
 
 def dustpy_outcomes(table):
-    """OutcomeTable of what DustPy knows: stick, frag; the rest bounces. Mass transfer is TRANSFERRED of the first and the rest of the
-    second: the smaller aggregate goes into fragments, and the larger one gains what it gains on average."""
+    """OutcomeTable of what DustPy knows: stick, frag; the rest bounces, or never touches (DustPy's cross-section is that of the spheres). Mass transfer
+    sticks with (1 + gain_mass_transfer)/2 and else breaks: the larger aggregate then gains that on average, as in DustPy it gains the smaller one's
+    mass where they stick, and loses as much where it is eroded (excavatedMass = 1)."""
     p = _columns(table)
     transfer = p["p_mass_transfer"]
-    stick = p["p_sticking"] + TRANSFERRED * transfer
-    frag = p["p_fragmentation"] + p["p_erosion"] + (1.0 - TRANSFERRED) * transfer
+    sticks = (1.0 + p["gain_mass_transfer"]) / 2.0
+    stick = p[TOUCHING] * (p["p_sticking"] + sticks * transfer)
+    frag = p[TOUCHING] * (p["p_fragmentation"] + p["p_erosion"] + (1.0 - sticks) * transfer)
     return OutcomeTable(table.axes, ("stick", "frag", INSIDE), np.stack([stick, frag, p[INSIDE]], axis=-1))
 
 
@@ -83,6 +83,8 @@ def mean_fragment_index(table):
 
 
 def _columns(table):
+    if missing := [name for name in (*PROBABILITIES, TOUCHING, *OF_KIND) if name not in table.columns]:
+        raise OutcomeTableError(f"table of outcomes: no column {missing[0]}; must be one that this version makes")
     return {name: table.values[..., k] for k, name in enumerate(table.columns)}
 
 

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 from ...atlas.columns import MEASURED
 from ...atlas.neighbours import slow
 from ...atlas.rules import KINDS
-from ...atlas.variables import decided, drawn, fit_and_held_out, scaled, touching, variables
+from ...atlas.variables import STRUCTURES, decided, drawn, fit_and_held_out, scaled, touching, variables
 from ...measures.outcome import NEVER_MET, UNDECIDED
 from ...runs.collect import Scene
 from ..definition import Quantity, Study
@@ -23,7 +23,7 @@ MANY_CONTACTS, COMPACT = 6.0, 0.4
 ERODING = 13.0  # v_break; chosen after the runs
 FAST, HALF = 20.0, 0.5  # v_break; mass ratio of equals at least, and b of head-on collisions at most
 HEAD_ON, EQUAL = 0.7, 0.25  # impact parameter at most, mass ratio at least
-BY_BAND, BY_GROUP = ("filling", "speed"), ("group",)
+BY_BAND, BY_GROUP = ("aggregates", "filling", "speed"), ("group",)
 
 
 def quantities(table):
@@ -33,7 +33,9 @@ def quantities(table):
     yield _slow(slow(fit))
     table = drawn(table)
     at = variables(table)
-    table = table.assign(filling=_middle(at.filling, FILLINGS), speed=_middle(at.velocity, SPEEDS))
+    aggregates = table.structure.map({name: group for group, names in STRUCTURES.items() for name in names})
+    bands = {"filling": _middle(at.filling, FILLINGS), "speed": _middle(at.velocity, SPEEDS)}
+    table = table.assign(aggregates=aggregates, **bands)
     all_runs, runs = Runs(table, "number"), Runs(decided(table), "number")
     is_kind = lambda kind: lambda t: t.outcome == kind
     yield Quantity(
@@ -149,13 +151,12 @@ def _kinds(table):
     """{name: mask (runs,)} of the kinds of pairs of which the page tells how often they bounce."""
     at = variables(table)
     contacts = table[["coordination_target", "coordination_projectile"]].max(axis=1)
-    equal = (at.filling > COMPACT) & (at.mass_ratio > HALF)
+    equal = (at.mass_ratio > HALF) & (table.impact < HALF)
     return {
         "compressed of filling 0.35 to 0.45": (table.structure == "compressed") & at.filling.between(0.35, 0.45),
         "fewer than 6 contacts": contacts < MANY_CONTACTS,
         "6 contacts or more": contacts >= MANY_CONTACTS,
-        "equal and dense": equal,
-        "equal, dense and head-on": equal & (table.impact < HALF),
+        **{f"equal and head-on, {name}": equal & (table.aggregates == name) for name in STRUCTURES},
         **{f"structure {name}": table.structure == name for name in sorted(set(table.structure))},
     }
 
