@@ -68,7 +68,7 @@ def _title(options, point):
     impact = "averaged over impact parameters" if options.impact == "averaged" else f"b = {options.impact:g}"
     speeds = ", rms of a Maxwell distribution" if options.maxwell else ""
     return (
-        f"{options.projectile:g} and {options.target:g} grains of {options.material}, {options.structure}, radius {1e6 * _radius(options):g} um, filling {options.filling:g}, {options.velocity:g} m/s "
+        f"{options.structure} aggregates of {options.projectile:g} and {options.target:g} grains of {options.material}, radius {1e6 * _radius(options):g} um, filling {options.filling:g}, {options.velocity:g} m/s "
         f"({point.velocity[0]:.3g} v_break{speeds}), {impact}:"
     )
 

@@ -286,6 +286,12 @@ def test_command_with_the_gallerys_atlas(capsys, monkeypatch):
         assert "of silicate, radius 0.6 um, filling 0.3, 0.5 m/s (7.08 v_break)" in capsys.readouterr().out
     of = [analysis.outcome(0.5, 200, 20, 0.1, "silicate", r)["p_sticking"] for r in (None, 6e-7, 1e-7)]
     assert of[0] == of[1] < of[2]
+    assert ask("--structure close-packed --impact 0") == 0
+    assert capsys.readouterr().out.startswith("close-packed aggregates of 200 and 300 grains of ice")
+    dense = [analysis.outcome(5, 200, 500, 0.45, structure=own)["p_bouncing"] for own in STRUCTURES]
+    assert dense[1] > dense[0] + 0.1
+    with pytest.raises(ValueError, match="file = mine: must be left out with a structure"):
+        analysis.outcome(5, 200, 500, 0.4, file="mine", structure=GROWN)
     with pytest.raises(SystemExit, match="0"):
         ask("--help")
     assert "1e-07 of ice and 6e-07 of silicate" in " ".join(capsys.readouterr().out.split())

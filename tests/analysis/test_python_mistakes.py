@@ -118,7 +118,8 @@ def right_arguments(given, function):
         **dict(velocity=5, filling=0.1, material="ice", grain_radius=1e-7, columns=["largest"]),
         **dict(path=run.path, run=run, runs=run, structure=True, what="largest", by="", where={}, logarithmic=""),
     }
-    own = {analysis.fractions_at: {"time": 0.0}, analysis.plot: {"runs": given["found"], "x": "velocity"}}
+    own = {analysis.fractions_at: {"time": 0.0}, analysis.outcome: {"structure": "grown"}}
+    own |= {analysis.plot: {"runs": given["found"], "x": "velocity"}}
     right = {**by_name, **own.get(function, {})}
     return {name: right[name] for name in signature(function).parameters if name in right}
 
