@@ -21,7 +21,7 @@ from .model import Model, NoLearning
 from .neighbours import slow
 from .outcome_table import write_outcomes
 from .remains import LEVEL
-from .scores import CROSSED, HELD, foretold, of_atlas, reliability, scores
+from .scores import foretold, probabilities_of_atlas, reliability, scores
 from .variables import CHOSEN, GROWN, STRUCTURES, fit_and_held_out, of_structure
 
 ALL = "of all collisions"
@@ -51,15 +51,14 @@ def read_runs(file=RUNS_FILE):
 def report(table, grids, tables):
     """model.md (str) of a table of runs, and of {(structure, of which impact parameters): OutcomeTable} and {structure: OutcomeTable at each}."""
     found = scores(table, tables)
-    numbers = found.groupby("runs").number.first()
     fit, held = fit_and_held_out(table)
     known = [SLOW.format(structure=structure, known=slow(of_structure(fit, structure))) for structure in STRUCTURES]
-    numbers = {"fit": numbers[CROSSED], "held": numbers[HELD], "whole": (fit.pieces == 1).mean()}
+    numbers = {"fit": len(fit), "held": len(held), "whole": (fit.pieces == 1).mean()}
     head = HEAD.format(level=LEVEL, slow="\n".join(known), **numbers)
     shown = found.drop(columns="number").round(3).astype(str).replace("nan", "")
     shown["more"] = [f"{more} ± {error}" if more else "" for more, error in zip(shown.more, shown.pop("error"))]
     shown.columns = [name.replace("mean_miss", "miss").replace("_", " ") for name in shown.columns]
-    bins = reliability(of_atlas(fit, held)[0], held.outcome).round(3)
+    bins = reliability(probabilities_of_atlas(fit, held), held.outcome).round(3)
     later = foretold(table, CHOSEN.stop)
     parts = [
         head,

@@ -20,7 +20,7 @@ from .variables import FIT, SEED, energy, fit_and_held_out, folds, offsets, scal
 MEMBERS = 40  # fits with random weights
 ORDER = 3  # measured best: scores.py
 STRENGTHS = 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation, tried
-STRENGTH = 3.0  # as best() chooses it
+STRENGTH = 3.0  # of fits that don't choose: as best() does for all structures together
 STICKING, BOUNCING = KINDS[:2]
 
 
@@ -51,10 +51,11 @@ class Model:
 
         fit, random = best(self.points, self.runs.outcome), np.random.default_rng(SEED)
         still_open = self.of_fit[self.of_fit.outcome == UNDECIDED]
+        seen = np.array([outcome(row) for row in still_open.to_dict("records")], dtype=object)
         points = np.concatenate([self.points, scaled(variables(still_open))])
         found = [clone(fit).fit(self.points, self.runs.outcome)]
         for _ in range(self.members):
-            outcomes = np.concatenate([self.runs.outcome, _guessed(still_open, random)])
+            outcomes = np.concatenate([self.runs.outcome, _guessed(seen, random)])
             weights = random.exponential(size=len(points))
             found.append(clone(fit).fit(points, outcomes, fit__sample_weight=weights))
         return found
@@ -108,12 +109,11 @@ class Model:
         return Remains(self.runs)
 
 
-def _guessed(rows, random):
-    """Outcomes (n,) of undecided rows: as it looked at the end of the run, or else sticking, and where it looked so, bouncing; how often, drawn
+def _guessed(seen, random):
+    """Outcomes (n,) of undecided runs: as it looked at the end of the run, or else sticking, and where it looked so, bouncing; how often, drawn
     anew each time."""
-    seen = np.array([outcome(row) for row in rows.to_dict("records")], dtype=object)
     other = np.where(seen == STICKING, BOUNCING, STICKING)
-    return np.where(random.uniform(size=len(rows)) < random.uniform(), seen, other)
+    return np.where(random.uniform(size=len(seen)) < random.uniform(), seen, other)
 
 
 def classifier(strength, order=ORDER):

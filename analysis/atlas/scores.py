@@ -9,18 +9,7 @@ from scipy.spatial import cKDTree
 from .grid import PROBABILITIES
 from .model import STRENGTH, Model, best, chances, classifier, is_kind
 from .rules import KINDS
-from .variables import (
-    FEATURES,
-    SEED,
-    STRUCTURES,
-    decided,
-    fit_and_held_out,
-    folds,
-    left,
-    of_structure,
-    scaled,
-    variables,
-)
+from .variables import SEED, STRUCTURES, decided, fit_and_held_out, folds, left, of_structure, scaled, variables
 
 NEIGHBOURS, BINS = 5, 10
 ATLAS, TABLES = "the atlas", "its tables at each impact parameter"
@@ -31,26 +20,32 @@ CONSTANT = 1.0  # counts shared out among the kinds, so that what was not seen i
 
 def of_atlas(train, test):
     """(probabilities (n, 5) of KINDS, intervals of LEFT) of the Model of each structure for the rows of test."""
-    test = test.reset_index(drop=True)
-    p, intervals = np.zeros((len(test), len(KINDS))), []
-    for structure in STRUCTURES:
-        own = of_structure(test, structure)
-        if len(own):
-            model, points = Model(of_structure(train, structure), members=0), variables(own)
-            p[own.index] = model.probabilities(points)[0]
-            intervals.append(model.remains.intervals(points).set_index(own.index))
-    return p, pandas.concat(intervals).sort_index()
+    intervals = lambda structure, points: Model(of_structure(train, structure), members=0).remains.intervals(points)
+    return probabilities_of_atlas(train, test), _by_structure(test, intervals)
+
+
+def probabilities_of_atlas(train, test):
+    """The first of of_atlas()."""
+    told = lambda structure, points: Model(of_structure(train, structure), members=0).probabilities(points)[0]
+    return _by_structure(test, told).to_numpy()
 
 
 def of_tables(tables, test):
     """Probabilities (n, 5) of KINDS for the rows of test by {structure: OutcomeTable at each impact parameter}."""
+    told = lambda structure, points: tables[structure].lookup(PROBABILITIES, **points)
+    return _by_structure(test, told)[list(PROBABILITIES)].to_numpy()
+
+
+def _by_structure(test, tell):
+    """DataFrame of tell(structure, variables() points of it) for the rows of test, in their order."""
     test = test.reset_index(drop=True)
-    p = np.zeros((len(test), len(KINDS)))
-    for structure, table in tables.items():
-        own = of_structure(test, structure)
-        found = table.lookup(PROBABILITIES, **{name: variables(own)[name] for name in FEATURES})
-        p[own.index] = np.column_stack([found[name] for name in PROBABILITIES])
-    return p
+    groups = {structure: of_structure(test, structure) for structure in STRUCTURES}
+    parts = [
+        pandas.DataFrame(tell(structure, variables(own))).set_index(own.index)
+        for structure, own in groups.items()
+        if len(own)
+    ]
+    return pandas.concat(parts).sort_index()
 
 
 def of_all_structures(train, test):
@@ -190,7 +185,7 @@ def foretold(table, before):
     """DataFrame (a row for all runs, and for those of a structure): decided runs of the numbers from `before` on, as observed and as Model tells
     them from the earlier ones: by KINDS "observed (told)", their number, brier and mean_miss. table: of runs."""
     later, found = decided(table[table.number >= before]).reset_index(drop=True), []
-    of_later = of_atlas(table[table.number < before], later)[0] if len(later) else None
+    of_later = probabilities_of_atlas(table[table.number < before], later) if len(later) else None
     for name, runs in (("all", later), *later.groupby("structure")) if len(later) else ():
         p, seen = of_later[runs.index], is_kind(runs.outcome)
         counts = {kind: f"{n} ({told:.0f})" for kind, n, told in zip(KINDS, seen.sum(axis=0), p.sum(axis=0))}
