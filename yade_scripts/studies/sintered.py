@@ -158,6 +158,8 @@ BEYOND = unique(
     [Point(0.7, f"{g}", g, limit="held") for g in (1, 3)],
     points((0, 0.4, 0.5, 0.7), ("30",), rolling=30),
     points((0.7,), ("10",), rolling=30),
+    points((0.7,), (ROOT, "10", "20", "30"), planar=0, limit="held"),
+    points((0, 0.2), ("10", "30"), planar=0, limit="held"),
 )
 TABLES = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND}
 
@@ -186,7 +188,7 @@ Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFra
 # Wall time of a row [s]: mean of 160 rows of the desk's BCCA aggregates (3.17 core hours), one thread each, on a busy machine.
 # 198 later rows, 108 of compacted aggregates among them, took 34 s each on a newer AMD EPYC with both cores busy.
 ROW = 71.3
-LEFT = "What the desk's runs leave open: compacted aggregates in space, springs held at the limits (limit = held), xi_crit = 30 Angstrom."
+LEFT = "What the desk's runs leave open: compacted aggregates in space, springs held at the limits (limit = held), both, xi_crit = 30 Angstrom."
 # What a table is, and how many core hours it takes to grow its aggregates.
 WHICH = {"desk": ("A selection.", "one"), "full": ("All of the paper's.", "three"), "beyond": (LEFT, "less than one")}
 COST = """{which}
