@@ -70,8 +70,8 @@ def counted(judgements):
     reproduced = f"{numbers['reproduced']} are reproduced" + (f" ({formulas} by formulas alone)" if formulas else "")
     return (
         f"Of {len(judgements)} comparisons with the paper (a statement at each size, velocity and rule is one) {reproduced} "
-        f"and {numbers['contradicted']} contradicted; {numbers['undecided']} are undecided, {numbers['without a test']} without a test, and "
-        f"{numbers['not run']} have not run."
+        f"and {numbers['contradicted']} contradicted; {numbers['undecided']} are undecided, {numbers['without a test']} without a test and "
+        f"{numbers['not run']} not run."
     )
 
 
