@@ -24,7 +24,7 @@ _PUBLIC = {
     ".report.plot": ("plot",),
     ".report.summary": ("summarise",),
     ".atlas.grid": ("outcome",),
-    ".measures.probability": ("wilson",),
+    ".measures.probability": ("exact_interval",),
     ".measures.pieces": ("fragments",),
     ".measures.fragments": (
         *("fragment_labels", "fragment_sizes", "fragment_masses", "growth_efficiency"),

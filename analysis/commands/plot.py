@@ -11,7 +11,7 @@ def add_parser(commands):
         "plot",
         help="draw a quantity of many runs against one of their parameters",
         description="Draw sticking (fraction of the decided runs that stick: the largest piece gains at least 0.8 of the projectile's mass over "
-        "the target, so that it holds 0.9 of equal aggregates; with Wilson's 95 % intervals, which count undecided runs "
+        "the target, so that it holds 0.9 of equal aggregates; with exact 95 % intervals, which count undecided runs "
         "either way; those that never met are left out), largest (mass of the largest piece), energy (where it went, by channel), or any column of analysis.table "
         "against another, with standard errors over the pairs of aggregates; write a PNG and print its path.",
     )

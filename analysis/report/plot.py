@@ -32,7 +32,7 @@ class CannotPlot(ValueError):
 
 @dataclass(frozen=True)
 class OfDecided:
-    """How many of the decided runs of a Fraction ended so; the interval (95 %, Wilson) counts the undecided ones either way."""
+    """How many of the decided runs of a Fraction ended so; the interval (95 %, exact) counts the undecided ones either way."""
 
     fraction: Fraction
     error = None
@@ -62,7 +62,7 @@ NAME = Kind("the name of a column", lambda name: isinstance(name, str) and name 
 def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     """matplotlib Figure of runs (a table(), or what that takes).
 
-    what: "sticking" (fraction of the runs that stick, with Wilson's 95 % intervals; of the decided ones: those that are undecided, or
+    what: "sticking" (fraction of the runs that stick, with exact 95 % intervals; of the decided ones: those that are undecided, or
     have not ended, widen the interval, counted either way, and are named above, as are those that never met, which are left out),
     "largest" (mass fraction of the largest piece), "energy" (change of every channel from the start to the end, over K(0)), or any
     column. x: a column of numbers; by: a column that tells curves (panels, of "energy") apart; where: {column: value} of the runs

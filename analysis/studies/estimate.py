@@ -16,7 +16,7 @@ import pandas
 from scipy.stats import binomtest, fisher_exact
 from scipy.stats import t as student
 
-from ..measures.probability import wilson
+from ..measures.probability import exact_interval
 
 CONFIDENCE = 0.95
 DRAWS = 1000
@@ -83,22 +83,23 @@ class Estimate(Number):
 
     @property
     def error(self):
-        """Standard error: the scatter of the draws; None for one pair, and where LOST of the draws or more are undefined; 0 where all pairs
-        gave the same number."""
+        """Standard error: the scatter of the draws about the value; None for one pair, and where LOST of the draws or more are undefined; 0 where
+        all pairs gave the same number."""
         if self.pairs == EXACT:
             return 0.0
         if self.pairs < 2:
             return None
-        errors = [_scatter(row) for row in self.draws]
+        errors = [_scatter(row, self.value) for row in self.draws]
         return None if None in errors else max(errors)
 
     @property
     def text(self):
         return repr(self) if self.pairs == EXACT else f"{self!r} ({self.pairs:g})"
 
-    def interval(self, confidence=CONFIDENCE):
-        """(low, high), Student's with one degree of freedom less than pairs; (None, None) without an error."""
-        error = self.error
+    def interval(self, confidence=CONFIDENCE, runs=EXACT):
+        """(low, high), Student's with one degree of freedom less than pairs, of the difference from a number of so many runs of somebody
+        else's (error_beside); (None, None) without an error."""
+        error = self.error_beside(runs)
         if error is None or (error == 0 and self.pairs != EXACT):
             return None, None
         reach = error * float(student.ppf(0.5 + 0.5 * confidence, self.pairs - 1)) if error else 0.0
@@ -155,8 +156,8 @@ class Fraction(Number):
         return self.successes, self.successes + self.undecided
 
     def interval(self, confidence=CONFIDENCE):
-        """(low, high): Wilson's interval, with the undecided runs counted either way."""
-        low, high = (wilson(k, self.pairs, confidence) for k in self.counts)
+        """(low, high): the exact interval, with the undecided runs counted either way."""
+        low, high = (exact_interval(k, self.pairs, confidence) for k in self.counts)
         return low[0], high[1]
 
     def chance(self, value, runs=EXACT):
@@ -216,12 +217,13 @@ def curve(f, x, estimates):
     return combine(lambda *y: f(x, np.stack(np.broadcast_arrays(*y), axis=-1)), *estimates)
 
 
-def _scatter(row):
-    """Standard deviation of one row of draws; None with LOST of them or more undefined, 0 where they agree to rounding."""
+def _scatter(row, value):
+    """Root mean square of one row of draws about the value, which may stand at an end of them (1/E* of rigid-plastic spheres); None with LOST
+    of them or more undefined, 0 where they agree to rounding."""
     good = row[np.isfinite(row)]
     if len(good) <= (1 - LOST) * len(row):
         return None
-    spread = float(good.std(ddof=1))
+    spread = math.sqrt(np.mean((good - value) ** 2))
     return spread if spread > ROUNDING * np.abs(good).max() else 0.0
 
 
@@ -237,3 +239,16 @@ def number_text(value, error=None):
         return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}"
     digits = 1 - math.floor(math.log10(float(f"{error:.1e}")))
     return f"{round(value, digits):.{max(0, digits)}f} ± {round(error, digits):.{max(0, digits)}f}"
+
+
+def range_text(low, high):
+    """'1 to 2', or 'above 1' and 'below 2' without the other end.
+
+    >>> range_text(0.5, 2), range_text(0.5, math.inf)
+    ('0.5 to 2', 'above 0.5')
+    """
+    if math.isinf(low) and math.isinf(high):
+        return "no bound"
+    if math.isinf(low) or math.isinf(high):
+        return f"above {number_text(low)}" if math.isinf(high) else f"below {number_text(high)}"
+    return f"{number_text(low)} to {number_text(high)}"

@@ -133,11 +133,12 @@ def _shared(first, second, by, only):
     return tuple(own.of(own.table[np.array(keep, dtype=bool)]) for own, keep in zip((first, second), kept))
 
 
-def along(series, level, f):
-    """Series of Estimate of f(x (K,), y (..., K)) along one level of a Series of Estimate, x rising, for every value of the others."""
+def along(series, level, f, of=curve):
+    """Series of Estimate of f(x (K,), y (..., K)) along one level of a Series of Estimate, x rising, for every value of the others.
+    of(f, x, estimates): what makes the Estimate."""
     others = [name for name in series.index.names if name != level]
     groups = ((key, own.sort_index(level=level)) for key, own in _groups(series, others, levels=True))
-    found = {key: curve(f, own.index.get_level_values(level), own.to_list()) for key, own in groups}
+    found = {key: of(f, own.index.get_level_values(level), own.to_list()) for key, own in groups}
     return _series(found, others)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from scipy.stats import norm
 from scipy.stats import t as student
 
-from .estimate import CONFIDENCE, EXACT, Fraction, number_text
+from .estimate import CONFIDENCE, EXACT, Fraction, number_text, range_text
 from .paper import Claim
 
 YES, NO, UNTESTED = "yes", "no", "untested"
@@ -129,27 +129,16 @@ def _verdict(claim, ours, corrected, independent):
     least, most = _interval(claim, ours)
     if least is None:
         return UNTESTED, f"no error of ours: 1 {independent[:-1]}" if ours.pairs < 2 else "no error of ours"
-    within = f"95 % interval {_range(least, most)}, agreement {_range(low, high)}"
+    within = f"95 % interval {range_text(least, most)}, agreement {range_text(low, high)}"
     if low <= least and most <= high:
         return YES, within
-    return UNTESTED, f"{within}; {_needed(claim, ours, independent)}"
-
-
-def _range(low, high):
-    if math.isinf(low) or math.isinf(high):
-        return f"above {number_text(low)}" if math.isinf(high) else f"below {number_text(high)}"
-    return f"{number_text(low)} to {number_text(high)}"
+    needed = _needed(claim, ours, independent) if math.isfinite(most - least) else "bounded on one side at most"
+    return UNTESTED, f"{within}; {needed}"
 
 
 def _interval(claim, ours):
     """Our interval; beside a value, widened by the error of the paper's own runs."""
-    if claim.value is None or isinstance(ours, Fraction):
-        return ours.interval()
-    both = ours.error_beside(claim.runs)
-    if not both:
-        return None, None
-    reach = both * float(student.ppf(1 - 0.5 * LEVEL, ours.pairs - 1))
-    return ours.value - reach, ours.value + reach
+    return ours.interval() if claim.value is None or isinstance(ours, Fraction) else ours.interval(runs=claim.runs)
 
 
 def _needed(claim, ours, independent):

@@ -25,7 +25,7 @@ def run(cluster_folder):
 
 
 def test_what_there_is_is_there_and_documented():
-    assert {"table", "plot", "wilson", "open_run"} < set(analysis.__all__) < set(dir(analysis))
+    assert {"table", "plot", "exact_interval", "open_run"} < set(analysis.__all__) < set(dir(analysis))
     for name in analysis.__all__:
         thing = getattr(analysis, name)
         assert thing.__doc__ and (">>>" in thing.__doc__ or not thing.__module__.startswith("analysis.measures")), name

@@ -3,7 +3,7 @@
 import pandas
 import pytest
 
-from analysis import wilson
+from analysis import exact_interval
 from analysis.__main__ import main
 from analysis.report.plot import CannotPlot, plot
 
@@ -37,8 +37,8 @@ def drawn(figure):
 def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs):
     points, bars, said = drawn(plot("sticking", runs))
     assert points == [(1.0, pytest.approx(2 / 3, rel=1e-12)), (3.0, 0.25)]
-    assert bars[0] == pytest.approx((wilson(2, 4)[0], wilson(3, 4)[1]), rel=1e-12)
-    assert bars[1] == pytest.approx(wilson(1, 4), rel=1e-12)
+    assert bars[0] == pytest.approx((exact_interval(2, 4)[0], exact_interval(3, 4)[1]), rel=1e-12)
+    assert bars[1] == pytest.approx(exact_interval(1, 4), rel=1e-12)
     assert "8 runs, 1 of them undecided or not ended (in the bars, counted either way)" in said
     assert "3 to 4 pairs" in said and "[m/s]" in said
     missed = pandas.concat([runs, runs[:1].assign(seed=9, outcome="never met")], ignore_index=True)

@@ -12,6 +12,7 @@ from written_runs import RADIUS
 from analysis.measures.compression import compression_length
 from analysis.runs.table import read_table
 from analysis.studies.analyse import analyse
+from analysis.studies.curves import power
 from analysis.studies.definition import GALLERY
 from analysis.studies.elastoplastic import andrews_fit as fits
 from analysis.studies.elastoplastic.andrews_fit import VELOCITY, Aggregates, fit_moduli
@@ -35,7 +36,7 @@ def rows_of(model, scatter, sizes=(40.0, 80.0)):
             away = scatter * random.normal(size=(2, 6))
             away -= away.mean(axis=1, keepdims=True)
             values = {"filling": FILLING, "radius": size, "velocity": velocity, "seed": range(6)}
-            values |= {"grain_density": DENSITY, "grain_radius": RADIUS, "tau": t - model.time_of_contact(velocity)}
+            values |= {"grain_density": DENSITY, "grain_radius": RADIUS}
             found.append(pandas.DataFrame({**values, "d": d + size * away[0], "t_max": t * (1 + away[1])}))
     return pandas.concat(found, ignore_index=True)
 
@@ -63,7 +64,7 @@ def test_the_truth_comes_out_of_made_runs(results):
     for size, velocity in ((40.0, VELOCITY), (60.0, VELOCITY), (80.0, VELOCITIES[0])):
         d, t = TRUTH.at(size, velocity)
         assert results["d_max"].at(filling=FILLING, radius=size, velocity=velocity).value == pytest.approx(d, rel=2e-3)
-        contact = TRUTH.time_of_contact(velocity)
+        contact = fits.time_of_contact(TRUTH.offset, velocity, RADIUS)
         at = results["t_max"].at(filling=FILLING, radius=size, velocity=velocity)
         assert at.value == pytest.approx(t, rel=5e-3) and at.value > contact and at.error > 0 and at.pairs == 4
     ratio = (TRUTH.at(80.0, VELOCITY)[0] - TRUTH.at(40.0, VELOCITY)[0]) / 20.0
@@ -100,9 +101,9 @@ def test_lines_and_exponents_are_closed_forms():
     assert (c1, -c2) == pytest.approx(tuple(np.polyfit(rows.radius, rows.d, 1))) and ratio == 2 * c1
     assert at_60 == pytest.approx(60 * c1 - c2) and offset == pytest.approx(TRUTH.offset, abs=1e-6)
     for compliance, stress, expected in ((0.0, 2e6, 0.0), (5e-8, 1e12, -0.2)):
-        own = rows_of(Aggregates(stress, compliance, 0.1, 400.0, RADIUS), 0.0, sizes=(80.0,))
-        own["tau"] *= 1 + 1e-3 * np.tile([1, -1], len(own) // 2)
-        assert fits.time_exponent(own, np.ones((1, len(own))))[0, 0] == pytest.approx(expected, abs=1e-6)
+        velocity = np.array([1.0, 2.0, 4.0])
+        _, time = Aggregates(stress, compliance, 0.1, 400.0, RADIUS).at(80.0, velocity)
+        assert power(velocity, time - fits.time_of_contact(0.1, velocity, RADIUS)) == pytest.approx(expected, abs=1e-6)
 
 
 def test_moduli_are_found_up_to_the_rigid_plastic_limit():

@@ -36,11 +36,9 @@ class Aggregates:
         spheres = self._spheres(0.5 * (radius + self.offset))
         depth = andrews.largest_compression(velocity, spheres)
         time = andrews.time_of_largest_compression(velocity, spheres)
-        return depth - 2.0 * self.offset, time * self.grain_radius + self.time_of_contact(velocity)
-
-    def time_of_contact(self, velocity):
-        """t_col [s], when surfaces that start 2 r - 2 delta_offset apart meet (A24 after eq 21)."""
-        return 2.0 * (1.0 - self.offset) * self.grain_radius / velocity
+        return depth - 2.0 * self.offset, time * self.grain_radius + time_of_contact(
+            self.offset, velocity, self.grain_radius
+        )
 
     def restitution(self, velocity):
         """Coefficient of restitution (A24 section 5.3), the same for every size."""
@@ -50,6 +48,11 @@ class Aggregates:
         with np.errstate(divide="ignore"):
             young = 1.0 / np.maximum(self.compliance, 0.0)
         return andrews.Spheres(reduced_radius, self.density, self.stress, young)
+
+
+def time_of_contact(offset, velocity, grain_radius):
+    """t_col [s], when surfaces that start 2 r - 2 delta_offset apart meet (A24 after eq 21); offset [grain radii]."""
+    return 2.0 * (1.0 - offset) * grain_radius / velocity
 
 
 # What A24 prints, by filling: sigma_plastic, E* [Pa] (eqs 34, 35), delta_offset [grain radii] (18, 20), delta_max/R* (19, 21).
@@ -164,14 +167,6 @@ def _points(rows, weights, columns):
         scatter[scatter <= ROUNDING * np.abs(values).max()] = 0.0
         found.append(((weights * values) @ members / own, smoothed_scatter(velocity, scatter, number)))
     return radius, velocity, number, own, found
-
-
-def time_exponent(rows, weights):
-    """(B, 1): exponent of tau_max (rows' tau) as a power of the velocity, of rows of one size: a straight line through the logarithms of
-    the means, with the weights of fit_moduli. Rigid-plastic spheres have 0, elastic ones -1/5 (A24 eqs 32, 33)."""
-    _, velocity, _, own, ((tau, scatter),) = _points(rows, weights, ("tau",))
-    value, _ = straight_line(np.log(velocity), np.log(tau), own * (tau / scatter) ** 2)
-    return value[:, None]
 
 
 def degenerate_curve(ratio, density, velocity=VELOCITY, samples=200):

@@ -152,7 +152,7 @@ FIGURES = (
     ),
     CurveFigure(
         "sticking",
-        "Fraction of collisions followed for 3 µs that stick, φ = 0.4. Bars: 95 % intervals (Wilson).",
+        "Fraction of collisions followed for 3 µs that stick, φ = 0.4. Bars: 95 % intervals (exact).",
         *("sticking", "velocity"),
         panel="radius",
         where={"duration": 3e-6, "filling": 0.4},

@@ -9,9 +9,10 @@ from ...runs.collect import Scene
 from ...theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, poisson_ratio
 from ...theory.andrews import stress_if_rigid, young_if_elastic
 from ..collisions import HEAD_ON_ICE, energy_quantities, outcome_quantities
+from ..curves import power
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
-from ..runs import Runs, differences, each, finite, select, together
+from ..runs import Runs, along, differences, each, finite, select, together
 from . import andrews_fit as fits
 from .measure import MEASURED, UNCHANGED
 from .zones import FEWEST_PAIRS, zone_correlation
@@ -80,9 +81,24 @@ def _moduli(runs, grain):
     yield Quantity("stress", "yield stress σ", stress, "MPa")
     yield Quantity("compliance", "1/E*; 0: rigid-plastic", compliance, "1/GPa")
     yield Quantity("offset", "δ_offset", offset, "r")
+    yield from _exponents(runs, grain, offset)
     yield from _constants(runs, grain, stress, compliance)
     yield from _of_fit(runs, grain, select(found, fit=FREE))
     yield from _restitution(runs, grain, select(found, fit=BY_SIZE))
+
+
+def _exponents(runs, grain, offset):
+    """How tau_max goes with the velocity: rigid-plastic spheres have 0, elastic ones -1/5 (A24 eqs 32, 33)."""
+    times = _at_fillings_of(offset, runs.estimates("t_max", POINT))
+    found = {}
+    for way in offset.index.unique("fit"):
+        own = select(offset, fit=way)
+        since = lambda e, filling, radius, v: combine(
+            lambda t, x: t - fits.time_of_contact(x, v, grain.grain_radius), e, own[filling]
+        )
+        found[way] = along(each(times[times.index.isin(own.index, level="filling")], since), "velocity", power)
+    meaning = "exponent of τ_max as a power of the velocity, by how δ_offset is found; 0: rigid-plastic, -0.2: elastic"
+    yield Quantity("trend", meaning, finite(together(found, "fit")))
 
 
 def _constants(runs, grain, stress, compliance):
@@ -131,23 +147,18 @@ def _of_spheres(f, grain, fit, filling, *more):
 
 
 def _times(runs, grain):
-    """t_max beside A24's fitted model, and how tau_max goes with the velocity."""
+    """t_max beside A24's fitted model."""
     parts = []
     for filling, own in runs.table[runs.table.filling.isin(fits.PRINTED)].groupby("filling"):
         model = fits.printed(filling, grain)
         d, t = model.at(own.radius, own.velocity)
-        tau = own.t_max - model.time_of_contact(own.velocity)
-        parts.append(own.assign(deeper=own.d - d, late=own.t_max - t, tau=tau))
-    beside = runs.of(pandas.concat(parts) if parts else runs.table[:0].assign(deeper=0.0, late=0.0, tau=0.0))
+        parts.append(own.assign(deeper=own.d - d, late=own.t_max - t))
+    beside = runs.of(pandas.concat(parts) if parts else runs.table[:0].assign(deeper=0.0, late=0.0))
     yield Quantity("deeper", "d_max less that of A24's fitted model", beside.estimates("deeper", POINT), "r")
     yield Quantity("late", "t_max less that of A24's fitted model", beside.estimates("late", POINT), "ns")
     means = "as they are", "with A24's d_max"
     line = beside.where(velocity=fits.VELOCITY).fit(lateness, means, ("filling",))
     yield Quantity("late_mean", "the same at 3.2 m/s, mean over the pairs of all sizes", line, "ns")
-    several = lambda t: t.groupby(list(PAIR)).velocity.transform("nunique") >= fits.FEWEST_VELOCITIES
-    trend = beside.where(several).fit(fits.time_exponent, ("exponent",), PAIR, fitted=2)
-    meaning = "exponent of τ_max (with A24's δ_offset) as a power of the velocity; 0: rigid-plastic, -0.2: elastic"
-    yield Quantity("trend", meaning, finite(select(trend, number="exponent")))
 
 
 def lateness(rows, weights):

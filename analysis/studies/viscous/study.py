@@ -6,10 +6,10 @@ import numpy as np
 
 from ...measures.fragments import cumulative_cross_section, cumulative_grains
 from ...runs.collect import Scene
-from ..curves import threshold_velocity
 from ..definition import Quantity, Study
 from ..estimate import combine, exact
 from ..runs import Runs, along, differences, ratios, select, together
+from ..threshold import thresholds
 from .growth import LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fragment_exponent, offset_weights
 from .measure import DISSIPATION, EVENTS, FAST, MEASURED, REFERENCE, sizes_from_text
 
@@ -47,7 +47,7 @@ def _growth(runs, suffix, over):
     growth = runs.estimates("growth", CURVE)
     yield Quantity(f"growth{suffix}", f"growth efficiency f_gro, mean over {over}", growth)
     several = growth[growth.index.droplevel("velocity").duplicated(keep=False)]
-    v_fra = along(several, "velocity", threshold_velocity) if len(several) else several
+    v_fra = thresholds(several) if len(several) else several
     yield Quantity(f"v_fra{suffix}", f"velocity at which that mean falls through 0 ({over})", v_fra, "m/s")
     of_velocity = ("grains", "velocity")
     more = _with_drag(runs, "growth", of_velocity)
