@@ -24,12 +24,12 @@ class Threshold(Estimate):
         """(low, high) [m/s], infinite where no velocity of the curve is a bound; (None, None) where it has no errors, or doesn't fall."""
         if self.pairs < 2 or not math.isfinite(self.value):
             return None, None
-        ends = [own.interval(confidence, runs) if own.error else (own.value, own.value) for own in self.estimates]
-        low, high = np.array(ends).T
+        bounds = [own.interval(confidence, runs) if own.error else (own.value, own.value) for own in self.estimates]
+        low, high = np.array(bounds).T
         last = np.flatnonzero(high > 0)[-1]
-        falls = threshold_velocity(self.velocities, low) if low[0] > 0 else -math.inf
-        ends = threshold_velocity(self.velocities[last:], high[last:]) if high[-1] <= 0 else math.inf
-        return float(falls), float(ends)
+        least = threshold_velocity(self.velocities, low) if low[0] > 0 else -math.inf
+        most = threshold_velocity(self.velocities[last:], high[last:]) if high[-1] <= 0 else math.inf
+        return float(least), float(most)
 
     def chance(self, value, runs=EXACT):
         """p of the curve's difference from 0 at a velocity, 1 where no run is; None without an error."""

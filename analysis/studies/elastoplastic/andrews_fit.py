@@ -35,10 +35,8 @@ class Aggregates:
         # Everything in the model is proportional to R*.
         spheres = self._spheres(0.5 * (radius + self.offset))
         depth = andrews.largest_compression(velocity, spheres)
-        time = andrews.time_of_largest_compression(velocity, spheres)
-        return depth - 2.0 * self.offset, time * self.grain_radius + time_of_contact(
-            self.offset, velocity, self.grain_radius
-        )
+        time = andrews.time_of_largest_compression(velocity, spheres) * self.grain_radius
+        return depth - 2.0 * self.offset, time + time_of_contact(self.offset, velocity, self.grain_radius)
 
     def restitution(self, velocity):
         """Coefficient of restitution (A24 section 5.3), the same for every size."""

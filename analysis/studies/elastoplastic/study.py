@@ -89,14 +89,12 @@ def _moduli(runs, grain):
 
 def _exponents(runs, grain, offset):
     """How tau_max goes with the velocity: rigid-plastic spheres have 0, elastic ones -1/5 (A24 eqs 32, 33)."""
-    times = _at_fillings_of(offset, runs.estimates("t_max", POINT))
-    found = {}
+    times, found = runs.estimates("t_max", POINT), {}
     for way in offset.index.unique("fit"):
         own = select(offset, fit=way)
-        since = lambda e, filling, radius, v: combine(
-            lambda t, x: t - fits.time_of_contact(x, v, grain.grain_radius), e, own[filling]
-        )
-        found[way] = along(each(times[times.index.isin(own.index, level="filling")], since), "velocity", power)
+        contact = lambda filling, v: combine(lambda x: fits.time_of_contact(x, v, grain.grain_radius), own[filling])
+        tau = each(_at_fillings_of(own, times), lambda t, filling, radius, v: t - contact(filling, v))
+        found[way] = along(tau, "velocity", power)
     meaning = "exponent of τ_max as a power of the velocity, by how δ_offset is found; 0: rigid-plastic, -0.2: elastic"
     yield Quantity("trend", meaning, finite(together(found, "fit")))
 
