@@ -67,6 +67,10 @@ def test_the_truth_comes_out_of_made_runs(results):
         contact = fits.time_of_contact(TRUTH.offset, velocity, RADIUS)
         at = results["t_max"].at(filling=FILLING, radius=size, velocity=velocity)
         assert at.value == pytest.approx(t, rel=5e-3) and at.value > contact and at.error > 0 and at.pairs == 4
+    velocities = np.array(VELOCITIES)
+    since = TRUTH.at(80.0, velocities)[1] - fits.time_of_contact(TRUTH.offset, velocities, RADIUS)
+    found = results["trend"].at(filling=FILLING, radius=80.0, fit="A24's way")
+    assert found.value == pytest.approx(power(velocities, since), abs=0.02) and found.pairs == 4
     ratio = (TRUTH.at(80.0, VELOCITY)[0] - TRUTH.at(40.0, VELOCITY)[0]) / 20.0
     line = {n: results["line"].at(filling=FILLING, number=n) for n in ("δ_max/R*", "δ_offset")}
     assert line["δ_max/R*"].value == pytest.approx(ratio, rel=2e-3)

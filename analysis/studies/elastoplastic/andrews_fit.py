@@ -138,7 +138,7 @@ def _moduli(x):
 
 def _residuals(rows, weights):
     """(places (B, 3) -> residuals (B, 2 K) of the means at K sizes and velocities, stress of rigid-plastic spheres without offset [Pa])."""
-    radius, velocity, number, own, (depth, time) = _points(rows, weights, ("d", "t_max"))
+    radius, velocity, number, own, (depth, time) = _points(rows, weights)
     data, error = (np.concatenate(both, axis=-1) for both in zip(depth, time))
     grain, root = rows.iloc[0], np.sqrt(np.tile(own, 2))
     density = grain.filling * grain.grain_density
@@ -153,13 +153,13 @@ def _residuals(rows, weights):
     return residuals, andrews.stress_if_rigid(max(ratio, 1e-3), 1.0, density)
 
 
-def _points(rows, weights, columns):
-    """(radius [grain radii], velocity [m/s], number of runs (K,), their weights (B, K), [(means (B, K), scatter of a run (K,)) of each of
-    the columns]) at the K sizes and velocities of rows; the scatter is a power of the velocity that is common to all sizes."""
+def _points(rows, weights):
+    """(radius [grain radii], velocity [m/s], number of runs (K,), their weights (B, K), [(means (B, K), scatter of a run (K,)) of d
+    and of t_max]) at the K sizes and velocities of rows; the scatter is a power of the velocity that is common to all sizes."""
     (radius, velocity), place = np.unique(rows[["radius", "velocity"]].to_numpy().T, axis=1, return_inverse=True)
     members = np.eye(len(radius))[place.ravel()]
     number, own, found = members.sum(axis=0), weights @ members, []
-    for values in (rows[column].to_numpy() for column in columns):
+    for values in (rows[column].to_numpy() for column in ("d", "t_max")):
         away = values - (values @ members / number)[place.ravel()]
         scatter = np.sqrt(away**2 @ members / np.maximum(number - 1, 1))
         scatter[scatter <= ROUNDING * np.abs(values).max()] = 0.0

@@ -93,17 +93,20 @@ def _necks(runs):
     yield Quantity("necks_compacted", "N_cut/N_t over that of BCCA aggregates", over)
     over = runs.beside("setup", PLAIN, "necks", POINT[1:], ratios)
     yield Quantity("necks_change", f"N_cut/N_t over that with {PLAIN}", over)
-    cut = runs.where(lambda t: t.broken > 0)
-    modes = cut.shares(MODES, "broken", ("setup", "growth_velocity", "neck"), "mode")
+    modes = _modes(runs, ("setup", "growth_velocity", "neck"))
     yield Quantity("modes", "necks broken by each mode, of all that broke at any velocity", modes, "%")
+    cut = runs.where(lambda t: t.broken > 0)
     rolling = ratios(cut.estimates("brokenByRolling", POINT), cut.estimates("broken", POINT))
     yield Quantity("rolling_at", "necks broken by rolling, of all that broke at a velocity", rolling, "%")
     five = runs.where(lambda t: [kind in FIVE for kind in zip(t.growth_velocity, t.neck)], setup=PLAIN)
-    # As many runs of each kind and velocity as the paper has, though ours have more pairs of some.
-    pooled = lambda name: five.estimates(name, POINT).groupby(level="setup").agg(sum)
-    of_all = together({mode: ratios(pooled(name), pooled("broken")) for mode, name in MODES.items()}, "mode")
     meaning = "necks broken by each mode, of all in the five kinds of S17's Fig. 15"
-    yield Quantity("modes_together", meaning, of_all, "%")
+    yield Quantity("modes_together", meaning, _modes(five, ("setup",)), "%")
+
+
+def _modes(runs, by):
+    """Necks broken by each mode over all that broke, by some of POINT: each set of the others counts once, however many pairs it has."""
+    broken = lambda name: runs.estimates(name, POINT).groupby(level=list(by)).agg(sum)
+    return together({mode: ratios(broken(name), broken("broken")) for mode, name in MODES.items()}, "mode")
 
 
 def _models(runs):
