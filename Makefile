@@ -11,7 +11,7 @@
 #             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.
 # make study-viscous  those of Arakawa et al. (2022), or SIZE=full; SIZE=own: the paper's size at 50 m/s; SIZE=prediction: 10,000 grains, beside desk's
 # make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full; SIZE=own: clusters of the paper's size to where its law ends
-# make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open
+# make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open; SIZE=decide: more seeds
 # make study-compressed  collisions of compressed aggregates beside CPE ones
 # make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 14,000)
 # make gallery-atlas  makes its page, model and table of outcomes again

@@ -61,8 +61,9 @@ def judge(claims, results):
     found = [(claim, *_beside(claim, results)) for claim in claims]
     chances = [p for *_, p in found]
     corrected = holm(chances)
+    family = sum(own is not None and own >= LEVEL for own in corrected)
     return [
-        Judgement(claim, unit, ours, p, own, *_verdict(claim, ours, own, results.independent))
+        Judgement(claim, unit, ours, p, own, *_verdict(claim, ours, own, results.independent, family))
         for (claim, unit, ours, p), own in zip(found, corrected)
     ]
 
@@ -115,8 +116,8 @@ def _chance(claim, ours):
     return 1.0 if nearest == ours.value else 0.5 * p
 
 
-def _verdict(claim, ours, corrected, independent):
-    """(verdict, why); independent: definition.Study's."""
+def _verdict(claim, ours, corrected, independent, family):
+    """(verdict, why); independent: definition.Study's; family: how many tests of the page contradict nothing."""
     if ours is None:
         return UNTESTED, "no runs of ours there"
     if not claim.test:
@@ -132,7 +133,7 @@ def _verdict(claim, ours, corrected, independent):
     within = f"95 % interval {range_text(least, most)}, agreement {range_text(low, high)}"
     if low <= least and most <= high:
         return YES, within
-    needed = _needed(claim, ours, independent) if math.isfinite(most - least) else "bounded on one side at most"
+    needed = _needed(claim, ours, independent, family) if math.isfinite(most - least) else "bounded on one side at most"
     return UNTESTED, f"{within}; {needed}"
 
 
@@ -141,19 +142,20 @@ def _interval(claim, ours):
     return ours.interval() if claim.value is None or isinstance(ours, Fraction) else ours.interval(runs=claim.runs)
 
 
-def _needed(claim, ours, independent):
-    """How many pairs would decide, with POWER, if the paper is right (within the margin) or ours is (beyond it): more than there are."""
+def _needed(claim, ours, independent, family):
+    """How many pairs would decide, with POWER and the scatter there is: reproduce, where ours lies within the margin, or contradict beyond
+    it, after Holm's correction over `family` tests. More than there are."""
     if isinstance(ours, Fraction):
         return f"{ours.pairs} runs don't decide"
     scatter = ours.error * math.sqrt(ours.pairs)
     low, high = _agreement(claim)
-    away = max(low - ours.value, ours.value - high, min(ours.value - low, high - ours.value))
-    papers = 1 / claim.runs if claim.value is not None else 0.0
-    chances = 1 - 0.5 * LEVEL, POWER
-    inverse = (away / (norm.ppf(chances).sum() * scatter)) ** 2 - papers  # 1 over the number, were it large
+    inside = min(ours.value - low, high - ours.value)
+    chances = 1 - (0.5 * LEVEL if inside > 0 else 0.5 * LEVEL / family if low == high else LEVEL / family), POWER
+    papers = 0.0 if inside > 0 and claim.value is None else 1 / claim.runs
+    inverse = (inside / (norm.ppf(chances).sum() * scatter)) ** 2 - papers  # 1 over the number, were it large
     if inverse <= 0:
         return f"no number of {independent} decides: the paper's {claim.runs} scatter by {number_text(scatter)}"
     needed = max(ours.pairs + 1, math.ceil(1 / inverse))
-    while student.ppf(chances, needed - 1).sum() * scatter * math.sqrt(1 / needed + papers) > away:
+    while student.ppf(chances, needed - 1).sum() * scatter * math.sqrt(1 / needed + papers) > abs(inside):
         needed += 1
     return f"some {needed} {independent} would decide"

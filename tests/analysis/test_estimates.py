@@ -220,6 +220,12 @@ def test_verdicts(ours, given, verdict):
     assert found.why and re.match(verdict, f"{found.verdict}: {found.why}")
 
 
+def test_to_contradict_takes_more_pairs_in_a_larger_family():
+    beyond = claim(value=11.0, margin=0.5, runs=1000)
+    needed = [int(re.search(r"some (\d+) pairs", judge([beyond] * n, of_mean((10.0, 0.3)))[0].why)[1]) for n in (1, 20)]
+    assert 4 < needed[0] < needed[1] - 4
+
+
 @pytest.mark.parametrize(
     "given, says",
     [

@@ -146,7 +146,7 @@ def test_the_table_of_studies_is_that_of_their_tables(tmp_path, monkeypatch):
     study, seen = None, set()
     for line in (TOP / "analysis/STUDIES.md").read_text().splitlines():
         cells = [cell.strip() for cell in line.split("|")[1:-1]]
-        if len(cells) != 8 or cells[2] not in ("first", "desk", "full", "own", "beyond", "prediction"):
+        if len(cells) != 8 or cells[2] not in ("first", "desk", "full", "own", "beyond", "decide", "prediction"):
             continue
         study = cells[0].strip("`") or study
         found = rows.read(str(TOP / f"yade_scripts/studies/{study}-{cells[2]}.table"))
@@ -155,4 +155,4 @@ def test_the_table_of_studies_is_that_of_their_tables(tmp_path, monkeypatch):
         grains = sum(row.estimate.grains * row.parameters.states for row in found)
         assert float(cells[7].split()[0]) == pytest.approx(grains * BYTES_A_GRAIN * 1e-9, rel=0.2), line
         seen.add((study, cells[2]))
-    assert len(seen) == 13
+    assert len(seen) == 14

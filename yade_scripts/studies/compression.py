@@ -49,6 +49,7 @@ OWN = (
     [({**TO_LAW, "grains": 16384}, range(2, 11))]
     + [({**TO_LAW, "grains": 1024, "strainRate": rate}, range(5, 9)) for rate in ("3e-7", "1e-5")]
     + [({**TO_LAW, "grains": 4096}, range(2, 5))]
+    + [({**BASE, "finalFilling": "0.12", **rolling}, range(5, 9)) for rolling in ({}, {"criticalRolling": "4e-10"})]
 )
 
 SHORT = {"grains": "N", "strainRate": "Cv", "linearDamping": "k", "criticalRolling": "xi", "stepFraction": "step"}

@@ -21,7 +21,7 @@ FILLINGS = (0.4, 0.3)
 # {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow
 # collisions of larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
 DESK_SIZES = {(filling, radius): n for radius, n in {40: 20, 50: 8, 60: 8, 80: 3}.items() for filling in FILLINGS}
-DESK_VELOCITIES = 6
+DESK_VELOCITIES = 10
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
 SLOW = (0, 2)
 TIME_UNIT = "1.936532021439599e-10"  # s: t0 of ice

@@ -2,8 +2,9 @@
 
 full has the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper
 has five runs a point. desk is an evening on two cores: the points that decide the paper's statements, ten seeds each. beyond is what the
-desk's runs leave open: compacted aggregates in space, springs that are held at their limits, xi_crit = 30 Angstrom. Rows
-are in the order in which they are worth having: one seed of every point after another.
+desk's runs leave open: compacted aggregates in space, springs that are held at their limits, xi_crit = 30 Angstrom. decide is twenty
+seeds more of what ten leave undecided and thirty may decide. Rows are in the order in which they are worth having: one seed of every
+point after another.
 
 Compacted aggregates are read from files that sintered_growth.py makes first.
 """
@@ -161,12 +162,27 @@ BEYOND = unique(
     points((0.7,), (ROOT, "10", "20", "30"), planar=0, limit="held"),
     points((0, 0.2), ("10", "30"), planar=0, limit="held"),
 )
-TABLES = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND}
+# By what ten pairs gave, in the order of the chance that thirty decide.
+DECIDE = unique(
+    points((0.7,), ("10", "15"), (3,)),
+    points((0.5,), ("30",)),
+    points((0.2,), ("30",)),
+    points((0.2,), ("30",), planar=0),
+    points((0, 0.7), ("20",)),
+    points((0,), ("50",)),
+    points((0,), ("50",), limit="held"),
+)
+TABLES = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND, "decide": DECIDE}
+
+
+def seeds(size):
+    """Of a table's points."""
+    return range(11, 31) if size == "decide" else SEEDS
 
 
 def grown(size):
     """[Grown] that the rows of a table need, each once."""
-    wanted = (point.grown(seed) for seed in SEEDS for point in TABLES[size] if point.growth)
+    wanted = (point.grown(seed) for seed in seeds(size) for point in TABLES[size] if point.growth)
     return list(dict.fromkeys(wanted))
 
 
@@ -174,7 +190,7 @@ def rows(size):
     """A table's rows: every point with the first seed, then with the next one. In desk space and drag come last."""
     folder = "runs/sintered" + ("" if size == "desk" else f"-{size}")
     groups = (DESK, [point for point in TABLES[size] if point not in DESK]) if size == "desk" else (TABLES[size],)
-    return [point.row(seed, folder) for group in groups for seed in SEEDS for point in group]
+    return [point.row(seed, folder) for group in groups for seed in seeds(size) for point in group]
 
 
 HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {which}
@@ -190,9 +206,14 @@ Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFra
 ROW = 71.3
 LEFT = "What the desk's runs leave open: compacted aggregates in space, springs held at the limits (limit = held), both, xi_crit = 30 Angstrom."
 # What a table is, and how many core hours it takes to grow its aggregates.
-WHICH = {"desk": ("A selection.", "one"), "full": ("All of the paper's.", "three"), "beyond": (LEFT, "less than one")}
+WHICH = {
+    "desk": ("A selection.", "one"),
+    "full": ("All of the paper's.", "three"),
+    "beyond": (LEFT, "less than one"),
+    "decide": ("Seeds 11 to 30 of what ten pairs leave undecided and thirty may decide.", "less than one"),
+}
 COST = """{which}
-Ten seeds a point where the paper has five runs. Some {hours:.0f} core hours (71 s a row, the mean of 160 rows of BCCA aggregates on a busy machine), and {growth} to grow the aggregates."""
+{seeds} seeds a point where the paper has five runs. Some {hours:.0f} core hours (71 s a row, the mean of 160 rows of BCCA aggregates on a busy machine), and {growth} to grow the aggregates."""
 
 
 def core_hours(size):
@@ -201,10 +222,13 @@ def core_hours(size):
 
 
 def write_tables(folder):
-    """Write sintered-desk.table, sintered-full.table and sintered-beyond.table into a folder."""
+    """Write sintered-desk.table, sintered-full.table, sintered-beyond.table and sintered-decide.table into a folder."""
     tables = {}
     for size, (which, growth) in WHICH.items():
-        tables[size] = rows(size), COST.format(which=which, hours=core_hours(size), growth=growth)
+        cost = COST.format(
+            which=which, seeds="Ten" if seeds(size) == SEEDS else "Twenty", hours=core_hours(size), growth=growth
+        )
+        tables[size] = rows(size), cost
     table_script.write(folder, "sintered", HEAD, tables)
 
 

@@ -1,6 +1,6 @@
 """Grows the compacted aggregates of Sirono & Ueno (2017), section 4: python3 yade_scripts/studies/sintered_growth.py desk
 
-    python3 yade_scripts/studies/sintered_growth.py SIZE [-j JOBS]    those of a table that are not there yet (desk, full, beyond)
+    python3 yade_scripts/studies/sintered_growth.py SIZE [-j JOBS]    those of a table that are not there yet (desk, full, beyond, decide)
 
 Section 4 makes aggregates of 1,024 grains by "collision simulations" at V_g, section 5.2 speaks of "successive collisions"; it
 isn't said from what they start. Here an aggregate starts as a BCCA cluster of START grains and collides head-on with itself, both
