@@ -131,6 +131,15 @@ def test_the_commands_are_there():
             assert (document.parent / link).exists(), f"{document.name}: {link}"
 
 
+def test_the_readmes_speeds_are_the_papers():
+    """Of README's rows; those of the paper are filled in from what was measured."""
+    cells = r"^\| .*?\| ([\d.]+ to [\d.]+) \|"
+    readme, paper = (
+        re.findall(cells, (TOP / name).read_text(), re.M) for name in ("README.md", "analysis/gallery/paper.md")
+    )
+    assert len(readme) == 4 and readme == paper[:4]
+
+
 def test_the_table_of_ones_own_study_runs_where_its_analysis_looks(tmp_path):
     text = (TOP / "analysis/STUDIES.md").read_text()
     table = tmp_path / "sticking.table"
