@@ -18,6 +18,7 @@ printed = "50 to 60 m/s"                       # how the paper prints it
 source = "section 3.2"
 sentence = "..."                               # the sentence it is from
 runs = 1                                       # independent pairs of aggregates behind the paper's number; inf: it has no error
+looks = 1           # how often our pairs were looked at, more added after each look: each counts as a test (Bonferroni)
 margin = 5.0        # agreement: our interval of the difference (or our interval) within this of the value (or of the limits), in their unit; else 0
 note = "a phrase"   # why it is shown, and not in the page's family of tests (test = false says the same without a reason)
 row = true          # on the page's first screen; 8 claims at most"""
@@ -44,6 +45,7 @@ MUST = {
     "high": number(("{} or inf", lambda x: x > -INF)),
     "margin": number(("finite {} >= 0", NOT_NEGATIVE[1])),
     "runs": number(("whole {} >= 1, or inf", lambda x: (x >= 1) & (x == np.floor(x)))),
+    "looks": number(("whole {} >= 1", lambda x: (x >= 1) & (x < INF) & (x == np.floor(x)))),
     str: Kind("text", lambda value: isinstance(value, str)),
     bool: Kind("true or false", lambda value: isinstance(value, bool)),
     dict: Kind("a table", lambda value: isinstance(value, dict)),
@@ -68,6 +70,7 @@ class Claim:
     high: float = None
     sentence: str = ""
     runs: int = 1
+    looks: int = 1
     margin: float = 0.0
     test: bool = True
     row: bool = False

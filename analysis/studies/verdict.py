@@ -3,6 +3,7 @@
 yes       our 95 % interval lies within the claim's margin (about a value: the interval of the difference, with the error of
           the paper's own runs, taken to scatter as ours; about limits: our own interval)
 no        ours lies beyond it: p < 0.05 after Holm's correction over all tests of the page, with the error of the paper's own runs
+          (both after Bonferroni's for every look at a claim's pairs after which more were added)
 untested  neither, or not run at that size, or not declared a test; `why` says which, and how many pairs would decide"""
 
 import math
@@ -46,7 +47,7 @@ class Judgement:
     @property
     def record(self):
         """All of it for JSON (dict)."""
-        said = ("quantity", "label", "where", "printed", "source", "runs", "margin", "test", "row")
+        said = ("quantity", "label", "where", "printed", "source", "runs", "looks", "margin", "test", "row")
         return {
             **{name: getattr(self.claim, name) for name in said},
             "limits": list(self.claim.limits),
@@ -111,9 +112,9 @@ def _chance(claim, ours):
     if isinstance(ours, Fraction) and not 0 <= nearest <= 1:
         raise ValueError(f"{nearest:g} of a fraction: must be 0 to 1")
     p = ours.chance(nearest, claim.runs)
-    if p is None or low == high:
-        return p
-    return 1.0 if nearest == ours.value else 0.5 * p
+    if p is not None and low < high:
+        p = 1.0 if nearest == ours.value else 0.5 * p
+    return None if p is None else min(1.0, claim.looks * p)
 
 
 def _verdict(claim, ours, corrected, independent, family):
@@ -130,7 +131,7 @@ def _verdict(claim, ours, corrected, independent, family):
     least, most = _interval(claim, ours)
     if least is None:
         return UNTESTED, f"no error of ours: 1 {independent[:-1]}" if ours.pairs < 2 else "no error of ours"
-    within = f"95 % interval {range_text(least, most)}, agreement {range_text(low, high)}"
+    within = f"{100 * _confidence(claim):.3g} % interval {range_text(least, most)}, agreement {range_text(low, high)}"
     if low <= least and most <= high:
         return YES, within
     needed = _needed(claim, ours, independent, family) if math.isfinite(most - least) else "bounded on one side at most"
@@ -139,18 +140,24 @@ def _verdict(claim, ours, corrected, independent, family):
 
 def _interval(claim, ours):
     """Our interval; beside a value, widened by the error of the paper's own runs."""
-    return ours.interval() if claim.value is None or isinstance(ours, Fraction) else ours.interval(runs=claim.runs)
+    beside = {} if claim.value is None or isinstance(ours, Fraction) else {"runs": claim.runs}
+    return ours.interval(_confidence(claim), **beside)
+
+
+def _confidence(claim):
+    return 1 - LEVEL / claim.looks
 
 
 def _needed(claim, ours, independent, family):
     """How many pairs would decide, with POWER and the scatter there is: reproduce, where ours lies within the margin, or contradict beyond
-    it, after Holm's correction over `family` tests. More than there are."""
+    it, after Holm's correction over `family` tests, at the next look. More than there are."""
     if isinstance(ours, Fraction):
         return f"{ours.pairs} runs don't decide"
     scatter = ours.error * math.sqrt(ours.pairs)
     low, high = _agreement(claim)
     inside = min(ours.value - low, high - ours.value)
-    chances = 1 - (0.5 * LEVEL if inside > 0 else 0.5 * LEVEL / family if low == high else LEVEL / family), POWER
+    level = LEVEL / (claim.looks + 1)
+    chances = 1 - (0.5 * level if inside > 0 else 0.5 * level / family if low == high else level / family), POWER
     papers = 0.0 if inside > 0 and claim.value is None else 1 / claim.runs
     inverse = (inside / (norm.ppf(chances).sum() * scatter)) ** 2 - papers  # 1 over the number, were it large
     if inverse <= 0:

@@ -208,7 +208,10 @@ def claim(**given):
         ((10.0, 1.0), dict(value=12.0, margin=1.0, runs=1), UNTESTED),  # the paper's one run scatters as ours
         ((10.0, 0.1), dict(low=9.0), YES),
         ((10.0, 0.1), dict(low=9.9), UNTESTED),
+        ((10.0, 0.1), dict(low=9.6), YES + ": 95 % interval"),
+        ((10.0, 0.1), dict(low=9.6, looks=3), UNTESTED + ": 98.3 % interval"),  # each look counts
         ((10.0, 0.1), dict(high=9.0, runs=100), NO),
+        ((10.0, 0.1), dict(high=9.0, runs=100, looks=100), UNTESTED),
         ((10.0, 0.1), dict(low=9.0, high=9.5, margin=1.0, runs=100), YES),
         ((10.0, 0.1), dict(value=12.0, margin=1.0, test=False), UNTESTED),
         ((10.0, 0.1), dict(value=12.0, margin=1.0, where={"grains": 50000}), UNTESTED),  # tested at the claim's size alone
