@@ -22,7 +22,7 @@ POWER = 0.8
 
 @dataclass(frozen=True)
 class Judgement:
-    """claim; unit; ours (Estimate or Fraction in that unit; None: not run); p (None: not tested); corrected (p after Holm); verdict; why."""
+    """claim; unit; ours (Estimate or Fraction in that unit; None: not run); p (every look counted; None: not tested); corrected (p after Holm); verdict; why."""
 
     claim: Claim
     unit: str
