@@ -48,6 +48,7 @@ _LEVELS = {
     "grains": Level("grains", "grains of an aggregate", phrase="{} grains"),
     "square": Level("12 B_off^2", "$12 B_{off}^2$", scale=1 / 12),
     "filling": Level("φ", r"$\phi$"),
+    "nominal": Level("φ", r"$\phi$"),
     "duration": Level("followed for", "followed for", "µs", phrase="followed for {} µs"),
     "radius": Level("R", "$R$", "r"),
     "neck": Level("β", r"$\beta$"),

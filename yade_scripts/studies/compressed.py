@@ -24,7 +24,7 @@ from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.studies import table_script
 
 CELLS, PACKINGS, COLLISIONS = "runs/compressed-cells", "runs/compressed-packings", "runs/compressed"
-FILLINGS, PAIRS = (0.4, 0.3), 10
+FILLINGS, PAIRS = (0.4, 0.3), 30
 GRAINS, RATE = 8192, "1e-5"  # of a cell; 1/t0
 RADIUS = 20  # r, of the spheres; half the cell's edge is 22 r at 0.4
 TOLERANCE, PLACES = 0.01, 200  # of the filling; places tried
