@@ -65,6 +65,8 @@ def quantities(table):
     yield Quantity("contacts", "contacts of a grain", runs.estimates("coordination", BY))
     yield Quantity("compression", "compression from the first touch to d_max", compression, "r")
     yield Quantity("compression_ratio", "the same, compressed over CPE", over)
+    meaning = "its square: yield stress of CPE over that of compressed aggregates, were both rigid-plastic spheres (A24 eq 31)"
+    yield Quantity("stress_ratio", meaning, over * over)
     yield Quantity("t_max", "time of d_max after the first touch", runs.estimates("t_max", BY), "ns")
     yield from collisions.energy_quantities(runs, BY, "lost", "channels")
     meaning = "kinetic energy in the relative motion of the halves at its largest after t_max, of K(0)"
