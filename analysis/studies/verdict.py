@@ -156,8 +156,8 @@ def _needed(claim, ours, independent, family):
     scatter = ours.error * math.sqrt(ours.pairs)
     low, high = _agreement(claim)
     inside = min(ours.value - low, high - ours.value)
-    level = LEVEL / (claim.looks + 1)
-    chances = 1 - (0.5 * level if inside > 0 else 0.5 * level / family if low == high else level / family), POWER
+    sides, tests = (2 if inside > 0 or low == high else 1), (1 if inside > 0 else family)
+    chances = 1 - LEVEL / (claim.looks + 1) / (sides * tests), POWER
     papers = 0.0 if inside > 0 and claim.value is None else 1 / claim.runs
     inverse = (inside / (norm.ppf(chances).sum() * scatter)) ** 2 - papers  # 1 over the number, were it large
     if inverse <= 0:

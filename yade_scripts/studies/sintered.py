@@ -225,9 +225,7 @@ def write_tables(folder):
     """Write sintered-desk.table, sintered-full.table, sintered-beyond.table and sintered-decide.table into a folder."""
     tables = {}
     for size, (which, growth) in WHICH.items():
-        cost = COST.format(
-            which=which, seeds="Ten" if seeds(size) == SEEDS else "Twenty", hours=core_hours(size), growth=growth
-        )
+        cost = COST.format(which=which, seeds=len(seeds(size)), hours=core_hours(size), growth=growth)
         tables[size] = rows(size), cost
     table_script.write(folder, "sintered", HEAD, tables)
 
