@@ -187,7 +187,8 @@ def outcome(
     material: ice or silicate, grain_radius [m] (None: 1e-7 of ice, 6e-7 of silicate, as collide() has it): v_break follows from these, and is
     all that they change; the runs' grains had 1e-7, and rolling and sliding, which go otherwise with the radius, are not scaled. columns: only these.
     structure: grown (as None; by hits of grains and clusters, and compressed) or close-packed, of which the tables are.
-    `inside` is 1 within the data, less where the answer is an extrapolation: at 0 it is that of the nearest data. Below MOSTLY, 1/2, errors
+    Ends of intervals (`largest_low`, ...) are of the runs that leave more than one piece: `largest`, of all, may be outside. `inside` is 1 within
+    the data, less where the answer is an extrapolation: at 0 it is that of the nearest data. Below MOSTLY, 1/2, errors
     and the ends of intervals are NaN. ValueError for what cannot be, one line."""
     given = {"velocity": velocity, "projectile": projectile, "target": target, "filling": filling}
     given |= {} if impact is None else {"impact": impact}

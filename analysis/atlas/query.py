@@ -21,7 +21,9 @@ LABELS = {
 }
 # What the intervals are of
 WHERE = {"largest": "where there are more: ", "filling_after": ""}
-COMMAND = "python3 yade_scripts/studies/atlas.py full {} {} && python3 yade_scripts/study.py runs/atlas-full.table"
+COMMAND = (
+    "python3 yade_scripts/studies/atlas.py full {0} {1} && python3 yade_scripts/study.py runs/atlas-full-{0}-{1}.table"
+)
 
 
 def text(options):

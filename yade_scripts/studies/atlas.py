@@ -2,7 +2,8 @@
 
     python3 yade_scripts/study.py yade_scripts/studies/atlas-cells.table -j 2    the cells that compressed aggregates are cut out of
     python3 yade_scripts/studies/atlas.py pilot [FIRST LAST]      runs/atlas-pilot.table, and the packings of its rows; also desk, full;
-                                                                  FIRST to LAST: the table has these rows alone
+                                                                  FIRST LAST: runs/atlas-pilot-FIRST-LAST.table, of rows FIRST to
+                                                                  before LAST alone
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
     python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long;
                                                                   analysed alone, their runs.csv goes before RUNS.csv: of two the first counts
@@ -75,6 +76,7 @@ CELL_SEEDS = {
     1_024: range(1, 11),
     4_096: range(11, 21),
 }  # of cells for pairs of up to so many grains, which have twice as many
+CELL_TABLES = dict(zip(CELL_SEEDS, ("atlas-cells", "atlas-cells-full")))
 CELL_STATES, RATE, CELL_STEP = 60, "1e-5", 0.3  # number; 1/t0; t0
 
 
@@ -262,7 +264,10 @@ def _compressed(scene, index):
     try:
         states = sorted(os.listdir(folder))
     except OSError:
-        raise PackingError(f"{folder}: no states; must be those of a cell: run atlas-cells.table first") from None
+        cells = f"yade_scripts/studies/{CELL_TABLES[scene.most]}.table"
+        raise PackingError(
+            f"{folder}: no states; must be those of a cell: python3 yade_scripts/study.py {cells} first"
+        ) from None
     wanted = np.interp(scene.filling, *_fillings(folder, states))
     state = read_periodic_state(os.path.join(folder, states[round(wanted)]))
     radius = (scene.grains[index] / filling_factor(state.radius, state.cell_size)) ** (1 / 3)
@@ -298,12 +303,14 @@ def write_tables(folder):
     """Write atlas-cells.table and atlas-cells-full.table into a folder."""
     head = "Cells that are compressed, out of which the atlas's compressed aggregates are cut.\n"
     head += "Units: strainRate: 1/t0; stepFraction: t0. Written by yade_scripts/studies/atlas.py."
-    for most, name in zip(CELL_SEEDS, ("atlas-cells", "atlas-cells-full")):
+    for most, name in CELL_TABLES.items():
         table.write(os.path.join(folder, f"{name}.table"), cell_rows(most), head)
 
 
-def write_size(size, first, last):
-    """Write runs/atlas-SIZE.table, with the rows from first to before last, and make their packings. Raises PackingError."""
+def write_size(size, *part):
+    """Write runs/atlas-SIZE.table, or runs/atlas-SIZE-FIRST-LAST.table with the rows of part (first, last), the last one left out, and make their
+    packings. Raises PackingError."""
+    first, last = part or (0, SIZES[size])
     chosen = scenes(min(last, SIZES[size]))[first:]
     os.makedirs(PACKINGS, exist_ok=True)
     found = []
@@ -312,7 +319,8 @@ def write_size(size, first, last):
             make_packings(scene)
         found.append(with_duration(row(scene)))
     head = "The collisions of the atlas.\nUnits: velocity: m/s; impact: r_c,tar + r_c,pro; grainRadius: m; stepFraction: t0. "
-    table.write(f"runs/atlas-{size}.table", found, head + "Written by yade_scripts/studies/atlas.py.")
+    name = "-".join(["atlas", size, *map(str, part)])
+    table.write(f"runs/{name}.table", found, head + "Written by yade_scripts/studies/atlas.py.")
 
 
 def write_longer(file):
@@ -351,7 +359,7 @@ def main(arguments):
     elif size in SIZES and len(arguments) in (1, 3) and all(part.isdecimal() for part in arguments[1:]):
         os.chdir(TOP)
         try:
-            write_size(size, *(map(int, arguments[1:]) if len(arguments) == 3 else (0, SIZES[size])))
+            write_size(size, *map(int, arguments[1:]))
         except PackingError as error:
             sys.exit(f"atlas.py: {error}")
     else:

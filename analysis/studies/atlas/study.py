@@ -108,8 +108,10 @@ def _grouped(runs, groups):
 def _bouncing(runs, touched):
     """Where aggregates bounce: of all that touch and of decided runs, below SLOW, and differences of it between the latter."""
     all_slow, _ = _slower(touched)
-    found = _grouped(all_slow, _kinds(all_slow.table)).fractions("bounced", BY_GROUP, lambda t: t.outcome == UNDECIDED)
-    yield Quantity(BOUNCING, f"runs that bounce, of those below {SLOW:g} v_break that touch", found)
+    grouped, of_those = _grouped(all_slow, _kinds(all_slow.table)), f"of those below {SLOW:g} v_break that touch"
+    fractions = lambda column: grouped.fractions(column, BY_GROUP, lambda t: t.outcome == UNDECIDED)
+    yield Quantity(BOUNCING, f"runs that bounce, {of_those}", fractions("bounced"))
+    yield Quantity("turned_back", f"runs that bounce and don't pass each other, {of_those}", fractions("turned_back"))
     slow, at = _slower(runs)
     table = slow.table
     compact, narrow = at.filling > COMPACT, at.filling.between(0.4, 0.5)
@@ -141,9 +143,12 @@ def _bouncing(runs, touched):
 
 
 def _slower(runs):
-    """(Runs of those below SLOW with the column `bounced`, their variables)."""
+    """(Runs of those below SLOW with the columns `bounced` and `turned_back`, their variables)."""
     at = variables(runs.table)
-    slow = runs.of(runs.table[at.velocity < SLOW].assign(bounced=lambda t: (t.outcome == BOUNCING).astype(float)))
+    own = runs.table[at.velocity < SLOW]
+    bounced = own.outcome == BOUNCING
+    turned_back = bounced & own.restitution.notna()
+    slow = runs.of(own.assign(bounced=bounced.astype(float), turned_back=turned_back.astype(float)))
     return slow, at.loc[slow.table.index]
 
 
