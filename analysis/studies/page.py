@@ -79,7 +79,7 @@ def undecided(table):
     """A sentence on runs whose outcome is undecided; '' where there is none."""
     number = int((table.outcome == UNDECIDED).sum()) if "outcome" in table else 0
     return (
-        f"Undecided: {number} of {len(table)} runs ended before their outcome was; each fraction counts them apart, means take them as they ended."
+        f"Undecided: {number} of {len(table)} runs ended before their outcome was clear; fractions count them apart, means take them as they ended."
         if number
         else ""
     )

@@ -4,12 +4,16 @@ import numpy as np
 
 from ...runs.collect import Scene
 from ...runs.table import Column
+from ...theory import ICE
+from ...theory.aggregates import bcca_strength
+from ...theory.andrews import stress_if_rigid
 from .. import collisions, grains
 from ..columns import MATERIAL, VELOCITY, group, one
 from ..definition import NotMeasured, Quantity, Study
-from ..runs import Runs, ratios, select
+from ..estimate import combine
+from ..runs import Runs, each, ratios, select
 
-BY = ("of", "step", "nominal", "velocity", "kind")
+BY = ("of", "step", "nominal", "radius", "velocity", "kind")
 KEY = ("compressed", "nominal", "radius", "pair", "step", *grains.OF_GRAINS)
 
 
@@ -59,20 +63,36 @@ def quantities(table):
     """Quantities of a table of runs (MEASURED): both kinds of aggregates side by side."""
     kind = np.where(table.compressed == 1, "compressed", "CPE")
     of, r = [grains.grains_text(row) for row in table.to_dict("records")], table.grainRadius
-    runs = Runs(table.assign(kind=kind, of=of, compression=table.compression / r), "pair", ("kind",))
+    in_radii = {"compression": table.compression / r, "radius": (table.radius / r).round(6)}
+    runs = Runs(table.assign(kind=kind, of=of, **in_radii), "pair", ("kind",))
     compression = runs.estimates("compression", BY)
     over = ratios(select(compression, kind="compressed"), select(compression, kind="CPE"))
     yield Quantity("contacts", "contacts of a grain", runs.estimates("coordination", BY))
     yield Quantity("compression", "compression from the first touch to d_max", compression, "r")
     yield Quantity("compression_ratio", "the same, compressed over CPE", over)
-    meaning = "its square: yield stress of CPE over that of compressed aggregates, were both rigid-plastic spheres (A24 eq 31)"
-    yield Quantity("stress_ratio", meaning, over * over)
+    yield from _stresses(compression, over * over)
     yield Quantity("t_max", "time of d_max after the first touch", runs.estimates("t_max", BY), "ns")
     yield from collisions.energy_quantities(runs, BY, "lost", "channels")
     meaning = "kinetic energy in the relative motion of the halves at its largest after t_max, of K(0)"
     yield Quantity("returned", meaning, runs.estimates(lambda t: (t.return_speed / t.velocity) ** 2, BY), "%")
     yield Quantity("return_time", "its time", runs.estimates("return_time", BY), "ns")
     yield from collisions.outcome_quantities(runs, BY)
+
+
+def _stresses(compression, of_kind):
+    """Yield stresses of rigid-plastic spheres in place of aggregates of ice: what the collision adds to them, and the kind of aggregate."""
+
+    def over_static(depth, step, filling, radius, velocity, kind):
+        stress = lambda d: stress_if_rigid(d / (0.5 * radius), velocity, filling * ICE.density)
+        return combine(lambda d: stress(d) / bcca_strength(filling), depth)
+
+    over = each(select(compression, of="ice"), over_static)
+    meaning = "yield stress, were they rigid-plastic spheres (A24 eq 31), over that of quasistatic compression of BCCA aggregates (eq 44)"
+    yield Quantity("over_static", meaning, over)
+    yield Quantity("stress_ratio", "the same, CPE over compressed: the square of compression_ratio", of_kind)
+    of_collision = select(over, kind="compressed")
+    meaning = "over_static of compressed aggregates over stress_ratio: above 1 where the collision raises the yield stress more than the kind does"
+    yield Quantity("collision_over_kind", meaning, ratios(of_collision, select(of_kind, of="ice")))
 
 
 STUDY = Study(
