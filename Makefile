@@ -3,8 +3,8 @@
 # make bench  measures speed beside other codes, and error against the time step (BENCH=--quick: less)
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
-# make bench-peers  the page of throughput, tests/benchmarks/results/throughput.md: this law beside YADE's, LAMMPS and LIGGGHTS, which
-#             it installs, and which make bench measures too where they are
+# make peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
+# make bench-peers  the page of throughput, tests/benchmarks/results/throughput.md: this law beside YADE's, LAMMPS and LIGGGHTS, which it installs
 # make conformance  holds this law, LAMMPS and LIGGGHTS against cases of two grains (tests/conformance/results.md)
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
@@ -30,6 +30,7 @@
 # make disk   a disk in DustPy with and without the atlas, drawn: analysis/gallery/atlas/disk.png (its runs: some minutes)
 # make test-faults  ends every command that writes files, or has it find the disk full, at its file-system calls (an hour)
 # make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
+# make test-viewer  turns the page of a run, view.html, in chromium
 # make test-sanitizers  runs engine, kernel, functors and checkpoints with the sanitizers of addresses, undefined behaviour and threads (a quarter
 #             of an hour; installs clang from Debian): tests/drivers/results/sanitizers.md
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)

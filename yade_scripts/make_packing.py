@@ -25,6 +25,7 @@ from analysis.signals import end_quietly
 end_quietly(signal.SIGINT, signal.SIGTERM)
 require_libraries()
 from analysis.printable import printable, shell_line
+from analysis.runs.named import suggested
 from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts import materials, packings
@@ -110,6 +111,12 @@ def main(arguments):
             raise ParameterError("from = : must be a file")
         _save_from(texts.pop("from"), files, texts)
         return 0
+    names = ["from", *(name for name in MadeParameters.columns() if name not in (*WITHOUT_EFFECT, "file"))]
+    for name in texts:
+        if name not in MadeParameters.columns():
+            raise ParameterError(
+                f"{name}: unknown parameter{suggested(name, names, '; must be one that --help lists')}"
+            )
     parameters = MadeParameters.parse(texts)
     for index, file in enumerate(files):
         make_packing(file, parameters, index)

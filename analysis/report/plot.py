@@ -64,7 +64,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
 
     what: "sticking" (fraction of the runs that stick, with exact 95 % intervals; of the decided ones: those that are undecided, or
     have not ended, widen the interval, counted either way, and are named above, as are those that never met, which are left out),
-    "largest" (mass fraction of the largest piece), "energy" (change of every channel from the start to the end, over K(0)), or any
+    "largest" (mass fraction of the largest piece), "energy" (change of every channel from the start to the end, over K(0); kinetic: what is left), or any
     column. x: a column of numbers; by: a column that tells curves (panels, of "energy") apart; where: {column: value} of the runs
     that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it spans a decade). Bars but of "sticking" are standard
     errors of the mean over pairs of aggregates, which are told by their seed and their files; open points are single pairs. Runs of a
@@ -130,7 +130,7 @@ def _curves(what, found, x, by, logarithmic):
     labels = {
         "sticking": "runs that stick, of the decided ones",
         "largest": "mass of the largest piece, of all",
-        "energy": "change from start to end, of K(0)  [%]",
+        "energy": "change from start to end (kinetic: what is left), of K(0)  [%]",
     }
     return CurveFigure(
         *(what, "", what, x),

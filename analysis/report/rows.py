@@ -187,8 +187,11 @@ def parameters_of(run):
 
 def varied(found):
     """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, of the
-    distribution of sizes, the duration, and the size of aggregates that are grown or read, or grains of those that are cut."""
+    distribution of sizes, the duration, the projectile's grains where both have as many, and the size of aggregates that are grown or read, or
+    grains of those that are cut."""
     names = [name for name in found.attrs.get("parameters", ()) if found[name].nunique(dropna=False) > 1]
+    if {"grains", "projectileGrains"} <= set(names) and (found.projectileGrains == found.grains).all():
+        names.remove("projectileGrains")
     packings = set(found.packing) if "packing" in found else set()
     cut, sizes = ("grains", "projectileGrains"), ("filling", "radius")
     sizes = cut if packings == {"cpe"} else () if "cpe" in packings else sizes

@@ -62,7 +62,10 @@ def test_pairs_are_told_by_their_files(runs):
 
 
 def test_what_follows_from_what_is_drawn_apart_needs_no_choice(runs):
-    """The ratio of sizes, where it is one."""
+    """The ratio of sizes, where it is one, and the projectile's grains, where both have as many."""
+    grown = runs.assign(grains=[16, 30] * 4, projectileGrains=[16, 30] * 4)
+    grown.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "grains", "projectileGrains"]}
+    assert len(plot("largest", grown, by="grains").axes[0].get_legend_handles_labels()[1]) == 2
     sizes = runs.assign(sizes=["two", "equal"] * 4, sizeRatio=[3.0, None] * 4)
     sizes.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "sizes", "sizeRatio"]}
     assert len(plot("largest", sizes, by="sizes").axes[0].get_legend_handles_labels()[1]) == 2

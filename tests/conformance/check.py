@@ -107,4 +107,4 @@ def main(path, *options):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]) if len(sys.argv) > 1 else __doc__)
+    sys.exit(print(__doc__) if "--help" in sys.argv else main(*sys.argv[1:]) if len(sys.argv) > 1 else __doc__)

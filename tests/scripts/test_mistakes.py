@@ -90,7 +90,7 @@ MISTAKES = {
     "make_packing a.txt": "a.txt: a packing is saved as .npz; must end in .npz",
     "make_packing a.npz packing=file file=b.npz": "packing = file: must be cpe or bcca or bpca",
     "make_packing a.npz filling=0.8": "must be at most 0.7519",
-    "make_packing a.npz velocity=3": "velocity: unknown parameter; must be one of packing, filling",
+    "make_packing a.npz velocity=3": "velocity: unknown parameter; must be one of from, packing, filling",
     "make_packing a.npz density=900": "density: a packing doesn't depend on it; must be left out",
     "make_packing a.npz surfaceEnergy=1e4 unusual=1": "grainRadius = 1e-07: contacts at rest have a radius of ",
     "make_packing a.npz b.npz from=text.txt": "b.npz: from = text.txt is one aggregate; must be one file",

@@ -58,7 +58,9 @@ class RunParameters(Parameters):
         "run folder (runs/<description of the row, or a name made from the parameters>)",
         of_consequence=False,
     )
-    overwrite: int = parameter(0, SWITCH, "1: replace a run that has ended", of_consequence=False)
+    overwrite: int = parameter(
+        0, SWITCH, "1: replace a run that has ended, or was stopped (its checkpoint goes)", of_consequence=False
+    )
     resume: int = parameter(
         0, SWITCH, "1: resume from the run folder's checkpoint, if there is one", of_consequence=False
     )
