@@ -185,7 +185,8 @@ $(OBJECTS_FOLDER)/yade_interface/proof/members_compared.o: build/yade_version.li
 $(OBJECTS_FOLDER)/yade_interface/proof/members_compared.o: YADE_DEFINITIONS += -DCONTACT_LAW_YADE_VERSION='"$(YADE_VERSION)"'
 
 # Changed only when what they hold changes, so that objects are made again then, and only then.
-COMMIT := $(shell c=$$(git rev-parse HEAD 2>/dev/null) || c=unknown; \
+# The commit is the last that changed what runs are made by: checkpoints outlive the others.
+COMMIT := $(shell c=$$(git log -1 --format=%H -- contact_law yade_scripts Makefile 2>/dev/null); c=$${c:-unknown}; \
 	git diff --quiet HEAD -- contact_law Makefile 2>/dev/null || [ $$c = unknown ] || c=$$c-changed; echo $$c)
 define LIST
 build/$1.list: always
