@@ -170,7 +170,7 @@ class Fraction(Number):
         return max(float(fisher_exact(table)[1]) for table in tables)
 
     def __repr__(self):
-        return f"{self.successes} of {self.pairs}" + (f", {self.undecided} undecided" if self.undecided else "")
+        return f"{self.successes} of {self.pairs}" + (f" ({self.undecided} undecided)" if self.undecided else "")
 
 
 def mean(of_pairs):

@@ -89,7 +89,7 @@ def test_pairs_count_once_and_changed_ones_apart(results):
     depth = TRUTH.at(40.0, VELOCITY)[0] + 2 * TRUTH.offset
     assert change.value == pytest.approx(0.045 * depth, rel=0.02) and change.pairs == 2
     assert repr(results["sticking"].at(**where, duration=3e-6)) == "1 of 1"
-    for name, expected in (("sticking", "0 of 4, 1 undecided"), ("in_one_piece", "1 of 4")):
+    for name, expected in (("sticking", "0 of 4 (1 undecided)"), ("in_one_piece", "1 of 4")):
         assert repr(results[name].at(filling=FILLING, radius=80.0, velocity=VELOCITY)) == expected
 
 
