@@ -26,6 +26,10 @@ def test_both_kinds_from_the_first_touch_on(tmp_path, capsys):
     assert [(row["kind"], row["value"]) for row in found["compression"]] == [("CPE", deepest), ("compressed", deepest)]
     assert all(row["value"] == pytest.approx(99e-9, rel=0.02) and row["pairs"] == 3 for row in found["t_max"])
     assert all(row["value"] == pytest.approx(1.0) for row in (*found["compression_ratio"], *found["lost"]))
+    # A24 eqs 31 and 44, of spheres of 400 kg/m^3 with R* = 10 r
+    over = 16 / 3 * 400 * 3.0**2 / (0.1 * deepest.expected) ** 2 / (0.47e6 * (1 / 0.4 - 1 / 0.74) ** -3)
+    for name in ("over_static", "collision_over_kind"):
+        assert found[name] and all(row["value"] == pytest.approx(over, rel=3e-3) for row in found[name]), name
     assert found["sticking"][0]["value"] == 1.0 and (tmp_path / "out" / "channels.png").exists()
 
 
