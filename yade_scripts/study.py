@@ -116,6 +116,8 @@ def submit(study, at_once, sbatch, dry_run):
     left = [row for row, state, there in zip(study.rows, states, queued) if state.kind == WAITING and not there]
     slurm.require_usable(study.folder)
     if dry_run:
+        if not left:
+            tell("all rows have ended, or are in the queue: nothing to submit", SCRIPT)
         print("\n".join(slurm.scripts(study.folder, left, at_once, sbatch)), end="")
         return int(bool(failures))
     for job, group, tasks in slurm.submit(study.folder, left, at_once, sbatch):
@@ -205,7 +207,7 @@ def main(arguments):
     try:
         study = Study(table, options.jobs or os.cpu_count(), run_scripts=not options.status)
         if options.status:
-            print(study.text(view.full_table))
+            print(study.text(view.full_table) + study.undecided())
             return 0
         if not options.dry_run:
             study.folder.lock()

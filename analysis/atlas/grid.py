@@ -15,7 +15,7 @@ from .columns import breaking_velocity
 from .neighbours import MARGIN, NEAR, ONE_CONTACT, Neighbours
 from .outcome_table import INSIDE, Axis, OutcomeTable, read_outcomes
 from .remains import OF_KIND
-from .rules import KINDS, gain
+from .rules import KEPT, KINDS, gain
 from .variables import CLOSE_PACKED, GROWN, LEFT, STRUCTURES
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
@@ -105,6 +105,8 @@ def outcome_grid(model, structure, version, upto=1.0):
     values = np.empty((len(points), len(columns)))
     values[inside] = found.reindex(columns=columns)
     values[~inside] = values[inside][_nearest(axes, points[~inside], own)]
+    loss = columns.index("loss_erosion")  # the nearest may be of another mass ratio
+    values[:, loss] = np.minimum(values[:, loss], (1 - KEPT) / points.mass_ratio)
     values[:, columns.index("inside")], values[:, columns.index("runs")] = inside, near.within(points, averaged)
     about = ABOUT.format(
         version=version,

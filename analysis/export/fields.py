@@ -72,7 +72,7 @@ GRAINS = (
     Field("v", "m/s", "velocity", lambda e: e.state.velocity),
     Field("omega", "rad/s", "angular velocity", lambda e: e.state.angular_velocity),
     Field("aggregate", "", "aggregate at the start", lambda e: e.state.aggregate.astype(int)),
-    Field("fragment", "", "fragment, 0 the largest", lambda e: e.fragments()),
+    Field("fragment", "", "fragment, 0 that of the most grains", lambda e: e.fragments()),
     Field("coordination", "", "number of contacts", lambda e: e.coordination()),
     Field("normal_force", "N", "sum of the normal forces of the contacts", lambda e: e.normal_forces()),
 )

@@ -63,6 +63,13 @@ def tension(history, width):
     return fillings, -pressures
 
 
+def tensile_strength(history, width):
+    """(largest tension() [Pa], the filling factor there); NaN of a cell that was not stretched."""
+    fillings, stress = tension(history, width)
+    k = np.argmax(stress) if len(stress) else None
+    return (float("nan"),) * 2 if k is None else (float(stress[k]), float(fillings[k]))
+
+
 def _work_over_volume(history, part, width):
     time, work, filling = history["time"][part], work_on_boundaries(history)[part], history["filling"][part]
     size = volume(history)[part]

@@ -10,7 +10,7 @@ import pandas
 
 from ..arguments import Kind, one_of, takes, wrong
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
-from ..runs.format import CHANNELS
+from ..runs.format import CHANNELS, COMPRESSION
 from ..runs.named import unknown
 from ..runs.table import RUN
 from ..studies.curve_figure import CurveFigure
@@ -64,7 +64,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
 
     what: "sticking" (fraction of the runs that stick, with exact 95 % intervals; of the decided ones: those that are undecided, or
     have not ended, widen the interval, counted either way, and are named above, as are those that never met, which are left out),
-    "largest" (mass fraction of the largest piece), "energy" (change of every channel from the start to the end, over K(0); kinetic: what is left), or any
+    "largest" (mass fraction of the largest piece), "energy" (change of every channel from the start to the end, over K(0), or of compressions the boundaries' work; kinetic: what is left), or any
     column. x: a column of numbers; by: a column that tells curves (panels, of "energy") apart; where: {column: value} of the runs
     that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it spans a decade). Bars but of "sticking" are standard
     errors of the mean over pairs of aggregates, which are told by their seed and their files; open points are single pairs. Runs of a
@@ -127,10 +127,11 @@ def _curves(what, found, x, by, logarithmic):
     if logarithmic is None:
         low, high = found[x].min(), found[x].max()
         logarithmic = "x" if low > 0 and high >= 10 * low else ""
+    of_work = (found[KIND] == COMPRESSION.name).all()
     labels = {
         "sticking": "runs that stick, of the decided ones",
         "largest": "mass of the largest piece, of all",
-        "energy": "change from start to end (kinetic: what is left), of K(0)  [%]",
+        "energy": "change, of the boundaries' work  [%]" if of_work else "change (kinetic: end), of K(0)  [%]",
     }
     return CurveFigure(
         *(what, "", what, x),

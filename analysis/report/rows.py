@@ -11,16 +11,16 @@ import pandas
 from ..arguments import FLAG, PATH, takes, wrong
 from ..measures.coordination import mean_coordination
 from ..measures.fragments import fragment_labels, heaviest_fragment
-from ..measures.ledger import fractions_at
+from ..measures.ledger import fractions_at, work_on_boundaries
 from ..measures.periodic_compression import AVERAGED, pressure_at_end
 from ..measures.pieces import STRUCTURE, structure_of
 from ..progress import progress
 from ..runs.arrays import RunFolderError
 from ..runs.collect import run_folders
 from ..runs.folder import RunFolder, open_run
-from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, PARAMETER_UNITS, RUN_KINDS
+from ..runs.format import BONDS, CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, PARAMETER_UNITS, RUN_KINDS
 from ..runs.table import FOLDER, RUN, Column, columns_text, described, make_table
-from .summary import COMPRESSION_KEYS, ENERGY_KEYS, OUTCOME_KEYS, summarise
+from .summary import COMPRESSION_KEYS, ENERGY_KEYS, OUTCOME_KEYS, TENSION_KEYS, summarise
 
 at_end = "{}_at_end".format
 final = "final_{}".format
@@ -45,6 +45,7 @@ OUTCOME = (
     *(column for column in OUTCOME_KEYS if column.name != "mass_fractions"),
     Column("largest_fraction", "1", "fraction of the mass in the largest piece", gaps=True),
     Column("second_fraction", "1", "in the second largest", gaps=True),
+    *TENSION_KEYS,
 )
 LARGEST = (
     *(Column(of_largest(c.name), c.unit, f"of the largest piece: {c.meaning}", gaps=True) for c in STRUCTURE),
@@ -54,7 +55,10 @@ ENERGIES = (
     *ENERGY_KEYS,
     *(
         Column(
-            at_end(c.name), "K(0)", f"{c.label}, change from the start to the end (kinetic: what is left)", gaps=True
+            at_end(c.name),
+            "K(0)",
+            f"{c.label}, change from the start to the end (kinetic: what is left); of a compression over the boundaries' largest work, W",
+            gaps=True,
         )
         for c in CHANNEL_TABLE
     ),
@@ -67,8 +71,7 @@ SERIES = tuple(
         PRESSURE if series.name == "pressure" else f"at the end: {series.meaning}",
         gaps=True,
     )
-    for kind in RUN_KINDS.values()
-    for series in kind.series
+    for series in (*BONDS, *(series for kind in RUN_KINDS.values() for series in kind.series))
 )
 MEASURED = (*OUTCOME, *LARGEST, *COMPRESSION_KEYS, *ENERGIES, *SERIES)
 OF_EQUAL = "d", "v"  # series without a meaning where the aggregates' masses differ
@@ -154,16 +157,16 @@ def row(run, structure=True):
     numbers = summarise(run)
     del numbers[RUN]
     fractions = numbers.pop("mass_fractions") or (None, None)
-    of_k = fractions_at(run.history, run.history["time"][-1]) or {}
+    changes = _changes(run)
     without = OF_EQUAL if run.kind is COLLISION and numbers["d_max"] is None else ()
     values = {
         "kind": run.kind.name,
         **numbers,
         **dict(zip(("largest_fraction", "second_fraction"), fractions)),
-        **{at_end(channel): of_k.get(channel) for channel in CHANNELS},
+        **{at_end(channel): changes.get(channel) for channel in CHANNELS},
         **{
             final(series.name): None if series.name in without else _at_end(run, series.name)
-            for series in run.kind.series
+            for series in (*BONDS, *run.kind.series)
             if series.name in run.history
         },
         **(_largest(run.last) if structure else {}),
@@ -171,6 +174,14 @@ def row(run, structure=True):
     numeric = {column.name for column in MEASURED if column.kind == "f"}
     gaps = {name: np.nan for name, value in values.items() if value is None and name in numeric}
     return {**parameters_of(run), **values, **gaps}
+
+
+def _changes(run):
+    """{channel: change from the start to the end}, over K(0); of a compression, which starts almost at rest, over the boundaries' largest work."""
+    if run.kind is not COMPRESSION:
+        return fractions_at(run.history, run.history["time"][-1]) or {}
+    work = np.abs(work_on_boundaries(run.history)).max()
+    return {c: (run.history[c][-1] - run.history[c][0]) / work for c in CHANNELS} if work > 0 else {}
 
 
 def _at_end(run, name):
@@ -187,7 +198,7 @@ def parameters_of(run):
 
 def varied(found):
     """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, of the
-    distribution of sizes, the duration, the projectile's grains where both have as many, and the size of aggregates that are grown or read, or
+    distribution of sizes, the duration, the filling that a compression starts from, the projectile's grains where both have as many, and the size of aggregates that are grown or read, or
     grains of those that are cut."""
     names = [name for name in found.attrs.get("parameters", ()) if found[name].nunique(dropna=False) > 1]
     if {"grains", "projectileGrains"} <= set(names) and (found.projectileGrains == found.grains).all():
@@ -195,7 +206,7 @@ def varied(found):
     packings = set(found.packing) if "packing" in found else set()
     cut, sizes = ("grains", "projectileGrains"), ("filling", "radius")
     sizes = cut if packings == {"cpe"} else () if "cpe" in packings else sizes
-    for name in (*_FOLLOWING, "duration", *sizes):
+    for name in (*_FOLLOWING, "duration", "initialFilling", *sizes):
         leading = _FOLLOWING.get(name)
         others = [other for other in names if (other == leading if leading else other != name)]
         if name in names and others and found.groupby(others, dropna=False)[name].nunique().max() == 1:

@@ -6,7 +6,7 @@ from ..arguments import Kind, takes
 from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure, work_on_boundaries
 from ..measures.of_run import are_equal, maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
-from ..measures.periodic_compression import AVERAGED, pressure_at_end
+from ..measures.periodic_compression import AVERAGED, pressure_at_end, tensile_strength
 from ..runs.folder import RunFolder
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, LABELS
 from ..runs.shown import WIDTH, settings
@@ -19,6 +19,11 @@ COMPRESSION_KEYS = (
     Column("t_max", "s", "its time", gaps=True),
     Column("t_max_error", "s", "its error", gaps=True),
     Column("maximum_inside", "", "False: d_max is only a bound, at an end of the record", "O", gaps=True),
+)
+# Of a compression that was stretched afterwards.
+TENSION_KEYS = (
+    Column("tensile_strength", "Pa", f"largest tension while stretched, over {AVERAGED:g} t0", gaps=True),
+    Column("tensile_filling", "1", "filling factor there", gaps=True),
 )
 OUTCOME_KEYS = (
     Column("restitution", "1", "coefficient of restitution, where there is one (measures.outcome)", gaps=True),
@@ -49,7 +54,7 @@ ENERGY_KEYS = (
 @takes(run=Kind("a RunFolder, as open_run() gives", lambda run: isinstance(run, RunFolder)))
 def summarise(run):
     """Numbers of a RunFolder as a dict, SI units, None where a value does not exist: run (path), ended, time (of the last
-    sample), ended_by (what ended a compression), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions) and ENERGY_KEYS. RunFolderError when a
+    sample), ended_by (what ended a compression), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions), TENSION_KEYS and ENERGY_KEYS. RunFolderError when a
     state is missing or damaged."""
     history = run.history
     collision = run.kind is COLLISION
@@ -58,6 +63,7 @@ def summarise(run):
     numbers["ended_by"] = run.record.get("endedBy")
     numbers.update(_compression(maximum))
     numbers.update(_outcome(run) if collision else dict.fromkeys(_names(OUTCOME_KEYS)))
+    numbers.update(dict.fromkeys(_names(TENSION_KEYS)) if run.kind is not COMPRESSION else _tension(run))
     numbers["energy_closure"] = (work_closure if run.kind is COMPRESSION else closure)(history)
     numbers["initial_kinetic_energy"] = initial_kinetic_energy(history)
     numbers.update(final_values(history))
@@ -109,6 +115,12 @@ def _measures(run, numbers):
     yield "energy closure", (f"undefined: no {unit}" if closed is None else f"{closed:.3g} of {unit}")
 
 
+def _tension(run):
+    """TENSION_KEYS of a compression; None where it was not stretched."""
+    found = tensile_strength(run.history, AVERAGED * run.derived["timeUnit"])
+    return {name: value if value == value else None for name, value in zip(_names(TENSION_KEYS), found)}
+
+
 def _energy_unit(run, numbers):
     """(energy [J], its name) that changes of energy are told in."""
     if run.kind is COMPRESSION:
@@ -121,6 +133,11 @@ def _compression_measures(run, numbers):
     yield "filling factor", f"{history['filling'][0]:.4g} to {history['filling'][largest]:.4g}"
     if largest + 1 < len(history["filling"]):
         yield "stretched to", f"{history['filling'][-1]:.4g}"
+    if numbers["tensile_strength"] is not None:
+        yield (
+            "tensile strength",
+            f"{numbers['tensile_strength']:.4g} Pa at a filling factor of {numbers['tensile_filling']:.4g}",
+        )
     yield "coordination", f"{history['coordination'][0]:.4g} to {history['coordination'][largest]:.4g}"
     pressed = {name: series[: largest + 1] for name, series in history.items()}
     pressure = pressure_at_end(pressed, AVERAGED * run.derived["timeUnit"])

@@ -114,8 +114,7 @@ class RunKind:
         """Quantities of history.npz, in the order of its columns: time, the channels, the contacts, broken bonds by mode
         (where there were bonds at the start), the kind's own."""
         channels = (Quantity(c.name, ("T",), "J", c.label, since=c.since) for c in CHANNEL_TABLE)
-        bonds = (Quantity(name, ("T",), "", "sintered bonds broken since the start", "i", optional=True) for name in BROKEN_BONDS)
-        return (TIME_SERIES, *channels, CONTACTS, *bonds, *self.series)
+        return (TIME_SERIES, *channels, CONTACTS, *BONDS, *self.series)
 
     @property
     def states(self):
@@ -128,6 +127,7 @@ CONTACTS = Quantity("contacts", ("T",), "", "number of contacts", "i")
 
 # Sintered bonds that have broken since the start, by mode: names in the history, and their order in a state.
 BROKEN_BONDS = ("brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting")
+BONDS = tuple(Quantity(name, ("T",), "", "sintered bonds broken since the start", "i", optional=True) for name in BROKEN_BONDS)
 
 STATE = (
     Quantity("time", (), "s", "time"),

@@ -89,9 +89,12 @@ class Runs:
         table = self.table.assign(value=self._values(values).astype(bool) & ~maybe, maybe=maybe)
         found = {}
         for key, rows in _groups(table, by):
-            if self._names(rows).duplicated().any():
+            twice = self._names(rows).duplicated(keep=False)
+            if twice.any():
+                place = ", ".join(f"{name} = {value}" for name, value in zip(by, key))
+                runs = ", ".join(map(str, rows[twice].get("run", [])[:2]))
                 raise ValueError(
-                    f"{dict(zip(by, key))}: a pair of aggregates has several runs, and would count more than once"
+                    f"{place}: a pair of aggregates has several runs ({runs}); must have one, which counts"
                 )
             found[key] = Fraction(int(rows.value.sum()), len(rows), int(rows.maybe.sum()))
         return _series(found, by)

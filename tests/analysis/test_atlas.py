@@ -7,8 +7,8 @@ from written_runs import two_pairs
 
 import analysis
 from analysis.__main__ import main
+from analysis.atlas import grid, rules
 from analysis.atlas import query as query_of
-from analysis.atlas import rules
 from analysis.atlas.barrier import barrier
 from analysis.atlas.columns import MEASURED, breaking_velocity
 from analysis.atlas.grid import COLUMNS, ERRORS, INTERVALS, PROBABILITIES, outcome_axes, outcome_grid
@@ -17,6 +17,7 @@ from analysis.atlas.neighbours import MARGIN, Neighbours
 from analysis.atlas.outcome_table import Axis, OutcomeTable, read_outcomes, write_outcomes
 from analysis.atlas.power_law import power_law_index
 from analysis.atlas.remains import Remains
+from analysis.atlas.rules import KEPT
 from analysis.atlas.scores import within
 from analysis.atlas.variables import GROWN, STRUCTURES, energy, fit_and_held_out, of_structure, variables
 from analysis.runs.table import make_table, read_table, table_text
@@ -266,6 +267,18 @@ def test_the_gallerys_tables_tell_pieces_of_held_out_runs():
         assert structure != GROWN or inside[fluffy].mean() > 0.9 and fluffy.sum() > 50
     holds = np.concatenate(holds)
     assert holds.mean() > 0.85 and len(holds) > 250
+
+
+def test_no_aggregate_loses_more_than_an_eroded_one_may_at_the_gallerys_nodes():
+    """Half of its mass (rules.KEPT), and of the two largest pieces the second is no larger."""
+    files = sorted(grid.FOLDER.glob("outcomes*.txt"))
+    assert len(files) == 4
+    for table in map(read_outcomes, files):
+        of = lambda name: table.values[..., table.columns.index(name)]
+        along = [-1 if axis.name == "mass_ratio" else 1 for axis in table.axes]
+        ratio = table.axes[along.index(-1)].nodes.reshape(along)
+        assert np.all(of("loss_erosion") * ratio <= KEPT + 1e-4)
+        assert np.all(of("second") <= np.minimum(of("largest"), 1 - of("largest")) + 1e-4)
 
 
 def test_command_with_the_gallerys_atlas(capsys, monkeypatch):

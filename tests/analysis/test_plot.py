@@ -2,10 +2,12 @@
 
 import pandas
 import pytest
+from made_compressions import made_compression
 
 from analysis import exact_interval
 from analysis.__main__ import main
 from analysis.report.plot import CannotPlot, plot
+from analysis.report.rows import table
 
 ENDS = {
     1.0: ("sticking", "sticking", "bouncing", "undecided: still moving"),
@@ -85,6 +87,21 @@ def test_runs_of_a_kind_without_what_is_drawn_are_left_out(runs):
     assert drawn(plot("time", both, x="finalFilling"))[0] == [(0.3, 1.0), (0.4, 1.0)]
     with pytest.raises(CannotPlot, match="^the runs are of the kinds collision, compression: choose where kind$"):
         plot("time", both, x="seed")
+
+
+def test_compressions_of_several_clusters(tmp_path):
+    """Each starts from a filling of its own; energies are over the boundaries' work; of a stretched one the strength is told."""
+    pressure = lambda filling: 4.7e5 * filling**3
+    for seed in (1, 2):
+        made_compression(
+            tmp_path / str(seed), seed, pressure, low=0.002 * seed, initialFilling=0.002 * seed, stretched=True
+        )
+    found = table(tmp_path)
+    assert len(plot("energy", found, x="strainRate").axes[0].lines) > 3
+    assert "2 runs" in drawn(plot("final_filling", found, x="strainRate"))[2]
+    lost = (found.rollingDissipation_at_end + found.twistingDissipation_at_end).tolist()
+    assert lost == pytest.approx((-found.boundaryWork_at_end).tolist(), rel=1e-6) and lost[0] == pytest.approx(1.0)
+    assert (found.tensile_strength > 1e4).all() and (found.tensile_filling > 0.4).all()
 
 
 def test_equal_curves_stand_beside_each_other(runs):

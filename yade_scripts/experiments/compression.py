@@ -114,12 +114,18 @@ class CompressionParameters(GrainParameters, RunParameters):
         """Refuses an end of a stretching that is not wanted."""
         if self.stretchFilling is not None and self.stretch == "no":
             raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: given with stretch = no; must be left out")
+        self.require_stretched_below(self.finalFilling)
         packing = PACKING[self.boundary]
         if self.packing not in (None, packing):
             raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
         if self.boundary == WALLS:
             self._require_of_walls()
         return super(CompressionParameters, self.changed(packing=packing)).filled_in()
+
+    def require_stretched_below(self, final):
+        """Raises ParameterError where the stretching would end at a filling factor of final (None: not known) or above."""
+        if None not in (self.stretchFilling, final) and self.stretchFilling >= final:
+            raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: must be below finalFilling = {final:g}")
 
     def _require_of_walls(self):
         for name, must, why in (
@@ -186,9 +192,7 @@ def _with_ends(parameters, constants):
             f"grains = {parameters.grains}: the cell would be too small at a filling of {final:.3g}; must be at least "
             f"{fewest:.0f}, or finalFilling at most {parameters.grains / fewest * final:.3g}"
         )
-    loose = parameters.stretchFilling
-    if loose is not None and loose >= final:
-        raise ParameterError(f"stretchFilling = {loose:g}: must be below finalFilling = {final:g}")
+    parameters.require_stretched_below(final)
     return parameters.changed(finalFilling=final)
 
 

@@ -50,9 +50,7 @@ def _stretching(run, row):
     """Largest tension [Pa] and where it is, NaN for a cell that is not stretched; number of axes."""
     history, largest = run.history, int(np.argmax(run.history["filling"]))
     grown = [history[f"edge_{axis}"][-1] > history[f"edge_{axis}"][largest] * (1.0 + 1e-6) for axis in "xyz"]
-    fillings, stress = cells.tension(history, cells.AVERAGED * row["time_unit"])
-    strength, filling = (stress.max(), fillings[np.argmax(stress)]) if len(stress) else (np.nan, np.nan)
-    return float(strength), float(filling), int(sum(grown))
+    return *cells.tensile_strength(history, cells.AVERAGED * row["time_unit"]), int(sum(grown))
 
 
 def _filling_of(run, state):
