@@ -93,9 +93,7 @@ class Runs:
             if twice.any():
                 place = ", ".join(f"{name} = {value}" for name, value in zip(by, key))
                 runs = ", ".join(map(str, rows[twice].get("run", [])[:2]))
-                raise ValueError(
-                    f"{place}: a pair of aggregates has several runs ({runs}); must have one, which counts"
-                )
+                raise ValueError(f"{place}: a pair of aggregates has several runs ({runs}); must have one")
             found[key] = Fraction(int(rows.value.sum()), len(rows), int(rows.maybe.sum()))
         return _series(found, by)
 

@@ -86,12 +86,8 @@ def read(path, run_scripts=True):
                 parameters = RunParameters.parse(known, row.description)
             threads = _threads_of_yade(row.cells, parameters)
         except UnknownParameter as problem:  # a column's, of all rows
-            of = (
-                ""
-                if "!SCRIPT" in row.cells
-                else f", of {os.path.basename(DEFAULT_SCRIPT)}: a column !SCRIPT names another script"
-            )
-            raise table.TableError(f"{path}: {problem}{of}") from None
+            of = os.path.basename(script) + (": a column !SCRIPT names another" if "!SCRIPT" not in row.cells else "")
+            raise table.TableError(f"{path}: {problem}, of {of}") from None
         except (ParameterError, NoKind) as problem:
             parameters, error = None, f"line {row.line} of {path}: {problem}"
         for key in {f"description = {row.description}", f"out = {parameters.out if parameters else name}"}:
