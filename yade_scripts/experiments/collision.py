@@ -16,6 +16,7 @@ from yade_scripts.experiments.collision_step import (
     complete,
     expected_step,
     reason_of_step,
+    require_sintered,
     require_step_of_files,
 )
 from yade_scripts.experiments.plate import AGGREGATE, WALL
@@ -112,6 +113,8 @@ class CollisionParameters(AggregateParameters, RunParameters):
             raise ParameterError(
                 f"initialOverlap = {found.initialOverlap:g}: given with neck = {found.neck:g}; must be 1, bonds start at rest"
             )
+        if found.neck and found.packing != "file":  # a file may say its material itself
+            require_sintered(found.neck, pair_constants(found))
         return found
 
     def of_projectile(self):

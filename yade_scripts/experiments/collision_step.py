@@ -21,7 +21,7 @@ def complete(parameters, constants, threads):
     if parameters.sizes != EQUAL:
         smallest = parameters.radius_range()[0]
         require_small_contacts(pair_constants(parameters, (smallest, smallest)))
-    _require_sintered(parameters.neck, constants)
+    require_sintered(parameters.neck, constants)
     limit = step_limit(parameters, constants)
     if parameters.stepFraction == AUTO:
         parameters = parameters.changed(stepFraction=_longest_step(parameters, constants, limit))
@@ -84,7 +84,8 @@ def _longest_step(parameters, constants, limit):
     )
 
 
-def _require_sintered(neck, constants):
+def require_sintered(neck, constants):
+    """Raise ParameterError for a neck (radii of a grain) that is thinner than the contact itself."""
     unsintered = constants["equilibriumContactRadius"] / (2 * constants["reducedRadius"])
     if 0 < neck <= unsintered:
         raise ParameterError(
