@@ -25,7 +25,6 @@ from analysis.signals import end_quietly
 end_quietly(signal.SIGINT, signal.SIGTERM)
 require_libraries()
 from analysis.printable import printable, shell_line
-from analysis.runs.named import suggested
 from analysis.runs.write import require_file
 from analysis.version import version_text
 from yade_scripts import materials, packings
@@ -33,7 +32,7 @@ from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
 from yade_scripts.packings.cut import CutParameters, cut, is_periodic_state, read_periodic_state
 from yade_scripts.packings.describe import description
 from yade_scripts.packings.imported import ImportParameters, grains_of, imported
-from yade_scripts.parameters import ParameterError, one_of, parameter
+from yade_scripts.parameters import ParameterError, one_of, parameter, unknown
 from yade_scripts.parameters.errors import one_line_errors
 from yade_scripts.run.arguments import from_arguments
 
@@ -114,9 +113,7 @@ def main(arguments):
     names = ["from", *(name for name in MadeParameters.columns() if name not in (*WITHOUT_EFFECT, "file"))]
     for name in texts:
         if name not in MadeParameters.columns():
-            raise ParameterError(
-                f"{name}: unknown parameter{suggested(name, names, '; must be one that --help lists')}"
-            )
+            raise unknown(name, names)
     parameters = MadeParameters.parse(texts)
     for index, file in enumerate(files):
         make_packing(file, parameters, index)

@@ -207,7 +207,8 @@ def main(arguments):
     try:
         study = Study(table, options.jobs or os.cpu_count(), run_scripts=not options.status)
         if options.status:
-            print(study.text(view.full_table) + study.undecided())
+            states, _ = study.states_with_queue()
+            print(study.drawn(view.full_table, states) + study.undecided(states))
             return 0
         if not options.dry_run:
             study.folder.lock()

@@ -105,7 +105,8 @@ def outcome_grid(model, structure, version, upto=1.0):
     values = np.empty((len(points), len(columns)))
     values[inside] = found.reindex(columns=columns)
     values[~inside] = values[inside][_nearest(axes, points[~inside], own)]
-    loss = columns.index("loss_erosion")  # the nearest may be of another mass ratio
+    # An eroded aggregate loses less than runs of a smaller mass ratio, which count here too, lose over their projectile's mass.
+    loss = columns.index("loss_erosion")
     values[:, loss] = np.minimum(values[:, loss], (1 - KEPT) / points.mass_ratio)
     values[:, columns.index("inside")], values[:, columns.index("runs")] = inside, near.within(points, averaged)
     about = ABOUT.format(

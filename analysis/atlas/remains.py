@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 import pandas
 
-from .rules import KEPT, KINDS
+from .rules import KINDS
 from .variables import LEFT, SEED, folds, left, offsets, scaled, variables
 
 TREES, LEAF = 100, 3  # of the forest, and runs in a leaf of it
@@ -60,9 +60,7 @@ class Remains:
             found = _in_table(pieces.assign(**told), here)
             found["second"] = np.minimum(found.second, np.minimum(found.largest, 1 - found.largest))
             transfer, erosion, fragmentation = (of_kinds[KINDS.index(kind)] for kind in OF_KIND.values())
-            # Runs of smaller projectiles lose more of these than what an eroded aggregate can lose to one like itself.
-            eroded = np.minimum(erosion.eroded, (1 - KEPT) / here.mass_ratio)
-            values = transfer.gained, eroded, 1 + fragmentation.lost
+            values = transfer.gained, erosion.eroded, 1 + fragmentation.lost
             parts.append(found.assign(**dict(zip(OF_KIND, values))))
         return pandas.concat(parts, ignore_index=True)
 

@@ -47,10 +47,15 @@ def work_on_boundaries(history):
     return history["boundaryWork"] + history["constraintWork"]
 
 
+def largest_work(history):
+    """Largest work [J] on the boundaries, either way: the unit of energies of a cell that starts almost at rest."""
+    return float(np.abs(work_on_boundaries(history)).max())
+
+
 def work_closure(history):
     """max over t of |E(t) - E(0)| over the largest work of the boundaries, of a cell that starts almost at rest; None
     where they did none."""
-    total, work = total_energy(history), float(np.abs(work_on_boundaries(history)).max())
+    total, work = total_energy(history), largest_work(history)
     return float(np.abs(total - total[0]).max()) / work if work > 0 else None
 
 

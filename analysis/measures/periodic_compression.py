@@ -66,8 +66,10 @@ def tension(history, width):
 def tensile_strength(history, width):
     """(largest tension() [Pa], the filling factor there); NaN of a cell that was not stretched."""
     fillings, stress = tension(history, width)
-    k = np.argmax(stress) if len(stress) else None
-    return (float("nan"),) * 2 if k is None else (float(stress[k]), float(fillings[k]))
+    if not len(stress):
+        return float("nan"), float("nan")
+    k = np.argmax(stress)
+    return float(stress[k]), float(fillings[k])
 
 
 def _work_over_volume(history, part, width):

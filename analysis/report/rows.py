@@ -11,7 +11,7 @@ import pandas
 from ..arguments import FLAG, PATH, takes, wrong
 from ..measures.coordination import mean_coordination
 from ..measures.fragments import fragment_labels, heaviest_fragment
-from ..measures.ledger import fractions_at, work_on_boundaries
+from ..measures.ledger import fractions_at, largest_work
 from ..measures.periodic_compression import AVERAGED, pressure_at_end
 from ..measures.pieces import STRUCTURE, structure_of
 from ..progress import progress
@@ -180,7 +180,7 @@ def _changes(run):
     """{channel: change from the start to the end}, over K(0); of a compression, which starts almost at rest, over the boundaries' largest work."""
     if run.kind is not COMPRESSION:
         return fractions_at(run.history, run.history["time"][-1]) or {}
-    work = np.abs(work_on_boundaries(run.history)).max()
+    work = largest_work(run.history)
     return {c: (run.history[c][-1] - run.history[c][0]) / work for c in CHANNELS} if work > 0 else {}
 
 
@@ -198,8 +198,8 @@ def parameters_of(run):
 
 def varied(found):
     """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, of the
-    distribution of sizes, the duration, the filling that a compression starts from, the projectile's grains where both have as many, and the size of aggregates that are grown or read, or
-    grains of those that are cut."""
+    distribution of sizes, the duration, the filling that a compression starts from, the projectile's grains where both have as many, and
+    the size of aggregates that are grown or read, or grains of those that are cut."""
     names = [name for name in found.attrs.get("parameters", ()) if found[name].nunique(dropna=False) > 1]
     if {"grains", "projectileGrains"} <= set(names) and (found.projectileGrains == found.grains).all():
         names.remove("projectileGrains")

@@ -3,7 +3,7 @@
 import textwrap
 
 from ..arguments import Kind, takes
-from ..measures.ledger import closure, final_values, initial_kinetic_energy, work_closure, work_on_boundaries
+from ..measures.ledger import closure, final_values, initial_kinetic_energy, largest_work, work_closure
 from ..measures.of_run import are_equal, maximum_of_run, outcome_of_run
 from ..measures.outcome import BOUNCING
 from ..measures.periodic_compression import AVERAGED, pressure_at_end, tensile_strength
@@ -54,8 +54,8 @@ ENERGY_KEYS = (
 @takes(run=Kind("a RunFolder, as open_run() gives", lambda run: isinstance(run, RunFolder)))
 def summarise(run):
     """Numbers of a RunFolder as a dict, SI units, None where a value does not exist: run (path), ended, time (of the last
-    sample), ended_by (what ended a compression), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions), TENSION_KEYS and ENERGY_KEYS. RunFolderError when a
-    state is missing or damaged."""
+    sample), ended_by (what ended a compression), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions), TENSION_KEYS
+    and ENERGY_KEYS. RunFolderError when a state is missing or damaged."""
     history = run.history
     collision = run.kind is COLLISION
     maximum = maximum_of_run(run) if collision and are_equal(run) else None
@@ -124,7 +124,7 @@ def _tension(run):
 def _energy_unit(run, numbers):
     """(energy [J], its name) that changes of energy are told in."""
     if run.kind is COMPRESSION:
-        return float(abs(work_on_boundaries(run.history)).max()), "W"
+        return largest_work(run.history), "W"
     return numbers["initial_kinetic_energy"], "K(0)"
 
 

@@ -22,6 +22,7 @@ from analysis.studies import documents, find
 from analysis.studies.analyse import analyse
 from analysis.studies.collisions import outcome_quantities
 from analysis.studies.page import screen
+from analysis.studies.paper import read_paper
 from analysis.studies.runs import Runs
 from analysis.studies.snapshot_figure import SnapshotFigure, read_snapshots, write_snapshots
 
@@ -241,7 +242,8 @@ def test_every_gallery_is_one_screen_and_follows_from_its_runs(name):
     )
     found, kept = json.loads(again.json()), json.loads((folder / "comparison.json").read_text())
     assert [(c["label"], c["verdict"]) for c in found["claims"]] == [(c["label"], c["verdict"]) for c in kept["claims"]]
-    assert found["quantities"].keys() == kept["quantities"].keys()
+    assert len(found["claims"]) == len(read_paper(TOP / "analysis" / "studies" / name)[1])
+    assert not again.found.problems and found["quantities"].keys() == kept["quantities"].keys()
     for quantity in kept["quantities"]:
         both = (own["quantities"][quantity]["rows"] for own in (found, kept))
         ours, theirs = (np.array([row["value"] for row in own], dtype=float) for own in both)

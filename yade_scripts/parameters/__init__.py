@@ -23,6 +23,13 @@ class UnknownParameter(ParameterError):
     """A name that is no parameter's."""
 
 
+def unknown(name, names):
+    """UnknownParameter for a name that isn't one of these."""
+    return UnknownParameter(
+        f"{_shortened(name)}: unknown parameter{suggested(name, names, '; must be one that --help lists')}"
+    )
+
+
 @dataclass(frozen=True)
 class Check:
     """What a value must be, in words and as a test."""
@@ -149,9 +156,7 @@ class Parameters:
         columns, values = cls.columns(), {}
         for name, text in texts.items():
             if name not in columns:
-                raise UnknownParameter(
-                    f"{_shortened(name)}: unknown parameter{suggested(name, columns, '; must be one that --help lists')}"
-                )
+                raise unknown(name, columns)
             values[name] = columns[name].value(text)
         for name, value in values.items():
             columns[name].require_usual(value, values.get("unusual"))

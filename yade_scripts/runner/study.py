@@ -47,12 +47,15 @@ class Study:
         return states, [row.name in queued for row in self.rows]
 
     def text(self, drawn_as, changed=None):
-        states, _ = self.states_with_queue(changed)
+        return self.drawn(drawn_as, self.states_with_queue(changed)[0])
+
+    def drawn(self, drawn_as, states):
+        """The same of rows in these states."""
         return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
 
-    def undecided(self):
+    def undecided(self, states=None):
         """How many of the runs that have ended are undecided, in words; '' where none is."""
-        return rows.undecided(self.rows, self.states())
+        return rows.undecided(self.rows, self.states() if states is None else states)
 
     def has_been_edited(self):
         """Whether the table is another one than that which was read."""

@@ -147,8 +147,7 @@ def _slower(runs):
     at = variables(runs.table)
     own = runs.table[at.velocity < SLOW]
     bounced = own.outcome == BOUNCING
-    turned_back = bounced & own.restitution.notna()
-    slow = runs.of(own.assign(bounced=bounced.astype(float), turned_back=turned_back.astype(float)))
+    slow = runs.of(own.assign(bounced=bounced.astype(float), turned_back=bounced & own.restitution.notna()))
     return slow, at.loc[slow.table.index]
 
 
