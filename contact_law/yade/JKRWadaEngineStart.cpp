@@ -4,28 +4,46 @@
 #include "ContactsHolder.hpp"
 #include "JKRWadaEngineRun.hpp"
 #include "SceneShapes.hpp"
+#include <algorithm>
+#include <iterator>
 
 namespace yade {
 
 using contact_law::Dynamics;
 
+namespace {
+	// YADE's engines that add forces: after this engine theirs would come a step late, or never, where a ForceResetter is first.
+	constexpr const char* enginesOfForces[] = { "AxialGravityEngine", "CentralConstantAccelerationEngine", "DragEngine", "ForceEngine",
+		"GravityEngine", "HarmonicForceEngine", "HdapsGravityEngine", "HydroForceEngine", "InterpolatingDirectedForceEngine",
+		"LinearDragEngine", "RadialForceEngine", "TorqueEngine" };
+
+	bool addsForces(const std::string& engine)
+	{
+		return std::find(std::begin(enginesOfForces), std::end(enginesOfForces), engine) != std::end(enginesOfForces);
+	}
+}
+
 // Every scene has one engine that moves its grains.
 void JKRWadaEngine::requireAlone(const Scene& scene)
 {
 	int engines = 0;
-	bool emptied = false;
+	std::string late;
 	for (const auto& engine : scene.engines) {
 		if (engine->dead) continue;
-		for (const char* other : { "NewtonIntegrator", "InteractionLoop" })
-			if (engine->getClassName() == other)
-				refuseInEngine(std::string(other) + " is among O.engines too; this engine replaces it");
-		emptied = emptied || (engines && engine->getClassName() == "ForceResetter");
+		const std::string name = engine->getClassName();
+		if (name == "NewtonIntegrator")
+			refuseInEngine(
+			        "NewtonIntegrator is among O.engines too; this engine replaces it (gravity: a GravityEngine before it)");
+		if (name == "InteractionLoop") refuseInEngine("InteractionLoop is among O.engines too; this engine replaces it");
+		if (engines && (name == "ForceResetter" || addsForces(name))) late = name;
 		engines += bool(dynamic_cast<const JKRWadaEngine*>(engine.get()));
 	}
 	if (engines > 1)
 		refuseInEngine(
 		        "O.engines has " + std::to_string(engines) + " JKRWadaEngines: there must be one, which moves all grains once");
-	if (emptied) refuseInEngine("ForceResetter comes after this engine in O.engines, and would empty what it writes: must come before");
+	if (late == "ForceResetter")
+		refuseInEngine("ForceResetter comes after this engine in O.engines, and would empty what it writes: must come before");
+	if (!late.empty()) refuseInEngine(late + " comes after this engine in O.engines, too late for its forces: must come before");
 }
 
 EngineSettings JKRWadaEngine::settings() const

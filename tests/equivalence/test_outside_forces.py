@@ -260,9 +260,10 @@ def test_a_refused_step_adds_no_force(before, export):
 
 
 def test_what_is_refused():
-    two_grains()
-    O.engines = [*O.engines, ForceResetter()]
-    assert refusal().startswith("JKRWadaEngine: ForceResetter comes after this engine in O.engines")
+    for late in (ForceResetter(), GravityEngine(gravity=(0, 0, -1e9)), ForceEngine(ids=[1], force=(weight(), 0, 0))):
+        two_grains()
+        O.engines = [*O.engines, late]
+        assert refusal().startswith(f"JKRWadaEngine: {type(late).__name__} comes after this engine in O.engines")
     two_grains()
     O.forces.setPermF(1, Vector3(float("inf"), 0, 0))
     assert "a permanent one must be set to 0 before" in refusal()
