@@ -44,7 +44,7 @@ Columns: p_...: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rule
 {impact} and averaged over orientations; error_...: their 90 % half widths,
 by the decided runs, and by what undecided ones may become; p_touching: of pairs with b < 1, those that touch; largest, second: mass of the
 two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest; filling_after: of the largest piece;
-where that is the outcome, gain_mass_transfer, loss_erosion: mass that the larger aggregate gains, loses over the smaller one's,
+where that is the outcome, gain_mass_transfer, loss_erosion: mass that the larger aggregate gains, loses (half its own at most) over the smaller one's,
 largest_fragmentation: the largest piece over the larger aggregate{intervals}; inside: 1 within the convex hull of the runs
 in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther beyond, where values are those of the
 nearest node within; runs: number of runs within {near:g} of the scatter{near_impact}. Between nodes: multilinear in the scaled coordinates (pieces better as

@@ -146,8 +146,10 @@ def read_outcomes(path):
         columns = _columns(rows)
         values = np.array([[float(word) for word in row] for row in rows])
         values = values.reshape(*(len(axis.nodes) for axis in axes), len(columns))
-    except (StopIteration, IndexError, ValueError) as error:
-        raise OutcomeTableError(f"{path}: {error or 'ends too early'}; must be a table of outcomes") from None
+    except OutcomeTableError as error:
+        raise OutcomeTableError(f"{path}: {error}") from None
+    except (StopIteration, IndexError, ValueError):  # words where numbers must be, or an end too early
+        raise OutcomeTableError(f"{path}: must be a table of outcomes, as write_outcomes() makes it") from None
     if INSIDE not in columns or not np.isfinite(values).all():
         raise OutcomeTableError(f"{path}: must have a column `{INSIDE}`, and numbers everywhere")
     return OutcomeTable(axes, columns, values, comments)
@@ -157,7 +159,7 @@ def _axis(words):
     name, number, scale = words[0], int(words[1]), words[2]
     nodes = np.array([float(word) for word in words[3 : 3 + number]])
     if scale not in SCALES or len(nodes) != number or number < 2 or np.any(np.diff(nodes) <= 0.0) or nodes[0] < 0.0:
-        raise ValueError(
+        raise OutcomeTableError(
             f"axis {name}: {scale}, {len(nodes)} of {number} nodes; must be 2 or more, increasing, log10 or linear"
         )
     return Axis(name, scale, nodes)
@@ -167,7 +169,7 @@ def _columns(rows):
     number = int(next(rows)[0])
     columns = tuple(next(rows))
     if len(columns) != number:
-        raise ValueError(f"{len(columns)} names of columns; must be {number}")
+        raise OutcomeTableError(f"{len(columns)} names of columns; must be {number}")
     return columns
 
 
