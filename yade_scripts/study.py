@@ -40,6 +40,7 @@ from analysis.printable import printable
 from analysis.runs.named import meant
 from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
+from yade_scripts.run.parameters import CORES
 from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import slurm, view
@@ -63,7 +64,7 @@ def parse_arguments(arguments):
         "--jobs",
         type=int,
         metavar="JOBS",
-        help=f"threads at once (default: one for each core, {os.cpu_count()}); with --slurm tasks of an array (default: as Slurm likes)",
+        help=f"threads at once (default: one for each core, {CORES}); with --slurm tasks of an array (default: as Slurm likes)",
     )
     parser.add_argument("--version", action="version", version=f"study.py {version_text()}")
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
@@ -109,7 +110,7 @@ def place_of(table):
 
 def submit(study, at_once, sbatch, dry_run):
     """Submit the rows that are left and not in the queue to Slurm, or print their scripts; the exit status."""
-    states, queued = study.states_with_queue()
+    states, queued = study.states_with_queue(sure=True)
     failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
     for row, state in failures:
         tell(f"{row.name}: {state.note}; the other rows are submitted", SCRIPT)
@@ -205,7 +206,7 @@ def main(arguments):
         place, table = place_of(table), os.path.abspath(table)
         os.chdir(place)
     try:
-        study = Study(table, options.jobs or os.cpu_count(), run_scripts=not options.status)
+        study = Study(table, options.jobs or CORES, run_scripts=not options.status)
         if options.status:
             states, _ = study.states_with_queue()
             print(study.drawn(view.full_table, states) + study.undecided(states))

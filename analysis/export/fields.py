@@ -7,6 +7,8 @@ from typing import Callable
 
 import numpy as np
 
+from ..measures.virial import nearest_image
+
 
 @dataclass(frozen=True)
 class Field:
@@ -25,9 +27,11 @@ class Exported:
         self.state, self.density = state, density
         first, second = state.contact_pairs[:, 0], state.contact_pairs[:, 1]
         between = state.position[second] - state.position[first]
-        if state.cell_size is not None:  # the nearest image
-            between -= state.cell_size * np.round(between / state.cell_size)
+        if state.cell_size is not None:
+            between = nearest_image(between, state.cell_size)
         self.first, self.second, self.between = first, second, between  # (M,), (M,), (M, 3) [m]
+        planes = state.plane_contacts
+        self.on_planes = np.empty((0, 2), dtype=int) if planes is None else planes  # (K, 2): grain and plane
 
     def inside(self):
         """Positions (N, 3) [m]: in a periodic cell the images inside it."""
@@ -39,16 +43,22 @@ class Exported:
         return np.linalg.norm(self.between, axis=1)
 
     def normal_forces(self):
-        """(N, 3) [N], the sum of the contacts' normal forces on each grain."""
+        """(N, 3) [N], the sum of the contacts' normal forces on each grain, those with planes too."""
         on_first = -self.state.contact_normal_force[:, None] * self.between / self.distance()[:, None]
         total = np.zeros_like(self.state.position)
         np.add.at(total, self.first, on_first)
         np.add.at(total, self.second, -on_first)
+        if len(self.on_planes):
+            grains, planes = self.on_planes.T
+            axis, force = self.state.plane_axis[planes], self.state.plane_contact_normal_force
+            away = self.state.position[grains, axis] - self.state.plane_position[planes]
+            np.add.at(total, (grains, axis), force * np.sign(away))
         return total
 
     def coordination(self):
-        """(N,) int, contacts of each grain."""
-        return np.bincount(self.state.contact_pairs.ravel().astype(np.intp), minlength=len(self.state.radius))
+        """(N,) int, contacts of each grain, those with planes too."""
+        ends = np.concatenate([self.state.contact_pairs.ravel(), self.on_planes[:, 0]])
+        return np.bincount(ends.astype(np.intp), minlength=len(self.state.radius))
 
     def fragments(self):
         """(N,) int, as measures.fragments.fragment_labels."""

@@ -73,7 +73,8 @@ class Range:
 
 
 def _speed(state):
-    return np.linalg.norm(state.velocity - state.velocity.mean(axis=0), axis=1)
+    of_centre = np.average(state.velocity, axis=0, weights=state.radius**3)
+    return np.linalg.norm(state.velocity - of_centre, axis=1)
 
 
 def on_scale(shares):

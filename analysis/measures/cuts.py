@@ -4,7 +4,7 @@ contacts of the cut hold."""
 import numpy as np
 
 from .free_flight import motion_in_pieces
-from .network import contact_network, spanning_forest
+from .network import contact_network, levels, spanning_forest
 
 
 def loose_cuts(position, velocity, mass, pairs, labels, aggregate, strength):
@@ -13,7 +13,8 @@ def loose_cuts(position, velocity, mass, pairs, labels, aggregate, strength):
 
     Cuts are: through every contact that alone connects two parts of a piece, and between a piece's grains of either aggregate.
     position, velocity (N,3) [m, m/s], mass (N,) [kg], pairs (M,2) with strength (M,) [J], the energy that breaks each contact;
-    labels (N,) as fragments.fragment_labels has them, aggregate (N,) 0 or 1.
+    labels (N,) as fragments.fragment_labels has them, aggregate (N,) 0 or 1. Beside a plate, the last grain and of aggregate 1 (plate.py), the
+    others' masses are lost in rounding: sides are summed without it.
     """
     momentum = mass[:, None] * motion_in_pieces(position, velocity, mass, labels)
     whole = np.bincount(labels, weights=mass)
@@ -32,8 +33,8 @@ def loose_cuts(position, velocity, mass, pairs, labels, aggregate, strength):
 
 
 def _between_aggregates(mass, momentum, pairs, labels, aggregate, strength):
-    """(piece, mass, momentum (K,3), energy that holds) of the side of aggregate 1 in every piece."""
-    number, first = labels.max() + 1, aggregate == 1
+    """(piece, mass, momentum (K,3), energy that holds) of the side of aggregate 0 in every piece."""
+    number, first = labels.max() + 1, aggregate == 0
     across = aggregate[pairs[:, 0]] != aggregate[pairs[:, 1]]
     held = np.bincount(labels[pairs[across, 0]], weights=strength[across], minlength=number)
     pushed = [np.bincount(labels[first], weights=p, minlength=number) for p in momentum[first].T]
@@ -61,18 +62,8 @@ def _through_one_contact(mass, momentum, pairs, labels, strength):
     mark, beyond = np.zeros(len(mass), dtype=np.uint64), np.column_stack([mass, momentum])
     for end in pairs.T:
         np.bitwise_xor.at(mark, end, marks)
-    for level in _levels(order, parent):
+    for level in levels(order, parent)[:0:-1]:
         np.add.at(beyond, parent[level], beyond[level])
         np.bitwise_xor.at(mark, parent[level], mark[level])
     single = np.flatnonzero((contact >= 0) & (mark == 0))
     return labels[single], beyond[single, 0], beyond[single, 1:], strength[contact[single]]
-
-
-def _levels(order, parent):
-    """[grains (L,) at one depth of a forest], the deepest first, without the roots."""
-    depth = np.zeros(len(parent), dtype=int)
-    for grain in order:
-        if parent[grain] >= 0:
-            depth[grain] = depth[parent[grain]] + 1
-    depth = depth[order]
-    return np.split(order, np.flatnonzero(np.diff(depth)) + 1)[:0:-1]

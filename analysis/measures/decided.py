@@ -40,6 +40,9 @@ def contact_strength(state, constants):
     of sintered bonds what breaks them by stretching (S17 eq 6). Arguments as why_undecided."""
     first, second = state["radius"][state["contact_pairs"]].T
     reduced = 2 * first * second / (first + second) / constants["grainRadius"]
+    reduced *= (
+        constants.get("shrunkRadius", constants["grainRadius"]) / constants["grainRadius"]
+    )  # grains that sintered
     found = BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"] * reduced ** (4 / 3)
     return np.where(state["contact_bonded"], constants.get("breakingEnergy", 0.0), found)
 
@@ -130,7 +133,7 @@ def _why_breaking(kind, pieces, counted):
     largest = np.array([piece for piece in largest[: 2 if kind == BOUNCING else 1] if piece is not None])
     cut, side, target = *pieces.loose_cuts(), pieces.target(counted)
     for piece in largest:
-        lost = side[cut == piece].max(initial=0.0) / pieces.mass.sum()
+        lost = side[cut == piece].max(initial=0.0) / pieces.mass[counted].sum()
         seen, left = (sorted(shares[largest] - less * (largest == piece), reverse=True) for less in (0.0, lost))
         seen, left = (classify(*(masses + [0.0])[:2], target=target) for masses in (seen, left))
         if seen == kind != left:

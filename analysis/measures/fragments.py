@@ -56,14 +56,19 @@ def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
     their aggregate, that holds at least least_fraction of the aggregate's mass. Grains that a packing left
     isolated or in crumbs are not.
 
-    aggregate (N,) int, contact_pairs (M,2) int, mass (N,) in any unit.
+    aggregate (N,) int, contact_pairs (M,2) int, mass (N,) in any unit. ValueError where no grain of an aggregate is.
     """
     aggregate, mass = np.asarray(aggregate), np.asarray(mass, dtype=float)
     pairs = np.asarray(contact_pairs, dtype=np.intp).reshape(-1, 2)
     inside = pairs[aggregate[pairs[:, 0]] == aggregate[pairs[:, 1]]]
     labels = fragment_labels(len(aggregate), inside)
     whole = np.bincount(aggregate, weights=mass)
-    return fragment_masses(labels, mass)[labels] >= least_fraction * whole[aggregate] * (1.0 - 1e-12)
+    found = fragment_masses(labels, mass)[labels] >= least_fraction * whole[aggregate] * (1.0 - 1e-12)
+    for number in np.setdiff1d(aggregate, aggregate[found]):
+        raise ValueError(
+            f"aggregate {number} is in crumbs: its largest piece must hold {least_fraction:.0%} of its mass"
+        )
+    return found
 
 
 @takes(largest=numbers(), target=numbers(), projectile=numbers(right=POSITIVE))

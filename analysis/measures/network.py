@@ -12,17 +12,30 @@ def contact_network(grains, pairs):
 
 
 def spanning_forest(network):
-    """(order (N,), parent (N,)) int of a tree of contacts in each piece of a contact_network, rooted in its first grain: every
+    """(order (N,), parent (N,)) int of a tree of contacts in each piece of a contact_network, rooted in its last grain: every
     grain comes after its parent in `order`; parent is -1 for roots.
 
     >>> order, parent = spanning_forest(contact_network(4, [[1, 2], [2, 3]]))
     >>> order.tolist(), parent.tolist()
-    ([0, 1, 2, 3], [-1, -1, 1, 2])
+    ([0, 3, 2, 1], [-1, 2, 3, -1])
     """
     grains = network.shape[0]
-    roots = np.unique(connected_components(network, directed=False)[1], return_index=True)[1]
+    labels = connected_components(network, directed=False)[1]
+    roots = np.sort(grains - 1 - np.unique(labels[::-1], return_index=True)[1])
     to_roots = coo_matrix((np.ones(len(roots)), (np.zeros(len(roots), dtype=int), roots)), shape=(1, grains))
     # One search from a node above all roots.
     order, before = breadth_first_order(bmat([[network, None], [to_roots, np.zeros((1, 1))]]), grains, directed=False)
     parent = before[:grains]
     return order[1:], np.where(parent == grains, -1, parent)
+
+
+def levels(order, parent):
+    """[grains (L,) at one depth of a spanning_forest], from the roots on.
+
+    >>> [level.tolist() for level in levels(*spanning_forest(contact_network(4, [[1, 2], [2, 3]])))]
+    [[0, 3], [2], [1]]
+    """
+    depth = np.zeros(len(parent), dtype=int)
+    for grain in order[parent[order] >= 0]:
+        depth[grain] = depth[parent[grain]] + 1
+    return np.split(order, np.flatnonzero(np.diff(depth[order])) + 1)

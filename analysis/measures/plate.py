@@ -22,9 +22,10 @@ import numpy as np
 from .decided import EVER, Pieces
 from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes, heaviest_fragment
 from .free_flight import pieces_that_can_meet
-from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, STICKING, Outcome, mean_velocity, restitution
+from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, ROUNDING, STICKING, Outcome, mean_velocity, restitution
 
 FLAT = 1e3  # radius of the sphere that stands for the plate, over the largest distance of a grain from the plate's point below the grains
+MOST = 0.9  # of the mass, on the plate or in the piece that has bounced
 
 
 def has_plate(state):
@@ -63,7 +64,8 @@ def classify_on_plate(on, off):
     >>> classify_on_plate(0.95, 0.01), classify_on_plate(0.05, 0.95), classify_on_plate(0.5, 0.5)
     ('sticking', 'bouncing', 'fragmentation')
     """
-    return STICKING if on >= 0.9 else BOUNCING if off >= 0.9 else FRAGMENTATION
+    least = MOST - ROUNDING
+    return STICKING if on >= least else BOUNCING if off >= least else FRAGMENTATION
 
 
 def _counted(start):

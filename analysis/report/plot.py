@@ -12,16 +12,17 @@ from ..arguments import Kind, one_of, takes, wrong
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
 from ..runs.format import CHANNELS, COMPRESSION
 from ..runs.named import unknown
-from ..runs.table import RUN
+from ..runs.table import FOLDER
 from ..studies.curve_figure import CurveFigure
 from ..studies.definition import Quantity, Results
 from ..studies.estimate import Fraction
 from ..studies.runs import Runs, each
-from .rows import at_end, differing, table, varied
+from .rows import at_end, differing, parameters, table, varied
 
 WHATS = "sticking", "largest", "energy"
 SEED, CHANNEL, LARGEST, KIND = "seed", "channel", "largest_fraction", "kind"
 FILES = "file", "projectileFile"  # with the seed, what tells pairs of aggregates apart
+OF_MAXIMUM = "d_max", "t_max"
 APART = 5.0  # points between curves
 LETTERS = 13  # of a title, an inch of the figure
 
@@ -76,10 +77,11 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
     _require_columns(found, what, [x, *([by] if by else []), *(where or {})])
     files = [name for name in FILES if name in found and found[name].notna().any()]
-    drawn = Runs(found, SEED if SEED in found else RUN, files)
+    drawn = Runs(found, SEED if SEED in found else FOLDER, files)
     for name, value in (where or {}).items():
         drawn = _only(drawn, name, value)
-    asked, drawn = drawn.table, drawn.of(_of_kinds(drawn.table, [x, *_columns(what)]))
+    asked, of_kinds = drawn.table, _of_kinds(drawn.table, [x, *_columns(what)])
+    drawn = drawn.of(of_kinds[~_without(of_kinds, what, x, by).to_numpy().any(axis=1)])
     _require_drawable(drawn.table, x, by)
     quantity = _quantity(what, drawn, [x, by] if by else [x])
     if not len(quantity.values):
@@ -88,7 +90,9 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     for axes in figure.axes:
         if axes.get_xlabel() == x:
             axes.set_xlabel(_with_unit(found, x))
-    lines = textwrap.wrap(_about(drawn.table, what, asked), int(LETTERS * figure.get_figwidth()))
+    lines = textwrap.wrap(
+        _about(drawn.table, what, asked, _without(of_kinds, what, x, by)), int(LETTERS * figure.get_figwidth())
+    )
     figure.suptitle("\n".join(lines), fontsize=10)
     return figure
 
@@ -103,6 +107,14 @@ def _of_kinds(found, columns):
     having = found[columns].notna().groupby(found[KIND]).any().all(axis=1)
     kept = found[found[KIND].map(having)]
     return kept if len(kept) else found
+
+
+def _without(found, what, x, by):
+    """{what is said of them: whether runs (n,) can't be drawn} as a DataFrame: without a value on an axis, and where d_max is but a bound."""
+    of = {f"without {name}": found[name].isna() for name in (x, by) if name}
+    if what in OF_MAXIMUM:
+        of[f"whose {what} is only a bound"] = found.maximum_inside.eq(False)
+    return pandas.DataFrame(of, found.index)
 
 
 def _quantity(what, drawn, by):
@@ -140,7 +152,7 @@ def _curves(what, found, x, by, logarithmic):
         logarithmic=logarithmic,
         y_label=labels.get(what) or _with_unit(found, what),
         limits=(-0.03, 1.03) if what in ("sticking", "largest") else None,
-        line="-" if x in found.attrs.get("parameters", ()) else "",
+        line="-" if x in parameters(found) else "",
         apart=0.0 if what == "energy" else APART,
     )
 
@@ -149,7 +161,8 @@ def _require_columns(found, what, named):
     """Raise UnknownName for a name that is no column of a table, CannotPlot where it is none of table()."""
     if what not in (*WHATS, *found.columns):
         raise unknown("table of runs", what, (*WHATS, *found.columns))
-    own = [SEED if SEED in found else RUN, "outcome", "ended", KIND]
+    own = [SEED if SEED in found else FOLDER, "outcome", "ended", KIND]
+    own += ["maximum_inside"] if what in OF_MAXIMUM else []
     for name in named:
         if name not in found:
             raise unknown("table of runs", name, found.columns)
@@ -177,7 +190,7 @@ def _require_drawable(found, x, by):
     if found[KIND].nunique() > 1:
         raise CannotPlot(f"the runs are of the kinds {', '.join(found[KIND].unique())}: choose where {KIND}")
     others = [name for name in varied(found) if name not in (x, by, SEED, *FILES)]
-    if others and x in found.attrs.get("parameters", ()):
+    if others and x in parameters(found):
         raise CannotPlot(differing(found, others, "choose by or where"))
 
 
@@ -200,12 +213,14 @@ def _with_unit(found, name):
     return name + (f"  [{unit}]" if unit not in ("", "1") else "")
 
 
-def _about(found, what, asked):
-    """How many runs there are, and how many of them never met, have no outcome that counts, or are left out of those asked for."""
+def _about(found, what, asked, without):
+    """How many runs there are, and how many of them never met, have no outcome that counts, or are left out of those asked for: of
+    other kinds, and by _without()."""
     missed, sticking = _never_met(found), what == "sticking"
     undecided = int((_undecided(found) & ~(missed & sticking)).sum())
-    others = asked[KIND][~asked[KIND].isin(found[KIND])].value_counts()
+    others = asked[KIND][~asked.index.isin(without.index)].value_counts()
     text = f"{len(found)} runs" + "".join(f", {number} of the kind {kind} left out" for kind, number in others.items())
+    text += "".join(f", {own.sum()} {name} left out" for name, own in without.items() if own.any())
     text += f", {missed.sum()} {'that never met left out' if sticking else 'of them never met'}" if missed.any() else ""
     text += f", {undecided} of them undecided or not ended" if undecided else ""
     return text + (" (in the bars, counted either way)" if undecided and sticking else "")

@@ -43,13 +43,21 @@ OUTCOME = (
     Column("time", "s", "of the last sample"),
     Column("ended_by", "", "what ended a compression: a parameter, and where", "O", gaps=True),
     *(column for column in OUTCOME_KEYS if column.name != "mass_fractions"),
-    Column("largest_fraction", "1", "fraction of the mass in the largest piece", gaps=True),
+    Column(
+        "largest_fraction",
+        "1",
+        "fraction of the mass in the largest piece; without grains in no aggregate at the start",
+        gaps=True,
+    ),
     Column("second_fraction", "1", "in the second largest", gaps=True),
     *TENSION_KEYS,
 )
 LARGEST = (
-    *(Column(of_largest(c.name), c.unit, f"of the largest piece: {c.meaning}", gaps=True) for c in STRUCTURE),
-    Column("largest_coordination", "1", "of the largest piece: mean number of contacts of a grain", gaps=True),
+    *(
+        Column(of_largest(c.name), c.unit, f"of the largest piece that grains alone connect: {c.meaning}", gaps=True)
+        for c in STRUCTURE
+    ),
+    Column("largest_coordination", "1", "of this piece: mean number of contacts of a grain with others", gaps=True),
 )
 ENERGIES = (
     *ENERGY_KEYS,
@@ -119,6 +127,13 @@ def frame(measured):
     found = described(made[order], (*units, *MEASURED))
     found.attrs["parameters"] = parameters
     return found
+
+
+def parameters(found):
+    """Names of the parameters of a table(): where pandas has dropped .attrs (merge, read_csv) the columns between the run and its kind."""
+    names = list(found)
+    between = names[names.index(RUN) + 1 : names.index("kind")] if {RUN, "kind"} <= set(names) else []
+    return found.attrs.get("parameters", between)
 
 
 def short_text(found):
@@ -200,7 +215,7 @@ def varied(found):
     """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, of the
     distribution of sizes, the duration, the filling that a compression starts from, the projectile's grains where both have as many, and
     the size of aggregates that are grown or read, or grains of those that are cut."""
-    names = [name for name in found.attrs.get("parameters", ()) if found[name].nunique(dropna=False) > 1]
+    names = [name for name in parameters(found) if found[name].nunique(dropna=False) > 1]
     if {"grains", "projectileGrains"} <= set(names) and (found.projectileGrains == found.grains).all():
         names.remove("projectileGrains")
     packings = set(found.packing) if "packing" in found else set()

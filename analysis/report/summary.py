@@ -4,7 +4,7 @@ import textwrap
 
 from ..arguments import Kind, takes
 from ..measures.ledger import closure, final_values, initial_kinetic_energy, largest_work, work_closure
-from ..measures.of_run import are_equal, maximum_of_run, outcome_of_run
+from ..measures.of_run import are_equal, maximum_of_run, met, outcome_of_run
 from ..measures.outcome import BOUNCING
 from ..measures.periodic_compression import AVERAGED, pressure_at_end, tensile_strength
 from ..runs.folder import RunFolder
@@ -14,7 +14,12 @@ from ..runs.table import Column
 
 # Of a collision, named as measures.compression.Maximum and measures.outcome.Outcome have them.
 COMPRESSION_KEYS = (
-    Column("d_max", "m", "largest compression length of equal aggregates (A24 eqs 10, 11)", gaps=True),
+    Column(
+        "d_max",
+        "m",
+        "largest compression length of equal aggregates that met (A24 eqs 10, 11); a measure of head-on collisions",
+        gaps=True,
+    ),
     Column("d_max_error", "m", "its error", gaps=True),
     Column("t_max", "s", "its time", gaps=True),
     Column("t_max_error", "s", "its error", gaps=True),
@@ -58,7 +63,7 @@ def summarise(run):
     and ENERGY_KEYS. RunFolderError when a state is missing or damaged."""
     history = run.history
     collision = run.kind is COLLISION
-    maximum = maximum_of_run(run) if collision and are_equal(run) else None
+    maximum = maximum_of_run(run) if collision and are_equal(run) and met(run) else None
     numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
     numbers["ended_by"] = run.record.get("endedBy")
     numbers.update(_compression(maximum))
@@ -172,7 +177,8 @@ def _no_restitution(numbers):
 def _d_max(run, numbers):
     grain_radius = run.derived["grainRadius"]
     if numbers["d_max"] is None:
-        return "undefined: " + ("all grains on one side of x = 0" if are_equal(run) else "aggregates of unlike mass")
+        equal = "all grains on one side of x = 0" if met(run) else "the aggregates have not met"
+        return "undefined: " + (equal if are_equal(run) else "aggregates of unlike mass")
     text = f"{numbers['d_max']:.4g} m = {numbers['d_max'] / grain_radius:.4g} grain radii"
     if numbers["maximum_inside"]:
         return text + f" (+- {numbers['d_max_error'] / grain_radius:.1g})"

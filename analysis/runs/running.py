@@ -28,7 +28,7 @@ CLOCKS_AGREE = 60.0  # s that clocks may differ by, where the file server's cann
 SQUEUE_AGAIN = 10.0  # s for which an answer of squeue is kept
 ALIVE = ("RUNNING", "COMPLETING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING", "STAGE_OUT")
 _JOB = re.compile(r"(\d+)(_\d+)?")
-_ANSWERS = {}  # of squeue: {job: (when, {task: state} or None)}
+_ANSWERS = {}  # of squeue: {job: (when, {task: state} or None, why there is no answer or None)}
 
 
 @dataclass(frozen=True)
@@ -110,10 +110,14 @@ def this_job():
 def states_of_job(job):
     """{job with its array task, such as 12_3: state} of a job of Slurm (its number, text) by squeue, which is asked once for
     all tasks; None when it doesn't know the job, or isn't there."""
-    when, states = _ANSWERS.get(job, (None, None))
-    if when is None or time.monotonic() - when > SQUEUE_AGAIN:
-        _ANSWERS[job] = time.monotonic(), _ask_squeue(job)
+    if job not in _ANSWERS or time.monotonic() - _ANSWERS[job][0] > SQUEUE_AGAIN:
+        _ANSWERS[job] = time.monotonic(), *_ask_squeue(job)
     return _ANSWERS[job][1]
+
+
+def why_unknown(job):
+    """Why squeue had no answer for a job when states_of_job() asked, in a few words; None where it had one, doesn't know the job, or isn't there."""
+    return _ANSWERS[job][2]
 
 
 def is_here(heartbeat):
@@ -189,13 +193,15 @@ def _slurm_says(heartbeat):
 
 def _ask_squeue(job):
     if not shutil.which("squeue"):
-        return None
+        return None, None
     command = ["squeue", "-h", "-r", "-j", job, "-o", "%i %T"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=20, stdin=subprocess.DEVNULL)
-    except (OSError, subprocess.TimeoutExpired):
-        return None
-    return None if done.returncode else dict(line.split() for line in done.stdout.splitlines() if line.count(" ") == 1)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return None, str(error)
+    if done.returncode:
+        return None, None if "Invalid job id" in done.stderr else " ".join(done.stderr.split())
+    return dict(line.split() for line in done.stdout.splitlines() if line.count(" ") == 1), None
 
 
 def _is_sound(key, value):

@@ -199,7 +199,8 @@ def select(series, **where):
 
 
 def alike(values, wanted):
-    """Whether values, one or (n,), are printed as wanted: a number or (n,) numbers, a word, or a tuple, for one of these.
+    """Whether values, one or (n,), are printed as wanted: a number or (n,) numbers, a word, or a tuple, for one of these. Whole numbers
+    (seeds, grains) must be equal.
 
     >>> alike([50.1, 0.0], 10**1.7).tolist(), alike(["a", "b"], "b").tolist(), alike([1, 2], (2, 3)).tolist()
     ([True, False], [False, True], [False, True])
@@ -209,7 +210,10 @@ def alike(values, wanted):
         return reduce(np.logical_or, (alike(values, one) for one in wanted), np.zeros(values.shape, dtype=bool))
     if values.dtype.kind not in "fiub" or isinstance(wanted, str):
         return values == wanted
-    return np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
+    whole = (values == np.round(values)) & (wanted == np.round(wanted))
+    return np.where(
+        whole, values == wanted, np.abs(values - wanted) <= SAME * np.maximum(np.abs(values), np.abs(wanted))
+    )
 
 
 def keyed(series):

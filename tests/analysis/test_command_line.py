@@ -82,6 +82,7 @@ def test_aggregates_that_never_met_have_that_outcome(run):
     numbers = json.loads(analyse("summary", "--json", run).stdout)
     assert numbers["outcome"] == "never met" and numbers["restitution"] is None
     table = analyse("summary", "--long", run).stdout
+    assert numbers["d_max"] is None and re.search(r"d_max +undefined: the aggregates have not met", table)
     assert re.search(r"outcome +never met", table) and re.search(r"restitution +none: never met", table)
     about = json.loads((run / "run.json").read_text())
     about["derived"]["firstTouch"] = 1e-12  # a graze, between two samples

@@ -6,8 +6,9 @@ import pytest
 
 from analysis.measures import decided
 from analysis.measures.cuts import loose_cuts
+from analysis.measures.decided import contact_strength, why_undecided
 from analysis.measures.fragments import fragment_labels
-from analysis.measures.plate import plate_outcome, why_undecided_on_plate
+from analysis.measures.plate import classify_on_plate, plate_outcome, why_undecided_on_plate
 
 CONSTANTS = {
     **dict.fromkeys(("grainRadius", "aggregateRadius", "pullOffOverlap", "timeUnit"), 1.0),
@@ -134,6 +135,13 @@ def standing(velocity, on=True, broken=(), bonded=False):
     return {**state, **plane, "aggregate": np.zeros(len(velocity), int), "time": 0.0}
 
 
+def with_splinter(state):
+    """The state with its last grain far away."""
+    position = state["position"].copy()
+    position[-1, 0] = 1e5
+    return {**state, "position": position}
+
+
 def leaving(energy):
     """The chain moves from the plate with this kinetic energy."""
     return STILL + np.sqrt(2 * energy / 20)
@@ -150,6 +158,7 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
         ("sticking", standing(STILL), LONG / 3, 1, None, "may still rebound"),
         ("sticking", standing(leaving(0.9)), LONG, 1, 0, None),
         ("sticking", standing(leaving(1.1)), LONG, 1, None, "parts of 95% of the mass"),  # between two grains
+        ("sticking", with_splinter(standing(leaving(1.2), broken=[18])), LONG, 0.95, None, "parts of 90% of the mass"),
         ("sticking", standing(leaving(0.9 * HOLDS), bonded=True), LONG, 1, 0, None),
         ("sticking", standing(leaving(1.1 * HOLDS), bonded=True), LONG, 1, None, "parts of 100% of the mass"),
         ("bouncing", standing(STILL + 1, on=False), LONG, 0, 0.5, None),
@@ -163,7 +172,7 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
 def test_outcome_and_whether_it_is_decided(kind, state, since_touch, on, restitution, reason):
     seen = plate_outcome(START, state, met=kind != "never met")
     assert (seen.kind, seen.mass_on_plate, seen.growth_efficiency) == (kind, on, on)
-    assert max(seen.mass_fractions) == max(on, 1 - on) and seen.fragments == 1 + (0 < on < 1)
+    assert max(seen.mass_fractions) == pytest.approx(max(on, 1 - on)) and seen.fragments == 1 + (0 < on < 1)
     why = why_undecided_on_plate(seen.kind, START, state, CONSTANTS, -since_touch)
     assert why is None if reason is None else reason in why
     assert seen.if_decided(why).restitution == restitution
@@ -175,3 +184,22 @@ def test_what_lies_on_the_plate_is_told_by_mass():
     start, end = ({**state, "radius": radii} for state in (START, standing(UPPER_HALF, broken=[3])))
     seen = plate_outcome(start, end, met=True)
     assert (seen.largest_fragment, seen.growth_efficiency) == (4, pytest.approx(32 / 48, rel=1e-12))
+
+
+def test_nine_tenths_on_the_plate_stick_however_they_are_added():
+    assert classify_on_plate(np.nextafter(0.9, 0), 0.1) == "sticking" != classify_on_plate(0.89, 0.1)
+
+
+def test_grains_that_sintered_hold_as_the_smaller_spheres_that_they_are():
+    bonds, contacts = (
+        contact_strength(chain(STILL, bonded=b), {**CONSTANTS, "shrunkRadius": 0.8}) for b in (True, False)
+    )
+    assert bonds == pytest.approx(np.full(19, 9.0)) and contacts == pytest.approx(np.full(19, 0.8 ** (4 / 3)))
+
+
+def test_what_breaks_off_is_told_of_the_mass_that_counts():
+    """Two of 18 grains that count leave sixteen, which is less than nine tenths; of all 38 they would be little."""
+    counted = np.arange(38) < 18
+    state = chain(np.concatenate([parting(18, 1.1, 2), np.full(20, 50.0)]), broken=[17], small=9)
+    state["aggregate"][18:] = np.arange(20) % 2
+    assert "parts of 11% of the mass" in why_undecided("sticking", counted, {**state, "time": LONG}, CONSTANTS, 0.0)

@@ -10,8 +10,8 @@ import pytest
 from written_runs import MASS, RADIUS, losing, record, state_arrays, write_run
 
 from analysis.__main__ import main
-from analysis.export.fields import CONTACTS, GRAINS
-from analysis.runs.folder import open_run
+from analysis.export.fields import CONTACTS, GRAINS, Exported
+from analysis.runs.folder import State, open_run
 
 HERE = Path(__file__).resolve().parent
 OVITO = HERE.parents[1] / "build/ovito/bin/python"
@@ -73,6 +73,19 @@ def agree(found, wanted, rtol=1e-12):
         scale = np.abs(values).max(initial=0.0)
         assert np.shape(found[name]) == values.shape or values.size == 0, name
         assert np.allclose(np.reshape(found[name], values.shape), values, rtol=rtol, atol=rtol * scale), name
+
+
+def test_contacts_with_planes_count():
+    """Two grains between a plate at x = 0 and a piston, pressed together: no force is left on either."""
+    state = state_arrays(0.0, np.array([[1e-7, 0, 0], [3e-7, 0, 0]]), np.zeros((2, 3)), [0, 0], [(0, 1)])
+    planes = dict(plane_axis=np.array([0, 0]), plane_position=np.array([0.0, 4e-7]))
+    planes["plane_contacts"] = np.array([[0, 0], [1, 1]])
+    force = np.array([1e-8])
+    pressed = State(
+        **{**state, **planes, "contact_normal_force": force, "plane_contact_normal_force": np.repeat(force, 2)}
+    )
+    found = Exported(pressed, None)
+    assert found.coordination().tolist() == [2, 2] and np.abs(found.normal_forces()).max() < 1e-20
 
 
 # ---- VTK ----

@@ -28,6 +28,8 @@ def test_crumbs_of_a_packing_do_not_count():
     chain = [[k, k + 1] for k in range(8)] + [[k, k + 1] for k in (*range(10, 14), *range(15, 19))]
     counted = belongs_to_an_aggregate(np.repeat([0, 1], 10), chain, np.r_[np.ones(9), 0.5, np.ones(10)])
     assert np.array_equal(np.flatnonzero(~counted), [9])
+    with pytest.raises(ValueError, match="^aggregate 1 is in crumbs: its largest piece must hold 10% of its mass$"):
+        belongs_to_an_aggregate(np.repeat([0, 1], [2, 11]), [[0, 1]], np.ones(13))
 
 
 def test_rule():

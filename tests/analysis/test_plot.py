@@ -1,5 +1,7 @@
 """Figures of a table of runs: what is counted, what is said, what is refused."""
 
+from io import StringIO
+
 import pandas
 import pytest
 from made_compressions import made_compression
@@ -102,6 +104,21 @@ def test_compressions_of_several_clusters(tmp_path):
     lost = (found.rollingDissipation_at_end + found.twistingDissipation_at_end).tolist()
     assert lost == pytest.approx((-found.boundaryWork_at_end).tolist(), rel=1e-6) and lost[0] == pytest.approx(1.0)
     assert (found.tensile_strength > 1e4).all() and (found.tensile_filling > 0.4).all()
+
+
+def test_runs_that_cannot_be_drawn_are_counted(runs):
+    """Without a value in what tells curves apart, and bounds of d_max; what a table from a file differs in is told too."""
+    ends = runs.assign(d_max=1.0, maximum_inside=[False, *[True] * 7], finalPressure=[None, *[5.0] * 7])
+    ends.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "finalPressure"]}
+    *_, said = drawn(plot("sticking", ends, by="finalPressure"))
+    assert "7 runs, 1 without finalPressure left out" in said
+    ends.loc[0, ["d_max", "finalPressure"]] = 9.0, 5.0
+    points, _, said = drawn(plot("d_max", ends))
+    assert [y for _, y in points] == [1.0, 1.0] and "7 runs, 1 whose d_max is only a bound left out" in said
+    columns = ["run", *ends.attrs["parameters"], "kind", "outcome", "ended", "largest_fraction"]
+    again = pandas.read_csv(StringIO(ends.assign(impact=[0.0, 0.5] * 4)[columns].to_csv()))
+    with pytest.raises(CannotPlot, match="^the runs differ in impact too"):
+        plot("largest", again)
 
 
 def test_equal_curves_stand_beside_each_other(runs):

@@ -1,6 +1,7 @@
 """Spheres cut out of a compression: what is kept, contacts at rest, and what moves when they are set free."""
 
 import os
+from dataclasses import replace
 
 import pytest
 from of_ice import ICE, OVERLAP
@@ -11,6 +12,7 @@ from written_runs import cubic_lattice
 
 from yade_scripts import packings
 from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
+from yade_scripts.parameters import ParameterError
 
 
 def pressed_lattice(noise=0.0):
@@ -49,6 +51,22 @@ def test_a_function_of_state_seed_and_index_without_grains_that_lost_their_neigh
     assert packing.parameters["dropped"] > packing.grains
     first, second = packings.contacts(packing).T
     assert len(set(first) | set(second)) == packing.grains
+
+
+def test_between_walls_the_sphere_is_too():
+    """The layer fills a third of its cell."""
+    state = pressed_lattice()
+    edge = state.cell_size[2]
+    walls = np.array([-1.0, 7.0]) * edge / 8
+    layer = replace(state, cell_size=state.cell_size * [1, 1, 3], axis=2, walls=walls)
+    for seed in range(8):
+        packing = cut(layer, CutParameters.parse({"radius": 7, "seed": seed}))
+        assert (
+            packing.parameters["filling"]
+            > 0.9 * cut(state, CutParameters.parse({"radius": 7, "seed": seed})).parameters["filling"]
+        )
+    with pytest.raises(ParameterError, match="^radius = 9: a larger sphere than the space between the walls holds"):
+        cut(layer, CutParameters.parse({"radius": 9}))
 
 
 @pytest.fixture(scope="module")

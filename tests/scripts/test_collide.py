@@ -129,6 +129,7 @@ WRONG = {
     "filling=0.76": "filling = 0.76: more than the lattice holds; must be at most 0.7519",
     "neck=0.2 stepFraction=0.2": "stepFraction = 0.2: unstable at this neck, filling and drag; must be at most 0.119 [t0]",
     "neck=0.123": "neck = 0.123: no thicker than a contact that is not sintered; must be 0 (not sintered), or above 0.1237 and",
+    "filling=0.1 radius=12": "aggregate 0 is in crumbs: its largest piece must hold 10% of its mass",
     "threads=2 engine=functors": "threads = 2: YADE was started with 1; must be ",
     "density=1e300 unusual=1": "density = 1e+300 kg/m^3: must be 1e-07 to 2.3e+13 kg/m^3 also with unusual=1",
     "surfaceEnergy=1e4 unusual=1": "grainRadius = 1e-07: contacts at rest have a radius of ",

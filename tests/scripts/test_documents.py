@@ -58,7 +58,7 @@ def take(program, arguments):
         kind.parse(texts)
     else:
         kind = compression.KIND if "compress" in program else collision.KIND
-        texts, row = gather(arguments)
+        texts, row = gather(arguments, kind)
         texts.pop("continue", None)
         kind.parse(texts, row)
 

@@ -69,6 +69,16 @@ def test_what_waits_in_the_queue_is_shown_and_not_submitted_again(tmp_path, prog
     notes = {"a": "12_1", "b": "13_1", "c": "12_1"}
     assert [line.split()[:2] for line in status[:3]] == [["waiting", name] for name in notes]
     assert all(line.endswith(f"Slurm job {task} pending") for line, task in zip(status, notes.values()))
+    program("squeue", "echo Unable to contact slurm controller >&2; exit 1")
+    silent = study(tmp_path, "three.table", "--slurm")
+    assert (
+        silent.returncode == 2
+        and "squeue: Unable to contact slurm controller; must tell whether job 12 is" in silent.stderr
+    )
+    program("squeue", 'for task in 1 2; do echo "$4_$task PENDING"; done')
+    (tmp_path / "other").mkdir()
+    write_table(tmp_path / "other", HEADER + "a 5 10 1 runs/of_another_table\n")
+    assert "0 in the queue before, 1 submitted" in study(tmp_path, "other/three.table", "--slurm").stdout
     write_table(tmp_path, TABLE + "more 5 13 1 runs/more\n")
     again = study(tmp_path, "three.table", "--slurm").stdout.splitlines()
     assert again[-1].endswith("1 failed, 3 in the queue before, 1 submitted")

@@ -11,7 +11,9 @@ from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND, default_duration, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
 from yade_scripts.packings.approach import first_touch
+from yade_scripts.packings.from_file import sum_of_file
 from yade_scripts.run import agreement, table
+from yade_scripts.run.arguments import gather
 from yade_scripts.run.closing_line import closing_line, outcome_told
 from yade_scripts.runner import batch, cost, rows, view
 from yade_scripts.runner.batch import StudyFolder
@@ -197,6 +199,29 @@ def test_difference_names_the_first_parameter_that_disagrees():
     derived = {"timeUnit": 1e-10, "firstTouch": 1e-9}
     difference = differences(wanted, {"format": 3, "parameters": became.as_dict(), "derived": derived})
     assert difference() is None and difference(grains=65) == "grains = 64, not 65"
+
+
+def test_a_packing_file_that_has_changed_since_makes_another_run(tmp_path):
+    file = str(tmp_path / "a.npz")
+    for seed in (1, 1, 2):
+        packings.save(file, packings.bcca(20, 1e-7, 1e-9, seed))
+        derived = {"targetPacking": {"sha256": sum_of_file(file)}} if seed == 1 else derived
+        wanted = parse({"packing": "file", "file": file, "duration": 1e-9})
+        difference = differences(wanted, {"format": 3, "parameters": wanted.as_dict(), "derived": derived})()
+        assert difference == (None if seed == 1 else f"file = {file}, not {file} as it is now")
+    os.remove(file)
+    assert differences(wanted, {"format": 3, "parameters": wanted.as_dict(), "derived": derived})() is None
+
+
+def test_arguments_without_consequence_leave_a_row_its_folder(tmp_path, monkeypatch):
+    monkeypatch.delenv("YADE_BATCH", raising=False)
+    (tmp_path / "rows.table").write_text("description velocity\nfast 10\n")
+    for more, out in {
+        "resume=1": "runs/fast",
+        "threads=1": "runs/fast",
+        "seed=3": "runs/collide-ice-f0.4-R20-v10-s3",
+    }.items():
+        assert parse(*gather([f"table={tmp_path}/rows.table:2", more], KIND)).out == out
 
 
 def test_runs_of_format_1_agree_with_rows_that_give_no_duration():

@@ -9,6 +9,7 @@ from analysis.measures.compression import compression_and_velocity
 from analysis.measures.decided import BREAKING, REBOUND_PER_RADIUS, rebound_time
 from analysis.measures.plate import has_plate
 from analysis.runs.format import COLLISION, RESTING
+from analysis.runs.seal import SUM
 from yade_scripts import packings, stability
 from yade_scripts.experiments import ending, impact_step, plate
 from yade_scripts.experiments.collision_step import (
@@ -23,6 +24,7 @@ from yade_scripts.experiments.plate import AGGREGATE, WALL
 from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.approach import first_touch
+from yade_scripts.packings.from_file import sum_of_file
 from yade_scripts.packings.grain_sizes import EQUAL
 from yade_scripts.packings.offset_pair import START_GAP, offset_pair
 from yade_scripts.packings.packing import PackingError
@@ -158,6 +160,8 @@ def prepare(parameters, threads):
     constants = yade_scene.pair_constants(parameters, parameters.neck)
     parameters = complete(parameters, constants, threads)
     parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
+    for packing in pair:
+        packings.require_connected(packing)
     require_step_of_files(parameters, constants, pair)
     touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
     parameters = with_duration(parameters, constants["timeUnit"], touch)
@@ -237,7 +241,8 @@ def _sizes(aggregate_radius, pair, parameters):
     names = ("projectile",) if parameters.target == WALL else ("target", "projectile")
     for name, packing in zip(names, pair):
         if parameters.packing == "file":
-            found[f"{name}Packing"] = {**packing.parameters, "seed": packing.seed}
+            file = (parameters if name == "target" else parameters.of_projectile()).file
+            found[f"{name}Packing"] = {**packing.parameters, "seed": packing.seed, SUM: sum_of_file(file)}
         found[f"{name}Grains"] = packing.grains
         found[f"{name}GyrationRadius"] = packings.gyration_radius(packing)
         found[f"{name}CharacteristicRadius"] = packings.characteristic_radius(packing)
@@ -294,13 +299,17 @@ def estimate(parameters):
 
 
 def expected(parameters, run):
-    """What a run's run.json should hold of size and duration where the parameters leave them open.
+    """What a run's run.json should hold of size and duration where the parameters leave them open; and of files that have changed since.
 
     Runs of format 1 didn't count the time until the first touch, and aggregates that pass each other have none.
     """
     held, derived = run.get("parameters", {}), run.get("derived", {})
     open_names = ("radius", "filling", "grains")
     found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
+    for name, of in (("file", "targetPacking"), ("projectileFile", "projectilePacking")):
+        file, kept = getattr(parameters, name), (derived.get(of) or {}).get(SUM)
+        if file and kept and sum_of_file(file) not in (kept, None):
+            found[name] = f"{file} as it is now"
     touch = derived.get("firstTouch", 0.0)
     if parameters.duration is None and None not in (held.get("radius"), derived.get("timeUnit")):
         found["duration"] = default_duration(parameters, held["radius"], derived["timeUnit"], touch)

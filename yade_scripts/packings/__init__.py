@@ -18,5 +18,6 @@ from yade_scripts.packings.packing import (  # noqa: F401
     moved,
     random_stream,
     require_apart,
+    require_connected,
     save,
 )

@@ -69,7 +69,9 @@ class AggregateParameters(GrainParameters):
         "1",
     )
     removeLooseGrains: int = parameter(
-        0, SWITCH, "1: grains of a cpe aggregate outside its largest connected piece are left out"
+        0,
+        SWITCH,
+        "1: grains of a cpe aggregate outside its largest connected piece are left out, which stays where it was: impact is that of the spheres",
     )
     initialOverlap: float = parameter(
         1.0,
@@ -197,5 +199,8 @@ def _made(parameters, overlap, index):
 def _radii(parameters, index):
     """Radii [m] of a grown aggregate, from a stream of their own: with equal grains the packing stays the same."""
     p, stream = parameters, random_stream(parameters.seed, index, 1)
-    found = grain_sizes.radii(p.sizes, p.grains, p.grainRadius, stream, p.sizeRatio, p.sizeFraction, p.sizeSpread)
-    return found
+    if p.sizes == TWO and 0 < p.sizeFraction < 1 and round(p.sizeFraction * p.grains) in (0, p.grains):
+        raise ParameterError(
+            f"sizeFraction = {p.sizeFraction:g}: of {p.grains} grains none, or all; must be 0, 1, or such that some are"
+        )
+    return grain_sizes.radii(p.sizes, p.grains, p.grainRadius, stream, p.sizeRatio, p.sizeFraction, p.sizeSpread)

@@ -36,7 +36,8 @@ class CutParameters(Parameters):
 @dataclass(frozen=True)
 class PeriodicState:
     """A state of a compression: position (N,3), radius (N,), contact_pairs (M,2), cell_size (3,), overlap of grains at
-    rest, all in m; material: {name: value} of OF_CONTACTS, SI, as far as they are known."""
+    rest, all in m; material: {name: value} of OF_CONTACTS, SI, as far as they are known; between walls their axis and places
+    (2,) [m]."""
 
     position: np.ndarray
     radius: np.ndarray
@@ -44,6 +45,8 @@ class PeriodicState:
     cell_size: np.ndarray
     overlap: float
     material: dict = field(default_factory=dict)
+    axis: int | None = None
+    walls: np.ndarray | None = None
 
 
 def is_periodic_state(path):
@@ -83,7 +86,8 @@ def read_periodic_state(path):
         ) from None
     if state.cell_size is None:
         raise PackingError(f"from = {path}: not of a periodic cell; must be a state of a compression")
-    return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap, material)
+    walls = () if state.plane_axis is None else (int(state.plane_axis[0]), np.sort(state.plane_position))
+    return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap, material, *walls)
 
 
 def cut(state, parameters, index=0):
@@ -94,14 +98,21 @@ def cut(state, parameters, index=0):
     grain_radius = float(state.radius.max())
     if parameters.radius is None:
         raise ParameterError("radius: not given; must be that of the sphere to cut [grain radii]")
-    largest = float(state.cell_size.min()) / 2 / grain_radius
+    room = state.cell_size.copy()
+    if state.walls is not None:
+        room[state.axis] = np.ptp(state.walls)
+    largest = float(room.min()) / 2 / grain_radius
     if parameters.radius > largest:
         raise ParameterError(
-            f"radius = {parameters.radius:g}: a larger sphere than the cell holds; must be at most {largest:.4g} "
+            f"radius = {parameters.radius:g}: a larger sphere than the {'cell' if state.walls is None else 'space between the walls'} holds; must be at most {largest:.4g} "
             "[grain radii]"
         )
     stream = random_stream(parameters.seed, index)
-    centre = stream.uniform(0, 1, 3) * state.cell_size
+    place = stream.uniform(0, 1, 3)
+    centre = place * state.cell_size
+    if state.walls is not None:  # the sphere lies between them
+        reach = parameters.radius * grain_radius
+        centre[state.axis] = state.walls[0] + reach + place[state.axis] * (room[state.axis] - 2 * reach)
     position = state.position - centre
     position = position - state.cell_size * np.round(position / state.cell_size)
     inside = np.flatnonzero(np.linalg.norm(position, axis=1) <= parameters.radius * grain_radius)

@@ -1,5 +1,9 @@
 """Aggregates that were saved as packings, checked before anything runs."""
 
+import hashlib
+import os
+from functools import lru_cache
+
 import numpy as np
 
 from yade_scripts.packings.cut import OF_CONTACTS
@@ -27,6 +31,20 @@ def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
     if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
         raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
     return moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
+
+
+def sum_of_file(path):
+    """SHA-256 of the grains in a packing's file, by which a run tells whether it is still the one that it had; None where it can't be read."""
+    try:
+        return _sum(path, os.stat(path).st_mtime_ns)
+    except (OSError, PackingError):
+        return None
+
+
+@lru_cache
+def _sum(path, _written):
+    packing = load(path)
+    return hashlib.sha256(packing.position.tobytes() + packing.radius.tobytes()).hexdigest()
 
 
 def _require_radius(path, packing, grain_radius):

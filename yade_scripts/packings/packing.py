@@ -9,6 +9,7 @@ from math import sqrt
 import numpy as np
 from scipy.spatial import cKDTree
 
+from analysis.measures.fragments import belongs_to_an_aggregate
 from analysis.runs.arrays import RunFolderError, npz, read_arrays, read_quantities
 from analysis.runs.format import FORMAT, STATE
 from analysis.runs.write import write_bytes
@@ -85,6 +86,14 @@ def require_apart(first, second):
             f"the packings overlap: {np.count_nonzero(overlap > 0)} pairs of grains, by up to "
             f"{overlap.max():.3g} m; must be none, so put their centres further apart"
         )
+
+
+def require_connected(packing):
+    """Raise PackingError when it is in crumbs (fragments.belongs_to_an_aggregate), so that a collision of it has no outcome."""
+    try:
+        belongs_to_an_aggregate(np.zeros(packing.grains, dtype=int), contacts(packing), packing.radius**3)
+    except ValueError as error:
+        raise PackingError(str(error)) from None
 
 
 def extent(packing):

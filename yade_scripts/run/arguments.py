@@ -19,8 +19,9 @@ def from_arguments(arguments):
     return texts
 
 
-def gather(arguments):
-    """({name: text}, description or None) of a run: a table's row, and the arguments on top of it.
+def gather(arguments, kind):
+    """({name: text}, description or None) of a run: a table's row, and the arguments on top of it. None without a row, and where an argument
+    makes another run of it, by the columns of the Kind.
 
     The row is the one that yade-batch asks for (YADE_BATCH=FILE:LINE), or that of an argument table=FILE:LINE.
     """
@@ -29,7 +30,9 @@ def gather(arguments):
     if not row:
         return texts, None
     columns, description = read_row(row)
-    return {**columns, **texts}, (None if texts else description)
+    known = kind.parameters.columns()
+    another = any(name not in known or known[name].of_consequence for name in texts)
+    return {**columns, **texts}, (None if another else description)
 
 
 def read_row(row):

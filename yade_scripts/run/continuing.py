@@ -12,6 +12,7 @@ from yade_scripts.run import checkpoint
 
 CONTINUE = "continue"
 MAY_CHANGE = ("duration",)  # beside what is of no consequence
+OWN = "out", "overwrite", "resume"
 
 
 def parameters(kind, texts):
@@ -20,7 +21,7 @@ def parameters(kind, texts):
     folder, given = texts[CONTINUE], {name: text for name, text in texts.items() if name != CONTINUE}
     columns = kind.parameters.columns()
     for name in given:
-        if name in columns and (name == "out" or columns[name].of_consequence and name not in MAY_CHANGE):
+        if name in columns and (name in OWN or columns[name].of_consequence and name not in MAY_CHANGE):
             raise ParameterError(f"{name}: given with {CONTINUE} = {folder}, whose own it is; must be left out")
     found = kind.parameters.parse(given)  # only for its checks
     held = {**_held(kind, folder), **{name: getattr(found, name) for name in given}}

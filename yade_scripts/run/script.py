@@ -4,6 +4,7 @@ import os
 import sys
 import time
 
+from analysis.runs.arrays import RunFolderError
 from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import InputError, one_line_errors
 from yade_scripts.run import continuing
@@ -27,7 +28,7 @@ def main(kind, description):
         print(f"{script} {version_text()}")
         sys.exit(0)
     with one_line_errors(script):
-        texts, row = gather(sys.argv[1:])
+        texts, row = gather(sys.argv[1:], kind)
         if "yade" not in sys.modules:
             raise InputError(f"must be run by YADE: yade -n -x {sys.argv[0]} velocity=3, say")
         parameters = continuing.parameters(kind, texts) if continuing.CONTINUE in texts else kind.parse(texts, row)
@@ -109,6 +110,10 @@ def _carry_out(kind, scene, schedule, folder, begun):
             report.undecided, report.run["endedBy"] = kind.why_undecided(folder.path), scene.ended_by(recorder)
         if report.undecided:
             checkpoints.save()
-    except (OSError, RuntimeError) as error:  # a folder that can't be written, a scene that YADE can't load
+    except (
+        OSError,
+        RuntimeError,
+        RunFolderError,
+    ) as error:  # a folder that can't be written or read, a scene that YADE can't load
         outcome, status = f"failed: {loop.one_line(error)}", 1
     return report.end(outcome, status, recorder.time)

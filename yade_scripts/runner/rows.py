@@ -90,7 +90,7 @@ def read(path, run_scripts=True):
             raise table.TableError(f"{path}: {problem}, of {of}") from None
         except (ParameterError, NoKind) as problem:
             parameters, error = None, f"line {row.line} of {path}: {problem}"
-        for key in {f"description = {row.description}", f"out = {parameters.out if parameters else name}"}:
+        for key in (f"description = {name}", f"out = {os.path.normpath(parameters.out) if parameters else name}"):
             if key in lines:
                 raise table.TableError(f"{path}: lines {lines[key]} and {row.line} both have {key}; must be one")
             lines[key] = row.line

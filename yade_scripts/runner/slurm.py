@@ -15,7 +15,7 @@ from math import ceil
 
 from analysis.printable import shell_line
 from analysis.runs.arrays import RunFolderError, require_regular
-from analysis.runs.running import states_of_job
+from analysis.runs.running import states_of_job, why_unknown
 from analysis.runs.write import remove_unfinished, write_text
 from yade_scripts.run.file_name import file_name
 from yade_scripts.run.table import read
@@ -95,8 +95,9 @@ def submit(study_folder, rows, at_once=None, options=()):
         yield _submit(study_folder, group, tasks, at_once, options), group, tasks
 
 
-def queued(study_folder):
-    """{name of a row: (its task, such as 12_3, and the task's state)} of tasks that wait or run, as squeue has them."""
+def queued(study_folder, sure=False):
+    """{(name, run folder) of a row: (its task, such as 12_3, and the task's state)} of tasks that wait or run, as squeue has them. sure: raise
+    SlurmError where it has no answer."""
     found = {}
     for number in _numbers(study_folder):
         folder = study_folder.file(f"slurm-{number}")
@@ -105,7 +106,9 @@ def queued(study_folder):
             with open(os.path.join(folder, JOB)) as file:
                 job, _, tasks = file.read().strip().partition(" ")
             states = states_of_job(job) if job.isdecimal() else None
-            names = [row.description for row in read(os.path.join(folder, ROWS))] if states else []
+            if sure and states is None and job.isdecimal() and (why := why_unknown(job)):
+                raise SlurmError(f"squeue: {why}; must tell whether job {job} is in the queue, so nothing is submitted")
+            names = [(row.description, row.cells["out"]) for row in read(os.path.join(folder, ROWS))] if states else []
             tasks = int(tasks or len(names))
         except (OSError, ValueError, RunFolderError):  # being submitted, or refused by sbatch
             continue

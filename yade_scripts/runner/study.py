@@ -36,15 +36,16 @@ class Study:
                 self._states[row.name] = rows.state(row, self.folder.log(row), self._before)
         return [self._states[row.name] for row in self.rows]
 
-    def states_with_queue(self, changed=None):
-        """states(), with a note where a row is a task of Slurm's queue; [whether it is one, ...]."""
-        states, queued = self.states(changed), slurm.queued(self.folder)
-        for number, (row, state) in enumerate(zip(self.rows, states)):
-            if state.kind == WAITING and row.name in queued:
-                task, of_slurm = queued[row.name]
+    def states_with_queue(self, changed=None, sure=False):
+        """states(), with a note where a row is a task of Slurm's queue; [whether it is one, ...]. sure: as slurm.queued() has it."""
+        states, queued = self.states(changed), slurm.queued(self.folder, sure)
+        tasks = [None if row.error else queued.get((row.name, row.out)) for row in self.rows]
+        for number, (state, task_of) in enumerate(zip(states, tasks)):
+            if state.kind == WAITING and task_of:
+                task, of_slurm = task_of
                 note = f"Slurm job {task} {of_slurm.lower()}" + (f", {state.note}" if state.note else "")
                 states[number] = replace(state, note=note)
-        return states, [row.name in queued for row in self.rows]
+        return states, list(map(bool, tasks))
 
     def text(self, drawn_as, changed=None):
         return self.drawn(drawn_as, self.states_with_queue(changed)[0])

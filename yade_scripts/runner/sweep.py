@@ -19,6 +19,7 @@ from analysis.report.status import duration_text
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
+from yade_scripts.run.parameters import CORES
 from yade_scripts.runner.screen import SHARE
 from yade_scripts.runner.study import Study
 
@@ -73,7 +74,7 @@ def _sweep(kind, script, parameters, folder, jobs):
     except OSError as error:
         raise ParameterError(f"folder = {folder}: {error.strerror}; must be a folder that can be written") from None
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    _run(file, jobs or os.cpu_count())
+    _run(file, jobs or CORES)
     return table_of_runs([row["out"] for row in rows])
 
 
@@ -88,7 +89,8 @@ def _rows(kind, script, parameters, folder):
         _require_no_truths(kind, dict(zip(parameters, values)))
         out = os.path.basename(kind.parse(cells).out)
         if out in rows:
-            raise ParameterError(f"{' '.join(map('='.join, cells.items()))}: given twice; must be given once")
+            given = " ".join(map("=".join, cells.items()))
+            raise ParameterError(f"{given}: has the run folder {out} of another; numbers must differ in four digits")
         place = {"out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
         rows[out] = {"description": out, **cells, **place}
     return list(rows.values())

@@ -92,7 +92,9 @@ def _xyz(lines):
             kind, names = "xyz", None
         table, frames = Table(kind, lines.read, rows, names), frames + 1
         row = lines.next().split()
-        if not properties and row and not ("." in row[0] and _is_number(row[0])):  # else x y z without a species
+        if (
+            not properties and len(row) in (4, 5) and not ("." in row[0] and _is_number(row[0]))
+        ):  # else x y z without a species
             table = replace(table, names=("species", "x", "y", "z", "radius")[: len(row)])
         lines.skip(rows - 1)
     return _of_frames(table, frames)
