@@ -14,8 +14,7 @@ from ..theory.pair_constants import GRAIN_RADII
 from .columns import breaking_velocity
 from .neighbours import MARGIN, NEAR, ONE_CONTACT, Neighbours
 from .outcome_table import INSIDE, Axis, OutcomeTable, read_outcomes
-from .remains import OF_KIND
-from .rules import KEPT, KINDS, gain
+from .rules import KEPT, KINDS, OF_KIND, change, largest_after
 from .variables import CLOSE_PACKED, GROWN, LEFT, STRUCTURES
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
@@ -48,7 +47,7 @@ where that is the outcome, gain_mass_transfer, loss_erosion: mass that the large
 largest_fragmentation: the largest piece over the larger aggregate{intervals}; inside: 1 within the convex hull of the runs
 in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther beyond, where values are those of the
 nearest node within; runs: number of runs within {near:g} of the scatter{near_impact}. Between nodes: multilinear in the scaled coordinates (pieces better as
-(largest (1 + mass_ratio) - 1)/mass_ratio and second (1 + mass_ratio)/mass_ratio); the last axis is the fastest.
+second (1 + mass_ratio)/mass_ratio and c = largest (1 + mass_ratio) - 1, where that is above 0 c/mass_ratio); the last axis is the fastest.
 Slow collisions: all {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck; anything else has a chance of {most:.2g} there at most (95 %).
 Slower ones than any run are inside where they would be with that energy; below {contact:.2g} E_break, what making and breaking one contact
 dissipates, all runs stuck, and sticking is taken to hold at any size within the axes (error 0; filling_after is then a guess where runs is 0).
@@ -139,8 +138,8 @@ def _nearest(axes, points, others):
 
 @lru_cache
 def _table(file, maxwell):
-    """An OutcomeTable with pieces in the smaller aggregate's mass, GAINING by rules.gain(): sticking gives 1 and bouncing 0 at every mass ratio, and
-    the pieces between nodes are together no more than there was."""
+    """An OutcomeTable with pieces in the smaller aggregate's mass, GAINING by rules.change(): sticking gives 1 and bouncing 0 at every mass ratio, and
+    nothing loses more than there is."""
     table = read_outcomes(file)
     table = table.maxwell() if maxwell else table
     mesh = np.meshgrid(*(axis.nodes for axis in table.axes), indexing="ij", sparse=True)
@@ -150,7 +149,7 @@ def _table(file, maxwell):
     values = table.values.copy()
     for k, name in enumerate(table.columns):
         if name in GAINING:
-            values[..., k] = gain({"mass_ratio": ratio, "largest": values[..., k]})
+            values[..., k] = change({"mass_ratio": ratio, "largest": values[..., k]})
         elif name == "second":
             values[..., k] *= (1 + ratio) / ratio
     return replace(table, values=values)
@@ -210,11 +209,15 @@ def outcome(
             f"file = {shown(file)}: must be left out with a structure, which says which of the atlas's files"
         )
     table = _table(file or outcomes_file(structure or GROWN, impact is not None), maxwell)
-    ratio = small / large
-    found = table.lookup(columns, velocity=speed, grains=large, mass_ratio=ratio, filling=filling, **square)
-    share = ratio / (1 + ratio)
-    for name in {*GAINING, "second"} & set(found):
-        found[name] = np.asarray(found[name] * share + (0 if name == "second" else 1 - share))
+    ratio, also = small / large, {"largest"} if columns is not None and "second" in columns else set()
+    also -= set(columns or ())
+    asked = None if columns is None else (*columns, *also)
+    found = table.lookup(asked, velocity=speed, grains=large, mass_ratio=ratio, filling=filling, **square)
+    for name in set(GAINING) & set(found):
+        found[name] = np.asarray(largest_after(found[name], ratio))
+    if "second" in found:
+        most = np.minimum(found["largest"], 1 - found["largest"])
+        found["second"] = np.asarray(np.minimum(found["second"] * ratio / (1 + ratio), most))
     for name in {*ERRORS, *INTERVALS} & set(found):
         found[name][found[INSIDE] < MOSTLY] = np.nan
-    return found
+    return {name: values for name, values in found.items() if name not in also}

@@ -14,6 +14,7 @@ from ..runs.arrays import RunFolderError
 from ..runs.named import suggested
 from ..runs.seal import SUM, UNSUMMED, require_own_sum, summed
 from ..runs.write import write_text
+from .rules import OF_KIND
 
 SCALES = {"log10": np.log10, "linear": np.asarray}
 ENDS = "_low", "_high"  # of names of columns that are ends of intervals
@@ -103,7 +104,8 @@ class OutcomeTable:
 
         Of collisions, not of pairs: v^3 exp(-3 v^2 / 2 <v^2>), as faster ones meet more often; with a threshold it gives the
         probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of the collisions that are inside; ends of
-        intervals are left out, as their means are no ends of the interval of all.
+        intervals are left out, as their means are no ends of the interval of all. What the larger aggregate gains or loses where that is the
+        outcome (rules.OF_KIND) is the mean of the collisions that have it.
         """
         speed, x = self.axes[0], np.geomspace(1e-2, 5.0, 2000)
         density = x**4 * np.exp(-1.5 * x**2)  # per logarithm of x
@@ -118,6 +120,11 @@ class OutcomeTable:
         columns = tuple(name for name in self.columns if not name.endswith(ENDS))
         own = self.values[..., [self.columns.index(name) for name in columns]]
         values, inside = np.tensordot(shares[0], own, 1), columns.index(INSIDE)
+        for name, kind in OF_KIND.items():
+            if {name, f"p_{kind}"} <= set(columns):
+                k, p = columns.index(name), columns.index(f"p_{kind}")
+                of_all, often = np.tensordot(shares[0], own[..., k] * own[..., p], 1), values[..., p]
+                values[..., k] = np.divide(of_all, often, out=values[..., k], where=often > 0)
         values[..., inside] = np.tensordot(shares[1], own[..., inside], 1)
         return replace(
             self, columns=columns, values=values, comments=(*self.comments, "velocity: rms of a Maxwell distribution")

@@ -7,7 +7,7 @@ LEVEL of the fitted runs when each is foretold from the others (distributional c
 
 Means of the largest pieces are those of each outcome's runs, by the probabilities of the outcomes: with these they are consistent.
 
-Three quarters of the collisions may leave one piece. No interval that such a run ends can hold a chosen part of the runs, so the intervals of
+Half of the collisions and more leave one piece. No interval that such a run ends can hold a chosen part of the runs, so the intervals of
 the largest and second largest piece are of collisions that leave more than one."""
 
 from functools import cached_property
@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 import pandas
 
-from .rules import KINDS
+from .rules import KINDS, OF_KIND, change
 from .variables import LEFT, SEED, folds, left, offsets, scaled, variables
 
 TREES, LEAF = 100, 3  # of the forest, and runs in a leaf of it
@@ -24,8 +24,6 @@ CHUNK = 500  # queries at once, which bounds memory
 SIDES = "gained", "lost"  # parts of `largest`
 PIECES = *SIDES, "second", "eroded"
 TRAINED = "largest", "second", "filling_after"  # what the trees are grown for
-# What the larger aggregate gains or loses where that is the outcome.
-OF_KIND = {"gain_mass_transfer": "mass_transfer", "loss_erosion": "erosion", "largest_fragmentation": "fragmentation"}
 
 
 class Remains:
@@ -33,13 +31,12 @@ class Remains:
 
     def __init__(self, runs):
         self.runs, self.points = runs.reset_index(drop=True), scaled(variables(runs))
-        several, share = self.runs.second > 0, 1 / (1 + self.runs.mass_ratio)
-        more = self.runs.largest - share
-        gained, lost = more.clip(lower=0) / (1 - share), more.clip(upper=0) / share
+        several, ratio, changed = self.runs.second > 0, self.runs.mass_ratio, change(self.runs)
+        gained, lost = changed.clip(lower=0), changed.clip(upper=0)
         filling = self.runs.filling_largest / variables(self.runs).filling
-        second = self.runs.second / (1 - share)
-        pieces = {"gained": gained, "lost": lost, "second": second, "eroded": -lost / self.runs.mass_ratio}
-        self.own = left(self.runs).assign(largest=gained + lost, filling_after=filling, **pieces)
+        second = self.runs.second * (1 + 1 / ratio)
+        pieces = {"gained": gained, "lost": lost, "second": second, "eroded": -lost / ratio}
+        self.own = left(self.runs).assign(largest=changed, filling_after=filling, **pieces)
         of_parts = dict.fromkeys(("largest", *PIECES), several)
         self.known = self.own.notna().assign(**of_parts)
 

@@ -20,6 +20,8 @@ from ..measures.outcome import OWN, STAYS, sticks
 
 KINDS = ("sticking", "bouncing", "mass_transfer", "erosion", "fragmentation")
 KEPT = 0.5
+# What the larger aggregate gains or loses where that is the outcome: columns of tables of outcomes.
+OF_KIND = {"gain_mass_transfer": "mass_transfer", "loss_erosion": "erosion", "largest_fragmentation": "fragmentation"}
 
 
 def gain(row):
@@ -29,6 +31,22 @@ def gain(row):
     0.5
     """
     return (row["largest"] - _target(row)) / (1 - _target(row))
+
+
+def change(row):
+    """The same where the target is heavier; where it is lighter, what it has lost over its own mass, below 0.
+
+    >>> change({"mass_ratio": 0.25, "largest": 0.4}), change({"mass_ratio": 0.25, "largest": 0.9})
+    (-0.5, 0.5)
+    """
+    more = row["largest"] - _target(row)
+    return more / np.where(more > 0, 1 - _target(row), _target(row))
+
+
+def largest_after(changed, mass_ratio):
+    """`largest` (mass of the largest piece over the total) by change()."""
+    target = 1 / (1 + mass_ratio)
+    return target + changed * np.where(changed > 0, 1 - target, target)
 
 
 def sticking(row):

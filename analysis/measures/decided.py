@@ -40,9 +40,8 @@ def contact_strength(state, constants):
     of sintered bonds what breaks them by stretching (S17 eq 6). Arguments as why_undecided."""
     first, second = state["radius"][state["contact_pairs"]].T
     reduced = 2 * first * second / (first + second) / constants["grainRadius"]
-    reduced *= (
-        constants.get("shrunkRadius", constants["grainRadius"]) / constants["grainRadius"]
-    )  # grains that sintered
+    # grains that sintered are smaller spheres
+    reduced *= constants.get("shrunkRadius", constants["grainRadius"]) / constants["grainRadius"]
     found = BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"] * reduced ** (4 / 3)
     return np.where(state["contact_bonded"], constants.get("breakingEnergy", 0.0), found)
 

@@ -16,7 +16,7 @@ from ..runs.table import FOLDER
 from ..studies.curve_figure import CurveFigure
 from ..studies.definition import Quantity, Results
 from ..studies.estimate import Fraction
-from ..studies.runs import Runs, each
+from ..studies.runs import Runs, SeveralRuns, each
 from .rows import at_end, differing, parameters, table, varied
 
 WHATS = "sticking", "largest", "energy"
@@ -123,7 +123,7 @@ def _quantity(what, drawn, by):
         collisions = drawn.of(drawn.table[drawn.table.outcome.notna() & ~_never_met(drawn.table)])
         try:
             values = collisions.fractions(lambda table: table.outcome == STICKING, by, _undecided)
-        except ValueError as error:  # the same run twice
+        except SeveralRuns as error:
             raise CannotPlot(str(error)) from None
         return Quantity(what, "", each(values, lambda fraction, *_: OfDecided(fraction)))
     if what == "energy":

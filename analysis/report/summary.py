@@ -177,8 +177,9 @@ def _no_restitution(numbers):
 def _d_max(run, numbers):
     grain_radius = run.derived["grainRadius"]
     if numbers["d_max"] is None:
-        equal = "all grains on one side of x = 0" if met(run) else "the aggregates have not met"
-        return "undefined: " + (equal if are_equal(run) else "aggregates of unlike mass")
+        if not are_equal(run):
+            return "undefined: aggregates of unlike mass"
+        return "undefined: " + ("all grains on one side of x = 0" if met(run) else "the aggregates have not met")
     text = f"{numbers['d_max']:.4g} m = {numbers['d_max'] / grain_radius:.4g} grain radii"
     if numbers["maximum_inside"]:
         return text + f" (+- {numbers['d_max_error'] / grain_radius:.1g})"

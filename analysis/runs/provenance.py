@@ -30,7 +30,9 @@ def joined(origins):
 
 def provenance_lines(origin):
     """The same as lines of text."""
-    yield f"{origin['runs']} runs, {origin['steps']} steps, {origin['hours']:g} h of run time"
+    made = sum(origin["commits"].values())
+    more = "" if made == origin["runs"] else f" (with those that others replaced {made}, of which is what follows)"
+    yield f"{origin['runs']} runs{more}, {origin['steps']} steps, {origin['hours']:g} h of run time"
     for key, text in _COUNTED.items():
         yield f"{text}: " + "; ".join(f"{name} ({number} runs)" for name, number in origin[key].items())
 

@@ -9,6 +9,7 @@ import pandas
 from ..runs.collect import Scene
 from ..runs.named import suggested
 from .columns import flat, row_of
+from .estimate import Fraction
 from .levels import SI
 from .runs import at, select
 
@@ -17,6 +18,10 @@ GALLERY, SNAPSHOTS = Path(__file__).resolve().parents[1] / "gallery", "snapshots
 
 class NotMeasured(Exception):
     """A sound run in which there is nothing to measure; the message is one line that says why."""
+
+
+class WrongUnit(ValueError):
+    """A unit in which a quantity can't be shown; the message is one line."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,10 @@ class Quantity:
     values: pandas.Series
     unit: str = ""
     listed: bool = True
+
+    def __post_init__(self):
+        if self.scale != 1.0 and any(isinstance(each, Fraction) for each in self.values):
+            raise WrongUnit(f"quantity {self.name}: fractions are counts of runs; must be without the unit {self.unit}")
 
     @property
     def scale(self):
@@ -83,6 +92,7 @@ class Study:
     quantities  table (DataFrame, a row a run, at least one) -> iterable of Quantity
     independent what counts as one in errors, in the plural: pairs (of aggregates), clusters
     alike       whether runs that differ in parameters beside scene.key are refused together
+    open_runs   how undecided runs count, for its page
     folder (Path; find() fills it in): the study's, or the file of one's own. name: the folder's, or the file's."""
 
     title: str
@@ -92,6 +102,7 @@ class Study:
     quantities: Callable
     independent: str = "pairs"
     alike: bool = False
+    open_runs: str = "fractions count them apart, means take them as they ended"
     name: str = ""
     folder: object = field(default=None, compare=False)
 

@@ -7,7 +7,7 @@ say) has a second row of draws, in which every point of every pair has weights o
 have no error otherwise. An error is the larger of the two."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from zlib import crc32
 
@@ -70,7 +70,7 @@ class Number:
 @dataclass(frozen=True, eq=False)
 class Estimate(Number):
     """value; draws (1 or 2, DRAWS), NaN where undefined: of pairs, and of single points where it is a mean over such; pairs: the fewest
-    independent pairs of aggregates behind it, EXACT for a closed form.
+    independent pairs of aggregates behind it, EXACT for a closed form; fitted: how many numbers were fitted to them.
 
     >>> a, b = mean({"1": 2.0, "2": 4.0, "3": 3.0}), mean({"1": 1.0, "2": 3.0, "3": 2.0})
     >>> (a - b).value, round((a - b).error, 6), (a / 2).value
@@ -80,6 +80,12 @@ class Estimate(Number):
     value: float
     draws: np.ndarray
     pairs: float
+    fitted: int = field(default=1, kw_only=True)
+
+    @property
+    def freedom(self):
+        """Student's degrees of freedom of its error."""
+        return self.pairs - self.fitted
 
     @property
     def error(self):
@@ -97,12 +103,12 @@ class Estimate(Number):
         return repr(self) if self.pairs == EXACT else f"{self!r} ({self.pairs:g})"
 
     def interval(self, confidence=CONFIDENCE, runs=EXACT):
-        """(low, high), Student's with one degree of freedom less than pairs, of the difference from a number of so many runs of somebody
-        else's (error_beside); (None, None) without an error."""
+        """(low, high), Student's, of the difference from a number of so many runs of somebody else's (error_beside); (None, None) without an
+        error."""
         error = self.error_beside(runs)
         if error is None or (error == 0 and self.pairs != EXACT):
             return None, None
-        reach = error * float(student.ppf(0.5 + 0.5 * confidence, self.pairs - 1)) if error else 0.0
+        reach = error * float(student.ppf(0.5 + 0.5 * confidence, self.freedom)) if error else 0.0
         return self.value - reach, self.value + reach
 
     def error_beside(self, runs):
@@ -111,12 +117,16 @@ class Estimate(Number):
         error = self.error
         return None if error is None else 0.0 if self.pairs == EXACT else error * math.sqrt(1 + self.pairs / runs)
 
-    def chance(self, value, runs=EXACT):
-        """p of a difference from such a number as large as this or larger, either way, by Student's t; None without an error."""
+    def chance(self, low, high, runs=EXACT):
+        """p of a number as far beyond low to high, of so many runs of somebody else's, by Student's t: either way where both are the same number,
+        else one-sided, and 1 within; None without an error."""
         both = self.error_beside(runs)
         if not both:
             return None
-        return float(2 * student.sf(abs(self.value - value) / both, self.pairs - 1))
+        beyond = max(low - self.value, self.value - high)
+        if low < high and beyond <= 0:
+            return 1.0
+        return float((1 if low < high else 2) * student.sf(abs(beyond) / both, self.freedom))
 
     __add__ = __radd__ = _operator(lambda a, b: a + b)
     __sub__, __rsub__ = _operator(lambda a, b: a - b), _operator(lambda a, b: b - a)
@@ -155,19 +165,33 @@ class Fraction(Number):
         """Successes with every undecided run counted as no, and as yes."""
         return self.successes, self.successes + self.undecided
 
-    def interval(self, confidence=CONFIDENCE):
-        """(low, high): the exact interval, with the undecided runs counted either way."""
-        low, high = (exact_interval(k, self.pairs, confidence) for k in self.counts)
-        return low[0], high[1]
-
-    def chance(self, value, runs=EXACT):
-        """p (Fisher; the binomial test where the other has no error) of the fraction `value` of so many runs; the larger of both ways
-        to count the undecided."""
+    def interval(self, confidence=CONFIDENCE, runs=EXACT, value=None):
+        """(low, high): the exact interval, with the undecided runs counted either way; beside a value of so many runs of somebody else's with
+        their error too, so that less the value it is the interval of the difference (Newcombe 1998, method 10, of exact intervals)."""
+        ends = [exact_interval(k, self.pairs, confidence) for k in self.counts]
         if runs == EXACT:
-            return max(binomtest(k, self.pairs, value).pvalue for k in self.counts)
-        theirs = round(value * runs)
-        tables = ([[k, self.pairs - k], [theirs, runs - theirs]] for k in self.counts)
-        return max(float(fisher_exact(table)[1]) for table in tables)
+            return ends[0][0], ends[1][1]
+        least, most = exact_interval(round(value * runs), runs, confidence)
+        few, many = (k / self.pairs for k in self.counts)
+        low = few - math.hypot(few - ends[0][0], most - value)
+        return low, many + math.hypot(ends[1][1] - many, value - least)
+
+    def chance(self, low, high, runs=EXACT):
+        """p of a fraction as far beyond low to high, of so many runs (Fisher's test; the binomial one where it has no error): either way where both
+        are the same number, else one-sided, and 1 within. The largest of all ways to count the undecided."""
+        return max(self._chance(k, low, high, runs) for k in range(self.counts[0], self.counts[1] + 1))
+
+    def _chance(self, k, low, high, runs):
+        """The same of k successes; their count, where it is not whole, is rounded towards ours."""
+        own = k / self.pairs
+        if low < high and low <= own <= high:
+            return 1.0
+        limit, whole = (low, math.floor) if own < low else (high, math.ceil)
+        way, whole = ("less" if own < low else "greater", whole) if low < high else ("two-sided", round)
+        if runs == EXACT:
+            return float(binomtest(k, self.pairs, limit, way).pvalue)
+        theirs = whole(limit * runs)
+        return float(fisher_exact([[k, self.pairs - k], [theirs, runs - theirs]], way)[1])
 
     def __repr__(self):
         return f"{self.successes} of {self.pairs}" + (f" ({self.undecided} undecided)" if self.undecided else "")
@@ -208,7 +232,8 @@ def combine(f, *estimates):
     with np.errstate(all="ignore"):
         value, draws = f(*(np.float64(e.value) for e in estimates)), f(*(e.draws for e in estimates))
     draws = np.asarray(draws, dtype=float) + np.zeros((1, DRAWS))  # of a function that ignores them, too
-    return Estimate(float(value), draws, min(e.pairs for e in estimates))
+    pairs, freedom = min(e.pairs for e in estimates), min(e.freedom for e in estimates)
+    return Estimate(float(value), draws, pairs, fitted=1 if pairs == EXACT else pairs - freedom)
 
 
 def curve(f, x, estimates):

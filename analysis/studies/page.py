@@ -30,7 +30,7 @@ def screen(analysis, pictures, prose):
         parts.append(f"![{words.figure}]({name})\n\n{caption}")
     if judged:
         parts += [markdown_table(claims_table(judged)), OURS.format(analysis.study.independent)]
-    parts += [undecided(analysis.results.table)]
+    parts += [undecided(analysis.results.table, analysis.study)]
     for head, name in WORDS:
         text = getattr(words, name)
         if text and (prose or name == "differs"):
@@ -75,11 +75,11 @@ def counted(judgements):
     )
 
 
-def undecided(table):
-    """A sentence on runs whose outcome is undecided; '' where there is none."""
+def undecided(table, study):
+    """A sentence on runs of a definition.Study whose outcome is undecided; '' where there is none."""
     number = int((table.outcome == UNDECIDED).sum()) if "outcome" in table else 0
     return (
-        f"Undecided: {number} of {len(table)} runs ended before their outcome was clear; fractions count them apart, means take them as they ended."
+        f"Undecided: {number} of {len(table)} runs ended before their outcome was clear; {study.open_runs}."
         if number
         else ""
     )

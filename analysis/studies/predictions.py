@@ -5,6 +5,8 @@ quantity, where, low, high   of the study, as in paper.toml (where: "grains=5000
                     what was run, and whether it held, follow from the runs
 expected, run, held    without a quantity, as it was decided at the time: expected and run in words"""
 
+import math
+
 import pandas
 
 from .estimate import EXACT
@@ -37,6 +39,10 @@ def predictions(folder, results):
 
 def _claim(row):
     limits = {name: float(row[name]) for name in ("low", "high") if row[name]}
+    if not limits or not limits.get("low", -math.inf) <= limits.get("high", math.inf):
+        raise ValueError(
+            f"{row['what']}: low = {row['low']}, high = {row['high']}: must be numbers, one or both, low <= high"
+        )
     where = {
         name.strip(): _value(value) for name, _, value in (part.partition("=") for part in row["where"].split(";"))
     }

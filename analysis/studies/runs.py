@@ -12,6 +12,10 @@ from .estimate import Estimate, Fraction, curve, mean_over_points, stretch, weig
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
 
 
+class SeveralRuns(ValueError):
+    """A pair of aggregates that would count more than once; the message is one line."""
+
+
 class Runs:
     """A table of runs (DataFrame, a row a run), and what is independent in it.
 
@@ -84,7 +88,7 @@ class Runs:
 
     def fractions(self, values, by, undecided=None):
         """Series of Fraction: of runs for which a column, or a function table -> (runs,), is true; undecided: the same for runs that are
-        counted apart. A pair counts once: where it has several runs in a group, ValueError."""
+        counted apart. A pair counts once: where it has several runs in a group, SeveralRuns."""
         maybe = pandas.Series(False, self.table.index) if undecided is None else self._values(undecided).astype(bool)
         table = self.table.assign(value=self._values(values).astype(bool) & ~maybe, maybe=maybe)
         found = {}
@@ -93,7 +97,7 @@ class Runs:
             if twice.any():
                 place = ", ".join(f"{name} = {value}" for name, value in zip(by, key))
                 runs = ", ".join(map(str, rows[twice].get("run", [])[:2]))
-                raise ValueError(f"{place}: a pair of aggregates has several runs ({runs}); must have one")
+                raise SeveralRuns(f"{place}: a pair of aggregates has several runs ({runs}); must have one")
             found[key] = Fraction(int(rows.value.sum()), len(rows), int(rows.maybe.sum()))
         return _series(found, by)
 
@@ -108,7 +112,7 @@ class Runs:
             count = len(names) if fitted is None else fitted
             drawn = value + (stretch(n, count) if n > count else np.nan) * (draws - value)
             for k, name in enumerate(names):
-                found[(*key, name)] = Estimate(float(value[k]), drawn[None, :, k], n)
+                found[(*key, name)] = Estimate(float(value[k]), drawn[None, :, k], n, fitted=count)
         return _series(found, (*by, "number"))
 
     def _names(self, rows):
@@ -156,11 +160,11 @@ def ratios(first, second):
     return first / second
 
 
-def together(of, level):
-    """One Series of {label: Series of the same levels}, with the label as one more level."""
+def together(of, level, names=()):
+    """One Series of {label: Series of the same levels}, with the label as one more level; names: of these levels, where there may be none."""
     frames = {label: own for label, own in of.items() if len(own)}
     if not frames:
-        return _series({}, (*next(iter(of.values())).index.names, level))
+        return _series({}, (*(next(iter(of.values())).index.names if of else names), level))
     names = list(next(iter(frames.values())).index.names)
     frames = {label: own.reorder_levels(names) if len(names) > 1 else own for label, own in frames.items()}
     joined = pandas.concat(frames, names=[level])
@@ -208,7 +212,9 @@ def alike(values, wanted):
     values = np.asarray(values)
     if isinstance(wanted, tuple):
         return reduce(np.logical_or, (alike(values, one) for one in wanted), np.zeros(values.shape, dtype=bool))
-    if values.dtype.kind not in "fiub" or isinstance(wanted, str):
+    if isinstance(wanted, str) and values.dtype.kind in "fiub":
+        return np.zeros(values.shape, dtype=bool)
+    if values.dtype.kind not in "fiub":
         return values == wanted
     whole = (values == np.round(values)) & (wanted == np.round(wanted))
     return np.where(

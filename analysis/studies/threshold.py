@@ -31,16 +31,20 @@ class Threshold(Estimate):
         most = threshold_velocity(self.velocities[last:], high[last:]) if high[-1] <= 0 else math.inf
         return float(least), float(most)
 
-    def chance(self, value, runs=EXACT):
-        """p of the curve's difference from 0 at a velocity, 1 where no run is; None without an error."""
+    def chance(self, low, high, runs=EXACT):
+        """p of the curve's difference from 0 at the nearest velocity of low to high, 1 where no run is; one-sided as Estimate has it. None without
+        an error."""
         if self.pairs < 2 or not math.isfinite(self.value):
             return None
-        x, at = np.log(self.velocities), math.log(value)
+        if low < high and low <= self.value <= high:
+            return 1.0
+        x, at = np.log(self.velocities), math.log(low if self.value < low else high)
         if not x[0] <= at <= x[-1]:
             return 1.0
         k = min(int(np.searchsorted(x, at, side="right")), len(x) - 1)
         part = (at - x[k - 1]) / (x[k] - x[k - 1])
-        return combine(lambda a, b: (1 - part) * a + part * b, *self.estimates[k - 1 : k + 1]).chance(0.0, runs)
+        p = combine(lambda a, b: (1 - part) * a + part * b, *self.estimates[k - 1 : k + 1]).chance(0.0, 0.0, runs)
+        return p if p is None or low == high else 0.5 * p
 
     @property
     def text(self):

@@ -90,7 +90,8 @@ def _beside(claim, results):
         quantity = results[claim.quantity]
         key = "where"
         estimate = quantity.at(**claim.where)
-        ours = None if estimate is None else quantity.shown(estimate)
+        is_known = estimate is not None and not (estimate.pairs == EXACT and math.isnan(estimate.value))
+        ours = quantity.shown(estimate) if is_known else None
         key = "value, low or high"
         return quantity.unit, ours, _chance(claim, ours) if claim.test and ours is not None else None
     except (KeyError, ValueError) as error:
@@ -108,12 +109,9 @@ def _chance(claim, ours):
     if ours.pairs == EXACT:
         return None
     low, high = _agreement(claim)
-    nearest = min(max(ours.value, low), high)
-    if isinstance(ours, Fraction) and not 0 <= nearest <= 1:
-        raise ValueError(f"{nearest:g} of a fraction: must be 0 to 1")
-    p = ours.chance(nearest, claim.runs)
-    if p is not None and low < high:
-        p = 1.0 if nearest == ours.value else 0.5 * p
+    if isinstance(ours, Fraction) and (low > 1 or high < 0):
+        raise ValueError(f"{low if low > 1 else high:g} of a fraction: must be 0 to 1")
+    p = ours.chance(low, high, claim.runs)
     return None if p is None else min(1.0, claim.looks * p)
 
 
@@ -140,8 +138,10 @@ def _verdict(claim, ours, corrected, independent, family):
 
 def _interval(claim, ours):
     """Our interval; beside a value, widened by the error of the paper's own runs."""
-    beside = {} if claim.value is None or isinstance(ours, Fraction) else {"runs": claim.runs}
-    return ours.interval(_confidence(claim), **beside)
+    if claim.value is None:
+        return ours.interval(_confidence(claim))
+    value = {"value": claim.value} if isinstance(ours, Fraction) else {}
+    return ours.interval(_confidence(claim), claim.runs, **value)
 
 
 def _confidence(claim):
@@ -163,6 +163,6 @@ def _needed(claim, ours, independent, family):
     if inverse <= 0:
         return f"no number of {independent} decides: the paper's {claim.runs} scatter by {number_text(scatter)}"
     needed = max(ours.pairs + 1, math.ceil(1 / inverse))
-    while student.ppf(chances, needed - 1).sum() * scatter * math.sqrt(1 / needed + papers) > abs(inside):
+    while student.ppf(chances, needed - ours.fitted).sum() * scatter * math.sqrt(1 / needed + papers) > abs(inside):
         needed += 1
     return f"some {needed} {independent} would decide"

@@ -61,12 +61,23 @@ def test_maxwell(table):
     np.testing.assert_allclose(rms.values[:350, 0, 0, 0, 0], ((1.5 * d + 1) * np.exp(-1.5 * d))[:350], atol=0.02)
 
 
+def test_what_an_outcome_leaves_is_averaged_over_the_collisions_that_have_it():
+    """Of erosion above one speed that takes 3, and nothing is told below."""
+    fine = Axis("velocity", "log10", np.geomspace(0.01, 100, 400))
+    erodes = fine.nodes > 3
+    columns = np.stack([erodes, np.where(erodes, 3.0, 0.5), np.ones(400)], -1)
+    step = np.broadcast_to(columns[:, None, None, None], (400, 3, 3, 4, 3))
+    rms = OutcomeTable((fine, *AXES[1:]), ("p_erosion", "loss_erosion", "inside"), step).maxwell()
+    often, loss = np.moveaxis(rms.values[:, 0, 0, 0, :2], -1, 0)
+    assert loss[often > 1e-9] == pytest.approx(3.0) and loss[often == 0] == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize(
     "change, says",
     [
         (("log10 0.1", "log10 0.9"), "axis velocity: log10, 9 of 9 nodes; must be 2 or more, increasing"),
         (("4 number of columns", "5 number of columns"), "4 names of columns; must be 5"),
-        (("4 number of axes", "3 number of axes"), "invalid literal"),
+        (("4 number of axes", "3 number of axes"), "must be a table of outcomes, as"),
         (("inside", "outside"), "must have a column `inside`"),
     ],
 )

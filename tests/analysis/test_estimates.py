@@ -7,13 +7,16 @@ import numpy as np
 import pandas
 import pytest
 from refused import refused
+from scipy.stats import binomtest, fisher_exact
+from scipy.stats import t as student
 
+from analysis import exact_interval
 from analysis.statistics import smoothed_scatter
-from analysis.studies.definition import Quantity, Results
+from analysis.studies.definition import Quantity, Results, WrongUnit
 from analysis.studies.estimate import Fraction, combine, exact, mean, number_text
 from analysis.studies.paper import Claim, PaperError, read_paper
 from analysis.studies.predictions import predictions
-from analysis.studies.runs import Runs, along, at, differences, ratios, select, together
+from analysis.studies.runs import Runs, SeveralRuns, along, at, differences, ratios, select, together
 from analysis.studies.threshold import thresholds
 from analysis.studies.verdict import NO, UNTESTED, YES, judge
 
@@ -171,7 +174,11 @@ def test_fits_to_all_runs_have_the_errors_of_least_squares():
     residual = runs.value - np.polyval(np.polyfit(x, runs.value, 1), x)
     textbook = np.sqrt(residual.var(ddof=2) / (40 * x.var()))
     assert at(found, number="slope").value == pytest.approx(np.polyfit(x, runs.value, 1)[0])
-    assert at(found, number="slope").error == pytest.approx(textbook, rel=0.15)
+    slope = at(found, number="slope")
+    assert slope.error == pytest.approx(textbook, rel=0.15)
+    assert slope.freedom == (slope - mean(pairs(residual))).freedom == 38 and (slope + exact(1.0)).freedom == 38
+    low, high = slope.interval()
+    assert high - low == pytest.approx(2 * slope.error * student.ppf(0.975, 38))
 
 
 def test_fractions():
@@ -181,8 +188,17 @@ def test_fractions():
     assert found.iloc[0].interval() == pytest.approx((0.6915, 1.0), abs=1e-4)
     assert found.iloc[1].counts == (1, 2) and found.iloc[1].undecided == 1
     assert found.iloc[1].interval()[1] > Fraction(1, 4).interval()[1]
-    assert Fraction(0, 5).chance(1.0, 5) == pytest.approx(2 / 252) and Fraction(5, 10).chance(0.5) == 1.0
-    with pytest.raises(ValueError, match="several runs"):
+    assert Fraction(0, 5).chance(1.0, 1.0, 5) == pytest.approx(2 / 252) and Fraction(5, 10).chance(0.5, 0.5) == 1.0
+    # one-sided; of undecided runs every number may be the one, also what agrees
+    assert Fraction(0, 10).chance(0.5, 1.0, 5) == pytest.approx(fisher_exact([[0, 10], [2, 3]], "less")[1])
+    assert Fraction(10, 10).chance(0.0, 0.5, 5) == Fraction(0, 10).chance(0.5, 1.0, 5)
+    assert Fraction(3, 10).chance(0.0, 0.1) == pytest.approx(binomtest(3, 10, 0.1, "greater").pvalue)
+    assert Fraction(0, 30, 30).chance(0.5, 1.0, 5) == 1.0 and Fraction(1, 10, 8).chance(0.5, 0.5) == 1.0
+    # beside a value of 5 runs: of the difference, with the ends of both intervals
+    own, theirs = exact_interval(40, 100), exact_interval(2, 5)
+    widths = np.hypot(0.4 - own[0], theirs[1] - 0.4), np.hypot(own[1] - 0.4, 0.4 - theirs[0])
+    assert Fraction(40, 100).interval(runs=5, value=0.4) == pytest.approx((0.4 - widths[0], 0.4 + widths[1]))
+    with pytest.raises(SeveralRuns, match="several runs"):
         Runs(pandas.concat([runs, runs])).fractions("seed", ("velocity",))
 
 
@@ -221,6 +237,16 @@ def claim(**given):
 def test_verdicts(ours, given, verdict):
     (found,) = judge([claim(**given)], of_mean(ours))
     assert found.why and re.match(verdict, f"{found.verdict}: {found.why}")
+
+
+def test_a_closed_form_of_what_was_not_run_contradicts_nothing():
+    of = Quantity("q", "made", pandas.Series({1: exact(np.nan)}).rename_axis("grains"))
+    assert judge([claim(low=1.0)], Results(None, {"q": of}))[0].state == "not run"
+
+
+def test_fractions_have_no_unit():
+    with refused(WrongUnit, "quantity q: fractions are counts of runs; must be without the unit %"):
+        Quantity("q", "made", pandas.Series({1: Fraction(3, 4)}), "%")
 
 
 def test_to_contradict_takes_more_pairs_in_a_larger_family():
@@ -274,7 +300,7 @@ def test_thresholds_intervals_hold_it():
         found = threshold(*(random.normal(mean, size=4) for mean in (2.0, -1.0)), name=f"set{k}-")
         low, high = found.interval()
         held += low is None or low <= 10 ** (1 + 2 / 3) <= high
-        chances.append(found.chance(10 ** (1 + 2 / 3)) or 1.0)
+        chances.append(found.chance(*2 * (10 ** (1 + 2 / 3),)) or 1.0)
     assert 0.93 < held / 300 and np.mean(np.array(chances) < 0.05) < 0.08
 
 

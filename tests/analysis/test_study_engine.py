@@ -246,8 +246,12 @@ def test_every_gallery_is_one_screen_and_follows_from_its_runs(name):
     assert not again.found.problems and found["quantities"].keys() == kept["quantities"].keys()
     for quantity in kept["quantities"]:
         both = (own["quantities"][quantity]["rows"] for own in (found, kept))
-        ours, theirs = (np.array([row["value"] for row in own], dtype=float) for own in both)
-        assert ours == pytest.approx(theirs, rel=1e-6, abs=1e-12, nan_ok=True)
+        told = ([(row["value"], row["error"] or 0.0) for row in own] for own in both)
+        ours, theirs = (np.array(own, dtype=float).reshape(-1, 2).T for own in told)
+        # a difference of large numbers that is almost 0 is known to a part of its error, on another processor too
+        near = 1e-6 * (np.abs(theirs[0]) + theirs[1]) + 1e-12
+        same = (ours[0] == theirs[0]) | (np.isnan(ours[0]) & np.isnan(theirs[0]))
+        assert np.all(same | (np.abs(ours[0] - theirs[0]) <= near)), quantity
 
 
 def test_the_documents_above_the_studies_follow_from_the_runs():

@@ -306,7 +306,8 @@ def expected(parameters, run):
     held, derived = run.get("parameters", {}), run.get("derived", {})
     open_names = ("radius", "filling", "grains")
     found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
-    for name, of in (("file", "targetPacking"), ("projectileFile", "projectilePacking")):
+    first = "projectilePacking" if parameters.target == WALL else "targetPacking"
+    for name, of in (("file", first), ("projectileFile", "projectilePacking")):
         file, kept = getattr(parameters, name), (derived.get(of) or {}).get(SUM)
         if file and kept and sum_of_file(file) not in (kept, None):
             found[name] = f"{file} as it is now"

@@ -71,7 +71,8 @@ class AggregateParameters(GrainParameters):
     removeLooseGrains: int = parameter(
         0,
         SWITCH,
-        "1: grains of a cpe aggregate outside its largest connected piece are left out, which stays where it was: impact is that of the spheres",
+        "1: grains of a cpe aggregate outside its largest connected piece are left out, which stays where it was: impact is that "
+        "of the spheres",
     )
     initialOverlap: float = parameter(
         1.0,

@@ -98,13 +98,13 @@ def cut(state, parameters, index=0):
     grain_radius = float(state.radius.max())
     if parameters.radius is None:
         raise ParameterError("radius: not given; must be that of the sphere to cut [grain radii]")
-    room = state.cell_size.copy()
+    room, where = state.cell_size.copy(), "cell"
     if state.walls is not None:
-        room[state.axis] = np.ptp(state.walls)
+        room[state.axis], where = np.ptp(state.walls), "space between the walls"
     largest = float(room.min()) / 2 / grain_radius
     if parameters.radius > largest:
         raise ParameterError(
-            f"radius = {parameters.radius:g}: a larger sphere than the {'cell' if state.walls is None else 'space between the walls'} holds; must be at most {largest:.4g} "
+            f"radius = {parameters.radius:g}: a larger sphere than the {where} holds; must be at most {largest:.4g} "
             "[grain radii]"
         )
     stream = random_stream(parameters.seed, index)

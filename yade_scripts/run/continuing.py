@@ -9,6 +9,7 @@ from analysis.runs.folder import read_json
 from analysis.runs.format import ENDED_FILE, RUN_FILE
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import checkpoint
+from yade_scripts.run.parameters import CORES
 
 CONTINUE = "continue"
 MAY_CHANGE = ("duration",)  # beside what is of no consequence
@@ -24,7 +25,10 @@ def parameters(kind, texts):
         if name in columns and (name in OWN or columns[name].of_consequence and name not in MAY_CHANGE):
             raise ParameterError(f"{name}: given with {CONTINUE} = {folder}, whose own it is; must be left out")
     found = kind.parameters.parse(given)  # only for its checks
-    held = {**_held(kind, folder), **{name: getattr(found, name) for name in given}}
+    held = _held(kind, folder)
+    if held["threads"]:
+        held["threads"] = min(held["threads"], CORES)  # of another machine
+    held |= {name: getattr(found, name) for name in given}
     return kind.parameters(**{**held, "out": folder, "resume": 1, "overwrite": 0})
 
 

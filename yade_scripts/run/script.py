@@ -110,10 +110,6 @@ def _carry_out(kind, scene, schedule, folder, begun):
             report.undecided, report.run["endedBy"] = kind.why_undecided(folder.path), scene.ended_by(recorder)
         if report.undecided:
             checkpoints.save()
-    except (
-        OSError,
-        RuntimeError,
-        RunFolderError,
-    ) as error:  # a folder that can't be written or read, a scene that YADE can't load
+    except (OSError, RuntimeError, RunFolderError) as error:  # a folder's, or a scene's that YADE can't load
         outcome, status = f"failed: {loop.one_line(error)}", 1
     return report.end(outcome, status, recorder.time)

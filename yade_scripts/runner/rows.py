@@ -189,6 +189,10 @@ def _require_columns(path, row):
     if others:
         must = f"must be left out, or one of {', '.join(OF_YADE_BATCH)}"
         raise table.TableError(f"{path}: the column {others[0]} is for yade-batch alone; {must}")
+    if row.cells.get("overwrite", "0") != "0":
+        raise table.TableError(
+            f"{path}: line {row.line}: overwrite = {row.cells['overwrite']}: a study keeps what has ended; must be 0"
+        )
 
 
 def _threads_of_yade(cells, parameters):

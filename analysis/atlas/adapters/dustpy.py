@@ -16,7 +16,7 @@ from ...arguments import FLAG, PATH, Kind, number, one_of, takes
 from ...theory import GRAIN_RADIUS, MATERIALS, interaction_energies, pair_constants
 from ..grid import MOSTLY, PROBABILITIES, RADIUS, TOUCHING
 from ..outcome_table import INSIDE, OutcomeTable, OutcomeTableError, read_outcomes
-from ..remains import OF_KIND
+from ..rules import OF_KIND
 
 PER_NODE = 4  # speeds between two nodes of the table at which a pair's probabilities are kept
 CM, GRAM, GRAM_PER_CM3 = 100.0, 1000.0, 1e-3  # of one m, kg, kg/m^3
@@ -147,7 +147,7 @@ class AtlasInDustPy:
         of_bins, mass = self.outside_of_bins(sim), np.asarray(sim.dust.Sigma * sim.grid.A[:, None])
         said = {"collisions": np.average(share, weights=rate)}
         said["mass"] = np.average(np.nan_to_num(of_bins), weights=mass * np.isfinite(of_bins))
-        query = self._query(sim)
+        query = self._query(sim, self._speeds(sim))
         for axis in self.table.axes:
             beyond = axis.beyond(query[axis.name])
             said[f"{axis.name} below"] = np.average(beyond < 0, weights=rate)
@@ -167,14 +167,14 @@ class AtlasInDustPy:
     def _speeds(self, sim):
         return np.asarray(sim.dust.v.rel.tot)[1:-1, self.smaller, self.larger]
 
-    def _query(self, sim):
-        """{axis: (Nr - 2, pairs)} of the table; filling is the mean by mass of both, the grains are those of the larger aggregate."""
+    def _query(self, sim, speeds):
+        """{axis: (Nr - 2, pairs)} of the table, at speeds [cm/s]; filling is the mean by mass of both, the grains are those of the larger aggregate."""
         grain = np.asarray(sim.dust.rhos)[1:-1, self.larger] / GRAM_PER_CM3 * self.grain_volume  # kg
         filled = np.asarray(sim.dust.fill)[1:-1] * self.mass
         mass = np.broadcast_to(self.mass, filled.shape)
         small, large = mass[:, self.smaller], mass[:, self.larger]
         return {
-            "velocity": self._speeds(sim) / CM / np.sqrt(self.break_energy / grain),
+            "velocity": speeds / CM / np.sqrt(self.break_energy / grain),
             "grains": large / GRAM / grain,
             "mass_ratio": small / large,
             "filling": (filled[:, self.smaller] + filled[:, self.larger]) / (small + large),
@@ -185,11 +185,11 @@ class AtlasInDustPy:
         and the filling are the same at every radius; else from the table, which takes 0.3 us a pair and step."""
         dust = np.array([sim.dust.rhos, sim.dust.fill])[:, 1:-1]
         if np.ptp(dust, axis=1).any():
-            return self._found(**self._query(sim))
+            return self._found(**self._query(sim, self._speeds(sim)))
         speeds = self._speeds(sim)
         if self._curves_of is None or not np.array_equal(dust[:, 0], self._curves_of):
-            first = {name: values[0] for name, values in self._query(sim).items()}
-            unit = first.pop("velocity") / speeds[0]
+            first = {name: values[0] for name, values in self._query(sim, 1.0).items()}
+            unit = first.pop("velocity")
             self._curves_of, self._curves = dust[:, 0], _Curves(self._found, self.table.axes[0], first, unit)
         return self._curves.at(speeds)
 

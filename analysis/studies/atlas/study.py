@@ -8,10 +8,11 @@ from ...atlas.columns import MEASURED
 from ...atlas.neighbours import slow
 from ...atlas.rules import KINDS
 from ...atlas.variables import STRUCTURES, decided, drawn, fit_and_held_out, scaled, touching, variables
+from ...measures.of_run import UNLIKE
 from ...measures.outcome import NEVER_MET, UNDECIDED
 from ...runs.collect import Scene
 from ..definition import Quantity, Study
-from ..estimate import EXACT, Estimate
+from ..estimate import exact
 from ..runs import Runs, select, together
 from .bouncing import threshold_exponent
 
@@ -22,7 +23,7 @@ SLOW = 5.0  # v_break, 19 m/s for ice: faster aggregates break, or pass each oth
 MANY_CONTACTS, COMPACT = 6.0, 0.4
 ERODING = 13.0  # v_break; chosen after the runs
 FAST, HALF = 20.0, 0.5  # v_break; mass ratio of equals at least, and b of head-on collisions at most
-HEAD_ON, EQUAL = 0.7, 0.25  # impact parameter at most, mass ratio at least
+HEAD_ON, EQUAL = 0.7, 1 - UNLIKE  # impact parameter at most, mass ratio at least: of others d has no meaning
 BY_BAND, BY_GROUP = ("aggregates", "filling", "speed"), ("group",)
 
 
@@ -48,12 +49,12 @@ def quantities(table):
         yield Quantity(f"{kind}_at", meaning, runs.fractions(is_kind(kind), BY_BAND))
     yield from _bouncing(runs, all_runs.of(touching(table)))
     yield _fast(runs)
-    head_on = (runs.table.impact < HEAD_ON) & (runs.table.mass_ratio > EQUAL) & (at.velocity[runs.table.index] < SLOW)
+    head_on = (runs.table.impact < HEAD_ON) & (runs.table.mass_ratio >= EQUAL) & (at.velocity[runs.table.index] < SLOW)
     compressed = (runs.table.structure == "compressed") & (at.filling[runs.table.index] > 0.35)
     lost = _grouped(runs, {"compressed of filling 0.35 to 0.5": head_on & compressed}).estimates(
         "lost_in_compression", BY_GROUP
     )
-    meaning = f"dissipated until the largest compression, of K(0) and the potential energy released until then; b < {HEAD_ON:g}, mass ratio > {EQUAL:g}, below {SLOW:g} v_break"
+    meaning = f"dissipated until the largest compression, of K(0) and the potential energy released until then; b < {HEAD_ON:g}, mass ratio from {EQUAL:g} on, below {SLOW:g} v_break"
     yield Quantity("lost_in_compression", meaning, lost)
     yield _silicate(runs)
     broken = runs.of(runs.table[runs.table.outcome.isin(BREAKING)])
@@ -89,8 +90,7 @@ def _slow(own):
 
 def _exact(values):
     """Series of numbers without scatter, by `number`."""
-    found = [Estimate(float(value), np.full((1, 1), float(value)), EXACT) for value in values.values()]
-    return pandas.Series(found, pandas.Index(list(values), name="number"), dtype=object)
+    return pandas.Series(list(map(exact, values.values())), pandas.Index(list(values), name="number"), dtype=object)
 
 
 def _middle(values, limits):
@@ -195,6 +195,7 @@ STUDY = Study(
         "the atlas", {"neck": 0.0, "viscoelasticTime": 0.0, "planar": 0}, ("velocity", "impact"), measured=("number",)
     ),
     measured=MEASURED,
+    open_runs="means leave them out, and fractions that don't count them apart",
     quantities=quantities,
     independent="runs",
 )

@@ -96,7 +96,7 @@ def _exponents(runs, grain, offset):
         tau = each(_at_fillings_of(own, times), lambda t, filling, radius, v: t - contact(filling, v))
         found[way] = along(tau, "velocity", power)
     meaning = "exponent of τ_max as a power of the velocity, by how δ_offset is found; 0: rigid-plastic, -0.2: elastic"
-    yield Quantity("trend", meaning, finite(together(found, "fit")))
+    yield Quantity("trend", meaning, finite(together(found, "fit", ("filling",))))
 
 
 def _constants(runs, grain, stress, compliance):
