@@ -31,14 +31,6 @@ def contact_pressure(position, pairs, normal_force, cell_size):
     return float(distance @ np.asarray(normal_force)) / (3.0 * float(np.prod(cell_size)))
 
 
-def contact_stress(position, pairs, force, cell_size):
-    """Stress (3,3) [Pa] of the contacts, sum of (r_i - r_j) f_ij over V; its trace is three times contact_pressure().
-
-    force (M,3) [N]: the whole force on the first grain of a pair, sliding included."""
-    separation = contact_separation(position, pairs, cell_size)
-    return separation.T @ np.asarray(force) / float(np.prod(cell_size))
-
-
 def cell_velocity(position, velocity, cell_size, rate):
     """Velocity (N,3) [m/s] of each grain's image in the cell around the origin (K13 eqs 8-11).
 

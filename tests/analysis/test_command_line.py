@@ -2,12 +2,11 @@
 
 import json
 import re
-import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
-from written_runs import PAIR, PAIR_VELOCITY, seal
+from running import PYTHON, TOP, call, read_arrays
+from written_runs import PAIR, PAIR_VELOCITY, change_arrays, seal
 
 from analysis.figures.draw import figures_of
 from analysis.report.rows import row
@@ -15,14 +14,8 @@ from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNELS
 from analysis.theory import collide_pair
 
-TOP = Path(__file__).resolve().parents[2]
-
+analyse = lambda *arguments: call(TOP, PYTHON, "-m", "analysis", *arguments)
 KEYS = {"run", "d_max", "t_max", "restitution", "outcome", "largest_fragment", "energy_closure", *CHANNELS}
-
-
-def analyse(*arguments):
-    command = ["/usr/bin/python3", "-m", "analysis", *map(str, arguments)]
-    return subprocess.run(command, cwd=TOP, capture_output=True, text=True)
 
 
 def test_json_of_one_run_is_an_object_of_several_a_list_in_their_order(pair_folder, cluster_folder):
@@ -64,9 +57,8 @@ def test_a_broken_run_among_others_is_reported_and_the_others_printed(pair_folde
 def change(run, names, to=np.zeros_like):
     """These arrays of a folder, to what a function makes of them."""
     for file in (run / "history.npz", *(run / "states").iterdir()):
-        with np.load(file) as archive:
-            arrays = dict(archive)
-        np.savez(file, **{name: to(own) if name in names else own for name, own in arrays.items()})
+        own = read_arrays(file)
+        change_arrays(file, **{name: to(own[name]) for name in names & own.keys()})
     seal(run)
 
 

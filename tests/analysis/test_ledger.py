@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.measures.ledger import closure, closure_history, final_values, fractions, fractions_at, total_energy
-from analysis.runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, LABELS, LOST, STORED, WORK
+from analysis.runs.format import CHANNELS
 
 
 def _history(**changed):
@@ -13,16 +13,6 @@ def _history(**changed):
     history["normal"] = np.array([-10.0, -10.0, -11.0, -12.0])
     history["connection"] = np.array([0.0, 1.0, 2.5, 4.0])
     return {**history, **changed}
-
-
-def test_channels_are_those_of_the_run_folder_in_order():
-    kinds = {kind: tuple(c.name for c in CHANNEL_TABLE if c.kind == kind) for kind in (STORED, LOST, WORK)}
-    assert CHANNELS == kinds[STORED] + kinds[LOST] + kinds[WORK]
-    assert " ".join(kinds[STORED]) == "kinetic normal sliding rolling twisting"
-    lost = "slidingDissipation rollingDissipation twistingDissipation connection disconnection drag bondBreaking"
-    assert " ".join(kinds[LOST]) == lost and " ".join(kinds[WORK]) == "boundaryWork constraintWork externalWork"
-    assert set(LABELS) == set(COLOURS) == set(CHANNELS)
-    assert len(set(COLOURS.values())) == len(CHANNELS)
 
 
 def test_sum_and_closure_which_is_undefined_without_kinetic_energy_at_the_start():

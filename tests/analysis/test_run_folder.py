@@ -9,7 +9,7 @@ import zipfile
 import numpy as np
 import pytest
 from refused import refused
-from written_runs import state_arrays, unseal
+from written_runs import change_arrays, flip, state_arrays, unseal
 
 from analysis import summarise
 from analysis.figures.draw import figures_of
@@ -31,12 +31,6 @@ def _change_record(folder, change):
     (folder / "run.json").write_text(json.dumps(record))
 
 
-def _change_arrays(file, **changed):
-    with np.load(file) as archive:
-        arrays = {**archive, **changed}
-    np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
-
-
 def test_a_whole_run_of_which_nothing_can_be_changed(folder):
     run = open_run(folder)
     assert run.ended and len(run.states) == 3 and run.derived["grainRadius"] == 1e-7
@@ -56,8 +50,8 @@ def test_what_a_folder_may_lack_and_hold_besides(folder):
     (folder / "ended").unlink()
     for name in ("000003.npz.tmp", "notes.txt"):
         (folder / "states" / name).write_text("mine")
-    _change_arrays(folder / "history.npz", d=np.r_[open_run(folder).history["d"][:-1], np.nan])
-    _change_arrays(folder / "states" / "000000.npz", cell_size=np.array([1e-6, 2e-6, 3e-6]))
+    change_arrays(folder / "history.npz", d=np.r_[open_run(folder).history["d"][:-1], np.nan])
+    change_arrays(folder / "states" / "000000.npz", cell_size=np.array([1e-6, 2e-6, 3e-6]))
     text = (folder / "run.json").read_text()
     (folder / "run.json").write_text(text, encoding="utf-8-sig")
     run = open_run(folder)
@@ -71,14 +65,14 @@ def test_a_folder_of_format_1_is_read_and_lacks_nothing_else(folder):
     """It has no kind and no work from outside."""
     new = open_run(folder)
     _change_record(folder, lambda r: (r.update(format=1), r.pop("kind")))
-    _change_arrays(folder / "history.npz", boundaryWork=None, constraintWork=None, externalWork=None)
+    change_arrays(folder / "history.npz", boundaryWork=None, constraintWork=None, externalWork=None)
     old = open_run(folder)
     assert old.kind is new.kind is COLLISION and old.record["format"] == 1
     assert set(old.history) == set(new.history) == {q.name for q in COLLISION.history if not q.optional}
     assert all(np.array_equal(old.history[name], new.history[name]) for name in old.history)
     assert not old.history["boundaryWork"].any() and old.start.cell_size is None
     assert summarise(old) == summarise(new)
-    _change_arrays(folder / "history.npz", connection=None)
+    change_arrays(folder / "history.npz", connection=None)
     with pytest.raises(RunFolderError, match="lacks the array 'connection'"):
         open_run(folder)
 
@@ -87,9 +81,9 @@ def test_a_kind_of_run_of_a_script_of_its_own(folder):
     """What every run has is read and checked; its own series are read as they are."""
     _change_record(folder, lambda r: r.update(kind="shrink"))
     filling = np.linspace(0.1, 0.2, 201)
-    _change_arrays(folder / "history.npz", d=None, v=None, contacts_between=None, filling=filling)
+    change_arrays(folder / "history.npz", d=None, v=None, contacts_between=None, filling=filling)
     for file in (folder / "states").iterdir():
-        _change_arrays(file, aggregate=np.array([0, 5]))
+        change_arrays(file, aggregate=np.array([0, 5]))
     run = open_run(folder)
     assert run.kind.name == "shrink" and np.array_equal(run.history["filling"], filling) and "d" not in run.history
     assert list(run.start.aggregate) == [0, 5] and list(figures_of(run)) == ["energy"]
@@ -97,13 +91,13 @@ def test_a_kind_of_run_of_a_script_of_its_own(folder):
     assert numbers["energy_closure"] < 1e-9 and numbers["outcome"] is None and numbers["d_max"] is None
     text = table(run, numbers)
     assert "a run of the kind shrink" in text and "energy closure" in text and "d_max" not in text
-    _change_arrays(folder / "history.npz", filling=np.zeros(7))
+    change_arrays(folder / "history.npz", filling=np.zeros(7))
     with pytest.raises(RunFolderError, match="'filling' has the shape"):
         open_run(folder)
 
 
 def test_different_grains_in_states_make_no_outcome_and_no_states_no_end(folder):
-    _change_arrays(folder / "states" / "000000.npz", aggregate=np.array([1, 0]))
+    change_arrays(folder / "states" / "000000.npz", aggregate=np.array([1, 0]))
     with pytest.raises(RunFolderError, match="don't hold the same grains"):
         summarise(open_run(folder))
     shutil.rmtree(folder / "states")
@@ -118,22 +112,16 @@ def values(part=None, **changed):
 
 def history(**changed):
     """What changes arrays of a folder's history."""
-    return lambda folder: _change_arrays(folder / "history.npz", **changed)
+    return lambda folder: change_arrays(folder / "history.npz", **changed)
 
 
 def state(**changed):
     """What changes arrays of a state's file."""
-    return lambda file: _change_arrays(file, **changed)
+    return lambda file: change_arrays(file, **changed)
 
 
 def _halve(file):
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
-
-
-def _flip(file):
-    data = bytearray(file.read_bytes())
-    data[len(data) // 3] ^= 0xFF
-    file.write_bytes(bytes(data))
 
 
 def _as_pipe(file):
@@ -160,7 +148,7 @@ DAMAGE = {
     "zero radius": (values("derived", grainRadius=0), "'grainRadius' must be a positive number, it is 0"),
     "no history": (lambda f: (f / "history.npz").unlink(), "history.npz: missing: the run has recorded no history"),
     "half a history": (lambda f: _halve(f / "history.npz"), "history.npz: damaged"),
-    "a flipped byte": (lambda f: _flip(f / "history.npz"), "history.npz: damaged"),
+    "a flipped byte": (lambda f: flip(f / "history.npz", 1 / 3, 0xFF), "history.npz: damaged"),
     "text as history": (lambda f: (f / "history.npz").write_text("time d v"), "history.npz: damaged, or not an .npz file"),
     "empty history": (lambda f: (f / "history.npz").write_bytes(b""), "history.npz: damaged, or not an .npz file"),
     "bare array": (lambda f: np.save(open(f / "history.npz", "wb"), np.zeros(3)), "history.npz: damaged, or not an .npz"),

@@ -140,6 +140,20 @@ def facing(time, d, v, one=((0, 0, 0),), pairs=(), reach=0.0, touching=False):
     return state_arrays(time, position, moving, np.repeat([0, 1], grains), contacts)
 
 
+def change_arrays(file, **changed):
+    """Other arrays in an .npz file; None: without that one."""
+    with np.load(file) as archive:
+        arrays = {**archive, **changed}
+    np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
+
+
+def flip(file, where=0.4, bits=4):
+    """Flip bits of a byte, at this fraction of a file's length."""
+    data = bytearray(file.read_bytes())
+    data[int(where * len(data))] ^= bits
+    file.write_bytes(bytes(data))
+
+
 def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, derived={}, **parameters):
     """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding, and stick (still
     parting at the end unless it settles) or part at half their speed. derived: as record's others. Returns the path."""

@@ -61,19 +61,6 @@ def test_the_analysis_of_a_run_of_any_name(here, command):
     assert (here / NAME / (COMMANDS[command] or "")).exists()
 
 
-def test_columns_that_yade_batch_takes_for_programs_are_refused(tmp_path):
-    for column, cell, *arguments in (
-        ("!COUNT", "open('PWNED','w')"),
-        ("!AFFINITY", "open('PWNED','w')", "--slurm", "--dry-run"),
-        ("!EXEC", "touch${IFS}PWNED;yade", "--status"),
-    ):
-        (tmp_path / "rows.table").write_text(f"radius {column}\n4 {cell}\n")
-        done = study(tmp_path, "rows.table", *arguments)
-        assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
-        assert done.stderr.startswith(f"study.py: rows.table: the column {column} is for yade-batch alone; must be ")
-        assert os.listdir(tmp_path) == ["rows.table"]
-
-
 def test_status_runs_no_script_that_a_table_names(tmp_path):
     (tmp_path / "mine.py").write_text("open('PWNED', 'w')\n")
     (tmp_path / "rows.table").write_text("description !SCRIPT out threads\na mine.py runs/b 2\nb none.py * -1\n")

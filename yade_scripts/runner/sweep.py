@@ -90,7 +90,9 @@ def _rows(kind, script, parameters, folder):
         out = os.path.basename(kind.parse(cells).out)
         if out in rows:
             given = " ".join(map("=".join, cells.items()))
-            raise ParameterError(f"{given}: has the run folder {out} of another; numbers must differ in four digits")
+            raise ParameterError(
+                f"{given}: has the run folder {out} of another; must be told from it by the first four digits"
+            )
         place = {"out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
         rows[out] = {"description": out, **cells, **place}
     return list(rows.values())
