@@ -68,20 +68,3 @@ def test_ledger_of_sustained_slip_has_second_order():
 
     coarse, fine = (rms(error(step, angle) for angle in (0.3, 1.1, 2.5)) for step in (0.1, 0.0125))
     assert coarse / fine > 30
-
-
-def test_contacts_formed_less_contacts_broken_is_the_change_of_their_number():
-    """Grains that fly together and partly apart again; across the border of two domains too, and after a checkpoint."""
-    new_scene(0.1 * unit, "fused", subSteps=50)
-    converging(64, 4, [ice()], [1e-7], speed=12.0)
-    O.engines[0].prepare()
-    first = O.engines[0].statistics()["contacts"]
-    O.run(21, True)
-    before = O.engines[0].statistics()
-    saved_and_loaded()
-    O.engines[0].prepare()
-    assert O.engines[0].statistics() == before
-    O.run(39, True)
-    now = O.engines[0].statistics()
-    assert now["formed"] > 50 and now["broken"] > 10
-    assert now["contacts"] - first == now["formed"] - now["broken"]

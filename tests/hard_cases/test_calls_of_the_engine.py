@@ -137,16 +137,6 @@ def test_a_snapshot_has_what_a_script_has_changed():
     assert "body 2 was given another state after the start" in said(contact_law.snapshot)
 
 
-def test_a_snapshot_of_the_functors_does_not_mind_a_dead_engine():
-    chain()
-    O.engines = functor_engines()
-    steps(20)
-    without = contact_law.snapshot()
-    O.engines += [JKRWadaEngine(dead=True)]
-    beside = contact_law.snapshot()
-    assert all((beside[name] == without[name]).all() for name in ("position", "velocity"))
-
-
 @pytest.mark.parametrize("dead", [0, 1])
 def test_a_snapshot_does_not_mind_a_dead_engine_beside_the_other(dead):
     chain()

@@ -77,11 +77,9 @@ class Kernel:
         return SimpleNamespace(array=out, **dict(zip(self.bond_constant_names, out)))
 
     def bond(self, constants, rest, separation, n1, n2, twist=0.0):
-        out = np.empty(14)
+        out = np.empty(13)
         self.call("bondAt", constants.array, float(rest), array([*separation, *n1, *n2, twist]), out)
-        return SimpleNamespace(
-            force=out[:3], torque1=out[3:6], torque2=out[6:9], energies=out[9:13], breaks=bool(out[13])
-        )
+        return SimpleNamespace(force=out[:3], torque1=out[3:6], torque2=out[6:9], energies=out[9:])
 
     def cut_passage(self, before, trial, limit):
         """(displacement of the last spring, mean displacement of all springs) of one that is cut at a limit on its way."""

@@ -91,7 +91,7 @@ void bondConstants(const double* material1, double radius1, const double* materi
 		*out++ = b.*member;
 }
 
-// state: separation, n1, n2 (9 numbers), twist. out: force on 1, torque1, torque2, the four stored energies, whether it breaks.
+// state: separation, n1, n2 (9 numbers), twist. out: force on 1, torque1, torque2, the four stored energies.
 void bondAt(const double* constants, double rest, const double* state, double* out)
 {
 	const auto b = bondFrom(constants);
@@ -102,7 +102,7 @@ void bondAt(const double* constants, double rest, const double* state, double* o
 	write(out, f.normalForce * g.normal + f.sliding);
 	write(out, f.torque1);
 	write(out, f.torque2);
-	*out++ = e.normal, *out++ = e.sliding, *out++ = e.rolling, *out++ = e.twisting, *out++ = bondBreaks(b, e);
+	*out++ = e.normal, *out++ = e.sliding, *out++ = e.rolling, *out++ = e.twisting;
 }
 
 // out: displacement of the last spring, mean displacement of all over the way.

@@ -24,10 +24,6 @@ def test_neck_geometry_and_shrunk_radius(kernel, beta, shrunk):
     assert neck.shrunk_radius**3 + 2 * neck.volume == pytest.approx(1, rel=1e-14)
 
 
-def test_no_neck_leaves_the_grain(kernel):
-    assert kernel.neck(0.0).shrunk_radius == 1
-
-
 def test_stiffnesses_and_breaking_energy_of_ice(kernel):
     """S17 eqs 3-6 for ice of 0.1 um (E = 7 GPa, G = 2.8 GPa, gamma = 0.1 J/m^2) at beta = 0.5, worked out by hand."""
     b = kernel.bond_constants(0.5)
@@ -65,40 +61,3 @@ def test_force_is_minus_the_gradient_of_the_energy_and_angular_momentum_is_conse
         assert torque2 == pytest.approx(at.torque2, abs=1e-5 * torque)
         rounding = 2.2e-16 * (b.slidingStiffness * np.dot(x, x) + np.linalg.norm(at.force) * np.linalg.norm(x))
         assert np.linalg.norm(at.torque1 + at.torque2 + np.cross(x, at.force)) < 8 * rounding
-
-
-def modes(kernel, b, rest, size):
-    """A bond with one displacement of `size` times the critical one, for each mode: (separation, n1, n2, twist)."""
-    stretch, slide, roll, twist = (
-        size * np.sqrt(2 * b.breakingEnergy / k)
-        for k in (b.normalStiffness, b.slidingStiffness, b.rollingStiffness, b.twistingStiffness)
-    )
-    x, y, z = np.eye(3)
-    slide_angle, roll_angle = np.arcsin(slide / (b.radius1 + b.radius2)), np.arcsin(roll / (2 * b.reducedRadius))
-    turned = lambda v, angle: kernel.turn(v, angle * z)
-    return {
-        "stretch": ((rest + stretch) * x, -x, x, 0.0),
-        "press": ((rest - stretch) * x, -x, x, 0.0),
-        "slide": (rest * x, turned(-x, slide_angle), turned(x, slide_angle), 0.0),
-        "roll": (rest * x, turned(-x, roll_angle), turned(x, -roll_angle), 0.0),
-        "twist": (rest * x, -x, x, twist),
-    }
-
-
-@pytest.mark.parametrize("mode", ["stretch", "press", "slide", "roll", "twist"])
-def test_each_mode_breaks_at_the_energy_of_the_surfaces(kernel, mode):
-    b = kernel.bond_constants(0.4)
-    rest = 1.99e-7
-    below, above = (kernel.bond(b, rest, *modes(kernel, b, rest, size)[mode]) for size in (1 - 1e-6, 1 + 1e-6))
-    assert not below.breaks and above.breaks
-    assert above.energies.sum() == pytest.approx(np.pi * (0.4 * RADIUS) ** 2 * 0.1, rel=3e-6)
-    assert np.count_nonzero(above.energies > 1e-6 * b.breakingEnergy) == 1
-
-
-def test_all_modes_together_break_it_no_sooner(kernel):
-    """S17: any one mode. Three modes at 0.9 of the energy each hold more than pi a^2 gamma, and the bond holds."""
-    b = kernel.bond_constants(0.4)
-    rest = 1.99e-7
-    one = {name: modes(kernel, b, rest, np.sqrt(0.9))[name] for name in ("stretch", "roll", "twist")}
-    at = kernel.bond(b, rest, one["stretch"][0], one["roll"][1], one["roll"][2], one["twist"][3])
-    assert at.energies.sum() > 2.6 * b.breakingEnergy and not at.breaks

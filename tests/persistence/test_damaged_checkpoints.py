@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from faults.commands import OTHER, RECORDER, RUN, arrays
 from faults.forks import END_BEFORE
+from written_runs import change_arrays, flip
 
 RESUME = RUN + ("resume=1",)
 STATE = "states/000001.npz"
@@ -36,28 +37,10 @@ def scene_of(run):
     return next((run / "checkpoint").glob("scene-*.yade"))
 
 
-def flip(file, where):
-    """Flip one bit of a file; where: a fraction of its length."""
-    data = bytearray(file.read_bytes())
-    data[int(where * len(data))] ^= 4
-    file.write_bytes(bytes(data))
-
-
 def change_rows(run, change, about=str):
     """Write recorder.npz again with other rows, and another text about them."""
     with np.load(run / RECORDER) as archive:
         np.savez(run / RECORDER, rows=change(archive["rows"].copy()), about=about(archive["about"]))
-
-
-def with_nan(rows):
-    rows[2, 3] = np.nan
-    return rows
-
-
-def change_state(run, **changed):
-    with np.load(run / STATE) as archive:
-        held = {**archive, **changed}
-    np.savez(run / STATE, **held)
 
 
 def cut(file, length):
@@ -80,24 +63,24 @@ def with_text(before, after):
 
 DAMAGE = {
     **{name: (with_text(before, after), message) for name, (before, after, message) in ABOUT.items()},
-    **{
-        f"a bit of the scene at {where}": (lambda run, other, where=where: flip(scene_of(run), where), "scene-4.yade: ")
-        for where in (0.001, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999)
-    },
+    "a bit of the scene": (lambda run, other: flip(scene_of(run), 0.5), "scene-4.yade: "),
     "half a scene": (lambda run, other: cut(scene_of(run), 2000), "scene-4.yade: 2000 bytes, SHA-256"),
     "another run's scene": (lambda run, other: shutil.copy(scene_of(other), scene_of(run)), "scene-4.yade: "),
     "no scene": (lambda run, other: scene_of(run).unlink(), "not a checkpoint ([Errno 2]"),
     "rows cut": (lambda run, other: change_rows(run, lambda rows: rows[:-1]), "recorder.npz: rows have the shape (4, "),
-    "rows twice": (lambda run, other: change_rows(run, lambda rows: np.r_[rows, rows]), "rows have the shape (10, "),
-    "NaN in rows": (lambda run, other: change_rows(run, with_nan), "recorder.npz: "),
     "a number in rows": (lambda run, other: change_rows(run, lambda rows: rows * (1 + 1e-15)), "recorder.npz: "),
     "words as rows": (lambda run, other: change_rows(run, lambda rows: rows.astype(str)), "recorder.npz: "),
     "half a recorder": (lambda run, other: cut(run / RECORDER, 900), "not a checkpoint ("),
     "a state missing": (lambda run, other: (run / STATE).unlink(), "000001.npz: missing"),
-    "all states missing": (lambda run, other: shutil.rmtree(run / "states"), "000000.npz: missing"),
     "half a state": (lambda run, other: (run / STATE).write_bytes(b"half"), "000001.npz: damaged, or not an .npz"),
-    "a state of another time": (lambda run, other: change_state(run, time=1.0), "000001.npz: of 1 s; must be of"),
-    "a state of another kind": (lambda run, other: change_state(run, aggregate=np.zeros(3, int)), "'aggregate' has"),
+    "a state of another time": (
+        lambda run, other: change_arrays(run / STATE, time=1.0),
+        "000001.npz: of 1 s; must be of",
+    ),
+    "a state of another kind": (
+        lambda run, other: change_arrays(run / STATE, aggregate=np.zeros(3, int)),
+        "'aggregate' has",
+    ),
 }
 
 
@@ -110,7 +93,6 @@ def test_a_damaged_checkpoint_is_one_line_and_removes_nothing(forks, originals, 
     spoil, message = DAMAGE[damage]
     spoil(run, originals[1])
     before = content(run)
-    (run / "states").mkdir(exist_ok=True)
     done = forks.run(RESUME, run)
     assert done.status == 2 and len(done.lines) == 1, done
     assert done.lines[0].startswith("collide.py: run/") and message in done.lines[0] and "must be" in done.lines[0]

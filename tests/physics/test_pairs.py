@@ -3,7 +3,7 @@
 import pytest
 from scenes import *
 
-from analysis.theory import ICE, Material, collide_pair, pair_constants, sticking_velocity
+from analysis.theory import ICE, Material, collide_pair, pair_constants
 
 pytestmark = pytest.mark.in_yade
 R = 1e-7  # of a grain of ice [m]
@@ -53,14 +53,6 @@ def test_sticking_velocity_without_drag(radius2, mover):
     closed = np.sqrt(2 * (8 / 15 * 2 ** (2 / 3) + 4 / 45) * c.pull_off_force * c.pull_off_overlap / c.reduced_mass)
     assert radius2 == PLANE or closed == pytest.approx(5.95, abs=0.005)
     assert sticking(0.02, closed, ice(), ice(), radius2, mover) == pytest.approx(closed, rel=1e-3)
-
-
-@pytest.mark.parametrize("picoseconds", [1, 3, 6])
-def test_sticking_velocity_with_drag(picoseconds):
-    """A22 eq 30, integrated independently to 1e-10 (analysis.theory)."""
-    time = picoseconds * 1e-12
-    independent = sticking_velocity(pair_constants(viscous(time), R))
-    assert sticking(0.005, independent, ice(viscoelasticTime=time)) == pytest.approx(independent, rel=1e-3)
 
 
 @AGAINST

@@ -24,25 +24,6 @@ def lone_grain(position, velocity=STILL, spin=STILL, step=0.05, blocked="", plan
     grain(position, R, ice(), velocity, spin, blocked)
 
 
-def test_equilibrium_and_pull_off():
-    """Lifted slowly from equilibrium: JKR's force at every overlap, -F_c at the largest, lost at -delta_c, on the wall as on the grain."""
-    c = ICY
-    rise = 1e-4 * c.equilibrium_overlap
-    lone_grain((0, 0, R - c.equilibrium_overlap), step=0.1, blocked="xyzXYZ")
-    O.bodies[1].state.vel = (0, 0, rise / O.dt)
-    overlaps, forces = [], []
-    while not overlaps or O.interactions.countReal():
-        overlaps.append(R - O.bodies[1].state.pos[2])
-        O.step()
-        forces.append(O.forces.f(1)[2])
-        assert O.forces.f(0)[2] == -forces[-1] and O.iter < 20000
-    u = np.linspace(6 ** (-1 / 3), 1, 20001)
-    exact = np.interp(np.array(overlaps[:-2]) / c.equilibrium_overlap, 3 * u**4 - 2 * u, 4 * (u**6 - u**3))
-    assert np.abs(np.array(forces[:-2]) / c.pull_off_force - exact).max() < 1e-4
-    assert min(forces) == pytest.approx(-c.pull_off_force, rel=1e-6)
-    assert overlaps[-2] > -c.pull_off_overlap > overlaps[-1] - rise
-
-
 @pytest.mark.parametrize("limit", ["held", "cut"])
 @pytest.mark.parametrize("mode", ["sliding", "dragged", "rolling", "twisting"])
 def test_driven_past_the_limit(mode, limit):

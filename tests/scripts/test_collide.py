@@ -101,13 +101,6 @@ def test_starts_at_rest_within_each_aggregate(run):
     assert np.all(start["position"][:26, 0] < 0) and np.all(start["position"][26:, 0] > 0)
 
 
-def test_a_run_that_has_ended_is_kept_unless_asked(run):
-    before = os.stat(run / "run.json").st_mtime_ns
-    line = refusal(collide(run.parent, *TINY, "out=run"))
-    assert line == "collide.py: out = run: holds a run that has ended; must be another folder, or overwrite=1"
-    assert os.stat(run / "run.json").st_mtime_ns == before
-
-
 @pytest.mark.parametrize("arguments", [("radius=4",), ("packing=bcca", "grains=64")], ids=["cpe", "bcca"])
 def test_slow_aggregates_meet_within_the_default_duration(tmp_path, arguments):
     """At 3 m/s the approach takes longer than the rest: the duration counts from the first touch. Fluffy aggregates move through each

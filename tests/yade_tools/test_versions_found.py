@@ -2,7 +2,6 @@
 
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
@@ -10,21 +9,6 @@ TOP = Path(__file__).resolve().parents[2]
 
 def make(*arguments):
     return subprocess.run(["make", "--no-print-directory", *arguments], cwd=TOP, capture_output=True, text=True)
-
-
-def variable(name):
-    return re.search(rf"^{name} :?= (.*)$", make("-pRrq", ":").stdout, re.M).group(1)
-
-
-def yades_version():
-    import yade.config
-
-    return yade.config.version
-
-
-def test_versions_are_those_of_this_python_and_this_yade(yade):
-    assert variable("PYTHON_VERSION") == f"{sys.version_info.major}.{sys.version_info.minor}"
-    assert variable("YADE_VERSION") == yade(yades_version)
 
 
 def test_another_yade_is_refused_in_one_line():

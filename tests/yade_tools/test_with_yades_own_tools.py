@@ -1,4 +1,4 @@
-"""Functors and engine in the company of YADE's own tools: periodic cells, threads, VTK output, stress, help texts, energies."""
+"""Functors and engine in the company of YADE's own tools: threads, VTK output, stress, help texts, energies."""
 
 import pydoc
 
@@ -6,27 +6,7 @@ import pytest
 from refused import refused
 from scenes import *
 
-from analysis.theory import ICE, Material, contact_radius, normal_force, pair_constants
-
 IN_YADE = pytest.mark.in_yade
-
-
-@IN_YADE
-def test_a_contact_moves_with_a_deforming_cell():
-    """In a cell that shrinks, a pair at rest relative to the mean flow across the boundary closes at the flow's rate."""
-    new_scene(0.02 * unit)
-    rate = -1e5
-    periodic_cell(2e-6, 2e-6, 2e-6, velocity_gradient=(rate, 0, 0))
-    for x in (1e-7 - 0.1e-9, 2e-6 - 1e-7 + 0.1e-9):
-        grain((x, 1e-6, 1e-6), 1e-7, ice(viscoelasticTime=1e-12), blocked="xyzXYZ")  # YADE adds the mean flow
-    O.run(2, True)
-    before, time = O.interactions[0, 1].phys.overlap, O.time
-    O.run(50, True)
-    phys, closing = O.interactions[0, 1].phys, -rate * 2e-7
-    assert (phys.overlap - before) / (O.time - time) == pytest.approx(closing, rel=2e-2)
-    pair = pair_constants(Material(**{**ICE.__dict__, "viscoelastic_time": 1e-12}), 1e-7)
-    drag = pair.drag_per_contact_radius * contact_radius(phys.overlap, pair) * closing
-    assert phys.dragForce == pytest.approx(drag, rel=2e-2)
 
 
 def flown_together():
@@ -41,26 +21,6 @@ def test_threads_change_results_by_rounding_only(yade):
     assert one["slidingDissipation"] > 0
     assert np.abs(x - y).max() < 1e-12 * 1e-7 * 1e3
     assert two == pytest.approx(one, rel=1e-8, abs=1e-26)
-
-
-@IN_YADE
-def test_vtk_recorder_writes_the_contact_forces(tmp_path):
-    overlap = 3 * constants(ice(), 1e-7)["equilibriumOverlap"]
-    new_scene(0.1 * unit)
-    for x in (0, 2e-7 - overlap):
-        grain((x, 0, 0), 1e-7, ice(), blocked="xyzXYZ")
-    O.run(1, True)
-    base = str(tmp_path / "out-")
-    O.engines += [VTKRecorder(fileName=base, recorders=["spheres", "intr"], iterPeriod=1, multiblock=True)]
-    O.run(2, True)
-    i = O.interactions[0, 1]
-    expected = normal_force(overlap, pair_constants(ICE, 1e-7))
-    assert i.phys.normalForce.dot(i.geom.normal) == pytest.approx(expected, rel=1e-9)  # repulsive: along YADE's normal
-    # stress of one contact: force x distance / volume, negative in compression as in all of YADE
-    stress = utils.getStress(volume=1e-18)[0][0]
-    assert stress == pytest.approx(-expected * (2e-7 - overlap) / 1e-18, rel=1e-9)
-    assert list(tmp_path.glob("out-*.vtm"))
-    assert b"forceN" in b"".join(p.read_bytes() for p in tmp_path.rglob("*.vtp"))
 
 
 def engine_of_27(**options):
