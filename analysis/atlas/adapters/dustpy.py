@@ -147,7 +147,7 @@ class AtlasInDustPy:
         of_bins, mass = self.outside_of_bins(sim), np.asarray(sim.dust.Sigma * sim.grid.A[:, None])
         said = {"collisions": np.average(share, weights=rate)}
         said["mass"] = np.average(np.nan_to_num(of_bins), weights=mass * np.isfinite(of_bins))
-        query = self._query(sim, self._speeds(sim))
+        query = self._query(sim)
         for axis in self.table.axes:
             beyond = axis.beyond(query[axis.name])
             said[f"{axis.name} below"] = np.average(beyond < 0, weights=rate)
@@ -167,14 +167,14 @@ class AtlasInDustPy:
     def _speeds(self, sim):
         return np.asarray(sim.dust.v.rel.tot)[1:-1, self.smaller, self.larger]
 
-    def _query(self, sim, speeds):
-        """{axis: (Nr - 2, pairs)} of the table, at speeds [cm/s]; filling is the mean by mass of both, the grains are those of the larger aggregate."""
+    def _query(self, sim, speeds=None):
+        """{axis: (Nr - 2, pairs)} of the table, at speeds [cm/s] (the simulation's); filling is the mean by mass of both, the grains are those of the larger aggregate."""
         grain = np.asarray(sim.dust.rhos)[1:-1, self.larger] / GRAM_PER_CM3 * self.grain_volume  # kg
         filled = np.asarray(sim.dust.fill)[1:-1] * self.mass
         mass = np.broadcast_to(self.mass, filled.shape)
         small, large = mass[:, self.smaller], mass[:, self.larger]
         return {
-            "velocity": speeds / CM / np.sqrt(self.break_energy / grain),
+            "velocity": (self._speeds(sim) if speeds is None else speeds) / CM / np.sqrt(self.break_energy / grain),
             "grains": large / GRAM / grain,
             "mass_ratio": small / large,
             "filling": (filled[:, self.smaller] + filled[:, self.larger]) / (small + large),
@@ -185,7 +185,7 @@ class AtlasInDustPy:
         and the filling are the same at every radius; else from the table, which takes 0.3 us a pair and step."""
         dust = np.array([sim.dust.rhos, sim.dust.fill])[:, 1:-1]
         if np.ptp(dust, axis=1).any():
-            return self._found(**self._query(sim, self._speeds(sim)))
+            return self._found(**self._query(sim))
         speeds = self._speeds(sim)
         if self._curves_of is None or not np.array_equal(dust[:, 0], self._curves_of):
             first = {name: values[0] for name, values in self._query(sim, 1.0).items()}
