@@ -209,9 +209,9 @@ def outcome(
             f"file = {shown(file)}: must be left out with a structure, which says which of the atlas's files"
         )
     table = _table(file or outcomes_file(structure or GROWN, impact is not None), maxwell)
-    ratio, also = small / large, {"largest"} if columns is not None and "second" in columns else set()
-    also -= set(columns or ())
-    asked = None if columns is None else (*columns, *also)
+    ratio, asked = small / large, columns
+    if columns is not None and "second" in columns:
+        asked = (*columns, "largest")  # which bounds it
     found = table.lookup(asked, velocity=speed, grains=large, mass_ratio=ratio, filling=filling, **square)
     for name in set(GAINING) & set(found):
         found[name] = np.asarray(largest_after(found[name], ratio))
@@ -220,4 +220,4 @@ def outcome(
         found["second"] = np.asarray(np.minimum(found["second"] * ratio / (1 + ratio), most))
     for name in {*ERRORS, *INTERVALS} & set(found):
         found[name][found[INSIDE] < MOSTLY] = np.nan
-    return {name: values for name, values in found.items() if name not in also}
+    return {name: values for name, values in found.items() if columns is None or name in (*columns, INSIDE)}

@@ -45,7 +45,7 @@ def change(row):
 
 def largest_after(changed, mass_ratio):
     """`largest` (mass of the largest piece over the total) by change()."""
-    target = 1 / (1 + mass_ratio)
+    target = _target({"mass_ratio": mass_ratio})
     return target + changed * np.where(changed > 0, 1 - target, target)
 
 

@@ -4,7 +4,7 @@ contacts of the cut hold."""
 import numpy as np
 
 from .free_flight import motion_in_pieces
-from .network import contact_network, levels, spanning_forest
+from .network import contact_network, depths, spanning_forest
 
 
 def loose_cuts(position, velocity, mass, pairs, labels, aggregate, strength):
@@ -62,7 +62,8 @@ def _through_one_contact(mass, momentum, pairs, labels, strength):
     mark, beyond = np.zeros(len(mass), dtype=np.uint64), np.column_stack([mass, momentum])
     for end in pairs.T:
         np.bitwise_xor.at(mark, end, marks)
-    for level in levels(order, parent)[:0:-1]:
+    farther = np.flatnonzero(np.diff(depths(order, parent)[order])) + 1
+    for level in np.split(order, farther)[:0:-1]:  # without the roots
         np.add.at(beyond, parent[level], beyond[level])
         np.bitwise_xor.at(mark, parent[level], mark[level])
     single = np.flatnonzero((contact >= 0) & (mark == 0))

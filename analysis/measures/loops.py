@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .network import contact_network, levels, spanning_forest
+from .network import contact_network, depths, spanning_forest
 
 
 def loops(grains, pairs):
@@ -16,9 +16,7 @@ def loops(grains, pairs):
     """
     pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
     order, parent = spanning_forest(contact_network(grains, pairs))
-    depth = np.empty(grains, dtype=int)
-    for number, level in enumerate(levels(order, parent)):
-        depth[level] = number
+    depth = depths(order, parent)
     inside = np.zeros(grains, dtype=bool)
     for i, j in pairs[(parent[pairs[:, 0]] != pairs[:, 1]) & (parent[pairs[:, 1]] != pairs[:, 0])]:
         while i != j:  # up the tree to where both ways meet

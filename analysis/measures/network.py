@@ -29,13 +29,13 @@ def spanning_forest(network):
     return order[1:], np.where(parent == grains, -1, parent)
 
 
-def levels(order, parent):
-    """[grains (L,) at one depth of a spanning_forest], from the roots on.
+def depths(order, parent):
+    """Contacts (N,) int between each grain and the root of its tree, of a spanning_forest.
 
-    >>> [level.tolist() for level in levels(*spanning_forest(contact_network(4, [[1, 2], [2, 3]])))]
-    [[0, 3], [2], [1]]
+    >>> depths(*spanning_forest(contact_network(4, [[1, 2], [2, 3]]))).tolist()
+    [0, 2, 1, 0]
     """
     depth = np.zeros(len(parent), dtype=int)
     for grain in order[parent[order] >= 0]:
         depth[grain] = depth[parent[grain]] + 1
-    return np.split(order, np.flatnonzero(np.diff(depth[order])) + 1)
+    return depth

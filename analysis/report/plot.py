@@ -81,7 +81,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     for name, value in (where or {}).items():
         drawn = _only(drawn, name, value)
     asked, of_kinds = drawn.table, _of_kinds(drawn.table, [x, *_columns(what)])
-    drawn = drawn.of(of_kinds[~_without(of_kinds, what, x, by).to_numpy().any(axis=1)])
+    without = _without(of_kinds, what, x, by)
+    drawn = drawn.of(of_kinds[~without.to_numpy().any(axis=1)])
     _require_drawable(drawn.table, x, by)
     quantity = _quantity(what, drawn, [x, by] if by else [x])
     if not len(quantity.values):
@@ -90,9 +91,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     for axes in figure.axes:
         if axes.get_xlabel() == x:
             axes.set_xlabel(_with_unit(found, x))
-    lines = textwrap.wrap(
-        _about(drawn.table, what, asked, _without(of_kinds, what, x, by)), int(LETTERS * figure.get_figwidth())
-    )
+    lines = textwrap.wrap(_about(drawn.table, what, asked, without), int(LETTERS * figure.get_figwidth()))
     figure.suptitle("\n".join(lines), fontsize=10)
     return figure
 

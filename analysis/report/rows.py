@@ -132,8 +132,9 @@ def frame(measured):
 def parameters(found):
     """Names of the parameters of a table(): where pandas has dropped .attrs (merge, read_csv) the columns between the run and its kind."""
     names = list(found)
-    between = names[names.index(RUN) + 1 : names.index("kind")] if {RUN, "kind"} <= set(names) else []
-    return found.attrs.get("parameters", between)
+    if "parameters" in found.attrs or not {RUN, "kind"} <= set(names):
+        return found.attrs.get("parameters", ())
+    return names[names.index(RUN) + 1 : names.index("kind")]
 
 
 def short_text(found):

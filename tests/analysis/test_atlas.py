@@ -267,9 +267,8 @@ def test_the_gallerys_tables_tell_pieces_of_held_out_runs():
         assert structure != GROWN or inside[fluffy].mean() > 0.9 and fluffy.sum() > 50
     holds = np.concatenate(holds)
     assert holds.mean() > 0.85 and len(holds) > 250
-    between = analysis.outcome(
-        72.0, 112, 190, 0.05, impact=0.076
-    )  # one node loses much of a large target, the other of a small one
+    # one node loses much of a large target, the other of a small one
+    between = analysis.outcome(72.0, 112, 190, 0.05, impact=0.076)
     assert between["inside"] == 1 and between["largest"] >= between["second"] and between["largest_low"] >= 0
     assert set(analysis.outcome(72.0, 112, 190, 0.05, columns=["second"])) == {"second", "inside"}
 

@@ -128,18 +128,11 @@ def test_cuts_are_those_contacts_without_which_there_is_a_piece_more(seed):
     assert np.sort(sides) == pytest.approx(np.sort(expected))
 
 
-def standing(velocity, on=True, broken=(), bonded=False):
+def standing(velocity, on=True, broken=(), **more):
     """A chain whose first grain touches the plate at x = -1, or all but touches it."""
-    state = chain(velocity, broken, bonded=bonded)
+    state = chain(velocity, broken, **more)
     plane = dict(plane_axis=np.array([0]), plane_position=np.array([-1.0]), plane_contacts=np.zeros((int(on), 2), int))
     return {**state, **plane, "aggregate": np.zeros(len(velocity), int), "time": 0.0}
-
-
-def with_splinter(state):
-    """The state with its last grain far away."""
-    position = state["position"].copy()
-    position[-1, 0] = 1e5
-    return {**state, "position": position}
 
 
 def leaving(energy):
@@ -148,6 +141,7 @@ def leaving(energy):
 
 
 HOLDS = 2 ** (4 / 3)  # energy that breaks the contact with the plate, over that of two grains
+FAR = np.r_[2.0 * np.arange(19), 1e5]  # the last grain is far away
 UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
 
 
@@ -158,7 +152,7 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
         ("sticking", standing(STILL), LONG / 3, 1, None, "may still rebound"),
         ("sticking", standing(leaving(0.9)), LONG, 1, 0, None),
         ("sticking", standing(leaving(1.1)), LONG, 1, None, "parts of 95% of the mass"),  # between two grains
-        ("sticking", with_splinter(standing(leaving(1.2), broken=[18])), LONG, 0.95, None, "parts of 90% of the mass"),
+        ("sticking", standing(leaving(1.2), broken=[18], places=FAR), LONG, 0.95, None, "parts of 90% of the mass"),
         ("sticking", standing(leaving(0.9 * HOLDS), bonded=True), LONG, 1, 0, None),
         ("sticking", standing(leaving(1.1 * HOLDS), bonded=True), LONG, 1, None, "parts of 100% of the mass"),
         ("bouncing", standing(STILL + 1, on=False), LONG, 0, 0.5, None),

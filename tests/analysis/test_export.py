@@ -78,8 +78,8 @@ def agree(found, wanted, rtol=1e-12):
 def test_contacts_with_planes_count():
     """Two grains between a plate at x = 0 and a piston, pressed together: no force is left on either."""
     state = state_arrays(0.0, np.array([[1e-7, 0, 0], [3e-7, 0, 0]]), np.zeros((2, 3)), [0, 0], [(0, 1)])
-    planes = dict(plane_axis=np.array([0, 0]), plane_position=np.array([0.0, 4e-7]))
-    planes["plane_contacts"] = np.array([[0, 0], [1, 1]])
+    on = np.array([[0, 0], [1, 1]])
+    planes = dict(plane_axis=np.zeros(2, int), plane_position=np.array([0.0, 4e-7]), plane_contacts=on)
     force = np.array([1e-8])
     pressed = State(
         **{**state, **planes, "contact_normal_force": force, "plane_contact_normal_force": np.repeat(force, 2)}

@@ -60,11 +60,9 @@ def test_between_walls_the_sphere_is_too():
     walls = np.array([-1.0, 7.0]) * edge / 8
     layer = replace(state, cell_size=state.cell_size * [1, 1, 3], axis=2, walls=walls)
     for seed in range(8):
-        packing = cut(layer, CutParameters.parse({"radius": 7, "seed": seed}))
-        assert (
-            packing.parameters["filling"]
-            > 0.9 * cut(state, CutParameters.parse({"radius": 7, "seed": seed})).parameters["filling"]
-        )
+        given = CutParameters.parse({"radius": 7, "seed": seed})
+        between, free = (cut(own, given).parameters["filling"] for own in (layer, state))
+        assert between > 0.9 * free
     with pytest.raises(ParameterError, match="^radius = 9: a larger sphere than the space between the walls holds"):
         cut(layer, CutParameters.parse({"radius": 9}))
 

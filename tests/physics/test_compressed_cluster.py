@@ -8,10 +8,6 @@ from analysis.measures.virial import contact_pressure
 pytestmark = pytest.mark.in_yade
 
 
-def pressure(shot):
-    return contact_pressure(shot["position"], shot["contact_pairs"], shot["contact_normal_force"], shot["cell_size"])
-
-
 def test_normal_forces_are_all_that_presses():
     """In a compressed cluster, whose contacts slide, roll and twist, the pressure of normal forces alone is a third of the
     trace of YADE's stress of all forces (which is positive in tension)."""
@@ -26,7 +22,9 @@ def test_normal_forces_are_all_that_presses():
     rows = []
     while O.cell.hSize[0, 0] ** 3 > 64 * 4.19e-21 / 0.4:
         O.run(200, True)
-        ours = pressure(contact_law.snapshot())
+        shot = contact_law.snapshot()
+        of_shot = ("position", "contact_pairs", "contact_normal_force", "cell_size")
+        ours = contact_pressure(*map(shot.get, of_shot))
         O.engines[0].writeInteractions()
         stress = np.array(utils.getStress())
         rows.append([ours, -np.trace(stress) / 3, np.abs(np.diag(stress)).max()])

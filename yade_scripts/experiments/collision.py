@@ -241,8 +241,7 @@ def _sizes(aggregate_radius, pair, parameters):
     names = ("projectile",) if parameters.target == WALL else ("target", "projectile")
     for name, packing in zip(names, pair):
         if parameters.packing == "file":
-            file = (parameters if name == "target" else parameters.of_projectile()).file
-            found[f"{name}Packing"] = {**packing.parameters, "seed": packing.seed, SUM: sum_of_file(file)}
+            found[f"{name}Packing"] = {**packing.parameters, "seed": packing.seed}
         found[f"{name}Grains"] = packing.grains
         found[f"{name}GyrationRadius"] = packings.gyration_radius(packing)
         found[f"{name}CharacteristicRadius"] = packings.characteristic_radius(packing)

@@ -2,10 +2,12 @@
 
 import hashlib
 import os
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
+from analysis.runs.seal import SUM
 from yade_scripts.packings.cut import OF_CONTACTS
 from yade_scripts.packings.packing import PackingError, centred, contacts, load, moved, surface_gaps
 from yade_scripts.packings.rest import AT_REST, equilibrium_overlaps
@@ -14,7 +16,7 @@ DEEPEST = 1.1  # equilibrium overlaps: what grains pressed together a little may
 
 
 def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
-    """The packing that save() wrote to a file, its centre of mass at the origin.
+    """The packing that save() wrote to a file, its centre of mass at the origin, with sum_of_file() among its parameters.
 
     grain_radius: that of the run, overlap: of two such grains at rest, in m; grains: of the run, anything with the
     attributes OF_CONTACTS (None: not known). Raises PackingError, one line, when the file is none, an array has another
@@ -30,20 +32,24 @@ def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
     _require_contacts(path, packing, grain_radius, overlap)
     if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
         raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
-    return moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
+    found = moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
+    return replace(found, parameters={**packing.parameters, SUM: _sum(packing)})
 
 
 def sum_of_file(path):
     """SHA-256 of the grains in a packing's file, by which a run tells whether it is still the one that it had; None where it can't be read."""
     try:
-        return _sum(path, os.stat(path).st_mtime_ns)
+        return _sum_as_written(path, os.stat(path).st_mtime_ns)
     except (OSError, PackingError):
         return None
 
 
 @lru_cache
-def _sum(path, _written):
-    packing = load(path)
+def _sum_as_written(path, _when):
+    return _sum(load(path))
+
+
+def _sum(packing):
     return hashlib.sha256(packing.position.tobytes() + packing.radius.tobytes()).hexdigest()
 
 

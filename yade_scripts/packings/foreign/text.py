@@ -92,8 +92,8 @@ def _xyz(lines):
             kind, names = "xyz", None
         table, frames = Table(kind, lines.read, rows, names), frames + 1
         row = lines.next().split()
-        has_species = not ("." in row[0] and _is_number(row[0])) if row else False
-        if not properties and has_species and len(row) in (4, 5):
+        # of others nobody says what the columns are; and x y z may be without a species
+        if not properties and len(row) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
             table = replace(table, names=("species", "x", "y", "z", "radius")[: len(row)])
         lines.skip(rows - 1)
     return _of_frames(table, frames)
