@@ -5,6 +5,7 @@ import numpy as np
 from ..curves import power
 
 SQUARES = tuple(i / 12 for i in range(13))  # B_off^2 of A22
+FEW = 2  # grains of the fragments whose number A22's section 3.1 tells of
 SMALL = 10  # grains of a fragment that counts as small
 MERGED = 0.5  # f_gro above which two aggregates have merged; two remnants have some 0, all in one piece is 1
 SMALL_FITTED = 0.05  # of all grains, to which fragments count as small in a fit

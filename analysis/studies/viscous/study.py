@@ -10,7 +10,7 @@ from ..definition import Quantity, Study
 from ..estimate import combine, exact
 from ..runs import Runs, along, differences, ratios, select, together
 from ..threshold import thresholds
-from .growth import LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fragment_exponent, offset_weights
+from .growth import FEW, LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fragment_exponent, offset_weights
 from .measure import DISSIPATION, EVENTS, FAST, MEASURED, REFERENCE, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
@@ -89,9 +89,10 @@ def _energies(runs):
     yield Quantity("drag_largest", "the same, 6 ps less without drag", drag_largest)
     loss = own.parts(_over("lost"), POINT, "channel")
     yield Quantity("loss", "lost in each way there, of all that is lost", loss, "%")
-    rolling, *others = (select(loss, channel=way) for way in WAYS)
-    lead = differences(rolling, reduce(_largest, others))
+    lead = _beyond(loss, "rolling", np.maximum)
     yield Quantity("rolling_lead", "rolling less the largest of the other ways", lead, "%")
+    lead = _beyond(loss, "connection and disconnection", np.minimum)
+    yield Quantity("connection_lead", "making and breaking contacts less the smallest of the other ways", lead, "%")
     by_drag = {name: _with_drag(own, name, ("grains",), ratios) for name in WAYS if name != "drag"}
     yield Quantity("drag_ratio", "lost there with 6 ps over without drag", together(by_drag, "channel"))
     at_end = at_square.parts(_over("unit"), CURVE, "channel")
@@ -107,8 +108,14 @@ def _energies(runs):
 
 
 def _fragments(runs):
-    """Sizes of fragments: cumulative means over offsets at FRAGMENTS_AT, fits to them, and one collision of the paper's size."""
-    own = runs.where(grains=50_000, **REFERENCE)
+    """Sizes of fragments: of the reference collision, cumulative means over offsets at FRAGMENTS_AT, and fits to these."""
+    own = runs.where(**REFERENCE)
+    few = lambda t: [np.count_nonzero(sizes_from_text(sizes) <= FEW) for sizes in t.fragments]
+    number = own.estimates(few, POINT)
+    yield Quantity("small_fragments", f"fragments of {FEW} grains or fewer, 50.1 m/s, B_off^2 = 3/12", number)
+    fewer = _with_drag(own, few, ("grains",), ratios)
+    yield Quantity("small_fragments_ratio", "the same, 6 ps over without drag", fewer)
+    own = own.where(grains=50_000)
     single = own.of(_by_size(own.table, cumulative_grains)).estimates("value", (*POINT, "fragment"))
     yield Quantity("grains_in_fragments_full", "N_cum(<= N) of 50,000 grains each, 50.1 m/s, B_off^2 = 3/12", single)
     table = runs.where(velocity=FRAGMENTS_AT).table
@@ -119,9 +126,10 @@ def _fragments(runs):
     yield Quantity("grains_in_fragments", meaning, grains, listed=False)
     alphas = {
         "small": _fitted(grains, lambda each, n: n <= SMALL_FITTED * 2 * each),
+        "all": _fitted(grains, lambda each, n: n <= each),
         "large": _fitted(grains, lambda each, n: (n >= LARGE_FITTED) & (n <= each) & (each >= 10 * LARGE_FITTED)),
     }
-    meaning = f"alpha of f(N) = c N^-alpha: small: N to {SMALL_FITTED:.0%} of all grains, large: N from {LARGE_FITTED} to an aggregate's"
+    meaning = f"alpha of f(N) = c N^-alpha: small: N to {SMALL_FITTED:.0%} of all grains, all: to an aggregate's, large: from {LARGE_FITTED} to an aggregate's"
     yield Quantity("alpha", meaning, together(alphas, "fragments"))
     each, n = (section.index.get_level_values(name) for name in ("grains", "fragment"))
     ends = [section[kept].groupby(level=list(CURVE)).last() for kept in (n <= SMALL_FITTED * 2 * each, n == 2 * each)]
@@ -143,9 +151,11 @@ def _over(column):
     return {name: lambda t, name=name: t[name] / t[column] for name in WAYS}
 
 
-def _largest(first, second):
-    """Series of the larger of two of the same runs, draw by draw."""
-    return first.combine(second, lambda a, b: combine(np.maximum, a, b))
+def _beyond(loss, way, extreme):
+    """What a way takes less the extreme (np.maximum, np.minimum) of the others, draw by draw."""
+    of_two = lambda first, second: first.combine(second, lambda a, b: combine(extreme, a, b))
+    own, *others = (select(loss, channel=name) for name in sorted(WAYS, key=way.__ne__))
+    return differences(own, reduce(of_two, others))
 
 
 def _by_size(table, cumulative):
