@@ -13,8 +13,6 @@ ContactNow swapped(const ContactNow& c)
 	s.geometry.normal = -c.geometry.normal;
 	s.forces.sliding = -c.forces.sliding;
 	s.forces.slidingDisplacement = -c.forces.slidingDisplacement;
-	s.forces.torque1 = c.forces.torque2;
-	s.forces.torque2 = c.forces.torque1;
 	s.velocity = -c.velocity;
 	s.bond.radius1 = c.bond.radius2;
 	s.bond.radius2 = c.bond.radius1;

@@ -44,7 +44,7 @@ ForcePass Domain::passFor(Ownership o)
 	pass.dissipated = ledger.sumsFor(o).dissipated;
 	pass.slips = ledger.sumsFor(o).slips;
 	pass.events = &Domain::eventsOf<ContactBlock>;
-	pass.cut = s.limit == LimitRule::Cut;
+	pass.cut = s.limit == LimitRule::Cut || !s.displaced.empty(); // slips after a script's move, like events, know what it was
 	return pass;
 }
 

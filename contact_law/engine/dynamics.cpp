@@ -206,7 +206,7 @@ Dynamics::Counters Dynamics::counters() const
 	return c;
 }
 
-/* The forces at the start, of contacts that have just been placed, without moving: a step of zero length books no event and turns nothing.
+/* The forces at the start, of contacts that have just been placed, without moving: a step of zero length turns nothing.
  * Then velocities go half a step back, where the leapfrog keeps them. */
 void Dynamics::firstForces()
 {
@@ -312,7 +312,7 @@ long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 	return made;
 }
 
-// In a step a grain may go half the smallest radius: beyond that two of them pass each other unseen, and forces have long lost their meaning.
+// In a step a grain may go half the smallest radius along an axis: beyond that two of them pass each other unseen, and forces have long lost their meaning.
 double Dynamics::fastestThatHolds() const { return 0.5 * shared.smallestRadius / shared.dt; }
 
 void Dynamics::read(std::vector<GrainMotion>& grains) const

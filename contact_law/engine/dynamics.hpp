@@ -24,7 +24,8 @@ struct GrainInput : GrainMotion {
 };
 
 struct Inherited; // exchange.hpp
-struct Booked;    // contacts.hpp
+struct InheritedContact;
+struct Booked; // contacts.hpp
 
 void copyMotion(const GrainMotion&, Grain&); // all but orientation and blocked degrees of freedom, which grains don't carry
 void copyMotion(const Grain&, GrainMotion&);
@@ -132,11 +133,13 @@ private:
 	int domainCount() const;
 	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
 	void shrinkGrains();
+	double mostStretched() const;
 	void bringVelocitiesToPositions();
 	void kickAll(double time);   // kick() of every grain [s]
 	void kickEarly(double time); // kickEarly() of every grain that has one [s]
 	void makeDomains();
 	void inherit(const Inherited&);
+	bool isLetGo(const Inherited&, const InheritedContact&, int i, int j, const ContactHistory<double>&);
 	void completeInheritedStep();
 	template <class Archive> void transferLayout(Archive&);
 	template <class Archive> void transferState(Archive&);

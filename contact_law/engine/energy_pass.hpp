@@ -25,7 +25,7 @@ template <class Pack> struct EnergyPasses {
 				const ContactHistory<Pack> h { { P::load(block.n1, at), P::load(block.n2, at) },
 					Pack::load(block.twist + at) };
 				const StoredEnergy<Pack> e =
-				        storedEnergy(c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
+				        storedEnergy(mechanisms, c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
 				P::addUsed(e, block, at, pass.dummy, sum);
 			}
 		}

@@ -4,16 +4,17 @@
 
 namespace contact_law {
 
+struct InheritedContact {
+	int first, second;              // grains as given
+	ContactHistory<double> history; // laboratory frame
+	ContactBefore before;           // at the moment of the history
+	bool bonded = false;
+	double rest = 0, neck = 0; // of a bond
+};
+
 // Contacts that grains have when a run starts, in place of unstrained springs where they overlap.
 struct Inherited {
-	struct One {
-		int first, second;              // grains as given
-		ContactHistory<double> history; // laboratory frame
-		double overlap, drag;           // at the moment of the history
-		bool bonded = false;
-		double rest = 0, neck = 0; // of a bond
-	};
-	std::vector<One> contacts;
+	std::vector<InheritedContact> contacts;
 	struct OnPlane {
 		int grain, plane;     // as given
 		PlaneContact contact; // but its grain, plane and constants
@@ -23,6 +24,7 @@ struct Inherited {
 	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
 	 * scenes with drag `previous`, the velocities another step before. Otherwise all is of one moment. */
 	bool stepBehind = false;
+	double step = 0; // the longest that its owner may have made since [s]
 	std::vector<Vec3<double>> previous;
 
 	bool empty() const { return contacts.empty() && onPlanes.empty(); }

@@ -40,7 +40,7 @@ public:
 	{
 		if (++step == endOfCount) countAnew();
 	}
-	// Pairs that overlap and do not touch, by rising indices; they are checked again in the next step unless touch() is called for them.
+	// Pairs that overlap and do not touch; they are checked again in the next step unless touch() is called for them.
 	const std::vector<NeighbourPair>& overlapping(const PeriodicCell&);
 	void touch(int i, int j); // both of some pair of this domain; nothing happens to one that is not listed
 	void part(int i, int j);

@@ -140,7 +140,7 @@ StoredEnergy<double> PlaneContacts::energies() const
 {
 	StoredEnergy<double> total { 0, 0, 0, 0 };
 	for (const PlaneContact& c : contacts)
-		total += storedEnergy(c.constants, forcesOf(c), c.before.twist);
+		total += storedEnergy(s.mechanisms, c.constants, forcesOf(c), c.before.twist);
 	return total;
 }
 

@@ -14,12 +14,36 @@ void Dynamics::shrinkGrains()
 	const auto [smallest, largest] = std::minmax_element(shared.radius.begin(), shared.radius.end());
 	shared.smallestRadius = *smallest;
 	shared.largestRadius = *largest;
-	shared.skin = 0.8 * shared.smallestRadius;
 	shared.setLeastKick();
 	const Material& m = shared.material[shared.kind[0]];
 	const double r = shared.grainRadius[0];
 	shared.common = deriveShrunkPair(m, r, m, r, shared.pairs, shared.neck);
+	shared.skin = std::max(0.8 * shared.smallestRadius, 1.1 * mostStretched());
 	if (shared.neck > 0) shared.commonBond = deriveBond(m, r, m, r, shared.necks.size() == 1 ? shared.necks[0] : shared.neck);
+}
+
+// The largest gap between grains that touch, or are bonded: the lists must hold them so far apart, however small others are.
+double Dynamics::mostStretched() const
+{
+	std::vector<int> largest(shared.material.size(), -1); // of each kind
+	for (int k = 0; k < count; ++k) {
+		int& known = largest[shared.kind[k]];
+		if (known < 0 || shared.grainRadius[k] > shared.grainRadius[known]) known = k;
+	}
+	double most = 0;
+	for (const int i : largest)
+		for (const int j : largest) {
+			if (i < 0 || j < 0) continue;
+			most = std::max(most, shared.constantsOf(i, j).pullOffOverlap);
+			if (shared.neck == 0) continue;
+			const double shrunk = shared.grainRadius[i] + shared.grainRadius[j] - shared.radius[i] - shared.radius[j];
+			for (const double neck : shared.necks) {
+				const BondConstants<double> b = deriveBond(shared.material[shared.kind[i]], shared.grainRadius[i],
+				        shared.material[shared.kind[j]], shared.grainRadius[j], neck);
+				most = std::max(most, shrunk + std::sqrt(2 * b.breakingEnergy / b.normalStiffness));
+			}
+		}
+	return most;
 }
 
 // Velocities at the positions' moment. Forces go: half of their kick belongs after it.
@@ -51,7 +75,8 @@ void Dynamics::sinter(double neck)
 		bonds.push_back(domain->touching.sintered(cell(), neck));
 
 	if (std::find(shared.necks.begin(), shared.necks.end(), neck) == shared.necks.end()) shared.necks.push_back(neck);
-	shared.neck = options.neck = std::max(shared.neck, neck);
+	shared.neck = std::max(shared.neck, neck);
+	shared.displaced.clear(); // bonds are made where grains are now
 	shrinkGrains();
 	for (std::size_t d = 0; d < domains.size(); ++d)
 		domains[d]->touching.setBonds(bonds[d]);

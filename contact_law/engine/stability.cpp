@@ -31,6 +31,18 @@ namespace {
 		return grains;
 	}
 
+	// Of the lightest grain beside its material's density.
+	double leastLightness(const Dynamics& dynamics)
+	{
+		const SharedState& shared = dynamics.state();
+		double least = 1;
+		for (int k = 0; k < dynamics.grainCount(); ++k) {
+			const double r = shared.grainRadius[k], solid = 4 * pi / 3 * shared.material[shared.kind[k]].density * r * r * r;
+			least = std::min(least, lightness(1 / shared.inverseMass[k], solid));
+		}
+		return least;
+	}
+
 	/* visit(a grain, another one or itself), of pairs that have the least limit of all. For two materials a contact's limits rise with t0, which goes as
 	 * m*^(1/2) R^(-1/3), and a bond's go as (m* / R)^(1/2) and (I* / R^3)^(1/2). With either radius each of these rises, and beyond some radius falls: the least is at
 	 * an end. */
@@ -59,11 +71,12 @@ double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 double unstableStep(const Dynamics& dynamics)
 {
 	const SharedState& shared = dynamics.state();
+	const double light = leastLightness(dynamics);
 	double least = 1e300;
-	eachExtremePair(dynamics, [&](int i, int j) { least = std::min(least, unstableStep(shared.constantsOf(i, j))); });
+	eachExtremePair(dynamics, [&](int i, int j) { least = std::min(least, unstableStep(shared.constantsOf(i, j), light)); });
 	for (const int k : extremeGrains(dynamics))
 		for (int plane = 0; plane < int(shared.planes.size()); ++plane)
-			least = std::min(least, unstableStep(shared.constantsOnPlane(k, plane)));
+			least = std::min(least, unstableStep(shared.constantsOnPlane(k, plane), light));
 	if (bondCount(dynamics) > 0)
 		for (const double neck : shared.necks)
 			least = std::min(least, unstableStepOfBonds(dynamics, neck));

@@ -109,13 +109,14 @@ namespace bonds {
 		return first;
 	}
 
-	// Stored a step ago.
+	// Stored a step ago: by each mode no more than it can hold, as of a contact (letGo() of contact.hpp).
 	inline double held(const BondConstants<double>& b, const ContactBefore& before)
 	{
-		return 0.5
-		        * (b.normalStiffness * before.overlap * before.overlap + b.slidingStiffness * dot(before.sliding, before.sliding)
-		                + b.rollingStiffness * dot(before.rolling, before.rolling)
-		                + b.twistingStiffness * before.twist * before.twist);
+		const auto held = [&](double stiffness, double squared) { return std::min(0.5 * stiffness * squared, b.breakingEnergy); };
+		return held(b.normalStiffness, before.overlap * before.overlap)
+		        + held(b.slidingStiffness, dot(before.sliding, before.sliding))
+		        + held(b.rollingStiffness, dot(before.rolling, before.rolling))
+		        + held(b.twistingStiffness, before.twist * before.twist);
 	}
 
 	// The same, less the work of the springs' half kick then over the step.

@@ -38,7 +38,7 @@ namespace bonds {
 		ContactStepResult& r = result.contact;
 		result.bonded = false;
 		result.mode = breaking.mode;
-		const bool torn = isTorn(b, m, before, bondGeometry, bond);
+		const bool torn = m.dt == 0 || isTorn(b, m, before, bondGeometry, bond);
 		double released = torn ? held(b, before) : heldAfterHalfKick(b, before, bondGeometry, bond, h.twist);
 		events::Kicks ahead, after;
 		if (!torn) ahead.add(breaking.fraction - 0.5, breaking.fraction - 0.5, bondGeometry, bond);
@@ -51,7 +51,7 @@ namespace bonds {
 			h = events::formedHistory(m, since * m.dt);
 			r.pointersMoved = true;
 			r.now = contactForces<mechanisms>(c, r.geometry, h, m.velocity);
-			r.stored = storedEnergy(c, r.now, h.twist);
+			r.stored = storedEnergy(mechanisms, c, r.now, h.twist);
 			bookDragFraction(since, { r.now.drag, r.geometry.overlap }, closing, r.dissipated);
 			ahead.add(since, since / 2, r.geometry, r.now); // springs grow from zero
 			after.add(0.5, 0.5, r.geometry, r.now);

@@ -44,10 +44,36 @@ inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGe
 	return f;
 }
 
-template <class T> inline StoredEnergy<T> storedEnergy(const PairConstants<T>& c, const ContactForces<T>& f, const T& twist)
+// Of springs that are left out the twist alone is followed: the forces have no displacement of the others.
+template <class T>
+inline StoredEnergy<T> storedEnergy(unsigned mechanisms, const PairConstants<T>& c, const ContactForces<T>& f, const T& twist)
 {
 	return { normal::energy(c, f.contactRadiusRoot), sliding::energy(c, f.slidingDisplacement),
-		rolling::energy(c, f.rollingDisplacement), twisting::energy(c, twist) };
+		rolling::energy(c, f.rollingDisplacement), mechanisms & Twisting ? twisting::energy(c, twist) : T(0.) };
+}
+
+/* What disconnection takes of a contact whose grains a script has moved apart: pull-off's energy, and what its springs held before. Of each no more than at its limit:
+ * where the contact was handed over after the move, its displacements are of the new places. */
+inline double letGo(unsigned mechanisms, const PairConstants<double>& c, const ContactBefore& before)
+{
+	const auto held = [](double stiffness, double squared, double limit) { return 0.5 * stiffness * std::min(squared, limit * limit); };
+	double taken = normal::energyUnit(c) * normal::energyAtPullOff;
+	if (mechanisms & Sliding) taken += held(c.slidingStiffness, dot(before.sliding, before.sliding), c.criticalSliding);
+	if (mechanisms & Rolling) taken += held(c.rollingStiffness, dot(before.rolling, before.rolling), c.criticalRolling);
+	if (mechanisms & Twisting) taken += held(c.twistingStiffness, before.twist * before.twist, c.criticalTwisting);
+	return taken;
+}
+
+/* Springs that were left out until now have no strain from here on: what their pointers, which sliding and rolling have in common, did meanwhile means nothing.
+ * before: a step ago. */
+inline void startPointers(const Vec3<double>& normal, Pointers<double>& p) { p = { -normal, normal }; }
+inline void startPointers(const Vec3<double>& normal, PlanePointers<double>& p) { p.n1 = -normal, p.anchor = { 0, 0, 0 }; }
+template <class History> void startSprings(unsigned started, const Vec3<double>& normal, History& h, ContactBefore& before)
+{
+	if (started & Twisting) h.twist = before.twist = 0;
+	if (!(started & (Sliding | Rolling))) return;
+	startPointers(normal, h.pointers);
+	before.sliding = before.rolling = { 0, 0, 0 };
 }
 
 // What the springs of a contact give up when it breaks after a fraction of the step (pointers.hpp), added to what disconnection takes.

@@ -45,7 +45,7 @@ inline events::Kicks evaluateNow(const PairConstants<double>& c, LimitRule limit
 	r.pointersMoved = cuts.pointersMoved || !before.touching;
 	r.touching = true;
 	r.now = contactForces<mechanisms>(c, g, history, velocity);
-	r.stored = storedEnergy(c, r.now, history.twist);
+	r.stored = storedEnergy(mechanisms, c, r.now, history.twist);
 	return cuts.added;
 }
 
@@ -90,13 +90,19 @@ inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule li
 
 /* A contact that breaks inside the step. Its last kicks (a step ago) covered half a step; what is missing to the fraction follows now.
  * The springs' forces are those of this instant, not of the breaking, so that forces and torques balance where the grains are. Where a script has torn the
- * grains apart, which opens the contact by more than their motion does, the sliding spring is let go as it was, and no steps led to the breaking. */
+ * grains apart, which opens the contact by more than their motion does, the sliding spring is let go as it was, and no steps led to the breaking; where it was open
+ * before the step already, so is all of it. */
 template <unsigned mechanisms, class History>
 inline ContactStepResult brokenContact(const PairConstants<double>& c, const ContactMotion& m, const ContactGeometry<double>& g,
         const ContactBefore& before, const History& h)
 {
 	ContactStepResult r;
-	const double opening = before.overlap - g.overlap, fraction = events::fractionUntilPullOff(c, before.overlap, opening);
+	const double opening = before.overlap - g.overlap;
+	if (m.dt == 0 || opening <= 0) {
+		r.dissipated.disconnection = letGo(mechanisms, c, before);
+		return r;
+	}
+	const double fraction = events::fractionUntilPullOff(c, before.overlap, opening);
 	const normal::Breaking breaking = normal::forceUntilBreaking(c, before.overlap, opening, fraction);
 	constexpr unsigned springs = mechanisms & AllSprings;
 	const bool torn = opening * opening > 4 * m.dt * m.dt * dot(m.velocity, m.velocity);

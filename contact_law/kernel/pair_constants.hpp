@@ -120,11 +120,17 @@ inline PairConstants<double> derivePair(
 }
 
 /* Steps from here on are unstable for such a pair, in whatever packing [s] (MODEL.md, "Step limits"): half a time unit, at which collisions were seen to blow
- * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. NaN where the time unit is. */
-inline double unstableStep(const PairConstants<double>& c)
+ * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. NaN where the time unit is. lightness: mass of the grains over that of
+ * solid spheres of their materials, where it is less. */
+inline double unstableStep(const PairConstants<double>& c, double lightness = 1)
 {
 	const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
-	return std::min(0.5 * c.timeUnit, drag > 0 ? c.reducedMass / drag : 1e300);
+	return std::min(0.5 * c.timeUnit * std::sqrt(lightness), drag > 0 ? lightness * c.reducedMass / drag : 1e300);
+}
+inline double lightness(double mass, double ofSolid)
+{
+	constexpr double rounding = 1e-9;
+	return mass < (1 - rounding) * ofSolid ? mass / ofSolid : 1;
 }
 
 } // namespace contact_law

@@ -161,7 +161,9 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	        ? contact_law::derivePair(second.forKernel(), geometry->refR2, first.forKernel(), planeRadius, options())
 	        : contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, options(), neck);
 	phys->setConstants(constants.of(derived));
-	if (neck != 0 && scene->iter < bondsBefore) {
+	const auto* spheres = dynamic_cast<const ScGeom*>(geometry);
+	const bool overlap = spheres && spheres->penetrationDepth > 0; // Ig2 may have found them further apart
+	if (neck != 0 && overlap && scene->iter < bondsBefore) {
 		const Real own = sinteredEarly > 0 ? sinteredEarly : neck;
 		phys->setBond(
 		        bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, own)));
@@ -251,10 +253,13 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
 	if (!phys.constants) return false; // refused by Ip2, which is asked again in the next step
 	const PairConstants<double> constants = phys.constants->forKernel();
-	if (!stepIsBelow(contact_law::unstableStep(constants))) return true;
-	if (std::isinf(constants.radius2)) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);
 	const State& state1 = *(*scene->bodies)[interaction->getId1()]->state;
 	const State& state2 = *(*scene->bodies)[interaction->getId2()]->state;
+	const bool ofPlane = std::isinf(constants.radius2);
+	const Real reducedMass = ofPlane ? state2.mass : state1.mass * state2.mass / (state1.mass + state2.mass);
+	const Real light = contact_law::lightness(reducedMass, constants.reducedMass);
+	if (!stepIsBelow(contact_law::unstableStep(constants, light))) return true;
+	if (ofPlane) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);
 
 	Vector3r separation = state1.pos - state2.pos, velocity = state1.vel - state2.vel, imageVelocity = Vector3r::Zero();
 	if (scene->isPeriodic) {
@@ -274,16 +279,17 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	        && !stepIsBelow(contact_law::unstableStep(
 	                phys.bond->forKernel(), motion.inverseMass, motion.inverseInertia1, motion.inverseInertia2)))
 		return true;
-	const contact_law::ContactBefore before = phys.before();
+	contact_law::ContactBefore before = phys.before();
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
-	const unsigned mechanisms = mechanismsOf(constants);
+	const unsigned mechanisms = mechanismsOf(constants), started = mechanisms & contact_law::AllSprings & ~unsigned(phys.springs);
+	if (!phys.bonded) contact_law::startSprings(started, (1 / std::sqrt(dot(apart, apart))) * apart, history, before);
 	ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
 	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
 
 	if (phys.bondToCome && r.touching) sinter(phys, motion, history, r);
-	if (!finish(*interaction, phys, motion, history.twist, r)) return false;
-	if (r.pointersMoved) {
+	if (!finish(*interaction, phys, motion, history.twist, mechanisms, r)) return false;
+	if (r.pointersMoved || started) {
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(history.pointers.n2);
 	}
@@ -305,11 +311,13 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 	contact_law::PlaneHistory<double> history {
 		{ { toKernel(grain.ori * phys.pointer2), plane.normal }, toKernel(phys.pointer1) - foot }, phys.twist
 	};
-	const ContactStepResult r =
-	        contact_law::planeStepWith[mechanismsOf(constants)](constants, limitRule, motion, phys.before(), history);
+	contact_law::ContactBefore before = phys.before();
+	const unsigned mechanisms = mechanismsOf(constants), started = mechanisms & contact_law::AllSprings & ~unsigned(phys.springs);
+	contact_law::startSprings(started, plane.normal, history, before);
+	const ContactStepResult r = contact_law::planeStepWith[mechanisms](constants, limitRule, motion, before, history);
 
-	if (!finish(interaction, phys, motion, history.twist, r)) return false;
-	if (r.pointersMoved) {
+	if (!finish(interaction, phys, motion, history.twist, mechanisms, r)) return false;
+	if (r.pointersMoved || started) {
 		phys.pointer1 = fromKernel(history.pointers.anchor + foot);
 		phys.pointer2 = grain.ori.conjugate() * fromKernel(history.pointers.n1);
 	}
@@ -317,8 +325,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 }
 
 // What a step did, but for the pointers. Returns whether the contact is there still.
-bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(
-        const Interaction& interaction, JKRWadaPhys& phys, const ContactMotion& motion, Real twist, const ContactStepResult& r)
+bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(const Interaction& interaction, JKRWadaPhys& phys, const ContactMotion& motion, Real twist,
+        unsigned mechanisms, const ContactStepResult& r)
 {
 	const bool ofPlane = std::isinf(phys.constants->radius2);
 	const int id1 = interaction.getId1(), id2 = interaction.getId2(), grain1 = ofPlane ? id2 : id1, other = ofPlane ? id1 : id2;
@@ -342,6 +350,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(
 	if (!r.touching) return false;
 	phys.set(r.geometry, r.now, twist, fromKernel(motion.velocity), ofPlane);
 	phys.current = false;
+	phys.springs = int(mechanisms & contact_law::AllSprings);
 	return true;
 }
 

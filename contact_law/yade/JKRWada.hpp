@@ -118,6 +118,7 @@ public:
 		((Real, twist, 0, Attr::readonly, "phi [rad]."))
 		((Real, dragForce, 0, Attr::readonly, "Viscous part of the normal force, positive when the grains approach [N]."))
 		((Vector3r, velocity, Vector3r::Zero(), Attr::readonly|Attr::hidden, "Velocity of body 1 past body 2 through the last step [m/s]."))
+		((int, springs, int(contact_law::AllSprings), Attr::readonly|Attr::hidden, "The springs that it had in the last step (bits: kernel/contact_state.hpp)."))
 		((bool, current, false, Attr::readonly|Attr::hidden, "Whether all this is of the moment that the bodies' positions are of (written by JKRWadaEngine), not of a step before.")),
 		createIndex();
 	);
@@ -178,7 +179,8 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	bool stepIsBelow(Real unstable) const; // refuses the scene in this step if not
 	void book(const contact_law::ContactStepResult&);
 	bool goPlane(const GenericSpheresContact&, JKRWadaPhys&, const contact_law::PairConstants<double>&, const Interaction&);
-	bool finish(const Interaction&, JKRWadaPhys&, const contact_law::ContactMotion&, Real twist, const contact_law::ContactStepResult&);
+	bool finish(const Interaction&, JKRWadaPhys&, const contact_law::ContactMotion&, Real twist, unsigned mechanisms,
+	        const contact_law::ContactStepResult&);
 	void sinter(JKRWadaPhys&, const contact_law::ContactMotion&, contact_law::ContactHistory<double>&, contact_law::ContactStepResult&);
 	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion,
 	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, unsigned mechanisms);

@@ -113,7 +113,7 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(bool again)
 	Dynamics::Options options = optionsFor(materials);
 	options.dt = continued ? smallStep : scene->dt / subSteps;
 	SceneContacts contacts;
-	const contact_law::Inherited inherited = contacts.take(*scene, grains, options.dt);
+	const contact_law::Inherited inherited = contacts.take(*scene, grains, options.dt, options.mechanisms);
 	for (const auto& one : inherited.contacts)
 		if (one.bonded && one.neck > neck)
 			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)

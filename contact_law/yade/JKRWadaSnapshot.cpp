@@ -45,7 +45,7 @@ namespace {
 	}
 
 	/* NewtonIntegrator leaves positions a step, and velocities half a step, ahead of the forces: bring both to the moment of the forces. */
-	// JKRWadaEngine leaves everything at one moment, and so needs nothing of this.
+	// JKRWadaEngine leaves everything at one moment, and a scene before its first step has it so.
 	void appendAtTimeOfForces(Grains& grains, const Body& body, Scene& scene)
 	{
 		const State& state = *body.state;
@@ -103,6 +103,16 @@ namespace {
 		std::vector<int> axis, ofId; // ofId: by body id, -1 where the body is no Wall
 		std::vector<double> position;
 	};
+	bool isOfOneMoment(const Scene& scene)
+	{
+		const auto current = [](const shared_ptr<Interaction>& interaction) {
+			const auto* phys = interaction->isReal() ? dynamic_cast<const JKRWadaPhys*>(interaction->phys.get()) : nullptr;
+			return phys && phys->current;
+		};
+		const bool notBegun = scene.iter == 0 && scene.subStep < 0;
+		return notBegun || std::any_of(scene.interactions->begin(), scene.interactions->end(), current);
+	}
+
 	Planes readPlanes(const Scene& scene, bool asItIs)
 	{
 		Planes planes;
@@ -205,8 +215,11 @@ boost::python::dict JKRWadaSnapshot::read() const
 		putContacts(result, fused->normalForces());
 		putPlanes(result, readPlanes(scene, true), fused->normalForcesOnPlanes());
 	} else {
-		const Grains grains = readGrains(scene, fused);
-		const Planes planes = readPlanes(scene, fused);
+		const bool asItIs = fused || isOfOneMoment(scene);
+		if (!asItIs && scene.subStep < 0)
+			result["time"] = scene.time - scene.dt; // the step is over: the forces' moment was before it
+		const Grains grains = readGrains(scene, asItIs);
+		const Planes planes = readPlanes(scene, asItIs);
 		NormalForces between, onPlanes;
 		readContacts(scene, grains, planes, between, onPlanes);
 		putGrains(result, columnsOf(grains));

@@ -12,6 +12,7 @@ namespace yade {
 
 using contact_law::ContactNow;
 using contact_law::Inherited;
+using contact_law::InheritedContact;
 using contact_law::PlaneContact;
 using Vec3d = contact_law::Vec3<double>;
 
@@ -87,6 +88,15 @@ namespace {
 		return one;
 	}
 
+	void startSprings(unsigned started, const State& wall, const Vec3d& normal, const State& grain, PlaneContact& c)
+	{
+		contact_law::PlaneHistory<double> h { { { c.n1, normal }, {} }, c.before.twist };
+		contact_law::startSprings(started, normal, h, c.before);
+		if (!(started & (contact_law::Sliding | contact_law::Rolling))) return;
+		c.n1 = h.pointers.n1;
+		c.point = contact_law::Plane { {}, normal, {} }.across(toKernel(grain.pos - wall.pos));
+	}
+
 	/* The velocities through the step before the last: the last step's less what the contacts' forces added (but for impulses of contacts that formed or broke, which
 	 * shows in the drag of that one grain and step only). */
 	std::vector<Vec3d> velocitiesBefore(
@@ -109,7 +119,7 @@ namespace {
 	}
 }
 
-Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt)
+Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, unsigned mechanisms)
 {
 	Inherited inherited;
 	held.clear();
@@ -123,6 +133,8 @@ Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt)
 		const auto& phys = static_cast<const JKRWadaPhys&>(*interaction->phys);
 		const int id1 = interaction->getId1(), id2 = interaction->getId2();
 		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
+		const auto& geometry = static_cast<const ScGeom&>(*interaction->geom);
+		const unsigned started = mechanisms & ~unsigned(phys.springs);
 		if (phys.bondToCome)
 			refuseInEngine("the functors are about to sinter the contacts (sinter() was called since their last step): make a "
 			               "step first");
@@ -131,19 +143,22 @@ Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt)
 			if (!phys.current) pointer = contact_law::turned(pointer, -dt * toKernel(state.angVel));
 		};
 		if (wallOf(scene, id1)) {
-			Inherited::OnPlane one = onPlane(phys, toKernel(static_cast<const ScGeom&>(*interaction->geom).normal), state2);
+			Inherited::OnPlane one = onPlane(phys, toKernel(geometry.normal), state2);
 			one.grain = grains.grainOf(id2), one.plane = grains.planes.planeOf(id1);
 			asOfHistory(one.contact.n1, state2);
+			startSprings(started, state1, toKernel(geometry.normal), state2, one.contact);
 			inherited.onPlanes.push_back(one);
 			continue;
 		}
-		Inherited::One one { grains.grainOf(id1), grains.grainOf(id2),
-			{ { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.overlap,
-			phys.dragForce, phys.bonded, phys.restDistance, phys.bonded ? phys.bond->neck : 0 };
+		InheritedContact one { grains.grainOf(id1), grains.grainOf(id2),
+			{ { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist }, phys.before(),
+			phys.bonded, phys.restDistance, phys.bonded ? phys.bond->neck : 0 };
 		asOfHistory(one.history.pointers.n1, state1);
 		asOfHistory(one.history.pointers.n2, state2);
+		if (!phys.bonded) contact_law::startSprings(started, -toKernel(geometry.normal), one.history, one.before);
 		inherited.contacts.push_back(one);
 	}
+	inherited.step = std::max(dt, scene.dt);
 	if (inherited.stepBehind) inherited.previous = velocitiesBefore(scene, grains, held, dt);
 	return inherited;
 }
@@ -211,6 +226,7 @@ shared_ptr<Interaction> SceneContacts::made(const Scene& scene, const contact_la
 void SceneContacts::write(
         const Scene& scene, const contact_law::Dynamics& dynamics, const Place& place, Stage stage, Interaction& interaction)
 {
+	static_cast<JKRWadaPhys&>(*interaction.phys).springs = int(dynamics.state().mechanisms & contact_law::AllSprings);
 	if (place.onPlane)
 		writeContact(scene, *place.planes, *place.onPlane, stage, interaction);
 	else

@@ -11,7 +11,7 @@ class SceneContacts {
 public:
 	/* The scene's contacts, for a run that starts: as the functors leave them after a step of length dt [s], or as write() does. Empty when there are none.
 	 * O.interactions are this object's afterwards. */
-	contact_law::Inherited take(Scene&, const SceneGrains&, Real dt);
+	contact_law::Inherited take(Scene&, const SceneGrains&, Real dt, unsigned mechanisms);
 
 	/* OfPositions: everything is of the moment of the bodies' positions. AStepBehind: as the functors leave it, pointers with the orientations as they are
 	 * at this call. */

@@ -36,9 +36,9 @@ public:
 		double *position, *velocity, *angularVelocity, *radius;
 	};
 	void readNow(const Scene&, int threads, const Columns&) const;
-	/* Calls changed(index, motion) for bodies that a script has moved, pushed or blocked since they were written.
+	/* Calls changed(index, motion) for bodies that a script has moved, pushed or blocked since they were written or this was called.
 	 * Throws std::runtime_error for a change that the engine cannot follow: of bodies, their radius, mass, inertia, material, shape or mask; of materials. */
-	template <class Changed> void eachChange(const Scene&, bool orientations, int threads, Changed&& changed) const;
+	template <class Changed> void eachChange(const Scene&, bool orientations, int threads, Changed&& changed);
 
 	const State& stateOf(std::size_t k) const { return *bodies[k].state; }
 	std::size_t size() const { return bodies.size(); }
@@ -98,15 +98,19 @@ template <class Is> bool forAll(std::size_t bodies, int threads, const Is& is)
 	return so;
 }
 
-template <class Changed> void SceneGrains::eachChange(const Scene& scene, bool orientations, int threads, Changed&& changed) const
+template <class Changed> void SceneGrains::eachChange(const Scene& scene, bool orientations, int threads, Changed&& changed)
 {
 	requireSameMaterials();
 	const auto moved = [&](std::size_t k) { return !sameMotion(*bodies[k].state, written[k], orientations); };
 	const auto untouched = [&](std::size_t k) { return isThere(scene, k) && sameBody(k) && !moved(k); };
 	if (hasAllBodies(scene) && forAll(size(), threads, untouched)) return;
 	requireSame(scene);
-	for (std::size_t k = 0; k < size(); ++k)
-		if (moved(k)) changed(k, motionOf(*bodies[k].state));
+	for (std::size_t k = 0; k < size(); ++k) {
+		if (!moved(k)) continue;
+		const contact_law::GrainMotion motion = motionOf(*bodies[k].state);
+		changed(k, motion);
+		written[k] = motion;
+	}
 }
 
 } // namespace yade

@@ -56,9 +56,10 @@ void ScenePlanes::requireKept(const Scene& scene) const
 	}
 }
 
-void ScenePlanes::takeChanges(const Scene& scene, contact_law::Dynamics& dynamics)
+bool ScenePlanes::takeChanges(const Scene& scene, contact_law::Dynamics& dynamics)
 {
 	requireKept(scene);
+	bool any = false;
 	for (int p = 0; p < size(); ++p) {
 		Kept& k = kept[p];
 		const std::string fault = faultOf(*k.body, scene, InPeriodic::AtRest);
@@ -67,7 +68,9 @@ void ScenePlanes::takeChanges(const Scene& scene, contact_law::Dynamics& dynamic
 		if (k.state->pos == k.position && k.state->vel == k.velocity) continue;
 		k.position = k.state->pos, k.velocity = k.state->vel;
 		dynamics.setPlane(p, toKernel(k.position), toKernel(k.velocity));
+		any = true;
 	}
+	return any;
 }
 
 std::string ScenePlanes::tooFast(Real step, Real smallestRadius) const

@@ -22,7 +22,7 @@ public:
 	bool isThere(const Scene&, int plane) const;
 	void requireKept(const Scene&) const; // throws std::runtime_error for Walls that are not those of the start any more
 	// Walls that a script has moved or given another velocity. Throws std::runtime_error for a change that the engine cannot follow.
-	void takeChanges(const Scene&, contact_law::Dynamics&);
+	bool takeChanges(const Scene&, contact_law::Dynamics&); // whether there were any
 	// Empty, or which Wall moves too fast for this small step [s].
 	std::string tooFast(Real step, Real smallestRadius) const;
 	void write(const contact_law::Dynamics&, Real ahead = 0); // where they are, or will be that much later [s]

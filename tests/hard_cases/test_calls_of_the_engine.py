@@ -222,3 +222,22 @@ def test_a_damaged_checkpoint_is_refused(name, first):
     assert {loaded(changed).partition(": ")[2] for changed in damaged} == {
         "the checkpoint of the grains is damaged: it must be as O.save wrote it"
     }
+
+
+def test_a_snapshot_with_the_functors_is_of_its_time():
+    """Before the first step, and between two, when the bodies are a step further already."""
+    new_scene(0.1 * unit)
+    grain((0, 0, 0), 1e-7, ice(), (10, 0, 0))
+    for step in range(3):
+        snapshot = contact_law.snapshot()
+        assert snapshot["position"][0, 0] == pytest.approx(10 * snapshot["time"], rel=1e-12)
+        O.step()
+    assert snapshot["time"] > 0
+
+
+def test_a_contact_that_is_pressed_hard_is_no_event():
+    new_scene(0.1 * unit, "fused")
+    for x in (0, 2e-7 - 5 * constants(ice(), 1e-7)["equilibriumOverlap"]):
+        grain((x, 0, 0), 1e-7, ice(), blocked="xyzXYZ")
+    steps(20)
+    assert engine().statistics()["events"] == 0

@@ -320,3 +320,76 @@ def test_energies_after_the_functors_and_a_checkpoint(tracked):
     straight = end(False)
     assert straight["slidingDissipation"] > 0 and straight["connection"] > 0
     assert end(True) == close_to(straight, "connection")
+
+
+@pytest.mark.parametrize("call", ["utils.unbalancedForce()", "engine().writeInteractions()", "said(O.step)"])
+def test_what_was_taken_in_may_be_undone(call):
+    """A change that a call between two steps has seen, or one beside another that is refused: undone, the run goes on as without it."""
+
+    def end(change):
+        chain()
+        steps(20)
+        states = [O.bodies[k].state for k in (1, 2)]
+        kept = [Vector3(state.vel) for state in states]
+        if change:
+            states[0].vel, states[0].blockedDOFs = 2 * kept[0], "xyzXYZ"
+            if "step" in call:
+                states[1].vel = Vector3(float("nan"), 0, 0)
+            run(call)
+            states[0].blockedDOFs = ""
+            for state, vel in zip(states, kept):
+                state.vel = vel
+        steps(20)
+        return positions()
+
+    assert np.abs(end(True) - end(False)).max() < 1e-12 * 1e-7
+
+
+@pytest.mark.parametrize("mover", ["fused", "functors"])
+def test_a_wall_may_be_moved_from_a_grain_at_rest(mover):
+    """What a script's move does to the energy is no error of the step."""
+    new_scene(0.1 * unit, mover)
+    wall = O.bodies.append(utils.wall(0, axis=2, material=ice()))
+    c = Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(ice(), 1e-7, ice(), float("inf"))
+    grain((0, 0, 1e-7 - c["equilibriumOverlap"]), 1e-7, O.bodies[wall].material)
+    steps(5)
+    O.bodies[wall].state.pos -= Vector3(0, 0, 1e-8)
+    steps(5)
+    assert contact_law.snapshot()["plane_contacts"].size == 0 and O.bodies[1].state.vel.norm() < 1
+
+
+def test_a_slip_after_a_move_is_the_functors():
+    """A grain that is moved within its contact, so far that it slips."""
+
+    def lost(mover):
+        chain(mover=mover)
+        steps(200)
+        before = energies()["slidingDissipation"]
+        O.bodies[3].state.pos += Vector3(0, 2e-9, 0)
+        steps(2)
+        return energies()["slidingDissipation"] - before
+
+    assert lost("fused") == pytest.approx(lost("functors"), rel=0.05) and lost("fused") > 0
+
+
+def test_homo_deform_is_another_from_the_next_step_on():
+    O.reset()
+    periodic_cell(2e-6, 2e-6, 2e-6, homo=2, velocity_gradient=(-1e6, 0, 0))
+    grain((3e-7, 1e-6, 1e-6), 1e-7, ice(), (1, 0, 0))
+    O.dt = 0.1 * unit
+    engine_of_sub_steps(100)
+    steps(2)
+    O.cell.homoDeform, before = 0, Vector3(O.bodies[0].state.vel)
+    steps(1)
+    assert O.bodies[0].state.vel[0] == pytest.approx(before[0], rel=1e-12)
+
+
+@pytest.mark.parametrize("mover", ["fused", "functors"])
+def test_steps_that_are_too_long_for_light_grains_are_refused(mover):
+    new_scene(0.3 * unit, mover)
+    d = 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
+    for k in range(2):
+        grain((k * d, 0, 0), 1e-7, ice())
+        O.bodies[k].state.mass *= 0.1
+        O.bodies[k].state.inertia *= 0.1
+    assert "must be above 0 and below" in said(lambda: steps(2))

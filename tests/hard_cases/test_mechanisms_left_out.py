@@ -34,7 +34,7 @@ def test_engine_and_functors_agree_and_the_ledger_closes(springs, limit):
     difference = np.abs(functors[:400] - engine).max(axis=(1, 2)) / 1e-7
     assert difference[:100].max() < 1e-12 and difference.max() < 1e-9
     for name, on in springs.items():
-        assert on or ledger[-1][f"{name}Dissipation"] == 0
+        assert on or ledger[-1][f"{name}Dissipation"] == ledger[-1][name] == 0
     coarse, fine = (rms(error(step, seed) for seed in range(1, 5)) for step in (0.1, 0.025))
     assert coarse < 1e-3 and coarse > 9 * fine  # second order: 16, first: 4
 
@@ -53,3 +53,30 @@ def test_grains_without_rolling_resistance_turn_on_each_other_without_end(mover,
     assert np.abs(spins - [1, -1 / 1.6]).max() < 1e-3
     assert max(b.state.vel.norm() for b in O.bodies) < 1e-3 * rate * r1
     assert abs(energies()["slidingDissipation"]) < 1e-3 * energies()["kinetic"]
+
+
+@pytest.mark.parametrize("wall", [False, True])
+@pytest.mark.parametrize("change", ["functors", "functors to engine", "engine", "engine to functors"])
+@pytest.mark.parametrize("left_out", [("sliding", "rolling"), ("sliding",), ("twisting",)], ids="+".join)
+def test_springs_that_come_in_later_have_no_strain(left_out, change, wall):
+    """Grains that have turned on each other, or on a wall, far beyond the springs' limits: no spring pulls when it comes in, and nothing was stored."""
+    without = dict.fromkeys(left_out, False)
+    new_scene(0.1 * unit, "functors" if change.startswith("functors") else "fused", **without)
+    second = O.bodies.append(utils.wall(0, axis=0, material=ice())) if wall else grain((0, 0, 0), 1e-7, ice())
+    radius2 = float("inf") if wall else 1e-7
+    c = Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(ice(), 1e-7, ice(), radius2)
+    grain(((1 if wall else 2) * 1e-7 - c["equilibriumOverlap"], 0, 0), 1e-7, ice(), blocked="xyzXYZ")
+    O.bodies[second].state.blockedDOFs = "xyzXYZ"
+    O.bodies[1].state.angVel = Vector3(1e9, 0, 2e9)
+    steps(20)
+    assert sum(energies()[name] + energies()[name + "Dissipation"] for name in left_out) == 0
+    O.bodies[1].state.angVel = Vector3.Zero
+    if change == "functors":
+        for name in left_out:
+            setattr(O.engines[2].lawDispatcher.functors[0], name, True)
+    else:
+        O.engines = functor_engines() if change.endswith("functors") else [JKRWadaEngine()]
+    steps(3)
+    after = energies()
+    most = 1e-6 * c["pullOffForce"] * c["pullOffOverlap"]
+    assert all(abs(after[name]) + abs(after[name + "Dissipation"]) < most for name in left_out), after

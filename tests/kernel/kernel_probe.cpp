@@ -55,7 +55,7 @@ void contactAt(const double* constants, const double* state, double* out)
 	const ContactHistory<double> h { { vector(state + 3), vector(state + 6) }, state[12] };
 	const ContactGeometry<double> g = geometryOf(vector(state), c.radius1 + c.radius2);
 	const ContactForces<double> f = contactForces<Everything>(c, g, h, vector(state + 9));
-	const StoredEnergy<double> e = storedEnergy(c, f, h.twist);
+	const StoredEnergy<double> e = storedEnergy(AllSprings, c, f, h.twist);
 	write(out, f.normalForce * g.normal + f.sliding);
 	*out++ = f.drag;
 	write(out, f.torque1);
