@@ -1,5 +1,5 @@
-/* Events of a domain's contacts in a step, one by one: contacts that form or break, bonds that break, and what a pass leaves to the kernel's scalar law (cut springs,
- * overlaps beyond the fit). A border contact goes through the same event in both domains, from the same numbers to the same end. */
+/* Events of a domain's contacts in a step, one by one: contacts that form or break, bonds that break, and what a pass leaves to the kernel's scalar law (cut springs, slips
+ * after a script's move, overlaps beyond the fit). A border contact goes through the same event in both domains, from the same numbers to the same end. */
 #pragma once
 #include "ledger.hpp"
 #include "pair_lists.hpp"

@@ -133,13 +133,12 @@ private:
 	int domainCount() const;
 	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
 	void shrinkGrains();
-	double mostStretched() const;
 	void bringVelocitiesToPositions();
 	void kickAll(double time);   // kick() of every grain [s]
 	void kickEarly(double time); // kickEarly() of every grain that has one [s]
 	void makeDomains();
 	void inherit(const Inherited&);
-	bool isLetGo(const Inherited&, const InheritedContact&, int i, int j, const ContactHistory<double>&);
+	bool isLetGo(const Inherited&, const InheritedContact&, int i, int j, const ContactBefore&, ContactHistory<double>);
 	void completeInheritedStep();
 	template <class Archive> void transferLayout(Archive&);
 	template <class Archive> void transferState(Archive&);

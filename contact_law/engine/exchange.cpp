@@ -11,39 +11,34 @@ std::vector<double> Inherited::necks() const
 	return { found.begin(), found.end() };
 }
 
-/* Whether a script has torn a contact or bond apart since its owner's last step, by more than the grains' motion does in a step: no step will break it. It is let go as
- * it was, and booked. h: of the grains in the order of their indices here. */
-bool Dynamics::isLetGo(const Inherited& from, const InheritedContact& one, int i, int j, const ContactHistory<double>& h)
+/* Whether a script has torn a contact or bond apart since its owner's last step, by more than the grains' motion does in a step: none of this run's steps breaks it. It is
+ * let go as it was, in no time, and booked. before, h: of the grains in the order of their indices here. */
+bool Dynamics::isLetGo(
+        const Inherited& from, const InheritedContact& one, int i, int j, const ContactBefore& before, ContactHistory<double> h)
 {
 	Image image;
-	const ContactMotion m = shared.motionOf(cell(), i, j, image);
+	ContactMotion m = shared.motionOf(cell(), i, j, image);
+	m.dt = from.stepBehind ? from.step : 0;
 	const PairConstants<double> c = shared.constantsOf(i, j);
-	const auto byMotion = [&](const Vec3<double>& change, double turning) {
-		const auto length = [](const Vec3<double>& v) { return std::sqrt(dot(v, v)); };
-		const double most = 2 * from.step * (length(m.velocity) + turning * (length(m.spin1) + length(m.spin2)));
-		return from.stepBehind && dot(change, change) <= most * most;
-	};
 	Dissipation lost;
 	Counts counts;
 	counts.events = 1;
 	if (one.bonded) {
 		const BondConstants<double> b = shared.bondOf(i, j, one.neck);
 		const ContactGeometry<double> g = geometryOf(m.separation, one.rest);
-		const ContactForces<double> f = bondForces(b, g, h);
-		const int mode = bonds::firstBreaking(b, one.before, g, f, h.twist).mode;
-		const Vec3<double> change = f.slidingDisplacement - (i == indexHere[one.first] ? one.before.sliding : -one.before.sliding)
-		        + (g.overlap - one.before.overlap) * g.normal;
-		if (mode < 0 || byMotion(change, b.radius1 + b.radius2)) return false;
-		const ContactGeometry<double> shrunk = geometryOf(m.separation, c.radius1 + c.radius2); // they touch, where it is above 0
-		const double ofContact = shrunk.overlap > 0
-		        ? normal::energy(c, normal::rootOfContactRadius(shrunk.overlap * c.inverseEquilibriumOverlap))
-		        : 0;
-		lost.*bondBreakingBy[mode] = bonds::held(b, one.before) - ofContact;
-		++counts.brokenBonds[mode];
+		if (from.stepBehind && !bonds::isTorn(b, m, before, g, bondForces(b, g, h))) return false;
+		m.dt = 0;
+		const BondStepResult r = bondStepWith[shared.mechanisms](b, c, m, before, one.rest, h);
+		if (r.bonded) return false;
+		lost = r.contact.dissipated;
+		++counts.brokenBonds[r.mode];
 	} else {
-		const ContactGeometry<double> g = geometryOf(m.separation, c.radius1 + c.radius2);
-		if (!normal::beyondPullOff(c, g) || byMotion((g.overlap - one.before.overlap) * g.normal, 0)) return false;
-		lost.disconnection = contact_law::letGo(shared.mechanisms, c, one.before);
+		const double opening = before.overlap - geometryOf(m.separation, c.radius1 + c.radius2).overlap;
+		if (from.stepBehind && opening * opening <= 4 * m.dt * m.dt * dot(m.velocity, m.velocity)) return false;
+		m.dt = 0;
+		const ContactStepResult r = contactStepWith[shared.mechanisms](c, shared.limit, m, before, h);
+		if (r.touching) return false;
+		lost = r.dissipated;
 		++counts.broken;
 	}
 	domains[0]->ledger.add(lost, counts, 0);
@@ -61,7 +56,9 @@ void Dynamics::inherit(const Inherited& inherited)
 	for (const InheritedContact& one : inherited.contacts) {
 		const int a = indexHere[one.first], b = indexHere[one.second], i = std::min(a, b), j = std::max(a, b);
 		const ContactHistory<double> history = a < b ? one.history : swapped(one.history);
-		if (isLetGo(inherited, one, i, j, history)) continue;
+		ContactBefore before = one.before;
+		if (a > b) before.sliding = -before.sliding;
+		if (isLetGo(inherited, one, i, j, before, history)) continue;
 		for (auto& domain : domains)
 			one.bonded ? domain->touching.place(Bond { i, j, history, one.rest, shared.bondOf(i, j, one.neck) })
 			           : domain->touching.place(Contact { i, j, history, shared.constantsOf(i, j), one.before.drag,

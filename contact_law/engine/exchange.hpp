@@ -24,7 +24,7 @@ struct Inherited {
 	/* As a leapfrog leaves them: histories of the moment a small step before the positions, velocities of half a step before (of turned grains likewise), and in
 	 * scenes with drag `previous`, the velocities another step before. Otherwise all is of one moment. */
 	bool stepBehind = false;
-	double step = 0; // the longest that its owner may have made since [s]
+	double step = 0; // that its owner makes, this run's small one at least [s]
 	std::vector<Vec3<double>> previous;
 
 	bool empty() const { return contacts.empty() && onPlanes.empty(); }

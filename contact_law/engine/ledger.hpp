@@ -63,7 +63,7 @@ public:
 		lost += r.dissipated;
 		eventWork += r.workBefore - 0.5 * events::work(m, r.force, r.torque1, r.torque2);
 		if (cell.on) boundary.addEarly(image.shift, r.force, r.forceBefore);
-		counts.events += r.pointersMoved || !r.touching || r.dissipated.twisting != 0; // not of a contact that is pressed hard
+		counts.events += r.isEvent(); // not of a contact that is pressed hard
 	}
 	// A step of an own grain on a plane.
 	void bookOnPlane(int index, const Grain& grain, const ContactStepResult& r, double dt)

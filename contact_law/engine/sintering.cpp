@@ -1,5 +1,6 @@
 // Sintering: what necks make of the grains, at the start and in the middle of a run.
 #include "contacts.hpp"
+#include "stability.hpp"
 #include <numeric>
 
 namespace contact_law {
@@ -18,32 +19,8 @@ void Dynamics::shrinkGrains()
 	const Material& m = shared.material[shared.kind[0]];
 	const double r = shared.grainRadius[0];
 	shared.common = deriveShrunkPair(m, r, m, r, shared.pairs, shared.neck);
-	shared.skin = std::max(0.8 * shared.smallestRadius, 1.1 * mostStretched());
 	if (shared.neck > 0) shared.commonBond = deriveBond(m, r, m, r, shared.necks.size() == 1 ? shared.necks[0] : shared.neck);
-}
-
-// The largest gap between grains that touch, or are bonded: the lists must hold them so far apart, however small others are.
-double Dynamics::mostStretched() const
-{
-	std::vector<int> largest(shared.material.size(), -1); // of each kind
-	for (int k = 0; k < count; ++k) {
-		int& known = largest[shared.kind[k]];
-		if (known < 0 || shared.grainRadius[k] > shared.grainRadius[known]) known = k;
-	}
-	double most = 0;
-	for (const int i : largest)
-		for (const int j : largest) {
-			if (i < 0 || j < 0) continue;
-			most = std::max(most, shared.constantsOf(i, j).pullOffOverlap);
-			if (shared.neck == 0) continue;
-			const double shrunk = shared.grainRadius[i] + shared.grainRadius[j] - shared.radius[i] - shared.radius[j];
-			for (const double neck : shared.necks) {
-				const BondConstants<double> b = deriveBond(shared.material[shared.kind[i]], shared.grainRadius[i],
-				        shared.material[shared.kind[j]], shared.grainRadius[j], neck);
-				most = std::max(most, shrunk + std::sqrt(2 * b.breakingEnergy / b.normalStiffness));
-			}
-		}
-	return most;
+	shared.skin = std::max(0.8 * shared.smallestRadius, 1.1 * mostStretched(*this));
 }
 
 // Velocities at the positions' moment. Forces go: half of their kick belongs after it.

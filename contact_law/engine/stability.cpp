@@ -31,14 +31,15 @@ namespace {
 		return grains;
 	}
 
-	// Of the lightest grain beside its material's density.
+	// Of the grain that is lightest, or turns most easily, beside a solid sphere of its material.
 	double leastLightness(const Dynamics& dynamics)
 	{
 		const SharedState& shared = dynamics.state();
 		double least = 1;
 		for (int k = 0; k < dynamics.grainCount(); ++k) {
 			const double r = shared.grainRadius[k], solid = 4 * pi / 3 * shared.material[shared.kind[k]].density * r * r * r;
-			least = std::min(least, lightness(1 / shared.inverseMass[k], solid));
+			const double turning = 1 / (shared.inverseInertia[k] * 0.4 * r * r);
+			least = std::min(least, lightness(std::min(1 / shared.inverseMass[k], turning), solid));
 		}
 		return least;
 	}
@@ -53,6 +54,22 @@ namespace {
 			for (std::size_t other = 0; other <= k; ++other)
 				visit(grains[k], grains[other]);
 	}
+}
+
+double mostStretched(const Dynamics& dynamics)
+{
+	const SharedState& shared = dynamics.state();
+	double most = 0;
+	eachExtremePair(dynamics, [&](int i, int j) {
+		double gap = shared.grainRadius[i] + shared.grainRadius[j] - shared.radius[i] - shared.radius[j]; // by sintering
+		double stretch = 0;
+		for (const double neck : shared.neck > 0 ? shared.necks : std::vector<double> {}) {
+			const BondConstants<double> b = shared.bondOf(i, j, neck);
+			stretch = std::max(stretch, std::sqrt(2 * b.breakingEnergy / b.normalStiffness));
+		}
+		most = std::max(most, gap + shared.constantsOf(i, j).pullOffOverlap + stretch);
+	});
+	return most;
 }
 
 double unstableStepOfBonds(const Dynamics& dynamics, double neck)

@@ -10,4 +10,7 @@ double unstableStep(const Dynamics&);
 // The same for bonds of another neck [s].
 double unstableStepOfBonds(const Dynamics&, double neck);
 
+// The largest gap between grains that touch, or are bonded [m]: the neighbour lists must hold them so far apart, however small other grains are.
+double mostStretched(const Dynamics&);
+
 } // namespace contact_law

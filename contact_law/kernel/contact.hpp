@@ -44,7 +44,7 @@ inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGe
 	return f;
 }
 
-// Of springs that are left out the twist alone is followed: the forces have no displacement of the others.
+// Of springs that are left out the forces have no displacement; the twist means nothing there.
 template <class T>
 inline StoredEnergy<T> storedEnergy(unsigned mechanisms, const PairConstants<T>& c, const ContactForces<T>& f, const T& twist)
 {
@@ -64,16 +64,29 @@ inline double letGo(unsigned mechanisms, const PairConstants<double>& c, const C
 	return taken;
 }
 
-/* Springs that were left out until now have no strain from here on: what their pointers, which sliding and rolling have in common, did meanwhile means nothing.
- * before: a step ago. */
+/* Springs that come in after they were left out have no strain: what their displacements did meanwhile means nothing. Sliding and rolling have their pointers in common:
+ * these start anew, with the displacement of the one that was there. before: a step ago. */
 inline void startPointers(const Vec3<double>& normal, Pointers<double>& p) { p = { -normal, normal }; }
 inline void startPointers(const Vec3<double>& normal, PlanePointers<double>& p) { p.n1 = -normal, p.anchor = { 0, 0, 0 }; }
-template <class History> void startSprings(unsigned started, const Vec3<double>& normal, History& h, ContactBefore& before)
+template <class History>
+void startSprings(unsigned mechanisms, unsigned started, const PairConstants<double>& c, const Vec3<double>& normal, History& h,
+        ContactBefore& before)
 {
+	const Vec3<double> none { 0, 0, 0 };
+	const auto across = [&](const Vec3<double>& v) { // as long
+		const Vec3<double> w = v - dot(v, normal) * normal;
+		return dot(w, w) > 0 ? std::sqrt(dot(v, v) / dot(w, w)) * w : none;
+	};
+	const double r1 = c.radius1, r2 = c.radius2;
 	if (started & Twisting) h.twist = before.twist = 0;
 	if (!(started & (Sliding | Rolling))) return;
+	const unsigned there = mechanisms & ~started;
+	const Vec3<double> slid = there & Sliding ? sliding::displacement(h.pointers, r1, r2, normal) : none;
+	const Vec3<double> rolled = there & Rolling ? across(rolling::displacement(h.pointers, c.reducedRadius)) : none;
 	startPointers(normal, h.pointers);
-	before.sliding = before.rolling = { 0, 0, 0 };
+	h.pointers = rolling::displaced(sliding::displaced(h.pointers, r1, r2, slid), r1, r2, rolled);
+	if (started & Sliding) before.sliding = none;
+	if (started & Rolling) before.rolling = none;
 }
 
 // What the springs of a contact give up when it breaks after a fraction of the step (pointers.hpp), added to what disconnection takes.

@@ -112,6 +112,9 @@ struct ContactStepResult {
 	ContactForces<double> now {}; // the forces at this instant
 	StoredEnergy<double> stored { 0, 0, 0, 0 };
 	Dissipation dissipated;
+
+	// Of a contact that touched: whether it slipped or broke.
+	bool isEvent() const { return pointersMoved || !touching || dissipated.twisting != 0; }
 };
 
 } // namespace contact_law

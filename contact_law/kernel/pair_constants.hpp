@@ -120,8 +120,8 @@ inline PairConstants<double> derivePair(
 }
 
 /* Steps from here on are unstable for such a pair, in whatever packing [s] (MODEL.md, "Step limits"): half a time unit, at which collisions were seen to blow
- * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. NaN where the time unit is. lightness: mass of the grains over that of
- * solid spheres of their materials, where it is less. */
+ * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. NaN where the time unit is. lightness: mass of the grains (or moment of
+ * inertia) over that of solid spheres of their materials, where it is less. */
 inline double unstableStep(const PairConstants<double>& c, double lightness = 1)
 {
 	const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;

@@ -256,8 +256,12 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	const State& state1 = *(*scene->bodies)[interaction->getId1()]->state;
 	const State& state2 = *(*scene->bodies)[interaction->getId2()]->state;
 	const bool ofPlane = std::isinf(constants.radius2);
-	const Real reducedMass = ofPlane ? state2.mass : state1.mass * state2.mass / (state1.mass + state2.mass);
-	const Real light = contact_law::lightness(reducedMass, constants.reducedMass);
+	const auto reduced = [&](Real first, Real second) { return ofPlane ? second : first * second / (first + second); };
+	const auto turning = [](const State& state, Real radius) { return state.inertia[0] / (0.4 * radius * radius); };
+	const Real mass = reduced(state1.mass, state2.mass),
+	           ofTurning =
+	                   reduced(turning(state1, constants.radius1), turning(state2, ofPlane ? constants.radius1 : constants.radius2));
+	const Real light = contact_law::lightness(std::min(mass, ofTurning), constants.reducedMass);
 	if (!stepIsBelow(contact_law::unstableStep(constants, light))) return true;
 	if (ofPlane) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);
 
@@ -283,7 +287,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
 	const unsigned mechanisms = mechanismsOf(constants), started = mechanisms & contact_law::AllSprings & ~unsigned(phys.springs);
-	if (!phys.bonded) contact_law::startSprings(started, (1 / std::sqrt(dot(apart, apart))) * apart, history, before);
+	if (!phys.bonded)
+		contact_law::startSprings(mechanisms, started, constants, (1 / std::sqrt(dot(apart, apart))) * apart, history, before);
 	ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
 	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
 
@@ -313,7 +318,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 	};
 	contact_law::ContactBefore before = phys.before();
 	const unsigned mechanisms = mechanismsOf(constants), started = mechanisms & contact_law::AllSprings & ~unsigned(phys.springs);
-	contact_law::startSprings(started, plane.normal, history, before);
+	contact_law::startSprings(mechanisms, started, constants, plane.normal, history, before);
 	const ContactStepResult r = contact_law::planeStepWith[mechanisms](constants, limitRule, motion, before, history);
 
 	if (!finish(interaction, phys, motion, history.twist, mechanisms, r)) return false;

@@ -25,6 +25,7 @@ void JKRWadaEngine::takeChanges(Moment moment)
 		current->dynamics.set(int(k), motion);
 		current->watch.motionsChanged();
 	};
+	current->dynamics.setMeanField({ 0, 0, 0 }, SceneCell::convective(*scene)); // O.cell.homoDeform may be another
 	current->grains.eachChange(*scene, orientations, current->dynamics.threadCount(), set);
 	if (current->grains.planes.takeChanges(*scene, current->dynamics)) current->watch.motionsChanged();
 	if (exportInteractions || moment == Moment::WithinStep) requireContactsKept();
@@ -123,7 +124,6 @@ void JKRWadaEngine::makeStep()
 		writeContacts();
 		fail(scene->time + scene->dt, wrongCell, "");
 	}
-	current->dynamics.setMeanField({ 0, 0, 0 }, SceneCell::convective(*scene)); // homoDeform may be another
 	const contact_law::Vec3<double> cellAtEnd = SceneCell::now(*scene);
 	const long made = current->dynamics.run(subSteps, scene->isPeriodic ? &cellAtEnd : nullptr);
 	current->cell.arrive(*scene);

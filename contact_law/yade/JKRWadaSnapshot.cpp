@@ -109,8 +109,10 @@ namespace {
 			const auto* phys = interaction->isReal() ? dynamic_cast<const JKRWadaPhys*>(interaction->phys.get()) : nullptr;
 			return phys && phys->current;
 		};
-		const bool notBegun = scene.iter == 0 && scene.subStep < 0;
-		return notBegun || std::any_of(scene.interactions->begin(), scene.interactions->end(), current);
+		const auto real = [](const shared_ptr<Interaction>& interaction) { return interaction->isReal(); };
+		const auto any = [&](const auto& is) { return std::any_of(scene.interactions->begin(), scene.interactions->end(), is); };
+		const bool notBegun = scene.iter == 0 && scene.subStep < 0 && !any(real);
+		return notBegun || any(current);
 	}
 
 	Planes readPlanes(const Scene& scene, bool asItIs)

@@ -88,13 +88,18 @@ namespace {
 		return one;
 	}
 
-	void startSprings(unsigned started, const State& wall, const Vec3d& normal, const State& grain, PlaneContact& c)
+	// since: how long ago the contact's moment was.
+	void startSprings(unsigned mechanisms, const JKRWadaPhys& phys, const State& wall, const Vec3d& normal, const State& grain,
+	        Real since, PlaneContact& c)
 	{
 		contact_law::PlaneHistory<double> h { { { c.n1, normal }, {} }, c.before.twist };
-		contact_law::startSprings(started, normal, h, c.before);
-		if (!(started & (contact_law::Sliding | contact_law::Rolling))) return;
+		const Vec3d foot =
+		        contact_law::Plane { {}, normal, {} }.across(toKernel(grain.pos - wall.pos - since * (grain.vel - wall.vel)));
+		h.pointers.anchor = c.point - foot;
+		contact_law::startSprings(
+		        mechanisms, mechanisms & ~unsigned(phys.springs), phys.constants->forKernel(), normal, h, c.before);
 		c.n1 = h.pointers.n1;
-		c.point = contact_law::Plane { {}, normal, {} }.across(toKernel(grain.pos - wall.pos));
+		c.point = h.pointers.anchor + foot;
 	}
 
 	/* The velocities through the step before the last: the last step's less what the contacts' forces added (but for impulses of contacts that formed or broke, which
@@ -121,6 +126,7 @@ namespace {
 
 Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, unsigned mechanisms)
 {
+	const unsigned springs = mechanisms & contact_law::AllSprings;
 	Inherited inherited;
 	held.clear();
 	for (const auto& interaction : *scene.interactions) {
@@ -134,7 +140,6 @@ Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, 
 		const int id1 = interaction->getId1(), id2 = interaction->getId2();
 		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
 		const auto& geometry = static_cast<const ScGeom&>(*interaction->geom);
-		const unsigned started = mechanisms & ~unsigned(phys.springs);
 		if (phys.bondToCome)
 			refuseInEngine("the functors are about to sinter the contacts (sinter() was called since their last step): make a "
 			               "step first");
@@ -146,7 +151,7 @@ Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, 
 			Inherited::OnPlane one = onPlane(phys, toKernel(geometry.normal), state2);
 			one.grain = grains.grainOf(id2), one.plane = grains.planes.planeOf(id1);
 			asOfHistory(one.contact.n1, state2);
-			startSprings(started, state1, toKernel(geometry.normal), state2, one.contact);
+			startSprings(springs, phys, state1, toKernel(geometry.normal), state2, phys.current ? 0 : dt, one.contact);
 			inherited.onPlanes.push_back(one);
 			continue;
 		}
@@ -155,7 +160,9 @@ Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, 
 			phys.bonded, phys.restDistance, phys.bonded ? phys.bond->neck : 0 };
 		asOfHistory(one.history.pointers.n1, state1);
 		asOfHistory(one.history.pointers.n2, state2);
-		if (!phys.bonded) contact_law::startSprings(started, -toKernel(geometry.normal), one.history, one.before);
+		if (!phys.bonded)
+			contact_law::startSprings(springs, springs & ~unsigned(phys.springs), phys.constants->forKernel(),
+			        -toKernel(geometry.normal), one.history, one.before);
 		inherited.contacts.push_back(one);
 	}
 	inherited.step = std::max(dt, scene.dt);

@@ -59,12 +59,14 @@ void ScenePlanes::requireKept(const Scene& scene) const
 bool ScenePlanes::takeChanges(const Scene& scene, contact_law::Dynamics& dynamics)
 {
 	requireKept(scene);
-	bool any = false;
-	for (int p = 0; p < size(); ++p) {
-		Kept& k = kept[p];
+	for (const Kept& k : kept) {
 		const std::string fault = faultOf(*k.body, scene, InPeriodic::AtRest);
 		if (!fault.empty()) refuseInEngine(fault);
 		requireFinite(*k.body);
+	}
+	bool any = false;
+	for (int p = 0; p < size(); ++p) {
+		Kept& k = kept[p];
 		if (k.state->pos == k.position && k.state->vel == k.velocity) continue;
 		k.position = k.state->pos, k.velocity = k.state->vel;
 		dynamics.setPlane(p, toKernel(k.position), toKernel(k.velocity));

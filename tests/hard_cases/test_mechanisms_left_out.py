@@ -59,7 +59,8 @@ def test_grains_without_rolling_resistance_turn_on_each_other_without_end(mover,
 @pytest.mark.parametrize("change", ["functors", "functors to engine", "engine", "engine to functors"])
 @pytest.mark.parametrize("left_out", [("sliding", "rolling"), ("sliding",), ("twisting",)], ids="+".join)
 def test_springs_that_come_in_later_have_no_strain(left_out, change, wall):
-    """Grains that have turned on each other, or on a wall, far beyond the springs' limits: no spring pulls when it comes in, and nothing was stored."""
+    """Grains that have turned on each other, or on a wall, far beyond the springs' limits: no spring pulls when it comes in, nothing was stored, and the others hold
+    what they held (to the second order of their angles)."""
     without = dict.fromkeys(left_out, False)
     new_scene(0.1 * unit, "functors" if change.startswith("functors") else "fused", **without)
     second = O.bodies.append(utils.wall(0, axis=0, material=ice())) if wall else grain((0, 0, 0), 1e-7, ice())
@@ -71,6 +72,8 @@ def test_springs_that_come_in_later_have_no_strain(left_out, change, wall):
     steps(20)
     assert sum(energies()[name] + energies()[name + "Dissipation"] for name in left_out) == 0
     O.bodies[1].state.angVel = Vector3.Zero
+    steps(2)
+    before = energies()
     if change == "functors":
         for name in left_out:
             setattr(O.engines[2].lawDispatcher.functors[0], name, True)
@@ -78,5 +81,7 @@ def test_springs_that_come_in_later_have_no_strain(left_out, change, wall):
         O.engines = functor_engines() if change.endswith("functors") else [JKRWadaEngine()]
     steps(3)
     after = energies()
-    most = 1e-6 * c["pullOffForce"] * c["pullOffOverlap"]
+    most = 1e-4 * c["pullOffForce"] * c["pullOffOverlap"]
+    others = [name for name in ("sliding", "rolling", "twisting") if name not in left_out]
+    assert [after[name] for name in others] == pytest.approx([before[name] for name in others], rel=1e-3)
     assert all(abs(after[name]) + abs(after[name + "Dissipation"]) < most for name in left_out), after
