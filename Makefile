@@ -187,7 +187,7 @@ $(OBJECTS_FOLDER)/yade_interface/proof/members_compared.o: YADE_DEFINITIONS += -
 # Changed only when what they hold changes, so that objects are made again then, and only then.
 # The commit is the last that changed what runs are made by: checkpoints outlive the others.
 COMMIT := $(shell c=$$(git log -1 --format=%H -- contact_law yade_scripts Makefile 2>/dev/null); c=$${c:-unknown}; \
-	git diff --quiet HEAD -- contact_law Makefile 2>/dev/null || [ $$c = unknown ] || c=$$c-changed; echo $$c)
+	git diff --quiet HEAD -- contact_law yade_scripts Makefile 2>/dev/null || [ $$c = unknown ] || c=$$c-changed; echo $$c)
 define LIST
 build/$1.list: always
 	@mkdir -p build
@@ -197,11 +197,11 @@ endef
 $(eval $(call LIST,commit,$(COMMIT)))
 $(eval $(call LIST,yade_version,$(YADE_VERSION)))
 $(eval $(call LIST,objects,$(OBJECTS)))
-$(eval $(call LIST,flags,$(CXX) $(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FLAGS)))
+$(eval $(call LIST,flags,$(shell $(CXX) --version | head -1) $(YADE_CXX) $(LINK) $(LIBRARIES) $(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FLAGS)))
 
 # Links to the installed files, beside which the plugin lies: YADE_PREFIX=$PWD/build yade. yade-batch starts bin/yade-double.
 # That to contact_law is relative: in an installation it leads to the package there.
-build/overlay: Makefile
+build/overlay: Makefile build/yade_version.list
 	@mkdir -p $(OVERLAY) build/bin
 	@ln -sfn $(filter-out %/py,$(wildcard $(YADE_LIBRARIES)/*)) $(OVERLAY)/
 	@rm -rf $(OVERLAY)/py && mkdir $(OVERLAY)/py

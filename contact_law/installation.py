@@ -70,6 +70,9 @@ def install(prefix):
     folder, paths = prefix / FOLDER, module_folders(prefix)
     if not list((TOP / "build").glob("lib/*/yade-double/libcontact_law.so")):
         raise CannotInstall(f"{TOP / 'build'}: holds no plugin; must be built before (make)")
+    for part in (folder, prefix / "bin" / "dust-collide", *(path / PATH_FILE for path in paths)):
+        if not _is_within(prefix, part):
+            raise CannotInstall(f"{part.parent}: leads out of {prefix}; must be within")
     beside = {**_commands(prefix / "bin", folder), **{path / PATH_FILE: f"{folder}\n" for path in paths}}
     folder.parent.mkdir(parents=True, exist_ok=True)
     with _alone(prefix):
@@ -271,6 +274,11 @@ def _fill(new, beside):
         (new / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(file, new / name, follow_symlinks=False)
     write_text(new / COMMIT_FILE, told)
+    for at, _, names in os.walk(new):  # for all users, whatever the umask is
+        os.chmod(at, 0o755)
+        for file in (Path(at) / name for name in names):
+            if not file.is_symlink():
+                file.chmod(0o755 if file.stat().st_mode & 0o100 else 0o644)
 
 
 def _plan():
@@ -295,6 +303,8 @@ def main(arguments):
         return 2
     action, prefix = arguments[0], Path(os.path.abspath(os.path.expanduser(arguments[1])))
     try:
+        if not arguments[1] or arguments[1].startswith("~") and str(prefix).startswith(os.path.abspath("~")):
+            raise CannotInstall(f"PREFIX = {arguments[1]!r}: must be a folder")
         if not str(prefix).isprintable() or os.pathsep in str(prefix):
             raise CannotInstall(f"{prefix}: must be of printable characters, without '{os.pathsep}'")
         print(printable_lines("\n".join({"install": install, "uninstall": uninstall}[action](prefix))))

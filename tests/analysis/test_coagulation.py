@@ -57,6 +57,8 @@ def test_maxwell(table):
     fine = Axis("velocity", "log10", np.geomspace(0.01, 100, 400))
     step = np.broadcast_to((fine.nodes > 3)[:, None, None, None, None], (400, 3, 3, 4, 1)).astype(float)
     rms = OutcomeTable((fine, *AXES[1:]), ("inside",), step).maxwell()
+    with pytest.raises(OutcomeTableError, match="must be one of single speeds"):
+        rms.maxwell()
     d = (3 / fine.nodes) ** 2
     np.testing.assert_allclose(rms.values[:350, 0, 0, 0, 0], ((1.5 * d + 1) * np.exp(-1.5 * d))[:350], atol=0.02)
 

@@ -35,7 +35,7 @@ def sim():
 def table_of(probabilities, speeds=20, inside=1.0, touching=1.0):
     """OutcomeTable: probabilities(v, n, q, f) -> of KINDS; v is over v_break."""
     axes = (
-        Axis("velocity", "log10", np.geomspace(0.01, 100, speeds)),
+        Axis("velocity", "log10", 0.01 * 1e4 ** np.linspace(0, 1, speeds) ** 1.5),
         Axis("grains", "log10", np.array([60.0, 500.0, 4000.0])),
         Axis("mass_ratio", "log10", np.array([0.02, 0.2, 1.0])),
         Axis("filling", "linear", np.array([0.05, 0.3, 0.5])),

@@ -103,6 +103,8 @@ def main(path, *options):
                 size = "" if its["difference"] is None else f" {its['difference']:.1e}"
                 order = "" if its["order"] is None else f", order {its['order']:.2f}"
                 print(f"    {its['said']:16}{question}{size}{order}")
+    if all(one["said"] == "not run" for one in found.values()):
+        sys.exit(f"check.py: {path}: no case of these; must have one or more")
     return 1 if any(one["said"] in ("differs", "incomplete") for one in found.values()) else 0
 
 

@@ -6,6 +6,7 @@ Python alone, no packages. Ends with status 1 where a distribution differs.
 """
 
 import json
+import math
 import random
 import sys
 from pathlib import Path
@@ -48,8 +49,11 @@ def compared(samples, suite):
         sys.exit(f"check_ensembles.py: {unknown[0]}: must be one of {', '.join(given)}")
     found, level = {}, suite["level"] / len(given)
     for name, values in samples.items():
-        if len(values) < 2:
-            sys.exit(f"check_ensembles.py: {name}: must have at least two runs")
+        least = next(n for n in range(2, 1000) if 1 / math.comb(n + len(given[name]), n) < level)
+        if len(values) < least:
+            sys.exit(f"check_ensembles.py: {name}: {len(values)} runs: must be {least} or more, which can differ")
+        if not all(map(math.isfinite, values)):
+            sys.exit(f"check_ensembles.py: {name}: all values must be finite numbers")
         p = p_value(values, given[name])
         shift = found_shift(given[name], level, len(values))
         said = "differs" if p < level else "not told apart"

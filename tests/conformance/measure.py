@@ -124,8 +124,10 @@ def broken(what, series, scene):
 
 
 def separated(what, series, scene):
-    """1 where the grains fly apart at the end, without a force."""
-    return float(quantity(series, scene, "overlap")[-1] < 0 and not series["force"][-1].any())
+    """1 where the grains fly apart at the end, without a force; NaN where these are no numbers."""
+    overlap, force = quantity(series, scene, "overlap")[-1], series["force"][-1]
+    known = np.isfinite(overlap) and np.isfinite(force).all()
+    return float(overlap < 0 and not force.any()) if known else np.nan
 
 
 def channel(what, series, scene):

@@ -131,8 +131,20 @@ def test_samples_are_compared(tmp_path, capsys):
         path.write_text(json.dumps({"code": "x", "suite": ENSEMBLES["version"], "samples": {**same, **spoilt}}))
         assert check_ensembles.main(path) == status
         assert capsys.readouterr().out.count("differs") == status
-    path.write_text(json.dumps({"suite": ENSEMBLES["version"], "samples": {"cpe": [1.0, 2.0]}}))
-    with pytest.raises(SystemExit, match="cpe: must be one of cpe-0.4"):
+
+
+@pytest.mark.parametrize(
+    "samples, words",
+    [
+        ({"cpe": [1.0, 2.0]}, "cpe: must be one of cpe-0.4"),
+        ({"bcca-pressure-0.1": [50.0, 60.0, 70.0]}, "3 runs: must be 4 or more, which can differ"),
+        ({"bpca-largest-50": [float("inf"), *[1.0] * 9]}, "must be finite"),
+    ],
+)
+def test_samples_that_cannot_be_compared_are_refused(tmp_path, samples, words):
+    path = tmp_path / "samples.json"
+    path.write_text(json.dumps({"suite": ENSEMBLES["version"], "samples": samples}))
+    with pytest.raises(SystemExit, match=words):
         check_ensembles.main(path)
 
 

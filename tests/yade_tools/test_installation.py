@@ -249,6 +249,26 @@ def test_what_is_in_the_way_is_kept(tmp_path, name):
     assert (tmp_path / name).read_text() == "another program"
 
 
+def test_a_prefix_that_cannot_be_is_refused_before_anything_is_written(tmp_path, monkeypatch):
+    """An empty one, another user's home that is not known, and one whose lib/ is a link out of it."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "prefix").mkdir()
+    (tmp_path / "prefix/lib").symlink_to(tmp_path)
+    for prefix in ("", "~nobody-of-this-name/x", tmp_path / "prefix"):
+        refused(installation("install", prefix), "must be")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["prefix"]
+
+
+def test_all_users_can_read_an_installation(tmp_path):
+    before = os.umask(0o077)
+    try:
+        assert installation("install", tmp_path / "prefix").returncode == 0
+    finally:
+        os.umask(before)
+    installed = [file for file in (tmp_path / "prefix/lib/contact_law").rglob("*") if not file.is_symlink()]
+    assert all(file.stat().st_mode & 0o044 == 0o044 for file in installed)
+
+
 def test_a_folder_that_no_python_searches_is_named(tmp_path):
     done = installation("install", tmp_path, "/nowhere")
     assert done.returncode == 0

@@ -205,29 +205,29 @@ class AtlasInDustPy:
 
 
 class _Curves:
-    """Columns of each pair as lines over the logarithm of the speed, PER_NODE for each two nodes of the table's first axis."""
+    """Columns of each pair as lines over the logarithm of the speed, PER_NODE between each two nodes of the table's first axis."""
 
     def __init__(self, found, axis, query, unit):
         """found(velocity=, **query): {column: array}. query: {another axis: (pairs,)}; unit: the table's velocity over that in cm/s."""
         first, last = axis.nodes[[0, -1]]
-        self.number = PER_NODE * (len(axis.nodes) - 1)
-        speeds = np.concatenate([[0.5 * first], np.geomspace(first, last, self.number + 1), [2.0 * last]])
+        steps = len(axis.nodes) - 1
+        self.knots = np.interp(np.arange(PER_NODE * steps + 1) / PER_NODE, np.arange(steps + 1), np.log(axis.nodes))
+        inner = np.clip(np.exp(self.knots), first, last)  # but for rounding
+        speeds = np.concatenate([[0.5 * first], inner, [2.0 * last]])
         columns = found(velocity=speeds, **{name: values[:, None] for name, values in query.items()})
         self.names, values = tuple(columns), np.stack(list(columns.values()), axis=-1)  # (pairs, speeds, columns)
         starts, rise = np.delete(values, -2, axis=1), np.diff(values, axis=1)
         rise[:, [0, -1]] = 0.0  # beyond the ends all is as there
         self.lines = np.concatenate([starts, rise], axis=-1).reshape(-1, 2 * len(columns))
         self.first = np.arange(len(unit), dtype=np.int32) * starts.shape[1]
-        self.scale = self.number / np.log(last / first)
-        self.offset = np.log(unit / first) * self.scale + 1.0
+        self.unit = np.log(unit)
 
     def at(self, speeds):
         """{column: (Nr - 2, pairs)} at speeds (Nr - 2, pairs) [cm/s]."""
         with np.errstate(divide="ignore"):
             position = np.log(speeds)
-        position *= self.scale
-        position += self.offset
-        np.clip(position, 0.0, self.number + 1.0, out=position)
+        position += self.unit
+        position = np.interp(position, self.knots, np.arange(1, len(self.knots) + 1), left=0.0)
         line = position.astype(np.int32)
         position -= line
         line += self.first
