@@ -4,7 +4,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-NEEDED = ("numpy", "scipy", "pandas", "matplotlib", "tqdm")
+NEEDED = ("numpy", "scipy", "pandas", "matplotlib", "tqdm", "jinja2", "markdown", "PIL")
 
 
 def require_libraries():

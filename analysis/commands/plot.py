@@ -2,6 +2,7 @@
 
 import argparse
 
+from ..printable import printable
 from . import FAILED, complain
 
 
@@ -37,7 +38,7 @@ def _condition(text):
     if not equals:
         raise argparse.ArgumentTypeError(f"{text}: must be COLUMN=VALUE")
     try:
-        return name, float(value)
+        return name, {"True": True, "False": False}[value] if value in ("True", "False") else float(value)
     except ValueError:
         return name, value
 
@@ -54,16 +55,20 @@ def run(options):
     if file.suffix != ".png":
         complain(f"{file}: must end in .png")
         return FAILED
+    where = dict(options.where)
+    if len(where) < len(options.where):
+        complain("--where: must be given once for a column")
+        return FAILED
     logarithmic = "" if options.log == "none" else options.log
-    structure = any("largest_" in name for name in (options.what, options.x, options.by))
+    structure = any("largest_" in name for name in (options.what, options.x, options.by, *where))
     measured, problems = measure(options.runs, lambda run: row(run, structure))
     for problem in problems:
         complain(problem)
     if not measured:
         return FAILED
-    figure = plot(options.what, frame(measured), options.x, options.by, dict(options.where), logarithmic)
+    figure = plot(options.what, frame(measured), options.x, options.by, where, logarithmic)
     file.parent.mkdir(parents=True, exist_ok=True)
     with replacing(file) as out:
         figure.savefig(out, format="png", dpi=150)
-    print(file)
+    print(printable(file))
     return FAILED if problems else 0

@@ -39,7 +39,7 @@ def add_parser(commands):
         "--page",
         metavar="FILE",
         type=_page_file,
-        help="write one HTML page with everything in it, to be sent to others, and a PDF of it beside it where weasyprint "
+        help="write one HTML page with everything in it, to be sent to others, a page FILE-view.html to turn a run, and a PDF where weasyprint "
         "or chromium is installed",
     )
     output = parser.add_mutually_exclusive_group()

@@ -18,7 +18,8 @@ from .fields import exported_states
 
 FRAMES_PER_SECOND = 10
 WIDTH = 960  # pixels
-_TALLEST = 1080  # pixels
+_TALLEST = 9 / 8  # over the width
+_FASTEST_GIF = 50  # frames a second that all programs show
 _MARGIN = 2.0  # grain radii
 _H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"]
 _GIF = ["-vf", "split[a][b];[a]palettegen=64[p];[b][p]paletteuse=dither=none", "-loop", "0"]
@@ -36,16 +37,18 @@ _NARROWEST = 480  # pixels, for the legend
 
 
 def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, along="z", colour="aggregate"):
-    """Write the states of a RunFolder as a film (one of ENDINGS: H.264 in that container, or a .gif that repeats), `width` pixels wide, seen from far along the axis `along`, coloured by one of grain_colours.COLOURINGS. The file appears when it is
+    """Write the states of a RunFolder as a film (one of ENDINGS: H.264 in that container, or a .gif that repeats), `width` pixels wide (narrower where it would be more than 9/8 as high), seen from far along the axis `along`, coloured by one of grain_colours.COLOURINGS. The file appears when it is
     complete. Grains of a periodic cell are drawn within it.
 
     NoFilm when ffmpeg is missing or fails, RunFolderError when a state is damaged or there is none."""
     if file.suffix not in ENDINGS:  # before the frames are drawn
         raise NoFilm(f"{file}: must end in {' or '.join(ENDINGS)}")
+    if file.suffix == ".gif" and frames_per_second > _FASTEST_GIF:
+        raise NoFilm(f"{file}: {frames_per_second:g} frames a second; of a .gif must be {_FASTEST_GIF} at most")
     require_file(file)
     axes = list(AXES[along])
     view = _view(run, axes)
-    pixel = max((view[1] - view[0]) / width, (view[3] - view[2]) / _TALLEST)
+    pixel = max((view[1] - view[0]) / width, (view[3] - view[2]) / (_TALLEST * width))
     more = max(0.0, min(width, _NARROWEST) * pixel - (view[1] - view[0])) / 2
     view = (view[0] - more, view[1] + more, *view[2:])
     of, way = Range(run), COLOURINGS[colour]

@@ -7,7 +7,7 @@ _SMALL = 4.0  # pixels: smaller spheres are painted together, one pixel of each 
 _LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
 
 
-def paint_spheres(position, radius, colour, window, pixel, background=(1.0, 1.0, 1.0), fading=4.0):
+def paint_spheres(position, radius, colour, window, pixel, fading=4.0):
     """Image (H,W,3) of floats 0 to 1, row 0 at the smallest y, of spheres seen from large z (orthographic).
 
     position (N,3), radius (N,), window (x0, x1, y0, y1) and pixel (edge length) in one unit; colour (N,3) 0
@@ -17,7 +17,7 @@ def paint_spheres(position, radius, colour, window, pixel, background=(1.0, 1.0,
     width, height = max(1, int(round((x1 - x0) / pixel))), max(1, int(round((y1 - y0) / pixel)))
     depth, owner = _depth_and_owner(position, radius, (x0, y0), (width, height), pixel)
     image = np.empty((height * width, 3))
-    image[:] = background
+    image[:] = 1.0
     hit = np.flatnonzero(owner >= 0)
     if hit.size:
         image[hit] = _shade(hit, depth[hit], owner[hit], position, radius, colour, (x0, y0), width, pixel, fading)

@@ -75,6 +75,10 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     column.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
+    if not found.index.is_unique:  # of tables put together
+        found, found.attrs = found.reset_index(drop=True), found.attrs
+    if by == x:
+        raise CannotPlot(f"by = {by}: must be another column than x")
     _require_columns(found, what, [x, *([by] if by else []), *(where or {})])
     files = [name for name in FILES if name in found and found[name].notna().any()]
     drawn = Runs(found, SEED if SEED in found else FOLDER, files)
@@ -109,10 +113,11 @@ def _of_kinds(found, columns):
 
 
 def _without(found, what, x, by):
-    """{what is said of them: whether runs (n,) can't be drawn} as a DataFrame: without a value on an axis, and where d_max is but a bound."""
-    of = {f"without {name}": found[name].isna() for name in (x, by) if name}
-    if what in OF_MAXIMUM:
-        of[f"whose {what} is only a bound"] = found.maximum_inside.eq(False)
+    """{what is said of them: whether runs (n,) can't be drawn} as a DataFrame: without a value, and where d_max is but a bound."""
+    shown = () if what in ("sticking", "energy") else _columns(what)
+    of = {f"without {name}": found[name].isna() for name in dict.fromkeys((x, by, *shown)) if name}
+    for name in {what, x, by}.intersection(OF_MAXIMUM):
+        of[f"whose {name} is only a bound"] = found.maximum_inside.eq(False)
     return pandas.DataFrame(of, found.index)
 
 
@@ -161,7 +166,7 @@ def _require_columns(found, what, named):
     if what not in (*WHATS, *found.columns):
         raise unknown("table of runs", what, (*WHATS, *found.columns))
     own = [SEED if SEED in found else FOLDER, "outcome", "ended", KIND]
-    own += ["maximum_inside"] if what in OF_MAXIMUM else []
+    own += ["maximum_inside"] if {what, *named}.intersection(OF_MAXIMUM) else []
     for name in named:
         if name not in found:
             raise unknown("table of runs", name, found.columns)

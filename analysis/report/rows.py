@@ -1,5 +1,6 @@
 """A row a run: its parameters and what became of it, as a pandas DataFrame."""
 
+import json
 import os
 import warnings
 from collections.abc import Iterable, Mapping
@@ -27,7 +28,7 @@ final = "final_{}".format
 of_largest = "largest_{}".format
 
 # How a run is stored and carried out, which says nothing of its physics.
-_BOOKKEEPING = ("out", "overwrite", "resume", "checkpointInterval", "threads", "states")
+_BOOKKEEPING = ("out", "overwrite", "resume", "checkpointInterval", "threads", "states", "unusual")
 
 RUNS = "a path, a pattern, a RunFolder, or a list of these"
 
@@ -209,16 +210,22 @@ def _at_end(run, name):
 
 def parameters_of(run):
     """{name: value} of a run's parameters, as far as they say something of its physics."""
-    return {name: value for name, value in run.settled.items() if name not in _BOOKKEEPING}
+    text = lambda value: json.dumps(value) if isinstance(value, (list, dict)) else value  # which can be compared
+    return {name: text(value) for name, value in run.settled.items() if name not in _BOOKKEEPING}
 
 
 def varied(found):
-    """Names of the parameters in which the rows of a table() differ, without those that follow from others: constants of the material, of the
+    """Names of the parameters in which the rows of a table() differ, without those that follow from others: steps that were chosen by their
+    error, constants of the material, of the
     distribution of sizes, the duration, the filling that a compression starts from, the projectile's grains where both have as many, and
     the size of aggregates that are grown or read, or grains of those that are cut."""
     names = [name for name in parameters(found) if found[name].nunique(dropna=False) > 1]
     if {"grains", "projectileGrains"} <= set(names) and (found.projectileGrains == found.grains).all():
         names.remove("projectileGrains")
+    if (
+        "stepFraction" in names and "tolerance" in found and found.tolerance.notna().all()
+    ):  # chosen, by the velocity too
+        names.remove("stepFraction")
     packings = set(found.packing) if "packing" in found else set()
     cut, sizes = ("grains", "projectileGrains"), ("filling", "radius")
     sizes = cut if packings == {"cpe"} else () if "cpe" in packings else sizes
@@ -259,5 +266,8 @@ def _folders(runs):
     for run in several:
         if not (isinstance(run, RunFolder) or PATH.is_right(run)):
             raise wrong("runs", run, RUNS)
-    opened = [run for run in several if isinstance(run, RunFolder)]
-    return [(run, None) for run in opened] + run_folders([path for path in several if path not in opened])
+    opened = {run.path.resolve(): run for run in several if isinstance(run, RunFolder)}
+    others = run_folders([path for path in several if not isinstance(path, RunFolder)])
+    return [(run, None) for run in opened.values()] + [
+        (path, problem) for path, problem in others if problem or path.resolve() not in opened
+    ]

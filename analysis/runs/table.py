@@ -8,10 +8,12 @@ import csv
 import io
 import json
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 import pandas
 
+from ..printable import printable
 from .arrays import RunFolderError
 from .folder import open_run
 from .seal import SUM, UNSUMMED, read_summed, summed
@@ -47,7 +49,7 @@ class NoRunFolder(Exception):
 
 def make_table(measured):
     """DataFrame from (folder, {column: value}) of each run."""
-    rows = [{RUN: Path(folder).name, FOLDER: str(folder), **values} for folder, values in measured]
+    rows = [{RUN: printable(Path(folder).resolve().name), FOLDER: str(folder), **values} for folder, values in measured]
     return pandas.DataFrame(rows)
 
 
@@ -86,12 +88,13 @@ def read_table(file, columns):
     """(DataFrame, head) of a CSV file; TableError where it is not one with these columns, or not as it was written."""
     try:
         text = read_summed(file)
-        comments = [line for line in text.splitlines() if line.startswith("# ")]
+        lines = text.split("\n")
+        comments = list(takewhile(lambda line: line.startswith("# "), lines))
         head = json.loads(comments[0][2:]) if comments else None
         if not isinstance(head, dict):
             raise ValueError("its first line is not '# ' with a JSON object")
         head.pop(SUM, None)
-        body = text.splitlines()[len(comments) :]
+        body = lines[len(comments) :]
         _require_once(next(csv.reader(body), []))
         table = pandas.read_csv(
             io.StringIO("\n".join(body)),

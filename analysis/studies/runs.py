@@ -214,7 +214,7 @@ def alike(values, wanted):
         return reduce(np.logical_or, (alike(values, one) for one in wanted), np.zeros(values.shape, dtype=bool))
     if isinstance(wanted, str) and values.dtype.kind in "fiub":
         return np.zeros(values.shape, dtype=bool)
-    if values.dtype.kind not in "fiub":
+    if values.dtype.kind not in "fiu":
         return values == wanted
     whole = (values == np.round(values)) & (wanted == np.round(wanted))
     return np.where(

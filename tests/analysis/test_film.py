@@ -62,10 +62,15 @@ def test_a_full_disk_keeps_the_film_that_was_there(run, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "name, words", [("film.nonsense", "film.nonsense: must end in .mp4 or .gif"), ("film.mp4", "ffmpeg: not installed")]
+    "name, rate, words",
+    [
+        ("film.nonsense", 10, "film.nonsense: must end in .mp4 or .gif"),
+        ("film.mp4", 60, "ffmpeg: not installed"),
+        ("film.gif", 60, "60 frames a second; of a .gif must be 50 at most"),
+    ],
 )
-def test_what_cannot_be_encoded_is_one_line_and_leaves_no_file(run, capsys, monkeypatch, name, words):
+def test_what_cannot_be_encoded_is_one_line_and_leaves_no_file(run, capsys, monkeypatch, name, rate, words):
     monkeypatch.setenv("PATH", "/nowhere")
-    assert main(["film", str(run), "--out", str(run / name)]) == 2
+    assert main(["film", str(run), "--rate", str(rate), "--out", str(run / name)]) == 2
     message = capsys.readouterr().err
     assert words in message and message.count("\n") == 1 and not list(run.glob("*film*"))

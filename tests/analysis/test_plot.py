@@ -115,6 +115,15 @@ def test_runs_that_cannot_be_drawn_are_counted(runs):
     ends.loc[0, ["d_max", "finalPressure"]] = 9.0, 5.0
     points, _, said = drawn(plot("d_max", ends))
     assert [y for _, y in points] == [1.0, 1.0] and "7 runs, 1 whose d_max is only a bound left out" in said
+    assert "1 whose d_max is only a bound left out" in drawn(plot("largest", ends, x="d_max"))[2]
+    *_, said = drawn(plot("restitution", ends.assign(restitution=[None, *[0.5] * 7])))
+    assert "7 runs, 1 without restitution left out" in said
+    twice = pandas.concat([ends, ends[:2].assign(kind="compression", seed=9)])
+    twice.attrs = ends.attrs
+    assert (
+        "2 of the kind compression left out"
+        in drawn(plot("restitution", twice.assign(restitution=[0.5] * 8 + [None] * 2)))[2]
+    )
     columns = ["run", *ends.attrs["parameters"], "kind", "outcome", "ended", "largest_fraction"]
     again = pandas.read_csv(StringIO(ends.assign(impact=[0.0, 0.5] * 4)[columns].to_csv()))
     with pytest.raises(CannotPlot, match="^the runs differ in impact too"):
@@ -142,8 +151,19 @@ def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
     runs.loc[0, "impact"] = 0.0
     with pytest.raises(CannotPlot, match=r"^the runs differ in impact too: .* \(impact is 0, 0.5\)$"):
         plot("sticking", runs)
+    with pytest.raises(CannotPlot, match="by = velocity: must be another column"):
+        plot("sticking", runs, by="velocity")
     runs.loc[1, "ended"] = False
     assert "7 runs, 2 of them undecided or" in drawn(plot("sticking", runs, where={"impact": 0.5}))[2]
+    assert "6 runs, 1 of them undecided" in drawn(plot("largest", runs, where={"impact": 0.5, "ended": True}))[2]
+
+
+def test_steps_that_were_chosen_by_their_error_need_no_choice(runs):
+    chosen = runs.assign(stepFraction=0.05 * runs.velocity, tolerance=1e-4, unusual=1)
+    chosen.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "stepFraction", "tolerance"]}
+    assert "8 runs" in drawn(plot("largest", chosen))[2]
+    with pytest.raises(CannotPlot, match="^the runs differ in stepFraction too"):
+        plot("largest", chosen.assign(tolerance=None, stepFraction=[0.1, 0.2] * 4))
 
 
 @pytest.mark.parametrize(
@@ -153,3 +173,10 @@ def test_the_command_writes_a_picture_and_prints_its_path_last(cluster_folder, t
     file = tmp_path / "new" / "a.png"
     assert main(["plot", what, str(cluster_folder), "--x", x, "--where", "velocity=1", "--out", str(file)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(file) and file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_column_is_chosen_once(cluster_folder, tmp_path, capsys):
+    file = tmp_path / "a.png"
+    twice = ["--where", "velocity=1", "--where", "velocity=3"]
+    assert main(["plot", "largest", str(cluster_folder), *twice, "--out", str(file)]) == 2
+    assert "--where: must be given once for a column" in capsys.readouterr().err and not file.exists()

@@ -61,6 +61,18 @@ def test_damage_is_found_where_it_is_read_and_by_verify(run, cluster_folder, cap
 def test_a_mark_that_is_gone_is_noticed(run, capsys):
     (run / "ended").unlink()
     assert main(["verify", str(run)]) == 2 and "ended: missing, though the run is completed" in capsys.readouterr().err
+    (run / "run.json").unlink()
+    assert main(["verify", str(run)]) == 2 and "neither run.json nor ended" in capsys.readouterr().err
+
+
+def test_tables_beside_runs_are_read_too(run, capsys):
+    (run.parent / "figures").mkdir()
+    for file in (run.parent / "runs.csv", run.parent / "figures/runs.csv"):
+        shutil.copy(GALLERY / "viscous/runs.csv", file)
+    (run.parent / "comparison.json").write_text("of another program")
+    assert main(["verify", str(run.parent)]) == 0
+    flip(run.parent / "figures/runs.csv")
+    assert main(["verify", str(run.parent)]) == 2 and "figures/runs.csv" in capsys.readouterr().err
 
 
 def test_states_in_each_others_place_and_one_too_many(run, capsys):

@@ -4,7 +4,7 @@ import pandas
 import pytest
 from refused import refused
 
-from analysis.runs.table import Column, TableError, read_table, table_text
+from analysis.runs.table import Column, TableError, make_table, read_table, table_text
 
 COLUMNS = (Column("velocity", "m/s", "impact velocity"), Column("seed", "", "seed", kind="i"))
 
@@ -33,3 +33,11 @@ def test_files_that_are_no_table_are_one_line(tmp_path, text):
         file.write_text(old.replace(before, after))
         with refused(TableError, message):
             read_table(file, COLUMNS)
+
+
+def test_names_of_any_characters_are_read_back(tmp_path):
+    names = ["# s3", "a\u2028b", "c\x85d", "e\udcfff"]
+    table = make_table((tmp_path / name, {"velocity": 1.0, "seed": k}) for k, name in enumerate(names))
+    (tmp_path / "runs.csv").write_text(table_text(table, COLUMNS, {}), encoding="utf-8")
+    again, _ = read_table(tmp_path / "runs.csv", COLUMNS)
+    assert list(again.run) == list(table.run) and list(again.seed) == [0, 1, 2, 3] and again.run[0] == "# s3"

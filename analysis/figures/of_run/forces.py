@@ -34,7 +34,7 @@ def forces_figure(run):
     for place in axes.flat[len(states) :]:
         place.remove()
     for place, state in zip(axes.flat, states):
-        _draw(place, state, unit, run.derived["pullOffForce"], window)
+        _draw(place, state, unit, run.derived["pullOffForce"] / unit, window)
     for place in axes[:, 0]:
         place.set_ylabel("$y$  [grain radii]")
     for column in range(columns):
@@ -48,7 +48,7 @@ FIGURE, KINDS = forces_figure, (COLLISION.name,)
 
 def force_kinds(normal_force, pull_off_force):
     """Masks (M,) of contacts by name: compression F > 0.2 F_c, tension F < -0.2 F_c, other (forces [N],
-    positive = repulsive), as in A24 Fig. 13."""
+    positive = repulsive; F_c of each contact or of all), as in A24 Fig. 13."""
     compression, tension = normal_force > _STRONG * pull_off_force, normal_force < -_STRONG * pull_off_force
     return {"compression": compression, "tension": tension, "other": ~(compression | tension)}
 
@@ -75,11 +75,13 @@ def _window(states, unit):
     return -half_x, half_x, -half_y, half_y
 
 
-def _draw(axes, state, unit, pull_off_force, window):
+def _draw(axes, state, unit, pull_off_force_over_radius, window):
     slab = _in_slab(state.position, unit)
     pairs = state.contact_pairs
     inside = slab[pairs[:, 0]] & slab[pairs[:, 1]]
     ends = state.position[pairs[inside]][:, :, :2] / unit
+    first, second = state.radius[pairs[inside]].T
+    pull_off_force = pull_off_force_over_radius * 2.0 * first * second / (first + second)
     masks = force_kinds(state.contact_normal_force[inside], pull_off_force)
     # Lines thin out as the view grows, so that chains stay apart in large aggregates.
     scale = np.clip(60.0 / (window[1] - window[0]), 0.5, 2.0)
