@@ -49,7 +49,7 @@ class NoRunFolder(Exception):
 
 def make_table(measured):
     """DataFrame from (folder, {column: value}) of each run."""
-    rows = [{RUN: printable(Path(folder).resolve().name), FOLDER: str(folder), **values} for folder, values in measured]
+    rows = [{RUN: printable(Path(folder).absolute().name), FOLDER: str(folder), **values} for folder, values in measured]
     return pandas.DataFrame(rows)
 
 
