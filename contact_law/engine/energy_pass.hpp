@@ -24,8 +24,8 @@ template <class Pack> struct EnergyPasses {
 				const ContactGeometry<Pack> g = geometryOf(pair.separation, c.radius1 + c.radius2);
 				const ContactHistory<Pack> h { { P::load(block.n1, at), P::load(block.n2, at) },
 					Pack::load(block.twist + at) };
-				const StoredEnergy<Pack> e =
-				        storedEnergy(mechanisms, c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
+				const StoredEnergy<Pack> e = storedEnergy(
+				        mechanisms, c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
 				P::addUsed(e, block, at, pass.dummy, sum);
 			}
 		}
