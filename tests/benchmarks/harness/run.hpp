@@ -49,9 +49,12 @@ inline Dynamics::Grains grainsOf(const Scene& scene)
 inline Inherited contactsOf(const Scene& scene)
 {
 	Inherited inherited;
-	for (const ContactRecord& c : scene.contacts)
-		inherited.contacts.push_back({ int(c.first), int(c.second), { { vector(c.pointer1), vector(c.pointer2) }, c.twist },
-		        c.overlap, c.drag, c.bonded != 0, c.rest, c.bonded ? scene.head.neck : 0 });
+	for (const ContactRecord& c : scene.contacts) {
+		contact_law::ContactBefore before;
+		before.touching = true, before.overlap = c.overlap, before.drag = c.drag;
+		inherited.contacts.push_back({ int(c.first), int(c.second), { { vector(c.pointer1), vector(c.pointer2) }, c.twist }, before,
+		        c.bonded != 0, c.rest, c.bonded ? scene.head.neck : 0 });
+	}
 	return inherited;
 }
 
