@@ -290,8 +290,8 @@ void JKRWadaEngine::startAgain()
 {
 	const SceneGrains all(*scene); // refuses bodies that cannot be moved, while nothing is changed
 	const std::shared_ptr<Run> before = current;
-	const bool wasBooked = booked;
 	leaveContacts();
+	const bool wasBooked = booked; // with that too
 	start(true);
 	before->forces.withdraw(*scene);
 	current->dynamics.continueFrom(contact_law::booked(before->dynamics));

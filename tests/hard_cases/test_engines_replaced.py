@@ -21,9 +21,11 @@ def test_losses_of_engines_that_never_tracked_are_booked():
     strained()
     before = sum(energies().values())
     O.trackEnergy = False
-    for _ in range(2):
+    for k in range(2):
         O.engines = [JKRWadaEngine(subSteps=5)]
         steps(STEPS)
+        grain((9e-7, 9e-7, 9e-7 + k * 3e-7), 1e-7, O.bodies[0].material)  # taken in by another run of the engine
+        steps(1)
     O.engines = [JKRWadaEngine(subSteps=5)]
     O.trackEnergy = True
     steps(1)
