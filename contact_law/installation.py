@@ -70,10 +70,10 @@ def install(prefix):
     folder, paths = prefix / FOLDER, module_folders(prefix)
     if not list((TOP / "build").glob("lib/*/yade-double/libcontact_law.so")):
         raise CannotInstall(f"{TOP / 'build'}: holds no plugin; must be built before (make)")
-    for part in (folder, prefix / "bin" / "dust-collide", *(path / PATH_FILE for path in paths)):
+    beside = {**_commands(prefix / "bin", folder), **{path / PATH_FILE: f"{folder}\n" for path in paths}}
+    for part in (folder, *beside):
         if not _is_within(prefix, part):
             raise CannotInstall(f"{part.parent}: leads out of {prefix}; must be within")
-    beside = {**_commands(prefix / "bin", folder), **{path / PATH_FILE: f"{folder}\n" for path in paths}}
     folder.parent.mkdir(parents=True, exist_ok=True)
     with _alone(prefix):
         _require_free(prefix, beside)

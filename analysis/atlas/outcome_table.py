@@ -19,7 +19,7 @@ from .rules import OF_KIND
 SCALES = {"log10": np.log10, "linear": np.asarray}
 ENDS = "_low", "_high"  # of names of columns that are ends of intervals
 INSIDE = "inside"  # the column that is 1 within the data and 0 outside
-AVERAGED = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
+OF_MAXWELL = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
 ROUNDING = 1e-9  # of the sum of a query's weights
 _SUMMED = f'# {{"{SUM}"'  # the first line of a file with a sum
 CHUNK = 20_000  # queries at once: what they need stays in the processor's cache
@@ -108,8 +108,8 @@ class OutcomeTable:
         intervals are left out, as their means are no ends of the interval of all. What the larger aggregate gains or loses where that is the
         outcome (rules.OF_KIND) is the mean of the collisions that have it. OutcomeTableError where the table is one of such collisions already.
         """
-        if AVERAGED in self.comments:
-            raise OutcomeTableError(f"table of outcomes: {AVERAGED}; must be one of single speeds")
+        if OF_MAXWELL in self.comments:
+            raise OutcomeTableError(f"table of outcomes: {OF_MAXWELL}; must be one of single speeds")
         speed, x = self.axes[0], np.geomspace(1e-2, 5.0, 2000)
         density = x**4 * np.exp(-1.5 * x**2)  # per logarithm of x
         density /= density.sum()
@@ -129,7 +129,7 @@ class OutcomeTable:
                 of_all, often = np.tensordot(shares[0], own[..., k] * own[..., p], 1), values[..., p]
                 values[..., k] = np.divide(of_all, often, out=values[..., k], where=often > 0)
         values[..., inside] = np.tensordot(shares[1], own[..., inside], 1)
-        return replace(self, columns=columns, values=values, comments=(*self.comments, AVERAGED))
+        return replace(self, columns=columns, values=values, comments=(*self.comments, OF_MAXWELL))
 
 
 def read_outcomes(path):

@@ -5,6 +5,8 @@ import argparse
 from ..printable import printable
 from . import FAILED, complain
 
+TRUTHS = {"True": True, "False": False}
+
 
 def add_parser(commands):
     """Add the command to argparse's subparsers."""
@@ -37,8 +39,10 @@ def _condition(text):
     name, equals, value = text.partition("=")
     if not equals:
         raise argparse.ArgumentTypeError(f"{text}: must be COLUMN=VALUE")
+    if value in TRUTHS:
+        return name, TRUTHS[value]
     try:
-        return name, {"True": True, "False": False}[value] if value in ("True", "False") else float(value)
+        return name, float(value)
     except ValueError:
         return name, value
 

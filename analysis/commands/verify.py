@@ -3,12 +3,9 @@
 from pathlib import Path
 
 from ..progress import line_beside_bars
-from ..runs.seal import SUM
 from . import FAILED, complain
 
 OF_STUDIES = "runs.csv", "comparison.json"
-FIRST = 100  # bytes of a text, in which its sum begins
-LOST = "holds what a run has left, and neither run.json nor ended; must have both"
 
 
 def add_parser(commands):
@@ -31,7 +28,8 @@ def add_parser(commands):
 def run(options):
     """Exit status: 0, or 2 when something differs from its sum, a run has lost its list of sums and its parameters, or no path holds a run."""
     from ..progress import progress
-    from ..runs.collect import run_folders
+    from ..runs.collect import LOST, is_lost, run_folders
+    from ..runs.seal import begins_with_sum
     from ..runs.verify import verify_run, verify_text
 
     texts = [
@@ -39,9 +37,9 @@ def run(options):
     ]
     folders = [Path(path) for path in options.runs if Path(path).is_dir()]
     places = [path for folder in folders for path in (folder, folder / "figures")]
-    texts += [file for place in places for name in OF_STUDIES if _is_summed(file := place / name)]
+    texts += [file for place in places for name in OF_STUDIES if begins_with_sum(file := place / name)]
     found, differs = run_folders([path for path in options.runs if Path(path) not in texts]), False
-    found += [(None, f"{folder}: {LOST}") for folder in folders if _is_lost(folder)]
+    found += [(None, f"{folder}: {LOST}") for folder in folders if is_lost(folder)]
     for path, problem in progress([*((text, None) for text in texts), *found], "verifying"):
         problems, said = ([problem], []) if problem else verify_text(path) if path in texts else verify_run(path)
         differs |= bool(problems)
@@ -50,13 +48,3 @@ def run(options):
         for line in said:
             line_beside_bars(f"{path}: {line}")
     return FAILED if differs else 0
-
-
-def _is_lost(folder):
-    left, marks = (folder / "history.npz", folder / "states"), (folder / "run.json", folder / "ended")
-    return any(path.exists() for path in left) and not any(path.exists() for path in marks)
-
-
-def _is_summed(file):
-    """Whether a study's file begins with its sum."""
-    return file.is_file() and SUM in file.read_bytes()[:FIRST].decode(errors="replace")

@@ -7,9 +7,11 @@ from pathlib import Path
 
 from .arrays import RunFolderError
 from .folder import open_run
-from .format import COLLISION, ENDED_FILE, RUN_FILE
+from .format import COLLISION, ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
 from .table import ENDING
 
+MARKS = RUN_FILE, ENDED_FILE  # of a run folder
+LOST = f"holds what a run has left, and neither {' nor '.join(MARKS)}; must have both"
 LEVELS = 2
 
 
@@ -114,11 +116,19 @@ def run_folders(paths):
 
 def _inside(path):
     """Run folders at a path: itself, or those below it, sorted; one that has ended is one without its run.json, too."""
-    marks = (RUN_FILE, ENDED_FILE)
-    if any((path / mark).exists() for mark in marks):
+    if _is_marked(path):
         return [path]
     levels = ("*/" * level for level in range(1, LEVELS + 1))
-    return sorted({file.parent for level in levels for mark in marks for file in path.glob(level + mark)})
+    return sorted({file.parent for level in levels for mark in MARKS for file in path.glob(level + mark)})
+
+
+def _is_marked(path):
+    return any((path / mark).exists() for mark in MARKS)
+
+
+def is_lost(path):
+    """Whether a folder holds what a run has left, and neither of MARKS."""
+    return any((path / left).exists() for left in (HISTORY_FILE, STATES_FOLDER)) and not _is_marked(path)
 
 
 def _nothing(path):

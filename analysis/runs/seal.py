@@ -11,6 +11,7 @@ import re
 import stat
 import warnings
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from .format import ENDED_FILE, SEALED, STATES_FOLDER
 SUM = "sha256"
 UNSUMMED = {SUM: "0" * 64}
 _OWN_SUM = re.compile(r'(?:# )?\{\s*"sha256": "([0-9a-f]{64})"')
+FIRST = 100  # characters, in which the sum stands
 _WITHOUT = re.compile(r'(?:# )?\{\s*"study"')  # a text of a version before 0.5.0
 
 
@@ -122,6 +124,13 @@ def read_summed(file):
     else:
         require_own_sum(file, text)
     return text
+
+
+def begins_with_sum(file):
+    """Whether there is such a file, and it begins as summed() makes it."""
+    with suppress(OSError), open(file, encoding="utf-8", errors="replace") as text:
+        return bool(_OWN_SUM.match(text.read(FIRST)))
+    return False
 
 
 def require_own_sum(file, text):

@@ -17,8 +17,8 @@ bool Dynamics::isLetGo(
         const Inherited& from, const InheritedContact& one, int i, int j, const ContactBefore& before, ContactHistory<double> h)
 {
 	Image image;
-	ContactMotion m = shared.motionOf(cell(), i, j, image);
-	m.dt = from.stepBehind ? from.step : 0;
+	ContactMotion m = shared.motionOf(cell(), i, j, image), throughStep = m;
+	m.dt = 0, throughStep.dt = from.step;
 	const PairConstants<double> c = shared.constantsOf(i, j);
 	Dissipation lost;
 	Counts counts;
@@ -26,16 +26,14 @@ bool Dynamics::isLetGo(
 	if (one.bonded) {
 		const BondConstants<double> b = shared.bondOf(i, j, one.neck);
 		const ContactGeometry<double> g = geometryOf(m.separation, one.rest);
-		if (from.stepBehind && !bonds::isTorn(b, m, before, g, bondForces(b, g, h))) return false;
-		m.dt = 0;
+		if (from.stepBehind && !bonds::isTorn(b, throughStep, before, g, bondForces(b, g, h))) return false;
 		const BondStepResult r = bondStepWith[shared.mechanisms](b, c, m, before, one.rest, h);
 		if (r.bonded) return false;
 		lost = r.contact.dissipated;
 		++counts.brokenBonds[r.mode];
 	} else {
 		const double opening = before.overlap - geometryOf(m.separation, c.radius1 + c.radius2).overlap;
-		if (from.stepBehind && opening * opening <= 4 * m.dt * m.dt * dot(m.velocity, m.velocity)) return false;
-		m.dt = 0;
+		if (from.stepBehind && !events::isTorn(throughStep, opening)) return false;
 		const ContactStepResult r = contactStepWith[shared.mechanisms](c, shared.limit, m, before, h);
 		if (r.touching) return false;
 		lost = r.dissipated;

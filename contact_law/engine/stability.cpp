@@ -38,7 +38,7 @@ namespace {
 		double least = 1;
 		for (int k = 0; k < dynamics.grainCount(); ++k) {
 			const double r = shared.grainRadius[k], solid = 4 * pi / 3 * shared.material[shared.kind[k]].density * r * r * r;
-			const double turning = 1 / (shared.inverseInertia[k] * 0.4 * r * r);
+			const double turning = massByInertia(1 / shared.inverseInertia[k], r);
 			least = std::min(least, lightness(std::min(1 / shared.inverseMass[k], turning), solid));
 		}
 		return least;
@@ -61,9 +61,9 @@ double mostStretched(const Dynamics& dynamics)
 	const SharedState& shared = dynamics.state();
 	double most = 0;
 	eachExtremePair(dynamics, [&](int i, int j) {
-		double gap = shared.grainRadius[i] + shared.grainRadius[j] - shared.radius[i] - shared.radius[j]; // by sintering
+		const double gap = shared.grainRadius[i] + shared.grainRadius[j] - shared.radius[i] - shared.radius[j]; // by sintering
 		double stretch = 0;
-		for (const double neck : shared.neck > 0 ? shared.necks : std::vector<double> {}) {
+		for (const double neck : shared.necks) {
 			const BondConstants<double> b = shared.bondOf(i, j, neck);
 			stretch = std::max(stretch, std::sqrt(2 * b.breakingEnergy / b.normalStiffness));
 		}

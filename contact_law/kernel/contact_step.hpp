@@ -105,7 +105,7 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	const double fraction = events::fractionUntilPullOff(c, before.overlap, opening);
 	const normal::Breaking breaking = normal::forceUntilBreaking(c, before.overlap, opening, fraction);
 	constexpr unsigned springs = mechanisms & AllSprings;
-	const bool torn = opening * opening > 4 * m.dt * m.dt * dot(m.velocity, m.velocity);
+	const bool torn = events::isTorn(m, opening);
 	const double push = breaking.force + (fraction - 0.5) * before.drag - (torn ? 0. : breaking.missed);
 	ContactForces<double> f =
 	        torn ? contactForces<springs & ~Sliding>(c, g, h, m.velocity) : contactForces<springs>(c, g, h, m.velocity);

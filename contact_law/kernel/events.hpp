@@ -82,6 +82,12 @@ namespace events {
 		return { before, inStep, inStep ? overlap / (overlap - before) : 0. };
 	}
 
+	// Whether a contact has opened by more than twice what the grains' motion does.
+	inline bool isTorn(const ContactMotion& m, double opening)
+	{
+		return opening * opening > 4 * m.dt * m.dt * dot(m.velocity, m.velocity);
+	}
+
 	// The fraction of the step after which the overlap passed -delta_c: 0 where it was past it before. (The engine takes a contact of the
 	// functors as it was a small step of its own ago, and theirs may have been longer.)
 	inline double fractionUntilPullOff(const PairConstants<double>& c, double overlapBefore, double opening)

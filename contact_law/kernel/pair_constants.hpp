@@ -127,6 +127,7 @@ inline double unstableStep(const PairConstants<double>& c, double lightness = 1)
 	const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
 	return std::min(0.5 * c.timeUnit * std::sqrt(lightness), drag > 0 ? lightness * c.reducedMass / drag : 1e300);
 }
+inline double massByInertia(double inertia, double radius) { return inertia / (0.4 * radius * radius); } // of a solid sphere
 inline double lightness(double mass, double ofSolid)
 {
 	constexpr double rounding = 1e-9;

@@ -257,10 +257,10 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	const State& state2 = *(*scene->bodies)[interaction->getId2()]->state;
 	const bool ofPlane = std::isinf(constants.radius2);
 	const auto reduced = [&](Real first, Real second) { return ofPlane ? second : first * second / (first + second); };
-	const auto turning = [](const State& state, Real radius) { return state.inertia[0] / (0.4 * radius * radius); };
-	const Real mass = reduced(state1.mass, state2.mass),
-	           ofTurning =
-	                   reduced(turning(state1, constants.radius1), turning(state2, ofPlane ? constants.radius1 : constants.radius2));
+	const auto turning = [](const State& state, Real radius) { return contact_law::massByInertia(state.inertia[0], radius); };
+	const Real mass = reduced(state1.mass, state2.mass);
+	const Real ofTurning =
+	        reduced(turning(state1, constants.radius1), turning(state2, ofPlane ? constants.radius1 : constants.radius2));
 	const Real light = contact_law::lightness(std::min(mass, ofTurning), constants.reducedMass);
 	if (!stepIsBelow(contact_law::unstableStep(constants, light))) return true;
 	if (ofPlane) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);
@@ -286,8 +286,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	contact_law::ContactBefore before = phys.before();
 	ContactHistory<double> history { { toKernel(state1.ori * phys.pointer1), toKernel(state2.ori * phys.pointer2) }, phys.twist };
 
-	const unsigned mechanisms = mechanismsOf(constants), started = mechanisms & contact_law::AllSprings & ~unsigned(phys.springs);
-	if (!phys.bonded)
+	const unsigned mechanisms = mechanismsOf(constants), started = phys.started(mechanisms);
+	if (started && !phys.bonded)
 		contact_law::startSprings(mechanisms, started, constants, (1 / std::sqrt(dot(apart, apart))) * apart, history, before);
 	ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
 	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
@@ -317,8 +317,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 		{ { toKernel(grain.ori * phys.pointer2), plane.normal }, toKernel(phys.pointer1) - foot }, phys.twist
 	};
 	contact_law::ContactBefore before = phys.before();
-	const unsigned mechanisms = mechanismsOf(constants), started = mechanisms & contact_law::AllSprings & ~unsigned(phys.springs);
-	contact_law::startSprings(mechanisms, started, constants, plane.normal, history, before);
+	const unsigned mechanisms = mechanismsOf(constants), started = phys.started(mechanisms);
+	if (started) contact_law::startSprings(mechanisms, started, constants, plane.normal, history, before);
 	const ContactStepResult r = contact_law::planeStepWith[mechanisms](constants, limitRule, motion, before, history);
 
 	if (!finish(interaction, phys, motion, history.twist, mechanisms, r)) return false;
@@ -355,7 +355,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(const Interaction& interaction, JKR
 	if (!r.touching) return false;
 	phys.set(r.geometry, r.now, twist, fromKernel(motion.velocity), ofPlane);
 	phys.current = false;
-	phys.springs = int(mechanisms & contact_law::AllSprings);
+	phys.springs = int(mechanisms);
 	return true;
 }
 

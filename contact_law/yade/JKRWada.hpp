@@ -99,6 +99,8 @@ public:
 	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist,
 	        const Vector3r& velocity, bool ofPlane = false);
 	contact_law::ContactBefore before() const; // a step ago, for the next one
+	// Springs that it had not in the last step.
+	unsigned started(unsigned mechanisms) const { return mechanisms & contact_law::AllSprings & ~unsigned(springs); }
 	virtual ~JKRWadaPhys() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(JKRWadaPhys, NormShearPhys,
@@ -118,7 +120,7 @@ public:
 		((Real, twist, 0, Attr::readonly, "phi [rad]."))
 		((Real, dragForce, 0, Attr::readonly, "Viscous part of the normal force, positive when the grains approach [N]."))
 		((Vector3r, velocity, Vector3r::Zero(), Attr::readonly|Attr::hidden, "Velocity of body 1 past body 2 through the last step [m/s]."))
-		((int, springs, int(contact_law::AllSprings), Attr::readonly|Attr::hidden, "The springs that it had in the last step (bits: kernel/contact_state.hpp)."))
+		((int, springs, int(contact_law::AllSprings), Attr::readonly|Attr::hidden, "Its springs in the last step (bits of Mechanism, kernel/contact_state.hpp)."))
 		((bool, current, false, Attr::readonly|Attr::hidden, "Whether all this is of the moment that the bodies' positions are of (written by JKRWadaEngine), not of a step before.")),
 		createIndex();
 	);

@@ -99,10 +99,6 @@ namespace {
 		return grains;
 	}
 
-	struct Planes {
-		std::vector<int> axis, ofId; // ofId: by body id, -1 where the body is no Wall
-		std::vector<double> position;
-	};
 	bool isOfOneMoment(const Scene& scene)
 	{
 		const auto current = [](const shared_ptr<Interaction>& interaction) {
@@ -115,6 +111,10 @@ namespace {
 		return notBegun || any(current);
 	}
 
+	struct Planes {
+		std::vector<int> axis, ofId; // ofId: by body id, -1 where the body is no Wall
+		std::vector<double> position;
+	};
 	Planes readPlanes(const Scene& scene, bool asItIs)
 	{
 		Planes planes;

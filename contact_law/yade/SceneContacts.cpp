@@ -92,12 +92,13 @@ namespace {
 	void startSprings(unsigned mechanisms, const JKRWadaPhys& phys, const State& wall, const Vec3d& normal, const State& grain,
 	        Real since, PlaneContact& c)
 	{
+		const unsigned started = phys.started(mechanisms);
+		if (!started) return;
 		contact_law::PlaneHistory<double> h { { { c.n1, normal }, {} }, c.before.twist };
 		const Vec3d foot =
 		        contact_law::Plane { {}, normal, {} }.across(toKernel(grain.pos - wall.pos - since * (grain.vel - wall.vel)));
 		h.pointers.anchor = c.point - foot;
-		contact_law::startSprings(
-		        mechanisms, mechanisms & ~unsigned(phys.springs), phys.constants->forKernel(), normal, h, c.before);
+		contact_law::startSprings(mechanisms, started, phys.constants->forKernel(), normal, h, c.before);
 		c.n1 = h.pointers.n1;
 		c.point = h.pointers.anchor + foot;
 	}
@@ -126,7 +127,6 @@ namespace {
 
 Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, unsigned mechanisms)
 {
-	const unsigned springs = mechanisms & contact_law::AllSprings;
 	Inherited inherited;
 	held.clear();
 	for (const auto& interaction : *scene.interactions) {
@@ -151,7 +151,7 @@ Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, 
 			Inherited::OnPlane one = onPlane(phys, toKernel(geometry.normal), state2);
 			one.grain = grains.grainOf(id2), one.plane = grains.planes.planeOf(id1);
 			asOfHistory(one.contact.n1, state2);
-			startSprings(springs, phys, state1, toKernel(geometry.normal), state2, phys.current ? 0 : dt, one.contact);
+			startSprings(mechanisms, phys, state1, toKernel(geometry.normal), state2, phys.current ? 0 : dt, one.contact);
 			inherited.onPlanes.push_back(one);
 			continue;
 		}
@@ -160,9 +160,10 @@ Inherited SceneContacts::take(Scene& scene, const SceneGrains& grains, Real dt, 
 			phys.bonded, phys.restDistance, phys.bonded ? phys.bond->neck : 0 };
 		asOfHistory(one.history.pointers.n1, state1);
 		asOfHistory(one.history.pointers.n2, state2);
-		if (!phys.bonded)
-			contact_law::startSprings(springs, springs & ~unsigned(phys.springs), phys.constants->forKernel(),
-			        -toKernel(geometry.normal), one.history, one.before);
+		const unsigned started = phys.started(mechanisms);
+		if (started && !phys.bonded)
+			contact_law::startSprings(
+			        mechanisms, started, phys.constants->forKernel(), -toKernel(geometry.normal), one.history, one.before);
 		inherited.contacts.push_back(one);
 	}
 	inherited.step = std::max(dt, scene.dt);
@@ -233,7 +234,7 @@ shared_ptr<Interaction> SceneContacts::made(const Scene& scene, const contact_la
 void SceneContacts::write(
         const Scene& scene, const contact_law::Dynamics& dynamics, const Place& place, Stage stage, Interaction& interaction)
 {
-	static_cast<JKRWadaPhys&>(*interaction.phys).springs = int(dynamics.state().mechanisms & contact_law::AllSprings);
+	static_cast<JKRWadaPhys&>(*interaction.phys).springs = int(dynamics.state().mechanisms);
 	if (place.onPlane)
 		writeContact(scene, *place.planes, *place.onPlane, stage, interaction);
 	else

@@ -118,12 +118,11 @@ def test_runs_that_cannot_be_drawn_are_counted(runs):
     assert "1 whose d_max is only a bound left out" in drawn(plot("largest", ends, x="d_max"))[2]
     *_, said = drawn(plot("restitution", ends.assign(restitution=[None, *[0.5] * 7])))
     assert "7 runs, 1 without restitution left out" in said
-    twice = pandas.concat([ends, ends[:2].assign(kind="compression", seed=9)])
-    twice.attrs = ends.attrs
-    assert (
-        "2 of the kind compression left out"
-        in drawn(plot("restitution", twice.assign(restitution=[0.5] * 8 + [None] * 2)))[2]
+    twice = pandas.concat([ends, ends[:2].assign(kind="compression", seed=9)]).assign(
+        restitution=[0.5] * 8 + [None] * 2
     )
+    twice.attrs = ends.attrs
+    assert "2 of the kind compression left out" in drawn(plot("restitution", twice))[2]
     columns = ["run", *ends.attrs["parameters"], "kind", "outcome", "ended", "largest_fraction"]
     again = pandas.read_csv(StringIO(ends.assign(impact=[0.0, 0.5] * 4)[columns].to_csv()))
     with pytest.raises(CannotPlot, match="^the runs differ in impact too"):

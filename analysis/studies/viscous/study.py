@@ -154,8 +154,8 @@ def _over(column):
 def _beyond(loss, way, extreme):
     """What a way takes less the extreme (np.maximum, np.minimum) of the others, draw by draw."""
     of_two = lambda first, second: first.combine(second, lambda a, b: combine(extreme, a, b))
-    own, *others = (select(loss, channel=name) for name in sorted(WAYS, key=way.__ne__))
-    return differences(own, reduce(of_two, others))
+    others = (select(loss, channel=name) for name in WAYS if name != way)
+    return differences(select(loss, channel=way), reduce(of_two, others))
 
 
 def _by_size(table, cumulative):
