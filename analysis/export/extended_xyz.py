@@ -17,7 +17,8 @@ _NAMES = {"v": "velo"}
 
 def write_xyz(run, folder):
     """Write the states of a RunFolder; returns the file's Path. Columns: species, pos [m] and fields.GRAINS (v is called
-    velo); a frame's line has Time [s] and, of a periodic run, the cell."""
+    velo); a frame's line has Time [s] and, of a periodic run, the cell (under a piston not periodic across its
+    planes)."""
     file = folder / FILE
     make_folder(folder)
     with replacing(file) as out:
@@ -35,7 +36,9 @@ def _write_frame(out, exported):
         words.append('pbc="F F F"')
     else:
         edges = " ".join(f"{number:.17g}" for number in np.diag(state.cell_size).ravel())
-        words += [f'Lattice="{edges}"', 'pbc="T T T"']
+        across = () if state.plane_axis is None else state.plane_axis  # planes end the cell
+        periodic = " ".join("F" if axis in across else "T" for axis in range(3))
+        words += [f'Lattice="{edges}"', f'pbc="{periodic}"']
     out.write(f"{len(state.radius)}\n{' '.join(words)}\n".encode("ascii"))
     table = np.hstack([np.asarray(array, dtype=float).reshape(len(state.radius), -1) for array in columns.values()])
     np.savetxt(out, table, fmt=f"{SPECIES} " + " ".join(_formats(columns)))

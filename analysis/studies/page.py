@@ -12,7 +12,7 @@ from .paper import PaperError
 from .tables import claims_table, markdown_table, quantity_table, tests_table
 
 TEXT_ALONE = "The paper enters by its text and printed numbers alone; its figures were not measured."
-OURS = "Ours: mean ± standard error (independent {}). *Yes*, *no*: by the tests declared in paper.toml; *untested*: undecided, not run or without a test."
+OURS = "Ours: mean ± standard error (independent {}); margins are ours. *Yes*, *no*: by the tests declared in paper.toml; *untested*: undecided, not run or without a test."
 WORDS = (("How our set-up differs", "differs"), ("New", "new"), ("Missing, and what it would cost", "missing"))
 DETAILS_FILE, PAGE_FILE = "details.md", "README.md"
 

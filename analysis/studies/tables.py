@@ -4,6 +4,7 @@ import pandas
 
 from .estimate import number_text
 from .levels import level
+from .paper import INF
 from .runs import keyed
 
 WIDEST = 8  # columns over which one of the things that a quantity depends on is spread
@@ -25,10 +26,7 @@ def claims_table(judgements):
 
 def tests_table(judgements):
     """The same in full: with p, p after Holm's correction, why, and where the paper says it."""
-    rows = [
-        (_p(j.p), _p(j.corrected), j.why, f"{j.claim.source}, {j.claim.runs} run" + "s" * (j.claim.runs != 1))
-        for j in judgements
-    ]
+    rows = [(_p(j.p), _p(j.corrected), j.why, f"{j.claim.source}, {_runs(j.claim.runs)}") for j in judgements]
     return claims_table(judgements).join(
         pandas.DataFrame(rows, columns=("p", "p (Holm)", "why", "where the paper says it"))
     )
@@ -66,3 +64,7 @@ def text_table(table):
 
 def _p(value):
     return "-" if value is None else f"{value:.2g}"
+
+
+def _runs(number):
+    return "no runs" if number == INF else f"{number} run" + "s" * (number != 1)

@@ -14,7 +14,7 @@ from .runs import along
 class Threshold(Estimate):
     """velocities (V,) [m/s], rising, and the curve's estimates (V,) there.
 
-    The interval holds the velocities at which the curve isn't told from 0 (Fieller 1954). All draws may fall through 0 between the same two
+    The interval goes from the first to the last velocity at which the curve isn't told from 0 (Fieller 1954). All draws may fall through 0 between the same two
     velocities, though the curve isn't told from 0 at either: their scatter bounds nothing."""
 
     velocities: np.ndarray

@@ -16,6 +16,8 @@ from analysis.runs.folder import State, open_run
 HERE = Path(__file__).resolve().parent
 OVITO = HERE.parents[1] / "build/ovito/bin/python"
 SIZE = np.array([1e-6, 1.5e-6, 2e-6])
+PLATE = dict(plane_axis=np.array([2]), plane_position=np.zeros(1), plane_contacts=np.empty((0, 2), int))
+PLATE["plane_contact_normal_force"] = np.empty(0)
 CELL_SERIES = ("filling", "pressure", "kinetic_pressure", "coordination", "edge_x", "edge_y", "edge_z")
 
 
@@ -30,7 +32,7 @@ def _states(periodic):
         state["contact_bonded"] = np.arange(len(pairs)) == 1
         state["angular_velocity"] = random.normal(size=(5, 3)) * 1e6
         state["radius"] = RADIUS * np.linspace(1.0, 1.5, 5)
-        yield {**state, **({"cell_size": SIZE} if periodic else {})}
+        yield {**state, **({"cell_size": SIZE, **PLATE} if periodic else {})}
 
 
 @pytest.fixture(params=[False, True], ids=["free", "periodic"])
@@ -206,4 +208,4 @@ def test_xyz_has_every_field_to_the_bit(run):
         found["v"] = found["velo"]
         agree(found, grains)
         assert f"Time={state.time!r}" in about
-        assert ('pbc="T T T"' in about) == ("Lattice=" in about) == (state.cell_size is not None)
+        assert ('pbc="T T F"' in about) == ("Lattice=" in about) == (state.cell_size is not None)

@@ -89,14 +89,17 @@ def _moduli(runs, grain):
 
 def _exponents(runs, grain, offset):
     """How tau_max goes with the velocity: rigid-plastic spheres have 0, elastic ones -1/5 (A24 eqs 32, 33)."""
-    times, found = runs.estimates("t_max", POINT), {}
+    times, found, of_size = runs.estimates("t_max", POINT), {}, {}
     for way in offset.index.unique("fit"):
         own = select(offset, fit=way)
         contact = lambda filling, v: combine(lambda x: fits.time_of_contact(x, v, grain.grain_radius), own[filling])
         tau = each(_at_fillings_of(own, times), lambda t, filling, radius, v: t - contact(filling, v))
         found[way] = along(tau, "velocity", power)
+        of_size[way] = along(select(tau, velocity=fits.VELOCITY), "radius", power)
     meaning = "exponent of τ_max as a power of the velocity, by how δ_offset is found; 0: rigid-plastic, -0.2: elastic"
     yield Quantity("trend", meaning, finite(together(found, "fit", ("filling",))))
+    meaning = "exponent of τ_max at 3.2 m/s as a power of the radius, by how δ_offset is found; 1: proportional (A24 section 4.2.1)"
+    yield Quantity("size_trend", meaning, finite(together(of_size, "fit", ("filling",))))
 
 
 def _constants(runs, grain, stress, compliance):

@@ -77,6 +77,8 @@ def _sizes(runs):
     largest = runs.estimates("largest", POINT)
     less = runs.beside("setup", PLAIN, "largest", POINT[1:], differences)
     yield Quantity("largest_change", f"fraction of the mass in the largest piece, less that with {PLAIN}", less)
+    less = runs.beside("neck", 0.0, "largest", ("setup", "growth_velocity", "velocity"), differences, same_pairs=True)
+    yield Quantity("largest_sintered", "the same, less that of the unsintered pairs", less)
     bcca = select(largest, growth_velocity=0.0)
     curves = bcca.groupby(level=["setup", "neck"]).filter(lambda curve: len(curve) >= CURVE)
     critical = finite(thresholds(curves - HALF))
@@ -104,7 +106,9 @@ def _necks(runs):
 
 
 def _modes(runs, by):
-    """Necks broken by each mode over all that broke, by some of POINT: each set of the others counts once, however many pairs it has."""
+    """Necks broken by each mode over all that broke, by some of POINT: each set of the others, where one broke, counts once, however many
+    pairs it has."""
+    runs = runs.where(lambda t: t.groupby(list(POINT)).broken.transform("any"))
     broken = lambda name: runs.estimates(name, POINT).groupby(level=list(by)).agg(sum)
     return together({mode: ratios(broken(name), broken("broken")) for mode, name in MODES.items()}, "mode")
 

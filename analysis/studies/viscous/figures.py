@@ -61,7 +61,7 @@ FIGURES = (
     ),
     CurveFigure(
         "fig02_at_offset",
-        "A22 Fig. 2: growth efficiency at 50.1 m/s against the offset (open points: one pair).",
+        "A22 Fig. 2: growth efficiency at 50.1 m/s against the offset.",
         *("at_offset", "square", "viscoelasticTime", "grains"),
         where={"grains": (500, 2000, 10_000, 50_000)},
         y_label="$f_{gro}$",

@@ -14,7 +14,7 @@ from .growth import FEW, LARGE_FITTED, MERGED, SMALL, SMALL_FITTED, SQUARES, fra
 from .measure import DISSIPATION, EVENTS, FAST, MEASURED, REFERENCE, sizes_from_text
 
 NO_DRAG, MOST_DRAG = 0.0, 6e-12  # T_vis [s]
-# Twelfths of B_off^2 over which a mean is taken: chosen before the runs of 50,000 grains, and after the first pair of these.
+# Twelfths of B_off^2 over which a mean is taken: chosen when of 50,000 grains 3/12 was known, and after their first pair.
 SQUARES_OF = {"drag_edge": (2, 3, 4, 5), "drag_beyond": (6, 7, 8, 9)}
 CURVE = ("grains", "viscoelasticTime", "velocity")
 POINT = ("grains", "viscoelasticTime")
