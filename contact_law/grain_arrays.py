@@ -14,7 +14,7 @@ def snapshot():
     """Everything about the grains and their contacts at one moment, as a dict of arrays in SI units.
 
     Keys: time [s]; rows in the order of body ids: ids (N,), position (N, 3) [m], velocity (N, 3) [m/s], angular_velocity (N, 3) [rad/s],
-    radius (N,) [m]; contacts: contact_pairs (M, 2) (row numbers), contact_normal_force (M,) [N] (elastic and viscous, positive when
+    radius (N,) [m] (of sintered grains that before they shrank); contacts: contact_pairs (M, 2) (row numbers), contact_normal_force (M,) [N] (elastic and viscous, positive when
     repulsive), contact_bonded (M,) bool (sintered bonds), contact_neck (M,) (of bonds, the neck's radius over that of the grains; 0: none).
     In a scene with planes (Walls) also, of the planes in the order of body ids: plane_axis (P,) (0, 1, 2), plane_position (P,) [m] (along that axis);
     of the grains on them: plane_contacts (K, 2) (row of the grain, row of the plane), plane_contact_normal_force (K,) [N].

@@ -47,7 +47,7 @@ def _fields_text():
     from ..export.fields import CONTACTS, GRAINS
 
     lines = []
-    for title, fields in (("grains", GRAINS), ("contacts (VTK only)", CONTACTS)):
+    for title, fields in (("grains (v is called velo in run.xyz)", GRAINS), ("contacts (VTK only)", CONTACTS)):
         lines += [f"{title}:"]
         lines += [f"  {f.name:<13} {f.meaning}{f' [{f.unit}]' if f.unit else ''}" for f in fields]
     return "\n".join(lines)

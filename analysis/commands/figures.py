@@ -7,7 +7,7 @@ def add_parser(commands):
         "figures",
         help="draw a run's figures",
         description="Write motion.png (d and v against time, of equal aggregates), energy.png (the channels), grains.png (the grains, dense aggregates cut through the "
-        "middle) and forces.png (contact forces).",
+        "middle) and forces.png (contact forces); of a compression compression.png alone.",
     )
     parser.add_argument("run", metavar="RUN", help="run folder")
     parser.add_argument("--out", metavar="FOLDER", help="where to (default: RUN/figures), made if it is missing")

@@ -14,8 +14,9 @@ def add_parser(commands):
     )
     of_number = {"type": _positive, "required": True, "metavar": "X"}
     parser.add_argument("--velocity", help="relative velocity [m/s]", **of_number)
-    parser.add_argument("--projectile", help="grains of one aggregate", **of_number)
-    parser.add_argument("--target", help="grains of the other", **of_number)
+    of_grains = of_number | {"type": number(lambda value: 1 <= value < float("inf"), "a number >= 1")}
+    parser.add_argument("--projectile", help="grains of one aggregate", **of_grains)
+    parser.add_argument("--target", help="grains of the other", **of_grains)
     of_filling = of_number | {"type": number(lambda value: 0 < value <= 1, "a number > 0 and at most 1")}
     parser.add_argument(
         "--filling", help="volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g", **of_filling

@@ -91,7 +91,7 @@ CONTACTS = (
     Field("id2", "", "id of the second grain", lambda e: e.second.astype(int)),
     Field("normal_force", "N", "normal force, positive when repulsive", lambda e: e.state.contact_normal_force),
     Field("bonded", "", "1 for a sintered bond", lambda e: e.state.contact_bonded.astype(int)),
-    Field("overlap", "m", "sum of the radii less the distance", lambda e: e.overlap()),
+    Field("overlap", "m", "sum of the radii (before sintering) less the distance", lambda e: e.overlap()),
 )
 
 

@@ -33,7 +33,8 @@ def closure_history(history):
 
 @takes(history=History())
 def closure(history):
-    """max over t of |E(t) - E(0)|/K(0); None where K(0) = 0.
+    """max over t of |E(t) - E(0)|/K(0); None where K(0) = 0. A compression starts almost at rest: its error over the boundaries' work is
+    `energy_closure` of its table and summary.
 
     >>> closure({**dict.fromkeys(CHANNELS, np.zeros(2)), "kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])})
     0.25
@@ -75,7 +76,8 @@ def fractions(history):
 
 @takes(history=History("time"), time=number())
 def fractions_at(history, time):
-    """fractions(history) at one time [s], linear between samples, by name: floats. None where K(0) = 0.
+    """fractions(history) at one time [s], linear between samples, by name: floats. None where K(0) = 0. (Of a compression tables have
+    them over the boundaries' work.)
 
     >>> times = {"time": np.array([0.0, 1.0]), "kinetic": np.array([4.0, 1.0])}
     >>> fractions_at({**dict.fromkeys(CHANNELS, np.zeros(2)), **times}, 1.0)["kinetic"]

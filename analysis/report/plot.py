@@ -87,6 +87,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     asked, of_kinds = drawn.table, _of_kinds(drawn.table, [x, *_columns(what)])
     without = _without(of_kinds, what, x, by)
     drawn = drawn.of(of_kinds[~without.to_numpy().any(axis=1)])
+    if not len(drawn.table):
+        raise CannotPlot(f"no run has all of {', '.join(dict.fromkeys(name for name in (what, x, by) if name))}")
     _require_drawable(drawn.table, x, by)
     quantity = _quantity(what, drawn, [x, by] if by else [x])
     if not len(quantity.values):
@@ -189,8 +191,6 @@ def _only(drawn, name, value):
 
 def _require_drawable(found, x, by):
     _require_numbers(found, x)
-    if not len(found):
-        raise CannotPlot("no run is left")
     if found[KIND].nunique() > 1:
         raise CannotPlot(f"the runs are of the kinds {', '.join(found[KIND].unique())}: choose where {KIND}")
     others = [name for name in varied(found) if name not in (x, by, SEED, *FILES)]

@@ -219,7 +219,7 @@ def varied(found):
     error, constants of the material, of the
     distribution of sizes, the duration, the filling that a compression starts from, the projectile's grains where both have as many, and
     the size of aggregates that are grown or read, or grains of those that are cut."""
-    names = [name for name in parameters(found) if found[name].nunique(dropna=False) > 1]
+    names = [name for name in parameters(found) if name in found and found[name].nunique(dropna=False) > 1]
     if {"grains", "projectileGrains"} <= set(names) and (found.projectileGrains == found.grains).all():
         names.remove("projectileGrains")
     if (

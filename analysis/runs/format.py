@@ -134,7 +134,7 @@ STATE = (
     Quantity("position", ("N", 3), "m", "positions; unwrapped in a periodic cell"),
     Quantity("velocity", ("N", 3), "m/s", "velocities"),
     Quantity("angular_velocity", ("N", 3), "rad/s", "angular velocities"),
-    Quantity("radius", ("N",), "m", "radii", positive=True),
+    Quantity("radius", ("N",), "m", "radii, of sintered grains those before they shrank", positive=True),
     Quantity("aggregate", ("N",), "", "number of the aggregate that a grain belongs to at the start", "i"),
     Quantity("contact_pairs", ("M", 2), "", "rows of the two grains of a contact", "i"),
     Quantity("contact_normal_force", ("M",), "N", "normal force, elastic and viscous, positive when repulsive"),

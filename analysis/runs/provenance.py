@@ -11,7 +11,7 @@ def provenance(runs):
     records = [run.record for run in runs]
     return {
         "runs": len(runs),
-        "commits": _count(str(r.get("commit", "unknown"))[:12] for r in records),
+        "commits": _count(_commit(r) for r in records),
         "machines": _count(_machine(r.get("hardware") or {}) for r in records),
         "versions": _count(", ".join(f"{k} {v}" for k, v in (r.get("versions") or {}).items()) for r in records),
         "stepFractions": _count(_step(run.parameters) for run in runs),
@@ -35,6 +35,12 @@ def provenance_lines(origin):
     yield f"{origin['runs']} runs{more}, {origin['steps']} steps, {origin['hours']:g} h of run time"
     for key, text in _COUNTED.items():
         yield f"{text}: " + "; ".join(f"{name} ({number} runs)" for name, number in origin[key].items())
+
+
+def _commit(record):
+    """Twelve digits, and '-changed' where its files were others."""
+    commit, *changed = str(record.get("commit", "unknown")).split("-", 1)
+    return "-".join([commit[:12], *changed])
 
 
 def _count(texts):

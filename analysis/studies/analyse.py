@@ -13,7 +13,7 @@ from ..runs.table import NoRunFolder, table_text
 from ..runs.write import replacing, write_text
 from .columns import CLOSURE
 from .definition import GALLERY, SNAPSHOTS, Results, Study
-from .find import figures
+from .find import figures, own_errors
 from .gather import Gathered, gather
 from .html import html_page
 from .page import DETAILS_FILE, PAGE_FILE, details, screen
@@ -165,7 +165,8 @@ def analyse(study, paths):
     found = gather(study, paths)
     if found.table is None:
         raise NothingToAnalyse(study, found)
-    results = study.results(found.table)
+    with own_errors(study):
+        results = study.results(found.table)
     try:
         judged = judge(claims, results)
     except ValueError as error:
@@ -212,7 +213,8 @@ def _draw(study, results, folder):
     for figure in progress(figures(study), "drawing"):
         file = folder / f"{figure.name}.png"
         try:
-            drawn = figure.draw(results)
+            with own_errors(study):
+                drawn = figure.draw(results)
             if drawn is None:
                 file.unlink(missing_ok=True)
                 file.with_suffix(".pdf").unlink(missing_ok=True)

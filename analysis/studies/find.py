@@ -1,6 +1,7 @@
 """Studies and their figures, found by their folders, or by the path of a file of one's own."""
 
 import pkgutil
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
@@ -11,9 +12,11 @@ from .. import studies
 from ..runs.named import suggested
 from ..runs.script import module_of
 
+SAYS = "must be as analysis/STUDIES.md says"
+
 
 class NoSuchStudy(Exception):
-    """No study of that name, or no file that defines one; the message is one line."""
+    """No study of that name, or no file that defines one, or one that fails; the message is one line."""
 
 
 def names():
@@ -32,7 +35,7 @@ def find(name):
 
 def figures(study):
     """Figures (definition.StudyFigure, curve_figure.CurveFigure) of a study, those of the paper (figNN_...) first, then by name."""
-    own = study.folder.suffix == ".py"
+    own = _is_own(study)
     if not own and not _has(f"{study.name}.figures"):
         return []
     module = _own(study.folder) if own else _module(f"{study.name}.figures")
@@ -42,15 +45,34 @@ def figures(study):
 def _own(file):
     if not file.is_file():
         raise NoSuchStudy(f"{file}: no such file")
-    try:
+    with _in_one_line(file):
         module = module_of(str(file), f"own_study_{file.stem}")
-    except (Exception, SystemExit) as error:
-        where = error.lineno if isinstance(error, SyntaxError) else extract_tb(error.__traceback__)[-1].lineno
-        said = " ".join(str(error).split())
-        raise NoSuchStudy(f"{file}: {type(error).__name__} at line {where}: {said}; must define STUDY") from None
     if not hasattr(module, "STUDY"):
-        raise NoSuchStudy(f"{file}: defines no STUDY; must be as analysis/STUDIES.md says")
+        raise NoSuchStudy(f"{file}: defines no STUDY; {SAYS}")
     return module
+
+
+def own_errors(study):
+    """Context in which an error becomes NoSuchStudy where the study is a file of one's own."""
+    return _in_one_line(study.folder) if _is_own(study) else nullcontext()
+
+
+@contextmanager
+def _in_one_line(file):
+    try:
+        yield
+    except (Exception, SystemExit) as error:
+        if type(error).__module__.startswith("analysis."):  # its message is one line
+            raise
+        lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(file)]
+        lines += [error.lineno] if isinstance(error, SyntaxError) else []
+        text = error.args[0] if isinstance(error, KeyError) and error.args else error  # in quotes otherwise
+        said, where = " ".join(str(text).split()), f" at line {lines[-1]}" if lines else ""
+        raise NoSuchStudy(f"{file}: {type(error).__name__}{where}: {said}; {SAYS}") from None
+
+
+def _is_own(study):
+    return study.folder is not None and study.folder.suffix == ".py"
 
 
 def _module(name):

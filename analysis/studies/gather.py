@@ -8,6 +8,7 @@ from ..progress import progress
 from ..report.rows import differing, frame, parameters_of, varied
 from ..runs.arrays import RunFolderError
 from ..runs.collect import collect
+from ..runs.named import suggested
 from ..runs.provenance import joined, provenance
 from ..runs.table import FOLDER, RUN, TableError, make_table, read_table
 from .definition import NotMeasured
@@ -66,10 +67,13 @@ def gather(study, paths):
 
 def _alike(study, rows):
     """({parameter: value} that runs share which must be alike, what is wrong where they differ: one line, or None) of [(path, parameters)] of
-    runs and tables of runs. The study's key may differ; a parameter that a run of an earlier version lacks is as in the others."""
+    runs and tables of runs, or name what none has. The study's key may differ; a parameter that a run of an earlier version lacks is as in the others."""
     usual, own = {}, (*study.scene.key, *LENGTH)
     for _, row in reversed(rows):
         usual.update(row)
+    strange = [name for name in study.scene.values if name not in usual]
+    if strange:
+        return {}, f"{strange[0]}: no run has this parameter{suggested(strange[0], usual)}"
     found = frame([(path, {**usual, **row}) for path, row in rows])
     names = [name for name in varied(found) if name not in own]
     advice = "name them in varied, or give collision_study() one value of each"

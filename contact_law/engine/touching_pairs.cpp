@@ -72,8 +72,9 @@ void TouchingPairs::placeBonds(PairLists& lists, const PeriodicCell& cell)
 {
 	lists.each([&](int i, int j) {
 		const Vec3<double> separation = s.separationOf(cell, i, j);
-		const double reach = s.grainRadius[i] + s.grainRadius[j];
-		if (dot(separation, separation) >= reach * reach) return;
+		const double reach =
+		        (1 + 1e-12) * (s.grainRadius[i] + s.grainRadius[j]); // those that a script has placed side by side, too
+		if (dot(separation, separation) > reach * reach) return;
 		Bond bond = newBond(i, j, separation);
 		bond.constants = s.bondOf(i, j, s.neck);
 		bonds[ownershipOf(i, j)].append(bond);

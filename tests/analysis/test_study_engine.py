@@ -96,6 +96,23 @@ def test_runs_that_differ_are_refused_unless_the_study_names_it(own, capsys, oth
         assert [row["pairs"] for row in rows(found["sticking"], velocity=3.0)] == [6]
 
 
+@pytest.mark.parametrize(
+    "old, new, says",
+    [
+        ('varied=("', 'pakcing="bpca", varied=("', "pakcing: no run has this parameter (did you mean packing?)"),
+        ('"sticking", x', '"stiking", x', "KeyError: no quantity stiking (did you mean sticking?)"),
+        ('x="velocity"', 'x="speed"', "Level speed not found; must be as analysis/STUDIES.md says"),
+    ],
+)
+def test_wrong_names_in_ones_own_file_get_one_line(own, capsys, old, new, says):
+    code = (own / "sticking.py").read_text()
+    assert old in code
+    (own / "sticking.py").write_text(code.replace(old, new))
+    two_pairs(own / "runs" / "s6", 3.0, 6, derived={"grains": 2}, material="ice", packing="bpca")
+    assert run(own, "--figures", own / "out") == 2
+    assert says in capsys.readouterr().err.splitlines()[-1]
+
+
 def test_tables_of_unlike_runs_are_refused_together(own, capsys):
     """Each of them is read, and as one of two with like runs."""
     made = {}

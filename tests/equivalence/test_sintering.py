@@ -67,6 +67,15 @@ def test_sintering_at_the_start_is_a_start_with_a_neck(kind):
         assert max(abs(a[c] - b[c]) for a, b in zip(e_bonded, e_sintered)) < 1e-9 * e_bonded[0]["kinetic"], c
 
 
+def test_grains_placed_side_by_side_are_sintered():
+    """Neighbours of a chain are two radii apart, but for rounding. (Ig2 doesn't find them.)"""
+    new_scene(0.05 * unit, "fused", neck=0.4)
+    for k in range(12):
+        grain((k * 2e-7, 0, 0), 1e-7, ice())
+    O.step()
+    assert np.count_nonzero(contact_law.snapshot()["contact_neck"]) == 11
+
+
 @pytest.mark.parametrize("steps", [0, 80])
 def test_sintered_twice_at_once_a_contact_keeps_the_first_neck(steps):
     """Before the first step, and on a running scene: with no step between, the second call finds bonds of the first already."""

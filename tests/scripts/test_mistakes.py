@@ -48,7 +48,7 @@ MISTAKES = {
     "analysis film empty --colour blue": "argument --colour: invalid choice: 'blue' (choose from ",
     "analysis view empty --out a.txt": "a.txt: must end in .html",
     "analysis study mine.py empty": "mine.py: defines no STUDY; must be as analysis/STUDIES.md says",
-    "analysis study typo.py empty": "typo.py: NameError at line 2: name 'y' is not defined; must define STUDY",
+    "analysis study typo.py empty": "typo.py: NameError at line 2: name 'y' is not defined; must be as analysis/STUDIES.md says",
     "analysis study syntax.py empty": "syntax.py: SyntaxError at line 1: ",
     "analysis film empty --along xy": "argument --along: invalid choice: 'xy' (choose from ",
     "analysis export empty --format ply": "argument --format: invalid choice: 'ply' (choose from ",

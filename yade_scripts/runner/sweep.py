@@ -43,7 +43,7 @@ def collide(folder="runs", jobs=None, **parameters):
 
     The rows stand in a table in the folder, which study.py runs too: --status tells how far they are from any shell.
     ParameterError (a ValueError with the line that collide.py has) for a wrong name or value, before anything runs; RunsFailed
-    when a run failed, or yade is missing. Ctrl-C stops the runs, each with a checkpoint.
+    when a run failed, which may have begun beside others (a file or filling that cannot be), or yade is missing. Ctrl-C stops the runs, each with a checkpoint.
 
         runs = collide(velocity=[1, 3, 10, 30], seed=range(6), packing="bcca", grains=500, material="silicate")
     """

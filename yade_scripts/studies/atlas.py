@@ -358,8 +358,11 @@ def main(arguments):
         print(__doc__)
     elif size in SIZES and len(arguments) in (1, 3) and all(part.isdecimal() for part in arguments[1:]):
         os.chdir(TOP)
+        part = tuple(map(int, arguments[1:]))
+        if part and not part[0] < min(part[1], SIZES[size]):
+            sys.exit(f"atlas.py: rows {part[0]} to {part[1]}: must be rising, and some of {size}'s {SIZES[size]}")
         try:
-            write_size(size, *map(int, arguments[1:]))
+            write_size(size, *part)
         except PackingError as error:
             sys.exit(f"atlas.py: {error}")
     else:

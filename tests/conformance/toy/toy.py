@@ -119,4 +119,6 @@ def main(path, results):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit("toy.py: must be called with cases.json and the file for the results")
     main(*sys.argv[1:])
