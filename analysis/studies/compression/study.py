@@ -19,6 +19,7 @@ FIDUCIAL = {
     "critical displacement": ("criticalRolling", 0.8e-9),
     "time step": ("stepFraction", 0.3),
 }
+GRAINS = 16_384
 ICE = {"material": "ice", "linearDamping": 0.01, "criticalRolling": 0.8e-9}
 OF_ICE = ("stepFraction", "grains", "strainRate", "filling")
 RATES = (3e-7, 1e-6, 3e-6, 1e-5)  # C_v over which clusters are averaged
@@ -66,7 +67,9 @@ def _power_law(runs):
     for name, (column, value) in FIDUCIAL.items():
         others = tuple(own for own in by if own != column)
         changes[name] = along(runs.beside(column, value, "over", others, ratios, same_pairs=True), "filling", level)
-    meaning = "P r0^3/E_roll over that with K13's value of what is changed, same clusters and filling factors to 0.1"
+    others = tuple(own for own in by if own != "grains")
+    changes["number of grains"] = along(runs.beside("grains", GRAINS, "over", others, ratios), "filling", level)
+    meaning = "P r0^3/E_roll over that with K13's value of what is changed, same clusters (but of other sizes) and filling factors to 0.1"
     yield Quantity("change", meaning, together(changes, "changed"))
     pooled = of_ice.over("strainRate", RATES).estimates("over", ("stepFraction", "grains", "filling"))
     yield Quantity("pooled", f"level of clusters averaged over C_v = {rates}", along(pooled, "filling", level))
