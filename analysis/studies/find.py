@@ -64,7 +64,8 @@ def _in_one_line(file):
     except (Exception, SystemExit) as error:
         if type(error).__module__.startswith("analysis."):  # its message is one line
             raise
-        lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(file)]
+        frames, own = extract_tb(error.__traceback__), file.resolve()
+        lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == own]
         lines += [error.lineno] if isinstance(error, SyntaxError) else []
         text = error.args[0] if isinstance(error, KeyError) and error.args else error  # in quotes otherwise
         said, where = " ".join(str(text).split()), f" at line {lines[-1]}" if lines else ""

@@ -18,8 +18,8 @@ FIDUCIAL = {
     "damping": ("linearDamping", 0.01),
     "critical displacement": ("criticalRolling", 0.8e-9),
     "time step": ("stepFraction", 0.3),
+    "number of grains": ("grains", 16_384),
 }
-GRAINS = 16_384
 ICE = {"material": "ice", "linearDamping": 0.01, "criticalRolling": 0.8e-9}
 OF_ICE = ("stepFraction", "grains", "strainRate", "filling")
 RATES = (3e-7, 1e-6, 3e-6, 1e-5)  # C_v over which clusters are averaged
@@ -66,9 +66,8 @@ def _power_law(runs):
     changes = {}
     for name, (column, value) in FIDUCIAL.items():
         others = tuple(own for own in by if own != column)
-        changes[name] = along(runs.beside(column, value, "over", others, ratios, same_pairs=True), "filling", level)
-    others = tuple(own for own in by if own != "grains")
-    changes["number of grains"] = along(runs.beside("grains", GRAINS, "over", others, ratios), "filling", level)
+        own = runs.beside(column, value, "over", others, ratios, same_pairs=column != "grains")
+        changes[name] = along(own, "filling", level)
     meaning = "P r0^3/E_roll over that with K13's value of what is changed, same clusters (but of other sizes) and filling factors to 0.1"
     yield Quantity("change", meaning, together(changes, "changed"))
     pooled = of_ice.over("strainRate", RATES).estimates("over", ("stepFraction", "grains", "filling"))

@@ -88,7 +88,7 @@ def _moduli(runs, grain):
 
 
 def _exponents(runs, grain, offset):
-    """How tau_max goes with the velocity: rigid-plastic spheres have 0, elastic ones -1/5 (A24 eqs 32, 33)."""
+    """How tau_max goes with the velocity: rigid-plastic spheres have 0, elastic ones -1/5 (A24 eqs 32, 33); and with the size."""
     times, found, of_size = runs.estimates("t_max", POINT), {}, {}
     for way in offset.index.unique("fit"):
         own = select(offset, fit=way)

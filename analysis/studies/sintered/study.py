@@ -78,7 +78,9 @@ def _sizes(runs):
     less = runs.beside("setup", PLAIN, "largest", POINT[1:], differences)
     yield Quantity("largest_change", f"fraction of the mass in the largest piece, less that with {PLAIN}", less)
     less = runs.beside("neck", 0.0, "largest", ("setup", "growth_velocity", "velocity"), differences, same_pairs=True)
-    yield Quantity("largest_sintered", "the same, less that of the unsintered pairs", less)
+    yield Quantity(
+        "largest_sintered", "fraction of the mass in the largest piece, less that of the same pairs unsintered", less
+    )
     bcca = select(largest, growth_velocity=0.0)
     curves = bcca.groupby(level=["setup", "neck"]).filter(lambda curve: len(curve) >= CURVE)
     critical = finite(thresholds(curves - HALF))
