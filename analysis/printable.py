@@ -1,6 +1,9 @@
 """Names and values from outside, as a terminal may see them."""
 
 import shlex
+from difflib import get_close_matches
+
+LISTED = 20  # names in a message
 
 
 def printable(text):
@@ -25,6 +28,23 @@ def shell_line(words):
     """
     words = [str(word) for word in words]
     return " ".join(shlex.quote(word) if word.isprintable() else f"$'{_ansi_c(word)}'" for word in words)
+
+
+def suggested(name, names, many=""):
+    """What a message says of a name that isn't one of `names`: the close one, and which there are, or `many` in place of a long list.
+
+    >>> suggested("velocty", ["velocity", "seed"])
+    ' (did you mean velocity?); must be one of velocity, seed'
+    """
+    names = list(map(str, names))
+    hint = meant(str(name), names)
+    return hint + (many if hint and len(names) > LISTED else f"; must be one of {', '.join(names)}")
+
+
+def meant(name, names, before=""):
+    """' (did you mean ...?)' with that one of `names` which is close to a name, and what stands before it; or ''."""
+    close = get_close_matches(name, names, 1)
+    return f" (did you mean {before}{close[0]}?)" if close else ""
 
 
 def _escape(c):

@@ -36,8 +36,7 @@ from analysis.signals import end_quietly
 
 end_quietly(signal.SIGINT)
 require_libraries()
-from analysis.printable import printable
-from analysis.runs.named import meant
+from analysis.printable import meant, printable
 from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.parameters import CORES

@@ -10,8 +10,8 @@ from itertools import product
 
 import numpy as np
 
+from ..printable import suggested
 from ..runs.arrays import RunFolderError
-from ..runs.named import suggested
 from ..runs.seal import SUM, UNSUMMED, require_own_sum, summed
 from ..runs.write import write_text
 from .rules import OF_KIND

@@ -36,7 +36,7 @@ def gain(row):
 def change(row):
     """The same where the target is heavier; where it is lighter, what it has lost over its own mass, below 0.
 
-    >>> change({"mass_ratio": 0.25, "largest": 0.4}), change({"mass_ratio": 0.25, "largest": 0.9})
+    >>> float(change({"mass_ratio": 0.25, "largest": 0.4})), float(change({"mass_ratio": 0.25, "largest": 0.9}))
     (-0.5, 0.5)
     """
     more = row["largest"] - _target(row)

@@ -1,11 +1,10 @@
 """Read-only mappings that say what they hold when a wrong name is asked for."""
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 
 import numpy as np
 
-LISTED = 20  # names
+from ..printable import suggested
 
 
 class UnknownName(KeyError, AttributeError):
@@ -53,19 +52,6 @@ class Named(Mapping):
 def unknown(what, name, names):
     """UnknownName for a name that isn't one of `names`; many are not listed where one is close."""
     return UnknownName(f"{what}: no {name}{suggested(name, names)}")
-
-
-def suggested(name, names, many=""):
-    """What a message says of a name that isn't one of `names`: which is close, and which there are, or `many` in place of a long list."""
-    names = list(map(str, names))
-    hint = meant(str(name), names)
-    return hint + (many if hint and len(names) > LISTED else f"; must be one of {', '.join(names)}")
-
-
-def meant(name, names, before=""):
-    """' (did you mean ...?)' with that one of `names` which is close to a name, and what stands before it; or ''."""
-    close = get_close_matches(name, names, 1)
-    return f" (did you mean {before}{close[0]}?)" if close else ""
 
 
 def protect(values):

@@ -6,8 +6,8 @@ from typing import Callable
 
 import pandas
 
+from ..printable import suggested
 from ..runs.collect import Scene
-from ..runs.named import suggested
 from .columns import flat, row_of
 from .estimate import Fraction
 from .levels import SI

@@ -9,7 +9,7 @@ from pathlib import Path
 from traceback import extract_tb
 
 from .. import studies
-from ..runs.named import suggested
+from ..printable import suggested
 from ..runs.script import module_of
 
 SAYS = "must be as analysis/STUDIES.md says"

@@ -6,7 +6,8 @@ from functools import reduce
 import numpy as np
 import pandas
 
-from ..runs.named import suggested, unknown
+from ..printable import suggested
+from ..runs.named import unknown
 from .estimate import Estimate, Fraction, curve, mean_over_points, stretch, weights_of_pairs
 
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7

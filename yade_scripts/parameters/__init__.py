@@ -10,7 +10,7 @@ from functools import cache
 from textwrap import fill
 from typing import Any, Callable
 
-from analysis.runs.named import suggested
+from analysis.printable import suggested
 from yade_scripts.parameters.arithmetic import NotANumber, evaluate
 from yade_scripts.parameters.errors import InputError
 
