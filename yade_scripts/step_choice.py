@@ -35,8 +35,7 @@ no larger: 41 of 42 layers of 64 to 1000 grains are below, half of them below 0.
 steps of 0.1 to 0.3 t0), and of 4 more, with the step that this chooses, all are, the largest at 0.56.
 
 The constants are such that 95 % of runs stay below the sum. They were fitted to the 98 % level of grids of runs and
-judged by runs drawn at random (tests/benchmarks/step_choice.py measures and fits, results/step_choice.md has fit and scatter,
-step_choice.csv and step_choice_compression.csv the data). The typical error is a quarter of it.
+judged by runs drawn at random (docs/measurements.md says by how many, and where the data are). The typical error is a quarter of it.
 Drag leaves somewhat smaller errors and is left out, but where it limits the step (stability.step_limit).
 """
 

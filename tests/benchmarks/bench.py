@@ -1,107 +1,189 @@
-"""Speed and error of this law's codes and of others', on the scenes of the bench and of the papers, in one report.
+"""Speed of the engine and of other codes, and error against the time step: measured, and printed as one page.
 
-    /usr/bin/python3 tests/benchmarks/bench.py [--scene bench] [--quick | --tiny] [--only make,measure,report]
+    /usr/bin/python3 tests/benchmarks/bench.py [bench | papers | peers] [--scene NAME,NAME] [--quick | --tiny]
 
---scene: names, or groups of them: bench (sizes, unlike grains, moments of collisions, and the error against the step:
-a collision), papers (moments of the papers' runs), peers (all codes, on a collision and an aggregate that rings:
-throughput.py makes their page).
-Three parts, one after the other: make the moments' files (build/bench/scenes; minutes for each of the papers' scenes of
-100,000 grains), measure, report. Each can be stopped at any time and called again: files that are there, and what was
-measured with the same plugin (its commit), machine and settings, are not done again. Results: speed.csv, moments.csv,
-error.csv (results.py) and bench.md (tables).
---quick measures less, and writes to build/bench; --tiny only shows that it works.
+bench: sizes of aggregates, unlike grains, and the error of a collision; papers: moments of the papers' runs, which are
+made first (minutes each, once: build/bench/scenes); peers: one collision by every code that is installed.
+Leaves the page in build/bench/GROUP.txt, the measurements in build/bench/GROUP.csv. Keep the machine quiet meanwhile.
 """
 
 import argparse
 import sys
-from functools import cache, partial
-from pathlib import Path
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 
-from measured_on import RESULTS, TOP, built_commit, machine
+from measured_on import TOP, fraction_of_others, machine
 
 sys.path.insert(0, str(TOP))
 import codes
 import errors
 import measured_scenes
 import moments
-import report
-import settings
-import speed
-from results import Results
+import pandas as pd
+import peers
+import scene_file
 
-PARTS = ("make", "measure", "report")
-say = partial(print, "bench:", flush=True)
+from analysis.progress import progress
+
+OUT = TOP / "build/bench"
+HEAD = """{group}: contact updates a second, {cpu}, {cores} cores, commit {commit}
+
+A contact update is one step of one touching contact; M/s: million a second, ms: of a small step, one thread and two.
+All codes take turns in {rounds} rounds; medians, and of engine / code the least and most of the rounds.
+The engine runs in YADE, {together} small steps in an O.step. Other programs took up to {others:.0%} of the machine.
+"""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How much is measured."""
+
+    rounds: int = 5
+    seconds: float = 1.5  # of one measurement
+    stretch: float = 0.05  # fraction of a run's small steps that measuring a moment may take
+    peer_rounds: int = 3
+    peer_steps: int = 100  # at most
+    skins: tuple = (0.3, 0.6, 1.0)  # of a peer's lists [grain radii], of which its best counts
+    error: tuple = ((0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4), 3, 20, 130e-9)  # steps [t0], seeds, radius, duration [s]
+
+
+FULL = Settings()
+QUICK = Settings(2, 0.5, 0.03, 1, 30, (0.6,), ((0.05, 0.1, 0.2, 0.4), 1, 20, 130e-9))
+TINY = replace(QUICK, rounds=1, seconds=0.03, peer_steps=20, error=((0.1, 0.2, 0.4), 1, 4, 2e-9))
 
 
 def arguments(words=None):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_const", dest="size", const="QUICK", help="a shortened version")
-    parser.add_argument(
-        "--tiny", action="store_const", dest="size", const="TINY", help="as little as shows that it works"
-    )
-    parser.add_argument("--scene", default="bench", help="scenes, or groups: bench, papers, peers")
-    parser.add_argument("--only", default=",".join(PARTS), help="parts to do: " + ",".join(PARTS))
-    parser.add_argument("--out", type=Path, help="folder for the results")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("group", nargs="?", default="bench", choices=["bench", "papers", "peers"])
+    parser.add_argument("--scene", help="of these scenes only, of the group's")
+    parser.add_argument("--quick", action="store_const", dest="how", const=QUICK, default=FULL, help="measure less")
+    parser.add_argument("--tiny", action="store_const", dest="how", const=TINY, help="only show that it works")
     given = parser.parse_args(words)
-    given.settings = getattr(settings, given.size or "FULL")
-    known = groups(given.settings)
-    given.scene = [name for word in given.scene.split(",") for name in known.get(word, [word])]
-    given.only = given.only.split(",")
-    every = [name for names in known.values() for name in names]
-    for option, names, allowed in (("scene", given.scene, [*known, *every]), ("only", given.only, PARTS)):
-        if unknown := [name for name in names if name not in allowed]:
-            parser.error(f"--{option} {unknown[0]}: must be of {', '.join(allowed)}")
-    given.out = given.out or (TOP / "build/bench" if given.size else RESULTS)
+    groups = {"bench": measured_scenes.BENCH, "papers": measured_scenes.PAPERS, "peers": measured_scenes.PEERS}
+    if given.how != FULL:
+        groups["bench"] = measured_scenes.QUICK if given.how == QUICK else measured_scenes.TINY
+    given.scenes = groups[given.group]
+    if given.scene:
+        if unknown := [name for name in given.scene.split(",") if name not in given.scenes]:
+            parser.error(f"--scene {unknown[0]}: must be of {', '.join(given.scenes)}")
+        given.scenes = {name: given.scenes[name] for name in given.scene.split(",")}
     return given
 
 
-def groups(how):
-    """{name of a group: names of scenes, and of the errors' scenes}"""
-    own = [*measured_scenes.bench(how), "collision"]
-    return {"bench": own, "papers": [*measured_scenes.PAPERS], "peers": ["peers", *errors.FOLLOWED]}
+# ---- measuring ----
 
 
-def measure_speed(scenes, how, results):
-    """Make and measure what is not done, one batch after the other."""
-    wanted = {"commit": built_commit(), "cpu": machine()["cpu"], "settings": how.text()}
-    changed = wanted["commit"].endswith("-changed")
-    start = cache(lambda name: moments.make(name, scenes[name], say=say))
-    for batch in speed.batches(scenes):
-        if changed or not all(results.is_done(name, moment, **wanted) for name, _, moment in batch):
-            starts = {name: start(name) for name, _, _ in batch}
-            results.put(**speed.measure(batch, starts, how))
-            say(f"{', '.join(f'{name} {moment}' for name, _, moment in batch)}: measured")
+def measure(scene, moment, start, path, how):
+    """Rows of all codes on the file of a moment, and {code: why it was not measured}. Each round measures all once."""
+    grains, rows = scene_file.load(path), []
+    missing = {code: reason for code in scene.codes if (reason := codes.missing(code, grains))}
+    here = [code for code in scene.codes if code not in missing]
+    # small steps: all rounds together leave a flight in the air, and are a small part of another run
+    flight = scene.apart / start.step / 1.2 if moment == next(iter(scene.moments)) else 0
+    most = int((flight or how.stretch * start.steps) / how.rounds / 2)
+    with ExitStack() as stack:
+        opened = {code: codes.open_code(code, path, start.together, how) for code in here}
+        for code in opened.values():
+            stack.callback(code.close)
+        turns = [(code, threads) for code in here for threads in codes.threads_of(code)]
+        for turn in range(how.rounds):
+            for code, threads in progress(turns, f"{scene.title}, {moment}: round {turn + 1} of {how.rounds}"):
+                if code in missing or (turn >= how.peer_rounds and not codes.CODES[code].law):
+                    continue
+                try:
+                    answer = opened[code].measure(threads, how.seconds, most)
+                except peers.PeerFailed as error:
+                    missing[code] = f"failed: {' '.join(str(error).split())[:200]}"
+                    continue
+                rows.append({"moment": moment, "code": code, "threads": threads, "round": turn, **answer})
+    return rows, missing
 
 
-def measure_errors(names, how, results):
-    of = {"cpu": machine()["cpu"], "commit": built_commit()[:7]}
-    for name in names:
-        there = results.error[results.error.scene == name]
-        if not len(there) or any(there[key].iloc[0] != value for key, value in of.items()):
-            say(f"error of {name} against the step")
-            results.put(error=[{**row, **of} for row in errors.measure(name, how)])
+def measured(scenes, how):
+    """(DataFrame, a row a measurement; {scene: Start}; {code: reason}; fraction of the machine that others took)."""
+    rows, starts, missing, others = [], {}, {}, 0.0
+    for name, scene in scenes.items():
+        starts[name] = moments.make(name, scene, say=print)
+        for moment in scene.moments:
+            others = max(others, fraction_of_others())
+            path = moments.path_of(name, moment, scene)
+            found, without = measure(scene, moment, starts[name], path, how)
+            rows += [{"scene": name, **row} for row in found]
+            missing |= without
+    table = pd.DataFrame(rows)
+    table["ms"] = 1e3 * table.seconds / table.steps
+    return table.assign(rate=1e-3 * table.contacts / table.ms), starts, missing, others
+
+
+# ---- the page ----
+
+
+def by_code(table, scenes):
+    """A row for each moment and code: medians of the rounds, and the engine's speed over the code's in a round."""
+    rows = []
+    for (name, moment), here in table.groupby(["scene", "moment"], sort=False):
+        ours = here[here.code == "engine"].set_index(["threads", "round"]).rate
+        for code, own in here.groupby("code", sort=False):
+            row = {"scene": scenes[name].title, "moment": moment, "code": codes.CODES[code].name}
+            row["contacts"] = round(here[here.code == "engine"].contacts.mean())
+            for threads, of_threads in own.groupby("threads"):
+                ratio = ours.loc[threads] / of_threads.set_index("round").rate
+                row |= {
+                    f"M/s, {threads}": f"{of_threads.rate.median():.1f}",
+                    f"ms, {threads}": f"{of_threads.ms.median():.3g}",
+                }
+                row[f"engine / code, {threads}"] = f"{ratio.min():.3g} to {ratio.max():.3g}" if code != "engine" else ""
+            rows.append(row)
+    return pd.DataFrame(rows).fillna("")
+
+
+def whole_runs(table, scenes, starts):
+    """Minutes of whole runs: small steps times the mean of the moments' medians, each weighted by the part of the run
+    that is nearest to it (of a compression in the logarithm of the filling, in which its time is even)."""
+    rows, ms = [], table.groupby(["scene", "code", "threads", "moment"]).ms.median()
+    for name in (name for name in starts if len(scenes[name].moments) > 1):
+        at = list(starts[name].progress.values())
+        ends = [0.0, *((a + b) / 2 for a, b in zip(at, at[1:])), 1.0]
+        weights = pd.Series([end - begin for begin, end in zip(ends, ends[1:])], index=list(scenes[name].moments))
+        row = {"scene": scenes[name].title, "small steps": starts[name].steps}
+        for (code, threads), of_moments in ms.loc[name].groupby(["code", "threads"]):
+            minutes = (of_moments.droplevel([0, 1]) * weights).sum(min_count=len(weights)) * starts[name].steps / 60e3
+            row[f"{codes.CODES[code].name}, {threads}"] = f"{minutes:.3g}"
+        rows.append(row)
+    return pd.DataFrame(rows).fillna("")
+
+
+def page(group, table, scenes, starts, missing, others, how, error):
+    """The text that is printed."""
+    head = dict(group=group, rounds=how.rounds, together=measured_scenes.SMALL_STEPS, others=others)
+    parts = [HEAD.format(**head, **machine()), by_code(table, scenes).to_string(index=False)]
+    whole = whole_runs(table, scenes, starts)
+    if len(whole):
+        parts += ["\nMinutes of whole runs, from these moments", whole.to_string(index=False)]
+    if error is not None:
+        parts.append(
+            "\nError against the step [t0]: ledger over K(0), d_max less that of the shortest step [grain radii]"
+        )
+        parts.append(error.to_string(float_format=lambda x: f"{x:.2g}"))
+        orders = {name: errors.order(error.index.to_numpy(), error[name].to_numpy()) for name in ("ledger", "d_max")}
+        parts.append(f"order of convergence: {', '.join(f'{name} {value:.2f}' for name, value in orders.items())}")
+    others = [code for code in table.code.unique() if codes.CODES[code].physics]
+    parts += ["", *(f"{codes.CODES[code].name}: {codes.CODES[code].physics}" for code in others)]
+    versions = table[table.code.isin(peers.TITLES)].groupby("code").version.first()
+    parts += [f"{codes.CODES[code].name} is {version}" for code, version in versions.items()]
+    return "\n".join(parts + [f"{codes.CODES[code].name} was not measured: {why}" for code, why in missing.items()])
 
 
 def main():
     given = arguments()
-    how, known = given.settings, measured_scenes.all_scenes(given.settings)
-    scenes, results = {name: known[name] for name in given.scene if name in known}, Results(given.out)
-    if "make" in given.only:
-        for name, scene in scenes.items():
-            moments.make(name, scene, say=say)
-    if "measure" in given.only:
-        say("keep the machine quiet meanwhile")
-        for code in sorted({code for scene in scenes.values() for code in scene.codes}):
-            if reason := codes.missing(code):
-                say(f"without {code}: {reason}")
-        measure_speed(scenes, how, results)
-        measure_errors([name for name in given.scene if name not in known], how, results)
-    if "report" in given.only:
-        if not len(results.speed) + len(results.error):
-            sys.exit(f"bench: {given.out} holds no measurement: must be measured first (--only measure)")
-        text = report.text(results, how)
-        (given.out / "bench.md").write_text(text)
-        print(text)
+    how, scenes = given.how, given.scenes
+    table, starts, missing, others = measured(scenes, how)
+    error = errors.by_step(*how.error) if given.group == "bench" else None
+    text = page(given.group, table, scenes, starts, missing, others, how, error)
+    OUT.mkdir(parents=True, exist_ok=True)
+    table.to_csv(OUT / f"{given.group}.csv", index=False)
+    (OUT / f"{given.group}.txt").write_text(text + "\n")
+    print(text)
 
 
 if __name__ == "__main__":

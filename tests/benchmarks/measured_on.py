@@ -1,4 +1,4 @@
-"""Where and of what a measurement was taken, and whether the machine was quiet."""
+"""On which machine and commit a measurement was taken, and whether the machine was quiet."""
 
 import os
 import platform
@@ -8,14 +8,13 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 TOP = HERE.parents[1]
-RESULTS = HERE / "results"
-LOUD = 0.05  # fraction of the machine, or of its core, that a measurement may lack before the report warns
 
 
 def machine():
     """{cpu, cores, commit}; the commit ends in -changed when the work tree differs from it."""
     about = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in open("/proc/cpuinfo"))}
-    cpu = f"{about.get('model name', platform.processor())} (model {about.get('model', '?')}, {float(about.get('cpu MHz', 'nan')) / 1000:.1f} GHz)"
+    clock = float(about.get("cpu MHz", "nan")) / 1000
+    cpu = f"{about.get('model name', platform.processor())} (model {about.get('model', '?')}, {clock:.1f} GHz)"
     changed = _git("status", "--porcelain", "--", "contact_law", "yade_scripts") != ""
     commit = _git("rev-parse", "--short", "HEAD") + ("-changed" if changed else "")
     return {"cpu": cpu, "cores": os.cpu_count(), "commit": commit}
@@ -23,11 +22,6 @@ def machine():
 
 def _git(*arguments):
     return subprocess.run(["git", *arguments], cwd=TOP, capture_output=True, text=True).stdout.strip()
-
-
-def built_commit():
-    """Commit of the plugin that is built."""
-    return (TOP / "build/commit.list").read_text().strip()
 
 
 def fraction_of_others(seconds=1.0):
@@ -38,6 +32,6 @@ def fraction_of_others(seconds=1.0):
 
 
 def _busy():
-    """Processor seconds that anything has used since the machine started: user, nice, system, irq, softirq, steal (proc(5))."""
+    """Processor seconds used since the machine started: user, nice, system, irq, softirq, steal (proc(5))."""
     ticks = open("/proc/stat").readline().split()[1:]
     return sum(int(ticks[k]) for k in (0, 1, 2, 5, 6, 7)) / os.sysconf("SC_CLK_TCK")

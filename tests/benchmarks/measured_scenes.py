@@ -1,22 +1,38 @@
-"""The scenes that are measured, as data: the papers' runs, and the bench's own. Needs no YADE.
+"""The scenes that are measured: the bench's own, those of the papers, and the collision that every code runs.
 
 A scene is what a run of collide.py or compress.py starts from, and the moments of that run at which codes are measured
 (moments.py makes their files).
 """
 
 from dataclasses import dataclass, field
+from math import ceil, log
 
-ENGINE, BESIDE_LAMMPS = ("engine",), ("engine", "lammps")
-SLOW, PEERS = ("engine-avx2", "engine-portable", "functors", "stock"), ("lammps", "liggghts")
+import numpy as np
+import scene_file
+
+from analysis.measures.virial import filling_factor
+from yade_scripts import packings
+from yade_scripts.experiments import collision, compression
+from yade_scripts.materials import pair_constants
+from yade_scripts.packings.approach import first_touch
+from yade_scripts.packings.periodic import smallest_edge
+
+BESIDE_LAMMPS = ("engine", "lammps")
+IN_YADE = ("engine", "engine-avx2", "engine-portable", "functors", "stock")
 EVERY = ("engine", "functors", "stock", "lammps", "lammps-newest", "liggghts")
 FLYING = {"flying": 0.0}
+SMALL_STEPS = 50  # in an O.step of a collision
 
 
 @dataclass(frozen=True)
 class Scene:
-    """title, in words; kind: collision, compression, materials or radii (starts.py); parameters of the run, as tables have them; moments: {name: time [s]
-    or filling factor}, in their order (None: the start); apart: time [s] by which the first moment of a collision is moved
-    back along straight lines, for a flight long enough to measure; codes: names of codes.CODES to measure."""
+    """A run and its moments.
+
+    title: in words; kind: collision, compression, or materials (a collision in which every other grain, at random, is
+    of SOFT); parameters: of the run, as tables have them; moments: {name: time [s] or filling factor}, in their order
+    (None: the start); apart: time [s] by which a collision's first moment is moved back along straight lines, for a
+    flight long enough to measure; codes: names of codes.CODES to measure.
+    """
 
     title: str
     kind: str
@@ -26,11 +42,34 @@ class Scene:
     codes: tuple = BESIDE_LAMMPS
 
 
+@dataclass(frozen=True)
+class Start:
+    """A run's beginning: scene_file.SceneFile, duration [s], t0 [s], small steps in an O.step, and how far along
+    (0: its beginning, 1: its end) each moment is."""
+
+    scene: scene_file.SceneFile
+    duration: float
+    time_unit: float
+    together: int
+    progress: dict
+
+    @property
+    def step(self):
+        """The small step [s]."""
+        return float(self.scene.head["step"])
+
+    @property
+    def steps(self):
+        """Small steps of the whole run."""
+        return ceil(self.duration / self.step)
+
+
 # ---- the papers' ----
 
 A22 = {"packing": "bpca", "grains": 50_000, "impact": "(3/12)**0.5", "velocity": "10**1.7", "stepFraction": 0.2}
 A22.update(duration="6.34e-6", viscoelasticTime="0")
 OF_A22 = {"flying": 0.0, "compressing": 0.35e-6, "fragments": 0.7e-6, "later": 2e-6}
+WITH_DRAG, SLOWLY = {**A22, "viscoelasticTime": "6e-12"}, {**A22, "velocity": 0.5}
 K13 = {"grains": 16_384, "strainRate": "3e-7", "stepFraction": 0.3, "finalFilling": 0.3}
 DENSE = {"phi 0.03": 0.03, "phi 0.3": 0.3}
 S17 = {"packing": "bcca", "grains": 1024, "planar": 1, "neck": 0.7, "velocity": 20, "stepFraction": 0.1}
@@ -39,7 +78,6 @@ CPE = {"packing": "cpe", "filling": 0.4, "stepFraction": 0.1, "velocity": "10**0
 OF_A24 = {"flying": 0.0, "compressed": 0.4e-6, "apart": 0.8e-6}
 FAST = {**CPE, "radius": 20, "velocity": 60, "duration": "120e-9"}
 OF_FAST, OF_CPE = {"flying": 0.0, "compressing": 30e-9, "fragments": 110e-9}, {"flying": 0.0, "compressed": 0.2e-6}
-WITH_DRAG, SLOWLY = {**A22, "viscoelasticTime": "6e-12"}, {**A22, "velocity": 0.5}
 PAPERS = {
     "a22": Scene("A22: two BPCA of 50,000 at 50.1 m/s, B_off 0.5", "collision", A22, OF_A22, 0.5e-6),
     "a22-drag": Scene("A22: the same, T_vis 6 ps", "collision", WITH_DRAG, OF_A22, 0.5e-6),
@@ -53,41 +91,79 @@ PAPERS = {
 }
 
 
-# ---- the bench's ----
+# ---- the bench's, and the one of all codes ----
 
 
-def bench(settings):
-    """{name: Scene}: two CPE of each size, unlike grains, and moments through a collision."""
-    found, reference = {}, settings.reference
-    for radius in settings.radii:
-        codes = ENGINE + SLOW * (radius in (settings.radii[0], reference)) + PEERS * (radius == reference)
-        found[sized(radius)] = _two_cpe(f"two CPE, R {radius:g}", "collision", radius, codes)
-    found["materials"] = _two_cpe(f"two materials, R {reference:g}", "materials", reference, ENGINE)
-    found["radii"] = _two_cpe(f"two sizes of grain, 1 : 0.41, R {reference:g}", "radii", reference, ENGINE)
-    for radius, speed, duration in settings.through:
-        given = {**CPE, "radius": radius, "velocity": speed, "duration": duration}
-        times = {f"{1e9 * duration * k / 5:.3g} ns": duration * k / 5 for k in range(1, 6)}
-        title = f"two CPE, R {radius:g}, through {speed:g} m/s"
-        found[f"through-{speed:g}"] = Scene(title, "collision", given, {**FLYING, **times}, 0.2e-6, ENGINE)
-    return found
-
-
-def beside_peers(settings):
-    """The collision that all codes are measured on for the page of throughput."""
-    given, moments = {**CPE, "radius": settings.rung[0]}, {**FLYING, "compressed": 0.1e-6}
-    return Scene(f"two CPE, R {settings.rung[0]:g}, 3.16 m/s", "collision", given, moments, 1e-6, EVERY)
-
-
-def sized(radius):
-    """Name of the scene of two CPE of this radius [grain radii]."""
-    return f"cpe-{radius:g}"
-
-
-def _two_cpe(title, kind, radius, codes):
+def _two_cpe(radius, codes=("engine",), kind="collision"):
     # a flight that is enough to measure, and so short that a peer's bins are not mostly empty
     flight = max(0.1e-6, 1e-6 * min(1.0, (20 / radius) ** 3))
+    title = f"two CPE, R {radius:g}" + ", two materials" * (kind == "materials")
     return Scene(title, kind, {**CPE, "radius": radius}, apart=flight, codes=codes)
 
 
-def all_scenes(settings):
-    return {**bench(settings), **PAPERS, "peers": beside_peers(settings)}
+BENCH = {
+    "cpe-20": _two_cpe(20, IN_YADE),
+    "cpe-40": _two_cpe(40, (*IN_YADE, "lammps", "liggghts")),
+    "cpe-80": _two_cpe(80),
+    "materials": _two_cpe(40, kind="materials"),
+}
+QUICK = {name: BENCH[name] for name in ("cpe-20", "cpe-40")}
+TINY = {"tiny": _two_cpe(4, (*IN_YADE, "lammps"))}
+OF_PEERS = {**FLYING, "compressed": 0.1e-6}
+PEERS = {"peers": Scene("two CPE, R 20, 3.16 m/s", "collision", {**CPE, "radius": 20}, OF_PEERS, 1e-6, EVERY)}
+
+
+# ---- small ones of every kind, for tests and sanitizers ----
+
+# drag; a periodic cell with damping; sintered bonds in a plane, some of which break
+DRAG = {"packing": "bpca", "grains": 300, "velocity": 60, "viscoelasticTime": "6e-12", "stepFraction": 0.2}
+CELL = {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1}
+BONDS = {"packing": "bcca", "grains": 64, "planar": 1, "neck": 0.3, "velocity": 60, "stepFraction": 0.1}
+SMALL = {
+    "drag": Scene("", "collision", DRAG, {"flying": 0.0, "compressing": 30e-9}),
+    "cell": Scene("", "compression", CELL, {"start": None, "denser": 0.03}),
+    "bonds": Scene("", "collision", BONDS, {"flying": 0.0, "broken": 60e-9}),
+}
+
+
+# ---- where their runs begin ----
+
+SOFT = {"young": 3e9, "poisson": 0.33, "surfaceEnergy": 0.05, "criticalRolling": 1.1e-9}
+
+
+def start(scene):
+    """Start of a Scene's run."""
+    return _compressed(scene) if scene.kind == "compression" else _collided(scene)
+
+
+def _collided(scene):
+    parameters = collision.CollisionParameters.parse(scene.parameters)
+    materials, kind = [parameters], 0
+    overlap = pair_constants(parameters)["equilibriumOverlap"]
+    parameters, pair, velocities = collision.place(parameters, overlap)
+    numbers, radius = [packing.grains for packing in pair], np.concatenate([packing.radius for packing in pair])
+    if scene.kind == "materials":
+        materials.append(parameters.changed(**SOFT))
+        kind = np.random.default_rng(parameters.seed).integers(2, size=sum(numbers))
+    time_unit = min(pair_constants(one, (r, r))["timeUnit"] for one in materials for r in np.unique(radius))
+    parameters = collision.with_duration(parameters, time_unit, first_touch(*pair, velocities[1] - velocities[0]))
+    position, velocity = np.concatenate([packing.position for packing in pair]), np.repeat(velocities, numbers, axis=0)
+    step, planar = parameters.stepFraction * time_unit, bool(parameters.planar)
+    made = scene_file.start(position, velocity, radius, materials, step, kind, neck=parameters.neck, planar=planar)
+    progress = {name: time / parameters.duration for name, time in scene.moments.items()}
+    return Start(made, parameters.duration, time_unit, SMALL_STEPS, progress)
+
+
+def _compressed(scene):
+    parameters = compression.CompressionParameters.parse(scene.parameters)
+    constants, damping = pair_constants(parameters), parameters.linearDamping
+    time_unit, overlap = constants["timeUnit"], constants["equilibriumOverlap"]
+    cluster = packings.bcca(parameters.grains, parameters.grainRadius, overlap, parameters.seed)
+    edge, at_rest, step = smallest_edge(cluster), np.zeros((cluster.grains, 3)), parameters.stepFraction * time_unit
+    cell = {"linear_damping": damping, "edge": edge}
+    made = scene_file.start(cluster.position, at_rest, cluster.radius, [parameters], step, **cell)
+    first = filling_factor(cluster.radius, np.full(3, edge))
+    whole = log(parameters.finalFilling / first)
+    progress = {name: log((filling or first) / first) / whole for name, filling in scene.moments.items()}
+    duration, rate = whole * time_unit / (6 * parameters.strainRate), -2 * parameters.strainRate / time_unit
+    return Start(made.with_strain_rate(rate), duration, time_unit, compression._interval(parameters), progress)

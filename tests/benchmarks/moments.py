@@ -6,12 +6,13 @@ definition changes.
 
 import hashlib
 import json
+from dataclasses import replace
 from math import log
 
 import codes
+import measured_scenes
 import numpy as np
 import scene_file
-import starts
 from measured_on import TOP
 
 from analysis.measures.virial import filling_factor
@@ -32,7 +33,7 @@ def path_of(name, moment, scene, folder=FOLDER):
 
 def make(name, scene, folder=FOLDER, say=lambda words: None):
     """Start of a Scene, whose moments all have their files afterwards; what is there is not made again."""
-    start = starts.of(scene)
+    start = measured_scenes.start(scene)
     paths = {moment: path_of(name, moment, scene, folder) for moment in scene.moments}
     if not all(path.exists() for path in paths.values()):
         folder.mkdir(parents=True, exist_ok=True)
@@ -42,7 +43,9 @@ def make(name, scene, folder=FOLDER, say=lambda words: None):
 
 def _make_collision(scene, start, paths, say):
     first, *later = paths.items()
-    _save(first[1], starts.moved_back(start, scene.apart))
+    grains = start.scene.grains.copy()
+    grains["position"] -= scene.apart * grains["velocity"]
+    _save(first[1], replace(start.scene, grains=grains))
     begin, time = first[1].with_suffix(".begin"), 0.0
     _save(begin, start.scene)
     here = begin

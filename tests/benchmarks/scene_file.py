@@ -1,8 +1,10 @@
-"""Scenes in files, for the harness (harness/scene_file.hpp lists the same fields) and for YADE (yade_scene.py), LAMMPS and LIGGGHTS (peers.py).
+"""Scenes in files, for the harness (harness/scene_file.hpp lists the same fields), YADE (in_yade.py), LAMMPS and
+LIGGGHTS (peers.py).
 
-A file holds one record of HEAD, then records of MATERIAL, GRAIN and CONTACT, as many as HEAD says; every field has eight bytes. All is SI and of one
-moment. Without contacts it is a start: grains that overlap touch, with unstrained springs (with a neck: bonded). The mean flow of a periodic cell is in the
-grains' velocities. Files stay readable from one version of the engine to the next, which checkpoints do not.
+A file holds one record of HEAD, then records of MATERIAL, GRAIN and CONTACT, as many as HEAD says; every field has
+eight bytes. All is SI and of one moment. Without contacts it is a start: grains that overlap touch, with unstrained
+springs (with a neck: bonded). The mean flow of a periodic cell is in the grains' velocities. Files stay readable from
+one version of the engine to the next, which checkpoints do not.
 """
 
 from dataclasses import dataclass, replace
@@ -52,7 +54,8 @@ class SceneFile:
         return self.head["strainRate"]
 
     def with_strain_rate(self, rate):
-        """The scene whose cell deforms at another rate (3,) [1/s]; grains get the difference of the mean flows (K13 eq 12)."""
+        """The scene whose cell deforms at another rate (3,) [1/s]; grains get the difference of the mean flows (K13
+        eq 12)."""
         head, grains = self.head.copy(), self.grains.copy()
         grains["velocity"] += (rate - head["strainRate"]) * grains["position"]
         head["strainRate"] = rate
@@ -62,8 +65,12 @@ class SceneFile:
 def start(position, velocity, radius, materials, step, kind=0, linear_damping=0.0, neck=0.0, edge=0.0, planar=False):
     """SceneFile of grains that have no contacts yet.
 
-    position, velocity (N,3) [m, m/s]; radius (N,) [m]; materials: each anything with the names of MATERIAL as attributes; step: small step [s]; kind (N,) or
-    one: index into materials; edge: of a periodic cubic cell [m], 0: open space; planar: the grains never leave z = 0.
+    Parameters
+    ----------
+    position, velocity : (N, 3) [m, m/s]; radius : (N,) [m].
+    materials : each anything with the names of MATERIAL as attributes; kind : (N,) or one, index into materials.
+    step : small step [s]; edge : of a periodic cubic cell [m], 0 in open space.
+    linear_damping, neck : k_n of K13, beta of S17; planar : the grains never leave z = 0.
     """
     material = np.array([tuple(getattr(one, name) for name in MATERIAL.names) for one in materials], MATERIAL)
     grains = np.zeros(len(radius), GRAIN)

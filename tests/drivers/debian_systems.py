@@ -1,14 +1,11 @@
 """Fresh Debian systems, in each a clean clone, in it the README's commands. Run by `make test-debian`, as root.
 
     python3 tests/drivers/debian_systems.py bookworm trixie      [--commands 'make demo' ...]
-    python3 tests/drivers/debian_systems.py bookworm-arm64       of another processor, emulated where this one is none
-                                                                 (Debian's qemu-user-static and binfmt-support)
+    python3 tests/drivers/debian_systems.py bookworm-arm64       another processor, emulated (qemu-user-static)
 
-A system is made by debootstrap with the mirror of this system's apt, and removed afterwards. Each runs in mount and
-process namespaces of its own.
-What is tested is the last commit. Writes results/debian.md: system, versions, result and time of each command; systems
-that are not tried keep their lines.
-Exit status: 0 when every command of every system succeeded, otherwise 1.
+A system is made by debootstrap with the mirror of this system's apt, and removed afterwards; each runs in mount and
+process namespaces of its own. What is tested is the last commit. Prints a line a command, and keeps them in
+build/debian.md. Exit status: 0 when every command of every system succeeded, otherwise 1.
 """
 
 import argparse
@@ -19,75 +16,22 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-TOP = HERE.parents[1]
-RESULTS = HERE / "results" / "debian.md"
+TOP = Path(__file__).resolve().parents[2]
 CLONE = "/root/clone"
 BASE = ("git", "make")  # what one has who has cloned a repository and calls make
-VERSIONS = {
-    "Debian": "cat /etc/debian_version",
-    "YADE": "dpkg-query -W -f '${Version}' yade",
-    "Python": "dpkg-query -W -f '${Version}' python3",
-    "g++": "dpkg-query -W -f '${Version}' g++",
-    "Boost": "dpkg-query -W -f '${Version}' libboost-dev",
-    "numpy": "dpkg-query -W -f '${Version}' python3-numpy",
-}
+VERSIONS = "dpkg-query -W -f '${Package} ${Version}, ' yade python3 g++ libboost-dev python3-numpy"
+HEAD = """# Fresh Debian systems
+
+Commit {commit}, {cores} cores. Each system has nothing but git and make at the start.
+
+| system | command | result | time [s] | versions |
+|---|---|---|---:|---|
+"""
 
 
-@dataclass
-class System:
-    """A Debian system in a folder; what has been found out about it."""
-
-    name: str  # suite, or suite-architecture
-    folder: Path
-    commit: str = "unknown"
-    versions: dict = field(default_factory=dict)
-    results: list = field(default_factory=list)  # (command, what became of it, seconds)
-
-    def make(self, mirror):
-        """Debootstrap, packages that come before the clone, and the clone."""
-        self.folder.mkdir()
-        suite, _, architecture = self.name.partition("-")
-        options = ["--variant=minbase"]
-        if architecture:
-            emulate()
-            options.append(f"--arch={architecture}")
-        known = Path("/usr/share/debootstrap/scripts", suite).exists()  # otherwise it is younger than debootstrap
-        run(["debootstrap", *options, suite, str(self.folder), mirror, *([] if known else ["sid"])])
-        (self.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
-        # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
-        (self.folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
-        self.inside(f"apt-get -q update && apt-get -q -y --no-install-recommends install {' '.join(BASE)}", check=True)
-        clone = self.folder / CLONE.lstrip("/")
-        run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(clone)])
-        self.commit = run(["git", "-C", str(clone), "rev-parse", "--short", "HEAD"]).stdout.strip()
-
-    def inside(self, command, check=False):
-        """CompletedProcess of a shell command within the system, with processes, mounts and nothing of this one's
-        environment but proxies."""
-        mounts = 'mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" && mount -t tmpfs tmp "$0/tmp"'
-        enter = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c"]
-        enter += [f'{mounts} && exec chroot "$0" /bin/sh -c "$1"', str(self.folder), command]
-        kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
-        own = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "TERM": "dumb"}
-        return run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
-
-    def try_commands(self, commands):
-        """Run them in the clone, the next even if one fails; yields after each."""
-        for command in commands:
-            begun = time.monotonic()
-            done = self.inside(f"cd {CLONE} && git config --global --add safe.directory {CLONE} && {command}")
-            seconds = time.monotonic() - begun
-            self.results.append((command, outcome(done), seconds))
-            print(f"{self.name}: {command}: {self.results[-1][1]}, {seconds:.0f} s", flush=True)
-            if done.returncode:
-                print((done.stdout + done.stderr)[-6000:], flush=True)
-            for name, ask in VERSIONS.items():
-                self.versions[name] = self.inside(ask).stdout.strip() or "not installed"
-            yield
+# ---- what other drivers use too ----
 
 
 def run(command, check=True, **more):
@@ -108,44 +52,76 @@ def last_commit_in(clone):
 
 
 def write_page(path, head, rows):
-    """Write head and rows (pairs of a line and whether all was well) as they come: whether all was well with each."""
+    """Print and write head and rows (pairs of a line and whether all was well) as they come: whether all was well."""
     text, good = head, True
     for line, well in rows:
+        print(line, flush=True)
         text, good = f"{text}{line}\n", good and well
         path.write_text(text)
     return good
 
 
-def emulate():
-    """Have the kernel start other processors' programs by qemu, which it forgets when the machine starts where no service tells it."""
-    if not Path("/proc/sys/fs/binfmt_misc/status").exists():
-        run(["mount", "-t", "binfmt_misc", "binfmt_misc", "/proc/sys/fs/binfmt_misc"])
-    run(["update-binfmts", "--enable"])
-
-
-def outcome(done):
-    """What became of a command: passed or failed, with pytest's last line or the line that make stopped with."""
-    counts = re.findall(r"^=* ?((?:\d+ \w+,? ?)+) in [\d.]+s", done.stdout, re.MULTILINE)
-    if done.returncode == 0:
-        return counts[-1].strip() if counts else "succeeded"
-    of_make = re.compile(r"make(\[\d+\])?: (\*\*\*|Entering|Leaving|Nothing)")
-    lines = [line for line in (done.stdout + done.stderr).splitlines() if line and not of_make.match(line)]
-    return f"failed: {counts[-1].strip() if counts else lines[-1][:150] if lines else done.returncode}"
-
-
 def archives():
     """[(address, code name, suite)] of Debian's archives that apt uses here."""
-    asked = ["--format", "$(REPO_URI) $(CODENAME) $(SUITE) $(ORIGIN)", "Created-By: Packages"]
-    found = [line.split(" ") for line in run(["apt-get", "indextargets", *asked]).stdout.splitlines()]
+    options = ["--format", "$(REPO_URI) $(CODENAME) $(SUITE) $(ORIGIN)", "Created-By: Packages"]
+    found = [line.split(" ") for line in run(["apt-get", "indextargets", *options]).stdout.splitlines()]
     return sorted({tuple(about) for *about, origin in found if origin == "Debian"})
 
 
-def mirror_of_this_system():
-    """The address of that which is no update of another."""
-    for address, _, suite in archives():
-        if "-" not in suite:
-            return address
-    sys.exit("apt has no Debian archive among its sources")
+# ---- systems ----
+
+
+def make(name, folder, mirror):
+    """A system (suite, or suite-architecture) in a folder: debootstrap, git and make, and a clone."""
+    folder.mkdir()
+    suite, _, architecture = name.partition("-")
+    options = ["--variant=minbase"]
+    if architecture:
+        # the kernel forgets other processors' programs when the machine starts where no service tells it
+        if not Path("/proc/sys/fs/binfmt_misc/status").exists():
+            run(["mount", "-t", "binfmt_misc", "binfmt_misc", "/proc/sys/fs/binfmt_misc"])
+        run(["update-binfmts", "--enable"])
+        options.append(f"--arch={architecture}")
+    known = Path("/usr/share/debootstrap/scripts", suite).exists()  # otherwise it is younger than debootstrap
+    run(["debootstrap", *options, suite, str(folder), mirror, *([] if known else ["sid"])])
+    (folder / "etc/dpkg/dpkg.cfg.d/fast").write_text("force-unsafe-io\n")
+    # A copy of unstable on a mirror of one's own may be older than the archive lets it be.
+    (folder / "etc/apt/apt.conf.d/80old-copy").write_text('Acquire::Check-Valid-Until "false";\n')
+    inside(folder, f"apt-get -q update && apt-get -q -y --no-install-recommends install {' '.join(BASE)}", check=True)
+    run(["git", "clone", "-q", "--no-hardlinks", str(TOP), str(folder / CLONE.lstrip("/"))])
+
+
+def inside(folder, command, check=False):
+    """CompletedProcess of a shell command within a system; of this one's environment it has proxies alone."""
+    mounts = 'mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" && mount -t tmpfs tmp "$0/tmp"'
+    enter = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c"]
+    enter += [f'{mounts} && exec chroot "$0" /bin/sh -c "$1"', str(folder), command]
+    kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
+    own = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "TERM": "dumb"}
+    return run(enter, check=check, env={**kept, **own, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
+
+
+def outcome(done):
+    """What became of a command, with the last line that isn't make's own: of the tests their numbers."""
+    lines = [line for line in (done.stdout + done.stderr).splitlines() if line and not line.startswith("make")]
+    return f"{'failed' if done.returncode else 'passed'}: {lines[-1].strip('= ')[:150] if lines else done.returncode}"
+
+
+def rows(names, commands):
+    """(line of the table, whether it succeeded) of each command in each system; the next runs even if one fails."""
+    mirror = next(address for address, _, suite in archives() if "-" not in suite)  # no update of another
+    with tempfile.TemporaryDirectory(prefix="debian-", dir="/var/tmp") as scratch:
+        for name in names:
+            folder = Path(scratch, name)
+            make(name, folder, mirror)
+            for command in commands:
+                begun = time.monotonic()
+                done = inside(folder, f"cd {CLONE} && git config --global --add safe.directory {CLONE} && {command}")
+                seconds = time.monotonic() - begun
+                if done.returncode:
+                    print((done.stdout + done.stderr)[-6000:], flush=True)
+                versions = inside(folder, VERSIONS).stdout.strip(", ")
+                yield f"| {name} | `{command}` | {outcome(done)} | {seconds:.0f} | {versions} |", not done.returncode
 
 
 def commands_of_the_readme():
@@ -154,42 +130,18 @@ def commands_of_the_readme():
     return [line.split("#")[0].strip() for line in block.strip().splitlines()]
 
 
-def table(systems, before):
-    """The page that the repository keeps; before: the text that it was, of which lines of other systems stay."""
-    cores = len(os.sched_getaffinity(0))
-    about = f"{cores} cores, with other work beside. Each system was made by debootstrap with nothing but "
-    about += f"{' and '.join(BASE)} added; the first command installs all other packages. "
-    about += "Those of another processor than this machine's ran emulated."
-    head = "| system | " + " | ".join(VERSIONS) + " | commit | command | result | time [s] |"
-    lines = ["# Fresh Debian systems", "", about, "", head, "|---|" + "---|" * len(VERSIONS) + "---|---|---|---:|"]
-    names = tuple(f"| {name} |" for name in ("system", *(system.name for system in systems)))
-    lines += [line for line in before.splitlines() if line.startswith("| ") and not line.startswith(names)]
-    for system in systems:
-        for command, result, seconds in system.results:
-            versions = " | ".join(system.versions.values())
-            lines.append(f"| {system.name} | {versions} | {system.commit} | `{command}` | {result} | {seconds:.0f} |")
-    return "\n".join(lines) + "\n"
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="+", metavar="SUITE[-ARCHITECTURE]")
     parser.add_argument("--commands", nargs="+", metavar="COMMAND", help="instead of the README's")
-    parser.add_argument("--out", type=Path, default=RESULTS, help="where the table goes (default: %(default)s)")
     options = parser.parse_args()
-    if os.geteuid() != 0:
-        sys.exit("must be run as root: debootstrap and chroot need it (sudo make test-debian)")
-    if not shutil.which("debootstrap"):
-        sys.exit("debootstrap: not installed; must be there (apt-get install debootstrap)")
-    before = options.out.read_text() if options.out.exists() else ""
-    mirror, commands, systems = mirror_of_this_system(), options.commands or commands_of_the_readme(), []
-    with tempfile.TemporaryDirectory(prefix="debian-", dir="/var/tmp") as scratch:
-        for name in options.names:
-            systems.append(System(name, Path(scratch, name)))
-            systems[-1].make(mirror)
-            for _ in systems[-1].try_commands(commands):
-                options.out.write_text(table(systems, before))
-    return int(any(result.startswith("failed") for system in systems for _, result, _ in system.results))
+    if os.geteuid() != 0 or not shutil.which("debootstrap"):
+        sys.exit("debian_systems.py: must be run as root, with debootstrap installed (make test-debian)")
+    (TOP / "build").mkdir(exist_ok=True)
+    commit = run(["git", "-C", str(TOP), "rev-parse", "--short", "HEAD"]).stdout.strip()
+    head = HEAD.format(commit=commit, cores=len(os.sched_getaffinity(0)))
+    found = rows(options.names, options.commands or commands_of_the_readme())
+    return 0 if write_page(TOP / "build/debian.md", head, found) else 1
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Runs the commands of README.md and docs/ as written, in a folder of its own: what make test-docs calls after it has built the site.
+"""Runs the commands of README.md and docs/ as written, in a folder of its own: called by make test-docs.
 
 Left out are those with a name in capitals, which stands for the reader's own. A few minutes."""
 

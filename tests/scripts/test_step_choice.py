@@ -4,7 +4,6 @@ import re
 
 import numpy as np
 import pytest
-import step_choice_report as report
 from errors import of_scripts
 from refused import refused
 from running import TINY, collide, messages, read_json
@@ -120,27 +119,6 @@ def test_constants_for_estimates_are_the_plugins(case):
     bond = ours.pop("bond")
     assert {key: plugins[key] for key in ours} == pytest.approx(ours, rel=1e-12)
     assert {key: plugins["bond"][key] for key in bond} == pytest.approx(bond, rel=1e-12)
-
-
-def test_the_constants_are_those_of_the_data():
-    """95 % and a little more of the measured collisions that met lie below it, of each set and kind of scene; of compressions, at five fillings.
-
-    Of the sets of CPE aggregates together that were fitted about 98 % do. Fewer of a set than binom.ppf would be a chance
-    of 2 %.
-    """
-    collisions, cells = report.collisions(), report.compressions()
-    kind = np.select(
-        [collisions.plain, collisions.neck > 0, collisions.limit == "cut"], ["plain", "sintered", "cut"], "held"
-    )
-    found = dict(list((collisions.over <= 1).groupby([kind, collisions["set"]])))
-    cells = cells.query(f"not ({report.REFUSED}) and stretch == 'no'")
-    found |= {("compressed", name): own <= 1 for name, own in cells.over.groupby(cells["set"])}
-    least = {("plain", "grid"): 400, ("cut", "random"): 20, **{("compressed", name): 99 for name in ("grid", "random")}}
-    least |= {(kind, "random"): 90 for kind in ("plain", "sintered", "held")}
-    assert all(len(found[key]) > number for key, number in least.items())
-    assert 0.95 < np.mean([*found["plain", "grid"], *found["plain", "study"]]) < 0.99
-    for name, of_set in found.items():
-        assert sum(of_set) >= binom.ppf(0.02, len(of_set), 0.95), name
 
 
 # Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds.

@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from yade_scripts.studies import table_script
 
 # t0; K13 takes 0.1. The pressure, by the work of the boundaries, is that at a step of 0.05 to 1 % below a filling of 0.1 and to
-# 2 % above, with damping and without, less than seeds differ (tests/benchmarks/results/compression_step.md).
+# 2 % above, with damping and without, less than seeds differ (docs/measurements.md).
 STEP = 0.3
 FIDUCIAL = {"grains": 16384, "strainRate": "3e-7"}
 RATES = ("1e-7", "3e-7", "1e-6", "3e-6", "1e-5")

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -22,7 +21,6 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
   together=50     small steps in one call of the engine, as subSteps of JKRWadaEngine
   warm=0          small steps before the first measurement
   out=            file for the scene at the end
-  control=        fifo of perf record --delay=-1 --control fifo:NAME, which then samples the measurements only
 )";
 
 long wholeNumber(const std::string& name, const std::string& text, long least)
@@ -37,7 +35,7 @@ long wholeNumber(const std::string& name, const std::string& text, long least)
 struct Settings {
 	std::string scene;
 	std::map<std::string, std::string> words { { "steps", "500" }, { "threads", "1" }, { "domains", "0" }, { "instructions", "" },
-		{ "together", "50" }, { "warm", "0" }, { "out", "" }, { "control", "" } };
+		{ "together", "50" }, { "warm", "0" }, { "out", "" } };
 
 	const std::string& operator[](const char* name) const { return words.at(name); }
 
@@ -64,27 +62,15 @@ void take(Settings& settings, const std::string& argument)
 		throw std::invalid_argument(argument + ": no such parameter; build/harness --help lists them");
 }
 
-// Tells perf to begin or to end sampling.
-void tell(const Settings& settings, const char* command)
-{
-	const std::string& path = settings["control"];
-	if (path.empty()) return;
-	std::ofstream control(path);
-	control << command << std::endl;
-	if (!control) throw std::runtime_error(path + ": must be a fifo that perf reads");
-}
-
 void measure(harness::Run& run, const Settings& settings, long threads)
 {
 	contact_law::Dynamics& dynamics = run.dynamics();
 	dynamics.setThreads(int(threads));
 	const long steps = settings.number("steps"), together = settings.number("together");
 	const double contacts = contact_law::contactCount(dynamics);
-	tell(settings, "enable");
 	const auto start = std::chrono::steady_clock::now();
 	run.run(steps, together);
 	const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-	tell(settings, "disable");
 	const double mean = 0.5 * (contacts + contact_law::contactCount(dynamics));
 	std::printf("{\"threads\": %d, \"steps\": %ld, \"msPerStep\": %.6g, \"contacts\": %.1f, \"contactUpdatesPerSecond\": %.5g}\n",
 	        dynamics.threadCount(), steps, 1e3 * seconds / double(steps), mean, mean * double(steps) / seconds);
