@@ -6,14 +6,13 @@ from functools import lru_cache
 import numpy as np
 
 from ..measures.compression import first_compression
-from ..measures.coordination import mean_coordination
 from ..measures.decided import Pieces, is_recent
 from ..measures.fragments import fragment_labels, fragment_sizes
-from ..measures.free_flight import pieces_that_can_meet
 from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
+from ..measures.motion import pieces_that_can_meet
 from ..measures.of_run import met, time_of_touch
 from ..measures.outcome import NEVER_MET, UNDECIDED, restitution_of_pieces
-from ..measures.structure import filling_factor, gyration_radius
+from ..measures.structure import filling_factor, gyration_radius, mean_coordination
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
 from ..runs.table import Column
 from ..studies.columns import VELOCITY, constant, group, one, parameter

@@ -7,7 +7,7 @@ from typing import Callable
 
 import numpy as np
 
-from ..measures.virial import nearest_image
+from ..measures.periodic_cell import nearest_image
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,23 @@
-"""Compression of two colliding aggregates: compression length d, mutual velocity v, and their maximum
-(Arakawa et al. 2024, A24, eqs 10-13).
+"""Compression of two colliding aggregates: compression length d, mutual velocity v, and the largest d of the first
+compression (Arakawa et al. 2024, A24, eqs 10-13).
 
-As defined, v = +dd/dt (positive while the aggregates approach), but only between crossings: d jumps a little
-whenever a grain passes through x = 0, because the averages over x > 0 and x < 0 then change their members.
+v = +dd/dt, positive while the aggregates approach, but only between crossings: d jumps a little whenever a grain passes
+through x = 0, because the averages over x > 0 and x < 0 then change their members.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import ANY, NOT_NEGATIVE, WrongArgument, number, numbers, takes
+from ..arrays import numbers
 
 
 @dataclass(frozen=True)
 class Maximum:
-    """Largest compression: length d_max [m] at time t_max [s], their errors (see maximum_compression), and
-    whether it is a maximum inside the record (False: at its first or last sample, so that d_max is only a
-    bound)."""
+    """Largest compression length [m], its time [s], and the errors of both.
+
+    inside is False at the first or last sample of a record: length is only a bound then.
+    """
 
     length: float
     time: float
@@ -25,62 +26,96 @@ class Maximum:
     inside: bool
 
 
-@takes(x=numbers("K"), aggregate_radius=number(NOT_NEGATIVE))
 def compression_length(x, aggregate_radius):
-    """d = 2 R_agg - (x_+ - x_-) [m], with x_+ (x_-) the mean of the x > 0 (x < 0): A24 eqs 10, 11.
+    """Compression length d = 2 R_agg - (x_+ - x_-) [m], x_+ (x_-) being the mean of the x > 0 (x < 0): A24 eqs 10, 11.
 
-    x (N,) [m] along the collision axis from the centre of mass, aggregate_radius [m]. A grain at x = 0 belongs to
-    neither side. NaN while a side is empty.
+    Parameters
+    ----------
+    x : (N,) array
+        Positions along the collision axis from the centre of mass [m]. A grain at 0 belongs to neither side.
+    aggregate_radius : float
+        [m]
 
+    Returns
+    -------
+    float
+        NaN while a side is empty.
+
+    Examples
+    --------
     >>> compression_length([-3.0, 0.0, 1.0, 2.0], 2.5)
     0.5
     """
-    return compression_and_velocity(x, x, aggregate_radius)[0]
+    x = numbers("x", x, (None,))
+    return compression_and_velocity(x, x, numbers("aggregate_radius", aggregate_radius, (), least=0))[0]
 
 
-@takes(x=numbers("K"), x_velocity=numbers("K"))
 def mutual_velocity(x, x_velocity):
-    """v = -(v_+ - v_-) [m/s], positive while approaching, with v_+ (v_-) the mean over grains with x > 0 (x < 0): A24
-    eqs 12, 13.
+    """Mutual velocity v = -(v_+ - v_-) [m/s], v_+ (v_-) being the mean of grains with x > 0 (x < 0): A24 eqs 12, 13.
 
-    x (N,) [m], x_velocity (N,) [m/s]. NaN while a side is empty.
+    Parameters
+    ----------
+    x : (N,) array
+        Positions along the collision axis from the centre of mass [m].
+    x_velocity : (N,) array
+        [m/s]
 
+    Returns
+    -------
+    float
+        Positive while the aggregates approach, NaN while a side is empty.
+
+    Examples
+    --------
     >>> mutual_velocity([-1.0, 1.0], [2.0, -3.0])
     5.0
     """
-    return compression_and_velocity(x, x_velocity, 0.0)[1]
+    x = numbers("x", x, (None,))
+    return compression_and_velocity(x, numbers("x_velocity", x_velocity, x.shape), 0.0)[1]
 
 
 def compression_and_velocity(x, x_velocity, aggregate_radius):
-    """(d [m], v [m/s]) as compression_length and mutual_velocity define them, at the cost of one; NaNs while a side of
-    x = 0 is empty."""
+    """(d [m], v [m/s]) as compression_length and mutual_velocity define them, at the cost of one."""
     x, x_velocity = np.asarray(x, dtype=float), np.asarray(x_velocity, dtype=float)
     right, left = (x > 0).nonzero()[0], (x < 0).nonzero()[0]
     if not (right.size and left.size):
         return float("nan"), float("nan")
-    mean = lambda values, side: np.add.reduce(values[side]) / side.size  # at half the time of values[side].mean()
+    mean = lambda values, side: np.add.reduce(values[side]) / side.size  # in half the time of values[side].mean()
     d = 2.0 * aggregate_radius - (mean(x, right) - mean(x, left))
     return float(d), float(-(mean(x_velocity, right) - mean(x_velocity, left)))
 
 
-@takes(time=numbers("N"), d=numbers("N", ANY), v=numbers("N", ANY))
 def maximum_compression(time, d, v):
-    """Maximum of the compression length between samples (A24: t_max is the time when d = d_max).
+    """Largest compression length of a record, between its samples.
 
-    time (T,) [s] rising, d (T,) [m], v (T,) [m/s] = dd/dt; samples where d or v is NaN are left out, and None
-    is returned where none remains. Beside the largest sample d is Hermite's cubic through (d, v) of
-    neighbouring samples; its highest point is d_max, and where it stands is t_max. length_error: the largest
-    of the difference from the parabola through the three samples, and of the amount by which d and v disagree
-    over the two intervals (d jumps when a grain crosses x = 0). time_error: the largest of the difference
-    from the parabola's vertex and from the nearest time where v falls through zero. Returns Maximum.
+    Beside the largest sample d is Hermite's cubic through (d, v) of neighbouring samples.
 
+    Parameters
+    ----------
+    time : (T,) array
+        Rising [s].
+    d : (T,) array
+        Compression length [m].
+    v : (T,) array
+        dd/dt [m/s]. Samples where d or v is NaN are left out.
+
+    Returns
+    -------
+    Maximum or None
+        length_error is the larger of the difference from the parabola through three samples and of what d and v
+        disagree by (d jumps where a grain crosses x = 0), time_error that of the differences from the parabola's
+        vertex and from the nearest time where v falls through 0. None without any sample.
+
+    Examples
+    --------
     >>> top = maximum_compression([0.0, 1.0, 2.0], [0.0, 1.0, 0.0], [2.0, 0.0, -2.0])
     >>> print(top.length, top.time, top.inside)
     1.0 1.0 True
     """
-    time, d, v = (np.asarray(a, dtype=float) for a in (time, d, v))
+    time = numbers("time", time, (None,))
+    d, v = (numbers(name, values, time.shape, gaps=True) for name, values in (("d", d), ("v", v)))
     if not np.all(np.diff(time) > 0):
-        raise WrongArgument(f"time: falls or stays after sample {np.argmin(np.diff(time) > 0)}; must rise")
+        raise ValueError(f"time: must rise, does not after sample {np.argmin(np.diff(time) > 0)}")
     known = np.isfinite(d) & np.isfinite(v)
     if not known.any():
         return None
@@ -91,8 +126,8 @@ def maximum_compression(time, d, v):
         return Maximum(d[k], time[k], abs(v[k]) * step if time.size > 1 else np.inf, step, False)
     tops = [_hermite_top(time[i : i + 2], d[i : i + 2], v[i : i + 2]) for i in (k - 1, k)]
     d_max, t_max = max(tops)
-    vertex_d, vertex_t = _parabola_vertex(time[k - 1 : k + 2], d[k - 1 : k + 2])
     near = slice(k - 1, k + 2)
+    vertex_d, vertex_t = _parabola_vertex(time[near], d[near])
     mismatch = np.abs(np.diff(d[near]) - 0.5 * (v[near][1:] + v[near][:-1]) * np.diff(time[near])).max()
     crossings = _falls_through_zero(time, v)
     to_crossing = np.abs(crossings - t_max).min() if crossings.size else np.diff(time[near]).max()
@@ -100,10 +135,12 @@ def maximum_compression(time, d, v):
 
 
 def first_compression(time, d, v):
-    """(Maximum, whether d exceeds it later): the largest d before v, once fallen through zero, rises through it again.
+    """(Maximum, whether d exceeds it later) of the first compression: until v, once it has fallen through 0, rises
+    again.
 
-    Aggregates that stuck may creep together further, long after the collision (A24 defines d_max as the largest d; it
-    is this one then). Arguments and None as maximum_compression, of whole arrays without NaN between."""
+    This is d_max everywhere. Aggregates that stuck may creep together further, long after the collision. Arguments
+    and None as maximum_compression.
+    """
     v = np.asarray(v, dtype=float)
     falls = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0))
     rises = np.flatnonzero((v[:-1] <= 0) & (v[1:] > 0))
@@ -113,9 +150,27 @@ def first_compression(time, d, v):
     return first, bool(first is not None and np.nanmax(d) > first.length)
 
 
+def largest_return_speed(time, v, start):
+    """(speed [m/s], time [s]) at which the halves part fastest after the largest compression (A24 section 5.3).
+
+    That is minus the minimum of v (T,) after `start`; (None, None) if v is never negative then, or if its minimum is
+    the last sample, so that the speed may still grow.
+
+    >>> largest_return_speed([0.0, 1.0, 2.0, 3.0], [2.0, 0.0, -1.0, -0.5], 1.0)
+    (1.0, 2.0)
+    """
+    time, v = np.asarray(time, dtype=float), np.asarray(v, dtype=float)
+    later = np.flatnonzero((time >= start) & np.isfinite(v))
+    if not later.size:
+        return None, None
+    place = later[np.argmin(v[later])]
+    if v[place] >= 0.0 or place == later[-1]:
+        return None, None
+    return float(-v[place]), float(time[place])
+
+
 def _hermite_top(t, d, v):
-    """Highest point (value, time) of the cubic through two samples with slopes, on the interval between
-    them."""
+    """Highest point (value, time) of the cubic through two samples with slopes, between them."""
     h = t[1] - t[0]
     m0, m1, rise = v[0] * h, v[1] * h, d[1] - d[0]
     # d0 + m0 s + b s^2 + a s^3 on 0 <= s <= 1

@@ -1,12 +1,14 @@
-"""Whether the outcome of a collision is decided: whether neither pieces that may still meet nor contacts that may still break could make it
-another one.
+"""Whether the outcome of a collision is decided: whether neither pieces that may still meet nor contacts that may still
+break could make it another one.
 
-Pieces may meet when the spheres around them do, on straight lines. A piece may break where its two sides move against each other with more
-energy than the contacts between them hold (cuts.loose_cuts), and as long as it has not had the time to rebound as a whole.
+Pieces may meet when the spheres around them do, on straight lines. A piece may break where its two sides move against
+each other with more energy than the contacts between them hold (loose_cuts), and as long as it has not had the time
+to rebound as a whole.
 
-Tried on 104 collisions that were followed ten times as long as by default (BCCA of 2 x 64 and 2 x 256 grains, BPCA, CPE at R = 10 and 20, in the
-plane, with necks; 0.3 to 20 m/s; judged at 60 times each): none became another outcome after it was decided. Pieces of unsintered
-grains are decided within 1 to 4 rebound times, sintered ones that ring after up to 30.
+Tried on 104 collisions that were followed ten times as long as by default (BCCA of 2 x 64 and 2 x 256 grains, BPCA,
+CPE at R = 10 and 20, in the plane, with necks; 0.3 to 20 m/s; judged at 60 times each): none became another outcome
+after it was decided. Pieces of unsintered grains are decided within 1 to 4 rebound times, sintered ones that ring
+after up to 30.
 """
 
 from functools import cached_property
@@ -14,14 +16,14 @@ from itertools import chain
 
 import numpy as np
 
-from .cuts import loose_cuts
 from .fragments import fragment_labels, fragment_masses
-from .free_flight import inner_kinetic_energy, pieces_can_meet, pieces_that_can_meet
+from .motion import inner_kinetic_energy, motion_in_pieces, pieces_can_meet, pieces_that_can_meet
+from .network import contact_network, depths, spanning_forest
 from .outcome import BOUNCING, NEVER_MET, STICKING, classify, target_fraction
 
 BREAKING = 4 / 45 + 0.8 * 6 ** (1 / 3)  # E_break over F_c delta_c (A22 eq 12)
-# A24 follows aggregates of 80 grain radii for 1000 ns, in which they are compressed and part: 12.5 ns a grain radius, in
-# units of ice's t0.
+# A24 follows aggregates of 80 grain radii for 1000 ns, in which they are compressed and part: 12.5 ns a grain radius,
+# in units of ice's t0.
 REBOUND_PER_RADIUS = 64.6
 QUIET = 0.02  # of E_break: kinetic energy a grain, of the motion within a piece, that breaks no contact
 EVER = np.inf
@@ -30,14 +32,17 @@ CONSTANTS = ("density", "grainRadius", "aggregateRadius", "timeUnit", "pullOffFo
 
 
 def rebound_time(radius, time_unit):
-    """Time [s] from the first touch in which two aggregates of this radius [grain radii] are compressed and part again (A24 section
-    3); time_unit: t0 [s]."""
+    """Time [s] from the first touch in which two aggregates of this radius [grain radii] are compressed and part again
+    (A24 section 3); time_unit: t0 [s]."""
     return REBOUND_PER_RADIUS * radius * time_unit
 
 
 def contact_strength(state, constants):
-    """Energy [J] (M,) that breaks each contact from rest: of JKR contacts E_break, which grows as the reduced radius to the power 4/3,
-    of sintered bonds what breaks them by stretching (S17 eq 6). Arguments as why_undecided."""
+    """Energy [J] (M,) that breaks each contact from rest; arguments as why_undecided.
+
+    Of JKR contacts E_break, which grows as the reduced radius to the power 4/3, of sintered bonds what breaks them by
+    stretching (S17 eq 6).
+    """
     first, second = state["radius"][state["contact_pairs"]].T
     reduced = 2 * first * second / (first + second) / constants["grainRadius"]
     # grains that sintered are smaller spheres
@@ -47,17 +52,21 @@ def contact_strength(state, constants):
 
 
 def is_recent(time, end, touch):
-    """Whether a time [s] lies so near to the end that the energy of an oscillating piece shows at some such time, not only how it
-    happens to be divided at the end: in the last quarter since the first touch."""
+    """Whether a time [s] lies in the last quarter between the first touch and the end.
+
+    Within that time the energy of an oscillating piece shows at some state, not only how it happens to be divided at
+    the end.
+    """
     return time >= end - RECENT * max(0.0, end - touch)
 
 
 def why_undecided(kind, counted, end, constants, touch, recent=()):
-    """Why an outcome may still become another one, in a few words; None where it is decided.
+    """Why an outcome may still become another one, in a few words; None if it is decided.
 
-    kind: of outcome.collision_outcome at the state `end`, counted (N,) bool as there. end, and those states before it that are recent:
-    mappings with time, position, velocity (N,3), radius, aggregate (N,), contact_pairs (M,2), contact_bonded (M,), SI. constants: a
-    mapping with the derived CONSTANTS of run.json. touch: time [s] of the first touch (where the aggregates never met of no meaning).
+    kind: of outcome.collision_outcome at the state `end`, counted (N,) bool as there. end, and those states before it
+    that are recent: mappings with time, position, velocity (N,3), radius, aggregate (N,), contact_pairs (M,2),
+    contact_bonded (M,), SI. constants: a mapping with the derived CONSTANTS of run.json. touch: time [s] of the first
+    touch.
     """
     pieces = Pieces(end, constants)
     if kind == NEVER_MET:
@@ -70,9 +79,12 @@ def why_undecided(kind, counted, end, constants, touch, recent=()):
 
 
 def has_come_to_rest(state, constants, touch, duration):
-    """Whether no fragment of a state seems to change any more until the time `duration` [s]: no two pieces can meet, none is in
-    motion within that breaks contacts (QUIET), no cut is loose, and the aggregates have had the time to rebound. Other arguments as
-    why_undecided. To be sure of it, it must have been so at all recent times."""
+    """Whether no fragment of a state seems to change any more until the time `duration` [s]; arguments as
+    why_undecided.
+
+    No two pieces can meet, none is in motion within that breaks contacts (QUIET), no cut is loose, and the aggregates
+    have had the time to rebound. To be sure of it, it must have been so at all recent times.
+    """
     pieces = Pieces(state, constants)
     return not (
         pieces.why_rebounding(state["time"] - touch)
@@ -96,7 +108,7 @@ class Pieces:
 
     @property
     def flight(self):
-        """Arguments of free_flight."""
+        """Arguments of motion.pieces_can_meet."""
         return self.state["position"], self.state["velocity"], self.state["radius"], self.labels
 
     def why_rebounding(self, since_touch):
@@ -116,7 +128,8 @@ class Pieces:
         return loose_cuts(*self._motion, pairs, self.labels, self.state["aggregate"], strength)
 
     def shares(self, counted):
-        """(shares (K,) of the counted mass, numbers of the two largest pieces, None for the second where there is one)."""
+        """(shares (K,) of the counted mass, numbers of the two largest pieces, None for the second where there is
+        one)."""
         shares = fragment_masses(self.labels, self.mass * counted) / self.mass[counted].sum()
         return shares, *(*np.argsort(-shares, kind="stable")[:2], None)[:2]
 
@@ -126,8 +139,8 @@ class Pieces:
 
 
 def _why_breaking(kind, pieces, counted):
-    """For an outcome that the loss of a side of one of the largest pieces makes another one; not told of pieces that are no such outcome
-    yet."""
+    """Of an outcome that is another one without a side of one of the largest pieces; None if the pieces are no such
+    outcome yet."""
     shares, *largest = pieces.shares(counted)
     largest = np.array([piece for piece in largest[: 2 if kind == BOUNCING else 1] if piece is not None])
     cut, side, target = *pieces.loose_cuts(), pieces.target(counted)
@@ -140,7 +153,7 @@ def _why_breaking(kind, pieces, counted):
 
 
 def _why_meeting(kind, pieces, counted):
-    """For an outcome that pieces make another one which may still meet the largest or the second."""
+    """Of an outcome that is another one with the pieces that may still meet the largest or the second."""
     shares, largest, second = pieces.shares(counted)
     near, other = pieces_that_can_meet(largest, *pieces.flight, EVER), 0.0
     whole = shares[largest] + shares[near].sum()
@@ -151,3 +164,67 @@ def _why_meeting(kind, pieces, counted):
     have_parted = classify(*seen, target=target) == kind
     if classify(*sorted((whole, other), reverse=True), have_parted, target) != kind:
         return f"pieces of {whole - shares[largest]:.0%} of the mass may still meet the largest"
+
+
+def loose_cuts(position, velocity, mass, pairs, labels, aggregate, strength):
+    """(pieces (K,), masses (K,) of the smaller sides) of the cuts whose sides move against each other with more kinetic
+    energy than the contacts of the cut hold, the motion of the piece as a rigid body left out.
+
+    Cuts go through every contact that alone connects two parts of a piece, and between a piece's grains of either
+    aggregate. position, velocity (N,3) [m, m/s], mass (N,) [kg], pairs (M,2) with strength (M,) [J], the energy that
+    breaks each contact; labels (N,) as fragments.fragment_labels has them, aggregate (N,) 0 or 1. Beside a plate, the
+    last grain (plate.py), the others' masses are lost in rounding: sides are summed without it.
+    """
+    momentum = mass[:, None] * motion_in_pieces(position, velocity, mass, labels)
+    whole = np.bincount(labels, weights=mass)
+    piece, side, pushed, held = (
+        np.concatenate(parts)
+        for parts in zip(
+            _between_aggregates(mass, momentum, pairs, labels, aggregate, strength),
+            _through_one_contact(mass, momentum, pairs, labels, strength),
+        )
+    )
+    rest = whole[piece] - side
+    with np.errstate(divide="ignore", invalid="ignore"):
+        energy = 0.5 * np.einsum("ij,ij->i", pushed, pushed) * (1 / side + 1 / rest)
+    loose = (side > 0) & (rest > 0) & (energy > held)
+    return piece[loose], np.minimum(side, rest)[loose]
+
+
+def _between_aggregates(mass, momentum, pairs, labels, aggregate, strength):
+    """(piece, mass, momentum (K,3), energy that holds) of the side of aggregate 0 in every piece."""
+    number, first = labels.max() + 1, aggregate == 0
+    across = aggregate[pairs[:, 0]] != aggregate[pairs[:, 1]]
+    held = np.bincount(labels[pairs[across, 0]], weights=strength[across], minlength=number)
+    pushed = [np.bincount(labels[first], weights=p, minlength=number) for p in momentum[first].T]
+    return (
+        np.arange(number),
+        np.bincount(labels[first], weights=mass[first], minlength=number),
+        np.stack(pushed, 1),
+        held,
+    )
+
+
+def _through_one_contact(mass, momentum, pairs, labels, strength):
+    """The same of the part of a piece that one contact connects with the rest.
+
+    Such contacts are found on a spanning tree: each of the other contacts closes a loop, and marks both of its ends
+    with a random number. Where the marks beyond a contact of the tree cancel out (exclusive or), no loop leads around
+    it.
+    """
+    order, parent = spanning_forest(contact_network(len(mass), pairs))
+    contact = np.full(len(mass), -1)  # of the tree, with the parent
+    marks = np.random.default_rng(0).integers(1, 2**63, len(pairs), dtype=np.uint64)
+    for one, other in (pairs.T, pairs.T[::-1]):
+        in_tree = parent[one] == other
+        contact[one[in_tree]] = np.flatnonzero(in_tree)
+        marks[in_tree] = 0
+    mark, beyond = np.zeros(len(mass), dtype=np.uint64), np.column_stack([mass, momentum])
+    for end in pairs.T:
+        np.bitwise_xor.at(mark, end, marks)
+    farther = np.flatnonzero(np.diff(depths(order, parent)[order])) + 1
+    for level in np.split(order, farther)[:0:-1]:  # without the roots
+        np.add.at(beyond, parent[level], beyond[level])
+        np.bitwise_xor.at(mark, parent[level], mark[level])
+    single = np.flatnonzero((contact >= 0) & (mark == 0))
+    return labels[single], beyond[single, 0], beyond[single, 1:], strength[contact[single]]

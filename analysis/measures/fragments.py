@@ -1,121 +1,257 @@
 """Fragments: grains connected by contacts, and what became of two aggregates' mass. A22: Arakawa et al. (2022)."""
 
 import numpy as np
+import pandas
 from scipy.sparse.csgraph import connected_components
 
-from ..arguments import GRAIN_COUNT, NOT_NAN, NOT_NEGATIVE, PAIRS, POSITIVE, WHOLE, numbers, takes
+from ..arrays import numbers, pairs
+from ..runs.table import Column, described
 from .network import contact_network
+from .structure import correlation_dimension, filling_factor, gyration_radius
+
+STRUCTURE = (
+    Column("filling_factor", "1", "volume of its grains over that of a sphere of radius (5/3)^(1/2) R_g", gaps=True),
+    Column("gyration_radius", "m", "R_g, of the grains as spheres of one density", gaps=True),
+    Column("fractal_dimension", "1", "slope of N(< s) (structure.correlation_dimension); NaN of small ones", gaps=True),
+)
+PIECES = (
+    Column("grains", "", "number of its grains", "i"),
+    Column("mass_fraction", "1", "of the mass of all grains"),
+    Column("projectile_fraction", "1", "of its mass, what was the projectile's (aggregate 1)"),
+    *STRUCTURE,
+    Column("coordination", "1", "mean number of contacts of a grain"),
+)
 
 
-@takes(grains=GRAIN_COUNT, contact_pairs=PAIRS)
 def fragment_labels(grains, contact_pairs):
-    """Fragment number (N,) int of each of N = `grains` grains, joined by contact_pairs (M,2) int. Number 0
-    has the most grains, and so on; equally large ones are in the order of their first grain.
+    """Fragment to which each grain belongs.
 
+    Parameters
+    ----------
+    grains : int
+        Their number N.
+    contact_pairs : (M, 2) array of int
+
+    Returns
+    -------
+    (N,) array of int
+        Number 0 has the most grains, and so on; equally large ones are in the order of their first grain.
+
+    Examples
+    --------
     >>> fragment_labels(5, [[1, 2], [2, 4]]).tolist()
     [1, 0, 0, 2, 0]
     """
-    _, labels = connected_components(contact_network(grains, contact_pairs), directed=False)
+    grains = int(numbers("grains", grains, (), least=0, whole=True))
+    network = contact_network(grains, pairs("contact_pairs", contact_pairs, grains))
+    _, labels = connected_components(network, directed=False)
     _, first, sizes = np.unique(labels, return_index=True, return_counts=True)
     rank = np.empty(len(sizes), dtype=np.intp)
     rank[np.lexsort((first, -sizes))] = np.arange(len(sizes))
     return rank[labels]
 
 
-@takes(labels=numbers("N", WHOLE))
 def fragment_sizes(labels):
-    """Number of grains (K,) int of each fragment, for labels (N,) as fragment_labels returns them.
+    """Number of grains of each fragment.
 
+    Parameters
+    ----------
+    labels : (N,) array of int
+        As fragment_labels returns them.
+
+    Returns
+    -------
+    (K,) array of int
+
+    Examples
+    --------
     >>> fragment_sizes([1, 0, 0]).tolist()
     [2, 1]
     """
-    return np.bincount(labels)
+    return np.bincount(numbers("labels", labels, (None,), least=0, whole=True))
 
 
-@takes(labels=numbers("N", WHOLE), mass=numbers("N", NOT_NEGATIVE))
 def fragment_masses(labels, mass):
-    """Mass (K,) of each fragment, for labels (N,) and grain masses (N,) in any unit.
+    """Mass of each fragment.
 
+    Parameters
+    ----------
+    labels : (N,) array of int
+        As fragment_labels returns them.
+    mass : (N,) array
+        Of the grains, in any unit.
+
+    Returns
+    -------
+    (K,) array
+        In that unit.
+
+    Examples
+    --------
     >>> fragment_masses([1, 0, 0], [8.0, 1.0, 2.0]).tolist()
     [3.0, 8.0]
     """
-    return np.bincount(labels, weights=mass)
+    labels = numbers("labels", labels, (None,), least=0, whole=True)
+    return np.bincount(labels, weights=numbers("mass", mass, labels.shape, least=0))
 
 
 def heaviest_fragment(labels, mass):
-    """Number of the fragment with the most mass; of equal ones that with the most grains. Arguments as fragment_masses.
-
-    >>> heaviest_fragment([1, 0, 0], [9.0, 1.0, 2.0])
-    1
-    """
+    """Number of the fragment with the most mass, of equal ones that with the most grains; arguments as
+    fragment_masses."""
     return int(np.argmax(fragment_masses(labels, mass)))
 
 
 def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
-    """Mask (N,) of the grains that are part of an aggregate at the start: those in a piece, connected within
-    their aggregate, that holds at least least_fraction of the aggregate's mass. Grains that a packing left
-    isolated or in crumbs are not.
+    """Mask (N,) of the grains that are part of an aggregate at the start, not of crumbs that a packing left beside it.
 
-    aggregate (N,) int, contact_pairs (M,2) int, mass (N,) in any unit. ValueError where no grain of an aggregate is.
+    These are in a piece, connected within its aggregate, that holds at least least_fraction of the aggregate's mass.
+    aggregate (N,) int, contact_pairs (M,2) int, mass (N,) in any unit. ValueError if an aggregate has no such grain.
     """
     aggregate, mass = np.asarray(aggregate), np.asarray(mass, dtype=float)
-    pairs = np.asarray(contact_pairs, dtype=np.intp).reshape(-1, 2)
-    inside = pairs[aggregate[pairs[:, 0]] == aggregate[pairs[:, 1]]]
+    contact_pairs = np.asarray(contact_pairs, dtype=np.intp).reshape(-1, 2)
+    inside = contact_pairs[aggregate[contact_pairs[:, 0]] == aggregate[contact_pairs[:, 1]]]
     labels = fragment_labels(len(aggregate), inside)
     whole = np.bincount(aggregate, weights=mass)
     found = fragment_masses(labels, mass)[labels] >= least_fraction * whole[aggregate] * (1.0 - 1e-12)
     for number in np.setdiff1d(aggregate, aggregate[found]):
-        raise ValueError(
-            f"aggregate {number} is in crumbs: its largest piece must hold {least_fraction:.0%} of its mass"
-        )
+        raise ValueError(f"aggregate {number} is in crumbs: no piece of it holds {least_fraction:.0%} of its mass")
     return found
 
 
-@takes(largest=numbers(), target=numbers(), projectile=numbers(right=POSITIVE))
 def growth_efficiency(largest, target, projectile):
-    """f_gro = (N_lar - N_tar)/N_pro from the numbers of grains of the largest fragment, of target and
-    projectile: A22 eq 28. Of grains of unlike size the masses stand for the numbers.
+    """Growth efficiency f_gro = (N_lar - N_tar)/N_pro, A22 eq 28.
 
+    Parameters
+    ----------
+    largest, target, projectile : array
+        Numbers of grains of the largest fragment, the target and the projectile; of grains of unlike size their masses.
+
+    Returns
+    -------
+    array
+
+    Examples
+    --------
     >>> float(growth_efficiency(30, 20, 10))
     1.0
     """
-    return np.subtract(largest, target) / projectile
+    gained = numbers("largest", largest) - numbers("target", target)
+    return (gained / numbers("projectile", projectile, positive=True))[()]
 
 
-@takes(sizes=numbers("K", NOT_NEGATIVE), numbers=numbers(right=NOT_NAN))
-def cumulative_number(sizes, numbers):
-    """Z_cum(>= N) (G,): fragments of N grains or more, from the fragments' grains `sizes` (K,) at N = numbers (G,): A22
-    eq 31.
+def cumulative_grains(sizes, upto):
+    """Number of grains in fragments of at most N grains, N_cum(<= N): A22 eq 32.
 
-    >>> cumulative_number([5, 1, 1], [1, 2, 6]).tolist()
-    [3, 1, 0]
-    """
-    sizes = np.sort(sizes)
-    return len(sizes) - np.searchsorted(sizes, np.ceil(numbers), side="left")
+    Parameters
+    ----------
+    sizes : (K,) array
+        Grains of each fragment.
+    upto : (G,) array
+        N
 
+    Returns
+    -------
+    (G,) array
 
-@takes(sizes=numbers("K", NOT_NEGATIVE), numbers=numbers(right=NOT_NAN))
-def cumulative_grains(sizes, numbers):
-    """N_cum(<= N) (G,): grains in fragments of at most N grains; arguments as cumulative_number. A22 eq 32.
-
+    Examples
+    --------
     >>> cumulative_grains([5, 1, 1], [1, 4.9, 5]).tolist()
     [2.0, 2.0, 7.0]
     """
-    return _up_to(sizes, np.asarray(sizes, dtype=float), numbers)
+    sizes = numbers("sizes", sizes, (None,), least=0)
+    return _sum_up_to(sizes, sizes, upto)
 
 
-@takes(sizes=numbers("K", NOT_NEGATIVE), numbers=numbers(right=NOT_NAN))
-def cumulative_cross_section(sizes, numbers):
-    """S_cum(<= N)/S_1 (G,): cross-sections N^(2/3) of the fragments of at most N grains, in units of one grain's pi r_1^2;
-    arguments as cumulative_number. A22 eq 33.
+def cumulative_cross_section(sizes, upto):
+    """Cross-sections N^(2/3) of the fragments of at most N grains, S_cum(<= N)/S_1: A22 eq 33.
 
+    Parameters
+    ----------
+    sizes, upto : (K,) and (G,) array
+        As cumulative_grains.
+
+    Returns
+    -------
+    (G,) array
+        In units of one grain's pi r_1^2.
+
+    Examples
+    --------
     >>> cumulative_cross_section([8, 1, 1], [1, 8]).tolist()
     [2.0, 6.0]
     """
-    return _up_to(sizes, np.cbrt(np.asarray(sizes, dtype=float)) ** 2, numbers)
+    sizes = numbers("sizes", sizes, (None,), least=0)
+    return _sum_up_to(sizes, np.cbrt(sizes) ** 2, upto)
 
 
-def _up_to(sizes, values, numbers):
+def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
+    """Table of the pieces of a state: how large each is, and how fluffy.
+
+    Parameters
+    ----------
+    position : (N, 3) array
+        [m]
+    radius : (N,) array
+        [m]
+    contact_pairs : (M, 2) array of int
+    aggregate : (N,) array of int, optional
+        1 for grains of the projectile.
+    cell_size : (3,) array, optional
+        Edges of the periodic cell [m], in which a piece has no size.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a piece, numbered as fragment_labels does: grains, mass_fraction, projectile_fraction, filling_factor,
+        gyration_radius [m], fractal_dimension, coordination. Units and meanings are in .attrs.
+
+    Examples
+    --------
+    >>> found = fragments([[0.0, 0, 0], [2e-7, 0, 0], [9e-7, 0, 0]], [1e-7] * 3, [[0, 1]])
+    >>> found.grains.tolist(), found.coordination.tolist(), found.filling_factor.round(3).tolist()
+    ([2, 1], [1.0, 0.0], [0.459, 1.0])
+    """
+    radius = numbers("radius", radius, (None,), positive=True)
+    position = numbers("position", position, (len(radius), 3))
+    if not len(radius):
+        raise ValueError("position: must have one grain or more")
+    contact_pairs = pairs("contact_pairs", contact_pairs, len(radius))
+    labels, mass = fragment_labels(len(radius), contact_pairs), (radius / radius.max()) ** 3
+    sizes, masses = fragment_sizes(labels), fragment_masses(labels, mass)
+    of_projectile = np.zeros(len(radius), dtype=bool)
+    if aggregate is not None:
+        of_projectile = numbers("aggregate", aggregate, radius.shape, least=0, whole=True) == 1
+    if cell_size is not None:
+        numbers("cell_size", cell_size, (3,), positive=True)
+    contacts = np.bincount(labels[contact_pairs[:, 0]], minlength=len(sizes))
+    order, ends = np.argsort(labels, kind="stable"), np.cumsum(sizes)
+    of_pieces = np.split(order, ends[:-1])
+    columns = {
+        "grains": sizes,
+        "mass_fraction": masses / mass.sum(),
+        "projectile_fraction": fragment_masses(labels, mass * of_projectile) / masses,
+        **structure_of(position, radius, of_pieces, cell_size),
+        "coordination": 2.0 * contacts / sizes,
+    }
+    return described(pandas.DataFrame(columns), PIECES)
+
+
+def structure_of(position, radius, pieces, cell_size=None):
+    """{column of STRUCTURE: (K,)} of K pieces, each the rows of its grains; NaN in a periodic cell."""
+    if cell_size is not None:
+        values = np.full((len(pieces), len(STRUCTURE)), np.nan)
+    else:
+        values = np.array([_structure(position[own], radius[own]) for own in pieces])
+    return {column.name: values[:, k] for k, column in enumerate(STRUCTURE)}
+
+
+def _structure(position, radius):
+    if len(radius) == 1:  # what the functions give, in less time: there may be very many
+        return 1.0, np.sqrt(0.6 * radius[0] ** 2), np.nan
+    return [measure(position, radius) for measure in (filling_factor, gyration_radius, correlation_dimension)]
+
+
+def _sum_up_to(sizes, values, upto):
     order = np.argsort(sizes, kind="stable")
     sums = np.concatenate([[0.0], np.cumsum(values[order])])
-    return sums[np.searchsorted(np.asarray(sizes)[order], np.floor(numbers), side="right")]
+    return sums[np.searchsorted(sizes[order], np.floor(numbers("upto", upto, gaps=True)), side="right")]

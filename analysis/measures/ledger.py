@@ -1,19 +1,40 @@
 """The energy ledger: the channels [J] of a history, their sum, how well it stays constant, and where the energy goes.
 
-A history is a dict of arrays (T,) by name: `time` [s] and every channel of runs.format."""
+A history is a mapping of arrays (T,) by name: `time` [s] and every channel of runs.format.
+"""
 
 import numpy as np
 
-from ..arguments import History, number, takes, wrong
 from ..runs.format import CHANNELS
 
+# How energy is lost, as the papers group the channels.
+WAYS = {
+    "rolling": ("rollingDissipation",),
+    "sliding": ("slidingDissipation",),
+    "twisting": ("twistingDissipation",),
+    "contacts": ("connection", "disconnection"),
+    "drag": ("drag",),
+    "bonds": ("bondBreaking",),
+}
 
-@takes(history=History())
+
 def total_energy(history):
-    """Sum of all channels (T,) [J], work on boundaries and constraints included: constant for an exact ledger.
+    """Sum of all channels, work on boundaries and constraints included: constant for an exact ledger.
 
-    >>> history = {**dict.fromkeys(CHANNELS, np.zeros(2)), "kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])}
-    >>> total_energy(history).tolist()
+    Parameters
+    ----------
+    history : mapping of (T,) arrays
+        Every channel [J] by name.
+
+    Returns
+    -------
+    (T,) array
+        [J]
+
+    Examples
+    --------
+    >>> energies = {"kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])}
+    >>> total_energy({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies}).tolist()
     [4.0, 3.0]
     """
     return np.sum([history[name] for name in CHANNELS], axis=0)
@@ -25,18 +46,31 @@ def initial_kinetic_energy(history):
 
 
 def closure_history(history):
-    """[E(t) - E(0)]/K(0) (T,), which is 0 at all times for an exact ledger; None where K(0) = 0."""
+    """[E(t) - E(0)]/K(0) (T,), 0 at all times for an exact ledger; None where K(0) = 0."""
     unit = initial_kinetic_energy(history)
     total = total_energy(history)
     return (total - total[0]) / unit if unit > 0 else None
 
 
-@takes(history=History())
 def closure(history):
-    """max over t of |E(t) - E(0)|/K(0); None where K(0) = 0. A compression starts almost at rest: its error over the boundaries' work is
-    `energy_closure` of its table and summary.
+    """Largest |E(t) - E(0)|/K(0) of a history.
 
-    >>> closure({**dict.fromkeys(CHANNELS, np.zeros(2)), "kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])})
+    A compression starts almost at rest: work_closure() is its error.
+
+    Parameters
+    ----------
+    history : mapping of (T,) arrays
+        Every channel [J] by name.
+
+    Returns
+    -------
+    float or None
+        None where K(0) = 0.
+
+    Examples
+    --------
+    >>> energies = {"kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])}
+    >>> closure({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies})
     0.25
     """
     error = closure_history(history)
@@ -54,15 +88,9 @@ def largest_work(history):
 
 
 def work_closure(history):
-    """max over t of |E(t) - E(0)| over the largest work of the boundaries, of a cell that starts almost at rest; None
-    where they did none."""
+    """Largest |E(t) - E(0)| over the largest work of the boundaries; None where they did none."""
     total, work = total_energy(history), largest_work(history)
     return float(np.abs(total - total[0]).max()) / work if work > 0 else None
-
-
-def final_values(history):
-    """Last value [J] of every channel, by name, in the order of CHANNELS."""
-    return {name: float(history[name][-1]) for name in CHANNELS}
 
 
 def fractions(history):
@@ -74,17 +102,29 @@ def fractions(history):
     return {name: (history[name] - (0.0 if name == "kinetic" else history[name][0])) / unit for name in CHANNELS}
 
 
-@takes(history=History("time"), time=number())
 def fractions_at(history, time):
-    """fractions(history) at one time [s], linear between samples, by name: floats. None where K(0) = 0. (Of a compression tables have
-    them over the boundaries' work.)
+    """Change of every channel since the start over K(0) at one time, the kinetic channel itself over K(0).
 
-    >>> times = {"time": np.array([0.0, 1.0]), "kinetic": np.array([4.0, 1.0])}
-    >>> fractions_at({**dict.fromkeys(CHANNELS, np.zeros(2)), **times}, 1.0)["kinetic"]
+    Parameters
+    ----------
+    history : mapping of (T,) arrays
+        `time` [s] and every channel [J] by name.
+    time : float
+        Within the record [s]; linear between samples.
+
+    Returns
+    -------
+    dict of float or None
+        By name; they add up to 1. None where K(0) = 0.
+
+    Examples
+    --------
+    >>> energies = {"time": np.array([0.0, 1.0]), "kinetic": np.array([4.0, 1.0])}
+    >>> fractions_at({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies}, 1.0)["kinetic"]
     0.25
     """
     first, last = history["time"][0], history["time"][-1]
     if not first <= time <= last:
-        raise wrong("time", time, f"within the record, {first:g} to {last:g} s")
+        raise ValueError(f"time = {time}: must be within the record, {first:g} to {last:g} s")
     parts = fractions(history)
     return None if parts is None else {c: float(np.interp(time, history["time"], part)) for c, part in parts.items()}

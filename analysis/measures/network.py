@@ -1,4 +1,4 @@
-"""The network of contacts of a packing: grains joined by pairs."""
+"""The network of contacts of a packing: trees, loops, and whether it spans a periodic cell."""
 
 import numpy as np
 from scipy.sparse import bmat, coo_matrix
@@ -6,14 +6,15 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 
 def contact_network(grains, pairs):
-    """Sparse matrix (N,N) of N = `grains` grains with an entry for each of pairs (M,2) int, as scipy's csgraph takes it."""
+    """Sparse matrix (N,N) of N = `grains` grains with an entry for each of pairs (M,2) int, for scipy's csgraph."""
     pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
     return coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains)).tocsr()
 
 
 def spanning_forest(network):
-    """(order (N,), parent (N,)) int of a tree of contacts in each piece of a contact_network, rooted in its last grain: every
-    grain comes after its parent in `order`; parent is -1 for roots.
+    """(order (N,), parent (N,)) int of a tree of contacts in each piece of a contact_network, rooted in its last grain.
+
+    Every grain comes after its parent in `order`; the parent of a root is -1.
 
     >>> order, parent = spanning_forest(contact_network(4, [[1, 2], [2, 3]]))
     >>> order.tolist(), parent.tolist()
@@ -39,3 +40,54 @@ def depths(order, parent):
     for grain in order[parent[order] >= 0]:
         depth[grain] = depth[parent[grain]] + 1
     return depth
+
+
+def loops(grains, pairs):
+    """(independent loops, grains in loops) of N = `grains` grains joined by pairs (M,2), each pair once (S17 section
+    5.4).
+
+    Independent are M - N + pieces. A grain is in a loop if contacts lead from it back to it without using one twice.
+
+    >>> loops(5, [[0, 1], [1, 2], [2, 0], [2, 3], [3, 4]])
+    (1, 3)
+    """
+    pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
+    order, parent = spanning_forest(contact_network(grains, pairs))
+    depth = depths(order, parent)
+    inside = np.zeros(grains, dtype=bool)
+    for i, j in pairs[(parent[pairs[:, 0]] != pairs[:, 1]) & (parent[pairs[:, 1]] != pairs[:, 0])]:
+        while i != j:  # up the tree to where both ways meet
+            inside[[i, j]] = True
+            i, j = (parent[i], j) if depth[i] >= depth[j] else (i, parent[j])
+        inside[i] = True
+    return len(pairs) - grains + int((parent < 0).sum()), int(inside.sum())
+
+
+def spanned_axes(position, pairs, cell_size):
+    """Number of independent directions, 0 to 3, along which a piece of a periodic cell is connected with its own
+    images.
+
+    position (N,3) [m], anywhere; pairs (M,2) of grains that meet as nearest images; cell_size (3,) [m]. A loop of
+    contacts that comes back to an image of the grain that it left winds around the cell; the largest number of
+    independent windings of a piece is returned. With less than three the network bears no load along some direction.
+
+    >>> spanned_axes(np.zeros((1, 3)), np.empty((0, 2)), np.ones(3))
+    0
+    """
+    pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
+    if not len(pairs):
+        return 0
+    first, second = pairs.T
+    crossed = np.round((position[first] - position[second]) / cell_size).astype(int)
+    network = contact_network(len(position), pairs)
+    steps = {(a, b): step for a, b, step in zip(first.tolist(), second.tolist(), crossed)}
+    steps |= {(b, a): -step for (a, b), step in steps.items()}
+    order, parent = spanning_forest(network)
+    image = np.zeros((len(parent), 3), dtype=int)  # in which image of the cell each grain is
+    for grain in order[parent[order] >= 0]:
+        image[grain] = image[parent[grain]] + steps[int(parent[grain]), int(grain)]
+    windings = crossed - (image[second] - image[first])
+    piece = connected_components(network, directed=False)[1][first]
+    wound = windings.any(axis=1)
+    ranks = [np.linalg.matrix_rank(windings[wound & (piece == name)]) for name in np.unique(piece[wound])]
+    return int(max(ranks, default=0))

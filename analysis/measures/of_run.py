@@ -1,10 +1,10 @@
-"""Measures of a run folder: its arrays given to the pure functions of this package."""
+"""Measures of a run folder: its arrays given to the functions of this package."""
 
 import numpy as np
 
 from ..runs.arrays import RunFolderError
 from ..runs.format import STATES_FOLDER
-from .compression import maximum_compression
+from .compression import first_compression
 from .decided import CONSTANTS, is_recent, why_undecided
 from .fragments import belongs_to_an_aggregate
 from .outcome import collision_outcome
@@ -14,33 +14,35 @@ UNLIKE = 0.05  # of the heavier aggregate's mass: with a larger difference the p
 
 
 def maximum_of_run(run):
-    """compression.Maximum of a RunFolder over all of its history; None where d has no value."""
-    return maximum_compression(run.history["time"], run.history["d"], run.history["v"])
+    """compression.Maximum of a RunFolder's first compression; None where d has no value."""
+    return first_compression(run.history["time"], run.history["d"], run.history["v"])[0]
 
 
 def are_equal(run):
-    """Whether the two aggregates of a RunFolder are of equal mass to within UNLIKE, so that its d and v have a meaning; with a plate they have."""
+    """Whether the two aggregates of a RunFolder are of equal mass to within UNLIKE, or one hits a plate: d and v have a
+    meaning then."""
     start = run.start
     masses = np.bincount(start.aggregate, start.radius**3, minlength=2)
     return has_plate(vars(start)) or bool(np.ptp(masses) <= UNLIKE * masses.max())
 
 
 def met(run):
-    """Whether the two aggregates of a RunFolder, or aggregate and plate, touched until its last sample: at the run's first touch, which knows
-    of a graze between two samples too, or at a sample."""
+    """Whether the two aggregates of a RunFolder, or aggregate and plate, touched until its last sample: at the run's
+    first touch, which includes a graze between two samples, or at a sample."""
     history = run.history
     return bool(run.derived.get("firstTouch", np.inf) <= history["time"][-1] or np.any(history["contacts_between"] > 0))
 
 
 def time_of_touch(run):
-    """Time [s] of the first touch of a RunFolder's aggregates: that of the run, or of the first sample with contacts between them; of no meaning
-    where they never met."""
+    """Time [s] of the first touch of a RunFolder's aggregates: that of the run, or of the first sample with contacts
+    between them. It has no meaning if they never met."""
     return run.derived.get("firstTouch", run.history["time"][np.argmax(run.history["contacts_between"] > 0)])
 
 
 def outcome_of_run(run):
-    """outcome.Outcome of a RunFolder from its first and last state, undecided where it may still become another one
-    (decided.why_undecided; not told of runs without the constants that this takes). RunFolderError where the states don't make one."""
+    """outcome.Outcome of a RunFolder from its first and last state, undecided if it may still become another one
+    (decided.why_undecided; runs that lack its constants are taken as decided). RunFolderError if the states don't
+    match."""
     start, end = run.start, run.last
     if start.aggregate.shape != end.aggregate.shape or np.any(start.aggregate != end.aggregate):
         raise RunFolderError(f"{run.path / STATES_FOLDER}: the first and the last state don't hold the same grains")
@@ -62,19 +64,19 @@ def outcome_of_run(run):
     return found.if_decided(why)
 
 
-def _passes(run):
-    """Whether a RunFolder's aggregates never touch on their straight ways, as its run has found; those of format 1 didn't look."""
-    return run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run)
-
-
-def _of_two(start, end, met):
-    of_start = start.radius, start.aggregate, start.velocity, start.contact_pairs
-    return collision_outcome(*of_start, end.velocity, end.contact_pairs, met)
-
-
 def derived_constants(run, *names):
     """[float] of a RunFolder's derived constants of these names; RunFolderError where one is missing or no number."""
     try:
         return [float(run.derived[name]) for name in names]
     except (KeyError, TypeError, ValueError) as error:
         raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
+
+
+def _passes(run):
+    """Whether a RunFolder's aggregates never touch on their straight ways, as its run has found (not in format 1)."""
+    return run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run)
+
+
+def _of_two(start, end, met):
+    of_start = start.radius, start.aggregate, start.velocity, start.contact_pairs
+    return collision_outcome(*of_start, end.velocity, end.contact_pairs, met)

@@ -1,16 +1,16 @@
 """Outcome of a collision of two aggregates, and the coefficient of restitution.
 
-Counted are the grains that belong to an aggregate at the start (fragments.belongs_to_an_aggregate).
-The target is the heavier aggregate, m_t and m_p are the fractions of their mass in target and projectile; with f1 >= f2 those in
-the two heaviest fragments at the end, and the gain (f1 - m_t)/m_p:
+Counted are the grains that belong to an aggregate at the start (fragments.belongs_to_an_aggregate). The target is the
+heavier aggregate, m_t and m_p are the fractions of their mass in target and projectile; with f1 >= f2 those in the
+two heaviest fragments at the end, and the gain (f1 - m_t)/m_p:
 
     never met      no contact between the aggregates at any time
     sticking       gain >= STAYS: four fifths of the projectile or more stay on the target
-    bouncing       the two part again: the target changes by no more than the rest, a fifth of the projectile, |gain| <= 1 - STAYS,
-                   no more than that lies in other pieces, f1 + f2 >= 1 - (1 - STAYS) m_p, and of each of the two pieces at least OWN
-                   is mass of one aggregate, of one each
-    fragmentation  everything else: also mass transfer and erosion, a part torn off one aggregate, and a merged body that broke in two
-    undecided      what is seen at the end is one of these, and may still become another one (decided.py)
+    bouncing       the two part again: the target changes by no more than the rest, |gain| <= 1 - STAYS, no more than
+                   that lies in other pieces, f1 + f2 >= 1 - (1 - STAYS) m_p, and of each of the two pieces at least
+                   OWN is mass of one aggregate, of one each
+    fragmentation  everything else: also mass transfer and erosion, and a merged body that broke in two
+    undecided      at the end it is one of these, and may still become another one (decided.py)
 
 Of equal aggregates sticking is f1 >= 0.9, and bouncing f1 + f2 >= 0.9 of pieces that are one aggregate's each.
 
@@ -38,21 +38,18 @@ ROUNDING = 1e-9  # four grains of five are STAYS
 
 @dataclass(frozen=True)
 class Outcome:
-    """kind (never met, sticking, bouncing, fragmentation, undecided), restitution (None where there is none, see the module),
-    mass_fractions (f1, f2), largest_fragment [grains of the heaviest piece, all counted], growth_efficiency (A22 eq 28 by mass, all
-    grains, the target being the heavier aggregate), fragments (their number) and excluded_grains (not counted in the fractions). Of an undecided one why_undecided, in a few words, and seen: the kind that it would be if nothing changed any more;
-    of a collision with a plate mass_on_plate, the fraction that sticks to it (plate.py)."""
+    """What became of two aggregates; the module's head has the rules."""
 
     kind: str
-    restitution: float
-    mass_fractions: tuple
-    largest_fragment: int
-    growth_efficiency: float
-    fragments: int
-    excluded_grains: int
-    why_undecided: str = None
-    seen: str = None
-    mass_on_plate: float = None
+    restitution: float | None
+    mass_fractions: tuple  # (f1, f2)
+    largest_fragment: int  # grains of the heaviest piece, all counted
+    growth_efficiency: float  # A22 eq 28 by mass, all grains, the target being the heavier aggregate
+    fragments: int  # their number
+    excluded_grains: int  # not counted in the mass fractions
+    why_undecided: str | None = None  # in a few words
+    seen: str | None = None  # the kind of an undecided one if nothing changed any more
+    mass_on_plate: float | None = None  # the fraction that sticks to a plate (plate.py)
 
     def if_decided(self, why):
         """The same; undecided where there is a reason for it."""
@@ -71,8 +68,8 @@ def sticks(largest, target):
 
 
 def classify(f1, f2, parted=True, target=0.5):
-    """Name of the outcome for the mass fractions f1 >= f2 of the two heaviest fragments, parted: whether these are the two
-    aggregates again (have_parted), and that of the target. The rule at the module's head.
+    """Name of the outcome for the mass fractions f1 >= f2 of the two heaviest fragments, parted: whether these are
+    the two aggregates again (have_parted), and that of the target. The rule at the module's head.
 
     >>> classify(0.5, 0.5), classify(0.95, 0.01), classify(0.5, 0.1), classify(0.5, 0.5, parted=False)
     ('bouncing', 'sticking', 'fragmentation', 'fragmentation')
@@ -158,8 +155,8 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
 
 
 def restitution_of_pieces(aggregate, mass, counted, pieces, start_velocity, end_velocity):
-    """restitution() of two pieces, masks (N,) of that of aggregate 0 and that of aggregate 1, as collision_outcome() has the rest;
-    counted: mask (N,) of the grains that belong to an aggregate at the start."""
+    """restitution() of two pieces, masks (N,) of that of aggregate 0 and that of aggregate 1, as collision_outcome()
+    has the rest; counted: mask (N,) of the grains that belong to an aggregate at the start."""
     before = [mean_velocity(start_velocity, mass, counted & (aggregate == k)) for k in (0, 1)]
     after = [mean_velocity(end_velocity, mass, piece) for piece in pieces]
     return restitution(before[1] - before[0], after[1] - after[0])

@@ -1,19 +1,20 @@
-"""Outcome of an aggregate's collision with a plate, as laboratories tell it: what sticks to the plate, and what leaves it.
+"""Outcome of an aggregate's collision with a plate, as laboratories have it: what sticks to the plate, and what
+leaves it.
 
-Counted are the grains that belong to the aggregate at the start (fragments.belongs_to_an_aggregate). With f_on the fraction of
-their mass that is connected with the plate at the end, and f_off that of the heaviest piece that is not:
+Counted are the grains that belong to the aggregate at the start (fragments.belongs_to_an_aggregate). With f_on the
+fraction of their mass that is connected with the plate at the end, and f_off that of the heaviest piece that is not:
 
     never met      no contact with the plate at any time
     sticking       f_on >= 0.9
     bouncing       f_off >= 0.9, whatever small part it has left on the plate
     fragmentation  everything else: what sticks then is the mass transfer of laboratories, f_on
 
-The coefficient of restitution is 0 for sticking; for bouncing minus the velocity of the centre of mass of the heaviest piece along that
-of the aggregate at the start, over the latter.
+The coefficient of restitution is 0 for sticking; for bouncing minus the velocity of the centre of mass of the
+heaviest piece along that of the aggregate at the start, over the latter.
 
-The plate stands as one more grain among the others, of aggregate 1: a sphere so large that it is flat where the grains are. Pieces that
-may still meet it, and cuts between it and what lies on it, are then found as those of two aggregates (decided.py); motion along the plate
-counts as turning with it, which breaks nothing."""
+The plate stands as one more grain among the others, of aggregate 1: a sphere so large that it is flat where the
+grains are. Pieces that may still meet it, and cuts between it and what lies on it, are then found as those of two
+aggregates (decided.py); motion along the plate counts as turning with it, which breaks nothing."""
 
 from itertools import chain
 
@@ -21,10 +22,12 @@ import numpy as np
 
 from .decided import EVER, Pieces
 from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes, heaviest_fragment
-from .free_flight import pieces_that_can_meet
+from .motion import means_of_pieces, pieces_that_can_meet
 from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, ROUNDING, STICKING, Outcome, mean_velocity, restitution
 
-FLAT = 1e3  # radius of the sphere that stands for the plate, over the largest distance of a grain from the plate's point below the grains
+# Radius of the sphere that stands for the plate, over the largest distance of a grain from the point of the plate below
+# the grains.
+FLAT = 1e3
 MOST = 0.9  # of the mass, on the plate or in the piece that has bounced
 
 
@@ -34,7 +37,7 @@ def has_plate(state):
 
 
 def with_plate(state):
-    """The state (a mapping), where it has a plate with that as its last grain, in contact with the grains on it."""
+    """The state (a mapping) with its plate, if it has one, as the last grain, in contact with the grains on it."""
     if not has_plate(state):
         return state
     axis, on_axis = int(state["plane_axis"][0]), float(state["plane_position"][0])
@@ -59,7 +62,8 @@ def with_plate(state):
 
 
 def classify_on_plate(on, off):
-    """Name of the outcome for the mass fractions on the plate and in the heaviest piece off it: the rule at the module's head.
+    """Name of the outcome for the mass fractions on the plate and in the heaviest piece off it: the rule at the
+    module's head.
 
     >>> classify_on_plate(0.95, 0.01), classify_on_plate(0.05, 0.95), classify_on_plate(0.5, 0.5)
     ('sticking', 'bouncing', 'fragmentation')
@@ -75,9 +79,10 @@ def _counted(start):
 
 
 def plate_outcome(start, end, met):
-    """outcome.Outcome from the states (mappings) at the start and at the end, of grains of one density; met: whether the aggregate touched
-    the plate at any time. mass_fractions, fragments and largest_fragment: what lies on the plate is one piece; growth_efficiency: the
-    plate's, the fraction of the mass of all grains that lies on it; mass_on_plate: f_on."""
+    """outcome.Outcome from the states (mappings) at the start and at the end, of grains of one density; met: whether
+    the aggregate touched the plate at any time. mass_fractions, fragments and largest_fragment: what lies on the
+    plate is one piece; growth_efficiency: the plate's, the fraction of the mass of all grains that lies on it;
+    mass_on_plate: f_on."""
     counted, state = _counted(start), with_plate(end)
     labels = fragment_labels(len(counted), state["contact_pairs"])
     mass = (state["radius"] / state["radius"][:-1].max()) ** 3  # so that equal grains add up without rounding
@@ -125,14 +130,10 @@ def why_undecided_on_plate(kind, start, end, constants, touch, recent=()):
 
 
 def _that_can_meet_it(plate, position, velocity, radius, labels):
-    """Which pieces (K,) may touch the piece of the plate: those whose spheres do, unless they leave faster than any of their grains moves in
-    the piece, so that none comes back however it turns."""
+    """Which pieces (K,) may touch the piece of the plate: those whose spheres do, unless they leave faster than any
+    of their grains moves in the piece, so that none comes back however it turns."""
     mass = radius**3
-    centre, motion = (
-        np.stack([np.bincount(labels, weights=mass * c) for c in values.T], 1)
-        / np.bincount(labels, weights=mass)[:, None]
-        for values in (position, velocity)
-    )
+    centre, motion = means_of_pieces(position, labels, mass), means_of_pieces(velocity, labels, mass)
     within = np.zeros(len(centre))
     np.maximum.at(within, labels, np.linalg.norm(velocity - motion[labels], axis=1))
     away = centre - centre[plate]
@@ -142,7 +143,7 @@ def _that_can_meet_it(plate, position, velocity, radius, labels):
 
 
 def _why_breaking(kind, pieces, counted):
-    """For an outcome that the loss of a side of what lies on the plate, or of the heaviest piece off it, makes another one."""
+    """Of an outcome that is another one without a side of what lies on the plate, or of the heaviest piece off it."""
     shares, plate = pieces.shares(counted)[0], pieces.labels[-1]
     off = np.where(np.arange(len(shares)) == plate, 0.0, shares)
     cut, side = pieces.loose_cuts()

@@ -1,5 +1,9 @@
-"""Structure: how many grains lie within a distance of a grain (Kataoka et al. 2013, K13, Fig. 11), fractal dimension, gyration radius (Sirono &
-Ueno 2017, S17), filling factor."""
+"""Structure of packings: grains within a distance, fractal dimension, radius of gyration, filling factor, contacts of
+a grain.
+
+K13 = Kataoka et al. 2013, S17 = Sirono & Ueno 2017, A22 = Arakawa et al. 2022, A24 = Arakawa et al. 2024. Functions
+that return lengths return them in the unit of the positions.
+"""
 
 from itertools import product
 from math import ceil
@@ -7,33 +11,50 @@ from math import ceil
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..arguments import COUNT, NOT_NEGATIVE, POSITIVE, number, numbers, takes
+from ..arrays import numbers, pairs
 
 SCALES, MOST_ORIGINS = 12, 500  # of correlation_dimension
-POINTS, RADII = numbers("N,3"), numbers("N", POSITIVE)
+# Depth below the contact pole and radius about the collision axis of zone_filling(), in radii of the aggregate.
+DEPTH = WIDTH = 0.25
 
 
-@takes(position=POINTS, distance=numbers(right=NOT_NEGATIVE), cell_size=numbers("3", POSITIVE), origins=number(COUNT))
 def grains_within(position, distance, cell_size=None, origins=None):
-    """N(r < r_in): mean number of grains, itself and images included, whose centre is nearer than `distance` (K,) to that
-    of a grain (K13 section 3.6).
+    """Mean number of grains, itself and images included, nearer than a distance to a grain: N(r < r_in), K13 section
+    3.6.
 
-    position (N,3), anywhere; cell_size (3,): edges of the periodic cell, None in open space; origins: at most so many
-    grains, evenly chosen among them, are taken as centres (None: all). One unit for all lengths.
+    Parameters
+    ----------
+    position : (N, 3) array
+        Centres, anywhere.
+    distance : array
+        Of any shape, in the unit of position.
+    cell_size : (3,) array, optional
+        Edges of the periodic cell; open space if left out.
+    origins : int, optional
+        At most so many grains, evenly chosen, are taken as centres.
 
-    >>> grains_within([[0.0, 0, 0], [1, 0, 0]], [0.5, 1.5]).tolist(), grains_within([[0.0, 0, 0]], [1.5], [1.0] * 3).tolist()
-    ([1.0, 2.0], [19.0])
+    Returns
+    -------
+    array
+        In the shape of distance.
+
+    Examples
+    --------
+    >>> grains_within([[0.0, 0, 0], [1, 0, 0]], [0.5, 1.5]).tolist()
+    [1.0, 2.0]
+    >>> grains_within([[0.0, 0, 0]], [1.5], [1.0] * 3).tolist()
+    [19.0]
     """
-    position, distance = np.asarray(position, dtype=float), np.asarray(distance, dtype=float)
+    position, distance = _points(position), numbers("distance", distance, least=0)
     shifts = [np.zeros(3)]
     if cell_size is not None:
-        cell_size = np.asarray(cell_size, dtype=float)
+        cell_size = numbers("cell_size", cell_size, (3,), positive=True)
         position = position - cell_size * np.floor(position / cell_size)
         farthest = distance.max(initial=0.0)
         reach = [range(-ceil(farthest / edge), ceil(farthest / edge) + 1) for edge in cell_size]
         shifts = [cell_size * image for image in product(*reach)]
     chosen = position
-    if origins is not None and origins < len(position):
+    if origins is not None and numbers("origins", origins, (), least=1) < len(position):
         chosen = position[np.linspace(0, len(position) - 1, origins).round().astype(int)]
     tree, counts = cKDTree(position), np.zeros(distance.shape)
     for shift in shifts:
@@ -46,20 +67,31 @@ def fractal_dimension(distance, counts):
     return np.diff(np.log(counts)) / np.diff(np.log(distance))
 
 
-@takes(position=POINTS, radius=RADII)
 def correlation_dimension(position, radius):
-    """Fractal dimension of a piece: slope of ln N(< s) against ln s, fitted at SCALES distances s from 3 radii (the largest of
-    radius (N,)) to 0.7 R_g, N(< s) as in grains_within; position (N,3), one unit. NaN where that is less than a factor of 1.5.
+    """Fractal dimension of a piece: slope of ln N(< s) against ln s, from 3 radii to 0.7 R_g.
 
-    The surface lowers it. Of 256 to 4096 grains BCCA aggregates have 1.87 (scatter 0.05; infinite ones 1.9), BPCA aggregates
-    2.4 to 2.6 (3), close-packed spheres thinned to 0.4 some 2.85 (3). Grassberger & Procaccia (1983); K13 section 3.6.
+    The surface lowers it: of 256 to 4096 grains BCCA aggregates have 1.87 (scatter 0.05; infinite ones 1.9), BPCA
+    aggregates 2.4 to 2.6 (3), close-packed spheres thinned to 0.4 some 2.85 (3). Grassberger & Procaccia (1983).
 
+    Parameters
+    ----------
+    position : (N, 3) array
+    radius : (N,) array
+        In the unit of position.
+
+    Returns
+    -------
+    float
+        NaN where these distances differ by less than a factor of 1.5.
+
+    Examples
+    --------
     >>> line = np.arange(100.0)[:, None] * [2, 0, 0]
     >>> round(correlation_dimension(line, np.ones(100)), 1)
     1.0
     """
-    position = np.asarray(position, dtype=float)
-    low, high = 3.0 * float(np.max(radius)), 0.7 * gyration_radius(position)
+    position = _points(position)
+    low, high = 3.0 * float(np.max(_radii(radius, position))), 0.7 * gyration_radius(position)
     if not high >= 1.5 * low:
         return float("nan")
     distance = np.geomspace(low, high, SCALES)
@@ -67,28 +99,144 @@ def correlation_dimension(position, radius):
     return float(np.polyfit(np.log(distance), np.log(counts), 1)[0])
 
 
-@takes(position=POINTS, radius=RADII)
 def gyration_radius(position, radius=None):
-    """R_g of points (N,3) of equal mass, in their unit: S17 eq 13; with the grains' radius (N,): of spheres of one density,
-    R_g^2 = sum m_i (|x_i - x_c|^2 + 3/5 r_i^2)/sum m_i.
+    """Radius of gyration of points of equal mass (S17 eq 13), or of spheres of one density.
 
+    Of spheres R_g^2 = sum m_i (|x_i - x_c|^2 + 3/5 r_i^2)/sum m_i.
+
+    Parameters
+    ----------
+    position : (N, 3) array
+    radius : (N,) array, optional
+        In the unit of position; points if left out.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
     >>> gyration_radius([[0.0, 0, 0], [2, 0, 0]]), round(gyration_radius([[0.0, 0, 0]], [1.0]) ** 2, 3)
     (1.0, 0.6)
     """
-    position = np.asarray(position, dtype=float)
-    own = np.zeros(len(position)) if radius is None else np.asarray(radius, dtype=float)
+    position = _points(position)
+    own = np.zeros(len(position)) if radius is None else _radii(radius, position)
     mass = None if radius is None else (own / own.max()) ** 3
     square = ((position - np.average(position, axis=0, weights=mass)) ** 2).sum(axis=1)
     return float(np.sqrt(np.average(square + 0.6 * own**2, weights=mass)))
 
 
-@takes(position=POINTS, radius=RADII)
 def filling_factor(position, radius):
-    """Volume of spheres at position (N,3) with radius (N,), over that of a homogeneous sphere of their gyration radius, whose radius
-    is r_c = (5/3)^(1/2) R_g (Mukai et al. 1992; A22 section 2.4); overlaps counted twice. One unit. Of one grain 1.
+    """Volume of spheres over that of a homogeneous sphere of their radius of gyration.
 
-    >>> round(filling_factor([[0.0, 0, 0]], [1.0]), 9), round(filling_factor([[-1.0, 0, 0], [1, 0, 0]], [1.0, 1.0]), 3)
-    (1.0, 0.459)
+    Its radius is r_c = (5/3)^(1/2) R_g (Mukai et al. 1992; A22 section 2.4). Overlaps count twice; of one grain it is
+    1.
+
+    Parameters
+    ----------
+    position : (N, 3) array
+    radius : (N,) array
+        In the unit of position.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> round(filling_factor([[-1.0, 0, 0], [1, 0, 0]], [1.0, 1.0]), 3)
+    0.459
     """
     whole = np.sqrt(5.0 / 3.0) * gyration_radius(position, radius)
     return float(((np.asarray(radius, dtype=float) / whole) ** 3).sum())
+
+
+def mean_coordination(grains, contact_pairs):
+    """Mean number of contacts of a grain, 2 M/N.
+
+    Parameters
+    ----------
+    grains : int
+        N
+    contact_pairs : (M, 2) array of int
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> mean_coordination(4, [[0, 1], [2, 3]])
+    1.0
+    """
+    return 2.0 * len(pairs("contact_pairs", contact_pairs)) / int(numbers("grains", grains, (), least=1, whole=True))
+
+
+def inner_coordination(position, contact_pairs, centre, reach):
+    """Mean number of contacts of the grains whose centre is nearer than `reach` to a point.
+
+    Parameters
+    ----------
+    position : (N, 3) array
+    contact_pairs : (M, 2) array of int
+    centre : (3,) or (N, 3) array
+        One point, or one for each grain, in the unit of position.
+    reach : float
+        In the unit of position.
+
+    Returns
+    -------
+    float
+        NaN if there is no such grain.
+
+    Examples
+    --------
+    >>> inner_coordination([[0.0, 0, 0], [2, 0, 0], [4, 0, 0]], [[0, 1], [1, 2]], [2.0, 0, 0], 1.0)
+    2.0
+    """
+    position = _points(position)
+    contacts = np.bincount(pairs("contact_pairs", contact_pairs, len(position)).ravel(), minlength=len(position))
+    place = position - numbers("centre", centre, (3,) if np.ndim(centre) == 1 else position.shape)
+    inside = np.einsum("ij,ij->i", place, place) < numbers("reach", reach, (), least=0) ** 2
+    return float(contacts[inside].mean()) if inside.any() else float("nan")
+
+
+def zone_filling(position, centre, radius, side, depth=DEPTH, width=WIDTH):
+    """Number density of grains at the place where an aggregate is hit over that of the whole: 1 in the mean over
+    packings.
+
+    position (N,3) of the grains of one aggregate, centre (3,) of its sphere, radius of the sphere that holds the
+    centres of its grains; side: +1 or -1, the pole along x at which it meets the other. The zone holds the centres
+    less than depth*radius below the pole and less than width*radius from the axis.
+    """
+    place = np.asarray(position, dtype=float) - centre
+    inside = (side * place[:, 0] > (1.0 - depth) * radius) & (np.hypot(place[:, 1], place[:, 2]) < width * radius)
+    return float(inside.mean() * (4.0 / 3.0 * np.pi * radius**3) / zone_volume(radius, depth, width))
+
+
+def zone_volume(radius, depth=DEPTH, width=WIDTH):
+    """Volume of the zone of zone_filling() in a whole sphere: a cylinder below a cap, in the unit of radius^3.
+
+    >>> f"{zone_volume(1.0, 2.0, 1.0) / (4 * np.pi / 3):.6f}"
+    '1.000000'
+    """
+    cap = 1.0 - np.sqrt(1.0 - width**2)
+    if depth <= cap:
+        return np.pi * depth**2 * (1.0 - depth / 3.0) * radius**3
+    if depth <= 2.0 - cap:
+        rest = np.pi * width**2 * (depth - cap)
+    else:  # both caps, and the whole cylinder between them less what the far one lacks below `depth`
+        far = 2.0 - depth
+        rest = np.pi * width**2 * (2.0 - 2.0 * cap) + np.pi * (cap**2 * (1 - cap / 3) - far**2 * (1 - far / 3))
+    return (rest + np.pi * cap**2 * (1.0 - cap / 3.0)) * radius**3
+
+
+def _points(position):
+    array = numbers("position", position, (None, 3))
+    if not len(array):
+        raise ValueError("position: must have one grain or more")
+    return array
+
+
+def _radii(radius, position):
+    return numbers("radius", radius, (len(position),), positive=True)

@@ -10,11 +10,10 @@ import numpy as np
 import pandas
 
 from ..arguments import FLAG, PATH, takes, wrong
-from ..measures.coordination import mean_coordination
-from ..measures.fragments import fragment_labels, heaviest_fragment
+from ..measures.fragments import STRUCTURE, fragment_labels, heaviest_fragment, structure_of
 from ..measures.ledger import fractions_at, largest_work
-from ..measures.periodic_compression import AVERAGED, pressure_at_end
-from ..measures.pieces import STRUCTURE, structure_of
+from ..measures.periodic_cell import AVERAGED, pressure_at_end
+from ..measures.structure import mean_coordination
 from ..progress import progress
 from ..runs.arrays import RunFolderError
 from ..runs.collect import run_folders

@@ -2,12 +2,10 @@
 
 import textwrap
 
-from ..arguments import Kind, takes
-from ..measures.ledger import closure, final_values, initial_kinetic_energy, largest_work, work_closure
+from ..measures.ledger import closure, initial_kinetic_energy, largest_work, work_closure
 from ..measures.of_run import are_equal, maximum_of_run, met, outcome_of_run
 from ..measures.outcome import BOUNCING
-from ..measures.periodic_compression import AVERAGED, pressure_at_end, tensile_strength
-from ..runs.folder import RunFolder
+from ..measures.periodic_cell import AVERAGED, pressure_at_end, tensile_strength
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, LABELS
 from ..runs.shown import WIDTH, settings
 from ..runs.table import Column
@@ -56,7 +54,6 @@ ENERGY_KEYS = (
 )
 
 
-@takes(run=Kind("a RunFolder, as open_run() gives", lambda run: isinstance(run, RunFolder)))
 def summarise(run):
     """Numbers of a RunFolder as a dict, SI units, None where a value does not exist: run (path), ended, time (of the last
     sample), ended_by (what ended a compression), and by their names COMPRESSION_KEYS, OUTCOME_KEYS (None but for collisions), TENSION_KEYS
@@ -71,7 +68,7 @@ def summarise(run):
     numbers.update(dict.fromkeys(_names(TENSION_KEYS)) if run.kind is not COMPRESSION else _tension(run))
     numbers["energy_closure"] = (work_closure if run.kind is COMPRESSION else closure)(history)
     numbers["initial_kinetic_energy"] = initial_kinetic_energy(history)
-    numbers.update(final_values(history))
+    numbers.update({name: float(history[name][-1]) for name in CHANNELS})
     return numbers
 
 

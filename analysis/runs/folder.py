@@ -61,8 +61,8 @@ class State:
         return state_text(self)
 
     def fragments(self):
-        """DataFrame with a row for each piece (grains joined by contacts), the largest first: measures.pieces.fragments."""
-        from ..measures.pieces import fragments
+        """DataFrame with a row for each piece (grains joined by contacts), the largest first: measures.fragments.fragments."""
+        from ..measures.fragments import fragments
 
         return fragments(self.position, self.radius, self.contact_pairs, self.aggregate, self.cell_size)
 

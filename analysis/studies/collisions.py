@@ -3,12 +3,11 @@ question of one's own."""
 
 import numpy as np
 
-from ..measures.compression import first_compression
-from ..measures.coordination import mean_coordination
+from ..measures.compression import first_compression, largest_return_speed
 from ..measures.ledger import fractions_at, initial_kinetic_energy
 from ..measures.of_run import met, outcome_of_run
 from ..measures.outcome import BOUNCING, FRAGMENTATION, NEVER_MET, STICKING, UNDECIDED
-from ..measures.return_phase import largest_return_speed
+from ..measures.structure import mean_coordination
 from ..runs.arrays import RunFolderError
 from ..runs.collect import Scene
 from ..runs.format import CHANNELS, HISTORY_FILE, LABELS, LOST_CHANNELS, PARAMETER_WORDS

@@ -33,7 +33,7 @@ def test_maximum_of_a_parabola_between_samples():
     d[40:] = v[40:] = np.nan
     assert maximum_compression(time, d, v).length == pytest.approx(5.0, rel=1e-12)
     assert maximum_compression(time, np.full(51, np.nan), v) is None
-    with pytest.raises(ValueError, match=r"d: has shape \(4,\); must be numbers or NaN \(N,\), N = 3"):
+    with pytest.raises(ValueError, match="^d: must have the shape"):
         maximum_compression(np.arange(3.0), np.arange(4.0), np.arange(3.0))
 
 

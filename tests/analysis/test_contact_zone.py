@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.measures.contact_zone import zone_filling, zone_volume
-from analysis.measures.return_phase import largest_return_speed
+from analysis.measures.compression import largest_return_speed
+from analysis.measures.structure import zone_filling, zone_volume
 from analysis.studies.collisions import returned
 from analysis.studies.elastoplastic.measure import zones_that_meet
 from yade_scripts import packings

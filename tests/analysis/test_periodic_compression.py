@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.measures.periodic_compression import *
+from analysis.measures.periodic_cell import *
 from analysis.studies.compression.curve import FILLINGS, coordination_at, pressure_at
 from analysis.theory.aggregates import bcca_coordination
 from analysis.theory.compression import compressive_strength_dense

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from written_runs import cubic_lattice
 
-from analysis.measures.loops import loops
-from analysis.measures.percolation import spanned_axes
+from analysis.measures.network import loops, spanned_axes
 from analysis.measures.structure import fractal_dimension, grains_within
 
 # Sites within sqrt(0), sqrt(1), sqrt(2), ... of a simple cubic lattice.

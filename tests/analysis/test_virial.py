@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from written_runs import cubic_lattice
 
-from analysis.measures.virial import *
+from analysis.measures.periodic_cell import *
 
 A = 2e-7
 

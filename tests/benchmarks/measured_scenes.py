@@ -10,7 +10,7 @@ from math import ceil, log
 import numpy as np
 import scene_file
 
-from analysis.measures.virial import filling_factor
+from analysis.measures.periodic_cell import filling_factor
 from yade_scripts import packings
 from yade_scripts.experiments import collision, compression
 from yade_scripts.materials import pair_constants

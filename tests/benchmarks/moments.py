@@ -15,7 +15,7 @@ import numpy as np
 import scene_file
 from measured_on import TOP
 
-from analysis.measures.virial import filling_factor
+from analysis.measures.periodic_cell import filling_factor
 
 FOLDER = TOP / "build/bench/scenes"
 FAST_STRAIN = 1e-5  # 1/t0: at which the denser cells are made

@@ -3,7 +3,7 @@
 import pytest
 from scenes import *
 
-from analysis.measures.virial import contact_pressure
+from analysis.measures.periodic_cell import contact_pressure
 
 pytestmark = pytest.mark.in_yade
 WORK = "boundaryWork"

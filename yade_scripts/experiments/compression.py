@@ -6,7 +6,7 @@ from math import log, pi
 
 import numpy as np
 
-from analysis.measures.virial import contact_pressure, filling_factor, kinetic_pressure
+from analysis.measures.periodic_cell import contact_pressure, filling_factor, kinetic_pressure
 from analysis.runs.format import COMPRESSION
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments import piston

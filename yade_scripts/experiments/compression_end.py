@@ -4,7 +4,7 @@ from math import log
 
 import numpy as np
 
-from analysis.measures.periodic_compression import AVERAGED, pressure_at_end
+from analysis.measures.periodic_cell import AVERAGED, pressure_at_end
 from yade_scripts import stability
 from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import tell

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from analysis.measures.coordination import mean_coordination
 from analysis.measures.fragments import fragment_labels
-from analysis.measures.structure import fractal_dimension, grains_within
+from analysis.measures.structure import fractal_dimension, grains_within, mean_coordination
 from yade_scripts.packings.packing import characteristic_radius, contacts, gyration_radius
 
 NEAREST = 3.0  # grain radii: nearer than that the number of grains says how they touch

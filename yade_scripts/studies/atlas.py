@@ -40,7 +40,7 @@ from scipy.stats import qmc
 from analysis.atlas.columns import MEASURED, breaking_velocity
 from analysis.atlas.variables import CHOSEN
 from analysis.measures.outcome import UNDECIDED
-from analysis.measures.virial import filling_factor
+from analysis.measures.periodic_cell import filling_factor
 from analysis.progress import progress
 from analysis.runs.table import TableError, read_table
 from analysis.studies.columns import flat

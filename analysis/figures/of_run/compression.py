@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...measures.ledger import work_on_boundaries
-from ...measures.periodic_compression import AVERAGED, pressure_over
+from ...measures.periodic_cell import AVERAGED, pressure_over
 from ...runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, COMPRESSION, LABELS, WORK
 from ...theory.aggregates import bcca_coordination
 from ...theory.compression import compressive_strength, compressive_strength_dense, strength_scale

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...measures.periodic_compression import compressing, pressures
+from ...measures.periodic_cell import compressing, pressures
 from ...theory.aggregates import bcca_coordination
 from ...theory.compression import compressive_strength_dense
 

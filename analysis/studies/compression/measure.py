@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ...measures import periodic_compression as cells
+from ...measures import periodic_cell as cells
 from ...measures.ledger import work_closure
-from ...measures.percolation import spanned_axes
+from ...measures.network import spanned_axes
 from ...measures.structure import fractal_dimension, grains_within
 from ...runs.format import LOST_CHANNELS
 from ...runs.table import Column
@@ -58,7 +58,7 @@ def _filling_of(run, state):
 
 
 def _spanned_from(run):
-    """Filling factor of the loosest state from which on every state of the compression spans its cell along all axes (measures.percolation);
+    """Filling factor of the loosest state from which on every state of the compression spans its cell along all axes (measures.network);
     inf where the densest does not, NaN without states."""
     found = float("inf") if len(run.states) else float("nan")
     last = run.history["time"][cells.compressing(run.history)][-1]

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ...measures.contact_zone import DEPTH, WIDTH, zone_filling
-from ...measures.coordination import inner_coordination
+from ...measures.structure import DEPTH, WIDTH, inner_coordination, zone_filling
 from ...runs.table import Column
 from ..collisions import COMPACT, largest_compression
 from ..columns import GRAIN_RADIUS, SEED, VELOCITY, constant, group, one, parameter

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...measures.fragments import fragment_labels, fragment_sizes
 from ...measures.ledger import initial_kinetic_energy
-from ...measures.loops import loops
+from ...measures.network import loops
 from ...measures.of_run import derived_constants
 from ...measures.structure import gyration_radius
 from ...runs.format import BROKEN_BONDS

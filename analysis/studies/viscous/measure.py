@@ -6,8 +6,8 @@ import numpy as np
 
 from ...measures.fragments import fragment_labels, fragment_sizes, growth_efficiency
 from ...measures.ledger import initial_kinetic_energy
+from ...measures.motion import NEAR, pair_velocities, root_mean_square
 from ...measures.of_run import derived_constants
-from ...measures.pair_velocities import NEAR, pair_velocities, root_mean_square
 from ...runs.table import Column
 from ...theory import Material, pair_constants, sticking_velocity
 from ..columns import CLOSURE, END, GRAIN_RADIUS, MET, SEED, group, one, parameter

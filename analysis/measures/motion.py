@@ -1,8 +1,10 @@
-"""Whether the pieces of a collision can still meet or break: grains that fly apart on straight lines."""
+"""How pieces and grains move against each other: on straight lines, as rigid bodies, and neighbours in the whole."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 _CHUNK = 4_000_000  # pairs of pieces compared at once
+NEAR = 2.2  # A22's threshold distance of neighbours, in grain radii
 
 
 def pieces_can_meet(position, velocity, radius, labels, time):
@@ -28,10 +30,61 @@ def pieces_that_can_meet(piece, position, velocity, radius, labels, time):
     return found
 
 
+def inner_kinetic_energy(position, velocity, mass, labels):
+    """Kinetic energy [J] (K,) of each of K pieces beside that of its motion as a rigid body, the rotation of the grains
+    themselves left out; position, velocity (N,3) [m, m/s], mass (N,) [kg], labels (N,)."""
+    remaining = motion_in_pieces(position, velocity, mass, labels)
+    return 0.5 * np.bincount(labels, weights=mass * np.einsum("ij,ij->i", remaining, remaining))
+
+
+def motion_in_pieces(position, velocity, mass, labels):
+    """Velocities (N,3) [m/s] of grains relative to their pieces, moving and turning as rigid bodies do that have the
+    same momentum and angular momentum. Arguments as inner_kinetic_energy."""
+    number = labels.max() + 1
+    place = position - means_of_pieces(position, labels, mass)[labels]
+    remaining = velocity - means_of_pieces(velocity, labels, mass)[labels]
+    spin = np.stack([np.bincount(labels, weights=mass * c, minlength=number) for c in np.cross(place, remaining).T], 1)
+    square = np.einsum("ij,ij->i", place, place)
+    inertia = np.empty((number, 3, 3))
+    for i in range(3):
+        for j in range(3):
+            product = (square if i == j else 0.0) - place[:, i] * place[:, j]
+            inertia[:, i, j] = np.bincount(labels, weights=mass * product, minlength=number)
+    # A piece of one or two grains has axes without inertia, about which it doesn't turn.
+    turning = np.einsum("ijk,ik->ij", np.linalg.pinv(inertia, rcond=1e-9, hermitian=True), spin)
+    return remaining - np.cross(turning[labels], place)
+
+
+def means_of_pieces(values, labels, mass):
+    """Mass-weighted means (K,3) over pieces of values (N,3)."""
+    sums = [np.bincount(labels, weights=mass * component) for component in values.T]
+    return np.stack(sums, 1) / np.bincount(labels, weights=mass)[:, None]
+
+
+def pair_velocities(position, velocity, distance):
+    """Normal component (M,) [m/s] of the relative velocity of the pairs of grains nearer than `distance` [m], positive
+    where they approach (A22 section 5.1); position (N,3) [m], velocity (N,3) [m/s].
+
+    >>> pair_velocities(np.array([[0.0, 0, 0], [1, 0, 0]]), np.array([[2.0, 1, 0], [-1, 0, 0]]), 1.5)
+    array([3.])
+    """
+    pairs = cKDTree(position).query_pairs(distance, output_type="ndarray")
+    apart = position[pairs[:, 1]] - position[pairs[:, 0]]
+    relative = velocity[pairs[:, 1]] - velocity[pairs[:, 0]]
+    length = np.linalg.norm(apart, axis=1)
+    keep = length > 0
+    return -np.einsum("ij,ij->i", apart, relative)[keep] / length[keep]
+
+
+def root_mean_square(values):
+    """(mean of the squares of values (M,))^(1/2); NaN without any."""
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
+
+
 def _flight(position, velocity, radius, labels):
     """Centres, velocities (K,3) and radii of the spheres (K,) around all pieces."""
     mass = radius**3
-    centre, motion = _means(position, labels, mass), _means(velocity, labels, mass)
+    centre, motion = means_of_pieces(position, labels, mass), means_of_pieces(velocity, labels, mass)
     reach = np.zeros(len(centre))
     np.maximum.at(reach, labels, np.linalg.norm(position - centre[labels], axis=1) + radius)
     return centre, motion, reach
@@ -47,34 +100,3 @@ def _meet(centre, motion, reach, part, time):
         nearest = np.clip(np.where(square > 0, towards / square, 0.0), 0.0, time)
     closest = apart + nearest[..., None] * relative
     return np.einsum("ijk,ijk->ij", closest, closest) < (reach[None, :] + reach[part, None]) ** 2
-
-
-def inner_kinetic_energy(position, velocity, mass, labels):
-    """Kinetic energy [J] (K,) of each of K pieces beside that of its motion as a rigid body, the rotation of the grains
-    themselves left out; position, velocity (N,3) [m, m/s], mass (N,) [kg], labels (N,)."""
-    remaining = motion_in_pieces(position, velocity, mass, labels)
-    return 0.5 * np.bincount(labels, weights=mass * np.einsum("ij,ij->i", remaining, remaining))
-
-
-def motion_in_pieces(position, velocity, mass, labels):
-    """Velocities (N,3) [m/s] of grains relative to their pieces, moving and turning as rigid bodies do that have the
-    same momentum and angular momentum. Arguments as inner_kinetic_energy."""
-    number = labels.max() + 1
-    place = position - _means(position, labels, mass)[labels]
-    remaining = velocity - _means(velocity, labels, mass)[labels]
-    spin = np.stack([np.bincount(labels, weights=mass * c, minlength=number) for c in np.cross(place, remaining).T], 1)
-    square = np.einsum("ij,ij->i", place, place)
-    inertia = np.empty((number, 3, 3))
-    for i in range(3):
-        for j in range(3):
-            product = (square if i == j else 0.0) - place[:, i] * place[:, j]
-            inertia[:, i, j] = np.bincount(labels, weights=mass * product, minlength=number)
-    # A piece of one or two grains has axes without inertia, about which it doesn't turn.
-    turning = np.einsum("ijk,ik->ij", np.linalg.pinv(inertia, rcond=1e-9, hermitian=True), spin)
-    return remaining - np.cross(turning[labels], place)
-
-
-def _means(values, labels, mass):
-    """Mass-weighted means (K,3) over pieces of values (N,3)."""
-    sums = [np.bincount(labels, weights=mass * component) for component in values.T]
-    return np.stack(sums, 1) / np.bincount(labels, weights=mass)[:, None]

@@ -1,0 +1,18 @@
+"""The names that `import analysis` offers."""
+# ruff: noqa: F401, I001
+
+from .atlas.grid import outcome
+from .measures.compression import compression_length, maximum_compression, mutual_velocity
+from .measures.fragments import cumulative_cross_section, cumulative_grains, fragment_labels, fragment_masses
+from .measures.fragments import fragment_sizes, fragments, growth_efficiency
+from .measures.ledger import closure, fractions_at, total_energy
+from .measures.probability import exact_interval
+from .measures.structure import correlation_dimension, filling_factor, grains_within, gyration_radius
+from .measures.structure import inner_coordination, mean_coordination
+from .report.plot import plot
+from .report.rows import table
+from .report.summary import summarise
+from .runs.arrays import RunFolderError
+from .runs.folder import RunFolder, State, open_run
+
+__all__ = [name for name in dir() if not name.startswith("_")]
