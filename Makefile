@@ -15,6 +15,7 @@
 # make study-compressed  collisions of compressed aggregates beside CPE ones
 # make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 14,000)
 # make gallery-atlas  makes its page, model and table of outcomes again
+# make tables  writes the tables of all studies, yade_scripts/studies/*.table (study.py NAME writes the one that it needs)
 # make study-status STUDY=viscous  how far a study is, from another shell
 # make gallery  makes the page above all studies and the paper again, analysis/gallery/README.md and paper.md, and build/paper.pdf
 # make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
@@ -226,7 +227,7 @@ PREFIX ?= ~/.local
 override PREFIX := $(value PREFIX)
 export PREFIX
 .PHONY: install uninstall
-install: all
+install: all tables
 	@$(PYTHON) contact_law/installation.py install "$$PREFIX"
 
 uninstall:
@@ -352,7 +353,10 @@ runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk -prediction,-$(SIZE))
 # All of them: of two with the same numbers the first counts, and undecided runs of the atlas are run again for longer.
 all-runs = $(if $(filter atlas,$1),$(wildcard runs/atlas-longer)) $(call runs,$1)
 
-.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status
+.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status tables
+tables:
+	@$(PYTHON) yade_scripts/studies/tables.py
+
 $(STUDIES:%=study-%): study-%: all
 	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
 	@$(PYTHON) -m analysis study $* $(call all-runs,$*) --figures $(call runs,$*)/figures --page $(call runs,$*)/$*.html

@@ -4,8 +4,8 @@
     yade -n -x yade_scripts/compress.py grains=4096 seed=3        any parameter by its name
     yade -n -x yade_scripts/compress.py finalPressure=1e4         to a pressure [Pa]
     yade -n -x yade_scripts/compress.py finalFilling=0.3 stretch=x    and then stretched along x: tensile strength
-    yade -n -x yade_scripts/compress.py table=yade_scripts/studies/compression-desk.table:6    one row of a table
-    python3 yade_scripts/study.py yade_scripts/studies/compression-desk.table                  all rows
+    python3 yade_scripts/study.py compression-desk                all rows of a study's table
+    yade -n -x yade_scripts/compress.py table=yade_scripts/studies/compression-desk.table:6    one of them
     yade -n -x yade_scripts/compress.py --help                    the parameters
 
 Numbers may be written as arithmetic: strainRate=3*10**-7. K13 is Kataoka et al. (2013), A22 Arakawa et al.

@@ -12,7 +12,7 @@ runs, the time it will take is estimated from runs that have ended, or from a pi
 printed. Ctrl-C and SIGTERM stop the runs, each with
 a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
 Logs are in runs/logs/NAME of the table. TABLE may also be the name of
-a table in yade_scripts/studies: elastoplastic-desk. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are
+a study's table, elastoplastic-desk, which is written into yade_scripts/studies if it isn't there. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are
 obeyed, others refused.
 
 With --slurm each row that is left is one task, or short ones share one, by the same rules, of as many processors as a row has threads. A minute
@@ -47,9 +47,9 @@ from yade_scripts.runner.batch import LOGS, Batch, StudyBusy
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.runner.screen import Screen
 from yade_scripts.runner.study import Study
+from yade_scripts.studies import tables
 
 SCRIPT = os.path.basename(__file__)
-STUDIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "studies")
 POLL = 1.0  # s, for what runs elsewhere
 HEAR_SIGNALS = 0.1  # s
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -86,9 +86,8 @@ def parse_arguments(arguments):
 
 
 def find_table(table):
-    """The file named, or else the table of that name among those that come with this: elastoplastic-desk, say."""
-    own = os.path.join(STUDIES, os.path.basename(table).removesuffix(".table") + ".table")
-    return own if not os.path.exists(table) and os.path.dirname(table) == "" and os.path.isfile(own) else table
+    """The file named, or else the table of that name that comes with this, which is written where it isn't there."""
+    return table if os.path.exists(table) else tables.find(table) or table
 
 
 def hint(table):
@@ -96,8 +95,9 @@ def hint(table):
     folder, name = os.path.split(table)
     if os.path.exists(table):
         return ""
-    places = [folder or os.curdir] + ([] if folder else [STUDIES])
-    found = [each for place in places if os.path.isdir(place) for each in os.listdir(place) if each.endswith(".table")]
+    place = folder or os.curdir
+    found = [each for each in os.listdir(place) if each.endswith(".table")] if os.path.isdir(place) else []
+    found += [] if folder else [f"{own}.table" for own in tables.names()]
     return meant(name.removesuffix(".table") + ".table", found, os.path.join(folder, ""))
 
 

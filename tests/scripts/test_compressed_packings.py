@@ -52,16 +52,10 @@ def test_both_spheres_have_the_filling_that_was_asked_for(made_cell):
     assert os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns == before
 
 
-def test_what_cannot_be_cut_is_refused_and_the_script_says_what_it_does(made_cell, monkeypatch, capsys):
+def test_what_cannot_be_cut_is_refused(made_cell, monkeypatch):
     with pytest.raises(PackingError, match="f0.3-s9/states: no states; must be those of a cell"):
         compressed.cut_pair(0.3, 9)
     monkeypatch.setattr(compressed, "PLACES", 3)
     monkeypatch.setattr(compressed, "TOLERANCE", 1e-9)
     with pytest.raises(PackingError, match="no sphere of that filling in 3 places; must be another cell"):
         compressed.cut_pair(0.4, 3)
-    compressed.main(["--help"])
-    assert "compressed.py cut" in capsys.readouterr().out
-    with pytest.raises(SystemExit) as ended:
-        compressed.main(["cuts"])
-    assert ended.value.code == 2
-    assert capsys.readouterr().err == "compressed.py: must be called with cut or tables; --help says more\n"

@@ -1,13 +1,12 @@
 """The collisions of the atlas: a Sobol sequence over structure, size, mass ratio, velocity, impact parameter and filling.
 
-    python3 yade_scripts/study.py yade_scripts/studies/atlas-cells.table -j 2    the cells that compressed aggregates are cut out of
+    python3 yade_scripts/study.py atlas-cells -j 2     the cells that compressed aggregates are cut out of (full: atlas-cells-full too)
     python3 yade_scripts/studies/atlas.py pilot [FIRST LAST]      runs/atlas-pilot.table, and the packings of its rows; also desk, full;
                                                                   FIRST LAST: runs/atlas-pilot-FIRST-LAST.table, of rows FIRST to
                                                                   before LAST alone
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
     python3 yade_scripts/studies/atlas.py longer RUNS.csv         runs/atlas-longer.table: the runs that are undecided in an analysis, LONGER times as long;
                                                                   analysed alone, their runs.csv goes before RUNS.csv: of two the first counts
-    python3 yade_scripts/studies/atlas.py tables                  writes atlas-cells.table, and atlas-cells-full.table, which full needs too
 
 make study-atlas SIZE=pilot does all of it. Row i is the same in every size, which are 500, 2,000 and 14,000 rows long: a larger size goes on
 from a smaller one. Aggregates hold 64 to 1,024 grains together in the first 2,000 rows, and up to 4,096 in the others.
@@ -264,9 +263,8 @@ def _compressed(scene, index):
     try:
         states = sorted(os.listdir(folder))
     except OSError:
-        cells = f"yade_scripts/studies/{CELL_TABLES[scene.most]}.table"
         raise PackingError(
-            f"{folder}: no states; must be those of a cell: python3 yade_scripts/study.py {cells} first"
+            f"{folder}: no states; must be those of a cell: python3 yade_scripts/study.py {CELL_TABLES[scene.most]} first"
         ) from None
     wanted = np.interp(scene.filling, *_fillings(folder, states))
     state = read_periodic_state(os.path.join(folder, states[round(wanted)]))
@@ -299,12 +297,11 @@ def cell_rows(most):
     return [{"description": f"s{n}", **row, "seed": n, "out": f"{CELLS}/s{n}"} for n in CELL_SEEDS[most]]
 
 
-def write_tables(folder):
-    """Write atlas-cells.table and atlas-cells-full.table into a folder."""
+def tables():
+    """{size: (rows, head)} of the cells."""
     head = "Cells that are compressed, out of which the atlas's compressed aggregates are cut.\n"
-    head += "Units: strainRate: 1/t0; stepFraction: t0. Written by yade_scripts/studies/atlas.py."
-    for most, name in CELL_TABLES.items():
-        table.write(os.path.join(folder, f"{name}.table"), cell_rows(most), head)
+    head += "Units: strainRate: 1/t0; stepFraction: t0."
+    return {name.removeprefix("atlas-"): (cell_rows(most), head) for most, name in CELL_TABLES.items()}
 
 
 def write_size(size, *part):
@@ -345,9 +342,7 @@ def write_longer(file):
 
 def main(arguments):
     size = arguments[0] if arguments else ""
-    if arguments == ["tables"]:
-        write_tables(HERE)
-    elif size == "longer" and len(arguments) == 2:
+    if size == "longer" and len(arguments) == 2:
         file = os.path.abspath(arguments[1])
         os.chdir(TOP)
         try:
@@ -366,7 +361,7 @@ def main(arguments):
         except PackingError as error:
             sys.exit(f"atlas.py: {error}")
     else:
-        print(f"atlas.py: must be called with tables, longer, {', '.join(SIZES)}; --help says more", file=sys.stderr)
+        print(f"atlas.py: must be called with longer, {', '.join(SIZES)}; --help says more", file=sys.stderr)
         sys.exit(2)
 
 

@@ -1,9 +1,8 @@
 """Collisions of compressed aggregates beside close-packed and extracted (CPE) ones. Compressed cells are made first, spheres cut out of them, then collided:
 
-    python3 yade_scripts/study.py yade_scripts/studies/compressed-cells.table -j 2
+    python3 yade_scripts/study.py compressed-cells -j 2
     python3 yade_scripts/studies/compressed.py cut        the spheres, into runs/compressed-packings
-    python3 yade_scripts/study.py yade_scripts/studies/compressed-desk.table -j 2
-    python3 yade_scripts/studies/compressed.py tables     writes both tables
+    python3 yade_scripts/study.py compressed-desk -j 2
 
 make study-compressed does all of it. The recipe of Oshiro et al. (2025): a BCCA cluster in a periodic cell is compressed
 (Kataoka et al. 2013), and spheres are cut out where the filling is that of the CPE aggregates, to TOLERANCE: places in the cell are drawn
@@ -14,14 +13,12 @@ import os
 import sys
 from itertools import product
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-TOP = os.path.dirname(os.path.dirname(HERE))
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, TOP)
 from analysis.progress import progress
 from yade_scripts import packings
 from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
-from yade_scripts.studies import table_script
 
 CELLS, PACKINGS, COLLISIONS = "runs/compressed-cells", "runs/compressed-packings", "runs/compressed"
 FILLINGS, PAIRS = (0.4, 0.3), 30
@@ -57,7 +54,9 @@ def cut_pair(filling, seed):
     try:
         last = max(os.listdir(folder))
     except (OSError, ValueError):
-        raise PackingError(f"{folder}: no states; must be those of a cell: run compressed-cells.table first") from None
+        raise PackingError(
+            f"{folder}: no states; must be those of a cell: run the table compressed-cells first"
+        ) from None
     state, place = read_periodic_state(os.path.join(folder, last)), 0
     for index, file in enumerate(files):
         while place < PLACES:
@@ -103,17 +102,13 @@ HEAD = """CPE and compressed aggregates of the same filling and size, head-on.
 Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0."""
 
 
-def write_tables(folder):
-    """Write compressed-cells.table and compressed-desk.table into a folder."""
-    table_script.write(
-        folder, "compressed", "{which}", {"cells": (cell_rows(), CELL_HEAD), "desk": (collision_rows(), HEAD)}
-    )
+def tables():
+    """{size: (rows, head)}."""
+    return {"cells": (cell_rows(), CELL_HEAD), "desk": (collision_rows(), HEAD)}
 
 
 def main(arguments):
-    if arguments == ["tables"]:
-        write_tables(HERE)
-    elif arguments == ["cut"]:
+    if arguments == ["cut"]:
         os.chdir(TOP)
         os.makedirs(PACKINGS, exist_ok=True)
         try:
@@ -124,7 +119,7 @@ def main(arguments):
     elif "--help" in arguments:
         print(__doc__)
     else:
-        print("compressed.py: must be called with cut or tables; --help says more", file=sys.stderr)
+        print("compressed.py: must be called with cut; --help says more", file=sys.stderr)
         sys.exit(2)
 
 

@@ -1,22 +1,13 @@
-"""Writes the tables of the study of Kataoka et al. (2013, K13): python3 yade_scripts/studies/compression.py
+"""Tables of the study of Kataoka et al. (2013, K13): static compression of BCCA clusters in periodic cells.
 
-full is what the paper's Figs 4 to 13 show: ten clusters of every set of parameters. desk is a selection for an evening on
-two cores: the fiducial parameters with three clusters, fewer grains with more, every parameter varied at 1024 grains, and
-cells that are stretched again, which K13 leaves to later work. Rows are in the order in which they are worth having:
-every figure gets its first points early.
-
-own has more clusters of the paper's size, of 1,024 and of 4,096 grains, up to the filling factor where the paper's law ends.
+full: what Figs 4 to 13 show, ten clusters of every set of parameters. desk: a selection for an evening on two cores: the
+fiducial parameters with three clusters, fewer grains with more, every parameter varied at 1024 grains, and cells that are
+stretched again, which K13 leaves to later work. own: more clusters of the paper's size, of 1,024 and of 4,096 grains, up to
+the filling factor where the paper's law ends. Rows stand in the order of their worth: one cluster of every set first.
 """
 
-import os
-import sys
-
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.studies import table_script
-
-# t0; K13 takes 0.1. The pressure, by the work of the boundaries, is that at a step of 0.05 to 1 % below a filling of 0.1 and to
-# 2 % above, with damping and without, less than seeds differ (docs/measurements.md).
+# t0; K13 takes 0.1. The pressure, by the work of the boundaries, is that at a step of 0.05 to 1 % below a filling of 0.1
+# and to 2 % above, with damping and without, less than seeds differ (docs/measurements.md).
 STEP = 0.3
 FIDUCIAL = {"grains": 16384, "strainRate": "3e-7"}
 RATES = ("1e-7", "3e-7", "1e-6", "3e-6", "1e-5")
@@ -43,7 +34,7 @@ FULL = (
     + [({**FIDUCIAL, "criticalRolling": rolling}, 10) for rolling in ROLLING]
     + [({**FIDUCIAL, **SILICATE}, 10)]
 )
-# Clusters beside those of the desk, to where K13's law ends and the bin around 0.1: the other half of a run to 0.5 has no claim of the paper.
+# Clusters beside those of the desk, to where K13's law ends and the bin around 0.1: above it the paper claims nothing.
 TO_LAW = {"strainRate": "3e-7", "finalFilling": "0.12"}
 OWN = (
     [({**TO_LAW, "grains": 16384}, range(2, 11))]
@@ -56,7 +47,7 @@ SHORT = {"grains": "N", "strainRate": "Cv", "linearDamping": "k", "criticalRolli
 
 
 def name(parameters, seed):
-    """Of a row and its run folder, such as ice-N1024-Cv1e-6-k0-s1."""
+    """Name of a row and its run folder, such as ice-N1024-Cv1e-6-k0-s1."""
     parts = [parameters.get("material", "ice")]
     parts += [f"{SHORT[key]}{parameters[key]}" for key in SHORT if key in parameters]
     parts += [f"to{parameters['finalFilling']}"] if "finalFilling" in parameters else []
@@ -65,7 +56,7 @@ def name(parameters, seed):
 
 
 def rows(sets, folder):
-    """A table's rows of [(parameters, number of clusters or their seeds)]: first one cluster of every set, then the others."""
+    """Rows of [(parameters, number of clusters or their seeds)]: first one cluster of every set, then the others."""
     found = []
     for parameters, seeds in sets:
         row = {"!SCRIPT": "yade_scripts/compress.py", "material": "ice", "stepFraction": STEP, **parameters}
@@ -75,22 +66,15 @@ def rows(sets, folder):
     return sorted(found, key=lambda row: row["seed"] > 1)
 
 
-HEAD = """Kataoka et al. (2013), Figs 4 to 13: static compression of BCCA clusters in periodic cells. {which}
+HEAD = """Kataoka et al. (2013), Figs 4 to 13: static compression of BCCA clusters in periodic cells. {}
 Units: strainRate: 1/t0; criticalRolling: m; stepFraction: t0."""
 
 
-def write_tables(folder):
-    """Write compression-desk.table, compression-full.table and compression-own.table into a folder."""
-    tables = {
-        "desk": (rows(DESK, "runs/compression"), "A selection, and cells stretched again."),
-        "full": (rows(FULL, "runs/compression-full"), "All of the paper's."),
-        "own": (
-            rows(OWN, "runs/compression-own"),
-            "More clusters, the paper's size among them, up to where its law ends.",
-        ),
+def tables():
+    """{size: (rows, head)}."""
+    more = "More clusters, the paper's size among them, up to where its law ends."
+    return {
+        "desk": (rows(DESK, "runs/compression"), HEAD.format("A selection, and cells stretched again.")),
+        "full": (rows(FULL, "runs/compression-full"), HEAD.format("All of the paper's.")),
+        "own": (rows(OWN, "runs/compression-own"), HEAD.format(more)),
     }
-    table_script.write(folder, "compression", HEAD, tables)
-
-
-if __name__ == "__main__":
-    table_script.main(write_tables, HERE, __doc__)

@@ -1,25 +1,20 @@
-"""Writes the tables of the study of Arakawa et al. (2024): python3 yade_scripts/studies/elastoplastic.py
+"""Tables of the study of Arakawa et al. (2024, A24): head-on collisions of equal CPE aggregates of ice grains.
 
-full is what the paper's Figs 4 to 9 show, section 3: ten seeds of every collision, at its default step. desk is a
-selection for an evening, at twice that step. first is one figure for a first look (Fig. 8, R = 40), some minutes. Rows are in the order in which they are
-worth having: small aggregates first, and every figure gets its first points early.
+full: what Figs 4 to 9 show (section 3), ten seeds of every collision. desk: a selection for an evening, at twice the time
+step. first: one figure (Fig. 8, R = 40), some minutes. prediction: pairs whose largest compression was predicted from
+their packings before they ran. referee: what the comparison with the paper leaves open, mostly pairs of desk with one thing
+changed. Rows stand in the order of their worth: small aggregates first, the first points of every figure early.
 """
 
-import os
-import sys
 from itertools import product
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.studies import table_script
-
-FASTEST_STEP = 0.2  # t0; the ledger closes to 5e-4 of the kinetic energy or better
-REFERENCE = 5  # i of the velocity 10^0.5 m/s at which sizes are compared (Figs 5 to 7)
+STEP, PAPERS_STEP, LONG_STEP = 0.2, 0.1, 0.3  # t0; at 0.2 the ledger closes to 5e-4 of K(0) or better
+REFERENCE = 5  # i of the velocity 10^(0.1 i) m/s at which sizes are compared (Figs 5 to 7)
 VELOCITIES = range(8)
 FILLINGS = (0.4, 0.3)
 
-# {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow
-# collisions of larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
+# {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow collisions of
+# larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
 DESK_SIZES = {(filling, radius): n for radius, n in {40: 20, 50: 8, 60: 8, 80: 3}.items() for filling in FILLINGS}
 DESK_VELOCITIES = 10
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
@@ -31,70 +26,123 @@ DURATION = "64.6*{radius}*" + TIME_UNIT
 FOLLOWED = {(40, i): "1e-6" for i in range(3)}  # {(radius, i): duration [s]}
 FIRST = 2  # seeds of each of these that come before any third
 FIRST_LOOK = (1, 3, 5, 7)  # i of the velocities of the table first
+LONG = "runs/elastoplastic-long"
+
+
+def row(filling, radius, i, seed, folder="runs/elastoplastic", step=STEP, duration=None, ending="", **changed):
+    """A row of a table, {column: value}; its run folder is FOLDER/fFILLING-RRADIUS-iI-sSEED and the ending.
+
+    duration: in seconds, as text (DURATION if left out); changed: other parameters of the collision.
+    """
+    name = f"f{filling:g}-R{radius:g}-i{i}-s{seed}{ending}"
+    return {
+        "description": name,
+        "filling": filling,
+        "radius": radius,
+        "velocity": f"10**(0.1*{i})",
+        "seed": seed,
+        **changed,
+        "duration": duration or DURATION.format(radius=radius),
+        "stepFraction": step,
+        "threads": 1,
+        "out": f"{folder}/{name}",
+    }
 
 
 def desk():
-    """[(filling, radius, i, seed)] of the small study."""
+    """Rows of the small study."""
     sizes = [(*size, REFERENCE, seed) for size, seeds in DESK_SIZES.items() for seed in range(1, seeds + 1)]
     scenes = product(range(1, DESK_VELOCITIES + 1), FILLINGS, VELOCITIES)
     velocities = [(filling, 40, i, seed) for seed, filling, i in scenes if i != REFERENCE]
     slow = [(*size, i, seed) for size, seeds in DESK_SLOW.items() for i in SLOW for seed in range(1, seeds + 1)]
-    return sorted(sizes + velocities + slow, key=_order)
+    ordered = sorted(sizes + velocities + slow, key=_worth)
+    return [row(*scene, duration=FOLLOWED.get((scene[1], scene[2]))) for scene in ordered]
 
 
 def full():
-    """[(filling, radius, i, seed)] of all of the paper's runs."""
+    """Rows of all of the paper's runs."""
     scenes = {*product(FILLINGS, (40, 50, 60, 70, 80), (REFERENCE,)), *product(FILLINGS, (40, 80), VELOCITIES)}
     scenes = sorted(scenes, key=lambda scene: (scene[1], -scene[0], scene[2]))
-    return sorted(((*scene, seed) for scene in scenes for seed in range(1, 11)), key=_order)
+    ordered = sorted(((*scene, seed) for scene in scenes for seed in range(1, 11)), key=_worth)
+    return [row(*scene, folder="runs/elastoplastic-full", step=PAPERS_STEP) for scene in ordered]
 
 
-def _order(scene):
-    """That in which collisions are worth having."""
+def _worth(scene):
+    """Sorts collisions by their worth."""
     _, radius, _, seed = scene
     return seed > FIRST, radius, seed
 
 
 def first():
-    """[(filling, radius, i, seed)] of one figure."""
-    return [(0.4, 40, i, seed) for seed in range(1, FIRST + 1) for i in FIRST_LOOK]
+    """Rows of one figure."""
+    seeds = range(1, FIRST + 1)
+    return [row(0.4, 40, i, seed, folder="runs/elastoplastic-first") for seed in seeds for i in FIRST_LOOK]
 
 
-def rows(scenes, folder, step=FASTEST_STEP, followed={}):
-    """A table's rows, with run folders FOLDER/fFILLING-RRADIUS-iI-sSEED; followed: {(radius, i): duration} of
-    those that have another than DURATION."""
-    found = []
-    for filling, radius, i, seed in scenes:
-        name = f"f{filling:g}-R{radius:g}-i{i}-s{seed}"
-        found.append(
-            {
-                "description": name,
-                "filling": filling,
-                "radius": radius,
-                "velocity": f"10**(0.1*{i})",
-                "seed": seed,
-                "duration": followed.get((radius, i), DURATION.format(radius=radius)),
-                "stepFraction": step,
-                "threads": 1,
-                "out": f"{folder}/{name}",
-            }
-        )
-    return found
+def prediction():
+    """Rows of pairs that were predicted: from the filling of the zones that meet at R = 60 and 80, and from the overlap of
+    a rigid approach at R = 40."""
+
+    def pairs(radius, i, seeds, **more):
+        return [row(f, radius, i, s, viscoelasticTime=0, **more) for f in FILLINGS for s in seeds]
+
+    slow = pairs(40, 0, range(201, 211), duration="8e-7", ending="-0.8us")
+    return pairs(60, REFERENCE, range(101, 109)) + slow + pairs(80, REFERENCE, range(4, 11))
 
 
-HEAD = """Arakawa et al. (2024), section 3 and Figs 4 to 9: head-on collisions of equal CPE aggregates of ice grains. {which}
-Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0."""
+def referee():
+    """Rows of what the comparison leaves open."""
+
+    def pairs(radius, exponents, seeds, fillings=FILLINGS, **changed):
+        given = {"viscoelasticTime": 0, "removeLooseGrains": 0, "initialOverlap": 1, **changed}
+        return [row(f, radius, i, s, **given) for f, i, s in product(fillings, exponents, seeds)]
+
+    at = (REFERENCE,)
+    # Is drag left on? With T_vis: paired differences of d_max and t_max.
+    drag = [
+        line
+        for filling, ps in product(FILLINGS, (1, 3, 6))
+        for line in pairs(40, at, range(1, 11), (filling,), viscoelasticTime=f"{ps}e-12", ending=f"-T{ps}ps")
+    ]
+    # Did the paper keep the grains outside the largest piece?
+    loose = pairs(40, at, range(1, 21), removeLooseGrains=1, ending="-largest")
+    # Neighbours that start without overlap (next to none: rounding would decide at 0 which touch).
+    without = pairs(40, at, range(1, 11), initialOverlap=0.001, ending="-overlap0.001")
+    # R = 70 of Figs 5 and 6.
+    between = pairs(70, at, range(1, 6))
+    # Outcomes: sticking at 1 to 2.5 m/s. Of a pair that has also run for less the longer run counts.
+    long = {"fillings": (0.4,), "folder": LONG, "step": LONG_STEP, "duration": "3e-6", "ending": "-3us"}
+    # E* at 0.4, where tau v/delta differs most between elastic and rigid-plastic spheres, until the halves part fastest.
+    slow = {"fillings": (0.4,), "step": LONG_STEP, "duration": "8e-7", "ending": "-0.8us"}
+    # E* hangs on delta_offset, the line of d_max against size: the ends of the sizes, until the halves part fastest.
+    large = {"fillings": (0.4,), "step": LONG_STEP, "duration": "4e-7", "ending": "-0.4us"}
+    small = {"fillings": (0.4,), "step": LONG_STEP, "duration": "3e-7", "ending": "-0.3us"}
+    return (
+        drag
+        + loose
+        + without
+        + between
+        + pairs(40, (0, 2, 4), range(1, 21), **long)
+        + pairs(80, (0, 2), range(1, 7), **slow)
+        + pairs(80, at, range(11, 51), **large)
+        + pairs(40, at, range(21, 61), **small)
+        + pairs(60, (0, 2, 4), range(1, 11), **long)
+    )
 
 
-def write_tables(folder):
-    """Write elastoplastic-first.table, elastoplastic-desk.table and elastoplastic-full.table into a folder."""
-    tables = {
-        "first": (rows(first(), "runs/elastoplastic-first"), "One figure: Fig. 8 at R = 40."),
-        "desk": (rows(desk(), "runs/elastoplastic", followed=FOLLOWED), "A selection."),
-        "full": (rows(full(), "runs/elastoplastic-full", step=0.1), "All of the paper's."),
+FIGURES = "Arakawa et al. (2024), section 3 and Figs 4 to 9: head-on collisions of equal CPE aggregates of ice grains."
+UNITS = "Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0."
+PREDICTED = "Arakawa et al. (2024): pairs whose largest compression was predicted from their packings before they ran."
+OPEN = "Arakawa et al. (2024): what the comparison leaves open."
+
+
+def tables():
+    """{size: (rows, head)}."""
+    with_drag = UNITS.replace("duration", "viscoelasticTime, duration")
+    return {
+        "first": (first(), f"{FIGURES} One figure: Fig. 8 at R = 40.\n{UNITS}"),
+        "desk": (desk(), f"{FIGURES} A selection.\n{UNITS}"),
+        "full": (full(), f"{FIGURES} All of the paper's.\n{UNITS}"),
+        "prediction": (prediction(), f"{PREDICTED}\n{with_drag}"),
+        "referee": (referee(), f"{OPEN}\n{with_drag}"),
     }
-    table_script.write(folder, "elastoplastic", HEAD, tables)
-
-
-if __name__ == "__main__":
-    table_script.main(write_tables, HERE, __doc__)

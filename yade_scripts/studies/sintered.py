@@ -1,21 +1,14 @@
-"""Writes the tables of the study of Sirono & Ueno (2017, S17): python3 yade_scripts/studies/sintered.py
+"""Tables of the study of Sirono & Ueno (2017, S17): head-on collisions of sintered aggregates of 1,024 ice grains.
 
-full has the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper
-has five runs a point. desk is an evening on two cores: the points that decide the paper's statements, ten seeds each. beyond is what the
-desk's runs leave open: compacted aggregates in space, springs that are held at their limits, xi_crit = 30 Angstrom. decide is twenty
-seeds more of what ten leave undecided and thirty may decide. Rows are in the order in which they are worth having: one seed of every
-point after another.
-
-Compacted aggregates are read from files that sintered_growth.py makes first.
+full: the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper has
+five runs a point. desk: an evening on two cores: the points that decide the paper's statements, ten seeds each. beyond: what
+the desk's runs leave open: compacted aggregates in space, springs that are held at their limits, xi_crit = 30 Angstrom.
+decide: twenty seeds more of what ten leave undecided and thirty may decide. Rows stand in the order of their worth: one seed
+of every point after another. Compacted aggregates are read from files that sintered_growth.py makes first.
 """
 
 import os
-import sys
 from dataclasses import dataclass
-
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.studies import table_script
 
 GRAINS = 1024
 SEEDS = range(1, 11)
@@ -23,29 +16,29 @@ SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
 GROWN = "runs/sintered-grown"  # where sintered_growth.py leaves compacted aggregates
 # 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
 DURATION = "24.4e-6"  # s
-# Above 10 m/s half of it: in 21 runs that went on (the sliding spring of Wada et al. 2007, two seeds) no largest piece changed after 9.2 us, and no part
-# of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by up to 0.05 K(0).
+# Above 10 m/s half of it: in 21 runs that went on (the sliding spring of Wada et al. 2007, two seeds) no largest piece
+# changed after 9.2 us, and no part of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by up
+# to 0.05 K(0).
 FAST, DURATION_FAST = 10.0, "12.2e-6"  # m/s, s
-STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates,
-# t0, by beta: packings of files are taken for close-packed ones, in which they are to 0.0996
-STEP_COMPACTED = {0.2: 0.09}
+STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates
+STEP_COMPACTED = {0.2: 0.09}  # t0, by beta: packings of files count as close-packed, where they are stable to 0.0996
 STATES = 9  # Fig. 7 shows 0, 2,500, 5,000, 10,000 and 20,000 periods, Fig. 9 also 625 and 1,250
 ROOT = "10**0.5"  # m/s, the paper's 3.2
 
 
 @dataclass(frozen=True)
 class Grown:
-    """A compacted aggregate: V_g [m/s], seed, xi_crit [Angstrom], planar, limit (of collide.py)."""
+    """A compacted aggregate, which collided at V_g."""
 
-    velocity: float
+    velocity: float  # V_g [m/s]
     seed: int
-    rolling: float = 2.0
+    rolling: float = 2.0  # xi_crit [Angstrom]
     planar: int = 1
-    limit: str = "cut"
+    limit: str = "cut"  # of collide.py
 
     @property
     def name(self):
-        """Of its file, without ending."""
+        """Name of its file, without ending."""
         held = "" if self.limit == "cut" else f"-{self.limit}"
         return f"vg{self.velocity:g}-x{self.rolling:g}-{'plane' if self.planar else 'space'}{held}-s{self.seed}"
 
@@ -56,19 +49,18 @@ class Grown:
 
 @dataclass(frozen=True)
 class Point:
-    """One set of parameters: beta (0: unsintered), V_c [m/s] (text), V_g [m/s] (0: BCCA), xi_crit [Angstrom], planar, T_vis
-    [s] (text), limit (cut, or held: the rule of Wada et al. 2007)."""
+    """One set of parameters."""
 
-    neck: float
-    velocity: str
-    growth: float = 0
-    rolling: float = 2
+    neck: float  # beta; 0: unsintered
+    velocity: str  # V_c [m/s]
+    growth: float = 0  # V_g [m/s]; 0: BCCA aggregates
+    rolling: float = 2  # xi_crit [Angstrom]
     planar: int = 1
-    drag: str = "0"
-    limit: str = "cut"
+    drag: str = "0"  # T_vis [s]
+    limit: str = "cut"  # or held: the rule of Wada et al. 2007
 
     def name(self, seed):
-        """Of a row and its run folder: b0.7-v10-vg3-s1 and what else is special."""
+        """Name of a row and its run folder: b0.7-v10-vg3-s1 and what else is special."""
         parts = [f"b{self.neck:g}", "v3.2" if self.velocity == ROOT else f"v{self.velocity}"]
         parts += [f"vg{self.growth:g}"] if self.growth else []
         parts += [f"x{self.rolling:g}"] if self.rolling != 2 else []
@@ -78,7 +70,7 @@ class Point:
         return "-".join([*parts, f"s{seed}"])
 
     def grown(self, seed):
-        """The Grown that collides, of a compacted one."""
+        """The compacted aggregate that collides."""
         return Grown(self.growth, seed, self.rolling, self.planar, self.limit)
 
     def row(self, seed, folder):
@@ -172,28 +164,29 @@ DECIDE = unique(
     points((0,), ("50",)),
     points((0,), ("50",), limit="held"),
 )
-TABLES = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND, "decide": DECIDE}
+POINTS = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND, "decide": DECIDE}
 
 
 def seeds(size):
-    """Of a table's points."""
+    """Seeds of every point of a table."""
     return range(11, 31) if size == "decide" else SEEDS
 
 
 def grown(size):
-    """[Grown] that the rows of a table need, each once."""
-    wanted = (point.grown(seed) for seed in seeds(size) for point in TABLES[size] if point.growth)
+    """Compacted aggregates that the rows of a table need, each once."""
+    wanted = (point.grown(seed) for seed in seeds(size) for point in POINTS[size] if point.growth)
     return list(dict.fromkeys(wanted))
 
 
 def rows(size):
-    """A table's rows: every point with the first seed, then with the next one. In desk space and drag come last."""
+    """Rows of a table: every point with the first seed, then with the next one. In desk space and drag come last."""
     folder = "runs/sintered" + ("" if size == "desk" else f"-{size}")
-    groups = (DESK, [point for point in TABLES[size] if point not in DESK]) if size == "desk" else (TABLES[size],)
+    groups = (DESK, [point for point in POINTS[size] if point not in DESK]) if size == "desk" else (POINTS[size],)
     return [point.row(seed, folder) for group in groups for seed in seeds(size) for point in group]
 
 
-HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {which}
+HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {}
+{} seeds a point where the paper has five runs.
 Compacted aggregates (packing = file) come from sintered_growth.py, which make study-sintered runs first.
 The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates (one collision at V_g)
 after they have come to rest; ordinary contacts cut their springs at the limits (limit = cut, section 3.2) and
@@ -201,34 +194,15 @@ slide with the spring of eqs 11 and 12 as printed (slidingStiffnessFactor = 2); 
 vibration, 1.22 ns each, is the longest duration, 10,000 above 10 m/s (no largest piece changed later in 21 runs), and
 a run ends earlier when no pieces can meet again; grains in contact at the end are one piece.
 Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFraction: t0."""
-# Wall time of a row [s]: mean of 160 rows of the desk's BCCA aggregates (3.17 core hours), one thread each, on a busy machine.
-# 198 later rows, 108 of compacted aggregates among them, took 34 s each on a newer AMD EPYC with both cores busy.
-ROW = 71.3
-LEFT = "What the desk's runs leave open: compacted aggregates in space, springs held at the limits (limit = held), both, xi_crit = 30 Angstrom."
-# What a table is, and how many core hours it takes to grow its aggregates.
 WHICH = {
-    "desk": ("A selection.", "one"),
-    "full": ("All of the paper's.", "three"),
-    "beyond": (LEFT, "less than one"),
-    "decide": ("Seeds 11 to 30 of what ten pairs leave undecided and thirty may decide.", "less than one"),
+    "desk": "A selection.",
+    "full": "All of the paper's.",
+    "beyond": "What the desk's runs leave open: compacted aggregates in space, springs held at the limits "
+    "(limit = held), both, xi_crit = 30 Angstrom.",
+    "decide": "Seeds 11 to 30 of what ten pairs leave undecided and thirty may decide.",
 }
-COST = """{which}
-{seeds} seeds a point where the paper has five runs. Some {hours:.0f} core hours (71 s a row, the mean of 160 rows of BCCA aggregates on a busy machine), and {growth} to grow the aggregates."""
 
 
-def core_hours(size):
-    """Of a table's rows, by ROW."""
-    return ROW * len(rows(size)) / 3600
-
-
-def write_tables(folder):
-    """Write sintered-desk.table, sintered-full.table, sintered-beyond.table and sintered-decide.table into a folder."""
-    tables = {}
-    for size, (which, growth) in WHICH.items():
-        cost = COST.format(which=which, seeds=len(seeds(size)), hours=core_hours(size), growth=growth)
-        tables[size] = rows(size), cost
-    table_script.write(folder, "sintered", HEAD, tables)
-
-
-if __name__ == "__main__":
-    table_script.main(write_tables, HERE, __doc__)
+def tables():
+    """{size: (rows, head)}."""
+    return {size: (rows(size), HEAD.format(which, len(seeds(size)))) for size, which in WHICH.items()}

@@ -34,7 +34,7 @@ from yade_scripts.packings.collided import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.parameters import CORES
-from yade_scripts.studies.sintered import DURATION, GRAINS, GROWN, SLIDING, TABLES
+from yade_scripts.studies.sintered import DURATION, GRAINS, GROWN, POINTS, SLIDING
 from yade_scripts.studies.sintered import grown as grown_of
 
 START = 512
@@ -117,7 +117,7 @@ def _collide(aggregate, grown, files, run):
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("size", choices=sorted(TABLES))
+    parser.add_argument("size", choices=sorted(POINTS))
     parser.add_argument("-j", "--jobs", type=int, default=CORES)
     options = parser.parse_args(arguments)
     missing = [grown for grown in grown_of(options.size) if not os.path.exists(grown.file(0))]

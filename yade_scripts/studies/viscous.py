@@ -1,25 +1,19 @@
-"""Writes the tables of the study of Arakawa et al. (2022): python3 yade_scripts/studies/viscous.py
+"""Tables of the study of Arakawa et al. (2022, A22): collisions of two equal BPCA aggregates of ice grains.
 
-full is the paper's section 2.4: 416 collisions of BPCA aggregates of 50,000 grains each, one seed. desk is an evening on
-two cores: the whole grid of B_off, speed and T_vis with aggregates of 500 grains and several seeds, the speeds around
-v_fra with 2,000, both at twice the step, and the paper's own size where Fig. 1 is, with three pairs of aggregates: the paper has one,
-so they tell what its numbers are worth. Rows are in the order in which they are worth having: whole grids of one seed after another.
+full: section 2.4, 416 collisions of aggregates of 50,000 grains, one seed. desk: an evening on two cores: the whole grid of
+B_off, speed and T_vis with aggregates of 500 grains and several seeds, the speeds around v_fra with 2,000, both at twice the
+time step, and the paper's own size where Fig. 1 is, with three pairs of aggregates where the paper has one. Rows stand in
+the order of their worth: whole grids of one seed after another.
 
-prediction holds larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran
-(analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size: every second offset first, then the
-others. The predictions are of all 13, which the first block alone does not test.
+prediction: larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran
+(analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size: every second offset first, then
+the others. The predictions are of all 13, which the first block alone does not test.
 
-own is the paper's own size, with and without drag, followed to the paper's last time: four pairs at 50.1 m/s, the offsets about the edge of
-merging first, then all 13; then six at 63.1 m/s, without drag first, so that v_fra lies between the two.
+own: the paper's own size, with and without drag, followed to the paper's last time: four pairs at 50.1 m/s, the offsets
+about the edge of merging first, then all 13; then six at 63.1 m/s, without drag first, so that v_fra lies between the two.
 """
 
-import os
-import sys
 from itertools import product
-
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.studies import table_script
 
 TWELFTHS = range(13)  # B_off^2 in twelfths
 EXPONENTS = range(13, 21)  # i of 10^(0.1 i) m/s
@@ -40,8 +34,8 @@ EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, of which the desk table has the 
 FOLLOWED = {"endWhenApart": 0, "stepFraction": 0.2, "impactStepFraction": 0.1}
 
 PREDICTED_GRAINS, PREDICTED_SEEDS, PREDICTED_EXPONENTS = 10_000, 2, range(17, 21)
-# Seven offsets are no mean by the paper's eq 29: the head-on peak has the weight 1/12 in place of 1/24, and <f_gro> of 2,000 grains at
-# 63 m/s is higher by 0.04.
+# Seven offsets are no mean by the paper's eq 29: the head-on peak has the weight 1/12 in place of 1/24, and <f_gro> of
+# 2,000 grains at 63 m/s is higher by 0.04.
 EVERY_SECOND, THE_OTHERS = TWELFTHS[::2], TWELFTHS[1::2]
 
 
@@ -68,8 +62,8 @@ def full():
 
 
 def prediction():
-    """Collisions that were predicted, without drag and with the most: of every second offset head-on ones first, then seed by seed, and
-    one of the paper's size; then the offsets between, seed by seed."""
+    """Collisions that were predicted, without drag and with the most: of every second offset head-on ones first, then seed
+    by seed, and one of the paper's size; then the offsets between, seed by seed."""
     seeds = range(1, PREDICTED_SEEDS + 1)
     scenes = grid(PREDICTED_GRAINS, PREDICTED_EXPONENTS, seeds, REFERENCE_PICOSECONDS)
     first = [scene for scene in scenes if scene[1] in EVERY_SECOND]
@@ -78,8 +72,8 @@ def prediction():
 
 
 def own():
-    """Collisions of the paper's size: at 50.1 m/s offsets about the edge of merging first, pair by pair, then the others; at 63.1 m/s pair by
-    pair, those without drag first."""
+    """Collisions of the paper's size: at 50.1 m/s offsets about the edge of merging first, pair by pair, then the others;
+    at 63.1 m/s pair by pair, those without drag first."""
     first, faster = (
         grid(FULL_GRAINS, [i], range(1, pairs + 1), REFERENCE_PICOSECONDS) for i, pairs in OWN_PAIRS.items()
     )
@@ -88,7 +82,7 @@ def own():
 
 
 def rows(scenes, folder, **others):
-    """A table's rows, with run folders FOLDER/nGRAINS-vI-bTWELFTHS-tPS-sSEED."""
+    """Rows of a table, with run folders FOLDER/nGRAINS-vI-bTWELFTHS-tPS-sSEED."""
     found = []
     for grains, twelfths, i, time, seed in scenes:
         name = f"n{grains}-v{i}-b{twelfths}-t{time}-s{seed}"
@@ -113,23 +107,20 @@ def rows(scenes, folder, **others):
     return found
 
 
-HEAD = """Arakawa et al. (2022), section 2.4: collisions of two equal BPCA aggregates of ice grains, B_off^2 = 0 to 1. {which}
+HEAD = """Arakawa et al. (2022), section 2.4: collisions of two equal BPCA aggregates of ice grains, B_off^2 = 0 to 1. {}
 Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0."""
 
 
-def write_tables(folder):
-    """Write viscous-SIZE.table into a folder, SIZE: desk, prediction, full, own."""
-    tables = {
-        "desk": (rows(desk(), "runs/viscous"), "Smaller aggregates, and six collisions of the paper's size."),
-        "prediction": (rows(prediction(), "runs/viscous"), "Larger aggregates, predicted before they ran."),
-        "full": (rows(full(), "runs/viscous-full"), "All of the paper's."),
-        "own": (
-            rows(own(), "runs/viscous-own", **FOLLOWED),
-            "The paper's size at 50.1 and 63.1 m/s, to its last time.",
+def tables():
+    """{size: (rows, head)}."""
+    followed = rows(own(), "runs/viscous-own", **FOLLOWED)
+    small = "Smaller aggregates, and six collisions of the paper's size."
+    return {
+        "desk": (rows(desk(), "runs/viscous"), HEAD.format(small)),
+        "prediction": (
+            rows(prediction(), "runs/viscous"),
+            HEAD.format("Larger aggregates, predicted before they ran."),
         ),
+        "full": (rows(full(), "runs/viscous-full"), HEAD.format("All of the paper's.")),
+        "own": (followed, HEAD.format("The paper's size at 50.1 and 63.1 m/s, to its last time.")),
     }
-    table_script.write(folder, "viscous", HEAD, tables)
-
-
-if __name__ == "__main__":
-    table_script.main(write_tables, HERE, __doc__)
