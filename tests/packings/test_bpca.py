@@ -111,7 +111,7 @@ def test_isotropy():
 
 
 def test_contacts_at_the_start_beyond_those_that_rest():
-    """What yade_scripts/RUNS.md says of the start: about 0.5 % more contacts than grains, nearer than 2 r but not resting."""
+    """What docs/aggregates.md says of the start: about 0.5 % more contacts than grains, nearer than 2 r but not resting."""
     packing = packings.bpca(20000, RADIUS, OVERLAP, 2)
     more = len(packings.contacts(packing)) - (packing.grains - 1)
     assert 0.004 < more / packing.grains < 0.0065

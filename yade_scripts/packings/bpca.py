@@ -5,7 +5,7 @@ parameters uniform over the cross-section of the sphere that holds the cluster, 
 the equilibrium overlap. Rays that miss are drawn again. The hits are exact: no step is taken along a ray.
 
 Grains that touch no other than the one that they hit may still be nearer to others than the sum of the radii: these
-are contacts from the first step on, and pull (RUNS.md: how many, and with how much energy).
+are contacts from the first step on, and pull (docs/aggregates.md: how many, and with how much energy).
 """
 
 import numpy as np
