@@ -17,7 +17,7 @@
 # make gallery-atlas  makes its page, model and table of outcomes again
 # make tables  writes the tables of all studies, yade_scripts/studies/*.table (study.py NAME writes the one that it needs)
 # make study-status STUDY=viscous  how far a study is, from another shell
-# make gallery  makes the page above all studies and the paper again, analysis/gallery/README.md and paper.md, and build/paper.pdf
+# make gallery  checks the numbers of the pages above all studies, analysis/gallery/README.md and paper.md, against these
 # make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
 #             (SIZE=own: in runs/viscous-own)
 # make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
@@ -346,7 +346,7 @@ test-slurm: all
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
 JOBS  ?= $(shell nproc)
-STUDIES := $(patsubst analysis/studies/%/study.py,%,$(wildcard analysis/studies/*/study.py))
+STUDIES := elastoplastic viscous compression sintered compressed atlas
 STUDY ?= elastoplastic
 table = $(if $(filter atlas,$1),runs/atlas,yade_scripts/studies/$1)-$(SIZE).table
 runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk -prediction,-$(SIZE)))
@@ -396,7 +396,7 @@ $(STUDIES:%=gallery-%): gallery-%:
 
 .PHONY: gallery
 gallery:
-	@$(PYTHON) -m analysis.studies.documents build/paper.pdf
+	@$(PYTHON) -m analysis.studies.pages
 
 # Some ten minutes of quiet cores (BENCH=--quick: three); the papers' scenes an hour the first time, when they are made.
 .PHONY: bench bench-papers bench-peers peers

@@ -1,15 +1,17 @@
 """python3 -m analysis study [NAME RUNS... [--figures FOLDER] [--page FILE] [--json | --format FORMAT]]"""
 
 import argparse
+import json
 import os
 import tempfile
-from contextlib import contextmanager
+from contextlib import nullcontext
 from pathlib import Path
 
-from ..printable import printable, printable_lines, shell_line
+from ..printable import printable, printable_lines
 from . import FAILED, complain
 
-FORMATS = {"text": "text", "markdown": "markdown", "json": "json", "csv": "csv"}
+BEFORE = ("atlas", "compressed", "compression", "elastoplastic", "sintered")  # of the old form
+FORMATS = ("text", "markdown", "json", "csv")
 
 
 def add_parser(commands):
@@ -17,12 +19,10 @@ def add_parser(commands):
     parser = commands.add_parser(
         "study",
         help="figures and numbers of a study from many runs, beside the paper's; without a name: list the studies",
-        description="Fit and draw what a study does from runs of its scene, and print the numbers beside the paper's. "
-        "Without a name: list the studies.",
+        description="Measure and draw what a study does from runs of its scene, and print its numbers beside the "
+        "paper's. Without a name: list the studies.",
     )
-    parser.add_argument(
-        "name", nargs="?", metavar="NAME", help="name of a study, or a file NAME.py of one's own that defines STUDY"
-    )
+    parser.add_argument("name", nargs="?", metavar="NAME", help="a study, or a file NAME.py of one's own")
     parser.add_argument(
         "runs",
         nargs="*",
@@ -33,24 +33,12 @@ def add_parser(commands):
     parser.add_argument(
         "--figures",
         metavar="FOLDER",
-        help="write README.md, details.md, comparison.json, runs.csv (a row a run) and the figures there; made if it is missing",
+        help="write runs.csv (a row a run), comparison.csv and the figures there, and fill the table of its README.md",
     )
-    parser.add_argument(
-        "--page",
-        metavar="FILE",
-        type=_page_file,
-        help="write one HTML page with everything in it, to be sent to others, a page FILE-view.html to turn a run, and a PDF where weasyprint "
-        "or chromium is installed",
-    )
+    parser.add_argument("--page", metavar="FILE", type=_page_file, help="write one HTML page that can be sent")
     output = parser.add_mutually_exclusive_group()
     output.add_argument("--format", choices=FORMATS, default="text", help="what to print (csv: a row a run)")
-    output.add_argument(
-        "--json",
-        action="store_const",
-        const="json",
-        dest="format",
-        help="print JSON (SI units unless a unit is named): --format json",
-    )
+    output.add_argument("--json", action="store_const", const="json", dest="format", help="the same as --format json")
     parser.set_defaults(command=run)
 
 
@@ -63,121 +51,120 @@ def _page_file(text):
 def run(options):
     """Exit status: 0, or 2 when a path or run could not be read or nothing was left to analyse."""
     # pandas and scipy take a moment to load, and the parser does without them.
-    from ..studies.analyse import NothingToAnalyse, analyse
-    from ..studies.find import find
+    from ..studies.gathering import gather
+    from ..studies.study import NAMES, find, own_errors
+
+    if options.name in BEFORE:
+        from . import study_before
+
+        return study_before.run(options)
 
     if not options.name:
-        return _list()
+        from ..studies import find as before
+
+        for name in sorted((*NAMES, *BEFORE)):
+            title = (find(name) if name in NAMES else before.find(name)).title
+            print(f"{name:<13}  {title}")
+        return 0
     study = find(options.name)
     if not options.runs:
         complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
         return FAILED
-    table = _writes_table(options, study.name)
-    try:
-        analysis = analyse(study, options.runs)
-    except NothingToAnalyse as nothing:
-        _complain_of(nothing.found)
-        if not nothing.found.problems:
-            complain(nothing)
+    _require_places(options, study)
+    found = gather(study, options.runs)
+    for line in (*found.notes, *found.problems):
+        complain(line)
+    if found.table is None:
+        if not found.problems:
+            complain(f"no run of {study.scene.name} to analyse")
         return FAILED
-    _complain_of(analysis.found)
-    written = _write(analysis, options, table) if options.figures or options.page else None
-    text = getattr(analysis, FORMATS[options.format])().rstrip("\n")
+    runs = study.runs(found.table)
+    with own_errors(study.file):
+        rows = [row for row in study.rows(runs) if row.printed or row.word != "not run"]
+    written = _write(options, study, found, runs, rows) if options.figures or options.page else None
+    text = _text(options.format, study, found, rows).rstrip("\n")
     print(text if options.format == "csv" else printable_lines(text))
     if written and options.format == "text":
         print(printable(f"written: {written}"))
-    return FAILED if analysis.found.problems else 0
+    return FAILED if found.problems else 0
 
 
-def _writes_table(options, study):
-    """Whether a table is written: not in the place of all that is read, which holds the same runs. OSError where a file cannot be
-    written, is one of several that are read, or is somebody else's."""
+def _require_places(options, study):
+    """OSError where a file cannot be written, is one of several that are read, or is not of this study."""
     from ..runs.write import require_file
-    from ..studies.analyse import TABLE_FILE, require_own
+    from ..studies.gathering import TABLE_FILE, require_own
 
     if options.page:
         require_file(options.page)
-    if not options.figures:
-        return True
-    require_own(Path(options.figures), study)
-    file = os.path.join(options.figures, TABLE_FILE)
-    if [os.path.realpath(path) for path in options.runs] == [os.path.realpath(file)]:
-        return False
-    require_file(file, inputs=options.runs)
-    return True
+    if options.figures:
+        file = Path(options.figures) / TABLE_FILE
+        if not _is_only_input(options):
+            require_file(file, inputs=options.runs)
+        require_own(file, study.name)
 
 
-def _write(analysis, options, table):
-    """Figures and page, as far as they are wanted; what to open first."""
-    with _folder(options.figures) as folder:
-        written = analysis.write(folder, table, tuple(_commands(options)))
-        for name in written.undrawn:
-            complain(f"{name}: not drawn: it needs the run folders, a table has only their numbers")
+def _is_only_input(options):
+    """Whether the table in the folder is all that is read: then it stays as it is."""
+    from ..studies.gathering import TABLE_FILE
+
+    table = os.path.realpath(os.path.join(options.figures, TABLE_FILE))
+    return [os.path.realpath(path) for path in options.runs] == [table]
+
+
+def _text(kind, study, found, rows):
+    from ..studies.comparison import as_text, counted, of_table, text_table
+    from ..studies.pages import table_of
+
+    if kind == "csv":
+        return found.csv(study)
+    if kind == "markdown":
+        return f"# {study.title}\n\n{study.question}\n\n{table_of(rows, study.independent)}"
+    if kind == "json":
+        records = json.loads(of_table(rows).to_json(orient="records", double_precision=15))
+        return json.dumps(
+            {"study": study.name, "runs": len(found.table), "rows": records}, indent=1, ensure_ascii=False
+        )
+    return f"{text_table(as_text(rows))}\n{counted(rows)}"
+
+
+def _write(options, study, found, runs, rows):
+    """Write tables, figures and page, as far as they are wanted; what to open first."""
+    from ..runs.provenance import provenance_lines
+    from ..runs.write import write_text
+    from ..studies.comparison import of_table
+    from ..studies.gathering import TABLE_FILE
+    from ..studies.pages import START, filled, html_page
+
+    with nullcontext(options.figures) if options.figures else tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        readme = folder / "README.md"
+        text = readme.read_text(encoding="utf-8") if readme.is_file() else ""
+        if START in text:
+            text = filled(readme, text, rows, study.independent)
+            write_text(readme, text)
+        if options.figures and not _is_only_input(options):
+            write_text(folder / TABLE_FILE, found.csv(study))
+        write_text(folder / "comparison.csv", of_table(rows).to_csv(index=False, float_format="%.10g"))
+        drawn = _draw(study, runs, folder, text if START in text else None)
         if options.page:
             options.page.parent.mkdir(parents=True, exist_ok=True)
-            _write_page(options.page, analysis.page(written, _write_view(options.page, analysis.found.table)))
-    return options.page or folder / "README.md"
+            write_text(options.page, html_page(study, rows, drawn, list(provenance_lines(found.provenance))))
+    return options.page or (readme if START in text else folder)
 
 
-@contextmanager
-def _folder(wanted):
-    """The folder for figures: the one that is wanted, or one that goes when the page holds them."""
-    if wanted:
-        yield Path(wanted)
-    else:
-        with tempfile.TemporaryDirectory() as folder:
-            yield Path(folder)
+def _draw(study, runs, folder, readme):
+    """[(caption, file)] of the figures that there is something to draw of; with a README (str) of those that it shows."""
+    # matplotlib is slow to load, and the numbers do without it.
+    from ..figures.save import save_small
+    from ..progress import progress
+    from ..studies.study import own_errors
 
-
-def _write_view(page, table):
-    """The page on which the first run that is at hand can be turned, beside the study's: (name of its file, the run's), or None."""
-    from ..export.viewer import NoThree, write_view
-    from ..runs.arrays import RunFolderError
-    from ..runs.folder import open_run
-    from ..runs.table import FOLDER
-
-    file = page.with_name(f"{page.stem}-view.html")
-    folder = next((folder for folder in table[FOLDER].dropna() if os.path.isdir(folder)), None)
-    if folder is None:
-        return None
-    try:
-        return write_view(open_run(folder), file).name, os.path.basename(folder)
-    except (NoThree, RunFolderError) as error:
-        complain(f"{file}: not written: {error}")
-        return None
-
-
-def _write_page(file, text):
-    """The page and its PDF."""
-    from ..report.pdf import NoPdf, write_pdf
-    from ..runs.write import write_text
-
-    pdf = file.with_suffix(".pdf")
-    write_text(file, text)
-    try:
-        write_pdf(file, pdf)
-    except NoPdf as error:
-        complain(f"{pdf}: {error}" + ("; what is there is of an earlier page" if pdf.exists() else ""))
-
-
-def _commands(options):
-    """How to make it again, without this machine's folders."""
-    words = (
-        path if not os.path.isabs(path) else os.path.basename(os.path.normpath(path))
-        for path in (options.name, *options.runs)
-    )
-    yield f"python3 -m analysis study {shell_line(words)} --figures FOLDER --page FILE.html"
-
-
-def _list():
-    from ..studies.find import find, names
-
-    width = max(map(len, names()))
-    for name in names():
-        print(f"{name:<{width}}  {find(name).title}")
-    return 0
-
-
-def _complain_of(found):
-    for line in (*found.notes, *found.shown, *found.problems):
-        complain(line)
+    drawn = []
+    with own_errors(study.file):
+        for name, caption, figure in progress(study.figures(runs), "drawing"):
+            file = folder / f"{name}.png"
+            if figure is not None and (readme is None or file.name in readme):
+                save_small(figure, file)
+                drawn.append((caption, file))
+    return drawn

@@ -1,20 +1,32 @@
-"""Columns of a table of runs with how a run folder fills them, and those that several studies have."""
+"""Columns of a table of runs with how a run folder fills them, and those that several studies have: grains, outcome, return, energy."""
 
 from dataclasses import dataclass
+from math import isclose
 from typing import Callable
 
-from ..measures.ledger import closure
-from ..measures.of_run import derived_constants, met
+import numpy as np
+
+from ..measures.compression import first_compression, largest_return_speed
+from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
+from ..measures.of_run import derived_constants, met, outcome_of_run
+from ..measures.structure import mean_coordination
 from ..runs.arrays import RunFolderError
+from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
 from ..runs.table import Column
+from ..theory import GRAIN_RADIUS as RADII
+from ..theory import MATERIALS
 
 _TYPES = {"f": float, "i": int, "O": str}
+
+
+class NotMeasured(Exception):
+    """A sound run in which there is nothing to measure; the message is one line that says why."""
 
 
 @dataclass(frozen=True)
 class Columns:
     """columns (runs.table.Column) that are measured together; of(run (RunFolder), row ({column: value} of those before)) -> their values, in
-    the same order; definition.NotMeasured or RunFolderError where it can't."""
+    the same order; NotMeasured or RunFolderError where it can't."""
 
     of: Callable
     columns: tuple
@@ -68,3 +80,130 @@ GRAIN_RADIUS = constant("grain_radius", "m", "radius of a grain", "grainRadius")
 MET = one("met", "", "whether the aggregates touched", met, kind="b")
 CLOSURE = one("closure", "", "largest error of the energy ledger over K(0)", lambda run: closure(run.history))
 END = one("time", "s", "time at the end", lambda run: float(run.history["time"][-1]))
+
+
+# The constants that tell grains apart; columns, keys and labels follow from the list.
+# Name: unit and meaning of the column; symbol, unit in which it is shown, and that unit in SI.
+_CONSTANTS = {
+    "grainRadius": ("m", "radius of a grain", "r0", " um", 1e-6),
+    "young": ("Pa", "Young's modulus", "E", " GPa", 1e9),
+    "poisson": ("", "Poisson's ratio", "nu", "", 1.0),
+    "density": ("kg/m^3", "density of a grain", "rho", " kg/m^3", 1.0),
+    "surfaceEnergy": ("J/m^2", "gamma", "gamma", " J/m^2", 1.0),
+    "criticalRolling": ("m", "xi_crit", "xi_crit", " Å", 1e-10),
+    "slidingStiffnessFactor": ("", "k_s over Wada's", "k_s factor", "", 1.0),
+}
+*OF_MATERIAL, SLIDING = OF_GRAINS = tuple(_CONSTANTS)
+GRAINS = (
+    *(constant(name, *_CONSTANTS[name][:2]) for name in OF_MATERIAL),
+    parameter(SLIDING, *_CONSTANTS[SLIDING][:2], usual=1.0),
+)
+
+
+def _of_paper(material, radius):
+    values = (radius, material.young, material.poisson, material.density, material.surface_energy)
+    return dict(zip(OF_GRAINS, (*values, material.critical_rolling, 1.0)))
+
+
+# Kataoka et al. (2013), Table 1 and section 2.1; its ice is that of Arakawa et al. (2022, 2024) too.
+PAPERS = {name: _of_paper(material, RADII[name]) for name, material in MATERIALS.items()}
+
+
+def other_grains(parameters):
+    """[name] of what differs from the papers' grains of that material, parameters: a mapping with material and OF_GRAINS;
+    all names for a material that they do not have."""
+    theirs = PAPERS.get(parameters["material"], {})
+    return [n for n in OF_GRAINS if n not in theirs or not isclose(parameters[n], theirs[n], rel_tol=1e-6)]
+
+
+def require_papers_grains(run, but=()):
+    """NotMeasured, with what differs, for a RunFolder of other grains than the papers' of its material, but for the names
+    `but`: a study without grains in its key would take such runs for seeds or duplicates of others."""
+    parameters = {"material": run.parameters["material"], **row_of(GRAINS, run)}
+    others = [name for name in other_grains(parameters) if name not in but]
+    if others:
+        values = ", ".join(f"{name} = {parameters[name]:g}" for name in others)
+        raise NotMeasured(f"{run.path}: other grains than the paper's ({values})")
+
+
+def grains_text(parameters, but=()):
+    """The material, and in brackets what differs from the papers' grains of it, without the names `but`."""
+    others = []
+    for name in (name for name in other_grains(parameters) if name not in but):
+        *_, symbol, unit, si = _CONSTANTS[name]
+        others.append(f"{symbol} = {parameters[name] / si:.4g}{unit}")
+    return parameters["material"] + (f" ({', '.join(others)})" if others else "")
+
+
+AT_MAXIMUM = "{}_at_maximum"  # the column of a channel's change from the start to t_max
+# Parameters of the collisions of Arakawa et al. (2024), but for the packing.
+HEAD_ON_ICE = {"impact": 0.0, "viscoelasticTime": 0.0, "neck": 0.0, "planar": 0, "limit": "held", "material": "ice"}
+HEAD_ON_ICE |= {"removeLooseGrains": 0, "initialOverlap": 1.0}
+
+
+def largest_compression(run):
+    """(measures.compression.Maximum, whether d exceeds it later) of a RunFolder's first compression. NotMeasured where the
+    aggregates never met or never turned around, RunFolderError where they had no kinetic energy."""
+    history = run.history
+    maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
+    if maximum is None or not maximum.inside or not met(run):
+        raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
+    if not initial_kinetic_energy(history) > 0:
+        raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
+    return maximum, exceeded
+
+
+def _outcome(run, row):
+    """RunFolderError where the states don't make an outcome."""
+    outcome, v = outcome_of_run(run), run.history["v"]
+    return outcome.kind, outcome.restitution, float(np.nan_to_num(v[-1] / row["velocity"]) ** 2)
+
+
+def returned(history, time):
+    """(largest speed [m/s] at which the halves part, its time [s]) after a time [s]; NaN where they never part, or the record ends before
+    their speed falls."""
+    return tuple(
+        np.nan if value is None else value for value in largest_return_speed(history["time"], history["v"], time)
+    )
+
+
+def _changes(run, row):
+    """Changes of all channels until the largest speed of return (NaN: unknown), until the largest compression, and until the end, over K(0)."""
+    times = row["return_time"], largest_compression(run)[0].time, run.history["time"][-1]
+    parts = [fractions_at(run.history, time) if np.isfinite(time) else {} for time in times]
+    return [part.get(channel, np.nan) for part in parts for channel in CHANNELS]
+
+
+OUTCOME = group(
+    _outcome,
+    Column("outcome", "", "as measures.outcome has it", kind="O"),
+    Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
+    Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
+)
+LARGEST = group(
+    lambda run, row: (float(outcome_of_run(run).mass_fractions[0]),),
+    Column("largest_fraction", "", "fraction of the mass in the largest piece"),
+)
+_COORDINATION = group(
+    lambda run, row: (mean_coordination(len(run.start.radius), run.start.contact_pairs),),
+    Column("coordination", "", "mean number of contacts of a grain at the start"),
+)
+_RETURN = group(
+    lambda run, row: returned(run.history, largest_compression(run)[0].time),
+    Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
+    Column("return_time", "s", "its time", gaps=True, absent=np.nan),
+)
+# Columns without gaps come last, so that a row that was cut short is noticed.
+_WHEN = {"{}_at_return": ("return_time", {"gaps": True, "absent": np.nan}), AT_MAXIMUM: ("t_max", {"absent": 0.0})}
+_WHEN["{}_at_end"] = "the end", {"absent": 0.0}
+_CHANGE = "{}, change from the start to {} (kinetic: what is left)"
+_PARTITION = group(
+    _changes,
+    *(
+        Column(name.format(c), "K(0)", _CHANGE.format(LABELS[c], when), **more)
+        for name, (when, more) in _WHEN.items()
+        for c in CHANNELS
+    ),
+)
+# What studies of compact aggregates have in common.
+COMPACT = (_COORDINATION, CLOSURE, OUTCOME, _RETURN, _PARTITION)

@@ -8,16 +8,12 @@ import pandas
 
 from ..printable import suggested
 from ..runs.collect import Scene
-from .columns import flat, row_of
+from .columns import NotMeasured, flat, row_of  # noqa: F401
 from .estimate import Fraction
 from .levels import SI
 from .runs import at, select
 
 GALLERY, SNAPSHOTS = Path(__file__).resolve().parents[1] / "gallery", "snapshots"
-
-
-class NotMeasured(Exception):
-    """A sound run in which there is nothing to measure; the message is one line that says why."""
 
 
 class WrongUnit(ValueError):

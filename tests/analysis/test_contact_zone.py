@@ -5,7 +5,7 @@ import pytest
 
 from analysis.measures.compression import largest_return_speed
 from analysis.measures.structure import zone_filling, zone_volume
-from analysis.studies.collisions import returned
+from analysis.studies.columns import returned
 from analysis.studies.elastoplastic.measure import zones_that_meet
 from yade_scripts import packings
 

@@ -1,7 +1,7 @@
 """CPE aggregates beside spheres cut out of compressed cells, of made collisions."""
 
 import pytest
-from study_answers import answered, quantities
+from study_answers_before import answered, quantities
 from written_runs import RADIUS, two_pairs
 
 from analysis.__main__ import main

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from made_compressions import SILICATE_GRAINS, made_compression
-from study_answers import answered, quantities, rows
+from study_answers_before import answered, quantities, rows
 from written_runs import seal
 
 from analysis.__main__ import main

@@ -1,18 +1,15 @@
-"""The study of viscous drag (Arakawa et al. 2022): made runs whose answers are known; means, thresholds, fits against closed forms."""
+"""The study of viscous drag (Arakawa et al. 2022): made runs whose answers are known; means over offsets, thresholds, fits."""
 
 import numpy as np
+import pandas
 import pytest
-from study_answers import answered, quantities, rows
+from study_answers import answered
 from written_runs import MASS, PAIR, RADIUS, chain, losing, record, state_arrays, write_run
 
 from analysis import theory
-from analysis.__main__ import main
 from analysis.runs.folder import open_run
-from analysis.studies.curves import threshold_velocity
-from analysis.studies.viscous.growth import SQUARES as TWELFTHS
-from analysis.studies.viscous.growth import fragment_exponent, offset_weights
-from analysis.studies.viscous.measure import sizes_from_text
-from analysis.studies.viscous.study import STUDY
+from analysis.studies import viscous
+from analysis.studies.estimates import beside, estimate, mean, where
 
 GRAINS, V_FRA = 30, 55.0
 VELOCITIES = tuple(10 ** (0.1 * i) for i in (16, 17, 18, 20))
@@ -48,76 +45,55 @@ def made_run(path, velocity, square, viscous_time, seed, derived={}, **parameter
     return write_run(path, about, history, states)
 
 
-@pytest.fixture(scope="module")
-def answer(tmp_path_factory):
-    """{quantity: [row]} of three pairs at A22's offsets, without drag and with the most."""
-    folder, out = tmp_path_factory.mktemp("viscous"), tmp_path_factory.mktemp("out")
-    for viscous_time in (0.0, 6e-12):
-        for i, velocity in enumerate(VELOCITIES):
-            for square in TWELFTHS[:: 1 if i < 3 else 2]:
-                for seed in (1, 2, 3):
-                    path = folder / f"v{i}-b{square:.3f}-t{viscous_time}-s{seed}"
-                    made_run(path, velocity, square, viscous_time, seed)
-    assert main(["study", "viscous", str(folder), "--figures", str(out)]) == 0
-    assert {"fig03_mean_growth", "drag", "size"} <= {file.stem for file in out.glob("*.png")}
-    return quantities((out / "comparison.json").read_text())
-
-
-def test_thresholds_energies_and_events_of_made_runs(answer):
+def test_thresholds_energies_and_events_of_made_runs(tmp_path):
     """f_gro falls linearly in ln v through 0 at V_FRA; grains are whole, so that it is rounded to 1/30."""
-    found = rows(answer["v_fra"], grains=GRAINS)
-    assert [row["value"] for row in found] == pytest.approx([V_FRA] * 2, rel=0.1)
-    assert all(0 < row["error"] < 12 for row in found)
-    assert len(rows(answer["growth"], velocity=100.0)) == 0 and len(rows(answer["growth_7"], velocity=100.0)) == 2
-    assert all(row["pairs"] == 3 for row in answer["growth"])
-    (rolling,) = rows(answer["loss"], channel="rolling", viscoelasticTime=0.0)
-    assert rolling["value"] == pytest.approx(0.4 / 0.75)
-    (lead,) = rows(answer["rolling_lead"], viscoelasticTime=6e-12)
-    assert lead["value"] == pytest.approx((0.4 - 0.2) / 0.85)
-    (formed,) = rows(answer["events"], event="N_con", velocity=VELOCITIES[1], viscoelasticTime=6e-12)
-    assert formed["value"] == pytest.approx(COUNTS["formed"] / (2 * GRAINS))
-    assert rows(answer["pair_speed"], viscoelasticTime=0.0)[0]["value"] == pytest.approx(0.5)
-    assert rows(answer["v_stick_ratio"], viscoelasticTime=6e-12)[0]["value"] == pytest.approx(10, rel=0.15)
+    folders = [
+        made_run(tmp_path / f"v{i}-k{k:g}-s{seed}", velocity, k / 12, 6e-12, seed)
+        for i, velocity in enumerate(VELOCITIES)
+        for k in viscous.TWELFTHS[:: 1 if i < 3 else 2]
+        for seed in (1, 2, 3)
+    ]
+    runs = viscous.STUDY.runs(pandas.DataFrame([viscous.STUDY.measure(open_run(folder)) for folder in folders]))
+    v_fra = estimate(viscous.falls_at, runs)
+    assert v_fra.value == pytest.approx(V_FRA, rel=0.1) and 0 < v_fra.error < 12 and v_fra.pairs == 3
+    fast = where(runs, velocity=VELOCITIES[3])
+    assert np.isnan(viscous.over_offsets()(fast)) and np.isfinite(viscous.over_offsets(viscous.TWELFTHS[::2])(fast))
+    assert viscous.lead("rolling", max)(runs) == pytest.approx(100 * (0.4 - 0.2) / 0.85)
+    assert viscous.lead("drag", min)(runs) == pytest.approx(100 * (0.1 - 0.0) / 0.85)
+    assert viscous.a_grain("formed")(runs) == pytest.approx(COUNTS["formed"] / (2 * GRAINS))
+    same = beside(mean("growth"), runs, runs.assign(growth=runs.growth - 0.1))
+    assert same.value == pytest.approx(0.1) and same.error < 1e-12
 
 
 def test_one_run(tmp_path):
-    path = made_run(tmp_path / "run", VELOCITIES[1], 0.25, 6e-12, 2)
-    row = STUDY.measure(open_run(path))
+    row = viscous.STUDY.measure(open_run(made_run(tmp_path / "run", VELOCITIES[1], 0.25, 6e-12, 2)))
     assert (row["grains"], row["seed"], row["viscoelasticTime"]) == (GRAINS, 2, 6e-12)
     kinetic = 2 * GRAINS * 0.5 * MASS * (VELOCITIES[1] / 2) ** 2
     assert row["kinetic_at_start"] == pytest.approx(kinetic) and row["drag"] == pytest.approx(0.1 * kinetic)
     assert (row["formed"], row["broken"]) == (75, 45)
     assert row["largest"] == round(GRAINS * (1 + row["growth"])) and row["fragments"].startswith(f"1x{row['largest']} ")
+    assert viscous.sizes_of(row["fragments"]).sum() == 2 * GRAINS
     assert row["pair_speed"] == pytest.approx(0.5) and row["characteristic_radius"] == pytest.approx(5.25 * RADIUS)
     assert row["energy_unit"] == pytest.approx(PAIR.pull_off_force * PAIR.pull_off_overlap)
     ice = theory.Material(*(getattr(theory.ICE, n) for n in list(vars(theory.ICE))[:-1]), 6e-12)
     assert row["sticking_velocity"] == pytest.approx(theory.sticking_velocity(theory.pair_constants(ice, RADIUS)))
 
 
-OTHER_SCENES = {"neck": 0.5, "sizes": "two", "limit": "cut", "slidingStiffnessFactor": 2}
-OTHER_GRAINS = {"criticalRolling": 8e-09, "young": 5.4e10, "surfaceEnergy": 0.025, "density": 2000}
-
-
-def test_runs_of_other_scenes_grains_or_law_are_left_out(tmp_path, capsys):
-    for square in (0.0, 0.25, 0.5, 1.0):
-        made_run(tmp_path / f"b{square}", VELOCITIES[0], square, 0.0, 1, duration=6.34e-6)
-    for name, value in OTHER_SCENES.items():
+def test_runs_of_other_scenes_grains_or_law_and_too_short_ones_are_left_out(tmp_path, capsys):
+    """Runs last 2 us; at 0.1 m/s that is a fraction of r_c. One that ended before its duration has nothing left to meet."""
+    others = {"neck": 0.5, "sizes": "two", "limit": "cut", "slidingStiffnessFactor": 2}
+    grains = {"criticalRolling": 8e-09, "young": 5.4e10, "surfaceEnergy": 0.025, "density": 2000}
+    made_run(tmp_path / "own", VELOCITIES[0], 0.25, 0.0, 1, duration=6.34e-6)
+    made_run(tmp_path / "apart", 0.1, 0.0, 0.0, 2, duration=6.34e-6)
+    made_run(tmp_path / "short", 0.1, 0.0, 0.0, 1, duration=2e-6)
+    for name, value in others.items():
         made_run(tmp_path / name, VELOCITIES[0], 0.0, 0.0, 2, **{name: value})
-    for name, value in OTHER_GRAINS.items():
+    for name, value in grains.items():
         made_run(tmp_path / name, VELOCITIES[0], 0.0, 0.0, 1, {name: value})
     _, runs, said = answered(capsys, "viscous", tmp_path)
-    assert runs == 4 and "neck = 0.5, the study of Arakawa et al. (2022) has 0.0" in said
-    for name, value in {**OTHER_SCENES, **OTHER_GRAINS}.items():
-        assert f"{name} = {value if isinstance(value, str) else f'{value:g}'}" in said
-
-
-def test_a_run_too_short_for_final_fragments_is_left_out(tmp_path, capsys):
-    """They last 2 us; at 0.1 m/s that is a fraction of r_c. One that ended before its duration has nothing left to meet."""
-    made_run(tmp_path / "short", 0.1, 0.0, 0.0, 1, duration=2e-6)
-    made_run(tmp_path / "apart", 0.1, 0.0, 0.0, 2, duration=6.34e-6)
-    made_run(tmp_path / "long", VELOCITIES[1], 0.0, 0.0, 3, duration=2e-6)
-    _, runs, said = answered(capsys, "viscous", tmp_path)
     assert runs == 2 and "short: lasts 2e-06 s, too short" in said
+    for name, value in {**others, **grains}.items():
+        assert f"{name} = {value if isinstance(value, str) else f'{value:g}'}" in said
 
 
 def test_rounded_numbers_are_those_of_the_grid(tmp_path, capsys):
@@ -125,44 +101,28 @@ def test_rounded_numbers_are_those_of_the_grid(tmp_path, capsys):
     made_run(tmp_path / "a", VELOCITIES[1], 1 / 12, 6e-12, 1)
     made_run(tmp_path / "b", 50.1, 0.2887**2, 6.00001e-12, 1)
     made_run(tmp_path / "c", 45.0, 0.3**2, 6e-12, 1)
-    assert STUDY.measure(open_run(tmp_path / "b"))["velocity"] == pytest.approx(VELOCITIES[1], rel=1e-15)
-    row = STUDY.measure(open_run(tmp_path / "c"))
-    assert (row["velocity"], row["impact"]) == (45.0, pytest.approx(0.3, rel=1e-15))
     _, runs, said = answered(capsys, "viscous", tmp_path)
     assert runs == 2 and "b: the same grains, impact, velocity" in said
+    row = viscous.STUDY.measure(open_run(tmp_path / "c"))
+    assert (row["velocity"], row["impact"]) == (45.0, pytest.approx(0.3, rel=1e-15))
 
 
-def test_weights_are_exact_for_one_and_for_the_square():
-    squares = np.array(TWELFTHS)
-    weights = offset_weights(squares)
-    assert weights.sum() == pytest.approx(1, rel=1e-14)  # <1> = 1
-    assert weights @ squares == pytest.approx(1 / 2, rel=1e-14)  # <B^2> = int 2 B B^2 dB
-    uneven = np.array([0, 0.1, 0.5, 1.0])
-    assert offset_weights(uneven) @ (3 - 2 * uneven) == pytest.approx(2, rel=1e-14)
-    # of B^4 the trapezoidal rule has the error h^2/6
-    assert weights @ squares**2 - 1 / 3 == pytest.approx(1 / 12**2 / 6, rel=1e-9)
+def test_means_over_offsets_are_exact_for_one_and_for_the_square():
+    """<1> = 1 and <B^2> = int 2 B B^2 dB = 1/2; of B^4 the trapezoidal rule has the error h^2/6."""
+    runs = pandas.DataFrame({"pair": 1, "twelfth": viscous.TWELFTHS})
+    for power, exact in ((0, 1), (1, 1 / 2), (2, 1 / 3 + 1 / 12**2 / 6)):
+        own = runs.assign(growth=(runs.twelfth / 12) ** power)
+        assert viscous.over_offsets()(own) == pytest.approx(exact, rel=1e-12)
 
 
-def test_a_text_that_is_no_sizes():
+def test_the_law_of_fragments_is_recovered():
+    """Sizes drawn as N^-1: as many grains in fragments of each size."""
+    text = " ".join(f"{9600 // size}x{size}" for size in (2400, 1200, 600, 300, 150, 75, 50, 25, 10, 5, 2, 1))
+    runs = pandas.DataFrame({"pair": 1, "twelfth": viscous.TWELFTHS, "fragments": text, "grains": 2400})
+    numbers, grains = viscous.by_size(runs, lambda sizes, numbers: numbers**0.7)
+    assert 2 - viscous.exponent(numbers, grains) == pytest.approx(1.3, rel=1e-9)
+    sizes = viscous.sizes_of(text)
+    of_large = (sizes[sizes > 240] ** (2 / 3)).sum() / (sizes ** (2 / 3)).sum()
+    assert viscous.large_share(runs) == pytest.approx(of_large, rel=1e-9)
     with pytest.raises(ValueError):
-        sizes_from_text("3 fragments")
-
-
-def test_threshold_of_made_data():
-    """f_gro falls linearly in ln v through 0 at 55 m/s, whatever the velocities of the runs; the first fall counts."""
-    velocities = 10 ** (0.1 * np.arange(13, 21))
-    growth = 0.7 * np.log(55.0 / velocities)
-    shifted = np.stack([growth, growth + 0.07, growth - 5, growth + 5])
-    found = threshold_velocity(velocities, shifted)
-    assert found[:2] == pytest.approx([55, 55 * np.exp(0.1)]) and np.isnan(found[2:]).all()
-    assert np.isnan(threshold_velocity([10.0], np.array([0.5])))
-    assert threshold_velocity([1.0, 10.0, 100.0, 1000.0], [1.0, -1.0, 1.0, -1.0]) == pytest.approx(10**0.5)
-
-
-@pytest.mark.parametrize("exponent, amplitude", [(1.0, 1.0), (0.6, 2.0), (1.5, 30.0)])
-def test_fits_recover_the_law(exponent, amplitude):
-    """N_cum of the law itself, A22 eq 41."""
-    numbers = np.unique(np.geomspace(1, 5000, 60).round())
-    grains = amplitude * numbers ** (2 - exponent) / (2 - exponent)
-    assert fragment_exponent(numbers, np.stack([grains, 7 * grains])) == pytest.approx([exponent] * 2, rel=1e-9)
-    assert np.isnan(fragment_exponent(numbers, 0 * numbers)) and np.isnan(fragment_exponent([1, 2], [1.0, 2.0]))
+        viscous.sizes_of("3 fragments")

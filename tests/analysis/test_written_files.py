@@ -25,8 +25,7 @@ OUTPUTS = [
     *(("export runs/s1 --out out", f"state_000000{name}") for name in ("", "/grains.vtp", "/contacts.vtp")),
     ("film runs/s1 --out out/film.mp4", "film.mp4"),
     ("study sticking.py runs --page out/page.html", "page.html"),
-    *(("study sticking.py runs --figures out", name) for name in ("runs.csv", "README.md", "details.md")),
-    *(("study sticking.py runs --figures out", name) for name in ("comparison.json", "sticking.png", "sticking.pdf")),
+    *(("study sticking.py runs --figures out", name) for name in ("runs.csv", "comparison.csv", "sticking.png")),
 ]
 
 
@@ -123,13 +122,10 @@ def test_a_film_that_is_stopped_leaves_nothing(own):
 
 def test_pages_of_others_stay(own, capsys, monkeypatch):
     monkeypatch.chdir(own)
-    (own / "README.md").write_text("the user's own")
+    (own / "runs.csv").write_text("the user's own")
     assert main(["study", "sticking.py", "runs/s1", "--figures", "."]) == 2
-    assert (
-        capsys.readouterr().err
-        == "analysis: README.md: no analysis of sticking has written it; must be another folder\n"
-    )
-    assert (own / "README.md").read_text() == "the user's own"
+    assert "runs.csv: no analysis of sticking has written it; must be another folder" in capsys.readouterr().err
+    assert (own / "runs.csv").read_text() == "the user's own"
 
 
 def test_a_table_is_not_written_over_itself(own, capsys, monkeypatch):
@@ -138,7 +134,7 @@ def test_a_table_is_not_written_over_itself(own, capsys, monkeypatch):
 
     monkeypatch.chdir(own)
     study("runs/s1", "runs/s2")
-    table, comparison = own / "out" / "runs.csv", own / "out" / "comparison.json"
+    table, comparison = own / "out" / "runs.csv", own / "out" / "comparison.csv"
     before, text = table.stat(), table.read_text()
     comparison.unlink()
     capsys.readouterr()

@@ -7,7 +7,6 @@ import pytest
 from running import PYTHON, SCRIPTS, call, messages
 
 from analysis.__main__ import main as analysis
-from analysis.studies.documents.__main__ import main as documents
 from yade_scripts import make_packing, study
 from yade_scripts.parameters.errors import one_line_errors
 
@@ -54,7 +53,7 @@ MISTAKES = {
     "analysis export empty --format ply": "argument --format: invalid choice: 'ply' (choose from ",
     "analysis plot sticking empty": "empty: no run folder (run.json) there",
     "analysis status nowhere": "nowhere: no such folder",
-    "analysis study viscos empty": "no study viscos (did you mean viscous?); must be one of atlas, ",
+    "analysis study viscos empty": "no study viscos (did you mean viscous?); must be one of ",
     "analysis study viscous empty": "empty: no run folder (run.json) there",
     "analysis study own.py empty": "own.py",
     "analysis study viscous": "study viscous: of which runs? Give run folders, folders of them, or a runs.csv",
@@ -64,12 +63,11 @@ MISTAKES = {
     "analysis study viscous runs.csv": "runs.csv: not as `analysis study` has written it",
     "analysis verify empty": "empty: no run folder (run.json) there",
     "analysis status text.txt": "text.txt: is not a folder",
-    "analysis study text.txt empty": "no study text.txt; must be one of atlas, ",
+    "analysis study text.txt empty": "no study text.txt; must be one of ",
     "analysis outcome --velocity -5 --projectile 2 --target 5 --filling .1": "-5: must be a number > 0",
     "analysis summry empty": "invalid choice: 'summry' (choose from ",
     "analysis summary": "the following arguments are required: RUNS",
     "analysis": "the following arguments are required: command",
-    "documents": "documents: must be called with the file of the PDF",
     "study commas.table": "commas.table: line 1 has commas; names and values must be parted by blanks",
     "study column.table": "column.table: velocty: unknown parameter (did you mean velocity?)",
     "study cells.table": "cells.table: line 2 has 2 cells; must be 3, one for each name",
@@ -117,7 +115,7 @@ def make(arguments):
         return make_packing.main(arguments)
 
 
-COMMANDS = {"analysis": analysis, "documents": documents, "study": study.main, "make_packing": make}
+COMMANDS = {"analysis": analysis, "study": study.main, "make_packing": make}
 # the same of what YADE runs
 OF_YADE = {
     "velocity 3": "argument 'velocity': not understood; must be name=value, or --help",

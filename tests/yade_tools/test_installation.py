@@ -124,7 +124,7 @@ def test_a_study_by_the_name_of_its_table(installed):
 
 def test_files_that_the_analysis_reads_are_installed(installed):
     prefix, call = installed
-    ask = "from analysis.studies.definition import GALLERY; print(GALLERY)"
+    ask = "from analysis.studies.study import GALLERY; print(GALLERY)"
     gallery = Path(call("/usr/bin/python3", "-c", ask).stdout.strip())
     assert gallery.is_relative_to(prefix)
     for pattern in "gallery/*/*.json gallery/*/snapshots/* studies/*.html studies/*/*.toml studies/*/*.csv".split():

@@ -4,8 +4,7 @@ import numpy as np
 
 from ...measures.structure import DEPTH, WIDTH, inner_coordination, zone_filling
 from ...runs.table import Column
-from ..collisions import COMPACT, largest_compression
-from ..columns import GRAIN_RADIUS, SEED, VELOCITY, constant, group, one, parameter
+from ..columns import COMPACT, GRAIN_RADIUS, SEED, VELOCITY, constant, group, largest_compression, one, parameter
 from ..grains import require_papers_grains
 
 # Grains deeper than this below the sphere that holds all centres have all their neighbours' sites in it.

@@ -13,8 +13,7 @@ from ...runs.format import BROKEN_BONDS
 from ...runs.table import Column
 from ...theory.chains import breaking_energy, stretching_period
 from ...theory.pair_constants import ICE, pair_constants
-from ..collisions import OUTCOME
-from ..columns import CLOSURE, END, GRAIN_RADIUS, MET, VELOCITY, VISCOUS_TIME, constant, group, parameter
+from ..columns import CLOSURE, END, GRAIN_RADIUS, MET, OUTCOME, VELOCITY, VISCOUS_TIME, constant, group, parameter
 from ..definition import NotMeasured
 from ..grains import require_papers_grains
 

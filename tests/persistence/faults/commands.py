@@ -145,7 +145,6 @@ WRITERS = {
     "analysis/report/pdf.py": "analysis study, where weasyprint or chromium is installed",
     "analysis/runs/running.py": "a temporary file only, for the clock of another machine's disk",
     "analysis/studies/analyse.py": "analysis study",
-    "analysis/studies/documents/__init__.py": "writes into the repository",
     "contact_law/installation.py": "install",
     "yade_scripts/packings/packing.py": "make_packing",
     "yade_scripts/run/folder.py": "collide",

@@ -19,15 +19,15 @@ STOPPED = 143
 ENDED_RUN = {"ended", "history.npz", "run.json", "states"}
 # A study of one's own, as analysis/STUDIES.md has it, and a table for the runner: what commands read beside runs.
 OWN = """
-from analysis.studies.collisions import collision_study, outcome_quantities
-from analysis.studies.curve_figure import CurveFigure
-from analysis.studies.runs import Runs
+from analysis.studies.comparison import Row
+from analysis.studies.estimates import ending
+from analysis.studies.figures import curves
+from analysis.studies.study import collision_study
 
-def quantities(table):
-    return outcome_quantities(Runs(table, pair="seed", population=()), by=("velocity",))
-
-STUDY = collision_study(title="T", question="Q?", varied=("velocity", "seed"), quantities=quantities)
-FIGURES = (CurveFigure("sticking", "What sticks.", "sticking", x="velocity", logarithmic="x"),)
+sticking = lambda runs: ending(runs, "sticking")
+rows = lambda runs: [Row("sticking", sticking(runs))]
+figures = lambda runs: [("sticking", "What sticks.", curves(runs, sticking, "velocity", log="x"))]
+STUDY = collision_study("T", "Q?", ("velocity", "seed"), rows, figures)
 """
 TABLE = "description {}\na {}\n".format(*(" ".join(words) for words in zip(*(cell.split("=") for cell in RUN))))
 

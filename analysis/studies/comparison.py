@@ -1,0 +1,155 @@
+"""A paper's numbers beside ours: one row each, and the words that say how they compare."""
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+import pandas
+
+from .estimates import Estimate
+
+AGREES, DIFFERS, UNCLEAR, NOT_RUN = "agrees", "differs", "unclear", "not run"
+LEGEND = (
+    "Ours: mean ± standard error (independent {}); difference: in combined standard errors. *Agrees*: within two, and "
+    "the error is below a quarter of the number (or of the limits' width); of a one-sided limit: on its side by two "
+    "errors. *Differs*: beyond three. *Unclear*: all else."
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A number of ours, beside a paper's where it has one.
+
+    Parameters
+    ----------
+    quantity : str
+        What it is, with its place (velocity, size, ...) and unit in words; no two rows have the same.
+    ours : Estimate
+        Not run where its value is NaN.
+    paper : float or (float or None, float or None), optional
+        The paper's number, or the limits that its words set (None: open); left out where a phrase sets none.
+    printed : str
+        How the paper prints it; '' for a number that is ours alone.
+    source : str
+        Section or equation.
+    runs : int, optional
+        Independent runs behind the paper's number, which are taken to scatter as ours do; None: it has no error of its own.
+    note : str
+        Why the two are not quite the same thing.
+    """
+
+    quantity: str
+    ours: Estimate
+    paper: object = None
+    printed: str = ""
+    source: str = ""
+    runs: int | None = None
+    note: str = ""
+
+    @property
+    def limits(self):
+        """(low, high) of the paper: its number twice, or limits, infinite where it sets none."""
+        low, high = self.paper if isinstance(self.paper, tuple) else (self.paper, self.paper)
+        return -math.inf if low is None else low, math.inf if high is None else high
+
+    @property
+    def combined(self):
+        """Standard error of the difference (None without ours): the paper's runs scatter as our pairs do."""
+        error, runs = self.ours.error, self.runs
+        return error and (math.hypot(error, error * math.sqrt(self.ours.pairs / runs)) if runs else error)
+
+    @property
+    def difference(self):
+        """How far ours lies beyond the paper's number or limits in combined standard errors, with its sign; None where that is not known."""
+        if self.paper is None or not self.combined or math.isnan(self.ours.value):
+            return None
+        low, high = self.limits
+        return (self.ours.value - float(np.clip(self.ours.value, low, high))) / self.combined
+
+    @property
+    def word(self):
+        """One of the four words; '' for a number that is ours alone."""
+        value, error = self.ours.value, self.ours.error
+        low, high = self.limits
+        if math.isnan(value):
+            return NOT_RUN
+        if self.paper is None:
+            return UNCLEAR if self.printed else ""
+        if not self.ours.pairs:
+            return AGREES if low <= value <= high else DIFFERS
+        if not error:
+            return UNCLEAR
+        if abs(self.difference) > 3:
+            return DIFFERS
+        if math.isinf(low) or math.isinf(high):
+            return AGREES if min(value - low, high - value) >= 2 * error else UNCLEAR
+        precise = self.combined < (abs(low) if low == high else high - low) / 4
+        return AGREES if abs(self.difference) <= 2 and precise else UNCLEAR
+
+
+def of_table(rows):
+    """DataFrame with all numbers of the rows: what comparison.csv holds."""
+    finite = lambda value: value if value is not None and math.isfinite(value) else None
+    found = [
+        {
+            "quantity": row.quantity,
+            "paper": row.printed,
+            "low": finite(row.limits[0]) if row.paper is not None else None,
+            "high": finite(row.limits[1]) if row.paper is not None else None,
+            "source": row.source,
+            "paper_runs": row.runs if row.printed else None,
+            "ours": finite(row.ours.value),
+            "error": row.ours.error,
+            "pairs": row.ours.pairs,
+            "counted": row.ours.counted,
+            "text": str(row.ours),
+            "difference": row.difference,
+            "word": row.word,
+            "note": row.note,
+        }
+        for row in rows
+    ]
+    return pandas.DataFrame(found).astype({"paper_runs": "Int64", "pairs": "Int64"})
+
+
+def as_text(rows):
+    """DataFrame of text (quantity, paper, ours, difference, word), as pages and terminals show it."""
+    cells = [
+        (
+            row.quantity,
+            row.printed,
+            NOT_RUN if row.word == NOT_RUN else str(row.ours),
+            "" if row.difference is None else f"{row.difference + 0.0:.1f}",
+            "" if row.word == NOT_RUN else row.word,
+        )
+        for row in rows
+    ]
+    return pandas.DataFrame(cells, columns=["quantity", "paper", "ours", "difference", " "], dtype=str)
+
+
+def counted(rows):
+    """One sentence on all comparisons with the paper; '' without any."""
+    words = Counter(row.word for row in rows if row.printed)
+    numbers = sum(row.difference is not None for row in rows)
+    if not words:
+        return ""
+    parts = ", ".join(f"{words[word]} {word}" for word in (AGREES, DIFFERS, UNCLEAR, NOT_RUN))
+    return (
+        f"Numbers and statements of the paper: {sum(words.values())} ({parts}). By chance alone {0.0455 * numbers:.1f} of "
+        f"{numbers} would lie beyond two errors and {0.0027 * numbers:.1f} beyond three, somewhat more with few pairs."
+    )
+
+
+def markdown_table(table):
+    """A DataFrame of text as Markdown (str)."""
+    rows = [list(map(str, table.columns)), *table.astype(str).to_numpy().tolist()]
+    cells = [" | ".join(cell.replace("|", "\\|") for cell in row) for row in rows]
+    return "\n".join([f"| {cells[0]} |", "|" + "---|" * len(table.columns), *(f"| {row} |" for row in cells[1:])])
+
+
+def text_table(table):
+    """The same for a terminal, words to the left."""
+    rows = [list(map(str, table.columns)), *table.astype(str).to_numpy().tolist()]
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)

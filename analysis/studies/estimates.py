@@ -1,0 +1,195 @@
+"""Numbers of a table of runs (a pandas DataFrame, a row a run) with their standard errors.
+
+A number is any function of the table, a statistic. Its error is the jackknife's over independent pairs of aggregates, which the column
+`pair` tells apart: the statistic again without each pair in turn (Efron & Tibshirani 1993, eq 11.5). Means, differences and ratios of the
+same pairs, thresholds and fits need nothing more."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pandas
+
+from ..measures.outcome import NEVER_MET, UNDECIDED
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its standard error.
+
+    Parameters
+    ----------
+    value : float
+        NaN where it is not known.
+    error : float or None
+        Standard error; None with fewer than two pairs, or where it is undefined without one of them; 0 for a closed form.
+    pairs : int
+        Independent pairs (or clusters, runs) behind it; 0 for a closed form.
+    counted : str
+        Of a fraction: '3 of 4', or '3 of 4, 1 undecided'.
+    """
+
+    value: float
+    error: float | None = 0.0
+    pairs: int = 0
+    counted: str = ""
+
+    def __mul__(self, unit):
+        return Estimate(self.value * unit, self.error and self.error * unit, self.pairs, self.counted)
+
+    def __str__(self):
+        behind = self.counted or self.pairs
+        return number_text(self.value, self.error) + (f" ({behind})" if behind else "")
+
+
+def where(runs, **values):
+    """The runs with these values in their columns: numbers to a relative 1e-9, words as they are.
+
+    >>> len(where(pandas.DataFrame({"velocity": [50.1, 10**1.7], "setup": "cut"}), velocity=10**1.7, setup="cut"))
+    1
+    """
+    for name, value in values.items():
+        column = runs[name].to_numpy()
+        runs = runs[column == value if isinstance(value, str) else np.isclose(column, value, rtol=1e-9, atol=0.0)]
+    return runs
+
+
+def estimate(statistic, runs):
+    """Estimate of a statistic of runs.
+
+    Parameters
+    ----------
+    statistic : callable
+        From a DataFrame to a number; NaN where the runs do not suffice.
+    runs : DataFrame
+        Runs with the column `pair`, best those alone that the statistic is about.
+
+    Returns
+    -------
+    Estimate
+
+    Examples
+    --------
+    >>> runs = pandas.DataFrame({"pair": [1, 2, 3, 4], "d": [1.0, 2.0, 3.0, 4.0]})
+    >>> print(estimate(mean("d"), runs))
+    2.50 ± 0.65 (4)
+    """
+    return estimates(lambda own: [statistic(own)], runs)[0]
+
+
+def estimates(statistic, runs):
+    """The same of a statistic that gives several numbers at once (a fit): list of Estimate."""
+    pairs = runs["pair"].to_numpy()
+    value = np.asarray(statistic(runs), dtype=float)
+    names = pandas.unique(pairs)
+    without = np.array([statistic(runs[pairs != name]) for name in names], dtype=float).reshape(len(names), len(value))
+    return [_jackknife(*own) for own in zip(value, without.T)]
+
+
+def _jackknife(value, without):
+    """Estimate from a value and the same without each pair (n,); pairs that change nothing are not behind it."""
+    behind = without[without != value]
+    n = len(behind) or len(without)
+    if len(behind) < 2 or not np.isfinite(behind).all():
+        return Estimate(float(value), None, n)
+    return Estimate(float(value), math.sqrt((n - 1) / n * np.sum((behind - behind.mean()) ** 2)), n)
+
+
+def mean(values):
+    """Statistic: the mean over pairs of each pair's mean of a column, or of a function from runs to values (runs,), without NaN."""
+
+    def of(runs):
+        own = values(runs) if callable(values) else runs[values]
+        return own.groupby(runs["pair"]).mean().mean()
+
+    return of
+
+
+def beside(statistic, one, other, of=np.subtract):
+    """Estimate of of(statistic(one), statistic(other)) for two tables of runs, a difference or a ratio: of the pairs that are in both,
+    or of all where none is."""
+    shared = set(one["pair"]) & set(other["pair"])
+    one, other = (own[own["pair"].isin(shared)] if shared else own for own in (one, other))
+    both = pandas.concat([one.assign(first=True), other.assign(first=False)], ignore_index=True)
+    return estimate(lambda runs: of(statistic(runs[runs["first"]]), statistic(runs[~runs["first"]])), both)
+
+
+def fraction(runs, so, undecided=None):
+    """Estimate of the fraction of runs that are so: p = (k + 1)/(n + 2), with the binomial error [p (1 - p)/n]^(1/2).
+
+    Parameters
+    ----------
+    runs : DataFrame
+        With the column `pair`, of which each counts once.
+    so : Series of bool (runs,)
+        Which runs are so.
+    undecided : Series of bool (runs,), optional
+        Which runs count neither way.
+
+    Raises
+    ------
+    ValueError
+        Where a pair has several runs: n would be too large.
+
+    Examples
+    --------
+    >>> runs = pandas.DataFrame({"pair": [1, 2, 3, 4]})
+    >>> print(fraction(runs, runs.pair < 4))
+    0.67 ± 0.24 (3 of 4)
+    """
+    if runs["pair"].duplicated().any():
+        raise ValueError("a fraction of runs: a pair has several runs; must have one")
+    open_runs = 0 if undecided is None else int(undecided.sum())
+    k, n = int(so.sum()), len(runs) - open_runs
+    if n < 1:
+        return Estimate(math.nan, None, 0)
+    p = (k + 1) / (n + 2)
+    return Estimate(p, math.sqrt(p * (1 - p) / n), n, f"{k} of {n}" + (f", {open_runs} undecided" if open_runs else ""))
+
+
+def ending(runs, outcome):
+    """Estimate of the fraction of runs that end so (an outcome of measures.outcome), of those that met and are decided."""
+    met = runs[runs.outcome != NEVER_MET]
+    return fraction(met, met.outcome == outcome, met.outcome == UNDECIDED)
+
+
+def threshold(x, y):
+    """x at which y (K,) first falls from above 0 to 0 or below, linear between rising x (K,); NaN where it does not. Of mean growth
+    efficiency against velocity: the threshold velocity of fragmentation (Arakawa et al. 2022, section 3.2).
+
+    >>> float(threshold([10.0, 20.0, 40.0], [1.0, 0.5, -0.5]))
+    30.0
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    falls = np.flatnonzero((y[:-1] > 0) & (y[1:] <= 0))
+    if not len(falls):
+        return math.nan
+    k = falls[0]
+    return x[k] + (x[k + 1] - x[k]) * y[k] / (y[k] - y[k + 1])
+
+
+def exponent(x, y):
+    """n of y ~ x^n: least squares of the logarithms; NaN with fewer than three points, or where one of y is not positive.
+
+    >>> round(exponent([1.0, 2.0, 4.0], [3.0, 12.0, 48.0]), 9)
+    2.0
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if len(x) < 3 or not (y > 0).all():
+        return math.nan
+    away = np.log(x) - np.log(x).mean()
+    return float(np.log(y) @ away / (away @ away))
+
+
+def number_text(value, error=None):
+    """'54.0 ± 1.0': the value to two digits of its error, or to four of its own.
+
+    >>> number_text(1.23456, 0.0191), number_text(12345.6, 1520.0), number_text(0.5)
+    ('1.235 ± 0.019', '12300 ± 1500', '0.5')
+    """
+    if not math.isfinite(value):
+        return "inf" if value == math.inf else "-"
+    if not error:
+        return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}"
+    digits = 1 - math.floor(math.log10(float(f"{error:.1e}")))
+    return f"{round(value, digits):.{max(0, digits)}f} ± {round(error, digits):.{max(0, digits)}f}"

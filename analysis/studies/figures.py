@@ -1,0 +1,184 @@
+"""The figures of studies: curves of estimates beside what a paper has, and states of collisions."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from ..figures.collision_view import draw_view, reach
+from ..figures.panels import legend, letter, panels
+from ..figures.style import styled
+from ..runs.arrays import read_arrays
+from ..runs.table import NoRunFolder, run_folder
+
+COLOURS = ("#2166ac", "#e08214", "#1b8a8f", "#c62828", "#8c5a2b", "#d16ba5", "#111111")  # none the paper's
+MARKERS = "osD^vP*"
+HELD = 0.99  # of the grains: what flies farther than all but the last hundredth leaves a panel
+
+
+@styled
+def curves(
+    runs, of, x, colour="", panel="", log="", paper=None, level=None, limits=None, line="-", x_label="", y_label=""
+):
+    """Figure of estimates against a column of the table of runs, with standard errors.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        With the column `pair`.
+    of : callable
+        From the runs of one point to its Estimate.
+    x : str
+        Column of the abscissa.
+    colour, panel : str
+        Columns of words that tell curves and panels apart, as the legend and titles show them; '': one of all.
+    log : str
+        Logarithmic axes: '', 'x', 'y' or 'xy'.
+    paper : callable, optional
+        (axes, the panel's word) -> None: draws what the paper has, in figures.panels.PAPER.
+    level : float, optional
+        Where a thin line is drawn.
+    limits : tuple, optional
+        Of the ordinate.
+    line : str
+        '' where points are not joined.
+
+    Returns
+    -------
+    Figure or None
+        None where no point has a value.
+    """
+    by = [name for name in (panel, colour, x) if name]
+    found = {key if isinstance(key, tuple) else (key,): of(own) for key, own in runs.groupby(by if len(by) > 1 else x)}
+    found = {key: own for key, own in found.items() if np.isfinite(own.value) and not ("y" in log and own.value <= 0)}
+    if not found:
+        return None
+    words = lambda name: list(dict.fromkeys(runs[name])) if name else [""]
+    shown = [word for word in words(panel) if not panel or any(key[0] == word for key in found)]
+    columns = min(len(shown), 3 if len(shown) > 4 else 4)
+    figure, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
+    flat = axes.ravel()
+    for place, word in zip(flat, shown):
+        for k, name in enumerate(words(colour)):
+            head = tuple(own for own, named in ((word, panel), (name, colour)) if named)
+            own = {key[-1]: point for key, point in found.items() if key[:-1] == head}
+            if own:
+                points(place, list(own), list(own.values()), COLOURS[k % 7], name or None, MARKERS[k % 7], line)
+        _dress(place, word, log, paper, level)
+        place.set_xlabel(x_label or x)
+    for place in flat[len(shown) :]:
+        place.set_axis_off()
+    low, high = zip(*(place.get_ylim() for place in flat[: len(shown)]))
+    low, high = (
+        own if wanted is None else wanted for own, wanted in zip((min(low), max(high)), limits or (None, None))
+    )
+    left, right = zip(*(place.get_xlim() for place in flat[: len(shown)]))
+    for place in flat[: len(shown)]:
+        place.set(xlim=(min(left), max(right)), ylim=(low, high))
+        plain_ticks(place, log)
+    for row in axes:
+        row[0].set_ylabel(y_label)
+    legend(max(flat, key=lambda place: len(place.get_legend_handles_labels()[1])), fontsize=8)
+    letter(flat[: len(shown)], "")
+    return figure
+
+
+def points(axes, x, found, colour, label=None, marker="o", line=""):
+    """Draw Estimates at x (K,) with their standard errors; open where an error is not known."""
+    value = np.array([own.value for own in found])
+    known = np.array([own.error is not None for own in found])
+    axes.errorbar(
+        x,
+        value,
+        [own.error or 0.0 for own in found],
+        fmt=marker,
+        color=colour,
+        mfc="white",
+        ms=5,
+        capsize=3,
+        label=label,
+    )
+    axes.plot(x, value, line or "none", color=colour, lw=1.2)
+    axes.plot(np.asarray(x)[known], value[known], marker, color=colour, ms=5, zorder=3)
+
+
+def plain_ticks(axes, log):
+    """Plain numbers at logarithmic axes, at 1, 2 and 5 where one spans less than two decades."""
+    for axis in (getattr(axes, f"{name}axis") for name in log):
+        low, high = axis.get_view_interval()
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 50 * low else (1,)))
+        axis.set_major_formatter(lambda number, _: f"{number:g}")
+        axis.set_minor_formatter(NullFormatter())
+
+
+def _dress(axes, word, log, paper, level):
+    for name in log:
+        getattr(axes, f"set_{name}scale")("log")
+    if level is not None:
+        axes.axhline(level, color="0.6", lw=0.8, zorder=0)
+    if paper:
+        paper(axes, word)
+    axes.set_title(word, fontsize=10)
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A state: time [s], position (N,3) [m], radius (N,) [m], aggregate (N,) int."""
+
+    time: float
+    position: np.ndarray
+    radius: np.ndarray
+    aggregate: np.ndarray
+
+
+@styled
+def snapshots(collisions, kept):
+    """Figure of states of collisions, a row of panels each; every panel has its own scale, with a bar in grain radii.
+
+    Parameters
+    ----------
+    collisions : list
+        (row of the table of runs (itertuples), title, times (T,) [s]) of each: the saved states that are nearest.
+    kept : Path
+        Folder of the states that the gallery keeps, where no run folder is at hand.
+
+    Returns
+    -------
+    Figure or None
+        None without collisions, or where their states are not at hand.
+    """
+    try:
+        rows = [(title, _states(row, times, kept), row.grain_radius) for row, title, times in collisions]
+    except NoRunFolder:
+        return None
+    if not rows:
+        return None
+    figure, axes = panels(len(rows), max(len(states) for _, states, _ in rows), 2.7, 2.75)
+    for places, (title, states, radius) in zip(axes, rows):
+        for place, state in zip(places, states):
+            centre = state.position.mean(axis=0)
+            moved = Snapshot(state.time, state.position - centre, state.radius, state.aggregate)
+            half = 1.05 * reach(moved, HELD) / radius
+            draw_view(place, moved, radius, half)
+            bar = max(n * 10**k for n in (1, 2, 5) for k in range(5) if n * 10**k <= max(0.6 * half, 1))
+            place.plot([-0.92 * half, -0.92 * half + bar], [-0.92 * half] * 2, color="0.1", lw=2.5)
+            place.text(-0.92 * half, -0.88 * half, f"{bar:g} $r$", fontsize=8, va="bottom")
+        for place in places[len(states) :]:
+            place.set_axis_off()
+        places[0].set_title(title, fontsize=9, loc="left")
+    return figure
+
+
+def _states(row, times, kept):
+    if isinstance(row.folder, str):
+        states = run_folder(row).states
+        found = [states[k] for k in sorted({states.nearest(time) for time in times})]
+        return [Snapshot(own.time, own.position, own.radius, own.aggregate) for own in found]
+    file = Path(kept) / f"{row.run}.npz"
+    if not file.is_file():
+        raise NoRunFolder(row.run)
+    arrays = read_arrays(file, ("time", "unit", "position", "radius", "aggregate"))
+    positions = arrays["position"] * float(arrays["unit"])
+    radius, aggregate = arrays["radius"].astype(float), arrays["aggregate"].astype(int)
+    return [Snapshot(float(time), position, radius, aggregate) for time, position in zip(arrays["time"], positions)]

@@ -1,0 +1,136 @@
+"""A study: which runs count, what is measured of each, numbers beside a paper's, figures. One module here each, named as the study,
+defines STUDY; so does a file of one's own."""
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from importlib import import_module
+from pathlib import Path
+from traceback import extract_tb
+from typing import Callable
+
+from ..printable import suggested
+from ..runs.collect import Scene
+from ..runs.format import PARAMETER_WORDS
+from ..runs.script import module_of
+from .columns import LARGEST, OUTCOME, VELOCITY, flat, parameter, row_of
+
+NAMES = ("viscous",)
+GALLERY = Path(__file__).resolve().parents[1] / "gallery"
+SAYS = "must be as analysis/STUDIES.md says"
+
+
+class NoSuchStudy(Exception):
+    """No study of that name, or no file that defines one, or one that fails; the message is one line."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a module defines as STUDY.
+
+    Parameters
+    ----------
+    title, question : str
+    scene : runs.collect.Scene
+        Which runs belong to it, and the columns that tell two runs apart.
+    measured : tuple of columns.Columns
+        What is measured of a run: the columns of runs.csv.
+    pair : tuple of str
+        Columns that tell independent pairs of aggregates apart.
+    rows : callable
+        From the table of runs to the comparison.Rows of the page.
+    figures : callable, optional
+        From the same to (name, caption, matplotlib Figure or None) of each figure.
+    prepared : callable, optional
+        From the table of runs to one with further columns, which rows and figures get; the column `pair` is added to it first.
+    independent : str
+        What counts as one in errors, in the plural.
+    alike : bool
+        Whether runs that differ in parameters beside the scene's are refused together.
+    """
+
+    title: str
+    question: str
+    scene: Scene
+    measured: tuple
+    pair: tuple
+    rows: Callable
+    figures: Callable = lambda runs: ()
+    prepared: Callable = lambda runs: runs
+    independent: str = "pairs"
+    alike: bool = False
+    name: str = ""
+    file: Path = field(default=None, compare=False)
+
+    @property
+    def columns(self):
+        """(runs.table.Column, ...) of the table."""
+        return flat(self.measured)
+
+    def measure(self, run):
+        """{column: value} of a RunFolder; NotMeasured or RunFolderError where a column can't be measured."""
+        return row_of(self.measured, run)
+
+    def runs(self, table):
+        """The table that rows and figures get."""
+        pair = table.groupby(list(self.pair), sort=False, dropna=False).ngroup()
+        return self.prepared(table.assign(pair=pair))
+
+
+def collision_study(title, question, varied, rows, figures=lambda runs: (), pair=None, **values):
+    """Study of a question of one's own about collisions.
+
+    Parameters
+    ----------
+    varied : tuple of str
+        Parameters that differ from run to run, the seed among them. Run folders that differ in another one are refused together.
+    rows, figures : callable
+        As in Study.
+    pair : tuple of str, optional
+        Columns that tell pairs of aggregates apart; without it all of varied but the velocity.
+    **values
+        Parameters that every run has.
+
+    Returns
+    -------
+    Study
+        A run's row has the parameters varied, `velocity`, and the columns of columns.OUTCOME and columns.LARGEST.
+    """
+    kinds = {name: "O" if name in PARAMETER_WORDS else "f" for name in varied}
+    parameters = [parameter(name, "", "as the table of runs has it", kind) for name, kind in kinds.items()]
+    measured = (*parameters, *(() if "velocity" in varied else (VELOCITY,)), OUTCOME, LARGEST)
+    of_numbers, of_words = (tuple(name for name in varied if kinds[name] == kind) for kind in "fO")
+    scene = Scene(title, values, of_numbers, measured=of_words)
+    pair = pair or tuple(name for name in varied if name != "velocity")
+    return Study(title, question, scene, measured, pair, rows, figures, alike=True)
+
+
+def find(name):
+    """Study of that name, or of a file NAME.py that defines STUDY; NoSuchStudy."""
+    if name.endswith(".py"):
+        file = Path(name)
+        if not file.is_file():
+            raise NoSuchStudy(f"{file}: no such file")
+        with own_errors(file):
+            module = module_of(str(file), f"own_study_{file.stem}")
+        if not hasattr(module, "STUDY"):
+            raise NoSuchStudy(f"{file}: defines no STUDY; {SAYS}")
+        return replace(module.STUDY, name=file.stem, file=file)
+    if name not in NAMES:
+        raise NoSuchStudy(f"no study {name}{suggested(name, NAMES)}, or a file NAME.py of one's own")
+    return replace(import_module(f"..{name}", __name__).STUDY, name=name)
+
+
+@contextmanager
+def own_errors(file):
+    """Context in which an error of a study of one's own (file: its Path; None: none) becomes NoSuchStudy, with its line."""
+    try:
+        yield
+    except (Exception, SystemExit) as error:
+        if file is None or type(error).__module__.startswith("analysis."):  # its message is one line
+            raise
+        lines = [
+            own.lineno for own in extract_tb(error.__traceback__) if Path(own.filename).resolve() == file.resolve()
+        ]
+        lines += [error.lineno] if isinstance(error, SyntaxError) else []
+        text, where = " ".join(str(error).split()), f" at line {lines[-1]}" if lines else ""
+        raise NoSuchStudy(f"{file}: {type(error).__name__}{where}: {text}; {SAYS}") from None

@@ -1,0 +1,175 @@
+"""What every study does: the documented study of one's own, from run folders to numbers, tables, figures and pages."""
+
+import base64
+import re
+
+import numpy as np
+import pandas
+import pytest
+from made_collisions import made_run
+from study_answers import answered
+from written_runs import two_pairs
+
+from analysis.__main__ import main
+from analysis.runs.folder import open_run
+from analysis.studies import pages
+from analysis.studies.figures import snapshots
+from analysis.studies.study import GALLERY, NAMES
+
+STICKS = "fraction that sticks, 2 grains, {} m/s"
+
+
+def study(own, *arguments):
+    """Exit status of the study of STUDIES.md, of these runs and with these options."""
+    return main(["study", str(own / "sticking.py"), *map(str, arguments)])
+
+
+def test_the_documented_study_runs(own, capsys):
+    found, runs, said = answered(capsys, own / "sticking.py", own / "runs", "--figures", str(own / "out"))
+    assert (found[STICKS.format(3)]["ours"], found[STICKS.format(3)]["counted"]) == (0.8, "3 of 3, 1 undecided")
+    assert STICKS.format(40) not in found  # undecided
+    assert runs == 5 and "late: has not ended, left out" in said
+    assert {file.name for file in (own / "out").iterdir()} == {"comparison.csv", "runs.csv", "sticking.png"}
+    table = pandas.read_csv(own / "out" / "comparison.csv").set_index("quantity")
+    assert table.ours[STICKS.format(3)] == 0.8 and len(table) == len(found)
+
+
+@pytest.mark.parametrize(
+    "other, varied, status",
+    [
+        (dict(material="silicate"), "", 2),
+        (dict(material="silicate"), '"material", ', 0),
+        (dict(grains=None), "", 0),  # as the run derived it
+        (dict(duration=9.0, endWhenApart=0), "", 0),
+    ],
+)
+def test_runs_that_differ_are_refused_unless_the_study_names_it(own, capsys, other, varied, status):
+    """The fixture's runs, as those of earlier versions, lack some parameters."""
+    code = (own / "sticking.py").read_text().replace('varied=("', f'varied=({varied}"')
+    (own / "sticking.py").write_text(code)
+    for seed, parameters in ((6, other), (7, {})):
+        usual = {"material": "ice", "duration": 1.0, "endWhenApart": 1}
+        two_pairs(own / "runs" / f"s{seed}", 3.0, seed, derived={"grains": 2}, **{**usual, **parameters})
+    assert study(own, own / "runs") == status
+    if status:
+        assert "the runs differ in material too" in capsys.readouterr().err.splitlines()[-1]
+    else:
+        assert "(5 of 5, 1 undecided)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "old, new, says",
+    [
+        ('    packing="', '    pakcing="', "pakcing: no run has this parameter (did you mean packing?)"),
+        ('ending(own, "sticking")', "nothing(own)", "NameError at line"),
+        ("own in runs.groupby", "own in runs.groupbuy", "sticking.py: AttributeError at line"),
+        ('("grains", "velocity", "seed")', '("velocity", "seed")', "KeyError at line"),
+    ],
+)
+def test_a_slip_in_ones_own_file_is_one_line(own, capsys, old, new, says):
+    code = (own / "sticking.py").read_text()
+    assert old in code
+    (own / "sticking.py").write_text(code.replace(old, new))
+    assert study(own, own / "runs", "--figures", own / "out") == 2
+    assert says in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_pairs_of_files_are_told_by_the_files(tmp_path, capsys):
+    """Aggregates from files have one seed; a table of such runs is read again."""
+    code = """
+from analysis.studies.comparison import Row
+from analysis.studies.estimates import ending
+from analysis.studies.study import collision_study
+rows = lambda runs: [Row("sticking", ending(runs, "sticking"))]
+STUDY = collision_study("T", "Q?", ("velocity", "file", "projectileFile"), rows, packing="file")
+"""
+    (tmp_path / "files.py").write_text(code)
+    for first, second in (("a1", "b1"), ("a2", "b1"), ("a1", None)):
+        files = dict(packing="file", file=first, projectileFile=second)
+        two_pairs(tmp_path / "runs" / f"{first}-{second}", 3.0, 1, **files)
+    assert main(["study", str(tmp_path / "files.py"), str(tmp_path / "runs"), "--format", "csv"]) == 0
+    (tmp_path / "runs.csv").write_text(capsys.readouterr().out)
+    for runs in ("runs", "runs.csv"):
+        assert answered(capsys, tmp_path / "files.py", tmp_path / runs)[0]["sticking"]["counted"] == "3 of 3"
+
+
+@pytest.mark.parametrize("short, long", ["ab", "ba"])
+def test_of_two_runs_of_a_collision_the_longer_one_counts(own, capsys, short, long):
+    for name, more in ((short, {}), (long, dict(duration=1.0))):
+        made_run(own / "both" / name, 20, 3.0, 1, grains=2, **more)
+    assert study(own, own / "both", "--format", "csv") == 0
+    said = capsys.readouterr()
+    assert [row.split(",")[0] for row in said.out.splitlines() if row[0] != "#"] == ["run", long]
+    assert f"both/{short}: the same grains, velocity, seed" in said.err
+
+
+def test_of_a_run_in_two_tables_the_first_counts(own, capsys):
+    """A run that was continued replaces the one that was undecided."""
+    two_pairs(own / "longer" / "open", 40.0, 1)
+    tables = [own / f"{name}.csv" for name in ("longer", "runs")]
+    for table in tables:
+        study(own, table.with_suffix(""), "--format", "csv")
+        table.write_text(capsys.readouterr().out)
+    found, runs, said = answered(capsys, own / "sticking.py", *tables)
+    assert runs == 5 and found[STICKS.format(40)]["counted"] == "1 of 1" and "1 runs are in a table before it" in said
+    assert main(["study", "viscous", str(tables[0])]) == 2 and capsys.readouterr().err.count("\n") == 1
+
+
+def test_the_page_holds_everything_and_text_of_the_data_is_no_html(own):
+    code = (own / "sticking.py").read_text().replace("Fraction of pairs", "<script>alert(1)</script>")
+    (own / "sticking.py").write_text(code.replace('title="', 'title="<script>alert(2)</script>'))
+    assert study(own, own / "runs", "--page", own / "out" / "page.html") == 0
+    text = (own / "out" / "page.html").read_text()
+    assert [file.name for file in (own / "out").iterdir()] == ["page.html"]
+    pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', text)
+    assert len(pictures) == text.count("<img") == 1 and base64.b64decode(pictures[0]).startswith(b"\x89PNG")
+    assert "<script>" not in text and text.count("&lt;script&gt;") >= 2 and "3 of 3" in text and str(own) not in text
+
+
+def test_a_page_must_be_html_and_what_others_wrote_stays(own, capsys):
+    with pytest.raises(SystemExit):
+        study(own, own / "runs", "--page", "page.pdf")
+    for name in ("README.md", "runs.csv"):
+        (own / "out").mkdir(exist_ok=True)
+        (own / "out" / name).write_text("the user's own")
+    assert study(own, own / "runs", "--figures", own / "out") == 2
+    assert "runs.csv: no analysis of sticking has written it" in capsys.readouterr().err
+    (own / "out" / "runs.csv").unlink()
+    assert study(own, own / "runs", "--figures", own / "out") == 0
+    assert (own / "out" / "README.md").read_text() == "the user's own"
+
+
+def test_snapshots_are_drawn_from_run_folders_and_from_what_is_kept(own):
+    table = pandas.DataFrame({"run": ["s1"], "folder": [str(own / "runs" / "s1")], "grain_radius": 1e-7})
+    figure = lambda rows: snapshots([(row, "one", [0.0, 1.0]) for row in rows.itertuples()], own / "kept")
+    assert len(figure(table).axes) == 2
+    assert figure(table.assign(folder=None)) is None  # not at hand
+    states = [open_run(own / "runs" / "s1").states[k] for k in (0, -1)]
+    (own / "kept").mkdir()
+    position = np.array([state.position for state in states])
+    unit = np.abs(position).max() / 32_000
+    kept = dict(time=[0.0, 1.0], unit=unit, position=np.rint(position / unit).astype(np.int16))
+    np.savez(own / "kept" / "s1.npz", **kept, radius=states[0].radius, aggregate=states[0].aggregate)
+    assert len(figure(table.assign(folder=None)).axes) == 2
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_gallery_is_one_screen_and_follows_from_its_runs(name, capsys, tmp_path):
+    """Every number of comparison.csv comes out of runs.csv, and README's table and words are of these numbers."""
+    folder = GALLERY / name
+    page = (folder / "README.md").read_text()
+    assert len(page.split()) <= 700
+    found, _, said = answered(capsys, name, folder / "runs.csv")
+    assert not said
+    kept = pandas.read_csv(folder / "comparison.csv").set_index("quantity")
+    assert list(found) == list(kept.index)
+    for column in ("ours", "error"):
+        made = np.array([row[column] for row in found.values()], dtype=float)
+        assert np.allclose(made, kept[column], rtol=1e-6, atol=1e-9, equal_nan=True)
+    words = [row["word"] for row in found.values()]
+    assert words == kept.word.fillna("").tolist()
+    table = page.split(pages.START)[1].split(pages.END)[0]
+    shown = [line.split(" | ") for line in table.splitlines() if line.startswith("| ")][1:]
+    assert len(shown) <= 8
+    for quantity, _, ours, *_ in shown:
+        assert ours in (found[quantity[2:]]["text"], "not run")
