@@ -1,7 +1,7 @@
 """The names that `import analysis` offers."""
 # ruff: noqa: F401, I001
 
-from .atlas.grid import outcome
+from .atlas.query import outcome
 from .measures.compression import compression_length, maximum_compression, mutual_velocity
 from .measures.fragments import cumulative_cross_section, cumulative_grains, fragment_labels, fragment_masses
 from .measures.fragments import fragment_sizes, fragments, growth_efficiency

@@ -1,1 +1,6 @@
-"""The collision atlas: outcomes of collisions of two aggregates, for those who need them."""
+"""The collision atlas: outcomes of collisions of two aggregates.
+
+To be read in this order: columns (of the table of runs), rules (which outcome a run has), variables (coordinates,
+and the region that the runs fill), model (fitted to the runs), scores (on runs that it was not fitted to),
+outcome_table and make (the model on a grid, for other programs), query (analysis.outcome), adapters (DustPy, Fortran).
+"""

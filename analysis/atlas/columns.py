@@ -1,9 +1,9 @@
-"""The columns of the atlas's table of runs, in one list, and how a run folder fills them."""
+"""The columns of the atlas's table of runs, and how a run folder fills them."""
 
 import re
-from functools import lru_cache
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ..measures.compression import first_compression
 from ..measures.decided import Pieces, is_recent
@@ -13,97 +13,189 @@ from ..measures.motion import pieces_that_can_meet
 from ..measures.of_run import met, time_of_touch
 from ..measures.outcome import NEVER_MET, UNDECIDED, restitution_of_pieces
 from ..measures.structure import filling_factor, gyration_radius, mean_coordination
+from ..runs.arrays import RunFolderError
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
-from ..runs.table import Column
-from ..studies.columns import VELOCITY, constant, group, one, parameter
-from ..studies.definition import NotMeasured
-from ..theory import Material, interaction_energies, pair_constants
-from .power_law import power_law_index
+from ..runs.table import Column, read_table
+from ..theory import Material
 from .rules import KINDS, outcome
-from .variables import FIT, HELD_OUT
+from .variables import FIT, HELD_OUT, breaking_velocity
 
-NAME = re.compile(r"(\d+)(-held)?")
-BODIES = ("target", "projectile")
-STICKING = KINDS[0]
-AT_END = "{}_at_end"
-
-
-def _name(run, row):
-    """NotMeasured for a run that is none of the atlas's table."""
-    found = NAME.fullmatch(run.path.name)
-    if not found:
-        raise NotMeasured(f"{run.path}: no run of the atlas, whose names are numbers")
-    return int(found[1]), HELD_OUT if found[2] else FIT
+NAME = re.compile(r"(\d+)(-held)?")  # of a run folder: the number of the row, and whether it is held out
+OF_BODY = (
+    ("filling", "1", "volume filling factor, of a sphere of radius (5/3)^(1/2) R_g"),
+    ("coordination", "", "mean number of contacts of a grain"),
+    ("gyration", "m", "radius of gyration R_g"),
+)
+BEFORE = {"target": " before", "projectile": " before"}
+AFTER = {"largest": " piece", "second": " largest piece"}
 
 
-def _structure(run):
-    packing = run.parameters["packing"]
-    return run.derived["targetPacking"]["packing"] if packing == "file" else packing
+def _of_bodies(bodies):
+    return [
+        Column(f"{kind}_{name}", unit, f"of the {name}{words}: {meaning}", gaps=True)
+        for kind, unit, meaning in OF_BODY
+        for name, words in bodies.items()
+    ]
 
 
-def _cell(run):
-    about = run.derived.get("targetPacking") or {}
-    return int(about.get("cell", 0))
+COLUMNS = (
+    Column("number", "", "of the row in the atlas's table", "i"),
+    Column("split", "", f"{FIT}, or {HELD_OUT}: drawn before any run, never fitted", "O"),
+    Column("material", "", "material of the grains", "O"),
+    Column("structure", "", "bcca, bpca, cpe or compressed", "O"),
+    Column(
+        "cell",
+        "",
+        "of compressed aggregates the cell they were cut out of: those of one cell are not independent; 0: none",
+        "i",
+    ),
+    Column("grains_target", "", "grains of the larger aggregate", "i"),
+    Column("grains_projectile", "", "grains of the smaller one", "i"),
+    Column("mass_ratio", "", "smaller over larger"),
+    *_of_bodies(BEFORE),
+    Column("velocity", "m/s", "collision velocity"),
+    Column("v_break", "m/s", "(E_break/m0)^(1/2) of the grains"),
+    Column("impact", "", "impact parameter over the sum of the characteristic radii (5/3)^(1/2) R_g"),
+    Column("seed", "", "of packings that were not read from files", "i"),
+    Column("grain_radius", "m", "radius of a grain"),
+    *_of_bodies(AFTER),
+    Column("fragment_index", "", "n of dN/dm ~ m^-n of all pieces but the largest", gaps=True),
+    Column("fragment_index_error", "", "its standard error", gaps=True),
+    Column(
+        "restitution",
+        "",
+        "relative speed of the two largest pieces over that of the aggregates; 0 for one piece",
+        gaps=True,
+    ),
+    Column("spin", "K(0)", "kinetic energy of the largest piece's rotation", gaps=True),
+    Column("largest", "", "mass of the largest piece over the total"),
+    Column("second", "", "of the second largest"),
+    Column("pieces", "", "their number", "i"),
+    Column("own", "", "of these two, the least part of a piece's mass that is of its own aggregate"),
+    Column(
+        "lost_in_compression",
+        "",
+        "dissipated until the first largest compression, over K(0) and the potential energy released until then",
+        gaps=True,
+    ),
+    Column(
+        "outcome",
+        "",
+        "by analysis/atlas/rules.py; undecided; never met: on straight ways they never touch, and the run was "
+        "cut short",
+        "O",
+    ),
+    *(
+        Column(f"{c.name}_at_end", "K(0)", f"{c.label}, change until the end (kinetic: what is left)")
+        for c in CHANNEL_TABLE
+    ),
+    Column("energy_closure", "", "largest error of the energy ledger over K(0)"),
+    Column("steps", "", "time steps", "i"),
+    Column("seconds", "s", "run time on a machine shared with others"),
+)
 
 
-def _breaking_velocity(run):
+def read_runs(file):
+    """The atlas's table of runs (DataFrame) from a runs.csv; TableError or OSError where it is none."""
+    return read_table(file, COLUMNS)[0]
+
+
+def is_run_of_the_atlas(run):
+    """Whether the folder of a RunFolder is named as those of the atlas's runs."""
+    return NAME.fullmatch(run.path.name) is not None
+
+
+def measure(run):
+    """{column: value} of a run of the atlas; RunFolderError where it lacks a parameter.
+
+    Parameters
+    ----------
+    run : runs.folder.RunFolder
+    """
+    try:
+        row = _scene(run)
+    except (KeyError, TypeError, ValueError) as error:
+        raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
+    row |= _aggregates(run) | _pieces(run)
+    parts = fractions_at(run.history, run.history["time"][-1])
+    row |= {f"{channel.name}_at_end": parts[channel.name] for channel in CHANNEL_TABLE}
+    row["lost_in_compression"] = _lost_in_compression(run)
+    row["outcome"] = _outcome(run, row)
+    row["energy_closure"] = closure(run.history)
+    row["steps"] = int(run.derived.get("steps") or 0)
+    row["seconds"] = float(run.record.get("wallTime") or 0.0)
+    return row
+
+
+def _scene(run):
+    given, derived = run.settled, run.derived
+    number, held = NAME.fullmatch(run.path.name).groups()
+    packing = derived.get("targetPacking") or {}
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
-    return breaking_velocity(Material(*(float(run.derived[name]) for name in names)), float(run.derived["grainRadius"]))
+    radius = float(derived["grainRadius"])
+    return {
+        "number": int(number),
+        "split": HELD_OUT if held else FIT,
+        "material": str(given["material"]),
+        "structure": packing["packing"] if given["packing"] == "file" else given["packing"],
+        "cell": int(packing.get("cell", 0)),
+        "velocity": float(given["velocity"]),
+        "v_break": breaking_velocity(Material(*(float(derived[name]) for name in names)), radius),
+        "impact": float(given["impact"]),
+        "seed": int(given["seed"]),
+        "grain_radius": radius,
+    }
 
 
-@lru_cache
-def breaking_velocity(material, radius):
-    """v_break = (E_break/m0)^(1/2) [m/s] of grains of a theory.Material and a radius [m]; E_break: A22 eq 12, m0: mass of a grain."""
-    constants = pair_constants(material, radius)
-    return (interaction_energies(constants)["break"] / (2 * constants.reduced_mass)) ** 0.5
+def _aggregates(run):
+    """Columns of both aggregates at the start, the one with more grains first."""
+    grains = np.bincount(run.start.aggregate, minlength=2)
+    by_size = np.argsort(-grains, kind="stable")
+    large, small = grains[by_size].tolist()
+    row = {"grains_target": large, "grains_projectile": small, "mass_ratio": small / large}
+    for name, k in zip(BEFORE, by_size):
+        row |= _body(name, run.start, run.start.aggregate == k)
+    return row
 
 
-def body(state, members):
-    """(filling, coordination, gyration radius [m]) of the grains of a folder.State in the mask members (N,); NaN without any."""
-    if not members.any():
-        return np.nan, np.nan, np.nan
-    position, radius = state.position[members], state.radius[members]
-    contacts = state.contact_pairs[members[state.contact_pairs].all(axis=1)]
-    return (
-        filling_factor(position, radius),
-        mean_coordination(int(members.sum()), contacts),
-        gyration_radius(position, radius),
-    )
-
-
-def _bodies(run, row):
-    """Of both aggregates at the start, the one with more grains first."""
-    numbers = np.bincount(run.start.aggregate, minlength=2)
-    of = [body(run.start, run.start.aggregate == k) for k in _by_size(run)]
-    large, small = sorted(numbers.tolist(), reverse=True)
-    return large, small, small / large, *(value for values in zip(*of) for value in values)
-
-
-def _by_size(run):
-    """Numbers (2,) of the aggregates, the one with more grains first."""
-    return np.argsort(-np.bincount(run.start.aggregate, minlength=2), kind="stable")
-
-
-def _pieces(run, row):
-    """Largest and second largest piece at the end, and what they are made of; grains are of one mass."""
+def _pieces(run):
+    """Columns of the pieces at the end; all grains have the same mass."""
     end = run.last
     labels = fragment_labels(len(end.radius), end.contact_pairs)
-    sizes = fragment_sizes(labels)
-    total, members = len(labels), [labels == k for k in (0, 1)]
+    sizes, members = fragment_sizes(labels), [labels == k for k in (0, 1)]
     shares = [np.mean(end.aggregate[own]) if own.any() else np.nan for own in members]
-    own = min(1 - min(shares), max(shares)) if len(sizes) > 1 else 0.0
     index, error = power_law_index(sizes[1:])
-    of = [body(end, own) for own in members]
-    second = sizes[1] / total if len(sizes) > 1 else 0.0
-    return (
-        *(value for values in zip(*of) for value in values),
-        *(index, error, _restitution(run, members), _spin(run, members[0])),
-        *(sizes[0] / total, second, len(sizes), own),
-    )
+    row = {
+        "largest": sizes[0] / len(labels),
+        "second": sizes[1] / len(labels) if len(sizes) > 1 else 0.0,
+        "pieces": len(sizes),
+        "own": min(1 - min(shares), max(shares)) if len(sizes) > 1 else 0.0,
+        "fragment_index": index,
+        "fragment_index_error": error,
+        "restitution": _restitution(run, members),
+        "spin": _spin(run, members[0]),
+    }
+    for name, own in zip(AFTER, members):
+        row |= _body(name, end, own)
+    return row
+
+
+def _body(name, state, members):
+    """Columns OF_BODY of the grains of a folder.State in the mask members (N,); NaN where there are none."""
+    values = [np.nan] * len(OF_BODY)
+    if members.any():
+        position, radius = state.position[members], state.radius[members]
+        contacts = state.contact_pairs[members[state.contact_pairs].all(axis=1)]
+        values = [
+            filling_factor(position, radius),
+            mean_coordination(int(members.sum()), contacts),
+            gyration_radius(position, radius),
+        ]
+    return {f"{kind}_{name}": value for (kind, _, _), value in zip(OF_BODY, values)}
 
 
 def _restitution(run, members):
-    """Of the two largest pieces, as measures.outcome has it; NaN where there is none."""
+    """Of the two largest pieces, as in measures.outcome; NaN where it is not defined."""
     start, end, mass = run.start, run.last, np.ones(len(run.last.radius))
     if not members[1].any():
         return 0.0
@@ -113,7 +205,7 @@ def _restitution(run, members):
 
 
 def _spin(run, members):
-    """Kinetic energy of the largest piece's rotation as a rigid body over K(0); without the grains' own spin."""
+    """Kinetic energy of the largest piece's rotation as a rigid body over K(0), without the grains' own spin."""
     end = run.last
     mass = 4 / 3 * np.pi * run.derived["density"] * end.radius[members] ** 3
     position, velocity = end.position[members], end.velocity[members]
@@ -124,8 +216,8 @@ def _spin(run, members):
     return float(momentum @ np.linalg.solve(inertia, momentum)) / 2 / initial_kinetic_energy(run.history)
 
 
-def _compression(run):
-    """Dissipated over K(0) and the potential energy released until then; NaN where the halves never turned around."""
+def _lost_in_compression(run):
+    """NaN where the halves never turned around."""
     history = run.history
     maximum, _ = first_compression(history["time"], history["d"], history["v"])
     if maximum is None or not maximum.inside or not met(run):
@@ -136,130 +228,72 @@ def _compression(run):
 
 
 def _outcome(run, row):
-    """By the rules of this table, where it is decided."""
+    """The outcome by the rules; UNDECIDED where pieces may still meet or break, or the aggregates still rebound."""
     if not met(run):
-        return (UNDECIDED if "firstTouch" in run.derived else NEVER_MET,)
-    kind = outcome(row)
-    touch = time_of_touch(run)
-    recent = [
-        Pieces(vars(run.states[k]), run.derived)
-        for k in np.flatnonzero(is_recent(run.states.times, run.last.time, touch))
-    ]
-    open_still = (
-        (kind == STICKING and recent[-1].why_rebounding(run.last.time - touch))
-        or _may_meet(kind, row, recent[-1])
-        or any(_may_break(kind, row, pieces) for pieces in recent)
-    )
-    return (UNDECIDED if open_still else kind,)
+        return UNDECIDED if "firstTouch" in run.derived else NEVER_MET
+    kind, touch, end = str(outcome(row)), time_of_touch(run), run.last.time
+    recent = [Pieces(vars(run.states[k]), run.derived) for k in np.flatnonzero(is_recent(run.states.times, end, touch))]
+    rebounding = kind == KINDS[0] and recent[-1].why_rebounding(end - touch)
+    if rebounding or _may_meet(kind, row, recent[-1]) or any(_may_break(kind, row, pieces) for pieces in recent):
+        return UNDECIDED
+    return kind
 
 
 def _may_meet(kind, row, pieces):
-    """Whether pieces that may meet the largest again would make another outcome (measures.decided)."""
+    """Whether pieces (measures.decided) that may meet the largest again would make another outcome."""
     shares = np.bincount(pieces.labels) / len(pieces.labels)
     more = shares[pieces_that_can_meet(0, *pieces.flight, np.inf)].sum()
     return outcome({**row, "largest": row["largest"] + more}) != kind
 
 
 def _may_break(kind, row, pieces):
-    """Whether what may break off the largest piece would make another outcome; not told of pieces that are no such outcome yet."""
+    """Whether what may break off the largest piece would make another outcome; False where the pieces are not (yet)
+    of this outcome."""
     cut, side = pieces.loose_cuts()
     largest, second = [*np.bincount(pieces.labels) / len(pieces.labels), 0.0][:2]
     lost = side[cut == 0].max(initial=0.0) / pieces.mass.sum()
-    seen = outcome({**row, "largest": largest, "second": second})
-    return seen == kind != outcome({**row, "largest": largest - lost, "second": max(second, lost)})
+    now = outcome({**row, "largest": largest, "second": second})
+    after = outcome({**row, "largest": largest - lost, "second": max(second, lost)})
+    return now == kind and after != kind
 
 
-def _energies(run, row):
-    parts = fractions_at(run.history, run.history["time"][-1])
-    return [parts[channel.name] for channel in CHANNEL_TABLE]
+FEWEST = 5  # fragments of which an index is estimated
+RANGE = -3.0, 8.0  # of the index
 
 
-def _cost(run, row):
-    return int(run.derived.get("steps") or 0), float(run.record.get("wallTime") or 0.0)
+def power_law_index(sizes, most=None):
+    """Index n of dN/dm ~ m^-n of fragments, by maximum likelihood.
 
+    Clauset, Shalizi & Newman (2009), eq 3.7 with an upper end: mass is conserved, so that the index may be below 1.
 
-def _of_bodies(when):
-    """Columns of two bodies, as _bodies and _pieces give them."""
-    kinds = (("filling", "1", "volume filling factor, of a sphere of radius (5/3)^(1/2) R_g"),)
-    kinds += (("coordination", "", "mean number of contacts of a grain"), ("gyration", "m", "radius of gyration R_g"))
-    return tuple(
-        Column(f"{kind}_{name}", unit, f"of the {name}{said}: {meaning}", gaps=True)
-        for kind, unit, meaning in kinds
-        for name, said in when.items()
-    )
+    Parameters
+    ----------
+    sizes : array (K,)
+        Grains of each fragment.
+    most : int, optional
+        Largest possible fragment; by default all grains together.
 
+    Returns
+    -------
+    index, error : float
+        With its standard error. NaN for fewer than FEWEST fragments, and where it is not within RANGE.
 
-MEASURED = (
-    group(
-        _name,
-        Column("number", "", "of the row in the atlas's table", "i"),
-        Column("split", "", f"{FIT}, or {HELD_OUT}: drawn before any run, never fitted", "O"),
-    ),
-    parameter("material", "", "material of the grains", "O"),
-    one("structure", "", "bcca, bpca, cpe or compressed", _structure, kind="O"),
-    one(
-        "cell",
-        "",
-        "of compressed aggregates the cell they were cut out of: those of one cell are not independent; 0: none",
-        _cell,
-        kind="i",
-    ),
-    group(
-        _bodies,
-        Column("grains_target", "", "grains of the larger aggregate", "i"),
-        Column("grains_projectile", "", "grains of the smaller one", "i"),
-        Column("mass_ratio", "", "smaller over larger"),
-        *_of_bodies(dict.fromkeys(BODIES, " before")),
-    ),
-    VELOCITY,
-    one("v_break", "m/s", "(E_break/m0)^(1/2) of the grains", _breaking_velocity),
-    parameter("impact", "", "impact parameter over the sum of the characteristic radii (5/3)^(1/2) R_g"),
-    parameter("seed", "", "of packings that were not read from files", "i"),
-    constant("grain_radius", "m", "radius of a grain", "grainRadius"),
-    group(
-        _pieces,
-        *_of_bodies({"largest": " piece", "second": " largest piece"}),
-        Column("fragment_index", "", "n of dN/dm ~ m^-n of all pieces but the largest", gaps=True),
-        Column("fragment_index_error", "", "its standard error", gaps=True),
-        Column(
-            "restitution",
-            "",
-            "relative speed of the two largest pieces over that of the aggregates; 0 for one piece",
-            gaps=True,
-        ),
-        Column("spin", "K(0)", "kinetic energy of the largest piece's rotation", gaps=True),
-        Column("largest", "", "mass of the largest piece over the total"),
-        Column("second", "", "of the second largest"),
-        Column("pieces", "", "their number", "i"),
-        Column("own", "", "of these two, the least part of a piece's mass that is of its own aggregate"),
-    ),
-    one(
-        "lost_in_compression",
-        "",
-        "dissipated until the first largest compression, over K(0) and the potential energy released until then",
-        _compression,
-        gaps=True,
-    ),
-    group(
-        _outcome,
-        Column(
-            "outcome",
-            "",
-            "by analysis/atlas/rules.py; undecided; never met: on straight ways they never touch, and the run was cut short",
-            "O",
-        ),
-    ),
-    group(
-        _energies,
-        *(
-            Column(AT_END.format(c.name), "K(0)", f"{c.label}, change until the end (kinetic: what is left)")
-            for c in CHANNEL_TABLE
-        ),
-    ),
-    one("energy_closure", "", "largest error of the energy ledger over K(0)", lambda run: closure(run.history)),
-    group(
-        _cost,
-        Column("steps", "", "time steps", "i"),
-        Column("seconds", "s", "run time on a machine shared with others"),
-    ),
-)
+    >>> round(power_law_index([1] * 64 + [2] * 16 + [4] * 4 + [8])[0], 1)
+    2.7
+    """
+    sizes = np.asarray(sizes)
+    if len(sizes) < FEWEST:
+        return np.nan, np.nan
+    log = np.log(np.arange(1, int(most or sizes.sum()) + 1))
+    mean = np.log(sizes).mean()
+
+    def moments(index):
+        weights = np.exp(-index * log)
+        first = (weights * log).sum() / weights.sum()
+        return first, (weights * log**2).sum() / weights.sum() - first**2
+
+    excess = lambda index: moments(index)[0] - mean
+    if not excess(RANGE[0]) > 0 > excess(RANGE[1]):
+        return np.nan, np.nan
+    index = brentq(excess, *RANGE)
+    return index, (len(sizes) * moments(index)[1]) ** -0.5

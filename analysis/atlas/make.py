@@ -1,99 +1,196 @@
-"""Fit the model to the atlas's table of runs, and write what follows from it:
+"""The tables of outcomes, from the model of the table of runs:
 
     python3 -m analysis.atlas.make [FOLDER]
 
-Of each structure outcomes.txt and outcomes-impact.txt (close-packed ones: outcomes-close-packed.txt), the tables of outcomes on grids, and model.md,
-how good the model is and where it lets aggregates bounce, into FOLDER (analysis/gallery/atlas), from its runs.csv."""
+fits the model to FOLDER/runs.csv (analysis/gallery/atlas) and writes there, for each structure, outcomes.txt, averaged
+over impact parameters, and outcomes-impact.txt, for each one (outcomes-close-packed.txt and so on).
+"""
 
 import sys
 from pathlib import Path
 
-from ..commands import complain
-from ..runs.table import TableError, read_table
-from ..runs.write import write_text
-from ..studies.columns import flat
-from ..studies.tables import markdown_table
+import numpy as np
+import pandas
+from scipy.spatial import cKDTree
+
+from ..commands import FAILED, complain
+from ..runs.table import TableError
+from ..theory import GRAIN_RADIUS, ICE
 from ..version import version
-from .barrier import barrier_text
-from .columns import MEASURED
-from .grid import FOLDER, RUNS_FILE, outcome_grid, outcomes_file
-from .model import Model, NoLearning
-from .neighbours import slow
-from .outcome_table import write_outcomes
-from .remains import LEVEL
-from .scores import foretold, probabilities_of_atlas, reliability, scores
-from .variables import CHOSEN, GROWN, STRUCTURES, fit_and_held_out, of_structure
+from .columns import read_runs
+from .outcome_table import (
+    COLUMNS,
+    ERRORS,
+    INSIDE,
+    INTERVALS,
+    PROBABILITIES,
+    TOUCHING,
+    Axis,
+    OutcomeTable,
+    write_outcomes,
+)
+from .query import FOLDER, RUNS_FILE, outcomes_file
+from .rules import KEPT
+from .variables import (
+    CLOSE_PACKED,
+    GROWN,
+    MARGIN,
+    NEAR,
+    ONE_CONTACT,
+    STRUCTURES,
+    Region,
+    breaking_velocity,
+    of_structure,
+)
 
-ALL = "of all collisions"
-SLOW = "All {known.number} fitted runs of {structure} aggregates with a kinetic energy below {known.energy:.3g} E_break stuck: the chance of anything else is {known.most:.2g} there at most (95 %)."
-FORETOLD = """
-Rows from {before} on, which were drawn at random, as the model fitted to the rows before tells them: number of runs observed (told).
-"""
-UPTO = {ALL: 1.0, "of collisions with b < 1/2": 0.25}  # b^2
-HEAD = """# How good the model of the atlas is
+SIZES, RATIOS = np.geomspace(64, 4096, 7), np.geomspace(1 / 64, 1.0, 4)  # of the runs
+FILLINGS = {GROWN: (0.002, 0.02, 0.1, 0.2, 0.3, 0.4, 0.48), CLOSE_PACKED: (0.25, 0.3, 0.4, 0.5, 0.56)}
+VELOCITIES = np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.0, 20))
+# Beyond the runs only what is slow is known: the nodes there are few.
+BEYOND_SIZES = np.array([1, 8, *SIZES, *(8.0 ** np.arange(5, 9))])
+BEYOND_RATIOS = np.append(64.0 ** np.arange(-4, -1), RATIOS)
 
-Fitted to {fit} decided runs; {held} more were held out, drawn before any run was made. Cross-validated: each of the fitted runs foretold from the others.
-Brier score: mean over runs of the sum over the five outcomes of (p - observed)^2, 0 at best; more: than the atlas's, with the standard error of
-that, runs paired. Log loss: mean of -ln p of what was observed. Miss: mean of |p - observed| over bins of p a tenth wide, each with its number of
-values. Within: fraction of the runs in the {level:.0%} intervals of the largest piece and of its filling. Of the largest piece these are of runs that
-leave more than one piece: {whole:.0%} of the fitted leave one, and no interval that ends there can hold a chosen fraction.
+ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
+Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff \
+of the repository.
+Of {structure}.
+Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of \
+the larger aggregate,
+mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of \
+both){axis}.
+Columns: p_...: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the \
+aggregates touch,
+{impact} and averaged over orientations; error_...: their 90 % half widths,
+by the decided runs, and by what undecided ones may become; p_touching: of pairs with b < 1, those that touch; \
+largest, second: mass of the
+two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest; filling_after: of \
+the largest piece;
+where that is the outcome, gain_mass_transfer, loss_erosion: mass that the larger aggregate gains, loses (half its \
+own at most) over the smaller one's,
+largest_fragmentation: the largest piece over the larger aggregate{intervals}; inside: 1 within the convex hull of \
+the runs
+in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther \
+beyond, where values are those of the
+nearest node within; runs: number of runs within {near:g} of the scatter{near_impact}. Between nodes: multilinear in \
+the scaled coordinates (pieces better as
+second (1 + mass_ratio)/mass_ratio and c = largest (1 + mass_ratio) - 1, where that is above 0 c/mass_ratio); the \
+last axis is the fastest.
+Slow collisions: all {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck; anything else has a \
+chance of {most:.2g} there at most (95 %).
+Slower ones than any run are inside where they would be with that energy; below {contact:.2g} E_break, what making \
+and breaking one contact
+dissipates, all runs stuck, and sticking is taken to hold at any size within the axes (error 0; filling_after is then \
+a guess where runs is 0).
+Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
 
-{slow}
-Paszun & Dominik (2009): their tables (as extended by Ormel et al. 2009: CDS, J/A+A/502/845) could not be had for this comparison.
-"""
+OF_STRUCTURE = {
+    GROWN: "aggregates that grew grain by grain or cluster by cluster, and compressed ones; close-packed ones have a "
+    "table of their own",
+    CLOSE_PACKED: "close-packed aggregates (CPE: a dense packing with grains taken out), which bounce several times as "
+    "often as compressed ones of\ntheir filling",
+}
+AVERAGED = {
+    "axis": "",
+    "impact": "averaged over impact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2,",
+    "intervals": "",
+    "near_impact": ",\nat any impact parameter",
+}
+OF_IMPACT = {
+    "axis": ", square of the impact parameter\nb in units of the sum of these radii",
+    "impact": "at that impact parameter",
+    "intervals": "; _low, _high: ends of the intervals that hold 90 % of such collisions,\nfor the largest piece of "
+    "those that leave more than one",
+    "near_impact": ", of b^2 too",
+}
 
 
-def read_runs(file=RUNS_FILE):
-    """The table of runs (DataFrame); TableError, OSError."""
-    return read_table(file, flat(MEASURED))[0]
+def outcome_axes(structure, averaged):
+    """Axes of a table of outcomes; at each impact parameter only sizes and mass ratios of the runs."""
+    sizes, ratios = (BEYOND_SIZES, BEYOND_RATIOS) if averaged else (SIZES, RATIOS)
+    axes = (
+        Axis("velocity", "log10", VELOCITIES),
+        Axis("grains", "log10", sizes),
+        Axis("mass_ratio", "log10", ratios),
+        Axis("filling", "linear", np.array(FILLINGS[structure])),
+    )
+    return axes if averaged else (*axes, Axis("impact_square", "linear", np.linspace(0.0, 1.0, 5)))
 
 
-def report(table, grids, tables):
-    """model.md (str) of a table of runs, and of {(structure, of which impact parameters): OutcomeTable} and {structure: OutcomeTable at each}."""
-    found = scores(table, tables)
-    fit, held = fit_and_held_out(table)
-    known = [SLOW.format(structure=structure, known=slow(of_structure(fit, structure))) for structure in STRUCTURES]
-    numbers = {"fit": len(fit), "held": len(held), "whole": (fit.pieces == 1).mean()}
-    head = HEAD.format(level=LEVEL, slow="\n".join(known), **numbers)
-    shown = found.drop(columns="number").round(3).astype(str).replace("nan", "")
-    shown["more"] = [f"{more} ± {error}" if more else "" for more, error in zip(shown.more, shown.pop("error"))]
-    shown.columns = [name.replace("mean_miss", "miss").replace("_", " ") for name in shown.columns]
-    bins = reliability(probabilities_of_atlas(fit, held), held.outcome).round(3)
-    later = foretold(table, CHOSEN.stop)
-    parts = [
-        head,
-        markdown_table(shown),
-        "\nHeld-out runs, in bins of probability of all outcomes together:\n",
-        markdown_table(bins),
-        *([FORETOLD.format(before=f"{CHOSEN.stop:,}"), markdown_table(later.round(3))] if len(later) else []),
-        "\n## Where aggregates bounce\n",
-        *(line for names, grid in grids.items() for line in barrier_text(" aggregates, ".join(names), grid)),
-    ]
-    return "\n".join(parts) + "\n"
+def outcome_grid(model, structure, averaged, version):
+    """OutcomeTable of a model.Model of a structure, averaged over impact parameters, or at each one with INTERVALS.
+
+    Outside of the data a node has the values of the nearest one inside. ValueError where no node is inside.
+    """
+    axes, columns = outcome_axes(structure, averaged), COLUMNS if averaged else (*COLUMNS, *INTERVALS)
+    points, region = _nodes(axes), Region(model.runs)
+    inside = region.beyond(points) <= MARGIN
+    if not inside.any():
+        raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
+    own = points[inside]
+    chances, widths = model.probabilities(own, averaged)
+    found = model.remains.means(own, chances, averaged)
+    found[[*PROBABILITIES, *ERRORS]] = np.hstack([chances, widths])
+    found[TOUCHING] = model.touching(own, averaged)
+    if not averaged:
+        found = found.join(model.remains.intervals(own)[list(INTERVALS)])
+    values = np.empty((len(points), len(columns)))
+    values[inside] = found.reindex(columns=columns)
+    values[~inside] = values[inside][_nearest(axes, points[~inside], own)]
+    # Runs of a smaller mass ratio, which count here too, may lose more over their projectile than an eroded one has.
+    loss = columns.index("loss_erosion")
+    values[:, loss] = np.minimum(values[:, loss], (1 - KEPT) / points.mass_ratio)
+    values[:, columns.index(INSIDE)] = inside
+    values[:, columns.index("runs")] = region.within(points, averaged)
+    about = ABOUT.format(
+        version=version,
+        runs=len(model.runs),
+        structure=OF_STRUCTURE[structure],
+        ice=breaking_velocity(ICE, GRAIN_RADIUS["ice"]),
+        margin=MARGIN,
+        near=NEAR,
+        sure=model.slow.number,
+        energy=model.slow.energy,
+        most=model.slow.most,
+        contact=ONE_CONTACT,
+        **(AVERAGED if averaged else OF_IMPACT),
+    )
+    return OutcomeTable(axes, columns, values.reshape(*(len(a.nodes) for a in axes), -1), tuple(about.splitlines()))
 
 
-def main(arguments):
+def _nodes(axes):
+    """Points of all nodes, the last axis fastest."""
+    mesh = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")
+    return pandas.DataFrame({"impact_square": 0.5} | {a.name: values.ravel() for a, values in zip(axes, mesh)})
+
+
+def _nearest(axes, points, others):
+    """Row (n,) of the nearest of others, in steps of the grid."""
+    place = lambda own: np.column_stack([axis.position(own[axis.name]) for axis in axes])
+    return cKDTree(place(others)).query(place(points))[1]
+
+
+def main(folder=FOLDER):
     """Exit status: 0, or 2 with one line on stderr."""
-    folder = Path(arguments[0]) if arguments else FOLDER
     try:
-        table = read_runs(folder / RUNS_FILE.name)
-        grids, tables = {}, {}
+        from .model import Model
+
+        table = read_runs(Path(folder) / RUNS_FILE.name)
         for structure in STRUCTURES:
             model = Model(of_structure(table, structure))
-            grids |= {(structure, name): outcome_grid(model, structure, version(), upto) for name, upto in UPTO.items()}
-            write_outcomes(folder / outcomes_file(structure, False).name, grids[structure, ALL])
-            tables[structure] = outcome_grid(model, structure, version(), None)
-            write_outcomes(folder / outcomes_file(structure, True).name, tables[structure])
-        write_text(folder / "model.md", report(table, grids, tables))
+            for averaged in (True, False):
+                file = Path(folder) / outcomes_file(structure, averaged).name
+                write_outcomes(file, outcome_grid(model, structure, averaged, version()))
+                print(file)
     except OSError as error:
         complain(f"{error.filename or folder}: {error.strerror}")
-        return 2
-    except (TableError, NoLearning, ValueError) as error:
+    except ModuleNotFoundError:
+        complain("scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])")
+    except (TableError, ValueError) as error:
         complain(error)
-        return 2
-    print(folder / outcomes_file(GROWN, False).name)
-    return 0
+    else:
+        return 0
+    return FAILED
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(*sys.argv[1:2]))

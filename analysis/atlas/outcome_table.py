@@ -1,8 +1,9 @@
-"""The table of outcomes on a grid, outcomes.txt: read, written, looked up. Its own comments say what the axes and columns are.
+"""Tables of outcomes on a grid (outcomes.txt): read, written, looked up. Their first lines describe them.
 
 from analysis.atlas.outcome_table import read_outcomes
 table = read_outcomes("analysis/gallery/atlas/outcomes.txt")
-table.lookup(velocity=[1, 10], grains=500, mass_ratio=1, filling=0.15)["p_sticking"]"""
+table.lookup(velocity=[1, 10], grains=500, mass_ratio=1, filling=0.15)["p_sticking"]
+"""
 
 import json
 from dataclasses import dataclass, replace
@@ -14,15 +15,20 @@ from ..printable import suggested
 from ..runs.arrays import RunFolderError
 from ..runs.seal import SUM, UNSUMMED, require_own_sum, summed
 from ..runs.write import write_text
-from .rules import OF_KIND
+from .rules import KINDS, OF_KIND
+
+PROBABILITIES, ERRORS = (tuple(f"{what}_{kind}" for kind in KINDS) for what in ("p", "error"))
+TOUCHING = "p_touching"
+LEFT = ("largest", "second", "fragment_index", "filling_after")  # of the aggregates
+INTERVALS = ("largest_low", "largest_high", "filling_after_low", "filling_after_high")
+INSIDE = "inside"  # 1 within the data and 0 outside
+COLUMNS = (*PROBABILITIES, *ERRORS, TOUCHING, *LEFT, *OF_KIND, INSIDE, "runs")
 
 SCALES = {"log10": np.log10, "linear": np.asarray}
-ENDS = "_low", "_high"  # of names of columns that are ends of intervals
-INSIDE = "inside"  # the column that is 1 within the data and 0 outside
 OF_MAXWELL = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
 ROUNDING = 1e-9  # of the sum of a query's weights
-_SUMMED = f'# {{"{SUM}"'  # the first line of a file with a sum
 CHUNK = 20_000  # queries at once: what they need stays in the processor's cache
+_SUMMED = f'# {{"{SUM}"'  # the first line of a file with a sum
 
 
 class OutcomeTableError(ValueError):
@@ -31,15 +37,17 @@ class OutcomeTableError(ValueError):
 
 @dataclass(frozen=True)
 class Axis:
-    """name, scale ("log10" or "linear") and nodes (n,), increasing, n >= 2, of an axis of the table."""
+    """An axis of a table: name, scale ("log10" or "linear") and nodes (n,), increasing, n >= 2."""
 
     name: str
     scale: str
     nodes: np.ndarray
 
     def position(self, value):
-        """Where values stand on the axis: 0 at the first node and beyond, n - 1 at the last and beyond, linear in the scaled
-        value between nodes; ValueError for NaN and what has no logarithm."""
+        """Place of values between the nodes, 0 to n - 1: linear in the scaled value; beyond an end that of the end.
+
+        ValueError for NaN and negative values.
+        """
         value = np.asarray(value, dtype=float)
         if not np.all(value >= 0.0):
             raise ValueError(f"{self.name} = {np.min(value):g}: must be 0 or more")
@@ -54,19 +62,37 @@ class Axis:
 
 @dataclass(frozen=True)
 class OutcomeTable:
-    """axes: [Axis]; columns: their names; values (nodes of the first axis, of the second, ..., columns); comments: lines."""
+    """A table on a grid: axes (of Axis), columns (names), values (nodes of each axis, columns) and comments (lines)."""
 
     axes: tuple
     columns: tuple
     values: np.ndarray
     comments: tuple = ()
 
-    def lookup(self, columns=None, **query):
-        """{column: array} between the nodes: multilinear in the scaled coordinates, at the nearest edge beyond them.
+    def column(self, name):
+        """Values (nodes of each axis) of a column."""
+        return self.values[..., self.columns.index(name)]
 
-        query: a value of every axis by its name, numbers or arrays that broadcast. columns: names, all by default; `inside` always
-        comes too, and is below 1 where the answer is an extrapolation: beyond an edge (0), or next to a node without data.
-        ValueError for a name that is no axis or column, and for NaN or negative values.
+    def lookup(self, columns=None, **query):
+        """Values between the nodes: multilinear in the scaled coordinates; beyond an edge those of the edge.
+
+        Parameters
+        ----------
+        columns : list of str, optional
+            All by default; `inside` always comes too.
+        **query : float or array
+            A value of every axis by its name; they broadcast.
+
+        Returns
+        -------
+        dict of arrays
+            By column. `inside` is below 1 where the values are extrapolated: 0 beyond an edge, and between next to a
+            node without data.
+
+        Raises
+        ------
+        ValueError
+            For a name that is no axis or column, and for NaN or negative values.
         """
         names = [axis.name for axis in self.axes]
         if sorted(query) != sorted(names):
@@ -86,7 +112,7 @@ class OutcomeTable:
         return {name: found[:, k].reshape(beyond.shape) for k, name in enumerate(wanted)}
 
     def _interpolated(self, positions, values):
-        """(queries, columns): half the time of scipy.ndimage.map_coordinates, which takes a column at a time."""
+        """(queries, columns), as scipy's RegularGridInterpolator gives it in twice to four times as long."""
         shape, flat = values.shape[:-1], np.ascontiguousarray(values.reshape(-1, values.shape[-1]))
         strides = [int(np.prod(shape[k + 1 :])) for k in range(len(shape))]
         found = np.zeros((len(positions[0]), flat.shape[1]))
@@ -101,46 +127,60 @@ class OutcomeTable:
         return found
 
     def maxwell(self):
-        """The same table for collisions of Maxwell-distributed speeds, its first axis being their root mean square.
+        """The same table for Maxwell-distributed speeds, its first axis being their root mean square.
 
-        Of collisions, not of pairs: v^3 exp(-3 v^2 / 2 <v^2>), as faster ones meet more often; with a threshold it gives the
-        probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of the collisions that are inside; ends of
-        intervals are left out, as their means are no ends of the interval of all. What the larger aggregate gains or loses where that is the
-        outcome (rules.OF_KIND) is the mean of the collisions that have it. OutcomeTableError where the table is one of such collisions already.
+        The distribution is that of collisions, v^3 exp(-3 v^2 / 2 <v^2>), as faster aggregates meet more often; with
+        a threshold it gives the probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of
+        collisions that are inside. Intervals are left out: means of their ends are no ends of an interval. Columns
+        rules.OF_KIND are means over the collisions with that outcome.
+
+        Raises
+        ------
+        OutcomeTableError
+            Where the table is one of distributed speeds already.
         """
         if OF_MAXWELL in self.comments:
             raise OutcomeTableError(f"table of outcomes: {OF_MAXWELL}; must be one of single speeds")
-        speed, x = self.axes[0], np.geomspace(1e-2, 5.0, 2000)
-        density = x**4 * np.exp(-1.5 * x**2)  # per logarithm of x
-        density /= density.sum()
-        shares = np.zeros((2, len(speed.nodes), len(speed.nodes)))  # all, and those between the edges
-        for row, velocity in enumerate(speed.nodes):
-            position = speed.position(velocity * x)
-            below = np.minimum(position.astype(int), len(speed.nodes) - 2)
-            for kind, part in enumerate((density, density * (speed.beyond(velocity * x) == 0))):
-                np.add.at(shares[kind, row], below, part * (1.0 - position + below))
-                np.add.at(shares[kind, row], below + 1, part * (position - below))
-        columns = tuple(name for name in self.columns if not name.endswith(ENDS))
+        all_speeds, between_ends = _maxwell_weights(self.axes[0])
+        columns = tuple(name for name in self.columns if name not in INTERVALS)
         own = self.values[..., [self.columns.index(name) for name in columns]]
-        values, inside = np.tensordot(shares[0], own, 1), columns.index(INSIDE)
+        values = np.tensordot(all_speeds, own, 1)
         for name, kind in OF_KIND.items():
             if {name, f"p_{kind}"} <= set(columns):
                 k, p = columns.index(name), columns.index(f"p_{kind}")
-                of_all, often = np.tensordot(shares[0], own[..., k] * own[..., p], 1), values[..., p]
+                of_all, often = np.tensordot(all_speeds, own[..., k] * own[..., p], 1), values[..., p]
                 values[..., k] = np.divide(of_all, often, out=values[..., k], where=often > 0)
-        values[..., inside] = np.tensordot(shares[1], own[..., inside], 1)
+        inside = columns.index(INSIDE)
+        values[..., inside] = np.tensordot(between_ends, own[..., inside], 1)
         return replace(self, columns=columns, values=values, comments=(*self.comments, OF_MAXWELL))
 
 
+def _maxwell_weights(axis):
+    """Weights (rms, speed) of the nodes of an axis: of all collisions, and of those between its ends."""
+    x = np.geomspace(1e-2, 5.0, 2000)  # speed over the rms
+    density = x**4 * np.exp(-1.5 * x**2)  # per logarithm of x
+    density /= density.sum()
+    weights = np.zeros((2, len(axis.nodes), len(axis.nodes)))
+    for row, rms in enumerate(axis.nodes):
+        position = axis.position(rms * x)
+        below = np.minimum(position.astype(int), len(axis.nodes) - 2)
+        for of, part in zip(weights, (density, density * (axis.beyond(rms * x) == 0))):
+            np.add.at(of[row], below, part * (1.0 - position + below))
+            np.add.at(of[row], below + 1, part * (position - below))
+    return weights
+
+
 def read_outcomes(path):
-    """The OutcomeTable of a file as write_outcomes() makes it; one without a sum may be another program's. OutcomeTableError for another
-    text, and where there is none."""
+    """OutcomeTable of a file; OutcomeTableError where it is none, or where its SHA-256 is not that of its first line.
+
+    Other programs' tables may do without a sum.
+    """
     try:
         with open(path, encoding="ascii", errors="replace") as file:
             text = file.read()
     except OSError as error:
-        said = f"{path}: {error.strerror}; must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
-        raise OutcomeTableError(said) from None
+        advice = "must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
+        raise OutcomeTableError(f"{path}: {error.strerror}; {advice}") from None
     if text.startswith(_SUMMED):
         try:
             require_own_sum(path, text)
@@ -151,7 +191,9 @@ def read_outcomes(path):
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:
         axes = tuple(_axis(next(rows)) for _ in range(int(next(rows)[0])))
-        columns = _columns(rows)
+        number, columns = int(next(rows)[0]), tuple(next(rows))
+        if len(columns) != number:
+            raise OutcomeTableError(f"{len(columns)} names of columns; must be {number}")
         values = np.array([[float(word) for word in row] for row in rows])
         values = values.reshape(*(len(axis.nodes) for axis in axes), len(columns))
     except OutcomeTableError as error:
@@ -167,24 +209,18 @@ def _axis(words):
     name, number, scale = words[0], int(words[1]), words[2]
     nodes = np.array([float(word) for word in words[3 : 3 + number]])
     if scale not in SCALES or len(nodes) != number or number < 2 or np.any(np.diff(nodes) <= 0.0) or nodes[0] < 0.0:
-        raise OutcomeTableError(
-            f"axis {name}: {scale}, {len(nodes)} of {number} nodes; must be 2 or more, increasing, log10 or linear"
-        )
+        must = "2 or more, increasing, log10 or linear"
+        raise OutcomeTableError(f"axis {name}: {scale}, {len(nodes)} of {number} nodes; must be {must}")
     return Axis(name, scale, nodes)
 
 
-def _columns(rows):
-    number = int(next(rows)[0])
-    columns = tuple(next(rows))
-    if len(columns) != number:
-        raise OutcomeTableError(f"{len(columns)} names of columns; must be {number}")
-    return columns
-
-
 def write_outcomes(path, table):
-    """Write an OutcomeTable: comments (#), number of axes, an axis a line (name, nodes, scale, their values), number of columns,
-    their names, and a row a node, the last axis fastest. Fortran's list-directed reads take it, but for the comments. The first comment is
-    the SHA-256 of the file with zeros in its place."""
+    """Write an OutcomeTable, so that Fortran's list-directed reads take it, but for the comments.
+
+    First a comment with the SHA-256 of the file, with zeros in its place, and the table's comments; then the number of
+    axes, a line an axis (name, number of nodes, scale, nodes), the number of columns, their names, and a row a node,
+    the last axis fastest.
+    """
     lines = [f"# {json.dumps(UNSUMMED)}", *(f"# {comment}".rstrip() for comment in table.comments)]
     lines += [f"{len(table.axes)} number of axes: name, number of nodes, scale, nodes"]
     lines += [" ".join([a.name, str(len(a.nodes)), a.scale, *(f"{node:.9g}" for node in a.nodes)]) for a in table.axes]

@@ -1,108 +1,239 @@
-"""An answer of the atlas in words, for python3 -m analysis outcome."""
+"""What becomes of a collision, from the atlas's tables: analysis.outcome(), and in words for the command line."""
+
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 import pandas
 
-from ..runs.table import read_table
-from ..studies.columns import flat
+from ..arrays import numbers
 from ..theory import GRAIN_RADIUS, MATERIALS
-from .columns import MEASURED, breaking_velocity
-from .grid import ERRORS, PROBABILITIES, RUNS_FILE, TOUCHING, outcome
-from .neighbours import MARGIN, Neighbours
-from .rules import KINDS
-from .variables import FEATURES, of_structure, variables
+from ..theory.pair_constants import GRAIN_RADII
+from .columns import read_runs
+from .outcome_table import ERRORS, INSIDE, INTERVALS, PROBABILITIES, read_outcomes
+from .rules import KINDS, change, largest_after
+from .variables import FEATURES, GROWN, MARGIN, STRUCTURES, Region, breaking_velocity, of_structure, variables
 
-LABELS = {
-    TOUCHING: "fraction of such pairs that touch",
-    "largest": "largest piece, of the mass",
-    "second": "second largest",
-    "fragment_index": "n of dN/dm ~ m^-n of all but the largest",
-    "filling_after": "filling of the largest piece",
-}
-# What the intervals are of
-WHERE = {"largest": "where there are more: ", "filling_after": ""}
-COMMAND = (
-    "python3 yade_scripts/studies/atlas.py full {0} {1} && python3 yade_scripts/study.py runs/atlas-full-{0}-{1}.table"
-)
+FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
+RUNS_FILE = FOLDER / "runs.csv"
+MOSTLY = 0.5  # inside: below it the errors of the nearest data say nothing
+GAINING = ("largest", "largest_low", "largest_high")
 
 
-def text(options):
-    """Lines (str) for the options of commands.outcome. ValueError for what cannot be, or where the atlas is not at hand."""
+def outcomes_file(structure, averaged):
+    """Path of the atlas's table of outcomes of a structure, averaged over impact parameters or at each one."""
+    own = "" if structure == GROWN else f"-{structure}"
+    return FOLDER / f"outcomes{own}{'' if averaged else '-impact'}.txt"
+
+
+def outcome(
+    velocity,
+    projectile,
+    target,
+    filling,
+    material="ice",
+    grain_radius=None,
+    maxwell=False,
+    impact=None,
+    columns=None,
+    file=None,
+    structure=None,
+):
+    """What becomes of collisions of two aggregates, from the atlas's tables of outcomes.
+
+    Parameters
+    ----------
+    velocity : float or array
+        [m/s]. Arrays broadcast.
+    projectile, target : float or array
+        Grains of either aggregate.
+    filling : float or array
+        Volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g.
+    material : {"ice", "silicate"}
+        Of the grains.
+    grain_radius : float, optional
+        [m]; by default 1e-7 of ice, 6e-7 of silicate. With the material it makes v_break, which is all that it changes:
+        the runs' grains had 1e-7, and rolling and sliding, which scale differently, are not corrected for.
+    maxwell : bool
+        Whether the velocity is the root mean square of a Maxwell distribution of speeds.
+    impact : float or array, optional
+        Impact parameter, 0 to 1, over the sum of these radii; averaged, uniform in its square, if left out.
+    columns : list of str, optional
+        These alone, and `inside`.
+    file : path, optional
+        Another table than those of the atlas.
+    structure : {"grown", "close-packed"}, optional
+        Which of the atlas's tables: grown (the default) by hits of grains and clusters, or compressed; or close-packed.
+
+    Returns
+    -------
+    dict of arrays
+        By column; the first lines of analysis/gallery/atlas/outcomes.txt say what each one is. `inside` is 1 within the
+        data and less where the values are extrapolated, at 0 those of the nearest data; below 1/2 errors and intervals
+        are NaN. Intervals (`largest_low`, ...), with an impact parameter, are of runs that leave more than one piece:
+        `largest`, of all runs, may be outside.
+
+    Raises
+    ------
+    ValueError
+        In one line.
+    """
+    speed = numbers("velocity", velocity, least=0)
+    projectile, target = numbers("projectile", projectile, least=1), numbers("target", target, least=1)
+    filling = numbers("filling", filling, positive=True, most=1)
+    square = {} if impact is None else {"impact_square": numbers("impact", impact, least=0, most=1) ** 2}
+    if material not in MATERIALS:
+        raise ValueError(f"material = {material}: must be {' or '.join(MATERIALS)}")
+    if structure not in (None, *STRUCTURES):
+        raise ValueError(f"structure = {structure}: must be {' or '.join(STRUCTURES)}")
+    if file and structure:
+        raise ValueError(f"file = {file}: must be left out with a structure, which says which of the atlas's files")
+    table = _table(file or outcomes_file(structure or GROWN, impact is None), maxwell)
+    large, small = np.maximum(projectile, target), np.minimum(projectile, target)
+    ratio = small / large
+    query = {
+        "velocity": speed / breaking_velocity(MATERIALS[material], radius_of(material, grain_radius)),
+        "grains": large,
+        "mass_ratio": ratio,
+        "filling": filling,
+        **square,
+    }
+    needed = columns
+    if columns is not None and "second" in columns:
+        needed = (*columns, "largest")  # which bounds it
+    found = table.lookup(needed, **query)
+    for name in set(GAINING) & set(found):
+        found[name] = np.asarray(largest_after(found[name], ratio))
+    if "second" in found:
+        most = np.minimum(found["largest"], 1 - found["largest"])
+        found["second"] = np.asarray(np.minimum(found["second"] * ratio / (1 + ratio), most))
+    for name in {*ERRORS, *INTERVALS} & set(found):
+        found[name][found[INSIDE] < MOSTLY] = np.nan
+    return {name: values for name, values in found.items() if columns is None or name in (*columns, INSIDE)}
+
+
+def radius_of(material, grain_radius=None):
+    """Radius [m] of grains of a material, that of the papers if left out; ValueError for one that no dust has."""
+    if grain_radius is None:
+        return GRAIN_RADIUS[material]
+    low, high = GRAIN_RADII
+    return float(numbers("grain_radius", grain_radius, (), least=low, most=high))
+
+
+@lru_cache
+def _table(file, maxwell):
+    """An OutcomeTable with pieces in the smaller aggregate's mass, those of GAINING by rules.change().
+
+    Then interpolation gives 1 for sticking and 0 for bouncing at every mass ratio, and no more is lost than there is.
+    """
+    table = read_outcomes(file)
+    table = table.maxwell() if maxwell else table
+    mesh = np.meshgrid(*(axis.nodes for axis in table.axes), indexing="ij", sparse=True)
+    ratio = {axis.name: nodes for axis, nodes in zip(table.axes, mesh)}.get("mass_ratio")
+    if ratio is None:  # lookup() refuses it
+        return table
+    values = table.values.copy()
+    for k, name in enumerate(table.columns):
+        if name in GAINING:
+            values[..., k] = change(values[..., k], ratio)
+        elif name == "second":
+            values[..., k] *= (1 + ratio) / ratio
+    return replace(table, values=values)
+
+
+def in_words(options):
+    """Lines (str): the query, whether it is within the data, probabilities, what is left, and the nearest runs."""
     averaged = options.impact == "averaged"
-    about = (options.material, options.grain_radius, options.maxwell, None if averaged else options.impact)
-    pair = options.velocity, options.projectile, options.target, options.filling
-    answer = outcome(*pair, *about, structure=options.structure)
+    answer = outcome(
+        options.velocity,
+        options.projectile,
+        options.target,
+        options.filling,
+        material=options.material,
+        grain_radius=options.grain_radius,
+        maxwell=options.maxwell,
+        impact=None if averaged else options.impact,
+        structure=options.structure,
+    )
     answer = {name: float(value) for name, value in answer.items()}
     point = _point(options)
-    table = of_structure(read_table(RUNS_FILE, flat(MEASURED))[0], options.structure) if RUNS_FILE.exists() else None
-    ranges = {
-        name: f" ({where}{answer[f'{name}_low']:.3g} to {answer[f'{name}_high']:.3g} in 90 %)"
-        for name, where in WHERE.items()
-        if np.isfinite(answer.get(f"{name}_low", np.nan))
-    }
+    # None where it is installed without the repository's tables of runs.
+    region = Region(of_structure(read_runs(RUNS_FILE), options.structure)) if RUNS_FILE.exists() else None
     known = np.isfinite(answer[ERRORS[0]])
     without = "" if known else "; the answer is that of the nearest data, its error is not known"
-    near = None if table is None else Neighbours(table)  # None: installed without the repository's tables
-    lines = [_title(options, point), *(line + without for line in _beyond(near, point, answer["inside"]))]
-    for name, error, kind in zip(PROBABILITIES, ERRORS, KINDS):
+    lines = [_title(options, point), *(line + without for line in _beyond(region, point, answer["inside"]))]
+    for kind, name, error in zip(KINDS, PROBABILITIES, ERRORS):
         low, high = np.clip([answer[name] - answer[error], answer[name] + answer[error]], 0, 1)
         interval = f"  ({low:.3f} to {high:.3f})" if known else ""
         lines.append(f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}{interval}")
-    lines += [f"  {label:<42} {answer[name]:.3g}{ranges.get(name, '')}" for name, label in LABELS.items()]
-    return "\n".join([*lines, *_nearest(near, point, averaged)])
+    for label, name, of_which in (
+        ("fraction of such pairs that touch", "p_touching", ""),
+        ("largest piece, of the mass", "largest", "where there are more: "),
+        ("second largest", "second", ""),
+        ("n of dN/dm ~ m^-n of all but the largest", "fragment_index", ""),
+        ("filling of the largest piece", "filling_after", ""),
+    ):
+        low, high = (answer.get(f"{name}_{end}", np.nan) for end in ("low", "high"))
+        interval = f" ({of_which}{low:.3g} to {high:.3g} in 90 %)" if np.isfinite(low) else ""
+        lines.append(f"  {label:<42} {answer[name]:.3g}{interval}")
+    return [*lines, *_nearest(region, point, averaged)]
 
 
 def _point(options):
-    """The query as a row of variables()."""
+    """The query as a row of atlas.variables.variables()."""
     large, small = max(options.projectile, options.target), min(options.projectile, options.target)
-    speed = options.velocity / breaking_velocity(MATERIALS[options.material], _radius(options))
-    square = 0.5 if options.impact == "averaged" else options.impact**2
-    values = {"velocity": speed, "grains": large, "mass_ratio": small / large, "filling": options.filling}
-    return pandas.DataFrame([{**values, "impact_square": square}])
-
-
-def _radius(options):
-    """Of the grains [m]."""
-    return options.grain_radius or GRAIN_RADIUS[options.material]
+    radius = radius_of(options.material, options.grain_radius)
+    point = {
+        "velocity": options.velocity / breaking_velocity(MATERIALS[options.material], radius),
+        "grains": large,
+        "mass_ratio": small / large,
+        "filling": options.filling,
+        "impact_square": 0.5 if options.impact == "averaged" else options.impact**2,
+    }
+    return pandas.DataFrame([point])
 
 
 def _title(options, point):
     impact = "averaged over impact parameters" if options.impact == "averaged" else f"b = {options.impact:g}"
     speeds = ", rms of a Maxwell distribution" if options.maxwell else ""
+    radius = 1e6 * radius_of(options.material, options.grain_radius)
     return (
-        f"{options.structure} aggregates of {options.projectile:g} and {options.target:g} grains of {options.material}, radius {1e6 * _radius(options):g} um, filling {options.filling:g}, {options.velocity:g} m/s "
+        f"{options.structure} aggregates of {options.projectile:g} and {options.target:g} grains of "
+        f"{options.material}, radius {radius:g} um, filling {options.filling:g}, {options.velocity:g} m/s "
         f"({point.velocity[0]:.3g} v_break{speeds}), {impact}:"
     )
 
 
-def _outside(runs, point):
-    """', velocity 79 beyond 0.08 to 26', of the coordinates that lie beyond those of all runs."""
-    of_runs = variables(runs)[list(FEATURES[:-1])]
-    found = zip(FEATURES, point.iloc[0], of_runs.min(), of_runs.max())
-    return "".join(
-        f", {name} {own:.3g} beyond {low:.2g} to {high:.3g}" for name, own, low, high in found if not low <= own <= high
-    )
-
-
-def _beyond(near, point, inside):
-    """A line where the answer is an extrapolation, or no run is at hand to see."""
-    if near is None:
+def _beyond(region, point, inside):
+    """A line where the answer is an extrapolation, or where it cannot be compared with the runs."""
+    if region is None:
         yield "  within the data" if inside == 1 else f"  EXTRAPOLATION: inside = {inside:.4g} in the table of outcomes"
-    elif (beyond := near.beyond(point)[0]) > MARGIN:
-        outside = _outside(near.runs, point)
-        yield f"  EXTRAPOLATION: {beyond:.2g} times the scatter of the runs beyond the region that they fill{outside}"
+    elif (beyond := region.beyond(point)[0]) > MARGIN:
+        line = f"  EXTRAPOLATION: {beyond:.2g} times the scatter of the runs beyond the region that they fill"
+        of_runs = variables(region.runs)
+        for name in FEATURES[:-1]:
+            own, low, high = point[name][0], of_runs[name].min(), of_runs[name].max()
+            if not low <= own <= high:
+                line += f", {name} {own:.3g} beyond {low:.2g} to {high:.3g}"
+        yield line
     elif inside < 1:
         yield f"  at the edge of the data: inside = {inside:.4g} in the table of outcomes"
 
 
-def _nearest(near, point, averaged):
-    """Lines on the nearest runs."""
-    if near is None:
+def _nearest(region, point, averaged):
+    """Lines on the nearest runs, and how to run each again."""
+    if region is None:
         return
     yield "nearest runs:"
-    for run in near.runs.iloc[near.nearest(point, averaged)[0]].itertuples():
+    for run in region.runs.iloc[region.nearest(point, averaged)[0]].itertuples():
         yield (
-            f"  {run.run}: {run.structure}, {run.material}, {run.grains_projectile} and {run.grains_target} grains, filling {run.filling_target:.2g}, "
-            f"{run.velocity / run.v_break:.3g} v_break, b = {run.impact:.2g}: {run.outcome.replace('_', ' ')}, largest {run.largest:.2g}"
+            f"  {run.run}: {run.structure}, {run.material}, {run.grains_projectile} and {run.grains_target} grains, "
+            f"filling {run.filling_target:.2g}, {run.velocity / run.v_break:.3g} v_break, b = {run.impact:.2g}: "
+            f"{run.outcome.replace('_', ' ')}, largest {run.largest:.2g}"
         )
-        yield f"    {COMMAND.format(run.number, run.number + 1)}"
+        part = f"{run.number}-{run.number + 1}"
+        yield (
+            f"    python3 yade_scripts/studies/atlas.py full {part.replace('-', ' ')} && "
+            f"python3 yade_scripts/study.py runs/atlas-full-{part}.table"
+        )

@@ -1,18 +1,19 @@
-"""Outcomes as rules on columns of the table of runs (DataFrame, or a mapping of arrays or numbers): whoever draws other lines needs no runs.
+"""Which outcome a collision has: rules on columns of the table of runs, so that other rules need no new runs.
 
-A target is the larger aggregate, m_t and m_p are the masses of target and projectile over the total. `gain` is what the largest piece has
-more than the target had, over the projectile's mass (the growth efficiency of Arakawa et al. 2022, eq 28).
+The target is the larger aggregate; m_t and m_p are the masses of target and projectile over the total. The gain is
+the mass of the largest piece less m_t, over m_p: the growth efficiency of Arakawa et al. (2022, eq 28).
 
-    sticking        S   gain of at least STAYS: no less than four fifths of the projectile stay
-    bouncing        B1  the two aggregates part again: each side keeps STAYS of the projectile's mass or more, and OWN of what it holds is its
-                        own; with compaction where the filling has risen
+    sticking        S       gain of at least STAYS: four fifths of the projectile or more stay
+    bouncing        B1      the two part again: the gain is within 1 - STAYS of 0, the second piece has STAYS of m_p or
+                            more, and of either piece at least OWN was its own before
     mass transfer   B2, F3  neither, and the target is heavier than before
-    erosion         F2  the target is not heavier, and keeps at least KEPT of its mass
-    fragmentation   F1  it keeps less
+    erosion         F2      the target is not heavier, and keeps at least KEPT of its mass
+    fragmentation   F1      it keeps less
 
-Names: Guettler et al. (2010, section 4); mass transfer and erosion as Windmark et al. (2012, section 2) tell them apart, by the sign of the
-target's change; KEPT is the usual line of catastrophic disruption. Sticking, STAYS and OWN are those of measures.outcome. Its
-bouncing asks that both aggregates together lose no more than a fifth of the projectile's mass to other pieces, B1 that the projectile alone does."""
+Names of the kinds: Guettler et al. (2010, section 4). Mass transfer and erosion are told apart as in Windmark et al.
+(2012, section 2), by the sign of the target's change. KEPT is the usual line of catastrophic disruption. Sticking,
+STAYS and OWN are those of measures.outcome; its bouncing counts what both aggregates lose, B1 what the projectile does.
+"""
 
 import numpy as np
 
@@ -24,69 +25,48 @@ KEPT = 0.5
 OF_KIND = {"gain_mass_transfer": "mass_transfer", "loss_erosion": "erosion", "largest_fragmentation": "fragmentation"}
 
 
-def gain(row):
-    """Mass that the largest piece has gained over the target's, over the projectile's.
+def outcome(row):
+    """Outcomes by the rules of this module.
 
-    >>> gain({"mass_ratio": 0.25, "largest": 0.9})
-    0.5
+    Parameters
+    ----------
+    row : DataFrame or mapping
+        Columns (n,) or numbers: mass_ratio, largest, second, own.
+
+    Returns
+    -------
+    ndarray of str, (n,) or ()
+        Of KINDS.
+
+    >>> row = {"mass_ratio": np.array([1.0, 0.1]), "largest": np.array([0.5, 0.8]), "second": 0.5, "own": 1.0}
+    >>> outcome(row).tolist()
+    ['bouncing', 'erosion']
     """
-    return (row["largest"] - _target(row)) / (1 - _target(row))
+    target = _target(row["mass_ratio"])
+    projectile = 1 - target
+    gain = (row["largest"] - target) / projectile
+    parts = (np.abs(gain) <= 1 - STAYS) & (row["second"] >= STAYS * projectile) & (row["own"] >= OWN)
+    rules = [sticks(row["largest"], target), parts, gain > 0, row["largest"] >= KEPT * target]
+    return np.select(np.broadcast_arrays(*rules), KINDS[:-1], KINDS[-1])
 
 
-def change(row):
-    """The same where the target is heavier; where it is lighter, what it has lost over its own mass, below 0.
+def change(largest, mass_ratio):
+    """What the target gains over the projectile's mass; where it is lighter, what it loses over its own, below 0.
 
-    >>> float(change({"mass_ratio": 0.25, "largest": 0.4})), float(change({"mass_ratio": 0.25, "largest": 0.9}))
-    (-0.5, 0.5)
+    >>> change(0.9, 0.25).item(), change(0.4, 0.25).item()
+    (0.5, -0.5)
     """
-    more = row["largest"] - _target(row)
-    return more / np.where(more > 0, 1 - _target(row), _target(row))
+    target = _target(mass_ratio)
+    more = largest - target
+    return more / np.where(more > 0, 1 - target, target)
 
 
 def largest_after(changed, mass_ratio):
-    """`largest` (mass of the largest piece over the total) by change()."""
-    target = _target({"mass_ratio": mass_ratio})
+    """Mass of the largest piece over the total, by change()."""
+    target = _target(mass_ratio)
     return target + changed * np.where(changed > 0, 1 - target, target)
 
 
-def sticking(row):
-    """Whether it is, by the rules of this module; so are the others."""
-    return sticks(row["largest"], _target(row))
-
-
-def bouncing(row):
-    """Columns mass_ratio, largest, second, own."""
-    projectile = 1 - _target(row)
-    back = (np.abs(gain(row)) <= 1 - STAYS) & (row["second"] >= STAYS * projectile)
-    return back & (row["own"] >= OWN)
-
-
-def mass_transfer(row):
-    """Columns as bouncing()."""
-    return ~sticking(row) & ~bouncing(row) & (gain(row) > 0)
-
-
-def erosion(row):
-    """Columns as bouncing()."""
-    return ~bouncing(row) & (gain(row) <= 0) & (row["largest"] >= KEPT * _target(row))
-
-
-def fragmentation(row):
-    """Columns as bouncing()."""
-    return ~bouncing(row) & (gain(row) <= 0) & (row["largest"] < KEPT * _target(row))
-
-
-def outcome(row):
-    """The name of KINDS of a row, a mapping of numbers.
-
-    >>> outcome({"mass_ratio": 1.0, "largest": 0.5, "second": 0.5, "own": 1.0}), outcome({"mass_ratio": 0.1, "largest": 0.8, "second": 0.01, "own": 1.0})
-    ('bouncing', 'erosion')
-    """
-    values = {name: np.float64(row[name]) for name in ("mass_ratio", "largest", "second", "own")}
-    rules = (sticking, bouncing, mass_transfer, erosion, fragmentation)
-    return next(name for name, rule in zip(KINDS, rules) if rule(values))
-
-
-def _target(row):
+def _target(mass_ratio):
     """m_t."""
-    return 1 / (1 + row["mass_ratio"])
+    return 1 / (1 + mass_ratio)

@@ -1,7 +1,16 @@
-"""python3 -m analysis outcome --velocity V --projectile N --target N --filling F [--impact B | averaged] [--maxwell] [--material M]"""
+"""python3 -m analysis outcome --velocity V --projectile N --target N --filling F [--impact B | averaged] …"""
 
 from ..printable import printable_lines
 from . import FAILED, complain, number
+
+_positive = number(lambda value: 0 < value < float("inf"), "a number > 0")
+_grains = number(lambda value: 1 <= value < float("inf"), "a number >= 1")
+_filling = number(lambda value: 0 < value <= 1, "a number > 0 and at most 1")
+_radius = number(lambda value: 1e-9 <= value <= 1e-3, "1e-09 to 0.001 [m]")
+
+
+def _impact(text):
+    return text if text == "averaged" else number(lambda b: 0 <= b <= 1, "0 to 1, or averaged")(text)
 
 
 def add_parser(commands):
@@ -9,17 +18,16 @@ def add_parser(commands):
     parser = commands.add_parser(
         "outcome",
         help="what becomes of a collision of two aggregates, from the collision atlas",
-        description="Probabilities of the outcomes of a collision of two aggregates, and what is left, from the tables of the collision atlas "
-        "(analysis/gallery/atlas). With --impact it has intervals of 90 %; there are none where the answer is that of the nearest data.",
+        description="Probabilities of the outcomes of a collision of two aggregates, and what is left, from the tables "
+        "of the collision atlas (analysis/gallery/atlas). With --impact it has intervals of 90 %; there are none where "
+        "the answer is that of the nearest data.",
     )
-    of_number = {"type": _positive, "required": True, "metavar": "X"}
-    parser.add_argument("--velocity", help="relative velocity [m/s]", **of_number)
-    of_grains = of_number | {"type": number(lambda value: 1 <= value < float("inf"), "a number >= 1")}
-    parser.add_argument("--projectile", help="grains of one aggregate", **of_grains)
-    parser.add_argument("--target", help="grains of the other", **of_grains)
-    of_filling = of_number | {"type": number(lambda value: 0 < value <= 1, "a number > 0 and at most 1")}
+    needed = {"required": True, "metavar": "X"}
+    parser.add_argument("--velocity", type=_positive, help="relative velocity [m/s]", **needed)
+    parser.add_argument("--projectile", type=_grains, help="grains of one aggregate", **needed)
+    parser.add_argument("--target", type=_grains, help="grains of the other", **needed)
     parser.add_argument(
-        "--filling", help="volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g", **of_filling
+        "--filling", type=_filling, help="volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g", **needed
     )
     parser.add_argument(
         "--impact",
@@ -34,7 +42,8 @@ def add_parser(commands):
     parser.add_argument(
         "--structure",
         default="grown",
-        help="grown: by hits of grains and clusters, or compressed; close-packed: a dense packing without some of its grains, which bounces far more often",
+        help="grown: by hits of grains and clusters, or compressed; close-packed: a dense packing without some of its "
+        "grains, which bounces far more often",
     )
     parser.add_argument("--material", default="ice", help="of the grains, ice or silicate")
     parser.add_argument(
@@ -46,23 +55,14 @@ def add_parser(commands):
     parser.set_defaults(command=run)
 
 
-_positive = number(lambda value: 0 < value < float("inf"), "a number > 0")
-
-_radius = number(lambda value: 1e-9 <= value <= 1e-3, "1e-09 to 0.001 [m]")
-
-
-def _impact(text):
-    return text if text == "averaged" else number(lambda b: 0 <= b <= 1, "0 to 1, or averaged")(text)
-
-
 def run(options):
     """Exit status: 0, or 2 with one line on stderr."""
-    from ..atlas.query import text
+    from ..atlas.query import in_words  # loads pandas and scipy
 
     try:
-        answer = text(options)
-    except ValueError as error:  # numpy's among them
+        lines = in_words(options)
+    except ValueError as error:
         complain(error)
         return FAILED
-    print(printable_lines(answer))
+    print(printable_lines("\n".join(lines)))
     return 0

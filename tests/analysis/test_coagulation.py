@@ -1,4 +1,4 @@
-"""The atlas's table of outcomes in Python and Fortran, and in DustPy."""
+"""The atlas's tables of outcomes in Python and Fortran."""
 
 import shutil
 import subprocess
@@ -10,6 +10,7 @@ import pytest
 from analysis.atlas.outcome_table import Axis, OutcomeTable, OutcomeTableError, read_outcomes, write_outcomes
 
 ROOT = Path(__file__).parents[2]
+READER = ROOT / "analysis/atlas/adapters/dust_outcomes.f90"
 AXES = (
     Axis("velocity", "log10", np.geomspace(0.1, 30, 9)),
     Axis("grains", "log10", np.array([60.0, 500.0, 4000.0])),
@@ -33,7 +34,7 @@ def queries(number, margin):
     return {a.name: np.exp(draw(*np.log([a.nodes[0] / margin, a.nodes[-1] * margin]), number)) for a in AXES}
 
 
-def test_lookup(table, tmp_path):
+def test_lookup_is_multilinear_and_beyond_the_edges_constant(table, tmp_path):
     write_outcomes(tmp_path / "outcomes.txt", table)
     read = read_outcomes(tmp_path / "outcomes.txt")
     assert read.columns == table.columns and read.comments == table.comments
@@ -52,24 +53,25 @@ def test_lookup(table, tmp_path):
         table.lookup(**{**within, "velocity": np.nan})
 
 
-def test_maxwell(table):
-    """A threshold between two nodes gives the closed form of collisions above it, to the distance of the nodes."""
-    fine = Axis("velocity", "log10", np.geomspace(0.01, 100, 400))
-    step = np.broadcast_to((fine.nodes > 3)[:, None, None, None, None], (400, 3, 3, 4, 1)).astype(float)
-    rms = OutcomeTable((fine, *AXES[1:]), ("inside",), step).maxwell()
+FINE = Axis("velocity", "log10", np.geomspace(0.01, 100, 400))
+
+
+def test_maxwell_of_a_threshold_has_its_closed_form():
+    """Collisions above a speed between two nodes, to the distance of the nodes."""
+    step = np.broadcast_to((FINE.nodes > 3)[:, None, None, None, None], (400, 3, 3, 4, 1)).astype(float)
+    rms = OutcomeTable((FINE, *AXES[1:]), ("inside",), step).maxwell()
     with pytest.raises(OutcomeTableError, match="must be one of single speeds"):
         rms.maxwell()
-    d = (3 / fine.nodes) ** 2
+    d = (3 / FINE.nodes) ** 2
     np.testing.assert_allclose(rms.values[:350, 0, 0, 0, 0], ((1.5 * d + 1) * np.exp(-1.5 * d))[:350], atol=0.02)
 
 
-def test_what_an_outcome_leaves_is_averaged_over_the_collisions_that_have_it():
-    """Of erosion above one speed that takes 3, and nothing is told below."""
-    fine = Axis("velocity", "log10", np.geomspace(0.01, 100, 400))
-    erodes = fine.nodes > 3
+def test_loss_by_erosion_is_the_mean_over_the_collisions_that_erode():
+    """Erosion above one speed takes 3; what the table has below counts for nothing."""
+    erodes = FINE.nodes > 3
     columns = np.stack([erodes, np.where(erodes, 3.0, 0.5), np.ones(400)], -1)
     step = np.broadcast_to(columns[:, None, None, None], (400, 3, 3, 4, 3))
-    rms = OutcomeTable((fine, *AXES[1:]), ("p_erosion", "loss_erosion", "inside"), step).maxwell()
+    rms = OutcomeTable((FINE, *AXES[1:]), ("p_erosion", "loss_erosion", "inside"), step).maxwell()
     often, loss = np.moveaxis(rms.values[:, 0, 0, 0, :2], -1, 0)
     assert loss[often > 1e-9] == pytest.approx(3.0) and loss[often == 0] == pytest.approx(0.5)
 
@@ -77,13 +79,14 @@ def test_what_an_outcome_leaves_is_averaged_over_the_collisions_that_have_it():
 @pytest.mark.parametrize(
     "change, says",
     [
-        (("log10 0.1", "log10 0.9"), "axis velocity: log10, 9 of 9 nodes; must be 2 or more, increasing"),
-        (("4 number of columns", "5 number of columns"), "4 names of columns; must be 5"),
-        (("4 number of axes", "3 number of axes"), "must be a table of outcomes, as"),
+        (("log10 0.1", "log10 0.9"), "axis velocity: .* increasing"),
+        (("4 number of columns", "5 number of columns"), "names of columns; must be 5"),
+        (("4 number of axes", "3 number of axes"), "must be a table of outcomes"),
         (("inside", "outside"), "must have a column `inside`"),
     ],
 )
-def test_wrong_tables(table, tmp_path, change, says):
+def test_wrong_tables_are_refused(table, tmp_path, change, says):
+    """By their sum, and those without one by what is wrong."""
     file = tmp_path / "outcomes.txt"
     write_outcomes(file, table)
     text = file.read_text().replace(*change, 1)
@@ -107,45 +110,43 @@ PROGRAM = """program ask
    end do
 end program
 """
-
-
 needs_gfortran = pytest.mark.skipif(not shutil.which("gfortran"), reason="gfortran is not installed")
-READER = ROOT / "analysis/atlas/adapters/dust_outcomes.f90"
+
+
+def compiled(folder, table, program, *flags):
+    """The program with the reader, and the table beside it."""
+    write_outcomes(folder / "outcomes.txt", table)
+    (folder / "ask.f90").write_text(program)
+    subprocess.run(["gfortran", *flags, READER, "ask.f90", "-o", "ask"], cwd=folder, check=True)
+    return folder / "ask"
 
 
 @needs_gfortran
 @pytest.mark.parametrize("flag", ["-O2", "-fdefault-real-8"])  # mcdust compiles with the second
-def test_fortran_reader(table, tmp_path, flag):
-    write_outcomes(tmp_path / "outcomes.txt", table)
-    (tmp_path / "ask.f90").write_text(PROGRAM)
-    subprocess.run(["gfortran", flag, "-Wall", "-fcheck=all", READER, "ask.f90", "-o", "ask"], cwd=tmp_path, check=True)
-    asked = queries(2000, 2.0)
-    lines = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(asked.values())).tolist())
-    answer = subprocess.run(["./ask"], input=lines, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+def test_fortran_answers_as_python_does(table, tmp_path, flag):
+    ask = compiled(tmp_path, table, PROGRAM, flag, "-Wall", "-fcheck=all")
+    query = queries(2000, 2.0)
+    lines = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(query.values())).tolist())
+    answer = subprocess.run([ask], input=lines, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
     theirs = np.array(answer.split(), dtype=float).reshape(-1, 5)
-    ours = read_outcomes(tmp_path / "outcomes.txt").lookup(**asked)
-    inside = ours.pop("inside")
-    np.testing.assert_allclose(theirs[:, 4], inside, atol=1e-12)
-    np.testing.assert_allclose(theirs[:, :3], np.column_stack(list(ours.values())), rtol=1e-12, atol=1e-12)
+    ours = read_outcomes(tmp_path / "outcomes.txt").lookup(**query)
+    values = np.column_stack([*ours.values(), ours["inside"]])
+    assert theirs[:, [0, 1, 2, 4]] == pytest.approx(values[:, [0, 1, 2, 4]], rel=1e-12, abs=1e-12)
 
 
 @needs_gfortran
 @pytest.mark.parametrize(
     "change, says",
     [
-        (("'(5es25.16)') values, inside", "*) column('sticking')"), "column: must be a name of the table"),
-        (("values(4)", "values(3)"), "values must have a number for each column"),
+        (("'(5es25.16)') values, inside", "*) column('sticking')"), "column: must be a name"),
         (("query(4)", "query(3)"), "query must have a number for each axis"),
-        (("look_up(query", "look_up(-query"), "query must be 0 or more"),
         (("look_up(query", "look_up(sqrt(-query)"), "query must be 0 or more"),
     ],
 )
 def test_fortran_stops_at_mistakes(table, tmp_path, change, says):
-    write_outcomes(tmp_path / "outcomes.txt", table)
-    (tmp_path / "ask.f90").write_text(PROGRAM.replace(*change))
-    subprocess.run(["gfortran", READER, "ask.f90", "-o", "ask"], cwd=tmp_path, check=True)
-    done = subprocess.run(["./ask"], input="1 100 0.5 0.2\n", cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode and f"ERROR STOP dust_outcomes: {says}" in done.stderr.replace("look_up: ", "")
+    ask = compiled(tmp_path, table, PROGRAM.replace(*change))
+    done = subprocess.run([ask], input="1 100 0.5 0.2\n", cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode and says in done.stderr
 
 
 # What mcdust has of its own around the example of README.md: names and kinds.

@@ -36,13 +36,12 @@ TOP = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, TOP)
 from scipy.stats import qmc
 
-from analysis.atlas.columns import MEASURED, breaking_velocity
-from analysis.atlas.variables import CHOSEN
+from analysis.atlas.columns import read_runs
+from analysis.atlas.variables import CHOSEN, breaking_velocity
 from analysis.measures.outcome import UNDECIDED
 from analysis.measures.periodic_cell import filling_factor
 from analysis.progress import progress
-from analysis.runs.table import TableError, read_table
-from analysis.studies.columns import flat
+from analysis.runs.table import TableError
 from analysis.theory import ICE, SILICATE
 from yade_scripts import packings, step_choice
 from yade_scripts.experiments.collision import CollisionParameters, place
@@ -322,7 +321,7 @@ def write_size(size, *part):
 
 def write_longer(file):
     """Write runs/atlas-longer.table for a table of runs, the cheapest first, and make its packings. Raises TableError and PackingError."""
-    runs, known = read_table(file, flat(MEASURED))[0], scenes(SIZES["full"])
+    runs, known = read_runs(file), scenes(SIZES["full"])
     undecided = runs[runs.outcome == UNDECIDED].sort_values("seconds")
     found = []
     for run in progress(list(undecided.itertuples()), "making packings"):

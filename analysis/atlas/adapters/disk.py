@@ -2,12 +2,13 @@
 
     python3 -m analysis.atlas.adapters.disk analysis/gallery/atlas     # or make disk
 
-runs DustPy with the folder's outcomes.txt and leaves disk.npz there, or takes the disk.npz that is there (which takes no DustPy),
-and draws disk.png. A disk.npz of another table than outcomes.txt is refused.
+runs DustPy with the folder's outcomes.txt and writes disk.npz there, or takes the disk.npz that is there, without
+DustPy, and draws disk.png. A disk.npz of another outcomes.txt is refused.
 
-DustPy's defaults but for: 30 radial cells from 5 to 300 au (100 from 1 to 1000); ice grains (rhoMonomer 1 g/cm^3, not 1.67) with a
-filling factor of FILLING (1), as compact ones are no aggregates; masses from 1e-14 g (1e-12), which is two grains of 0.1 um.
-With the atlas aggregates in the inner disk grow to the largest mass of DustPy's grid, 1e5 g; there their size is the grid's."""
+DustPy's defaults, but for: 30 radial cells from 5 to 300 au (100 from 1 to 1000); ice grains (rhoMonomer 1 g/cm^3,
+not 1.67) with a filling factor of FILLING (1), as compact ones are no aggregates; masses from 1e-14 g (1e-12), two
+grains of 0.1 um. With the atlas aggregates of the inner disk grow to the largest mass of DustPy's grid, 1e5 g.
+"""
 
 import hashlib
 import json
@@ -50,9 +51,13 @@ def make_disk():
 
 
 def run(outcomes, how):
-    """{sigma (Nr, Nm) [g/cm^2 per ln a], outside (Nr, Nm), size (Nr, Nm) [cm], radius (Nr,) [au], report} after YEARS.
+    """The disk after YEARS, with options `how` of use_atlas(), or with DustPy alone (None).
 
-    how: options of use_atlas(), or None for DustPy alone. Without the atlas `outside` and `report` are what it would say.
+    Returns
+    -------
+    dict
+        sigma (Nr, Nm) [g/cm^2 per ln a], outside (Nr, Nm), size (Nr, Nm) [cm], radius (Nr,) [au], report (JSON). With
+        DustPy alone `outside` and `report` are those of the atlas in the same disk.
     """
     from dustpy import constants
 
@@ -73,7 +78,7 @@ def run(outcomes, how):
 
 @styled
 def figure(runs):
-    """Figure of {name: run()}: surface density over distance and size, hatched where most collisions are outside of the data."""
+    """Figure of {name: run()}: surface density over distance and size, hatched where most are outside of the data."""
     drawing = new_figure(4.6 * len(runs), 5.0, layout="constrained")
     panels = drawing.subplots(1, len(runs), sharey=True, squeeze=False)[0]
     top = max(np.max(run["sigma"]) for run in runs.values())

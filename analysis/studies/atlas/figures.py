@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from ...atlas.grid import SIZES, outcomes_file
+from ...atlas.make import SIZES
 from ...atlas.outcome_table import read_outcomes
+from ...atlas.query import outcomes_file
 from ...atlas.variables import STRUCTURES, decided, drawn, of_structure, variables
 from ...figures.panels import letter, panels
 from ...figures.style import styled
@@ -19,7 +20,7 @@ FEWEST = 20  # runs of a structure in a band of fillings, to be drawn
 
 def _tables():
     """{structure: OutcomeTable}, empty where they are not at hand."""
-    files = {structure: outcomes_file(structure, of_impact=False) for structure in STRUCTURES}
+    files = {structure: outcomes_file(structure, averaged=True) for structure in STRUCTURES}
     return {structure: read_outcomes(file) for structure, file in files.items() if file.exists()}
 
 

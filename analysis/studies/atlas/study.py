@@ -4,14 +4,14 @@ import numpy as np
 import pandas
 from scipy.spatial import cKDTree
 
-from ...atlas.columns import MEASURED
-from ...atlas.neighbours import slow
+from ...atlas.columns import COLUMNS, is_run_of_the_atlas, measure
 from ...atlas.rules import KINDS
-from ...atlas.variables import STRUCTURES, decided, drawn, fit_and_held_out, scaled, touching, variables
+from ...atlas.variables import STRUCTURES, decided, drawn, fit_and_held_out, scaled, slow, touching, variables
 from ...measures.of_run import UNLIKE
 from ...measures.outcome import NEVER_MET, UNDECIDED
 from ...runs.collect import Scene
-from ..definition import Quantity, Study
+from ..columns import group
+from ..definition import NotMeasured, Quantity, Study
 from ..estimate import exact
 from ..runs import Runs, select, together
 from .bouncing import threshold_exponent
@@ -28,7 +28,7 @@ BY_BAND, BY_GROUP = ("aggregates", "filling", "speed"), ("group",)
 
 
 def quantities(table):
-    """Quantities of a table of runs (atlas.columns.MEASURED): fractions are of its drawn() rows."""
+    """Quantities of a table of runs (atlas.columns): fractions are of its drawn() rows."""
     fit, _ = fit_and_held_out(table)
     yield _counts(table)
     yield _slow(slow(fit))
@@ -188,13 +188,21 @@ def _silicate(runs):
     return Quantity("largest_more", meaning, found)
 
 
+def _measure(run, row):
+    """Values of COLUMNS; NotMeasured for a run of no row of the atlas."""
+    if not is_run_of_the_atlas(run):
+        raise NotMeasured(f"{run.path}: no run of the atlas, whose names are numbers")
+    values = measure(run)
+    return [values[column.name] for column in COLUMNS]
+
+
 STUDY = Study(
     title="The collision atlas",
     question="What do two aggregates do when they meet: where in size, filling, velocity and mass ratio do they stick, bounce, erode and break?",
     scene=Scene(
         "the atlas", {"neck": 0.0, "viscoelasticTime": 0.0, "planar": 0}, ("velocity", "impact"), measured=("number",)
     ),
-    measured=MEASURED,
+    measured=(group(_measure, *COLUMNS),),
     open_runs="means leave them out, and fractions that don't count them apart",
     quantities=quantities,
     independent="runs",

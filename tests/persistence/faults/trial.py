@@ -8,11 +8,10 @@ import numpy as np
 from faults.commands import COLLIDE, OTHER, OVERWRITE, PROGRAMS, RECORDER, RESUME, RUN, ended_runs
 from faults.forks import DISK_FULL, END_BEFORE, END_HALFWAY
 
-from analysis.atlas.columns import MEASURED
-from analysis.atlas.grid import RUNS_FILE
+from analysis.atlas.columns import COLUMNS
+from analysis.atlas.query import RUNS_FILE
 from analysis.runs.table import read_table, table_text
 from analysis.runs.write import is_unfinished
-from analysis.studies.columns import flat
 
 ACTIONS = {"ends before": END_BEFORE, "ends halfway": END_HALFWAY, "disk full from": DISK_FULL}
 STOPPED = 143
@@ -150,9 +149,8 @@ def _checkpoints(calls):
 
 def _part_of_the_atlas(folder):
     """A twelfth of its table of runs: the model takes a minute of each call."""
-    columns = flat(MEASURED)
-    table, head = read_table(RUNS_FILE, columns)
-    (folder / "runs.csv").write_text(table_text(table[::12], columns, head))
+    table, head = read_table(RUNS_FILE, COLUMNS)
+    (folder / "runs.csv").write_text(table_text(table[::12], COLUMNS, head))
 
 
 def checkpoint_rows(run):
