@@ -4,7 +4,6 @@ verify RUNS..., study [NAME RUNS...], outcome --velocity V ...."""
 import argparse
 import os
 import sys
-import warnings
 from importlib import import_module
 
 from .libraries import require_libraries
@@ -14,9 +13,8 @@ if __name__ == "__main__":
     end_quietly(*ENDING)
     require_libraries()
 
-from .commands import complain, in_one_line  # noqa: E402
+from .commands import in_one_line  # noqa: E402
 from .printable import printable  # noqa: E402
-from .runs.seal import Unsealed  # noqa: E402
 
 
 def main(arguments=None):
@@ -26,12 +24,7 @@ def main(arguments=None):
         end_quietly(*ENDING)
     options = _parser().parse_args(arguments)
     try:
-        with warnings.catch_warnings():
-            shown = warnings.showwarning
-            warnings.showwarning = (
-                lambda text, kind, *more: complain(text) if kind is Unsealed else shown(text, kind, *more)
-            )
-            return in_one_line(options)
+        return in_one_line(options)
     except BrokenPipeError:
         # The reader (head, less) has gone: nothing is left to say, not even at the interpreter's exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

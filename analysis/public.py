@@ -12,7 +12,7 @@ from .measures.structure import inner_coordination, mean_coordination
 from .report.plot import plot
 from .report.rows import table
 from .report.summary import summarise
-from .runs.arrays import RunFolderError
+from .runs.files import RunFolderError
 from .runs.folder import RunFolder, State, open_run
 
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -27,7 +27,7 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP))
 from analysis.printable import printable, printable_lines, shell_line
-from analysis.runs.write import remove_unfinished, write_text
+from analysis.runs.files import remove_unfinished, write_file
 from analysis.version import commit, version_text
 
 FOLDER, LIST, PATH_FILE = "lib/contact_law", "installed.json", "contact_law.pth"
@@ -85,7 +85,7 @@ def install(prefix):
             new.rename(folder)
         for path, text in beside.items():
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_text(path, text, within=prefix)
+            write_file(path, text)
             path.chmod(0o755 if path.name in COMMANDS else 0o644)
     lines = [
         f"contact_law {version_text()} is installed in {folder}",
@@ -147,7 +147,9 @@ def _alone(prefix):
 @contextmanager
 def _temporary(prefix):
     """A folder beside the installation's place, which goes again, for an installation that takes this place when it is whole."""
-    made = (prefix / FOLDER).parent / TEMPORARY.format(secrets.token_hex(4))  # a name of runs.write.unfinished()
+    made = (prefix / FOLDER).parent / TEMPORARY.format(
+        secrets.token_hex(4)
+    )  # a name that runs.files.is_unfinished() knows
     made.mkdir(0o700)
     try:
         yield made
@@ -269,11 +271,11 @@ def _fill(new, beside):
     listed = {f"{FOLDER}/{name}": _digest(file) for name, file in plan.items()}
     listed |= {f"{FOLDER}/{COMMIT_FILE}": _sha256(told.encode()), **beside}
     new.mkdir(parents=True)
-    write_text(new / LIST, json.dumps(sorted(listed.items()), indent=0) + "\n")
+    write_file(new / LIST, json.dumps(sorted(listed.items()), indent=0) + "\n")
     for name, file in plan.items():
         (new / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(file, new / name, follow_symlinks=False)
-    write_text(new / COMMIT_FILE, told)
+    write_file(new / COMMIT_FILE, told)
     for at, _, names in os.walk(new):  # for all users, whatever the umask is
         os.chmod(at, 0o755)
         for file in (Path(at) / name for name in names):

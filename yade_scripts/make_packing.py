@@ -25,7 +25,7 @@ from analysis.signals import end_quietly
 end_quietly(signal.SIGINT, signal.SIGTERM)
 require_libraries()
 from analysis.printable import printable, shell_line
-from analysis.runs.write import require_file
+from analysis.runs.files import require_output
 from analysis.version import version_text
 from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
@@ -100,7 +100,7 @@ def main(arguments):
     for file in files:
         if not file.endswith(".npz"):
             raise ParameterError(f"{file}: a packing is saved as .npz; must end in .npz")
-        if require_file(file, inputs=[texts["from"]] if "from" in texts else ()) and not packings.is_packing(file):
+        if require_output(file, inputs=[texts["from"]] if "from" in texts else ()) and not packings.is_packing(file):
             raise ParameterError(f"{file}: is there, and no packing; must be a new file, or a packing to replace")
     for name in WITHOUT_EFFECT:
         if name in texts:

@@ -13,7 +13,7 @@ from ..measures.motion import pieces_that_can_meet
 from ..measures.of_run import met, time_of_touch
 from ..measures.outcome import NEVER_MET, UNDECIDED, restitution_of_pieces
 from ..measures.structure import filling_factor, gyration_radius, mean_coordination
-from ..runs.arrays import RunFolderError
+from ..runs.files import RunFolderError
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
 from ..runs.table import Column, read_table
 from ..theory import Material

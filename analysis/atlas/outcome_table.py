@@ -12,9 +12,7 @@ from itertools import product
 import numpy as np
 
 from ..printable import suggested
-from ..runs.arrays import RunFolderError
-from ..runs.seal import SUM, UNSUMMED, require_own_sum, summed
-from ..runs.write import write_text
+from ..runs.files import SUM, UNSUMMED, RunFolderError, require_own_sum, summed, write_file
 from .rules import KINDS, OF_KIND
 
 PROBABILITIES, ERRORS = (tuple(f"{what}_{kind}" for kind in KINDS) for what in ("p", "error"))
@@ -226,4 +224,4 @@ def write_outcomes(path, table):
     lines += [" ".join([a.name, str(len(a.nodes)), a.scale, *(f"{node:.9g}" for node in a.nodes)]) for a in table.axes]
     lines += [f"{len(table.columns)} number of columns", " ".join(table.columns)]
     lines += [" ".join(f"{value:.6g}" for value in row) for row in table.values.reshape(-1, len(table.columns))]
-    write_text(path, summed("\n".join(lines) + "\n"))
+    write_file(path, summed("\n".join(lines) + "\n"))

@@ -53,7 +53,7 @@ def run(options):
 
     from ..report.plot import plot
     from ..report.rows import frame, measure, row
-    from ..runs.write import replacing
+    from ..runs.files import replacing
 
     file = Path(options.out or f"{options.what}-{options.x}.png")
     if file.suffix != ".png":

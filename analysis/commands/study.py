@@ -91,15 +91,15 @@ def run(options):
 
 def _require_places(options, study):
     """OSError where a file cannot be written, is one of several that are read, or is not of this study."""
-    from ..runs.write import require_file
+    from ..runs.files import require_output
     from ..studies.gathering import TABLE_FILE, require_own
 
     if options.page:
-        require_file(options.page)
+        require_output(options.page)
     if options.figures:
         file = Path(options.figures) / TABLE_FILE
         if not _is_only_input(options):
-            require_file(file, inputs=options.runs)
+            require_output(file, inputs=options.runs)
         require_own(file, study.name)
 
 
@@ -129,8 +129,8 @@ def _text(kind, study, found, rows):
 
 def _write(options, study, found, runs, rows):
     """Write tables, figures and page, as far as they are wanted; what to open first."""
+    from ..runs.files import write_file
     from ..runs.provenance import provenance_lines
-    from ..runs.write import write_text
     from ..studies.comparison import of_table
     from ..studies.gathering import TABLE_FILE
     from ..studies.pages import START, filled, html_page
@@ -142,14 +142,14 @@ def _write(options, study, found, runs, rows):
         text = readme.read_text(encoding="utf-8") if readme.is_file() else ""
         if START in text:
             text = filled(readme, text, rows, study.independent)
-            write_text(readme, text)
+            write_file(readme, text)
         if options.figures and not _is_only_input(options):
-            write_text(folder / TABLE_FILE, found.csv(study))
-        write_text(folder / "comparison.csv", of_table(rows).to_csv(index=False, float_format="%.10g"))
+            write_file(folder / TABLE_FILE, found.csv(study))
+        write_file(folder / "comparison.csv", of_table(rows).to_csv(index=False, float_format="%.10g"))
         drawn = _draw(study, runs, folder, text if START in text else None)
         if options.page:
             options.page.parent.mkdir(parents=True, exist_ok=True)
-            write_text(options.page, html_page(study, rows, drawn, list(provenance_lines(found.provenance))))
+            write_file(options.page, html_page(study, rows, drawn, list(provenance_lines(found.provenance))))
     return options.page or (readme if START in text else folder)
 
 

@@ -92,18 +92,18 @@ def run(options):
 def _writes_table(options, study):
     """Whether a table is written: not in the place of all that is read, which holds the same runs. OSError where a file cannot be
     written, is one of several that are read, or is somebody else's."""
-    from ..runs.write import require_file
+    from ..runs.files import require_output
     from ..studies.analyse import TABLE_FILE, require_own
 
     if options.page:
-        require_file(options.page)
+        require_output(options.page)
     if not options.figures:
         return True
     require_own(Path(options.figures), study)
     file = os.path.join(options.figures, TABLE_FILE)
     if [os.path.realpath(path) for path in options.runs] == [os.path.realpath(file)]:
         return False
-    require_file(file, inputs=options.runs)
+    require_output(file, inputs=options.runs)
     return True
 
 
@@ -132,7 +132,7 @@ def _folder(wanted):
 def _write_view(page, table):
     """The page on which the first run that is at hand can be turned, beside the study's: (name of its file, the run's), or None."""
     from ..export.viewer import NoThree, write_view
-    from ..runs.arrays import RunFolderError
+    from ..runs.files import RunFolderError
     from ..runs.folder import open_run
     from ..runs.table import FOLDER
 
@@ -150,10 +150,10 @@ def _write_view(page, table):
 def _write_page(file, text):
     """The page and its PDF."""
     from ..report.pdf import NoPdf, write_pdf
-    from ..runs.write import write_text
+    from ..runs.files import write_file
 
     pdf = file.with_suffix(".pdf")
-    write_text(file, text)
+    write_file(file, text)
     try:
         write_pdf(file, pdf)
     except NoPdf as error:

@@ -29,7 +29,7 @@ def run(options):
     """Exit status: 0, or 2 when something differs from its sum, a run has lost its list of sums and its parameters, or no path holds a run."""
     from ..progress import progress
     from ..runs.collect import LOST, is_lost, run_folders
-    from ..runs.seal import begins_with_sum
+    from ..runs.files import begins_with_sum
     from ..runs.verify import verify_run, verify_text
 
     texts = [

@@ -5,7 +5,7 @@ Source: https://github.com/libAtoms/extxyz (the format's specification). Numbers
 import numpy as np
 
 from ..progress import progress
-from ..runs.write import make_folder, replacing
+from ..runs.files import make_folder, replacing
 from .fields import exported_states, grain_fields
 
 FILE = "run.xyz"

@@ -12,7 +12,7 @@ from ..figures.grain_colours import COLOURINGS, Patch, Range, on_scale
 from ..figures.sphere_raster import paint_spheres
 from ..figures.style import NANO
 from ..progress import progress
-from ..runs.write import replacing, require_file
+from ..runs.files import replacing, require_output
 from ..signals import held
 from .fields import exported_states
 
@@ -45,7 +45,7 @@ def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, alon
         raise NoFilm(f"{file}: must end in {' or '.join(ENDINGS)}")
     if file.suffix == ".gif" and frames_per_second > _FASTEST_GIF:
         raise NoFilm(f"{file}: {frames_per_second:g} frames a second; of a .gif must be {_FASTEST_GIF} at most")
-    require_file(file)
+    require_output(file)
     axes = list(AXES[along])
     view = _view(run, axes)
     pixel = max((view[1] - view[0]) / width, (view[3] - view[2]) / (_TALLEST * width))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..progress import progress
-from ..runs.write import make_folder, write_text
+from ..runs.files import make_folder, write_file
 from . import vtk_xml
 from .fields import contact_fields, exported_states, grain_fields
 
@@ -24,11 +24,11 @@ def write_vtk(run, folder):
         times.append(exported.state.time)
         (folder / names[-1]).mkdir(parents=True, exist_ok=True)
         blocks = {part: f"{names[-1]}/{part}.vtp" for part in ("grains", "contacts")}
-        write_text(folder / blocks["grains"], _grains(exported), within=folder)
-        write_text(folder / blocks["contacts"], _contacts(exported), within=folder)
-        write_text(folder / f"{names[-1]}.vtm", vtk_xml.multi_block(blocks))
+        write_file(folder / blocks["grains"], _grains(exported))
+        write_file(folder / blocks["contacts"], _contacts(exported))
+        write_file(folder / f"{names[-1]}.vtm", vtk_xml.multi_block(blocks))
     series = folder / SERIES
-    write_text(series, vtk_xml.collection([f"{name}.vtm" for name in names], times))
+    write_file(series, vtk_xml.collection([f"{name}.vtm" for name in names], times))
     return series
 
 

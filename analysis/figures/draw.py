@@ -5,7 +5,7 @@ from importlib import import_module
 from pathlib import Path
 
 from ..progress import progress
-from ..runs.write import make_folder, replacing
+from ..runs.files import make_folder, replacing
 from . import of_run
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.colors import to_rgba_array
 from PIL import Image  # what matplotlib itself writes PNGs with
 
-from ..runs.write import replacing
+from ..runs.files import replacing
 
 DOTS_PER_INCH = 80  # a gallery of all of a study's figures stays below 1.5 MB
 COLOURS = 256

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..runs.arrays import RunFolderError
+from ..runs.files import RunFolderError
 from ..runs.format import STATES_FOLDER
 from .compression import first_compression
 from .decided import CONSTANTS, is_recent, why_undecided

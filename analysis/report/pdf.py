@@ -5,7 +5,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from ..runs.write import replacing
+from ..runs.files import replacing
 
 LONGEST = 300  # s
 

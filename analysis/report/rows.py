@@ -15,8 +15,8 @@ from ..measures.ledger import fractions_at, largest_work
 from ..measures.periodic_cell import AVERAGED, pressure_at_end
 from ..measures.structure import mean_coordination
 from ..progress import progress
-from ..runs.arrays import RunFolderError
 from ..runs.collect import run_folders
+from ..runs.files import RunFolderError
 from ..runs.folder import RunFolder, open_run
 from ..runs.format import BONDS, CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, PARAMETER_UNITS, RUN_KINDS
 from ..runs.table import FOLDER, RUN, Column, columns_text, described, make_table

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from glob import glob, has_magic
 from pathlib import Path
 
-from .arrays import RunFolderError
+from .files import RunFolderError
 from .folder import open_run
 from .format import COLLISION, ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
 from .table import ENDING

@@ -3,9 +3,7 @@
 Folders of every format in READABLE are read; what an older one lacks is filled in (runs.format says with what).
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
-import json
 import re
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,23 +12,27 @@ from typing import Mapping
 import numpy as np
 
 from ..arguments import Kind, PATH, WrongArgument, number, shown, takes
-from .arrays import RunFolderError, array_names, read_arrays, read_quantities, require_values
+from .files import RunFolderError, array_names, read_arrays, read_json, read_sums
 from .format import (
     COLLISION,
+    ENDED_FILE,
     HISTORY_FILE,
     POSITIVE_CONSTANTS,
     READABLE,
     RUN_FILE,
     RUN_KINDS,
+    SEALED,
     STATE,
     STATES_FOLDER,
     Quantity,
     RunKind,
 )
 from .named import Named, protect, unknown
-from .seal import NO_SUMS, Seal, read_seal, read_text, require_sealed
 
 _STATE_NAME = re.compile(r"\d{6}\.npz")
+LARGEST = 1e100  # of a value in SI units: squares and sums of what a run can hold are finite
+# numpy's letters of the types that may stand for a quantity's kind, and what to call them.
+_TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("biu", "true or false")}
 
 
 class State:
@@ -69,10 +71,10 @@ class State:
 
 class StateSequence(Sequence):
     """The states of a run, oldest first, each read from its file when it is asked for (RunFolderError if it is
-    damaged, or not that of which the Seal has a sum)."""
+    damaged). sums: as read_ended() gives them."""
 
-    def __init__(self, files, kind=COLLISION, file_format=READABLE[-1], seal=None):
-        self.files, self.kind, self.file_format, self.seal = tuple(files), kind, file_format, seal
+    def __init__(self, files, kind=COLLISION, file_format=READABLE[-1], sums=None):
+        self.files, self.kind, self.file_format, self.sums = tuple(files), kind, file_format, sums
         self._times = None
 
     def __len__(self):
@@ -80,8 +82,9 @@ class StateSequence(Sequence):
 
     def __getitem__(self, index):
         if isinstance(index, slice):
-            return StateSequence(self.files[index], self.kind, self.file_format, self.seal)
-        return read_state(self._checked(self._file(index)), self.kind, self.file_format)
+            return StateSequence(self.files[index], self.kind, self.file_format, self.sums)
+        file = self._file(index)
+        return read_state(file, self.kind, self.file_format, self._sum(file))
 
     def __repr__(self):
         return f"{len(self)} states of a {self.kind.name}"
@@ -91,9 +94,8 @@ class StateSequence(Sequence):
         """Time [s] (number of states,) of every state, read without the grains."""
         if self._times is None:
             quantity = [q for q in STATE if q.name == "time"]
-            files = map(self._checked, self.files)
-            times = [float(read_quantities(f, quantity, self.file_format)["time"].reshape(())) for f in files]
-            self._times = np.array(times)
+            read = (read_quantities(f, quantity, self.file_format, self._sum(f)) for f in self.files)
+            self._times = np.array([float(arrays["time"].reshape(())) for arrays in read])
             self._times.flags.writeable = False
         return self._times
 
@@ -104,9 +106,10 @@ class StateSequence(Sequence):
 
     def arrays(self, index, names):
         """Some arrays of a state by name, without reading the others; their values are checked, not their shapes."""
-        arrays = read_arrays(self._checked(self._file(index)), names)
+        file = self._file(index)
+        arrays = read_arrays(file, names, sha256=self._sum(file))
         for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
-            require_values(self.files[index], quantity, arrays[quantity.name])
+            require_values(file, quantity, arrays[quantity.name])
         return arrays
 
     def _file(self, index):
@@ -117,10 +120,8 @@ class StateSequence(Sequence):
             raise IndexError(f"no state {index}: must be {must}")
         return self.files[index]
 
-    def _checked(self, file):
-        if self.seal:
-            self.seal.require(f"{STATES_FOLDER}/{file.name}")
-        return file
+    def _sum(self, file):
+        return sum_in(self.sums, file.parent.parent, f"{STATES_FOLDER}/{file.name}")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -179,15 +180,11 @@ def open_run(path):
     path = Path(path)
     if not path.is_dir():
         raise RunFolderError(f"{path}: " + ("is not a folder" if path.exists() else "no such run folder"))
-    record, seal = read_record(path)
+    record, sums = read_record(path)
     _require_record(path / RUN_FILE, record)
     file_format, history = record["format"], path / HISTORY_FILE
     if not history.exists():
         raise RunFolderError(f"{history}: missing: the run has recorded no history yet")
-    if seal:
-        seal.require(HISTORY_FILE)
-        if not seal.files:
-            warnings.warn(NO_SUMS, stacklevel=1)
     name = record.get("kind", COLLISION.name)
     kind = RUN_KINDS[name] if name in RUN_KINDS else _kind_of_its_own(name, history)
     return RunFolder(
@@ -196,27 +193,42 @@ def open_run(path):
         parameters=Named(f"parameters of {path}", record["parameters"]),
         derived=Named(f"derived constants of {path}", record["derived"]),
         record=Named(f"{path / RUN_FILE}", record),
-        history=Named(f"history of {path}", _read_history(history, kind, file_format)),
-        states=StateSequence(state_files(path, seal), kind, file_format, seal),
-        ended=seal is not None,
+        history=Named(f"history of {path}", _read_history(history, kind, file_format, sum_in(sums, path, HISTORY_FILE))),
+        states=StateSequence(state_files(path, sums), kind, file_format, sums),
+        ended=sums is not None,
     )
 
 
+def read_ended(path):
+    """{file name: SHA-256} of what a run that has ended left in its folder (path), as its `ended` lists them; empty where an old format
+    has none, None where the run has not ended; RunFolderError where `ended` is damaged."""
+    file = Path(path) / ENDED_FILE
+    return read_sums(file) if file.exists() else None
+
+
+def sum_in(sums, path, name):
+    """The SHA-256 that a file of a run folder (path) must have, None where the run has no sums; RunFolderError for a file that the run has
+    not left. sums: of read_ended()."""
+    if not sums:
+        return None
+    if name not in sums:
+        raise RunFolderError(f"{Path(path) / name}: not of this run, which has left no such file; must be moved away")
+    return sums[name]
+
+
 def read_record(path):
-    """(what run.json of a folder holds, Seal or None where the run has not ended); RunFolderError when it is missing, damaged, or not that of
-    which the Seal has a sum."""
-    seal = read_seal(path)
-    if seal:
-        seal.require(RUN_FILE)
-    record = read_json(Path(path) / RUN_FILE)
-    if isinstance(record, dict) and record.get("format") in READABLE:
-        require_sealed(seal, record["format"])
-    return record, seal
+    """(what run.json of a folder holds, read_ended() of it); RunFolderError when it is missing or damaged."""
+    sums = read_ended(path)
+    record = read_json(Path(path) / RUN_FILE, sum_in(sums, path, RUN_FILE))
+    file_format = record.get("format") if isinstance(record, dict) else None
+    if sums == {} and file_format in READABLE and file_format >= SEALED:
+        raise RunFolderError(f"{Path(path) / ENDED_FILE}: empty; must hold the sums of the run's files")
+    return record, sums
 
 
-def read_state(file, kind=COLLISION, file_format=READABLE[-1]):
+def read_state(file, kind=COLLISION, file_format=READABLE[-1], sha256=None):
     """State in one states/NNNNNN.npz; RunFolderError when it is missing, damaged or inconsistent."""
-    arrays = read_quantities(Path(file), kind.states, file_format)
+    arrays = read_quantities(Path(file), kind.states, file_format, sha256)
     grains, pairs, aggregate = len(arrays["radius"]), arrays["contact_pairs"], arrays["aggregate"]
     if grains == 0:
         raise RunFolderError(f"{file}: holds no grain")
@@ -241,17 +253,15 @@ def _require_on_planes(file, arrays):
             raise RunFolderError(f"{file}: 'plane_contacts' names a {what} that is not there, of {there}")
 
 
-def state_files(path, seal):
-    """The files of a run's states: with sums those that it has left, and RunFolderError where there is another one."""
+def state_files(path, sums):
+    """The files of a run's states: those that the run has left, and RunFolderError where there is another one."""
     folder = path / STATES_FOLDER
     found = sorted(f for f in folder.iterdir() if _STATE_NAME.fullmatch(f.name)) if folder.is_dir() else []
-    if not (seal and seal.files):
+    for file in found:
+        sum_in(sums, path, f"{STATES_FOLDER}/{file.name}")
+    if not sums:
         return found
-    names = [f"{STATES_FOLDER}/{file.name}" for file in found]
-    for name in names:
-        if name not in seal.files:
-            seal.require(name)
-    return found if names == seal.states else [path / name for name in seal.states]
+    return [path / name for name in sorted(sums) if name.startswith(f"{STATES_FOLDER}/")]
 
 
 def _require_record(file, record):
@@ -281,29 +291,55 @@ def _kind_of_its_own(name, history):
     return RunKind(name, tuple(Quantity(series, ("T",), "", "", gaps=True) for series in own))
 
 
-def read_json(file):
-    """What a JSON file holds; RunFolderError when it is missing, is no regular file, or no JSON (NaN and Infinity are
-    none)."""
-    text = read_text(file)
-    if text is None:
-        raise RunFolderError(f"{file}: missing, so this is not a run folder")
-    try:
-        return json.loads(text, parse_constant=_refuse_constant)
-    except RecursionError:
-        raise RunFolderError(f"{file}: not valid JSON: nested too deeply") from None
-    except ValueError as error:
-        raise RunFolderError(f"{file}: not valid JSON: {error}") from None
+def read_quantities(file, quantities, file_format, sha256=None):
+    """The arrays of the quantities (runs.format.Quantity) by name, checked: shape, type, finite unless it may have
+    gaps. Zeros stand for those that the folder's format did not have yet; optional ones may be left out."""
+    expected, sizes = [q for q in quantities if q.since <= file_format], {}
+    names, optional = ([q.name for q in expected if q.optional == optional] for optional in (False, True))
+    arrays = read_arrays(file, names, optional, sha256=sha256)
+    for quantity in expected:  # the size of each axis, from the first array that has no other
+        if quantity.name in arrays and len(quantity.shape) == 1 and isinstance(quantity.shape[0], str):
+            sizes.setdefault(quantity.shape[0], arrays[quantity.name].size)
+    for quantity in expected:
+        if quantity.name in arrays:
+            _require_shape(file, quantity, arrays[quantity.name], sizes)
+            require_values(file, quantity, arrays[quantity.name])
+    for quantity in quantities:
+        if quantity.since > file_format and not quantity.optional:
+            arrays[quantity.name] = np.zeros([sizes.get(n, n) for n in quantity.shape])
+            arrays[quantity.name].flags.writeable = False
+    return arrays
 
 
-def _refuse_constant(text):
-    raise ValueError(f"{text} is no number of JSON")
+def _require_shape(file, quantity, array, sizes):
+    name, shape = quantity.name, tuple(sizes.get(n, n) for n in quantity.shape)
+    if not shape and array.size != 1:
+        raise RunFolderError(f"{file}: '{name}' must be one number, its shape is {array.shape}")
+    if shape and array.shape != shape:
+        raise RunFolderError(f"{file}: '{name}' has the shape {array.shape}, expected {shape}")
+    kinds, words = _TYPES[quantity.kind]
+    if array.dtype.kind not in kinds:
+        raise RunFolderError(f"{file}: '{name}' must be {words}, it is {array.dtype}")
 
 
-def _read_history(file, kind, file_format):
-    time = read_arrays(file, ("time",))["time"]
-    if time.ndim != 1 or time.size == 0:
-        raise RunFolderError(f"{file}: 'time' must be a non-empty one-dimensional array, its shape is {time.shape}")
-    history = read_quantities(file, kind.history, file_format)
+def require_values(file, quantity, array):
+    """Raise RunFolderError unless the values of a quantity's array are what they may be."""
+    name, sound = quantity.name, np.abs(array) < LARGEST
+    if quantity.gaps:
+        sound |= np.isnan(array)
+    if not np.all(sound):
+        where = f", first at index {int(np.argmin(sound))}" if array.ndim == 1 else ""
+        what = f"beyond {LARGEST:g}" if np.isfinite(array[~sound]).all() else "not finite"
+        raise RunFolderError(f"{file}: '{name}' holds a value that is {what}{where}")
+    if quantity.positive and not np.all(array > 0):
+        at = int(np.argmin(np.asarray(array) > 0))
+        raise RunFolderError(f"{file}: '{name}' is {array[at]:g} at index {at}; must be > 0")
+
+
+def _read_history(file, kind, file_format, sha256):
+    history = read_quantities(file, kind.history, file_format, sha256)
+    if not history["time"].size:
+        raise RunFolderError(f"{file}: 'time' is empty; must have one value or more")
     falls = np.diff(history["time"]) <= 0
     if falls.any():
         raise RunFolderError(f"{file}: 'time' does not increase everywhere, first at index {int(np.argmax(falls)) + 1}")

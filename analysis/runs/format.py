@@ -11,24 +11,19 @@ Scripts write what stands here and the analysis reads it. All quantities are in 
     checkpoint/         while the run is under way, or was stopped: not part of the format
     heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
 
-`ended` is written last, when all the rest is on the disk, so that there is none without sums. `sha256sum -c ended` checks them. Files
-that others put into the folder have none. The first line has the SHA-256 of `ended` itself, with 64 zeros in its place; each archive's
-end, where it lists its arrays with their CRC-32, has a sum of its own (seal.py):
-
-    # {"sha256": "...", "check": "sha256sum -c ended"}
-    (64 digits)  history.npz
-    # (64 digits)  history.npz from byte 52310 on
+`ended` is written last, when all the rest is on the disk, so that there is none without sums. It is what sha256sum prints, and
+`sha256sum -c ended` checks it. Files that others put into the folder are not in it.
 
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
 and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Until then
-`ended` was empty; format 4 has the sums. Versions before 0.5.0 wrote no `files`:
+`ended` was empty; format 4 has the sums, and in lines that begin with # sums of archives' ends. Versions before 0.5.0 wrote no `files`:
 their runs are read, but neither resumed nor replaced.
 """
 
 from dataclasses import dataclass
 
-FORMAT = 4
-READABLE = (1, 2, 3, 4)
+FORMAT = 5
+READABLE = (1, 2, 3, 4, 5)
 SEALED = 4  # the first that has sums
 
 RUN_FILE, HISTORY_FILE, ENDED_FILE = "run.json", "history.npz", "ended"

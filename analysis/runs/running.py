@@ -12,15 +12,14 @@ import re
 import shutil
 import socket
 import subprocess
+import tempfile
 import time
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from .arrays import RunFolderError
-from .folder import read_json
+from .files import RunFolderError, read_json
 from .format import HEARTBEAT_FILE
-from .write import unfinished
 
 MISSED = 3  # intervals after which a heartbeat that hasn't changed is one of a run that was killed
 INTERVAL = 30.0  # s
@@ -148,7 +147,7 @@ def age(file):
     for the server's, CLOCKS_AGREE behind. Raises FileNotFoundError.
     """
     try:
-        with unfinished(os.path.join(os.path.dirname(file), "clock")) as clock:
+        with tempfile.TemporaryFile(dir=os.path.dirname(file)) as clock:
             now = os.fstat(clock.fileno()).st_mtime
     except OSError:
         now = time.time() - CLOCKS_AGREE

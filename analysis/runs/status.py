@@ -7,7 +7,7 @@ import os
 import time
 from dataclasses import dataclass
 
-from .arrays import RunFolderError, read_arrays
+from .files import RunFolderError, read_arrays
 from .folder import read_record
 from .format import CHECKPOINT_FOLDER, ENDED_FILE, HEARTBEAT_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
 from .running import place

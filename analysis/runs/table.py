@@ -14,9 +14,8 @@ from pathlib import Path
 import pandas
 
 from ..printable import printable
-from .arrays import RunFolderError
+from .files import SUM, UNSUMMED, RunFolderError, read_summed, summed
 from .folder import open_run
-from .seal import SUM, UNSUMMED, read_summed, summed
 
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..progress import progress
-from ..runs.seal import UNSUMMED, read_summed, read_text, summed
+from ..runs.files import UNSUMMED, read_summed, read_text, replacing, summed, write_file
 from ..runs.table import NoRunFolder, table_text
-from ..runs.write import replacing, write_text
 from .columns import CLOSURE
 from .definition import GALLERY, SNAPSHOTS, Results, Study
 from .find import figures, own_errors
@@ -121,13 +120,13 @@ class Analysis:
         say how to make all of it again."""
         folder.mkdir(parents=True, exist_ok=True)
         if table:
-            write_text(folder / TABLE_FILE, self.csv())
-        write_text(folder / DATA_FILE, self.json())
+            write_file(folder / TABLE_FILE, self.csv())
+        write_file(folder / DATA_FILE, self.json())
         drawn, undrawn = _draw(self.study, self.results, folder)
         prose = folder.resolve() == GALLERY / self.study.name or self.is_gallerys()
         texts = {PAGE_FILE: screen(self, drawn, prose), DETAILS_FILE: details(self, drawn, commands)}
         for name, text in texts.items():
-            write_text(folder / name, text)
+            write_file(folder / name, text)
         return Written(folder, texts, tuple(undrawn))
 
     def page(self, written, view=None):

@@ -9,7 +9,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from ..figures.collision_view import draw_view, reach
 from ..figures.panels import legend, letter, panels
 from ..figures.style import styled
-from ..runs.arrays import read_arrays
+from ..runs.files import read_arrays
 from ..runs.table import NoRunFolder, run_folder
 
 COLOURS = ("#2166ac", "#e08214", "#1b8a8f", "#c62828", "#8c5a2b", "#d16ba5", "#111111")  # none the paper's

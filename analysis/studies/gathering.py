@@ -8,8 +8,8 @@ import pandas
 from ..printable import suggested
 from ..progress import progress
 from ..report.rows import differing, frame, parameters_of, varied
-from ..runs.arrays import RunFolderError
 from ..runs.collect import collect
+from ..runs.files import RunFolderError
 from ..runs.provenance import joined, provenance
 from ..runs.table import FOLDER, RUN, TableError, make_table, read_table, table_text
 from .columns import NotMeasured

@@ -8,7 +8,7 @@ import numpy as np
 from ..figures.collision_view import draw_view, reach
 from ..figures.panels import panels
 from ..figures.style import styled
-from ..runs.arrays import read_arrays
+from ..runs.files import read_arrays
 from ..runs.table import NoRunFolder, run_folder
 
 HELD = 0.99  # of the grains: what flies farther than all but the last hundredth leaves a panel

@@ -12,7 +12,7 @@ import pytest
 
 import analysis
 from analysis.report.rows import LARGEST, MEASURED, frame, row, short_text, table
-from analysis.runs.arrays import RunFolderError
+from analysis.runs.files import RunFolderError
 from analysis.runs.format import CHANNELS
 
 TOP = Path(__file__).resolve().parents[2]

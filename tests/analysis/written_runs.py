@@ -6,8 +6,8 @@ from math import pi
 
 import numpy as np
 
+from analysis.runs.files import sums_text
 from analysis.runs.format import CHANNELS, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
-from analysis.runs.seal import seal_text
 from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair_constants, pair_motion
 from yade_scripts import packings
 
@@ -78,7 +78,7 @@ def write_run(path, run_record, history, states, ended=True):
 def seal(path):
     """Write the sums of a folder's files, as they are now."""
     names = [file.relative_to(path).as_posix() for file in path.glob("**/*") if file.suffix in (".json", ".npz")]
-    (path / ENDED_FILE).write_text(seal_text(path, names))
+    (path / ENDED_FILE).write_text(sums_text(path, names))
 
 
 def unseal(path):

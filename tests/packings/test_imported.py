@@ -14,7 +14,7 @@ from written_runs import losing, record, state_arrays, write_run
 
 from analysis.export.vtk_xml import poly_data
 from analysis.measures.fragments import fragment_labels
-from analysis.runs.arrays import npz
+from analysis.runs.files import npz
 from analysis.theory.compression import rolling_energy
 from yade_scripts import packings
 from yade_scripts.experiments.collision import CollisionParameters, place

@@ -12,7 +12,7 @@ from faults.commands import COMMANDS, RECORDER, RUN, SCENARIOS, WRITERS, arrays,
 from faults.trial import power_loss, wrong_on_a_full_disk
 from running import small_disk
 
-from analysis.runs.write import is_unfinished
+from analysis.runs.files import is_unfinished
 
 FIT = "contact_law/kernel/fit_contact_radius.py"  # writes a header of the code
 BEGINNING = 24  # calls, in which a folder is begun or emptied
@@ -84,13 +84,13 @@ def test_what_a_power_loss_takes_is_noticed(trial_of):
 
 
 def test_every_module_that_writes_files_is_known():
-    """Another one needs a row, or a reason why it has none. Nothing opens a file for writing but runs/write.py, logs and the code's fits."""
+    """Another one needs a row, or a reason why it has none. Nothing opens a file for writing but runs/files.py, logs and the code's fits."""
     top = Path(__file__).resolve().parents[2]
     files = [file for folder in ("analysis", "yade_scripts", "contact_law") for file in (top / folder).rglob("*.py")]
     texts = {str(file.relative_to(top)): file.read_text() for file in files}
     writes = re.compile(r"\b(write_text|write_bytes|write_json|replacing|make_new|unfinished)\(")
     opens = re.compile(r"""\bopen\([^)]*, "[rbt]*[wxa+][bt+]*"|\.(write_text|write_bytes)\(""")
-    own = "analysis/runs/write.py"
+    own = "analysis/runs/files.py"
     assert {name for name, text in texts.items() if writes.search(text) and name != own} == {*WRITERS, FIT}
     assert {name for name, text in texts.items() if opens.search(text)} == {own, "yade_scripts/runner/workers.py", FIT}
 

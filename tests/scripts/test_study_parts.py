@@ -66,24 +66,6 @@ def test_an_ended_run_without_a_readable_record_is_not_done(tmp_path):
         assert found.kind == rows.FAILED and "run.json" in found.note
 
 
-def test_pipes_in_a_run_folder_are_not_waited_for(tmp_path):
-    given = row(out=str(tmp_path / "run"))
-    (tmp_path / "run" / "checkpoint").mkdir(parents=True)
-    os.mkfifo(tmp_path / "run" / "run.json")
-    os.mkfifo(tmp_path / "run" / "checkpoint" / "recorder.npz")
-    assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
-    os.unlink(tmp_path / "run" / "run.json")
-    (tmp_path / "run" / "run.json").write_text('{"outcome": "running", "derived": {"steps": 1, "timeStep": 1}}')
-    os.mkfifo(tmp_path / "log")
-    assert rows.state(given, str(tmp_path / "log")).kind == rows.WAITING
-    os.mkfifo(tmp_path / "speed.json")
-    study_folder = StudyFolder("any")
-    study_folder.path = str(tmp_path)
-    assert study_folder.cost([given], [rows.State(rows.WAITING)]).piece is None
-    with pytest.raises(table.TableError, match="log: is no regular file; must be one"):
-        table.read(tmp_path / "log")
-
-
 def test_runs_that_ended_are_looked_at_once(tmp_path, monkeypatch):
     """However often the time left is asked for; the estimate is the same one until another run ends."""
     monkeypatch.chdir(tmp_path)

@@ -8,8 +8,8 @@ import numpy as np
 from analysis.measures.compression import compression_and_velocity
 from analysis.measures.decided import BREAKING, REBOUND_PER_RADIUS, rebound_time
 from analysis.measures.plate import has_plate
+from analysis.runs.files import SUM
 from analysis.runs.format import COLLISION, RESTING
-from analysis.runs.seal import SUM
 from yade_scripts import packings, stability
 from yade_scripts.experiments import ending, impact_step, plate
 from yade_scripts.experiments.collision_step import (

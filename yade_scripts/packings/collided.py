@@ -7,7 +7,7 @@ each its equilibrium overlap; a run starts from contacts that have neither slid,
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from analysis.runs.arrays import RunFolderError
+from analysis.runs.files import RunFolderError
 from analysis.runs.folder import open_run
 from yade_scripts.packings.cut import unpressed
 from yade_scripts.packings.largest_piece import largest_cluster

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from analysis.runs.arrays import RunFolderError, array_names
-from analysis.runs.folder import read_record, read_state
+from analysis.runs.files import RunFolderError, array_names, read_bytes
+from analysis.runs.folder import read_record, read_state, sum_in
 from analysis.runs.format import COMPRESSION, FORMAT
 from yade_scripts.packings.largest_piece import largest_cluster
 from yade_scripts.packings.packing import Packing, PackingError, random_stream
@@ -65,9 +65,8 @@ def holds(path, name):
 def record_of_state(path):
     """run.json of the run that RUN/states/NNNNNN.npz is of, which is as the run left it; raises RunFolderError."""
     run = os.path.dirname(os.path.dirname(os.path.abspath(path)))
-    record, seal = read_record(run)
-    if seal:
-        seal.require(os.path.relpath(path, run))
+    record, sums = read_record(run)
+    read_bytes(path, sum_in(sums, run, os.path.relpath(path, run)))
     return record
 
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from analysis.runs.seal import SUM
+from analysis.runs.files import SUM
 from yade_scripts.packings.cut import OF_CONTACTS
 from yade_scripts.packings.packing import PackingError, centred, contacts, load, moved, surface_gaps
 from yade_scripts.packings.rest import AT_REST, equilibrium_overlaps

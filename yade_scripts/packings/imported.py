@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
 from analysis.measures.fragments import fragment_labels, fragment_sizes
-from analysis.runs.arrays import RunFolderError
+from analysis.runs.files import RunFolderError
 from yade_scripts import materials
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.aggregate import MOST_GRAINS

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from analysis.measures.fragments import belongs_to_an_aggregate
-from analysis.runs.arrays import RunFolderError, npz, read_arrays, read_quantities
+from analysis.runs.files import RunFolderError, npz, read_arrays, write_file
+from analysis.runs.folder import read_quantities
 from analysis.runs.format import FORMAT, STATE
-from analysis.runs.write import write_bytes
 from yade_scripts.parameters.errors import InputError
 
 SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
@@ -117,7 +117,7 @@ def save(path, packing):
         gyration_radius=gyration_radius(packing),
         characteristic_radius=characteristic_radius(packing),
     )
-    write_bytes(path, content)
+    write_file(path, content)
 
 
 def is_packing(path):

@@ -14,10 +14,9 @@ import os
 
 import numpy as np
 
-from analysis.runs.arrays import UNREADABLE, RunFolderError, read_arrays, require_regular
-from analysis.runs.folder import read_record, read_state
+from analysis.runs.files import RunFolderError, read_arrays, sum_of
+from analysis.runs.folder import read_record, read_state, sum_in
 from analysis.runs.format import CHECKPOINT_FOLDER, STATES_FOLDER, state_file
-from analysis.runs.seal import sum_of
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.agreement import difference
 
@@ -51,11 +50,10 @@ class Checkpoint:
             self.columns = about.get("columns", [])
             self.scene = os.path.join(self.folder, about["scene"])
             os.stat(self.scene)
-            require_regular(self.scene)
             # None: of a version that did not write them, which require_agreement() refuses.
             names = ("iteration", "interval", "states", "sums")
             self.iteration, self.interval, self.states, self._sums = map(about.get, names)
-        except (RunFolderError, *UNREADABLE) as error:
+        except (RunFolderError, OSError, ValueError, KeyError, TypeError, AttributeError) as error:
             raise CheckpointError(
                 f'{self.folder}: not a checkpoint ({" ".join(str(error).split())}); '
                 "must be removed to start the run again"
@@ -113,10 +111,8 @@ class Checkpoint:
     def _require_state(self, kind_format, name):
         file = os.path.join(self.run_folder, name)
         try:
-            _, seal = read_record(self.run_folder)
-            if seal:
-                seal.require(name)
-            time = read_state(file, kind_format).time
+            _, sums = read_record(self.run_folder)
+            time = read_state(file, kind_format, sha256=sum_in(sums, self.run_folder, name)).time
         except RunFolderError as error:
             raise CheckpointError(f"{error}; must be in order to resume, or {self.folder} removed") from None
         if not np.isclose(self.rows[:, self.columns.index("time")], time, rtol=1e-12, atol=0).any():

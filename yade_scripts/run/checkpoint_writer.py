@@ -7,9 +7,8 @@ import time
 
 from yade.wrapper import Omega
 
-from analysis.runs.arrays import npz
+from analysis.runs.files import npz, sync
 from analysis.runs.format import CHECKPOINT_FOLDER
-from analysis.runs.write import sync
 from yade_scripts.run.checkpoint import sums
 from yade_scripts.run.written import RECORDER
 
@@ -36,10 +35,9 @@ class CheckpointWriter:
         omega = Omega()
         if self._saved == omega.iter:
             return
-        self.folder.sync()
         os.makedirs(os.path.join(self.folder.path, CHECKPOINT_FOLDER), exist_ok=True)
         scene, content, rows = f"scene-{omega.iter}.yade", _saved_scene(omega), self.recorder.rows()
-        self.folder.write(f"{CHECKPOINT_FOLDER}/{scene}", content, lasting=True)
+        self.folder.write(f"{CHECKPOINT_FOLDER}/{scene}", content)
         about = {
             "run": self.run,
             "wallTime": self.wall_time(),
@@ -50,7 +48,7 @@ class CheckpointWriter:
             "sums": {"scene": sums(content), "rows": sums(rows.tobytes())},
             "columns": list(self.recorder.columns),
         }
-        self.folder.write(RECORDER, npz(rows=rows, about=json.dumps(about)), lasting=True)
+        self.folder.write(RECORDER, npz(rows=rows, about=json.dumps(about)))
         sync(self.folder.path)
         self.folder.remove_checkpoint(but=(f"{CHECKPOINT_FOLDER}/{scene}", RECORDER))
         self._saved = omega.iter

@@ -4,8 +4,7 @@ import os
 import sys
 
 from analysis.printable import shell_line
-from analysis.runs.arrays import RunFolderError
-from analysis.runs.folder import read_json
+from analysis.runs.files import RunFolderError, read_json
 from analysis.runs.format import ENDED_FILE, RUN_FILE
 from yade_scripts.parameters import ParameterError
 from yade_scripts.run import checkpoint

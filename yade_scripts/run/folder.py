@@ -1,14 +1,20 @@
 """Writing a run folder, whose format is that of analysis.runs.format; each file is whole or not there."""
 
 import fcntl
-import json
 import os
 from contextlib import suppress
 
-from analysis.runs.arrays import npz
+from analysis.runs.files import (
+    is_unfinished,
+    json_text,
+    npz,
+    remove_unfinished,
+    require_output,
+    sums_text,
+    sync,
+    write_file,
+)
 from analysis.runs.format import CHECKPOINT_FOLDER, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER
-from analysis.runs.seal import seal_text
-from analysis.runs.write import is_unfinished, remove_unfinished, require_file, sync, write_bytes, write_text
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
 from yade_scripts.run.heartbeat import Beating, RunsElsewhere, is_heartbeat, require_stopped
@@ -35,7 +41,6 @@ class RunFolder:
         self.path = path
         self.checkpoint = self._heartbeat = None
         self.states = os.path.join(path, STATES_FOLDER)
-        self._unsynced = set()  # paths that a power loss may still take
         try:
             self._lock = _made_and_locked(path)
             try:
@@ -95,12 +100,11 @@ class RunFolder:
         """states/NNNNNN.npz from {name: array}."""
         self.write(state_name(number), npz(**state))
 
-    def write(self, name, content, lasting=False):
-        """Write a file of bytes, which comes on the folder's list before. name: seen from the folder; lasting: it outlives a power
-        loss from then on."""
+    def write(self, name, content):
+        """Write a file of bytes, which comes on the folder's list before. name: seen from the folder."""
         if self._written.claim([name]):
-            self._write_run(lasting=True)
-        self._write(name, content, lasting)
+            self._write_run()
+        self._write(name, content)
 
     def keep_states(self, number):
         """Remove all states but the first `number`, and what a killed writer has left."""
@@ -114,21 +118,10 @@ class RunFolder:
         with suppress(OSError):  # there is none, or it holds what no run has written
             os.rmdir(self._file(CHECKPOINT_FOLDER))
 
-    def sync(self):
-        """Have all that was written so far on the disk, so that it outlives a power loss."""
-        self._require_kept()
-        for path in sorted(self._unsynced):
-            sync(path)
-        if self._unsynced:
-            for folder in (self.states, self.path, os.path.dirname(os.path.abspath(self.path))):
-                sync(folder)
-        self._unsynced.clear()
-
     def write_ended(self):
         """The mark that the run came to its planned end, with the sums of its files: written last, when all the rest is on the disk."""
         try:
-            self.sync()
-            self.write(ENDED_FILE, seal_text(self.path, self._written.results()).encode(), lasting=True)
+            self.write(ENDED_FILE, sums_text(self.path, self._written.results()))
         except OSError:
             with suppress(OSError):
                 os.unlink(self._file(ENDED_FILE))
@@ -145,15 +138,13 @@ class RunFolder:
         if self._heartbeat:
             self._heartbeat.require_kept()
 
-    def _write(self, name, content, lasting):
+    def _write(self, name, content):
         self._require_kept()
-        write_bytes(self._file(name), content, within=self.path, lasting=lasting)
-        if not lasting:
-            self._unsynced.add(self._file(name))
+        write_file(self._file(name), content)
 
-    def _write_run(self, lasting=False):
+    def _write_run(self):
         run = {"format": FORMAT, **self._run, "files": sorted(self._written.names)}
-        self._write(RUN_FILE, json_text(run).encode(), lasting)
+        self._write(RUN_FILE, json_text(run))
 
     def _begin(self, states):
         """Remove an earlier run's files, and nothing else: the mark of its end first; run.json, with all on its list, stays in all
@@ -164,7 +155,7 @@ class RunFolder:
             self._written.remove(lambda name: name == ENDED_FILE)
             sync(self.path)  # before what it vouches for is gone
         self._run = {}
-        self._write_run(lasting=True)
+        self._write_run()
         self.remove_checkpoint()
         self._written.remove()
         self._written = own
@@ -183,12 +174,7 @@ class RunFolder:
 
 def write_json(path, content):
     """A dictionary as a JSON file, whole or not there."""
-    write_text(path, json_text(content))
-
-
-def json_text(content):
-    """A dictionary as JSON; ValueError for what JSON can't hold."""
-    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+    write_file(path, json_text(content))
 
 
 def _unwritable(path, error):
@@ -207,7 +193,7 @@ def _usable(path, overwrite, resume):
         raise RunFolderError(
             f"out = {path}: exists and is no run folder; must be a new folder, or one of an earlier run"
         )
-    require_file(os.path.join(path, RUN_FILE))
+    require_output(os.path.join(path, RUN_FILE))
     run, written = Written.read(path)
     if written is None:
         raise RunFolderError(

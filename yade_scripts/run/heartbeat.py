@@ -16,11 +16,9 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 
 from analysis.runs import running
-from analysis.runs.arrays import RunFolderError
-from analysis.runs.folder import read_json
+from analysis.runs.files import RunFolderError, make_new, read_json, write_file
 from analysis.runs.format import HEARTBEAT_FILE
 from analysis.runs.running import INTERVAL, Heartbeat, Place
-from analysis.runs.write import make_new, write_bytes
 
 _START = re.compile(r"\.heartbeat-(\d+)")
 
@@ -81,8 +79,10 @@ class Beating:
             raise OSError(errno.EEXIST, "no run has written it; must be moved away", self._file(HEARTBEAT_FILE))
         last = running.read_heartbeat(self.folder)
         self.now = replace(self.now, start=max([*_numbers(starts), last.start if last else 0]) + 1)
-        if not make_new(self._own(), _text(self.now)):
-            raise RunsElsewhere("which has just begun")
+        try:
+            make_new(self._own(), _text(self.now))
+        except FileExistsError:
+            raise RunsElsewhere("which has just begun") from None
         try:
             # another one, while this process was paused
             if _numbers(_starts(self.folder) - starts) != {self.now.start}:
@@ -96,7 +96,7 @@ class Beating:
 
     def _write(self, **changed):
         now = replace(self.now, **changed)
-        write_bytes(self._file(HEARTBEAT_FILE), _text(now), lasting=False)  # of a run that a power loss ends, too
+        write_file(self._file(HEARTBEAT_FILE), _text(now))  # of a run that a power loss ends, too
         self.now = now
 
     def _own(self):

@@ -4,7 +4,7 @@ import os
 import sys
 import time
 
-from analysis.runs.arrays import RunFolderError
+from analysis.runs.files import RunFolderError
 from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import InputError, one_line_errors
 from yade_scripts.run import continuing

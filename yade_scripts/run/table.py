@@ -3,8 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from analysis.runs.arrays import RunFolderError, require_regular
-from analysis.runs.write import write_text
+from analysis.runs.files import write_file
 from yade_scripts.parameters.errors import InputError
 
 
@@ -33,11 +32,8 @@ def read(path):
     another number of cells than the header, two columns have one name, or there are no rows.
     """
     try:
-        require_regular(path)
         with open(path, encoding="utf-8-sig") as file:  # some editors begin a file with a byte order mark
             lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
-    except RunFolderError as error:
-        raise TableError(error) from None
     except UnicodeDecodeError:
         raise TableError(f"{path}: has bytes that are not UTF-8; must be a table of parameters") from None
     except OSError as error:
@@ -83,4 +79,4 @@ def write(path, rows, comment=""):
     widths = [max(map(len, column)) for column in zip(*cells)]
     text = "".join(f"# {line}\n" for line in comment.splitlines())
     text += "".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() + "\n" for line in cells)
-    write_text(path, text)
+    write_file(path, text)

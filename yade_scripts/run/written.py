@@ -9,8 +9,7 @@ import os
 import re
 from contextlib import suppress
 
-from analysis.runs.arrays import RunFolderError
-from analysis.runs.folder import read_json
+from analysis.runs.files import RunFolderError, read_json, require_output
 from analysis.runs.format import (
     CHECKPOINT_FOLDER,
     ENDED_FILE,
@@ -20,7 +19,6 @@ from analysis.runs.format import (
     STATES_FOLDER,
     state_file,
 )
-from analysis.runs.write import require_file
 from yade_scripts.run import checkpoint
 
 RECORDER = f"{CHECKPOINT_FOLDER}/{checkpoint.RECORDER}"
@@ -75,7 +73,7 @@ class Written:
             if os.path.islink(self._path(name)):
                 raise self._error(name, errno.EINVAL, "is a link; must be a folder")
         for name in self._there(self.names):
-            require_file(self._path(name), self.folder)
+            require_output(self._path(name))
 
     def remove(self, wanted=lambda name: True):
         """Remove the files of the list whose name is wanted; recorder.npz first, without which a checkpoint is none. OSError,

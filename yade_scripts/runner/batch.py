@@ -9,8 +9,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from multiprocessing.connection import wait
 
-from analysis.runs.arrays import RunFolderError
-from analysis.runs.folder import read_json
+from analysis.runs.files import RunFolderError, read_json
 from analysis.runs.format import ENDED_FILE
 from analysis.runs.status import changed
 from yade_scripts.run.folder import write_json

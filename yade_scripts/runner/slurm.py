@@ -14,9 +14,8 @@ from itertools import groupby
 from math import ceil
 
 from analysis.printable import shell_line
-from analysis.runs.arrays import RunFolderError, require_regular
+from analysis.runs.files import RunFolderError, remove_unfinished, write_file
 from analysis.runs.running import states_of_job, why_unknown
-from analysis.runs.write import remove_unfinished, write_text
 from yade_scripts.run.file_name import file_name
 from yade_scripts.run.table import read
 from yade_scripts.runner.cost import typical_seconds
@@ -102,7 +101,6 @@ def queued(study_folder, sure=False):
     for number in _numbers(study_folder):
         folder = study_folder.file(f"slurm-{number}")
         try:
-            require_regular(os.path.join(folder, JOB))
             with open(os.path.join(folder, JOB)) as file:
                 job, _, tasks = file.read().strip().partition(" ")
             states = states_of_job(job) if job.isdecimal() else None
@@ -131,7 +129,7 @@ def _submit(study_folder, rows, tasks, at_once, options):
     folder = study_folder.file(f"slurm-{_next_number(study_folder)}")
     os.makedirs(folder)
     write(os.path.join(folder, ROWS), rows)
-    write_text(os.path.join(folder, SCRIPT), job_script(study_folder, folder, rows, tasks, at_once))
+    write_file(os.path.join(folder, SCRIPT), job_script(study_folder, folder, rows, tasks, at_once))
     try:
         done = subprocess.run(_command(folder, options), capture_output=True, text=True, stdin=subprocess.DEVNULL)
     except FileNotFoundError:
@@ -139,7 +137,7 @@ def _submit(study_folder, rows, tasks, at_once, options):
     job = done.stdout.strip().partition(";")[0]  # a cluster's name may follow
     if done.returncode or not job.isdecimal():
         raise SlurmError(f'sbatch: {" ".join(done.stderr.split()) or f"exit status {done.returncode}"}')
-    write_text(os.path.join(folder, JOB), f"{job} {tasks}\n")
+    write_file(os.path.join(folder, JOB), f"{job} {tasks}\n")
     return job
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from ...figures.save import save_small
 from ...figures.style import new_figure, styled
 from ...progress import progress
-from ...runs.write import replacing
+from ...runs.files import replacing
 from .dustpy import use_atlas
 
 YEARS = 1e5

@@ -12,7 +12,7 @@ from ...figures.grain_colours import BONDED, COLOURINGS, SCALE, Range
 from ...figures.style import run_title
 from ...printable import printable
 from ...progress import progress
-from ...runs.write import require_file, write_text
+from ...runs.files import require_output, write_file
 from ..fields import exported_states
 
 THREE = Path("/usr/share/javascript/three")  # of Debian's libjs-three
@@ -29,12 +29,12 @@ def write_view(run, file, three=THREE):
 
     three: folder of three.js (r110 to r147) with build/three.min.js and examples/js/controls/OrbitControls.js. NoThree when it lacks them,
     RunFolderError when a state is damaged or there is none, OSError."""
-    require_file(file)
+    require_output(file)
     scripts = _scripts(Path(three))
     page = Environment(loader=FileSystemLoader(_HERE), autoescape=True).get_template("page.html")
     data = json.dumps(_data(run)).replace("<", "\\u003c")  # no text in it can end the script
     viewer = (_HERE / "viewer.js").read_text(encoding="utf-8")
-    write_text(
+    write_file(
         file,
         page.render(
             title=printable(run.path.resolve().name), ways=COLOURINGS, scripts=scripts, data=data, viewer=viewer

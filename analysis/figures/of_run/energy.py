@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...measures.ledger import closure, closure_history, fractions
-from ...runs.arrays import RunFolderError
+from ...runs.files import RunFolderError
 from ...runs.format import CHANNELS, COLOURS, COMPRESSION, HISTORY_FILE, LABELS
 from ..style import NANO, new_figure, run_title, styled
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...measures.of_run import are_equal, maximum_of_run
-from ...runs.arrays import RunFolderError
+from ...runs.files import RunFolderError
 from ...runs.format import COLLISION, HISTORY_FILE
 from ..style import NANO, new_figure, run_title, styled
 

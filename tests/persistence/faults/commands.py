@@ -8,7 +8,7 @@ from typing import Callable
 
 import numpy as np
 
-from analysis.runs.write import is_unfinished
+from analysis.runs.files import is_unfinished
 
 COLLIDE = "yade_scripts/collide.py"
 # Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.

@@ -10,8 +10,8 @@ from faults.forks import DISK_FULL, END_BEFORE, END_HALFWAY
 
 from analysis.atlas.columns import COLUMNS
 from analysis.atlas.query import RUNS_FILE
+from analysis.runs.files import is_unfinished
 from analysis.runs.table import read_table, table_text
-from analysis.runs.write import is_unfinished
 
 ACTIONS = {"ends before": END_BEFORE, "ends halfway": END_HALFWAY, "disk full from": DISK_FULL}
 STOPPED = 143

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-from analysis.runs.arrays import RunFolderError, array_names, read_arrays
+from analysis.runs.files import RunFolderError, array_names, read_arrays
 from yade_scripts.packings.foreign.spheres import IN_A_METRE, require_axes, roles, spheres_of
 from yade_scripts.packings.packing import PackingError
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.runs.arrays import LARGEST
+from analysis.runs.folder import LARGEST
 from yade_scripts.packings.packing import PackingError
 
 FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"

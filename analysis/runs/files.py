@@ -1,0 +1,352 @@
+"""Reading and writing files, the one way of the analysis and the scripts.
+
+A file is written under a temporary name beside its place, .NAME.XXXXXXXX.unfinished, brought onto the disk, and renamed: a
+process that is killed leaves the old file or the new one, never a part. What is read is compared with its SHA-256 where
+there is one, and an array is only read if it is as long as its header says.
+"""
+
+import errno
+import hashlib
+import io
+import json
+import math
+import os
+import re
+import secrets
+import warnings
+import zipfile
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+
+_UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}\.unfinished(\.\w+)?")
+
+
+class RunFolderError(Exception):
+    """A run folder, or a file of one, that cannot be used; the message is one line: which file, and what is wrong."""
+
+
+# Writing
+
+
+def write_file(path, content):
+    """Write a file, which is whole or as it was before.
+
+    Parameters
+    ----------
+    path : str or Path
+    content : str (written as UTF-8), bytes or a buffer
+
+    Raises
+    ------
+    OSError
+        with .filename, also where require_output() refuses the path
+    """
+    with replacing(path) as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+
+
+@contextmanager
+def replacing(path, ending=""):
+    """A binary file, open for writing, that takes the place of `path` when the block has come to its end.
+
+    Parameters
+    ----------
+    path : str or Path
+    ending : str
+        what the temporary name ends in (".mp4"), for a program that is given .name and writes by itself
+
+    Raises
+    ------
+    OSError
+        as write_file()
+    """
+    path = os.fspath(path)
+    require_output(path)
+    temporary = _temporary(path, ending)
+    try:
+        with open(temporary, "xb") as file:
+            yield file
+        sync(temporary)
+        os.replace(temporary, path)
+        sync(os.path.dirname(path) or os.curdir)
+    except BaseException as error:
+        with suppress(OSError):
+            os.unlink(temporary)
+        if isinstance(error, OSError) and error.errno and error.filename in (None, temporary):
+            raise OSError(error.errno, error.strerror, path) from None
+        raise
+
+
+def require_output(path, inputs=()):
+    """Raise OSError, with .filename, for a path that is no file, is write-protected, or is one of `inputs` (paths)."""
+    path = os.fspath(path)
+    if os.path.realpath(path) in map(os.path.realpath, inputs):
+        raise OSError(errno.EINVAL, "is what is read; must be another file", path)
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise OSError(errno.EINVAL, "is a folder or a device; must be a file", path)
+    if os.path.exists(path) and not os.access(path, os.W_OK):
+        raise OSError(errno.EACCES, os.strerror(errno.EACCES), path)
+
+
+def make_folder(path):
+    """Make a folder, and those that it is in, unless it is there. Raises OSError, with .filename."""
+    if os.path.lexists(path) and not os.path.isdir(path):
+        raise OSError(errno.ENOTDIR, "is a file; must be a folder", os.fspath(path))
+    os.makedirs(path, exist_ok=True)
+
+
+def make_new(path, content):
+    """Make a file with its bytes at once; raises FileExistsError where there is one: of several processes one makes it."""
+    temporary = _temporary(path)
+    try:
+        with open(temporary, "xb") as file:
+            file.write(content)
+        os.link(temporary, path)
+    except OSError as error:
+        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS):
+            raise
+        with open(path, "xb") as file:  # on a disk without hard links
+            file.write(content)
+    finally:
+        with suppress(OSError):
+            os.unlink(temporary)
+
+
+def _temporary(path, ending=""):
+    folder, name = os.path.split(path)
+    return os.path.join(folder, f".{name}.{secrets.token_hex(4)}.unfinished{ending}")
+
+
+def is_unfinished(name):
+    """Whether a file of this name is a temporary one."""
+    return bool(_UNFINISHED.fullmatch(name))
+
+
+def remove_unfinished(folder):
+    """Remove the temporary files that killed processes have left in a folder, in which no other process may write."""
+    with suppress(FileNotFoundError):
+        for name in filter(is_unfinished, os.listdir(folder)):
+            with suppress(OSError):
+                os.unlink(os.path.join(folder, name))
+
+
+def sync(path):
+    """Have a file's content, or the names in a folder, on the disk; raises OSError."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+# Reading
+
+
+def read_bytes(file, sha256=None):
+    """Content of a file.
+
+    Parameters
+    ----------
+    file : str or Path
+    sha256 : str, optional
+        which its SHA-256 must be, in hexadecimal digits
+
+    Raises
+    ------
+    RunFolderError
+        when it is missing, cannot be read, or has another sum
+    """
+    try:
+        content = Path(file).read_bytes()
+    except FileNotFoundError:
+        raise RunFolderError(f"{file}: missing") from None
+    except OSError as error:
+        raise RunFolderError(f"{file}: cannot be read: {error.strerror}") from None
+    found = hashlib.sha256(content).hexdigest() if sha256 else None
+    if found != sha256:
+        raise RunFolderError(
+            f"{file}: not as it was written: its SHA-256 is {found[:12]}..., must be {sha256[:12]}..., as in ended"
+        )
+    return content
+
+
+def read_text(file, sha256=None):
+    """Text of a file in UTF-8, otherwise as read_bytes()."""
+    try:
+        return read_bytes(file, sha256).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise RunFolderError(f"{file}: damaged: {error}") from None
+
+
+def read_json(file, sha256=None):
+    """What a JSON file holds, otherwise as read_bytes(); NaN and Infinity are no JSON."""
+    try:
+        return json.loads(read_text(file, sha256), parse_constant=_refuse_constant)
+    except RecursionError:
+        raise RunFolderError(f"{file}: not valid JSON: nested too deeply") from None
+    except ValueError as error:
+        raise RunFolderError(f"{file}: not valid JSON: {error}") from None
+
+
+def _refuse_constant(text):
+    raise ValueError(f"{text} is no number of JSON")
+
+
+def json_text(content):
+    """A dictionary as JSON; ValueError for what JSON can't hold."""
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+# Arrays
+
+
+def npz(**arrays):
+    """Content (a buffer) of an .npz file with these arrays."""
+    content = io.BytesIO()
+    np.savez(content, **arrays)
+    return content.getbuffer()
+
+
+def array_names(file):
+    """Names of the arrays of an .npz file; RunFolderError when it is missing or damaged."""
+    with _opened(file, read_bytes(file)) as archive:
+        return _names(archive)
+
+
+def read_arrays(file, names, optional=(), texts=(), sha256=None):
+    """Arrays of an .npz file.
+
+    Parameters
+    ----------
+    file : str or Path
+    names : sequence of str
+        arrays of numbers that must be there
+    optional : sequence of str
+        arrays of numbers that may be there
+    texts : sequence of str
+        texts that must be there
+    sha256 : str, optional
+        as of read_bytes()
+
+    Returns
+    -------
+    dict
+        {name: read-only array, or str}
+
+    Raises
+    ------
+    RunFolderError
+        when the file or an array is missing or damaged, or an array holds something else than numbers
+    """
+    with _opened(file, read_bytes(file, sha256)) as archive:
+        there = set(_names(archive))
+        absent = [name for name in (*names, *texts) if name not in there]
+        if absent:
+            raise RunFolderError(f"{file}: lacks the array " + ", ".join(f"'{name}'" for name in absent))
+        wanted = [name for name in (*names, *optional, *texts) if name in there]
+        arrays = {name: _read_array(file, archive, name) for name in wanted}
+    for name, array in arrays.items():
+        if array.dtype.kind not in ("U" if name in texts else "biuf") or (name in texts and array.shape):
+            what = "a text" if name in texts else "numbers"
+            raise RunFolderError(f"{file}: '{name}' must hold {what}, it holds {array.dtype}")
+        array.flags.writeable = False
+    return {name: str(array) if name in texts else array for name, array in arrays.items()}
+
+
+@contextmanager
+def _opened(file, content):
+    """The archive in these bytes of a file; whatever goes wrong while it is read is a RunFolderError."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what numpy warns of in a damaged header
+            yield archive
+    except RunFolderError:
+        raise
+    except Exception as error:  # zipfile and numpy raise a dozen kinds, by which bit is damaged
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise RunFolderError(f"{file}: damaged, or not an .npz file: {reason}") from None
+
+
+def _names(archive):
+    return [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
+
+
+def _read_array(file, archive, name):
+    """The array, after its length has been compared with what its header says."""
+    read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+    with archive.open(f"{name}.npy") as member:
+        shape, _, dtype = read[np.lib.format.read_magic(member)](member)
+        length = archive.getinfo(f"{name}.npy").file_size - member.tell()
+    expected = math.prod(shape) * dtype.itemsize
+    if length != expected and not dtype.hasobject:  # objects, whose length no header says, are refused below
+        raise RunFolderError(f"{file}: damaged: '{name}' has {length} bytes, by its header {expected:.6g}")
+    with archive.open(f"{name}.npy") as member:
+        return np.lib.format.read_array(member, allow_pickle=False)
+
+
+# Sums
+
+
+def sum_of(file):
+    """SHA-256 of a file, in hexadecimal digits; raises OSError."""
+    found = hashlib.sha256()
+    with open(file, "rb") as content:
+        while part := content.read(2**20):
+            found.update(part)
+    return found.hexdigest()
+
+
+def sums_text(folder, names):
+    """What `sha256sum NAME...` prints in a folder, in the order of the names; raises OSError."""
+    return "".join(f"{sum_of(os.path.join(folder, name))}  {name}\n" for name in sorted(names))
+
+
+def read_sums(file):
+    """{name: SHA-256} of a file that sums_text() has made; RunFolderError where it is missing or holds something else.
+
+    Lines that begin with # are passed over, as sha256sum does: formats before 5 had such."""
+    lines = [line.split("  ") for line in read_text(file).splitlines() if line and not line.startswith("#")]
+    if not all(len(line) == 2 and re.fullmatch("[0-9a-f]{64}", line[0]) for line in lines):
+        raise RunFolderError(f"{file}: damaged: holds other lines than sums, as sha256sum prints them")
+    return {name: digits for digits, name in lines}
+
+
+# A text that carries its own sum begins with a JSON object of which this is the first entry; summed() puts the sum in the
+# place of the zeros.
+SUM = "sha256"
+UNSUMMED = {SUM: "0" * 64}
+_OWN_SUM = re.compile(r'(?:# )?\{\s*"sha256": "([0-9a-f]{64})"')
+_WITHOUT_SUM = re.compile(r'(?:# )?\{\s*"study"')
+
+
+def summed(text):
+    """A text that begins with UNSUMMED, with its sum."""
+    return text.replace(UNSUMMED[SUM], hashlib.sha256(text.encode()).hexdigest(), 1)
+
+
+def read_summed(file):
+    """The text of a file that summed() has made; RunFolderError where it is missing, or not as it was written.
+
+    Versions before 0.5.0 wrote tables without a sum, which are read."""
+    text = read_text(file)
+    if not _WITHOUT_SUM.match(text):
+        require_own_sum(file, text)
+    return text
+
+
+def require_own_sum(file, text):
+    """Raise RunFolderError where a file's text does not begin with its sum."""
+    found = _OWN_SUM.match(text)
+    if not found:
+        raise RunFolderError(f"{file}: not as `analysis study` has written it: must begin with its sum")
+    if summed(text[: found.start(1)] + UNSUMMED[SUM] + text[found.end(1) :]) != text:
+        raise RunFolderError(f"{file}: not as it was written: its SHA-256 is another than its first line says")
+
+
+def begins_with_sum(file):
+    """Whether there is such a file, and it begins as summed() makes it."""
+    with suppress(OSError), open(file, encoding="utf-8", errors="replace") as text:
+        return bool(_OWN_SUM.match(text.read(100)))
+    return False
